@@ -1,0 +1,1 @@
+//! The input forms of an attitude.

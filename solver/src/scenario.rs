@@ -1,0 +1,152 @@
+//! A planning problem, valid by construction.
+
+use crate::attitude::Attitude;
+use crate::problem::Problem;
+use crate::spacecraft::Spacecraft;
+use crate::spec::{OptionsSpec, ScenarioSpec};
+use nalgebra::Vector3;
+
+/// What a rate component must satisfy at a visit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RateCondition {
+    /// Only the spacecraft's own limits.
+    Free,
+    /// Exactly this value, rad/s.
+    Fixed(f64),
+    /// Between these values, rad/s; either may be infinite.
+    Within(f64, f64),
+}
+
+/// The fully known state at time zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    /// Attitude, sign as given.
+    pub attitude: Attitude,
+    /// Body rate in body axes, rad/s.
+    pub rate: Vector3<f64>,
+    /// Wheel speeds relative to the body, rad/s, one per wheel.
+    pub wheel_speed: Vec<f64>,
+}
+
+/// What must hold at the end of the tour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct End {
+    /// Attitude, sign as given.
+    pub attitude: Attitude,
+    /// Body rate in body axes, rad/s.
+    pub rate: Vector3<f64>,
+    /// Wheel speeds relative to the body, rad/s, one per wheel; `None` leaves them free.
+    pub wheel_speed: Option<Vec<f64>>,
+}
+
+/// A valid target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Unique identifier.
+    pub id: String,
+    /// Attitude, sign as given.
+    pub attitude: Attitude,
+    /// Condition of each rate component; all are `Fixed(0.0)` when settle or dwell is above zero.
+    pub rate: [RateCondition; 3],
+    /// Time to settle at rest after arrival, s.
+    pub settle: f64,
+    /// Time to stay at rest after settling, s.
+    pub dwell: f64,
+}
+
+/// A cone that a boresight should avoid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeepOut {
+    /// Name of the boresight.
+    pub boresight: String,
+    /// Unit direction of the boresight in body axes.
+    pub axis: Vector3<f64>,
+    /// Unit direction of the cone's axis in the reference frame.
+    pub direction: Vector3<f64>,
+    /// Half angle, rad.
+    pub half_angle: f64,
+}
+
+/// A valid planning problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    name: Option<String>,
+    spacecraft: Spacecraft,
+    start: Start,
+    end: Option<End>,
+    targets: Vec<Target>,
+    keep_out: Vec<KeepOut>,
+    options: OptionsSpec,
+}
+
+impl Scenario {
+    /// Validates a description and collects every problem.
+    ///
+    /// # Errors
+    ///
+    /// All problems at once, in the order of the document.
+    pub fn try_new(spec: &ScenarioSpec) -> Result<Validated, Vec<Problem>> {
+        let _ = spec;
+        Err(Vec::new())
+    }
+
+    /// Free text that names the scenario.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// The spacecraft.
+    #[must_use]
+    pub fn spacecraft(&self) -> &Spacecraft {
+        &self.spacecraft
+    }
+
+    /// State at time zero.
+    #[must_use]
+    pub fn start(&self) -> &Start {
+        &self.start
+    }
+
+    /// Conditions at the end, if there is one beyond the last target.
+    #[must_use]
+    pub fn end(&self) -> Option<&End> {
+        self.end.as_ref()
+    }
+
+    /// The targets in the caller's order.
+    #[must_use]
+    pub fn targets(&self) -> &[Target] {
+        &self.targets
+    }
+
+    /// The keep-out cones.
+    #[must_use]
+    pub fn keep_out(&self) -> &[KeepOut] {
+        &self.keep_out
+    }
+
+    /// Options of the solve.
+    #[must_use]
+    pub fn options(&self) -> &OptionsSpec {
+        &self.options
+    }
+
+    /// Total angular momentum in the reference frame, N m s: a constant of the motion.
+    #[must_use]
+    pub fn momentum(&self) -> Vector3<f64> {
+        let start = &self.start;
+        start
+            .attitude
+            .to_reference(self.spacecraft.body_momentum(start.rate, &start.wheel_speed))
+    }
+}
+
+/// A valid scenario with what the caller should know about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validated {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// Doubts that do not stand in the way.
+    pub warnings: Vec<Problem>,
+}

@@ -2,6 +2,8 @@
 
 pub mod attitude;
 pub mod checker;
+mod kinematics;
+mod nlp;
 pub mod plan;
 pub mod planner;
 pub mod pool;

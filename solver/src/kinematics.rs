@@ -160,12 +160,8 @@ impl TurnMap {
         p
     }
 
-    /// The turn with derivatives; `mu` gives, from the turn itself, the weights of the second ones.
-    pub(crate) fn derivatives(
-        &self,
-        z: &TurnInputs,
-        mu: impl FnOnce(&Quat) -> Quat,
-    ) -> TurnDerivatives {
+    /// The turn with derivatives, the second ones weighted by `mu`.
+    pub(crate) fn derivatives(&self, z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
         let h = 1.0 / self.substeps as f64;
         let mut records = [StageRecord::default(); STAGES * MAX_SUBSTEPS];
         let mut p = [0.0, 0.0, 0.0, 1.0];
@@ -175,7 +171,7 @@ impl TurnMap {
             self.forward_substep(z, step, h, &mut p, &mut first, records);
         }
         let mut second = [[0.0; INPUTS]; INPUTS];
-        let mut adjoint = mu(&p);
+        let mut adjoint = *mu;
         for step in (0..self.substeps).rev() {
             let records = &records[step * STAGES..(step + 1) * STAGES];
             self.reverse_substep(z, h, &mut adjoint, records, &mut second);
@@ -422,11 +418,11 @@ mod tests {
         for with_momentum in [false, true] {
             let map = map(with_momentum, 2);
             let weights = [0.7, -0.3, 0.9, 0.4];
-            let exact = map.derivatives(&inputs(&Z), |_| weights);
+            let exact = map.derivatives(&inputs(&Z), &weights);
             let at = |index: usize, by: f64| {
                 let mut z = Z;
                 z[index] += by;
-                map.derivatives(&inputs(&z), |_| weights)
+                map.derivatives(&inputs(&z), &weights)
             };
             let by = 1e-5;
             for j in 0..map.inputs() {

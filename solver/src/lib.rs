@@ -2,6 +2,7 @@
 
 pub mod attitude;
 pub mod checker;
+mod dynamics;
 mod kinematics;
 mod nlp;
 pub mod plan;
@@ -13,3 +14,4 @@ pub mod scenario;
 pub mod spacecraft;
 pub mod spec;
 pub mod stop;
+mod transcription;

@@ -3,9 +3,12 @@
 pub mod attitude;
 pub mod checker;
 mod dynamics;
+pub mod envelope;
+mod findings;
 mod kinematics;
-mod nlp;
+mod linear_program;
 mod multiphase;
+mod nlp;
 pub mod plan;
 pub mod planner;
 pub mod pool;

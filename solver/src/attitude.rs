@@ -14,8 +14,6 @@
 
 mod forms;
 
-
-
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 
 /// A unit quaternion under the [conventions](self) of this module, sign included.
@@ -132,3 +130,6 @@ impl Attitude {
         ))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,6 +2,9 @@
 
 pub mod attitude;
 pub mod checker;
+pub mod envelope;
+mod findings;
+mod linear_program;
 pub mod plan;
 pub mod planner;
 pub mod pool;

@@ -90,6 +90,5 @@ pub fn leg_table(
 /// hold, for example.
 #[must_use]
 pub fn feasibility_problems(scenario: &Scenario) -> Vec<Problem> {
-    let _ = scenario;
-    Vec::new()
+    crate::envelope::momentum_problems(scenario)
 }

@@ -1,9 +1,21 @@
 //! A planning problem, valid by construction.
+//!
+//! [`Scenario::try_new`] reads the parts in the order of the document, each in a file of its own,
+//! and goes on after a fault: what a part needs from an earlier one is either optional or taken
+//! from the description, so that one run lists everything that is wrong.
+
+mod keep_out;
+mod limits;
+mod options;
+mod state;
+mod target;
 
 use crate::attitude::Attitude;
+use crate::findings::Findings;
 use crate::problem::Problem;
 use crate::spacecraft::Spacecraft;
 use crate::spec::{OptionsSpec, ScenarioSpec};
+use limits::Limits;
 use nalgebra::Vector3;
 
 /// What a rate component must satisfy at a visit.
@@ -71,6 +83,9 @@ pub struct KeepOut {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     name: Option<String>,
+    epoch: Option<String>,
+    time_system: Option<String>,
+    reference_frame: Option<String>,
     spacecraft: Spacecraft,
     start: Start,
     end: Option<End>,
@@ -86,14 +101,74 @@ impl Scenario {
     ///
     /// All problems at once, in the order of the document.
     pub fn try_new(spec: &ScenarioSpec) -> Result<Validated, Vec<Problem>> {
-        let _ = spec;
-        Err(Vec::new())
+        let mut findings = Findings::default();
+        let scenario = Self::read(spec, &mut findings);
+        let (scenario, warnings) = findings.conclude(scenario)?;
+        Ok(Validated { scenario, warnings })
+    }
+
+    fn read(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Self> {
+        let equivalence = spec.options.attitude_equivalence;
+        let limits = Limits::of(spec);
+        let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", findings);
+        let start =
+            state::read_start(&spec.start, equivalence, &limits, findings).filter(|start| {
+                spacecraft.as_ref().is_none_or(|spacecraft| {
+                    let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+                    state::momentum_is_finite(&momentum, "/start", findings)
+                })
+            });
+        let end = spec.end.as_ref().map(|end| {
+            let end = state::read_end(end, &spec.start, equivalence, &limits, findings)?;
+            let known = spacecraft.as_ref().zip(start.as_ref());
+            known
+                .is_none_or(|(spacecraft, start)| {
+                    state::end_conserves_momentum(spacecraft, start, &end, findings)
+                })
+                .then_some(end)
+        });
+        let targets = target::read_all(spec, &limits, findings);
+        let keep_out = keep_out::read_all(spec, findings);
+        let options_valid = options::check(&spec.options, findings);
+        Some(Self {
+            name: spec.name.clone(),
+            epoch: spec.epoch.clone(),
+            time_system: spec.time_system.clone(),
+            reference_frame: spec.reference_frame.clone(),
+            spacecraft: spacecraft?,
+            start: start?,
+            end: match end {
+                Some(end) => Some(end?),
+                None => None,
+            },
+            targets: targets?,
+            keep_out: keep_out?,
+            options: options_valid.then(|| spec.options.clone())?,
+        })
     }
 
     /// Free text that names the scenario.
     #[must_use]
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
+    }
+
+    /// Epoch of time zero as the caller wrote it; only labels exports.
+    #[must_use]
+    pub fn epoch(&self) -> Option<&str> {
+        self.epoch.as_deref()
+    }
+
+    /// Time system of the epoch as the caller wrote it; only labels exports.
+    #[must_use]
+    pub fn time_system(&self) -> Option<&str> {
+        self.time_system.as_deref()
+    }
+
+    /// Name of the reference frame as the caller wrote it; only labels exports.
+    #[must_use]
+    pub fn reference_frame(&self) -> Option<&str> {
+        self.reference_frame.as_deref()
     }
 
     /// The spacecraft.
@@ -135,10 +210,7 @@ impl Scenario {
     /// Total angular momentum in the reference frame, N m s: a constant of the motion.
     #[must_use]
     pub fn momentum(&self) -> Vector3<f64> {
-        let start = &self.start;
-        start
-            .attitude
-            .to_reference(self.spacecraft.body_momentum(start.rate, &start.wheel_speed))
+        momentum_at(&self.spacecraft, &self.start)
     }
 }
 
@@ -150,3 +222,14 @@ pub struct Validated {
     /// Doubts that do not stand in the way.
     pub warnings: Vec<Problem>,
 }
+
+/// Total angular momentum of a start in the reference frame, N m s.
+fn momentum_at(spacecraft: &Spacecraft, start: &Start) -> Vector3<f64> {
+    let in_body = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+    start.attitude.to_reference(in_body)
+}
+
+#[cfg(test)]
+pub(crate) mod reference;
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,14 @@
 //!
 //! Total momentum `J_eff w + sum a_i h_i + (locked wheels)` is constant in the reference frame.
 
+mod inertia;
+mod wheels;
+
+use crate::findings::Findings;
+use crate::problem::{Code, Problem};
+use crate::spec::{BoresightSpec, SpacecraftSpec};
 use nalgebra::{Matrix3, Vector3};
+use std::collections::HashSet;
 
 /// A valid wheel.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +62,52 @@ pub struct Spacecraft {
 }
 
 impl Spacecraft {
+    /// Validates a description and collects every problem; `pointer` is its JSON pointer.
+    ///
+    /// # Errors
+    ///
+    /// All problems at once, in the order of the document.
+    pub fn try_new(spec: &SpacecraftSpec, pointer: &str) -> Result<Self, Vec<Problem>> {
+        let mut findings = Findings::default();
+        let spacecraft = Self::read(spec, pointer, &mut findings);
+        findings
+            .conclude(spacecraft)
+            .map(|(spacecraft, _)| spacecraft)
+    }
+
+    /// As [`Spacecraft::try_new`], for a reader of something larger.
+    pub(crate) fn read(
+        spec: &SpacecraftSpec,
+        pointer: &str,
+        findings: &mut Findings,
+    ) -> Option<Self> {
+        let inertia_pointer = format!("{pointer}/inertia_kg_m2");
+        let inertia = inertia::read(&spec.inertia_kg_m2, &inertia_pointer, findings);
+        let max_rate = axis_limits(spec, pointer, findings);
+        let norm_pointer = format!("{pointer}/max_body_rate_norm_rad_s");
+        let max_rate_norm = limit(spec.max_body_rate_norm_rad_s, &norm_pointer, findings);
+        let wheels_pointer = format!("{pointer}/wheels");
+        let wheels = wheels::read(&spec.wheels, &wheels_pointer, findings);
+        let effective = match (&inertia, &wheels) {
+            (Some(inertia), Some(wheels)) => {
+                wheels::effective_inertia(inertia, wheels, &wheels_pointer, findings)
+            }
+            _ => None,
+        };
+        let boresights_pointer = format!("{pointer}/boresights");
+        let boresights = boresights(&spec.boresights, &boresights_pointer, findings);
+        let (effective_inertia, effective_inertia_inverse) = effective?;
+        Some(Self {
+            inertia: inertia?,
+            effective_inertia,
+            effective_inertia_inverse,
+            wheels: wheels?,
+            max_rate: max_rate?,
+            max_rate_norm: max_rate_norm?,
+            boresights: boresights?,
+        })
+    }
+
     /// Inertia of the whole spacecraft with its wheels locked, kg m².
     #[must_use]
     pub fn inertia(&self) -> &Matrix3<f64> {
@@ -115,3 +168,71 @@ impl Spacecraft {
         self.inertia * rate + spin
     }
 }
+
+/// An optional limit above zero; infinite when there is none.
+fn limit(value: Option<f64>, pointer: &str, findings: &mut Findings) -> Option<f64> {
+    match value {
+        None => Some(f64::INFINITY),
+        Some(value) => findings.positive(pointer, value),
+    }
+}
+
+fn axis_limits(
+    spec: &SpacecraftSpec,
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<Vector3<f64>> {
+    let mut limits = Vector3::repeat(f64::INFINITY);
+    let mut valid = true;
+    for (i, value) in spec.max_body_rate_rad_s.into_iter().enumerate() {
+        match limit(
+            value,
+            &format!("{pointer}/max_body_rate_rad_s/{i}"),
+            findings,
+        ) {
+            Some(value) => limits[i] = value,
+            None => valid = false,
+        }
+    }
+    valid.then_some(limits)
+}
+
+fn boresights(
+    specs: &[BoresightSpec],
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<Vec<Boresight>> {
+    let mut names = HashSet::new();
+    // Read one by one first: collecting straight into an option would stop at the first fault.
+    let read: Vec<_> = specs
+        .iter()
+        .enumerate()
+        .map(|(i, spec)| {
+            let name_pointer = format!("{pointer}/{i}/name");
+            if spec.name.is_empty() {
+                findings.refuse(
+                    &name_pointer,
+                    Code::MissingField,
+                    "the boresight's name is empty",
+                    "give each boresight a name by which keep-out cones can refer to it",
+                );
+            } else if !names.insert(spec.name.as_str()) {
+                findings.refuse(
+                    &name_pointer,
+                    Code::DuplicateId,
+                    format!("another boresight is already named \"{}\"", spec.name),
+                    "give each boresight a name of its own",
+                );
+            }
+            let axis = findings.direction(&format!("{pointer}/{i}/axis"), spec.axis)?;
+            Some(Boresight {
+                name: spec.name.clone(),
+                axis,
+            })
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests;

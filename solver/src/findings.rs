@@ -1,0 +1,155 @@
+//! Gathering everything that is wrong with a description, instead of stopping at the first fault.
+//!
+//! A reader takes the findings by mutable reference, notes what it dislikes and returns `None` for
+//! a value that it cannot use, so that one fault neither hides nor invents another.
+
+use crate::problem::{Code, Problem};
+use nalgebra::Vector3;
+
+/// Problems and warnings, in the order in which they were found.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    problems: Vec<Problem>,
+    warnings: Vec<Problem>,
+}
+
+impl Findings {
+    /// Notes a reason to refuse the description.
+    pub(crate) fn refuse(
+        &mut self,
+        pointer: impl Into<String>,
+        code: Code,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) {
+        self.problems
+            .push(Problem::new(pointer, code, message, hint));
+    }
+
+    /// Notes a doubt that does not stand in the way.
+    pub(crate) fn warn(
+        &mut self,
+        pointer: impl Into<String>,
+        code: Code,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) {
+        self.warnings
+            .push(Problem::new(pointer, code, message, hint));
+    }
+
+    /// The value with its warnings, or all the problems.
+    ///
+    /// Whoever returns `None` has noted why, so the two always agree.
+    pub(crate) fn conclude<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Vec<Problem>> {
+        match value {
+            Some(value) if self.problems.is_empty() => Ok((value, self.warnings)),
+            _ => {
+                debug_assert!(
+                    !self.problems.is_empty(),
+                    "a value is missing without a reason"
+                );
+                Err(self.problems)
+            }
+        }
+    }
+
+    /// A finite number.
+    pub(crate) fn finite(&mut self, pointer: &str, value: f64) -> Option<f64> {
+        if value.is_finite() {
+            return Some(value);
+        }
+        self.refuse(
+            pointer,
+            Code::NotFinite,
+            format!("the number is {value}"),
+            "write a finite number",
+        );
+        None
+    }
+
+    /// Finite numbers; each fault points at its element.
+    pub(crate) fn finite_all<const N: usize>(
+        &mut self,
+        pointer: &str,
+        values: [f64; N],
+    ) -> Option<[f64; N]> {
+        let mut all = true;
+        for (i, value) in values.into_iter().enumerate() {
+            all &= self.finite(&format!("{pointer}/{i}"), value).is_some();
+        }
+        all.then_some(values)
+    }
+
+    /// A finite vector.
+    pub(crate) fn vector(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
+        self.finite_all(pointer, values).map(Vector3::from)
+    }
+
+    /// A finite number above zero.
+    pub(crate) fn positive(&mut self, pointer: &str, value: f64) -> Option<f64> {
+        let value = self.finite(pointer, value)?;
+        if value > 0.0 {
+            return Some(value);
+        }
+        self.refuse(
+            pointer,
+            Code::OutOfRange,
+            format!("the number is {value}, it must be above 0"),
+            "give a value above 0; leave an optional limit out, or null, for none",
+        );
+        None
+    }
+
+    /// A finite vector that is not zero, as given.
+    pub(crate) fn nonzero(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
+        let vector = self.vector(pointer, values)?;
+        if vector.amax() > 0.0 {
+            return Some(vector);
+        }
+        self.refuse(
+            pointer,
+            Code::ZeroDirection,
+            "all three components are 0, which points nowhere",
+            "give a direction of any length but zero",
+        );
+        None
+    }
+
+    /// The unit vector along a finite vector that is not zero.
+    pub(crate) fn direction(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
+        self.nonzero(pointer, values).map(unit)
+    }
+}
+
+/// Unit vector along a non-zero vector of any representable length.
+pub(crate) fn unit(vector: Vector3<f64>) -> Vector3<f64> {
+    // Scaled first, since the squares of very long or very short vectors leave the number range.
+    (vector / vector.amax()).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_element_that_is_not_finite_is_named() {
+        let mut findings = Findings::default();
+        assert!(
+            findings
+                .vector("/v", [f64::NAN, 1.0, f64::INFINITY])
+                .is_none()
+        );
+        let problems = findings.conclude::<()>(None).unwrap_err();
+        let pointers: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
+        assert_eq!(pointers, ["/v/0", "/v/2"]);
+    }
+
+    #[test]
+    fn extreme_lengths_still_have_a_direction() {
+        for length in [1e-300, 1e300] {
+            let axis = unit(Vector3::new(0.0, 3.0, 4.0) * length);
+            assert!((axis - Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-15);
+        }
+    }
+}

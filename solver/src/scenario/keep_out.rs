@@ -1,0 +1,76 @@
+//! The keep-out cones.
+
+use super::KeepOut;
+use crate::findings::{Findings, unit};
+use crate::problem::Code;
+use crate::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
+use nalgebra::Vector3;
+
+pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
+    // Read one by one first: collecting straight into an option would stop at the first fault.
+    let cones: Vec<_> = spec
+        .keep_out
+        .iter()
+        .enumerate()
+        .map(|(i, cone)| {
+            read(
+                cone,
+                &spec.spacecraft.boresights,
+                &format!("/keep_out/{i}"),
+                findings,
+            )
+        })
+        .collect();
+    cones.into_iter().collect()
+}
+
+fn read(
+    spec: &KeepOutSpec,
+    boresights: &[BoresightSpec],
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<KeepOut> {
+    // Sought in the description, where a name is known even if its axis is refused.
+    let boresight = boresights.iter().find(|known| known.name == spec.boresight);
+    if boresight.is_none() {
+        let known: Vec<_> = boresights
+            .iter()
+            .map(|b| format!("\"{}\"", b.name))
+            .collect();
+        findings.refuse(
+            format!("{pointer}/boresight"),
+            Code::UnknownReference,
+            format!("no boresight is named \"{}\"", spec.boresight),
+            match known.as_slice() {
+                [] => "declare it in spacecraft.boresights".to_owned(),
+                known => format!(
+                    "declare it in spacecraft.boresights, or use {}",
+                    known.join(", ")
+                ),
+            },
+        );
+    }
+    let direction = findings.direction(&format!("{pointer}/direction"), spec.direction);
+    let half_angle = read_half_angle(spec, &format!("{pointer}/half_angle_deg"), findings);
+    Some(KeepOut {
+        boresight: spec.boresight.clone(),
+        axis: unit(Vector3::from(boresight?.axis)),
+        direction: direction?,
+        half_angle: half_angle?,
+    })
+}
+
+/// Half angle in rad.
+fn read_half_angle(spec: &KeepOutSpec, pointer: &str, findings: &mut Findings) -> Option<f64> {
+    let degrees = findings.finite(pointer, spec.half_angle_deg)?;
+    if degrees > 0.0 && degrees < 180.0 {
+        return Some(degrees.to_radians());
+    }
+    findings.refuse(
+        pointer,
+        Code::OutOfRange,
+        format!("the half angle is {degrees} degrees, it must be above 0 and below 180"),
+        "give the angle from the cone's axis to its surface, in degrees",
+    );
+    None
+}

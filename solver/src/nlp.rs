@@ -43,5 +43,7 @@ mod settings;
 pub(crate) use chain::{Chain, Link, LinkMultipliers};
 pub(crate) use interior_point::InteriorPoint;
 pub(crate) use iterate::Iterate;
+#[cfg(test)]
+pub(crate) use model::models_of;
 pub(crate) use model::{LinkModel, LinkValues};
 pub(crate) use settings::{NlpReport, NlpStatus, Settings};

@@ -111,7 +111,13 @@ impl Scenario {
         let equivalence = spec.options.attitude_equivalence;
         let limits = Limits::of(spec);
         let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", findings);
-        let start = state::read_start(&spec.start, equivalence, &limits, findings);
+        let start =
+            state::read_start(&spec.start, equivalence, &limits, findings).filter(|start| {
+                spacecraft.as_ref().is_none_or(|spacecraft| {
+                    let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+                    state::momentum_is_finite(&momentum, "/start", findings)
+                })
+            });
         let end = spec.end.as_ref().map(|end| {
             let end = state::read_end(end, &spec.start, equivalence, &limits, findings)?;
             let known = spacecraft.as_ref().zip(start.as_ref());

@@ -23,6 +23,8 @@ mod attitude_link;
 mod nodes;
 mod rows;
 mod scales;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use nodes::{Waypoint, WheelCondition};
 pub(crate) use scales::Scales;
@@ -136,14 +138,14 @@ impl Transcription {
 
     fn write_state_values(&self, node: &Node, point: &[f64], out: &mut LinkValues) -> usize {
         let state = self.view(point);
-        let mut equalities = out.equality.iter_mut();
+        let mut equalities = out.equality.as_mut_slice();
         if let Some(target) = &node.attitude {
             let error = attitude_error(target, point) * (2.0 / self.scales.angle);
-            for (out, value) in equalities.by_ref().zip(error.iter()) {
-                *out = *value;
-            }
+            let (attitude, rest) = equalities.split_at_mut(3);
+            attitude.copy_from_slice(error.as_slice());
+            equalities = rest;
         }
-        for (out, row) in equalities.zip(&node.equalities) {
+        for (out, row) in equalities.iter_mut().zip(&node.equalities) {
             *out = row.value(&state);
         }
         let mut count = 0;

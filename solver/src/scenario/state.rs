@@ -121,9 +121,31 @@ fn keeps_locked_wheels(
     kept
 }
 
+/// Refuses rates and speeds so large that their momentum leaves the number range.
+pub(super) fn momentum_is_finite(
+    momentum: &Vector3<f64>,
+    pointer: &str,
+    findings: &mut Findings,
+) -> bool {
+    let finite = momentum.norm_squared().is_finite();
+    if !finite {
+        findings.refuse(
+            pointer,
+            Code::OutOfRange,
+            format!(
+                "the angular momentum {} N m s is beyond all bounds",
+                triple(momentum)
+            ),
+            "lower body_rate_rad_s and wheel_speed_rad_s; both are in rad/s",
+        );
+    }
+    finite
+}
+
 /// Whether wheel speeds given at the end carry the conserved momentum at that attitude and rate.
 ///
 /// Three equations bind any number of wheels; with three of them nothing is left to choose.
+/// Without speeds only the size of the rate is checked.
 pub(super) fn end_conserves_momentum(
     spacecraft: &Spacecraft,
     start: &Start,
@@ -131,7 +153,7 @@ pub(super) fn end_conserves_momentum(
     findings: &mut Findings,
 ) -> bool {
     let Some(speeds) = &end.wheel_speed else {
-        return true;
+        return momentum_is_finite(&(spacecraft.inertia() * end.rate), "/end", findings);
     };
     let conserved = end.attitude.to_body(momentum_at(spacecraft, start));
     let given = spacecraft.body_momentum(end.rate, speeds);

@@ -142,6 +142,28 @@ fn faults_of_start_and_end_are_found() {
 }
 
 #[test]
+fn unlimited_rates_must_still_leave_a_momentum_to_compute_with() {
+    expect_faults(&[
+        (
+            |s| {
+                s.spacecraft.max_body_rate_rad_s = [None; 3];
+                s.start.body_rate_rad_s = Some([1e200, 0.0, 0.0]);
+            },
+            Code::OutOfRange,
+            "/start",
+        ),
+        (
+            |s| {
+                s.spacecraft.max_body_rate_rad_s = [None; 3];
+                end(s).body_rate_rad_s = Some([1e200, 0.0, 0.0]);
+            },
+            Code::OutOfRange,
+            "/end",
+        ),
+    ]);
+}
+
+#[test]
 fn faults_of_targets_are_found() {
     expect_faults(&[
         (

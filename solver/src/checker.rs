@@ -28,7 +28,7 @@ use crate::scenario::Scenario;
 use dynamics::{Body, Snapshot};
 use integrator::{Flown, Interval, STEP_TOLERANCE};
 use keep_out::Watch;
-use limits::{Limits, excess};
+use limits::{Limits, excess, margin};
 use samples::Sampler;
 use visits::{Misses, Visit};
 
@@ -173,7 +173,9 @@ impl<'a> Observed<'a> {
             |step| {
                 sampler.observe(step);
                 limits.observe(step);
-                watches.iter_mut().for_each(|watch| watch.observe(step));
+                for watch in watches.iter_mut() {
+                    watch.observe(step);
+                }
             },
         );
         self.states = sampler.states;
@@ -202,9 +204,9 @@ impl<'a> Observed<'a> {
             .map(|watch| watch.clearance.to_degrees());
         Report {
             margins: Margins {
-                torque: 1.0 - torque_usage * options.torque_authority,
-                wheel_speed: wheel_usage.map(|usage| 1.0 - usage * options.momentum_authority),
-                body_rate: rate_usage.map(|usage| 1.0 - usage),
+                torque: margin(torque_usage, options.torque_authority),
+                wheel_speed: wheel_usage.map(|usage| margin(usage, options.momentum_authority)),
+                body_rate: rate_usage.map(|usage| margin(usage, 1.0)),
                 wheel_zero_crossings: self.limits.zero_crossings(),
                 keep_out_clearance_deg: clearances.collect(),
             },
@@ -265,7 +267,8 @@ impl Report {
 
 fn integrator_name() -> String {
     format!(
-        "Taylor series of order {}, relative tolerance {STEP_TOLERANCE:e} per step, checked against the equations of motion at every step",
+        "Taylor series of order {}, relative tolerance {STEP_TOLERANCE:e} per step, \
+         tested against the equations of motion at every step",
         series::ORDER
     )
 }

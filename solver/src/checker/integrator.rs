@@ -5,6 +5,7 @@
 //! its end, as evaluated by the plain [dynamics](super::dynamics): the recurrences that make the
 //! coefficients are thereby tested in every step.
 
+use super::NOT_COMPUTED;
 use super::dynamics::{Body, Snapshot, norm, to_reference};
 use super::series::Expansion;
 use super::wording::figure;
@@ -177,10 +178,11 @@ impl Ledger {
     }
 
     fn close(self) -> Flown {
-        let momentum_drift = if self.drift == 0.0 {
-            0.0
-        } else {
-            self.drift / self.scale
+        // Numbers near the largest overflow in between; what cannot be told is no success.
+        let momentum_drift = match self.drift / self.scale {
+            _ if self.drift == 0.0 => 0.0,
+            ratio if ratio.is_finite() => ratio,
+            _ => NOT_COMPUTED,
         };
         Flown {
             steps: self.steps,

@@ -1,9 +1,9 @@
 //! Limits of torque, wheel speed and body rate, at every moment of the flight.
 
-use super::LIMIT_TOLERANCE;
 use super::extremum::critical_points;
 use super::integrator::Step;
 use super::wording::figure;
+use super::{LIMIT_TOLERANCE, NOT_COMPUTED};
 use crate::plan::Flight;
 use crate::scenario::Scenario;
 use crate::spacecraft::Spacecraft;
@@ -40,9 +40,14 @@ impl Peak {
     }
 }
 
-/// The excess over 1, or 0.
+/// The excess over 1, or 0; finite even for limits that are almost nothing.
 pub(super) fn excess(usage: f64) -> f64 {
-    (usage - 1.0).max(0.0)
+    (usage - 1.0).clamp(0.0, NOT_COMPUTED)
+}
+
+/// What is left of a hardware limit of which a plan may use the share `authority`.
+pub(super) fn margin(usage: f64, authority: f64) -> f64 {
+    (1.0 - usage * authority).max(-NOT_COMPUTED)
 }
 
 /// The largest share of the allowed torque, with sentences about wheels that exceed it.

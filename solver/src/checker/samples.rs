@@ -42,7 +42,9 @@ fn sort(times: &mut Vec<f64>) {
 /// Adds the begin and the inner points of equal parts of a gap.
 fn divide(times: &mut Vec<f64>, begin: f64, end: f64, spacing: f64) {
     // Rounding of an even division must not cost another part.
-    let parts = ((end - begin) / spacing - 1e-9).ceil().max(1.0);
+    let parts = ((end - begin) / spacing - 1e-9)
+        .ceil()
+        .clamp(1.0, PER_FLIGHT + 1.0);
     let mut part = 0.0;
     while part < parts {
         let time = begin + (end - begin) * (part / parts);

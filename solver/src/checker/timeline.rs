@@ -89,12 +89,12 @@ fn gaps(flight: &Flight) -> Vec<String> {
     for (index, control) in flight.controls.iter().enumerate() {
         if (control.start_s - reached).abs() > slack {
             let kind = if control.start_s > reached {
-                "gap"
+                "a gap"
             } else {
-                "overlap"
+                "an overlap"
             };
             defects.push(format!(
-                "control {index} starts at {} s where {} s was reached: a {kind} of {} s",
+                "control {index} starts at {} s where {} s was reached: {kind} of {} s",
                 figure(control.start_s),
                 figure(reached),
                 figure((control.start_s - reached).abs())

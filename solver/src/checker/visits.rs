@@ -129,7 +129,8 @@ fn snapped(time: f64, flight: &Flight, intervals: &[Interval<'_>]) -> f64 {
         Some(flight.total_time_s),
     ];
     let onto = candidates.into_iter().flatten().find(near);
-    onto.unwrap_or(time).clamp(0.0, flight.total_time_s)
+    // Not `clamp`, which would panic for a total time that is itself refused.
+    onto.unwrap_or(time).max(0.0).min(flight.total_time_s)
 }
 
 /// Tests all visits and the end against the flown states, which are in order of time.

@@ -8,6 +8,7 @@ pub mod pool;
 pub mod problem;
 pub mod progress;
 pub mod scenario;
+pub mod sequence;
 pub mod spacecraft;
 pub mod spec;
 pub mod stop;

@@ -16,6 +16,7 @@ pub mod problem;
 mod profile;
 pub mod progress;
 pub mod scenario;
+pub mod sequence;
 mod slew;
 pub mod spacecraft;
 pub mod spec;

@@ -1,0 +1,106 @@
+//! The command line: what can be asked for, and with which exit code it ends.
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+mod failure;
+mod input;
+mod legs;
+mod output;
+mod panics;
+mod solve;
+mod validate;
+mod verify;
+
+use failure::Failure;
+
+/// Multi-target attitude scheduling for spacecraft with reaction wheels.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    about,
+    after_help = "A file name of - means standard input or output."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Find the visiting order and the wheel torques of minimum time
+    Solve(solve::Arguments),
+    /// Tabulate the times of the legs between start, targets and end
+    Legs(legs::Arguments),
+    /// List everything that is wrong or doubtful with a scenario
+    Validate(validate::Arguments),
+    /// Fly a plan made by anyone again and test every limit
+    Verify(verify::Arguments),
+}
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Exit {
+    /// The answer is complete: optimal, valid, passed.
+    Complete,
+    /// An error of ours or of the machine, or no answer found.
+    Failed,
+    /// The input is not valid.
+    Invalid,
+    /// No plan can exist, or the plan did not pass.
+    Negative,
+    /// Stopped with the best answer so far.
+    Stopped,
+    /// Ended by a signal before there was an answer.
+    Signalled(u8),
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        match exit {
+            Exit::Complete => Self::from(0),
+            Exit::Failed => Self::from(1),
+            Exit::Invalid => Self::from(2),
+            Exit::Negative => Self::from(3),
+            Exit::Stopped => Self::from(4),
+            Exit::Signalled(code) => Self::from(code),
+        }
+    }
+}
+
+/// Runs the program on the arguments of the process.
+pub(crate) fn run() -> ExitCode {
+    let command = Arguments::parse().command;
+    let exit = match panics::contain(|| dispatch(&command)) {
+        Ok(Ok(exit)) => exit,
+        Ok(Err(failure)) => {
+            output::complain(&failure.to_string());
+            failure.exit()
+        }
+        Err(panic) => {
+            output::complain(&format!("internal error: {panic}"));
+            Exit::Failed
+        }
+    };
+    exit.into()
+}
+
+fn dispatch(command: &Command) -> Result<Exit, Failure> {
+    match command {
+        Command::Solve(arguments) => solve::run(arguments),
+        Command::Legs(arguments) => legs::run(arguments),
+        Command::Validate(arguments) => validate::run(arguments),
+        Command::Verify(arguments) => verify::run(arguments),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_of_the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,82 @@
+//! Why a command could not do its work.
+
+use super::Exit;
+use slewplan_solver::pool::PoolError;
+use slewplan_solver::problem::Problem;
+use std::fmt::Write;
+use std::io;
+
+/// Ends a command with a message on standard error.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    /// An input that cannot be opened or read.
+    #[error("cannot read {name}: {source}")]
+    Unreadable {
+        /// The input as the caller named it.
+        name: String,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// An input of a size that cannot be meant.
+    #[error("cannot read {name}: it is larger than {limit_mib} MiB")]
+    TooLarge {
+        /// The input as the caller named it.
+        name: String,
+        /// The limit, MiB.
+        limit_mib: u64,
+    },
+    /// Two inputs from one stream.
+    #[error("only one input can be - (standard input); name a file for the other")]
+    StandardInputTwice,
+    /// An input with problems.
+    #[error("{}", listing(name, problems))]
+    Invalid {
+        /// The input as the caller named it.
+        name: String,
+        /// Everything that is wrong with it.
+        problems: Vec<Problem>,
+    },
+    /// An output that cannot be written.
+    #[error("cannot write {name}: {source}")]
+    Unwritable {
+        /// The output as the caller named it.
+        name: String,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The operating system refused threads.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// The operating system refused signal handlers.
+    #[error("cannot listen for signals: {0}")]
+    Signals(io::Error),
+    /// An answer that must not be given.
+    #[error("internal error: the answer cannot be written: {0}")]
+    Unspeakable(String),
+}
+
+impl Failure {
+    /// The exit code.
+    pub(super) fn exit(&self) -> Exit {
+        match self {
+            Self::Unreadable { .. }
+            | Self::TooLarge { .. }
+            | Self::StandardInputTwice
+            | Self::Invalid { .. } => Exit::Invalid,
+            Self::Unwritable { .. } | Self::Pool(_) | Self::Signals(_) | Self::Unspeakable(_) => {
+                Exit::Failed
+            }
+        }
+    }
+}
+
+/// Problems as text: a head line and one paragraph each.
+pub(super) fn listing(name: &str, problems: &[Problem]) -> String {
+    let plural = if problems.len() == 1 { "" } else { "s" };
+    let mut text = format!("{name} is not valid: {} problem{plural}", problems.len());
+    for problem in problems {
+        // Writing into a text cannot fail.
+        let _ = write!(text, "\n{problem}");
+    }
+    text
+}

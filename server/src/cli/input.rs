@@ -1,0 +1,61 @@
+//! Files and standard input.
+
+use super::failure::Failure;
+use crate::wire;
+use slewplan_solver::scenario::Validated;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Far above any real document, far below the memory of a small machine.
+const LARGEST_MIB: u64 = 256;
+
+/// The name of an input in messages.
+pub(super) fn name(path: &Path) -> String {
+    if is_stream(path) {
+        "standard input".into()
+    } else {
+        path.display().to_string()
+    }
+}
+
+/// Whether a path stands for standard input or output.
+pub(super) fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Reads all of a file or of standard input.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let bytes = read_limited(path).map_err(|source| Failure::Unreadable {
+        name: name(path),
+        source,
+    })?;
+    if bytes.len() as u64 > LARGEST_MIB << 20 {
+        return Err(Failure::TooLarge {
+            name: name(path),
+            limit_mib: LARGEST_MIB,
+        });
+    }
+    Ok(bytes)
+}
+
+fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
+    let source: Box<dyn Read> = if is_stream(path) {
+        Box::new(io::stdin().lock())
+    } else {
+        Box::new(File::open(path)?)
+    };
+    let mut bytes = Vec::new();
+    source
+        .take((LARGEST_MIB << 20) + 1)
+        .read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Reads a valid scenario.
+pub(super) fn scenario(path: &Path) -> Result<Validated, Failure> {
+    wire::scenario::read(&read(path)?).map_err(|problems| Failure::Invalid {
+        name: name(path),
+        problems,
+    })
+}

@@ -1,0 +1,169 @@
+//! Files and standard output: complete or not at all.
+
+use super::failure::Failure;
+use super::input::is_stream;
+use serde::Serialize;
+use std::fs::{self, File, Permissions};
+use std::io::{self, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Where an answer goes.
+#[derive(Debug)]
+pub(super) enum Destination {
+    /// Standard output.
+    Stream,
+    /// A regular file, or none yet, that is replaced by renaming.
+    File(PathBuf),
+    /// A device or pipe that must not be replaced.
+    Device(PathBuf),
+}
+
+impl Destination {
+    /// The destination behind a path, tested for being writable before any work is done.
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        if is_stream(path) {
+            return Ok(Self::Stream);
+        }
+        Self::probe(path).map_err(|source| Failure::Unwritable {
+            name: path.display().to_string(),
+            source,
+        })
+    }
+
+    fn probe(path: &Path) -> io::Result<Self> {
+        match fs::metadata(path) {
+            Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+            Ok(found) if !found.is_file() => Ok(Self::Device(path.into())),
+            // Behind a symbolic link it is the file that is replaced, not the link.
+            Ok(_) => {
+                temporary_beside(&fs::canonicalize(path)?).map(|(_, target)| Self::File(target))
+            }
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                temporary_beside(path).map(|(_, target)| Self::File(target))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Writes the whole answer.
+    pub(super) fn write(&self, text: &str) -> Result<(), Failure> {
+        let (name, result) = match self {
+            Self::Stream => return print(text),
+            Self::File(path) => (path, replace(path, text)),
+            Self::Device(path) => {
+                let opened = File::options().write(true).open(path);
+                (
+                    path,
+                    opened.and_then(|mut device| device.write_all(text.as_bytes())),
+                )
+            }
+        };
+        result.map_err(|source| Failure::Unwritable {
+            name: name.display().to_string(),
+            source,
+        })
+    }
+}
+
+/// A new file in the folder of a path, and that path; on the same file system, so that renaming
+/// is atomic.
+fn temporary_beside(path: &Path) -> io::Result<(NamedTempFile, PathBuf)> {
+    let folder = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let file = tempfile::Builder::new()
+        .prefix(".slewplan-")
+        // What any new file gets: the umask of the caller decides.
+        .permissions(Permissions::from_mode(0o666))
+        .tempfile_in(folder)?;
+    Ok((file, path.to_owned()))
+}
+
+fn replace(path: &Path, text: &str) -> io::Result<()> {
+    let (mut file, target) = temporary_beside(path)?;
+    file.write_all(text.as_bytes())?;
+    file.as_file().sync_all()?;
+    file.persist(target)?;
+    Ok(())
+}
+
+/// A document as JSON text.
+pub(super) fn json(document: &impl Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(document)
+        .map(|text| text + "\n")
+        .map_err(|error| Failure::Unspeakable(error.to_string()))
+}
+
+/// Writes text to standard output.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut stream = io::stdout().lock();
+    match stream
+        .write_all(text.as_bytes())
+        .and_then(|()| stream.flush())
+    {
+        // A reader that has seen enough, `head` for one, is no error.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Unwritable {
+            name: "standard output".into(),
+            source: error,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Writes text to standard error.
+pub(super) fn remark(text: &str) {
+    // When even that fails there is nobody left to tell.
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Writes a message to standard error.
+pub(super) fn complain(message: &str) {
+    remark(&format!("slewplan: {message}\n"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(folder: &Path) -> Vec<String> {
+        fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect()
+    }
+
+    #[test]
+    fn a_file_appears_only_when_written_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.json");
+        let destination = Destination::open(&path).unwrap();
+        assert!(entries(folder.path()).is_empty());
+        destination.write("text").unwrap();
+        assert_eq!(entries(folder.path()), ["plan.json"]);
+        assert_eq!(fs::read_to_string(&path).unwrap(), "text");
+    }
+
+    #[test]
+    fn a_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        Destination::open(&link).unwrap().write("new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+    }
+
+    #[test]
+    fn devices_are_written_to_and_folders_refused() {
+        let device = Destination::open(Path::new("/dev/null")).unwrap();
+        assert!(matches!(device, Destination::Device(_)));
+        device.write("text").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        assert!(Destination::open(folder.path()).is_err());
+        assert!(Destination::open(&folder.path().join("none/plan.json")).is_err());
+    }
+}

@@ -1,0 +1,213 @@
+//! `slewplan solve`: one scenario in, one plan out.
+
+use super::failure::Failure;
+use super::output::{self, Destination};
+use super::{Exit, input};
+use crate::progress::{self, ProgressMode};
+use crate::report;
+use crate::signals::{self, Received};
+use crate::wire;
+use clap::ValueEnum;
+use slewplan_solver::plan::{Optimality, Outcome};
+use slewplan_solver::planner::{self, Run};
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::problem::Problem;
+use slewplan_solver::scenario::{Scenario, Validated};
+use slewplan_solver::stop::StopSignal;
+use std::io::{IsTerminal, stdout};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What `solve` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The scenario, - for standard input
+    scenario: PathBuf,
+    /// Write the plan to this file
+    #[arg(short, long, value_name = "PLAN")]
+    output: Option<PathBuf>,
+    /// Form of the plan [default: json]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Print a summary for people, as on a terminal
+    #[arg(long)]
+    summary: bool,
+    #[command(flatten)]
+    threads: Threads,
+    /// Stop with the best plan so far after this time, s, whatever the scenario says
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    time_limit: Option<Duration>,
+    /// How to show progress on standard error
+    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    progress: ProgressMode,
+}
+
+/// The form of a written plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// The whole plan
+    Json,
+    /// The sampled trajectory, one row per state
+    Csv,
+}
+
+/// How many workers solve.
+#[derive(Debug, clap::Args)]
+pub(super) struct Threads {
+    /// Worker threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// Starts the workers.
+pub(super) fn start_pool(threads: &Threads) -> Result<SolverPool, Failure> {
+    let count = threads
+        .threads
+        .and_then(|count| NonZeroUsize::new(count.into()));
+    Ok(SolverPool::new(count)?)
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|limit| *limit > 0.0)
+        .and_then(|limit| Duration::try_from_secs_f64(limit).ok())
+        .ok_or_else(|| "expected a number of seconds above 0".into())
+}
+
+/// Solves the scenario and writes plan and summary.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let outlets = Outlets::open(arguments)?;
+    let Validated { scenario, warnings } = input::scenario(&arguments.scenario)?;
+    let (outcome, received) = solve(arguments, &scenario)?;
+    if let (Outcome::StoppedEmpty, Some(code)) = (&outcome, received.exit_code()) {
+        output::complain("stopped before a first plan was found");
+        return Ok(Exit::Signalled(code));
+    }
+    outlets.write(&outcome, &warnings, &scenario)?;
+    Ok(exit(&outcome))
+}
+
+fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Received), Failure> {
+    let pool = start_pool(&arguments.threads)?;
+    let limit = arguments.time_limit.or_else(|| {
+        // A limit beyond what a duration holds is none.
+        scenario
+            .options()
+            .time_limit_s
+            .and_then(|limit| Duration::try_from_secs_f64(limit).ok())
+    });
+    let mut stop = StopSignal::new();
+    if let Some(limit) = limit {
+        stop = stop.with_time_limit(limit);
+    }
+    let received = signals::listen(&stop).map_err(Failure::Signals)?;
+    let observer = progress::observer(arguments.progress);
+    let run = Run {
+        pool: &pool,
+        stop: &stop,
+        observer: &*observer,
+    };
+    Ok((planner::solve(scenario, run), received))
+}
+
+fn exit(outcome: &Outcome) -> Exit {
+    match outcome {
+        Outcome::Planned(plan) => match plan.optimality {
+            Optimality::Optimal => Exit::Complete,
+            Optimality::Feasible => Exit::Stopped,
+        },
+        Outcome::Infeasible(_) => Exit::Negative,
+        Outcome::Failed(_) | Outcome::StoppedEmpty => Exit::Failed,
+    }
+}
+
+/// Where plan and summary go.
+struct Outlets {
+    plan: Option<(Destination, Format)>,
+    summary: Summary,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Summary {
+    None,
+    Output,
+    /// Standard output is taken by the plan.
+    Error,
+}
+
+impl Outlets {
+    /// The plan goes to the named file, or to standard output when a program reads it or its form
+    /// was asked for; the summary goes where a person reads.
+    fn open(arguments: &Arguments) -> Result<Self, Failure> {
+        let person = stdout().is_terminal();
+        let format = arguments.format.unwrap_or(Format::Json);
+        let destination = match &arguments.output {
+            Some(path) => Some(Destination::open(path)?),
+            None if arguments.format.is_some() => Some(Destination::Stream),
+            None if person || arguments.summary => None,
+            None => Some(Destination::Stream),
+        };
+        let taken = matches!(destination, Some(Destination::Stream));
+        let summary = match (arguments.summary, taken) {
+            (true, true) => Summary::Error,
+            (true, false) => Summary::Output,
+            (false, false) if person => Summary::Output,
+            (false, _) => Summary::None,
+        };
+        Ok(Self {
+            plan: destination.map(|destination| (destination, format)),
+            summary,
+        })
+    }
+
+    fn write(
+        &self,
+        outcome: &Outcome,
+        doubts: &[Problem],
+        scenario: &Scenario,
+    ) -> Result<(), Failure> {
+        if let Some((destination, format)) = &self.plan {
+            match (format, outcome) {
+                (Format::Json, _) => {
+                    destination.write(&output::json(&wire::plan::document(outcome, doubts))?)?;
+                }
+                (Format::Csv, Outcome::Planned(plan)) => {
+                    let table = wire::csv::table(plan)
+                        .map_err(|_| Failure::Unspeakable("a state is not finite".into()))?;
+                    destination.write(&table)?;
+                }
+                // There is no trajectory to tabulate; the reasons go to standard error below.
+                (Format::Csv, _) => {}
+            }
+        }
+        let text = report::outcome(outcome, doubts, scenario);
+        match self.summary {
+            Summary::Output => output::print(&text),
+            Summary::Error => {
+                output::remark(&text);
+                Ok(())
+            }
+            Summary::None => {
+                if !matches!(outcome, Outcome::Planned(_)) {
+                    output::remark(&text);
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_limits_are_positive_and_finite() {
+        assert_eq!(seconds("1.5"), Ok(Duration::from_millis(1500)));
+        for wrong in ["0", "-1", "NaN", "inf", "1e400", "x", ""] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `slewplan validate`: everything that is wrong or doubtful with a scenario.
+
+use super::failure::{Failure, listing};
+use super::{Exit, input, output};
+use crate::wire;
+use crate::wire::problems::ValidationDocument;
+use clap::ValueEnum;
+use slewplan_solver::planner;
+use slewplan_solver::problem::Problem;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// What `validate` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The scenario, - for standard input
+    scenario: PathBuf,
+    /// How to print the findings
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// Prints the findings on standard output.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let name = input::name(&arguments.scenario);
+    let (errors, warnings) = match wire::scenario::read(&input::read(&arguments.scenario)?) {
+        Ok(valid) => (
+            planner::feasibility_problems(&valid.scenario),
+            valid.warnings,
+        ),
+        Err(errors) => (errors, Vec::new()),
+    };
+    output::print(&match arguments.format {
+        Format::Text => text(&name, &errors, &warnings),
+        Format::Json => output::json(&ValidationDocument::new(&errors, &warnings))?,
+    })?;
+    Ok(if errors.is_empty() {
+        Exit::Complete
+    } else {
+        Exit::Invalid
+    })
+}
+
+fn text(name: &str, errors: &[Problem], warnings: &[Problem]) -> String {
+    let mut text = if errors.is_empty() {
+        format!("{name} is valid")
+    } else {
+        listing(name, errors)
+    };
+    if !warnings.is_empty() {
+        let plural = if warnings.len() == 1 { "" } else { "s" };
+        let _ = write!(text, "\n{} warning{plural}", warnings.len());
+        for warning in warnings {
+            let _ = write!(text, "\n{warning}");
+        }
+    }
+    text.push('\n');
+    text
+}

@@ -1,0 +1,64 @@
+//! `slewplan verify`: flies a plan made by anyone again.
+
+use super::failure::Failure;
+use super::{Exit, input, output};
+use crate::report;
+use crate::wire;
+use crate::wire::plan::{MarginsDocument, VerificationDocument};
+use crate::wire::problems::{ProblemDocument, documents};
+use serde::Serialize;
+use slewplan_solver::checker;
+use slewplan_solver::problem::Problem;
+use std::io::{IsTerminal, stdout};
+use std::path::PathBuf;
+
+/// What `verify` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The scenario, - for standard input
+    scenario: PathBuf,
+    /// The plan in JSON, - for standard input
+    plan: PathBuf,
+    /// Print text for people, as on a terminal
+    #[arg(long)]
+    summary: bool,
+}
+
+/// The answer of `verify`.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    verification: VerificationDocument<'a>,
+    margins: MarginsDocument,
+    warnings: Vec<ProblemDocument<'a>>,
+}
+
+/// Prints the verification on standard output.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
+        return Err(Failure::StandardInputTwice);
+    }
+    let valid = input::scenario(&arguments.scenario)?;
+    let flight = wire::flight::read(&input::read(&arguments.plan)?, &valid.scenario).map_err(
+        |problems| Failure::Invalid {
+            name: input::name(&arguments.plan),
+            problems,
+        },
+    )?;
+    let found = checker::verify(&valid.scenario, &flight);
+    let warnings: Vec<Problem> = valid.warnings.into_iter().chain(found.keep_out).collect();
+    output::print(&if arguments.summary || stdout().is_terminal() {
+        report::verification(&found.verification, &found.margins, &warnings)
+    } else {
+        output::json(&Document {
+            verification: (&found.verification).into(),
+            margins: (&found.margins).into(),
+            warnings: documents(&warnings),
+        })?
+    })?;
+    Ok(if found.verification.passed {
+        Exit::Complete
+    } else {
+        Exit::Negative
+    })
+}

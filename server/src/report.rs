@@ -1,0 +1,41 @@
+//! Answers as text for people.
+
+use slewplan_solver::plan::{Margins, Outcome, Verification};
+use slewplan_solver::problem::Problem;
+use slewplan_solver::scenario::Scenario;
+
+mod figures;
+mod published;
+#[cfg(test)]
+pub(crate) mod sample;
+mod summary;
+mod table;
+
+/// The summary of an outcome.
+pub(crate) fn outcome(outcome: &Outcome, doubts: &[Problem], scenario: &Scenario) -> String {
+    let title = scenario.name().unwrap_or("unnamed scenario");
+    match outcome {
+        Outcome::Planned(plan) => {
+            let warnings: Vec<Problem> = doubts.iter().chain(&plan.warnings).cloned().collect();
+            let published = published::find(title)
+                .map_or_else(String::new, |known| known.comparison(plan, scenario));
+            summary::plan(title, plan) + &published + &figures::warnings(&warnings)
+        }
+        Outcome::Infeasible(reasons) => {
+            format!("{title}: infeasible, no plan can exist\n") + &figures::reasons(reasons)
+        }
+        Outcome::Failed(reasons) => {
+            format!("{title}: failed, no plan was found\n") + &figures::reasons(reasons)
+        }
+        Outcome::StoppedEmpty => format!("{title}: stopped before a first plan was found\n"),
+    }
+}
+
+/// The text of a verification.
+pub(crate) fn verification(
+    found: &Verification,
+    margins: &Margins,
+    warnings: &[Problem],
+) -> String {
+    figures::verification(found) + &figures::margins(margins) + &figures::warnings(warnings)
+}

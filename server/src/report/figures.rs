@@ -1,0 +1,100 @@
+//! Blocks of figures that several reports share.
+
+use slewplan_solver::plan::{Margins, Verification};
+use slewplan_solver::problem::Problem;
+use std::fmt::{Display, Write};
+
+/// One labelled line.
+pub(super) fn line(label: &str, text: impl Display) -> String {
+    format!("{label:<14}{text}\n")
+}
+
+/// The verification in one line, and what failed.
+pub(super) fn verification(found: &Verification) -> String {
+    let verdict = if found.passed { "passed" } else { "NOT PASSED" };
+    let mut text = line(
+        "verification",
+        format_args!(
+            "{verdict}: attitude error {:.1e} rad, rate error {:.1e} rad/s",
+            found.max_attitude_error_rad, found.max_rate_error_rad_s
+        ),
+    );
+    text += &line(
+        "",
+        format_args!(
+            "limits exceeded by (relative): torque {:.1e}, wheel speed {:.1e}, body rate {:.1e}",
+            found.max_torque_excess, found.max_wheel_speed_excess, found.max_rate_excess
+        ),
+    );
+    text += &line("", format_args!("flown again by {}", found.integrator));
+    for failure in &found.failures {
+        text += &line("", format_args!("failed: {failure}"));
+    }
+    text
+}
+
+/// What is left of every limit.
+pub(super) fn margins(margins: &Margins) -> String {
+    let share = |value: Option<f64>| {
+        value.map_or_else(
+            || "unlimited".to_owned(),
+            |value| format!("{:.1} %", value * 100.0),
+        )
+    };
+    let mut text = line(
+        "margins",
+        format_args!(
+            "torque {}, wheel speed {}, body rate {} of the limit left",
+            share(Some(margins.torque)),
+            share(margins.wheel_speed),
+            share(margins.body_rate)
+        ),
+    );
+    let list = |values: &[String]| values.join(", ");
+    let crossings: Vec<String> = margins
+        .wheel_zero_crossings
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    text += &line(
+        "",
+        format_args!("zero crossings of the wheels: {}", list(&crossings)),
+    );
+    if !margins.keep_out_clearance_deg.is_empty() {
+        let clearances: Vec<String> = margins
+            .keep_out_clearance_deg
+            .iter()
+            .map(|angle| format!("{angle:.2}"))
+            .collect();
+        text += &line(
+            "",
+            format_args!("keep-out clearance [deg]: {}", list(&clearances)),
+        );
+    }
+    text
+}
+
+/// Warnings, or nothing.
+pub(super) fn warnings(warnings: &[Problem]) -> String {
+    if warnings.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\n{} to note:\n", count(warnings.len(), "warning"));
+    text += &reasons(warnings);
+    text
+}
+
+/// Problems, one paragraph each.
+pub(super) fn reasons(problems: &[Problem]) -> String {
+    let mut text = String::new();
+    for problem in problems {
+        // Writing into a text cannot fail.
+        let _ = writeln!(text, "{problem}");
+    }
+    text
+}
+
+/// A number of things in English.
+pub(super) fn count(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}

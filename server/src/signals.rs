@@ -1,0 +1,51 @@
+//! Signals of the operating system as stop requests.
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use slewplan_solver::stop::StopSignal;
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI32, Ordering};
+
+/// Remembers which signal came first.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Received(Arc<AtomicI32>);
+
+impl Received {
+    /// The exit code by which a shell tells that a signal ended the program, if one came.
+    pub(crate) fn exit_code(&self) -> Option<u8> {
+        match self.0.load(Ordering::Relaxed) {
+            0 => None,
+            signal => u8::try_from(128 + signal).ok(),
+        }
+    }
+}
+
+/// Turns SIGINT and SIGTERM into stop requests from now on.
+///
+/// The first asks for the best plan so far, the second abandons it, the third ends the program
+/// at once, in case that a computation does not listen.
+///
+/// # Errors
+///
+/// When the operating system refuses the handlers or the thread that waits for them.
+pub(crate) fn listen(stop: &StopSignal) -> io::Result<Received> {
+    let mut signals = Signals::new([SIGINT, SIGTERM])?;
+    let received = Received::default();
+    let (first, stop) = (Arc::clone(&received.0), stop.clone());
+    std::thread::Builder::new()
+        .name("slewplan-signals".into())
+        .spawn(move || {
+            for (count, signal) in signals.forever().enumerate() {
+                match count {
+                    0 => {
+                        first.store(signal, Ordering::Relaxed);
+                        stop.request();
+                    }
+                    1 => stop.cancel(),
+                    _ => std::process::exit(128 + signal),
+                }
+            }
+        })?;
+    Ok(received)
+}

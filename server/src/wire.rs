@@ -1,0 +1,17 @@
+//! JSON and CSV at the border of the program: documents in, documents out, no decisions.
+//!
+//! Reading goes in two steps, so that every problem is found at once: [`document`] turns text
+//! into a tree that loses nothing, and a [`reader`] walks the tree, knows where it is and
+//! collects what is wrong. Writing is plain `serde` on structs whose fields carry their units.
+
+pub(crate) mod attitude;
+pub(crate) mod csv;
+pub(crate) mod document;
+pub(crate) mod flight;
+pub(crate) mod legs;
+pub(crate) mod number;
+pub(crate) mod plan;
+pub(crate) mod problems;
+pub(crate) mod reader;
+pub(crate) mod scenario;
+pub(crate) mod spacecraft;

@@ -1,0 +1,210 @@
+//! Reading a plan made by anyone, as far as it can be flown: passages and torques.
+
+use super::document::{self, Node};
+use super::reader::{Cursor, Sink};
+use slewplan_solver::plan::{Control, Flight, Passage};
+use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::scenario::Scenario;
+use std::collections::HashSet;
+
+/// Intervals may be off the end of their predecessor by this much, s: the rounding of decimal
+/// text, far below what a torque could change.
+const TIME_TOLERANCE_S: f64 = 1e-6;
+
+/// Reads the flight of a plan for a scenario. Fields that do not matter for it are not looked at.
+///
+/// # Errors
+///
+/// Everything that keeps it from being flown, with pointers into the plan.
+pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<Flight, Vec<Problem>> {
+    let node = document::parse(bytes).map_err(|problem| vec![problem])?;
+    let sink = Sink::default();
+    let flight = decode(&node, scenario, &sink);
+    let problems = sink.into_problems();
+    match flight {
+        Some(flight) if problems.is_empty() => Ok(flight),
+        _ => Err(problems),
+    }
+}
+
+fn decode(node: &Node, scenario: &Scenario, sink: &Sink) -> Option<Flight> {
+    let fields = Cursor::root(node, sink).open_object()?;
+    let total_time_s = fields
+        .required("total_time_s")
+        .and_then(|time| time.number());
+    let sequence = fields.required("sequence").and_then(|list| sequence(&list));
+    let passages = fields.required("passages").and_then(|list| {
+        let passages = passages(&list)?;
+        check_targets(&list, &passages, scenario);
+        Some((list, passages))
+    });
+    if let (Some(sequence), Some((list, passages))) = (sequence, &passages) {
+        check_sequence(list, &sequence, passages);
+    }
+    let controls = fields
+        .required("trajectory")
+        .and_then(|trajectory| trajectory.open_object())
+        .and_then(|trajectory| trajectory.required("controls"))
+        .and_then(|list| controls(&list, scenario, total_time_s));
+    Some(Flight {
+        total_time_s: total_time_s?,
+        passages: passages?.1,
+        controls: controls?,
+    })
+}
+
+fn sequence<'a>(cursor: &Cursor<'a>) -> Option<Vec<&'a str>> {
+    let read: Vec<Option<&str>> = cursor.list()?.iter().map(Cursor::text).collect();
+    read.into_iter().collect()
+}
+
+fn passages(cursor: &Cursor<'_>) -> Option<Vec<Passage>> {
+    let read: Vec<Option<Passage>> = cursor.list()?.iter().map(passage).collect();
+    read.into_iter().collect()
+}
+
+fn passage(cursor: &Cursor<'_>) -> Option<Passage> {
+    let fields = cursor.open_object()?;
+    let target = fields.required("target").and_then(|id| id.text());
+    let time = fields.required("time_s").and_then(|time| time.number());
+    // A plan without settle and dwell may leave the departure out.
+    let departure = match fields.optional("departure_s") {
+        Some(departure) => departure.number(),
+        None => time,
+    };
+    Some(Passage {
+        target: target?.to_owned(),
+        time_s: time?,
+        departure_s: departure?,
+    })
+}
+
+/// Every target of the scenario is visited exactly once, and nothing else.
+fn check_targets(cursor: &Cursor<'_>, passages: &[Passage], scenario: &Scenario) {
+    let known: HashSet<&str> = scenario.targets().iter().map(|t| t.id.as_str()).collect();
+    let mut visited = HashSet::new();
+    for (index, passage) in passages.iter().enumerate() {
+        let target = passage.target.as_str();
+        if !known.contains(target) {
+            report_at(
+                cursor,
+                index,
+                Code::UnknownReference,
+                &format!("{target:?} is no target of the scenario"),
+            );
+        } else if !visited.insert(target) {
+            report_at(
+                cursor,
+                index,
+                Code::DuplicateId,
+                &format!("{target:?} is visited again"),
+            );
+        }
+    }
+    let missing: Vec<&str> = scenario
+        .targets()
+        .iter()
+        .map(|target| target.id.as_str())
+        .filter(|id| !visited.contains(id))
+        .collect();
+    if !missing.is_empty() {
+        cursor.report(
+            Code::WrongLength,
+            format!("not visited: {}", missing.join(", ")),
+            "list one passage for every target of the scenario",
+        );
+    }
+}
+
+fn report_at(cursor: &Cursor<'_>, index: usize, code: Code, message: &str) {
+    if let Some(entry) = cursor.list().as_ref().and_then(|items| items.get(index)) {
+        entry.report(
+            code,
+            message,
+            "list exactly one passage for every target of the scenario",
+        );
+    }
+}
+
+fn check_sequence(cursor: &Cursor<'_>, sequence: &[&str], passages: &[Passage]) {
+    let visited: Vec<&str> = passages
+        .iter()
+        .map(|passage| passage.target.as_str())
+        .collect();
+    if visited != sequence {
+        cursor.report(
+            Code::ConflictingFields,
+            format!(
+                "passages visit {}, sequence says {}",
+                visited.join(" "),
+                sequence.join(" ")
+            ),
+            "list the passages in the order of the sequence",
+        );
+    }
+}
+
+fn controls(cursor: &Cursor<'_>, scenario: &Scenario, total: Option<f64>) -> Option<Vec<Control>> {
+    let wheels = scenario.spacecraft().wheels().len();
+    let items = cursor.list()?;
+    let read: Vec<Option<Control>> = items.iter().map(|item| control(item, wheels)).collect();
+    let controls: Vec<Control> = read.into_iter().collect::<Option<_>>()?;
+    let mut end = 0.0;
+    for (item, control) in items.iter().zip(&controls) {
+        if (control.start_s - end).abs() > TIME_TOLERANCE_S {
+            item.report(
+                Code::OutOfRange,
+                format!(
+                    "begins at {} s, its predecessor ends at {end} s",
+                    control.start_s
+                ),
+                "let the intervals follow one another without gap or overlap, from 0 on",
+            );
+        }
+        end = control.start_s + control.duration_s;
+    }
+    if let Some(total) = total
+        && (total - end).abs() > TIME_TOLERANCE_S
+    {
+        cursor.report(
+            Code::OutOfRange,
+            format!("the last interval ends at {end} s, the plan at {total} s"),
+            "let the intervals cover the plan up to total_time_s",
+        );
+    }
+    Some(controls)
+}
+
+fn control(cursor: &Cursor<'_>, wheels: usize) -> Option<Control> {
+    let fields = cursor.open_object()?;
+    let start = fields.required("start_s").and_then(|time| time.number());
+    let duration = fields.required("duration_s").and_then(|time| {
+        let duration = time.number()?;
+        if duration < 0.0 {
+            time.report(
+                Code::OutOfRange,
+                format!("{duration} s is negative"),
+                "write a duration of at least 0 s",
+            );
+            return None;
+        }
+        Some(duration)
+    });
+    let torque = fields.required("wheel_torque_nm").and_then(|torque| {
+        let values = torque.any_numbers()?;
+        if values.len() != wheels {
+            torque.report(
+                Code::WrongLength,
+                format!("{} torques for {wheels} wheels", values.len()),
+                "write one torque per wheel in the order of the scenario, 0 for disabled ones",
+            );
+            return None;
+        }
+        Some(values)
+    });
+    Some(Control {
+        start_s: start?,
+        duration_s: duration?,
+        wheel_torque_nm: torque?,
+    })
+}

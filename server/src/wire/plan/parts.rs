@@ -1,0 +1,193 @@
+//! The parts of a plan document.
+
+use crate::wire::number::Number;
+use serde::Serialize;
+use slewplan_solver::attitude::Attitude;
+use slewplan_solver::plan::{Control, Leg, Margins, Passage, State, Statistics, Verification};
+
+#[derive(Debug, Serialize)]
+pub(super) struct QuaternionDocument {
+    x: Number,
+    y: Number,
+    z: Number,
+    w: Number,
+}
+
+impl From<&Attitude> for QuaternionDocument {
+    fn from(attitude: &Attitude) -> Self {
+        let [x, y, z, w] = attitude.xyzw().map(Number);
+        Self { x, y, z, w }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct LegDocument<'a> {
+    from: &'a str,
+    to: &'a str,
+    start_s: Number,
+    duration_s: Number,
+    certified_lower_bound_s: Option<Number>,
+    eigenaxis_duration_s: Option<Number>,
+    solver_status: &'a str,
+}
+
+impl<'a> From<&'a Leg> for LegDocument<'a> {
+    fn from(leg: &'a Leg) -> Self {
+        Self {
+            from: &leg.from,
+            to: &leg.to,
+            start_s: Number(leg.start_s),
+            duration_s: Number(leg.duration_s),
+            certified_lower_bound_s: leg.certified_lower_bound_s.map(Number),
+            eigenaxis_duration_s: leg.eigenaxis_duration_s.map(Number),
+            solver_status: &leg.solver_status,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct AttitudeDocument {
+    quaternion: QuaternionDocument,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct PassageDocument<'a> {
+    target: &'a str,
+    time_s: Number,
+    departure_s: Number,
+    attitude: AttitudeDocument,
+    body_rate_rad_s: [Number; 3],
+    wheel_speed_rad_s: Vec<Number>,
+}
+
+impl<'a> PassageDocument<'a> {
+    /// A passage with the state at its arrival.
+    pub(super) fn new(passage: &'a Passage, state: &State) -> Self {
+        Self {
+            target: &passage.target,
+            time_s: Number(passage.time_s),
+            departure_s: Number(passage.departure_s),
+            attitude: AttitudeDocument {
+                quaternion: (&state.attitude).into(),
+            },
+            body_rate_rad_s: <[f64; 3]>::from(state.body_rate_rad_s).map(Number),
+            wheel_speed_rad_s: Number::all(&state.wheel_speed_rad_s),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct ControlDocument {
+    start_s: Number,
+    duration_s: Number,
+    wheel_torque_nm: Vec<Number>,
+}
+
+impl From<&Control> for ControlDocument {
+    fn from(control: &Control) -> Self {
+        Self {
+            start_s: Number(control.start_s),
+            duration_s: Number(control.duration_s),
+            wheel_torque_nm: Number::all(&control.wheel_torque_nm),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct StateDocument {
+    time_s: Number,
+    quaternion: QuaternionDocument,
+    body_rate_rad_s: [Number; 3],
+    wheel_speed_rad_s: Vec<Number>,
+}
+
+impl From<&State> for StateDocument {
+    fn from(state: &State) -> Self {
+        Self {
+            time_s: Number(state.time_s),
+            quaternion: (&state.attitude).into(),
+            body_rate_rad_s: <[f64; 3]>::from(state.body_rate_rad_s).map(Number),
+            wheel_speed_rad_s: Number::all(&state.wheel_speed_rad_s),
+        }
+    }
+}
+
+/// What is left of every limit. A flight that leaves all numbers behind has no figures: `null`.
+#[derive(Debug, Serialize)]
+pub(crate) struct MarginsDocument {
+    torque: Option<Number>,
+    wheel_speed: Option<Number>,
+    body_rate: Option<Number>,
+    wheel_zero_crossings: Vec<u32>,
+    keep_out_clearance_deg: Vec<Option<Number>>,
+}
+
+impl From<&Margins> for MarginsDocument {
+    fn from(margins: &Margins) -> Self {
+        Self {
+            torque: Number::finite(margins.torque),
+            wheel_speed: margins.wheel_speed.and_then(Number::finite),
+            body_rate: margins.body_rate.and_then(Number::finite),
+            wheel_zero_crossings: margins.wheel_zero_crossings.clone(),
+            keep_out_clearance_deg: margins
+                .keep_out_clearance_deg
+                .iter()
+                .copied()
+                .map(Number::finite)
+                .collect(),
+        }
+    }
+}
+
+/// The re-integration. A flight that leaves all numbers behind has no figures: `null`.
+#[derive(Debug, Serialize)]
+pub(crate) struct VerificationDocument<'a> {
+    passed: bool,
+    max_attitude_error_rad: Option<Number>,
+    max_rate_error_rad_s: Option<Number>,
+    max_wheel_speed_excess: Option<Number>,
+    max_torque_excess: Option<Number>,
+    max_rate_excess: Option<Number>,
+    integrator: &'a str,
+    failures: &'a [String],
+}
+
+impl<'a> From<&'a Verification> for VerificationDocument<'a> {
+    fn from(found: &'a Verification) -> Self {
+        Self {
+            passed: found.passed,
+            max_attitude_error_rad: Number::finite(found.max_attitude_error_rad),
+            max_rate_error_rad_s: Number::finite(found.max_rate_error_rad_s),
+            max_wheel_speed_excess: Number::finite(found.max_wheel_speed_excess),
+            max_torque_excess: Number::finite(found.max_torque_excess),
+            max_rate_excess: Number::finite(found.max_rate_excess),
+            integrator: &found.integrator,
+            failures: &found.failures,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct StatisticsDocument {
+    wall_time_s: Number,
+    nodes_explored: u64,
+    nlp_solves: u64,
+    legs_solved: u64,
+    legs_from_cache: u64,
+    threads: usize,
+    version: &'static str,
+}
+
+impl From<&Statistics> for StatisticsDocument {
+    fn from(work: &Statistics) -> Self {
+        Self {
+            wall_time_s: Number(work.wall_time_s),
+            nodes_explored: work.nodes_explored,
+            nlp_solves: work.nlp_solves,
+            legs_solved: work.legs_solved,
+            legs_from_cache: work.legs_from_cache,
+            threads: work.threads,
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! A cursor over a document that knows its JSON pointer and collects every problem.
+//!
+//! A reading method that fails records why and returns `None`; the caller goes on with a benign
+//! substitute, so that one pass finds everything that is wrong.
+
+use super::document::Node;
+use slewplan_solver::problem::{Code, Problem};
+use std::cell::RefCell;
+
+mod spelling;
+
+/// Collects problems while cursors walk a document.
+#[derive(Debug, Default)]
+pub(crate) struct Sink(RefCell<Vec<Problem>>);
+
+impl Sink {
+    /// Records a problem.
+    pub(crate) fn push(&self, problem: Problem) {
+        self.0.borrow_mut().push(problem);
+    }
+
+    /// All problems in the order of their discovery.
+    pub(crate) fn into_problems(self) -> Vec<Problem> {
+        self.0.into_inner()
+    }
+}
+
+/// A place in a document.
+#[derive(Debug, Clone)]
+pub(crate) struct Cursor<'a> {
+    node: &'a Node,
+    pointer: String,
+    sink: &'a Sink,
+}
+
+impl<'a> Cursor<'a> {
+    /// The whole document.
+    pub(crate) fn root(node: &'a Node, sink: &'a Sink) -> Self {
+        Self {
+            node,
+            pointer: String::new(),
+            sink,
+        }
+    }
+
+    /// The JSON pointer of the place.
+    pub(crate) fn pointer(&self) -> &str {
+        &self.pointer
+    }
+
+    /// Records a problem at this place.
+    pub(crate) fn report(&self, code: Code, message: impl Into<String>, hint: impl Into<String>) {
+        self.sink
+            .push(Problem::new(&self.pointer, code, message, hint));
+    }
+
+    fn wrong_type(&self, expected: &str, hint: &str) {
+        let found = self.node.description();
+        self.report(
+            Code::WrongType,
+            format!("expected {expected}, found {found}"),
+            hint,
+        );
+    }
+
+    /// An object of which only these members are known.
+    pub(crate) fn object(&self, known: &'static [&'static str]) -> Option<Fields<'a>> {
+        let fields = self.open_object()?;
+        fields.report_unknown(known);
+        Some(fields)
+    }
+
+    /// An object that may have further members.
+    pub(crate) fn open_object(&self) -> Option<Fields<'a>> {
+        let Node::Object(members) = self.node else {
+            self.wrong_type("an object", "write {\"name\": value, ...}");
+            return None;
+        };
+        let fields = Fields {
+            members,
+            place: self.clone(),
+        };
+        fields.report_duplicates();
+        Some(fields)
+    }
+
+    /// A member of an object; `None` for anything else, without a problem.
+    pub(crate) fn member(&self, name: &str) -> Option<Cursor<'a>> {
+        let Node::Object(members) = self.node else {
+            return None;
+        };
+        Fields {
+            members,
+            place: self.clone(),
+        }
+        .raw(name)
+    }
+
+    /// The entries of a list.
+    pub(crate) fn list(&self) -> Option<Vec<Cursor<'a>>> {
+        let Node::List(items) = self.node else {
+            self.wrong_type("a list", "write [..] with one entry for each");
+            return None;
+        };
+        let entry = |(index, node)| Cursor {
+            node,
+            pointer: format!("{}/{index}", self.pointer),
+            sink: self.sink,
+        };
+        Some(items.iter().enumerate().map(entry).collect())
+    }
+
+    fn list_of_length(&self, length: usize) -> Option<Vec<Cursor<'a>>> {
+        let items = self.list()?;
+        if items.len() != length {
+            self.report(
+                Code::WrongLength,
+                format!("expected {length} entries, found {}", items.len()),
+                format!("write exactly {length} entries"),
+            );
+            return None;
+        }
+        Some(items)
+    }
+
+    /// A number.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self.node {
+            Node::Integer(value) => Some(*value as f64),
+            Node::Number(value) => Some(*value),
+            _ => {
+                self.wrong_type(
+                    "a number",
+                    "write a plain JSON number, without quotes or units",
+                );
+                None
+            }
+        }
+    }
+
+    /// A whole number from zero on.
+    pub(crate) fn integer(&self) -> Option<u64> {
+        if let Node::Integer(value) = self.node {
+            return Some(*value);
+        }
+        let hint = "write a whole number from 0 to 18446744073709551615";
+        self.wrong_type("a whole number of at least 0", hint);
+        None
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn boolean(&self) -> Option<bool> {
+        if let Node::Bool(value) = self.node {
+            return Some(*value);
+        }
+        self.wrong_type("true or false", "write true or false without quotes");
+        None
+    }
+
+    /// A text.
+    pub(crate) fn text(&self) -> Option<&'a str> {
+        if let Node::Text(text) = self.node {
+            return Some(text);
+        }
+        self.wrong_type("a text", "write it in double quotes");
+        None
+    }
+
+    /// A text among choices.
+    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        let text = self.text()?;
+        let found = choices.iter().find(|(name, _)| *name == text);
+        if found.is_none() {
+            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+            self.report(
+                Code::UnknownChoice,
+                format!("{text:?} is not one of the choices"),
+                spelling::hint(text, &names),
+            );
+        }
+        found.map(|(_, value)| *value)
+    }
+
+    /// A list of exactly `N` numbers.
+    pub(crate) fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
+        self.array(Cursor::number)
+    }
+
+    /// A list of exactly `N` numbers, each of which may be `null`.
+    pub(crate) fn nullable_numbers<const N: usize>(&self) -> Option<[Option<f64>; N]> {
+        self.array(|entry| match entry.node {
+            Node::Null => Some(None),
+            _ => entry.number().map(Some),
+        })
+    }
+
+    /// Three rows of three numbers.
+    pub(crate) fn matrix(&self) -> Option<[[f64; 3]; 3]> {
+        self.array(Cursor::numbers::<3>)
+    }
+
+    /// A list of numbers of any length.
+    pub(crate) fn any_numbers(&self) -> Option<Vec<f64>> {
+        collect_all(self.list()?.iter().map(Cursor::number))
+    }
+
+    fn array<T, const N: usize>(&self, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<[T; N]> {
+        let items = self.list_of_length(N)?;
+        collect_all(items.iter().map(read))?.try_into().ok()
+    }
+}
+
+/// All values or nothing, but never before every entry has been read and its problems recorded.
+fn collect_all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = values.collect();
+    read.into_iter().collect()
+}
+
+/// The members of an object.
+#[derive(Debug, Clone)]
+pub(crate) struct Fields<'a> {
+    members: &'a [(String, Node)],
+    place: Cursor<'a>,
+}
+
+impl<'a> Fields<'a> {
+    /// A member as written, `null` included; the first one when it is there twice.
+    pub(crate) fn raw(&self, name: &str) -> Option<Cursor<'a>> {
+        let (_, node) = self.members.iter().find(|(key, _)| key == name)?;
+        Some(Cursor {
+            node,
+            pointer: self.pointer_to(name),
+            sink: self.place.sink,
+        })
+    }
+
+    /// A member that may be left out or `null`.
+    pub(crate) fn optional(&self, name: &str) -> Option<Cursor<'a>> {
+        self.raw(name).filter(|cursor| *cursor.node != Node::Null)
+    }
+
+    /// A member that must be there.
+    pub(crate) fn required(&self, name: &str) -> Option<Cursor<'a>> {
+        let found = self.raw(name);
+        if found.is_none() {
+            self.place.sink.push(Problem::new(
+                self.pointer_to(name),
+                Code::MissingField,
+                format!("the required field {name:?} is missing"),
+                format!("add {name:?} to this object"),
+            ));
+        }
+        found
+    }
+
+    fn pointer_to(&self, name: &str) -> String {
+        // RFC 6901: first the escape character itself, then the separator.
+        let escaped = name.replace('~', "~0").replace('/', "~1");
+        format!("{}/{escaped}", self.place.pointer)
+    }
+
+    fn report_unknown(&self, known: &[&str]) {
+        for (name, _) in self.members {
+            if !known.contains(&name.as_str()) {
+                self.place.sink.push(Problem::new(
+                    self.pointer_to(name),
+                    Code::UnknownField,
+                    format!("{name:?} is not a field of this object"),
+                    spelling::hint(name, known),
+                ));
+            }
+        }
+    }
+
+    fn report_duplicates(&self) {
+        // Sorted, so that an object of a million members costs no million squared.
+        let mut names: Vec<&str> = self.members.iter().map(|(name, _)| name.as_str()).collect();
+        names.sort_unstable();
+        let mut reported = None;
+        for pair in names.windows(2).filter(|pair| pair[0] == pair[1]) {
+            if reported != Some(pair[0]) {
+                reported = Some(pair[0]);
+                self.place.sink.push(Problem::new(
+                    self.pointer_to(pair[0]),
+                    Code::DuplicateField,
+                    format!("the field {:?} is there more than once", pair[0]),
+                    "keep the one that is meant",
+                ));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::document::parse;
+
+    fn problems_of(text: &str, read: impl Fn(Cursor<'_>)) -> Vec<(String, Code)> {
+        let node = parse(text.as_bytes()).unwrap();
+        let sink = Sink::default();
+        read(Cursor::root(&node, &sink));
+        sink.into_problems()
+            .into_iter()
+            .map(|p| (p.pointer, p.code))
+            .collect()
+    }
+
+    #[test]
+    fn pointers_escape_tilde_and_slash() {
+        let found = problems_of(r#"{"a/b~c": 1}"#, |root| {
+            root.object(&["known"]);
+        });
+        assert_eq!(found, [("/a~1b~0c".to_owned(), Code::UnknownField)]);
+    }
+
+    #[test]
+    fn every_entry_of_a_list_is_reported() {
+        let found = problems_of(r#"["a", 1, null]"#, |root| {
+            assert_eq!(root.numbers::<3>(), None);
+        });
+        assert_eq!(
+            found,
+            [
+                ("/0".to_owned(), Code::WrongType),
+                ("/2".to_owned(), Code::WrongType)
+            ]
+        );
+    }
+
+    #[test]
+    fn missing_duplicate_and_short_are_told_apart() {
+        let found = problems_of(r#"{"a": [1, 2], "a": 3, "a": 4}"#, |root| {
+            let fields = root.object(&["a", "b"]).unwrap();
+            assert!(fields.required("b").is_none());
+            assert_eq!(fields.required("a").unwrap().numbers::<3>(), None);
+        });
+        let expected = [
+            ("/a".to_owned(), Code::DuplicateField),
+            ("/b".to_owned(), Code::MissingField),
+            ("/a".to_owned(), Code::WrongLength),
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn integers_are_not_rounded() {
+        let found = problems_of("[0, 1.5, -1, 18446744073709551615]", |root| {
+            let read: Vec<_> = root.list().unwrap().iter().map(Cursor::integer).collect();
+            assert_eq!(read, [Some(0), None, None, Some(u64::MAX)]);
+        });
+        assert_eq!(found.len(), 2);
+    }
+}

@@ -1,0 +1,392 @@
+//! Reading a scenario: first its shape, then its meaning, all problems at once.
+
+use super::document::{self, Node};
+use super::reader::{Cursor, Fields, Sink};
+use super::{attitude, spacecraft};
+use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::scenario::{Scenario, Validated};
+use slewplan_solver::spec::{
+    AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
+};
+
+/// Reads and validates a scenario.
+///
+/// # Errors
+///
+/// Everything that is wrong with it.
+pub(crate) fn read(bytes: &[u8]) -> Result<Validated, Vec<Problem>> {
+    let node = document::parse(bytes).map_err(|problem| vec![problem])?;
+    let (spec, mut problems) = decode(&node);
+    match Scenario::try_new(&spec) {
+        Ok(validated) if problems.is_empty() => Ok(validated),
+        Ok(_) => Err(problems),
+        Err(found) => {
+            let independent: Vec<Problem> = found
+                .into_iter()
+                .filter(|problem| !follows_from_a_substitute(problem, &problems))
+                .collect();
+            problems.extend(independent);
+            Err(problems)
+        }
+    }
+}
+
+/// Whether a problem may only be there because something unreadable was replaced.
+fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
+    // Unknown and repeated fields are reported, but nothing stands in for them.
+    let replaced: Vec<&str> = shape
+        .iter()
+        .filter(|p| !matches!(p.code, Code::UnknownField | Code::DuplicateField))
+        .map(|p| p.pointer.as_str())
+        .collect();
+    let any_related = |place| {
+        replaced
+            .iter()
+            .any(|p| contains(p, place) || contains(place, p))
+    };
+    any_related(&found.pointer)
+        || match found.code {
+            // One entry per wheel, and nobody knows how many wheels were meant.
+            Code::WrongLength => replaced
+                .iter()
+                .any(|p| *p == "/spacecraft/ref" || contains(p, "/spacecraft/wheels")),
+            Code::UnknownReference => any_related("/spacecraft/boresights"),
+            Code::EndMomentumInconsistent => !replaced.is_empty(),
+            _ => false,
+        }
+}
+
+/// Whether one place is the other or lies around it.
+fn contains(outer: &str, inner: &str) -> bool {
+    inner
+        .strip_prefix(outer)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+/// The scenario with substitutes for what cannot be read, and what that was.
+fn decode(node: &Node) -> (ScenarioSpec, Vec<Problem>) {
+    let sink = Sink::default();
+    let known = &[
+        "name",
+        "epoch",
+        "time_system",
+        "reference_frame",
+        "spacecraft",
+        "start",
+        "end",
+        "targets",
+        "keep_out",
+        "options",
+    ];
+    let spec = Cursor::root(node, &sink)
+        .object(known)
+        .map(|fields| scenario(&fields))
+        .unwrap_or_default();
+    (spec, sink.into_problems())
+}
+
+fn scenario(fields: &Fields<'_>) -> ScenarioSpec {
+    ScenarioSpec {
+        name: label(fields, "name"),
+        epoch: label(fields, "epoch"),
+        time_system: label(fields, "time_system"),
+        reference_frame: label(fields, "reference_frame"),
+        spacecraft: fields
+            .required("spacecraft")
+            .map_or_else(spacecraft::substitute, |cursor| spacecraft::read(&cursor)),
+        start: fields
+            .required("start")
+            .map(|cursor| state(&cursor))
+            .unwrap_or_default(),
+        end: fields.optional("end").map(|cursor| state(&cursor)),
+        targets: fields
+            .required("targets")
+            .and_then(|targets| targets.list())
+            .map_or_else(Vec::new, |targets| targets.iter().map(target).collect()),
+        keep_out: fields
+            .optional("keep_out")
+            .and_then(|cones| cones.list())
+            .map_or_else(Vec::new, |cones| cones.iter().map(keep_out).collect()),
+        options: fields
+            .optional("options")
+            .map(|cursor| options(&cursor))
+            .unwrap_or_default(),
+    }
+}
+
+fn label(fields: &Fields<'_>, name: &str) -> Option<String> {
+    fields
+        .optional(name)
+        .and_then(|text| text.text().map(str::to_owned))
+}
+
+fn state(cursor: &Cursor<'_>) -> StateSpec {
+    let Some(fields) = cursor.object(&["attitude", "body_rate_rad_s", "wheel_speed_rad_s"]) else {
+        return StateSpec::default();
+    };
+    StateSpec {
+        attitude: fields
+            .required("attitude")
+            .map(|cursor| attitude::read(&cursor))
+            .unwrap_or_default(),
+        body_rate_rad_s: fields
+            .optional("body_rate_rad_s")
+            .and_then(|rate| rate.numbers()),
+        wheel_speed_rad_s: fields
+            .optional("wheel_speed_rad_s")
+            .and_then(|speeds| speeds.any_numbers()),
+    }
+}
+
+fn target(cursor: &Cursor<'_>) -> TargetSpec {
+    // The place is unique, so that a substitute is no duplicate.
+    let nameless = || cursor.pointer().to_owned();
+    let known = &[
+        "id",
+        "attitude",
+        "zero_rate_axes",
+        "rate_min_rad_s",
+        "rate_max_rad_s",
+        "dwell_s",
+        "settle_s",
+    ];
+    let Some(fields) = cursor.object(known) else {
+        return TargetSpec {
+            id: nameless(),
+            ..TargetSpec::default()
+        };
+    };
+    let bounds = |name| {
+        fields
+            .optional(name)
+            .and_then(|bound| bound.nullable_numbers())
+    };
+    let time = |name| {
+        fields
+            .optional(name)
+            .and_then(|time| time.number())
+            .unwrap_or(0.0)
+    };
+    TargetSpec {
+        id: fields
+            .required("id")
+            .and_then(|id| id.text().map(str::to_owned))
+            .unwrap_or_else(nameless),
+        attitude: fields
+            .required("attitude")
+            .map(|cursor| attitude::read(&cursor))
+            .unwrap_or_default(),
+        zero_rate_axes: fields
+            .optional("zero_rate_axes")
+            .and_then(|axes| zero_rate_axes(&axes)),
+        rate_min_rad_s: bounds("rate_min_rad_s"),
+        rate_max_rad_s: bounds("rate_max_rad_s"),
+        dwell_s: time("dwell_s"),
+        settle_s: time("settle_s"),
+    }
+}
+
+fn zero_rate_axes(cursor: &Cursor<'_>) -> Option<[bool; 3]> {
+    let mut axes = [false; 3];
+    for name in cursor.list()? {
+        if let Some(axis) = name.choice(&[("x", 0), ("y", 1), ("z", 2)]) {
+            axes[axis] = true;
+        }
+    }
+    Some(axes)
+}
+
+fn keep_out(cursor: &Cursor<'_>) -> KeepOutSpec {
+    let fields = cursor.object(&["boresight", "direction", "half_angle_deg"]);
+    let member = |name| fields.as_ref().and_then(|fields| fields.required(name));
+    KeepOutSpec {
+        boresight: member("boresight")
+            .and_then(|name| name.text().map(str::to_owned))
+            .unwrap_or_default(),
+        direction: member("direction")
+            .and_then(|direction| direction.numbers())
+            .unwrap_or([1.0, 0.0, 0.0]),
+        half_angle_deg: member("half_angle_deg")
+            .and_then(|angle| angle.number())
+            .unwrap_or(1.0),
+    }
+}
+
+fn options(cursor: &Cursor<'_>) -> OptionsSpec {
+    let default = OptionsSpec::default();
+    let known = &[
+        "attitude_equivalence",
+        "time_limit_s",
+        "node_limit",
+        "relative_gap",
+        "alternatives",
+        "torque_authority",
+        "momentum_authority",
+        "seed",
+    ];
+    let Some(fields) = cursor.object(known) else {
+        return default;
+    };
+    let number = |name, default| {
+        fields
+            .optional(name)
+            .and_then(|value| value.number())
+            .unwrap_or(default)
+    };
+    let meanings = [
+        ("rotation", AttitudeEquivalence::Rotation),
+        ("quaternion", AttitudeEquivalence::Quaternion),
+    ];
+    OptionsSpec {
+        attitude_equivalence: fields
+            .optional("attitude_equivalence")
+            .and_then(|text| text.choice(&meanings))
+            .unwrap_or_default(),
+        // Here null is not the same as nothing: it lifts the default limit.
+        time_limit_s: match fields.raw("time_limit_s") {
+            None => default.time_limit_s,
+            Some(_) => fields
+                .optional("time_limit_s")
+                .and_then(|limit| limit.number()),
+        },
+        node_limit: fields
+            .optional("node_limit")
+            .and_then(|limit| limit.integer()),
+        relative_gap: number("relative_gap", default.relative_gap),
+        alternatives: fields
+            .optional("alternatives")
+            .and_then(|count| count.integer())
+            .map_or(default.alternatives, |count| {
+                usize::try_from(count).unwrap_or(usize::MAX)
+            }),
+        torque_authority: number("torque_authority", default.torque_authority),
+        momentum_authority: number("momentum_authority", default.momentum_authority),
+        seed: fields
+            .optional("seed")
+            .and_then(|seed| seed.integer())
+            .unwrap_or(default.seed),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COMPLETE: &str = r#"{
+        "name": "n", "epoch": "2026-01-01T00:00:00Z", "time_system": "UTC",
+        "reference_frame": "EME2000",
+        "spacecraft": {
+            "inertia_kg_m2": [[1, 0, 0], [0, 2, 0], [0, 0, 3]],
+            "max_body_rate_rad_s": [0.1, null, 0.3], "max_body_rate_norm_rad_s": 0.4,
+            "wheels": [{"axis": [1, 0, 0], "normalize_axis": false, "inertia_kg_m2": 0.1,
+                "max_torque_nm": 0.2, "min_torque_nm": -0.3, "max_speed_rad_s": null,
+                "enabled": false}],
+            "boresights": [{"name": "camera", "axis": [0, 0, 1]}]
+        },
+        "start": {"attitude": {"mrp": [0, 0, 0]}, "wheel_speed_rad_s": [1, 2]},
+        "end": null,
+        "targets": [{"id": "t", "attitude": {"mrp": [0.1, 0, 0]}, "zero_rate_axes": ["z", "x"],
+            "rate_min_rad_s": [null, -0.1, null], "dwell_s": 1, "settle_s": 2.5}],
+        "keep_out": [{"boresight": "camera", "direction": [1, 0, 0], "half_angle_deg": 30}],
+        "options": {"attitude_equivalence": "quaternion", "time_limit_s": null, "node_limit": 7,
+            "relative_gap": 0.01, "alternatives": 3, "torque_authority": 0.9,
+            "momentum_authority": 0.8, "seed": 18446744073709551615}
+    }"#;
+
+    fn decoded(text: &str) -> (ScenarioSpec, Vec<Problem>) {
+        decode(&document::parse(text.as_bytes()).unwrap())
+    }
+
+    #[test]
+    fn every_field_arrives() {
+        let (spec, problems) = decoded(COMPLETE);
+        assert_eq!(problems, []);
+        assert_eq!(spec.epoch.as_deref(), Some("2026-01-01T00:00:00Z"));
+        let body = &spec.spacecraft;
+        assert_eq!(
+            body.inertia_kg_m2[2].map(f64::to_bits),
+            [0.0, 0.0, 3.0].map(f64::to_bits)
+        );
+        assert_eq!(body.max_body_rate_rad_s, [Some(0.1), None, Some(0.3)]);
+        assert_eq!(body.max_body_rate_norm_rad_s, Some(0.4));
+        let wheel = &body.wheels[0];
+        assert!(!wheel.normalize_axis && !wheel.enabled);
+        assert_eq!(
+            (wheel.min_torque_nm, wheel.max_speed_rad_s),
+            (Some(-0.3), None)
+        );
+        assert_eq!(body.boresights[0].name, "camera");
+        assert_eq!(spec.start.wheel_speed_rad_s, Some(vec![1.0, 2.0]));
+        assert_eq!(spec.end, None);
+        let target = &spec.targets[0];
+        assert_eq!(target.zero_rate_axes, Some([true, false, true]));
+        assert_eq!(target.rate_min_rad_s, Some([None, Some(-0.1), None]));
+        assert_eq!((target.dwell_s, target.settle_s), (1.0, 2.5));
+        assert_eq!(
+            spec.keep_out[0].half_angle_deg.to_bits(),
+            30.0_f64.to_bits()
+        );
+    }
+
+    #[test]
+    fn every_option_arrives() {
+        let expected = OptionsSpec {
+            attitude_equivalence: AttitudeEquivalence::Quaternion,
+            time_limit_s: None,
+            node_limit: Some(7),
+            relative_gap: 0.01,
+            alternatives: 3,
+            torque_authority: 0.9,
+            momentum_authority: 0.8,
+            seed: u64::MAX,
+        };
+        assert_eq!(decoded(COMPLETE).0.options, expected);
+    }
+
+    #[test]
+    fn an_empty_object_misses_exactly_the_required_fields() {
+        let (spec, problems) = decoded("{}");
+        let pointers: Vec<&str> = problems.iter().map(|p| &*p.pointer).collect();
+        assert_eq!(pointers, ["/spacecraft", "/start", "/targets"]);
+        assert_eq!(spec.options, OptionsSpec::default());
+    }
+
+    #[test]
+    fn a_stored_spacecraft_is_refused_in_words() {
+        let text = COMPLETE.replace(
+            "\"inertia_kg_m2\": [[",
+            "\"ref\": \"sat\", \"inertia_kg_m2\": [[",
+        );
+        let (_, problems) = decoded(&text);
+        assert_eq!(problems.len(), 1);
+        assert_eq!(problems[0].pointer, "/spacecraft/ref");
+        assert_eq!(problems[0].code, Code::UnknownReference);
+    }
+
+    #[test]
+    fn only_what_may_follow_from_a_substitute_is_dropped() {
+        let at = |pointer: &str, code| Problem::new(pointer, code, "", "");
+        let shape = [
+            at("/spacecraft/wheels/1/axis", Code::WrongType),
+            at("/targets/0/colour", Code::UnknownField),
+        ];
+        let follows = |pointer: &str, code| follows_from_a_substitute(&at(pointer, code), &shape);
+        assert!(follows("/spacecraft/wheels", Code::WheelAxesCoplanar));
+        assert!(follows("/spacecraft/wheels/1/axis/0", Code::NotFinite));
+        assert!(!follows("/start/wheel_speed_rad_s", Code::WrongLength));
+        assert!(!follows("/spacecraft/wheels/10", Code::TorqueLimits));
+        assert!(!follows("/targets/0", Code::DuplicateId));
+    }
+
+    #[test]
+    fn without_wheels_nothing_is_said_about_their_number() {
+        let shape = [Problem::new(
+            "/spacecraft/wheels",
+            Code::MissingField,
+            "",
+            "",
+        )];
+        let found = Problem::new("/start/wheel_speed_rad_s", Code::WrongLength, "", "");
+        assert!(follows_from_a_substitute(&found, &shape));
+    }
+}

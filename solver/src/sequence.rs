@@ -54,7 +54,7 @@ pub use table::PairTable;
 use crate::stop::StopReason;
 
 /// Where a leg begins or ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// The state at time zero.
     Start,

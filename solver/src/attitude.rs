@@ -17,8 +17,15 @@ mod forms;
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 
 /// A unit quaternion under the [conventions](self) of this module, sign included.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Attitude(UnitQuaternion<f64>);
+
+/// Equal components: unlike nalgebra's, this comparison tells `q` from `-q`.
+impl PartialEq for Attitude {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.coords == other.0.coords
+    }
+}
 
 impl Attitude {
     /// Body axes along the reference axes.

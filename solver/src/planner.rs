@@ -99,6 +99,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         ..SearchSettings::default()
     };
     let found = search(&tours, &settings, run.pool, &stop, run.observer);
+    eprintln!("{found:#?}");
     let statistics = Statistics {
         wall_time_s: begin.elapsed().as_secs_f64(),
         nodes_explored: found.statistics.nodes_explored,

@@ -298,3 +298,11 @@ proptest! {
         prop_assert!(distance(&attitude(&AttitudeSpec::RollPitchYawDeg(angles)), &expected) < 1e-14);
     }
 }
+
+#[test]
+fn comparison_tells_the_signs_apart() {
+    let attitude = Attitude::from_rotation_vector(Vector3::new(0.3, -0.2, 0.1));
+    assert_ne!(attitude, attitude.negated());
+    assert_eq!(attitude, attitude.negated().negated());
+    assert_eq!(attitude.negated().nearest_sign(&attitude), attitude);
+}

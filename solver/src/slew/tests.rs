@@ -52,3 +52,27 @@ fn explore() {
     println!("sums {sums:?} wins {wins:?} time {:?}", begin.elapsed());
     for list in &its { if !list.is_empty() { println!("median {} p90 {} max {}", list[list.len()/2], list[list.len()*9/10], list[list.len()-1]); } }
 }
+
+#[test]
+fn chain_of_signs() {
+    let scenario = Scenario::try_new(&crate::scenario::reference::experiment_a()).expect("valid").scenario;
+    let dynamics = Dynamics::of(&scenario);
+    let null = DVector::zeros(0);
+    let (s, e, f) = (at_rest(RPY[0]), at_rest(RPY[5]), at_rest(RPY[6]));
+    let one = solve(&dynamics, &s, &e, Arrival::Rotation, &null, &|| false).flown;
+    let two = solve(&dynamics, &e, &f, Arrival::Rotation, &null, &|| false).flown;
+    println!("{:?} {:?}", one.duration(), two.duration());
+    println!("{:?} {:?}", one.profile.attitudes.first().unwrap().xyzw(), one.profile.attitudes.last().unwrap().xyzw());
+    println!("{:?} {:?}", two.profile.attitudes.first().unwrap().xyzw(), two.profile.attitudes.last().unwrap().xyzw());
+    let mut guess = Profile::empty();
+    guess.append(&one.profile);
+    guess.append(&two.profile);
+    for pair in guess.attitudes.windows(2) { print!("{:.3} ", pair[0].signed_turn_to(&pair[1]).norm()); }
+    let mut e2 = e.clone();
+    e2.attitude = e.attitude.nearest_sign(&guess.attitudes[12]);
+    let mut f2 = f.clone();
+    f2.attitude = f.attitude.nearest_sign(&guess.attitudes[24]);
+    println!("\n{:?} {:?}", e2.attitude.xyzw(), f2.attitude.xyzw());
+    let all = fly(&dynamics, &[s, e2, f2], &[12, 12], &guess, &|| false);
+    println!("{:?} {}", all.status, all.iterations);
+}

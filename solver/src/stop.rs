@@ -47,9 +47,9 @@ impl StopSignal {
     /// Asks for the best answer so far.
     pub fn request(&self) {
         // A cancellation is never weakened to a request.
-        let _ = self
-            .flag
-            .compare_exchange(RUNNING, REQUESTED, Ordering::Relaxed, Ordering::Relaxed);
+        let _ =
+            self.flag
+                .compare_exchange(RUNNING, REQUESTED, Ordering::Relaxed, Ordering::Relaxed);
     }
 
     /// Abandons the solve.

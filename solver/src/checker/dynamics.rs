@@ -1,0 +1,163 @@
+//! The equations of motion, written down a second time on purpose.
+//!
+//! Nothing here is shared with the code that plans, so that a mistake there cannot hide here.
+//! With the symbols of [`crate::spacecraft`] and the conventions of [`crate::attitude`]:
+//!
+//! ```text
+//! H_b      = J w + sum a_i I_i W_i                  (all wheels)
+//! J_eff w' = -w x H_b - sum a_i u_i                 (driven wheels)
+//! W_i'     = u_i / I_i - a_i . w'                   (driven wheels; 0 for locked ones)
+//! q'       = 1/2 q (x) [w, 0]
+//! J_eff    = J - sum I_i a_i a_i^T                  (driven wheels)
+//! ```
+
+use crate::spacecraft::Wheel;
+use nalgebra::{Matrix3, Vector3};
+
+/// Scalar-last quaternion components, sign included.
+pub(super) type Quaternion = [f64; 4];
+
+/// Hamilton's product `a (x) b`.
+pub(super) fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
+    let [ax, ay, az, aw] = *a;
+    let [bx, by, bz, bw] = *b;
+    [
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    ]
+}
+
+/// The inverse of a unit quaternion.
+pub(super) fn conjugate(q: &Quaternion) -> Quaternion {
+    [-q[0], -q[1], -q[2], q[3]]
+}
+
+/// A body vector seen in the reference frame: `q v q*`.
+pub(super) fn to_reference(q: &Quaternion, v: &Vector3<f64>) -> Vector3<f64> {
+    let p = product(&product(q, &[v.x, v.y, v.z, 0.0]), &conjugate(q));
+    Vector3::new(p[0], p[1], p[2])
+}
+
+/// Length of a quaternion.
+pub(super) fn norm(q: &Quaternion) -> f64 {
+    q.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// The state at one moment: quaternion, body rate (rad/s) and wheel speeds relative to the body
+/// (rad/s).
+#[derive(Debug, Clone)]
+pub(super) struct Snapshot {
+    pub(super) time_s: f64,
+    pub(super) quaternion: Quaternion,
+    pub(super) rate: Vector3<f64>,
+    pub(super) wheel_speed: Vec<f64>,
+}
+
+impl Snapshot {
+    /// Whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.quaternion.iter().all(|c| c.is_finite())
+            && self.rate.iter().all(|c| c.is_finite())
+            && self.wheel_speed.iter().all(|c| c.is_finite())
+    }
+}
+
+/// A wheel as the dynamics see it.
+#[derive(Debug, Clone)]
+pub(super) struct Rotor {
+    pub(super) axis: Vector3<f64>,
+    pub(super) inertia: f64,
+    /// A wheel that is not driven keeps its speed relative to the body.
+    pub(super) driven: bool,
+}
+
+/// A rigid body with wheels.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    pub(super) inertia: Matrix3<f64>,
+    pub(super) effective_inverse: Matrix3<f64>,
+    pub(super) rotors: Vec<Rotor>,
+}
+
+impl Body {
+    /// The body of a whole-spacecraft inertia (kg m²) and its wheels; `None` when `J_eff` has no
+    /// inverse.
+    pub(super) fn new(inertia: &Matrix3<f64>, wheels: &[Wheel]) -> Option<Self> {
+        let rotors: Vec<Rotor> = wheels
+            .iter()
+            .map(|wheel| Rotor {
+                axis: wheel.axis,
+                inertia: wheel.inertia,
+                driven: wheel.enabled,
+            })
+            .collect();
+        let mut effective = *inertia;
+        for rotor in rotors.iter().filter(|r| r.driven) {
+            effective -= rotor.axis * rotor.axis.transpose() * rotor.inertia;
+        }
+        // Scaled to order one first: a determinant of very small inertias underflows.
+        let scale = effective.amax();
+        let inverse = (effective / scale).try_inverse()? / scale;
+        Some(Self {
+            inertia: *inertia,
+            effective_inverse: inverse,
+            rotors,
+        })
+    }
+
+    /// `H_b`, N m s.
+    pub(super) fn momentum(&self, rate: &Vector3<f64>, wheel_speed: &[f64]) -> Vector3<f64> {
+        let mut momentum = self.inertia * rate;
+        for (rotor, speed) in self.rotors.iter().zip(wheel_speed) {
+            momentum += rotor.axis * (rotor.inertia * speed);
+        }
+        momentum
+    }
+
+    /// The sum of the parts of `H_b` by size, N m s: what its rounding is relative to.
+    pub(super) fn momentum_scale(&self, rate: &Vector3<f64>, wheel_speed: &[f64]) -> f64 {
+        let wheels = self.rotors.iter().zip(wheel_speed);
+        wheels.fold((self.inertia * rate).norm(), |sum, (rotor, speed)| {
+            sum + rotor.axis.norm() * (rotor.inertia * speed).abs()
+        })
+    }
+
+    /// What the motors do to the body, N m: `-sum a_i u_i`.
+    pub(super) fn motor_torque(&self, torque: &[f64]) -> Vector3<f64> {
+        let mut sum = Vector3::zeros();
+        for (rotor, u) in self.rotors.iter().zip(torque) {
+            if rotor.driven {
+                sum -= rotor.axis * *u;
+            }
+        }
+        sum
+    }
+
+    /// `w'`, rad/s².
+    pub(super) fn rate_derivative(&self, state: &Snapshot, torque: &[f64]) -> Vector3<f64> {
+        let momentum = self.momentum(&state.rate, &state.wheel_speed);
+        self.effective_inverse * (self.motor_torque(torque) - state.rate.cross(&momentum))
+    }
+
+    /// `W_i'`, rad/s², given `w'`.
+    pub(super) fn wheel_derivative(
+        &self,
+        wheel: usize,
+        torque: f64,
+        rate_derivative: &Vector3<f64>,
+    ) -> f64 {
+        let rotor = &self.rotors[wheel];
+        if rotor.driven {
+            torque / rotor.inertia - rotor.axis.dot(rate_derivative)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// `q'`, 1/s.
+pub(super) fn quaternion_derivative(q: &Quaternion, rate: &Vector3<f64>) -> Quaternion {
+    product(q, &[rate.x, rate.y, rate.z, 0.0]).map(|c| 0.5 * c)
+}

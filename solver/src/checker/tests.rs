@@ -1,0 +1,8 @@
+//! Tests of the verification: the motion against closed forms, then whole flights.
+
+mod build;
+mod cones;
+mod flights;
+mod limits;
+mod motion;
+mod refusals;

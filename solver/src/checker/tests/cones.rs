@@ -1,0 +1,72 @@
+//! Keep-out cones that are entered between two clear ends.
+
+use super::build::{EFFECTIVE_X, HALF, TORQUE, accepted, angle, bang_bang, scenario, target};
+use crate::problem::Code;
+use crate::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
+
+/// A boresight on z, which the slew about x moves towards -y, and a cone at an angle along that
+/// way and off it, rad.
+fn with_cone(along: f64, off: f64, half_angle_deg: f64) -> ScenarioSpec {
+    let mut spec = scenario(vec![target("a", angle(HALF))]);
+    spec.spacecraft.boresights = vec![BoresightSpec {
+        name: "camera".to_owned(),
+        axis: [0.0, 0.0, 2.0],
+    }];
+    spec.keep_out = vec![KeepOutSpec {
+        boresight: "camera".to_owned(),
+        direction: [off.sin(), -along.sin() * off.cos(), along.cos() * off.cos()],
+        half_angle_deg,
+    }];
+    spec
+}
+
+#[test]
+fn a_cone_between_clear_ends_is_found_with_its_times() {
+    // The slew turns by 0.5 rad; the cone covers 0.10 to 0.20 rad of that.
+    let report = accepted(&with_cone(0.15, 0.0, 0.05_f64.to_degrees()), &bang_bang());
+    assert_eq!(report.intrusions.len(), 1);
+    let intrusion = report.intrusions[0];
+    let time_of = |turned: f64| (2.0 * turned * EFFECTIVE_X / TORQUE).sqrt();
+    assert!(
+        (intrusion.from_s - time_of(0.10)).abs() < 1e-7,
+        "{intrusion:?}"
+    );
+    assert!(
+        (intrusion.to_s - time_of(0.20)).abs() < 1e-7,
+        "{intrusion:?}"
+    );
+    assert!((intrusion.depth_rad - 0.05).abs() < 1e-7, "{intrusion:?}");
+    let clearance = report.margins.keep_out_clearance_deg[0];
+    assert!((clearance + intrusion.depth_rad.to_degrees()).abs() < 1e-12);
+
+    let warning = &report.keep_out[0];
+    assert_eq!(
+        (warning.code, warning.pointer.as_str()),
+        (Code::KeepOutViolated, "/keep_out/0")
+    );
+    assert!(warning.message.contains("6.32"), "{}", warning.message);
+}
+
+#[test]
+fn a_cone_beside_the_way_is_clear_by_the_exact_angle() {
+    let report = accepted(&with_cone(0.15, 0.12, 0.05_f64.to_degrees()), &bang_bang());
+    let clearance = report.margins.keep_out_clearance_deg[0].to_radians();
+    assert!((clearance - 0.07).abs() < 1e-12, "{clearance}");
+    assert!(report.keep_out.is_empty() && report.intrusions.is_empty());
+}
+
+#[test]
+fn a_cone_around_the_start_is_left_once() {
+    let report = accepted(&with_cone(0.0, 0.0, 0.02_f64.to_degrees()), &bang_bang());
+    assert_eq!(report.intrusions.len(), 1);
+    assert!(report.intrusions[0].from_s == 0.0);
+    let left = (2.0 * 0.02 * EFFECTIVE_X / TORQUE).sqrt();
+    assert!((report.intrusions[0].to_s - left).abs() < 1e-7);
+}
+
+#[test]
+fn a_touched_cone_is_no_violation() {
+    let report = accepted(&with_cone(0.15, 0.05, 0.05_f64.to_degrees()), &bang_bang());
+    assert!(report.keep_out.is_empty(), "{:?}", report.keep_out);
+    assert!(report.margins.keep_out_clearance_deg[0].abs() < 1e-9);
+}

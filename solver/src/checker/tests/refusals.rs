@@ -1,0 +1,192 @@
+//! Flights that are not flights of the scenario, each refused in words.
+
+use super::super::NOT_COMPUTED;
+use super::build::{
+    HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target,
+};
+use crate::plan::Flight;
+use crate::spec::ScenarioSpec;
+
+fn spec() -> ScenarioSpec {
+    scenario(vec![target("a", angle(HALF))])
+}
+
+fn changed(change: impl FnOnce(&mut Flight)) -> Flight {
+    let mut flight = bang_bang();
+    change(&mut flight);
+    flight
+}
+
+type Case = (fn(&mut Flight), &'static str);
+
+#[test]
+fn controls_that_cannot_be_flown_are_refused_with_the_worst_figures() {
+    let cases: [Case; 11] = [
+        (|f| f.controls[1].start_s += 0.01, "a gap of 0.01 s"),
+        (|f| f.controls[0].duration_s += 0.5, "an overlap of 0.5 s"),
+        (
+            |f| f.controls[0].start_s = 1.0,
+            "starts at 1 s where 0 s was reached",
+        ),
+        (
+            |f| f.total_time_s += 1.0,
+            "end at 20 s but the flight lasts 21 s",
+        ),
+        (
+            |f| f.controls.clear(),
+            "end at 0 s but the flight lasts 20 s",
+        ),
+        (
+            |f| f.controls[1].duration_s = -1.0,
+            "a negative duration of -1 s",
+        ),
+        (
+            |f| f.controls[0].wheel_torque_nm.truncate(2),
+            "2 torques for 3 wheels",
+        ),
+        (
+            |f| f.controls[0].wheel_torque_nm[2] = f64::NAN,
+            "wheel 2 that is not finite",
+        ),
+        (
+            |f| f.controls[0].start_s = f64::INFINITY,
+            "a time that is not finite",
+        ),
+        (|f| f.total_time_s = f64::NAN, "not a duration"),
+        (|f| f.total_time_s = -1.0, "not a duration"),
+    ];
+    for (change, words) in cases {
+        let report = refused(&spec(), &changed(change), words);
+        assert!(report.verification.max_attitude_error_rad >= NOT_COMPUTED);
+        assert!(report.margins.torque <= -NOT_COMPUTED);
+        assert!(report.states.is_empty());
+    }
+}
+
+#[test]
+fn passages_that_do_not_match_the_targets_are_refused() {
+    let end = 2.0 * HALF;
+    let cases: [Case; 8] = [
+        (|f| f.passages.clear(), "target 'a' is not visited"),
+        (
+            |f| f.passages[0].target = "z".to_owned(),
+            "passage of 'z' belongs to no target",
+        ),
+        (
+            |f| f.passages.push(f.passages[0].clone()),
+            "target 'a' is visited 2 times",
+        ),
+        (
+            |f| f.passages[0].time_s = f64::NAN,
+            "time that is not finite",
+        ),
+        (
+            |f| f.passages[0].departure_s += 1.0,
+            "after the end of the flight",
+        ),
+        (
+            |f| f.passages[0].time_s = -1.0,
+            "is reached at -1 s, before",
+        ),
+        (
+            |f| f.passages[0].time_s -= 1.0,
+            "stayed at for 1 s instead of 0 s",
+        ),
+        (
+            |f| {
+                f.passages[0].time_s -= 1.0;
+                f.passages[0].departure_s -= 1.0;
+            },
+            "goes on for 1 s after the last target",
+        ),
+    ];
+    for (change, words) in cases {
+        let report = refused(&spec(), &changed(change), words);
+        assert!(
+            report
+                .states
+                .last()
+                .is_some_and(|s| (s.time_s - end).abs() == 0.0)
+        );
+    }
+}
+
+#[test]
+fn targets_out_of_order_are_refused() {
+    let spec = scenario(vec![target("a", angle(HALF)), target("b", angle(HALF))]);
+    let mut flight = bang_bang();
+    let end = flight.total_time_s;
+    flight.passages.push(passage("b", end, end));
+    accepted(&spec, &flight);
+    flight.passages[1] = passage("b", HALF, HALF);
+    refused(
+        &spec,
+        &flight,
+        "target 'b' is reached at 10 s, before the departure",
+    );
+}
+
+#[test]
+fn rounding_of_times_in_text_passes() {
+    let third = HALF / 3.0;
+    let text = |t: f64| format!("{t:.11}").parse::<f64>().unwrap();
+    let mut flight = bang_bang();
+    flight.controls = vec![
+        control(0.0, text(third), -TORQUE),
+        control(text(third), text(2.0 * third), -TORQUE),
+        control(HALF, 0.0, TORQUE),
+        control(text(HALF), HALF, TORQUE),
+    ];
+    accepted(&spec(), &flight);
+}
+
+#[test]
+fn a_motion_beyond_all_numbers_is_refused() {
+    let flight = changed(|f| f.controls[0].wheel_torque_nm = vec![1e305, 1e305, 1e305]);
+    let report = refused(&spec(), &flight, "the integration");
+    assert!(report.verification.max_rate_error_rad_s >= NOT_COMPUTED);
+    let figures = report
+        .states
+        .iter()
+        .flat_map(|s| s.wheel_speed_rad_s.clone());
+    assert!(figures.into_iter().all(f64::is_finite));
+}
+
+#[test]
+fn many_defects_are_summed_up() {
+    let flight = changed(|f| {
+        f.controls = (0..40).map(|_| control(0.0, -1.0, 0.0)).collect();
+    });
+    let report = refused(&spec(), &flight, "30 more defects");
+    assert!(report.verification.failures.len() < 15);
+}
+
+#[test]
+fn figures_stay_finite_for_absurd_limits() {
+    let mut spec = spec();
+    for wheel in &mut spec.spacecraft.wheels {
+        wheel.max_torque_nm = 1e-308;
+        wheel.max_speed_rad_s = Some(1e-308);
+    }
+    spec.spacecraft.max_body_rate_norm_rad_s = Some(1e-308);
+    let flight = changed(|f| {
+        for control in &mut f.controls {
+            control.wheel_torque_nm[0] *= 100.0;
+        }
+    });
+    let report = refused(&spec, &flight, "N m is allowed");
+    let (verification, margins) = (report.verification, report.margins);
+    let figures = [
+        verification.max_torque_excess,
+        verification.max_wheel_speed_excess,
+        verification.max_rate_excess,
+        margins.torque,
+        margins.wheel_speed.unwrap(),
+        margins.body_rate.unwrap(),
+    ];
+    assert!(
+        figures.iter().all(|figure| figure.is_finite()),
+        "{figures:?}"
+    );
+    assert!(figures[0] > 1e300 && figures[3] < -1e300);
+}

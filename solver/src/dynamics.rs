@@ -1,0 +1,196 @@
+//! Rigid-body dynamics with the momentum eliminated.
+//!
+//! Without external torque the total momentum `H` is constant in the reference frame, so with
+//! `h_i = I_i (W_i + a_i . w)`, the momentum of enabled wheel `i` about its axis,
+//!
+//! ```text
+//!   J_eff w = R(q)^T H - h_locked - A h,      h_i' = u_i,      q' = 1/2 q (x) [w, 0]
+//! ```
+//!
+//! The state is `(q, h)`: three plus `K` numbers, of which `h` is a plain integral of the torque.
+//! Speed limits become limits on `h_i / I_i - a_i . w`. Shares of the limits that the plan may not
+//! use are taken off here, so nothing downstream knows of them.
+
+use crate::attitude::Attitude;
+use crate::scenario::Scenario;
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
+
+/// An enabled wheel with the limits that a plan may use.
+#[derive(Debug, Clone)]
+pub(crate) struct Actuator {
+    /// Position among all wheels of the spacecraft.
+    pub(crate) index: usize,
+    /// `a_i`.
+    pub(crate) axis: Vector3<f64>,
+    /// `I_i`, kg m².
+    pub(crate) inertia: f64,
+    /// Least torque, N m.
+    pub(crate) min_torque: f64,
+    /// Greatest torque, N m.
+    pub(crate) max_torque: f64,
+    /// Speed limit, rad/s; may be infinite.
+    pub(crate) max_speed: f64,
+}
+
+/// The dynamics of one scenario's spacecraft with its momentum.
+#[derive(Debug, Clone)]
+pub(crate) struct Dynamics {
+    /// The enabled wheels.
+    pub(crate) actuators: Vec<Actuator>,
+    /// `A`: their axes as columns.
+    pub(crate) axes: Matrix3xX<f64>,
+    /// Pseudo-inverse of `A`.
+    pub(crate) axes_inverse: DMatrix<f64>,
+    /// Orthonormal columns that span the null space of `A`.
+    pub(crate) null_space: DMatrix<f64>,
+    /// `J_eff`, kg m².
+    pub(crate) inertia: Matrix3<f64>,
+    /// Its inverse.
+    pub(crate) inertia_inverse: Matrix3<f64>,
+    /// Momentum of the locked wheels relative to the body, body axes, N m s.
+    pub(crate) locked_momentum: Vector3<f64>,
+    /// Total momentum in the reference frame, N m s.
+    pub(crate) momentum: Vector3<f64>,
+    /// Rate limit per axis, rad/s; may be infinite.
+    pub(crate) max_rate: Vector3<f64>,
+    /// Limit of the rate's norm, rad/s; may be infinite.
+    pub(crate) max_rate_norm: f64,
+}
+
+/// Total momentum below this fraction of what the wheels turn over counts as zero, so that
+/// rounding in the caller's numbers does not cost the simpler dynamics.
+const NEGLIGIBLE_MOMENTUM: f64 = 1e-13;
+
+impl Dynamics {
+    /// The dynamics of a scenario.
+    pub(crate) fn of(scenario: &Scenario) -> Self {
+        let spacecraft = scenario.spacecraft();
+        let options = scenario.options();
+        let actuators: Vec<Actuator> = spacecraft
+            .enabled_wheels()
+            .map(|(index, wheel)| Actuator {
+                index,
+                axis: wheel.axis,
+                inertia: wheel.inertia,
+                min_torque: wheel.min_torque * options.torque_authority,
+                max_torque: wheel.max_torque * options.torque_authority,
+                max_speed: wheel.max_speed * options.momentum_authority,
+            })
+            .collect();
+        let columns: Vec<_> = actuators.iter().map(|wheel| wheel.axis).collect();
+        let axes = Matrix3xX::from_columns(&columns);
+        let (axes_inverse, null_space) = inverse_and_null_space(&axes);
+        let start = scenario.start();
+        let spins = spacecraft.wheels().iter().zip(&start.wheel_speed);
+        let (mut locked_momentum, mut turnover) = (Vector3::zeros(), 0.0);
+        for (wheel, speed) in spins {
+            let spin = wheel.axis * (wheel.inertia * speed);
+            turnover += spin.norm();
+            if !wheel.enabled {
+                locked_momentum += spin;
+            }
+        }
+        turnover += (spacecraft.inertia() * start.rate).norm();
+        let mut momentum = scenario.momentum();
+        if momentum.norm() <= NEGLIGIBLE_MOMENTUM * turnover {
+            momentum = Vector3::zeros();
+        }
+        Self {
+            actuators,
+            axes,
+            axes_inverse,
+            null_space,
+            inertia: *spacecraft.effective_inertia(),
+            inertia_inverse: *spacecraft.effective_inertia_inverse(),
+            locked_momentum,
+            momentum,
+            max_rate: spacecraft.max_rate(),
+            max_rate_norm: spacecraft.max_rate_norm(),
+        }
+    }
+
+    /// Number of enabled wheels.
+    pub(crate) fn wheel_count(&self) -> usize {
+        self.actuators.len()
+    }
+
+    /// Whether total momentum is present; without it legs depend on relative attitudes only.
+    pub(crate) fn has_momentum(&self) -> bool {
+        self.momentum != Vector3::zeros()
+    }
+
+    /// Body rate, rad/s, of an attitude and wheel momenta.
+    pub(crate) fn rate(&self, attitude: &Attitude, wheels: &DVector<f64>) -> Vector3<f64> {
+        let body = attitude.to_body(self.momentum) - self.locked_momentum - &self.axes * wheels;
+        self.inertia_inverse * body
+    }
+
+    /// What the wheels must hold in sum, N m s, at an attitude and body rate.
+    pub(crate) fn demanded(&self, attitude: &Attitude, rate: &Vector3<f64>) -> Vector3<f64> {
+        attitude.to_body(self.momentum) - self.locked_momentum - self.inertia * rate
+    }
+
+    /// Wheel momenta, N m s, at an attitude and rate with a given null-space component.
+    pub(crate) fn wheels_at(
+        &self,
+        attitude: &Attitude,
+        rate: &Vector3<f64>,
+        null: &DVector<f64>,
+    ) -> DVector<f64> {
+        &self.axes_inverse * self.demanded(attitude, rate) + &self.null_space * null
+    }
+
+    /// Wheel momenta, N m s, of a body rate and the speeds of all wheels.
+    pub(crate) fn wheels_of_speeds(&self, rate: &Vector3<f64>, speeds: &[f64]) -> DVector<f64> {
+        DVector::from_iterator(
+            self.wheel_count(),
+            self.actuators
+                .iter()
+                .map(|wheel| wheel.inertia * (speeds[wheel.index] + wheel.axis.dot(rate))),
+        )
+    }
+
+    /// Null-space component of wheel momenta.
+    pub(crate) fn null_component(&self, wheels: &DVector<f64>) -> DVector<f64> {
+        self.null_space.tr_mul(wheels)
+    }
+
+    /// Greatest share of its limit that any wheel speed or body rate has; infinite never, 0 when
+    /// nothing is limited.
+    pub(crate) fn speed_usage(&self, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
+        let spin = self.actuators.iter().zip(wheels.iter()).map(|(wheel, h)| {
+            (h / wheel.inertia - wheel.axis.dot(rate)).abs() / wheel.max_speed
+        });
+        let per_axis = rate.iter().zip(&self.max_rate).map(|(w, limit)| w.abs() / limit);
+        spin.chain(per_axis).fold(rate.norm() / self.max_rate_norm, f64::max)
+    }
+
+    /// Greatest share of its limit that any wheel torque has.
+    pub(crate) fn torque_usage(&self, torque: &DVector<f64>) -> f64 {
+        self.actuators.iter().zip(torque.iter()).fold(0.0, |worst, (wheel, u)| {
+            worst.max(u / if *u > 0.0 { wheel.max_torque } else { wheel.min_torque })
+        })
+    }
+}
+
+fn inverse_and_null_space(axes: &Matrix3xX<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    let count = axes.ncols();
+    let gram = axes * axes.transpose();
+    // Axes that span space are part of a valid spacecraft.
+    let gram_inverse = gram.try_inverse().expect("enabled wheel axes span space");
+    let inverse = DMatrix::from_iterator(count, 3, (axes.transpose() * gram_inverse).iter().copied());
+    // The projector onto the null space has eigenvalues one (kept) and zero.
+    let dense_axes = DMatrix::from_iterator(3, count, axes.iter().copied());
+    let projector = DMatrix::identity(count, count) - &inverse * dense_axes;
+    let eigen = ((&projector + projector.transpose()) * 0.5).symmetric_eigen();
+    let columns: Vec<_> = (0..count)
+        .filter(|&i| eigen.eigenvalues[i] > 0.5)
+        .map(|i| eigen.eigenvectors.column(i).into_owned())
+        .collect();
+    let null_space = if columns.is_empty() {
+        DMatrix::zeros(count, 0)
+    } else {
+        DMatrix::from_columns(&columns)
+    };
+    (inverse, null_space)
+}

@@ -1,0 +1,442 @@
+//! The attitude change over one interval of linearly varying wheel momentum, with derivatives.
+//!
+//! Torque is constant on an interval, so the wheels' share of the body rate is linear in time.
+//! With `sigma` in `[0, 1]` along the interval and `p` the turn since its beginning, the kinematics
+//! `q' = 1/2 q (x) [w, 0]` become
+//!
+//! ```text
+//!   p' = 1/2 p (x) w,   w = (1 - sigma) a + sigma c + Ji R(p)^T zeta,   p(0) = 1
+//! ```
+//!
+//! where `a` and `c` are the rates times the interval's length at both ends as far as the wheels
+//! make them, `Ji` is the inverse of `J_eff`, and `zeta` is the total momentum at the beginning
+//! times the length. With zero momentum only `a` and `c` remain. The inputs are `z = (a, c, zeta)`.
+//!
+//! The step is Butcher's Runge-Kutta method of order six on fixed substeps; first derivatives are
+//! propagated forward, second ones come from one reverse sweep, both of the discrete map itself,
+//! so that they are exact whatever the truncation error.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// A quaternion, scalar last, of any length.
+pub(crate) type Quat = [f64; 4];
+
+/// Inputs of a step with momentum.
+pub(crate) const INPUTS: usize = 9;
+/// Inputs that matter when the momentum is zero.
+const INPUTS_WITHOUT_MOMENTUM: usize = 6;
+/// Most substeps of an interval.
+const MAX_SUBSTEPS: usize = 32;
+
+const STAGES: usize = 7;
+/// J. C. Butcher, "On Runge-Kutta processes of high order", 1964.
+const A: [[f64; STAGES]; STAGES] = [
+    [0.0; 7],
+    [1.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, 2.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0 / 12.0, 1.0 / 3.0, -1.0 / 12.0, 0.0, 0.0, 0.0, 0.0],
+    [25.0 / 48.0, -55.0 / 24.0, 35.0 / 48.0, 15.0 / 8.0, 0.0, 0.0, 0.0],
+    [3.0 / 20.0, -11.0 / 24.0, -1.0 / 8.0, 1.0 / 2.0, 1.0 / 10.0, 0.0, 0.0],
+    [-261.0 / 260.0, 33.0 / 13.0, 43.0 / 156.0, -118.0 / 39.0, 32.0 / 195.0, 80.0 / 39.0, 0.0],
+];
+const B: [f64; STAGES] = [
+    13.0 / 200.0,
+    0.0,
+    11.0 / 40.0,
+    11.0 / 40.0,
+    4.0 / 25.0,
+    4.0 / 25.0,
+    13.0 / 200.0,
+];
+const C: [f64; STAGES] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0, 5.0 / 6.0, 1.0 / 6.0, 1.0];
+
+/// Quaternion product.
+pub(crate) fn product(a: &Quat, b: &Quat) -> Quat {
+    [
+        a[3] * b[0] + b[3] * a[0] + a[1] * b[2] - a[2] * b[1],
+        a[3] * b[1] + b[3] * a[1] + a[2] * b[0] - a[0] * b[2],
+        a[3] * b[2] + b[3] * a[2] + a[0] * b[1] - a[1] * b[0],
+        a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2],
+    ]
+}
+
+/// Conjugate quaternion.
+pub(crate) fn conjugate(q: &Quat) -> Quat {
+    [-q[0], -q[1], -q[2], q[3]]
+}
+
+/// Vector part.
+pub(crate) fn imaginary(q: &Quat) -> Vector3<f64> {
+    Vector3::new(q[0], q[1], q[2])
+}
+
+/// Quaternion of a vector part and a scalar.
+pub(crate) fn quat(v: &Vector3<f64>, w: f64) -> Quat {
+    [v.x, v.y, v.z, w]
+}
+
+/// `R(p)^T v`, scaled by `|p|^2`.
+pub(crate) fn rotate_back(p: &Quat, v: &Vector3<f64>) -> Vector3<f64> {
+    let (u, w) = (imaginary(p), p[3]);
+    v * (w * w - u.norm_squared()) + u * (2.0 * u.dot(v)) - u.cross(v) * (2.0 * w)
+}
+
+/// Inputs of one interval's turn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TurnInputs {
+    /// `a`, rad.
+    pub(crate) begin: Vector3<f64>,
+    /// `c`, rad.
+    pub(crate) end: Vector3<f64>,
+    /// `zeta`.
+    pub(crate) momentum: Vector3<f64>,
+}
+
+/// A turn with its first derivatives and, weighted by a covector, its second ones.
+#[derive(Debug, Clone)]
+pub(crate) struct TurnDerivatives {
+    /// `p(1)`.
+    pub(crate) turn: Quat,
+    /// `dp / dz_j`.
+    pub(crate) first: [Quat; INPUTS],
+    /// `sum_i mu_i d2 p_i / dz dz`, both triangles.
+    pub(crate) second: [[f64; INPUTS]; INPUTS],
+}
+
+/// The map from inputs to turns.
+#[derive(Debug, Clone)]
+pub(crate) struct TurnMap {
+    inertia_inverse: Matrix3<f64>,
+    with_momentum: bool,
+    substeps: usize,
+}
+
+#[derive(Clone, Copy, Default)]
+struct StageRecord {
+    sigma: f64,
+    p: Quat,
+    rate: Vector3<f64>,
+    sensitivity: [Quat; INPUTS],
+}
+
+impl TurnMap {
+    /// A map with a number of substeps per interval, for `J_eff` inverse in matching units.
+    pub(crate) fn new(inertia_inverse: Matrix3<f64>, with_momentum: bool, substeps: usize) -> Self {
+        Self { inertia_inverse, with_momentum, substeps: substeps.clamp(1, MAX_SUBSTEPS) }
+    }
+
+    /// Number of inputs with non-zero derivatives.
+    pub(crate) fn inputs(&self) -> usize {
+        if self.with_momentum { INPUTS } else { INPUTS_WITHOUT_MOMENTUM }
+    }
+
+    fn rate(&self, z: &TurnInputs, sigma: f64, p: &Quat) -> Vector3<f64> {
+        let linear = z.begin * (1.0 - sigma) + z.end * sigma;
+        if self.with_momentum {
+            linear + self.inertia_inverse * rotate_back(p, &z.momentum)
+        } else {
+            linear
+        }
+    }
+
+    /// The turn over the interval.
+    pub(crate) fn turn(&self, z: &TurnInputs) -> Quat {
+        let h = 1.0 / self.substeps as f64;
+        let mut p = [0.0, 0.0, 0.0, 1.0];
+        for step in 0..self.substeps {
+            let mut k = [[0.0; 4]; STAGES];
+            for i in 0..STAGES {
+                let mut at = p;
+                for j in 0..i {
+                    add_scaled(&mut at, h * A[i][j], &k[j]);
+                }
+                let sigma = h * (step as f64 + C[i]);
+                k[i] = half_product(&at, &self.rate(z, sigma, &at));
+            }
+            for i in 0..STAGES {
+                add_scaled(&mut p, h * B[i], &k[i]);
+            }
+        }
+        p
+    }
+
+    /// The turn with derivatives, the second ones weighted by `mu`.
+    pub(crate) fn derivatives(&self, z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
+        let h = 1.0 / self.substeps as f64;
+        let mut records = [StageRecord::default(); STAGES * MAX_SUBSTEPS];
+        let mut p = [0.0, 0.0, 0.0, 1.0];
+        let mut first = [[0.0; 4]; INPUTS];
+        for step in 0..self.substeps {
+            let records = &mut records[step * STAGES..(step + 1) * STAGES];
+            self.forward_substep(z, step, h, &mut p, &mut first, records);
+        }
+        let mut second = [[0.0; INPUTS]; INPUTS];
+        let mut adjoint = *mu;
+        for step in (0..self.substeps).rev() {
+            let records = &records[step * STAGES..(step + 1) * STAGES];
+            self.reverse_substep(z, h, &mut adjoint, records, &mut second);
+        }
+        let n = self.inputs();
+        for i in 0..n {
+            for j in 0..i {
+                second[j][i] = second[i][j];
+            }
+        }
+        TurnDerivatives { turn: p, first, second }
+    }
+
+    fn forward_substep(
+        &self,
+        z: &TurnInputs,
+        step: usize,
+        h: f64,
+        p: &mut Quat,
+        first: &mut [Quat; INPUTS],
+        records: &mut [StageRecord],
+    ) {
+        let n = self.inputs();
+        let mut k = [[0.0; 4]; STAGES];
+        let mut dk = [[[0.0; 4]; INPUTS]; STAGES];
+        for i in 0..STAGES {
+            let mut record = StageRecord {
+                sigma: h * (step as f64 + C[i]),
+                p: *p,
+                rate: Vector3::zeros(),
+                sensitivity: *first,
+            };
+            for j in 0..i {
+                if A[i][j] != 0.0 {
+                    add_scaled(&mut record.p, h * A[i][j], &k[j]);
+                    for (out, value) in record.sensitivity[..n].iter_mut().zip(&dk[j]) {
+                        add_scaled(out, h * A[i][j], value);
+                    }
+                }
+            }
+            record.rate = self.rate(z, record.sigma, &record.p);
+            k[i] = half_product(&record.p, &record.rate);
+            for (input, out) in dk[i][..n].iter_mut().enumerate() {
+                *out = half_product(&record.sensitivity[input], &record.rate);
+                let rate = self.rate_derivative(z, &record, input);
+                add_scaled(out, 1.0, &half_product(&record.p, &rate));
+            }
+            records[i] = record;
+        }
+        for i in 0..STAGES {
+            add_scaled(p, h * B[i], &k[i]);
+            for (out, value) in first[..n].iter_mut().zip(&dk[i]) {
+                add_scaled(out, h * B[i], value);
+            }
+        }
+    }
+
+    /// Total derivative of a stage's rate with respect to one input.
+    fn rate_derivative(&self, z: &TurnInputs, at: &StageRecord, input: usize) -> Vector3<f64> {
+        let mut rate = Vector3::zeros();
+        match input {
+            0..3 => rate[input] = 1.0 - at.sigma,
+            3..6 => rate[input - 3] = at.sigma,
+            _ => {
+                let mut axis = Vector3::zeros();
+                axis[input - 6] = 1.0;
+                rate = self.inertia_inverse * rotate_back(&at.p, &axis);
+            }
+        }
+        if self.with_momentum {
+            let change = rotate_back_derivative(&at.p, &z.momentum, &at.sensitivity[input]);
+            rate += self.inertia_inverse * change;
+        }
+        rate
+    }
+
+    fn reverse_substep(
+        &self,
+        z: &TurnInputs,
+        h: f64,
+        adjoint: &mut Quat,
+        records: &[StageRecord],
+        second: &mut [[f64; INPUTS]; INPUTS],
+    ) {
+        let mut carried = [[0.0; 4]; STAGES];
+        for i in (0..STAGES).rev() {
+            let mut weight = [0.0; 4];
+            add_scaled(&mut weight, h * B[i], adjoint);
+            for j in i + 1..STAGES {
+                add_scaled(&mut weight, h * A[j][i], &carried[j]);
+            }
+            carried[i] = self.accumulate_stage(z, &weight, &records[i], second);
+        }
+        for value in &carried {
+            add_scaled(adjoint, 1.0, value);
+        }
+    }
+
+    /// Adds one stage's share of the weighted second derivatives (lower triangle) and returns the
+    /// adjoint with respect to the stage's `p`.
+    ///
+    /// With `phi = weight . 1/2 p (x) w = p^T m(w)`, `m(v) = 1/2 weight (x) [v, 0]*`:
+    /// `d2 phi = 2 dp^T m(dw) + y . d2(R^T zeta)`, `y = Ji^T 1/2 vec(p* (x) weight)`.
+    fn accumulate_stage(
+        &self,
+        z: &TurnInputs,
+        weight: &Quat,
+        at: &StageRecord,
+        second: &mut [[f64; INPUTS]; INPUTS],
+    ) -> Quat {
+        let n = self.inputs();
+        let mut through_rate = [[0.0; 4]; INPUTS];
+        for (input, out) in through_rate[..n].iter_mut().enumerate() {
+            *out = half_product(weight, &-self.rate_derivative(z, at, input));
+        }
+        for i in 0..n {
+            for j in 0..=i {
+                second[i][j] += dot4(&at.sensitivity[i], &through_rate[j])
+                    + dot4(&at.sensitivity[j], &through_rate[i]);
+            }
+        }
+        let mut carried = half_product(weight, &-at.rate);
+        if self.with_momentum {
+            let pulled = imaginary(&product(&conjugate(&at.p), weight)) * 0.5;
+            let y = self.inertia_inverse.tr_mul(&pulled);
+            add_scaled(&mut carried, 2.0, &quadratic(&y, &z.momentum, &at.p));
+            self.accumulate_momentum(z, &y, at, second);
+        }
+        carried
+    }
+
+    /// Adds `y . d2(R(p)^T zeta)` with `y . R(p)^T zeta = p^T Q(y, zeta) p`.
+    fn accumulate_momentum(
+        &self,
+        z: &TurnInputs,
+        y: &Vector3<f64>,
+        at: &StageRecord,
+        second: &mut [[f64; INPUTS]; INPUTS],
+    ) {
+        for i in 0..INPUTS {
+            let mut image = quadratic(y, &z.momentum, &at.sensitivity[i]);
+            for value in &mut image {
+                *value *= 2.0;
+            }
+            for j in 0..=i {
+                second[i][j] += dot4(&image, &at.sensitivity[j]);
+            }
+        }
+        for axis in 0..3 {
+            let mut unit = Vector3::zeros();
+            unit[axis] = 1.0;
+            let image = quadratic(y, &unit, &at.p);
+            let row = 6 + axis;
+            for j in 0..INPUTS {
+                let value = 2.0 * dot4(&image, &at.sensitivity[j]);
+                if j < row {
+                    second[row][j] += value;
+                } else if j == row {
+                    second[row][row] += 2.0 * value;
+                } else {
+                    second[j][row] += value;
+                }
+            }
+        }
+    }
+}
+
+/// `Q(y, zeta) p` of the quadratic form `y . R(p)^T zeta = p^T Q p`.
+fn quadratic(y: &Vector3<f64>, zeta: &Vector3<f64>, p: &Quat) -> Quat {
+    let (u, w) = (imaginary(p), p[3]);
+    let inner = y.dot(zeta);
+    let cross = y.cross(zeta);
+    let vector = u * -inner + y * zeta.dot(&u) + zeta * y.dot(&u) + cross * w;
+    quat(&vector, inner * w + cross.dot(&u))
+}
+
+/// Derivative of `R(p)^T v` along `dp`.
+fn rotate_back_derivative(p: &Quat, v: &Vector3<f64>, dp: &Quat) -> Vector3<f64> {
+    let (u, w, du, dw) = (imaginary(p), p[3], imaginary(dp), dp[3]);
+    v * (2.0 * (w * dw - u.dot(&du))) + du * (2.0 * u.dot(v)) + u * (2.0 * du.dot(v))
+        - (du.cross(v) * w + u.cross(v) * dw) * 2.0
+}
+
+fn half_product(p: &Quat, v: &Vector3<f64>) -> Quat {
+    product(p, &quat(&(v * 0.5), 0.0))
+}
+
+fn add_scaled(to: &mut Quat, scale: f64, from: &Quat) {
+    for (out, value) in to.iter_mut().zip(from) {
+        *out += scale * value;
+    }
+}
+
+fn dot4(a: &Quat, b: &Quat) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn inputs(z: &[f64; INPUTS]) -> TurnInputs {
+        TurnInputs {
+            begin: Vector3::new(z[0], z[1], z[2]),
+            end: Vector3::new(z[3], z[4], z[5]),
+            momentum: Vector3::new(z[6], z[7], z[8]),
+        }
+    }
+
+    fn map(with_momentum: bool, substeps: usize) -> TurnMap {
+        let inertia = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.5, 0.2, -0.1, 0.2, 2.5);
+        let inverse = inertia.try_inverse().expect("well conditioned");
+        TurnMap::new(inverse, with_momentum, substeps)
+    }
+
+    const Z: [f64; INPUTS] = [0.3, -0.2, 0.5, 0.1, 0.6, -0.4, 0.4, -0.7, 0.2];
+
+    #[test]
+    fn a_constant_rate_turns_by_its_angle() {
+        let rate = Vector3::new(0.3, -0.4, 0.2);
+        let z = TurnInputs { begin: rate, end: rate, momentum: Vector3::zeros() };
+        let p = map(false, 2).turn(&z);
+        let angle = rate.norm();
+        let expected = quat(&(rate * ((angle / 2.0).sin() / angle)), (angle / 2.0).cos());
+        for (got, want) in p.iter().zip(expected) {
+            assert!((got - want).abs() < 1e-9, "{got} against {want}");
+        }
+    }
+
+    #[test]
+    fn the_method_has_order_six() {
+        let z = inputs(&Z);
+        let fine = map(true, 32).turn(&z);
+        let error = |substeps| {
+            let p = map(true, substeps).turn(&z);
+            p.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        let order = (error(1) / error(2)).log2();
+        assert!(order > 5.5, "observed order {order}");
+    }
+
+    #[test]
+    fn derivatives_match_finite_differences() {
+        for with_momentum in [false, true] {
+            let map = map(with_momentum, 2);
+            let weights = [0.7, -0.3, 0.9, 0.4];
+            let exact = map.derivatives(&inputs(&Z), &weights);
+            let at = |index: usize, by: f64| {
+                let mut z = Z;
+                z[index] += by;
+                map.derivatives(&inputs(&z), &weights)
+            };
+            let by = 1e-5;
+            for j in 0..map.inputs() {
+                let (plus, minus) = (at(j, by), at(j, -by));
+                for i in 0..4 {
+                    let first = (plus.turn[i] - minus.turn[i]) / (2.0 * by);
+                    assert!((first - exact.first[j][i]).abs() < 1e-9, "first {j} {i}");
+                }
+                for i in 0..map.inputs() {
+                    let change = dot4(&weights, &plus.first[i]) - dot4(&weights, &minus.first[i]);
+                    let second = change / (2.0 * by);
+                    assert!((second - exact.second[i][j]).abs() < 1e-8, "second {i} {j}");
+                }
+            }
+        }
+    }
+}

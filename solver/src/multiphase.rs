@@ -1,0 +1,145 @@
+//! The multi-phase problem: fly through waypoints in a fixed order in minimum time.
+//!
+//! A leg is the case of two waypoints, a tour that of many. Rate components and wheel momenta that
+//! a waypoint leaves free are continuous across it, which couples neighbouring legs.
+
+use crate::attitude::Attitude;
+use crate::dynamics::Dynamics;
+use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
+use crate::profile::Profile;
+use crate::transcription::{Scales, Transcription, Waypoint};
+use nalgebra::DVector;
+
+/// Runge-Kutta substeps of an interval to begin with.
+const SUBSTEPS: usize = 2;
+/// Turn per substep, rad, up to which the integration error of a whole tour stays below 1e-7 rad.
+const LARGEST_SUBSTEP: f64 = 0.35;
+/// Rounds of refining the substeps and the reserve at limits.
+const MAX_ROUNDS: usize = 4;
+/// Relative excess over a limit between nodes that is not worth another round; the checker's
+/// tolerance is ten times this.
+const LIMIT_TOLERANCE: f64 = 1e-7;
+
+/// A solved flight.
+#[derive(Debug, Clone)]
+pub(crate) struct Flown {
+    /// How the NLP ended.
+    pub(crate) status: NlpStatus,
+    /// The motion; of use only when converged.
+    pub(crate) profile: Profile,
+    /// Interior-point iterations.
+    pub(crate) iterations: usize,
+}
+
+impl Flown {
+    /// Duration, s, when the NLP converged.
+    pub(crate) fn duration(&self) -> Option<f64> {
+        (self.status == NlpStatus::Converged).then(|| self.profile.duration())
+    }
+}
+
+/// Flies through waypoints from a guess whose nodes are split into legs by `intervals`.
+pub(crate) fn fly(
+    dynamics: &Dynamics,
+    waypoints: &[Waypoint],
+    intervals: &[usize],
+    guess: &Profile,
+    stop: &dyn Fn() -> bool,
+) -> Flown {
+    let scales = Scales::for_angle(dynamics, typical_angle(waypoints));
+    let settings = Settings::default();
+    let reference = guess.duration() / guess.intervals().max(1) as f64 / scales.time;
+    let mut substeps = SUBSTEPS;
+    let mut reserve = 0.0;
+    let mut iterate = scaled(guess, &scales);
+    let mut iterations = 0;
+    for round in 0.. {
+        let chain = Transcription::new(dynamics, scales, waypoints, intervals, substeps)
+            .with_reserve(reserve)
+            .with_reference_length(reference);
+        let mut engine = InteriorPoint::new(&chain, settings);
+        let report = engine.solve(&chain, &mut iterate, stop);
+        iterations += report.iterations;
+        let profile = physical(&iterate, &scales, dynamics.wheel_count());
+        let needed = substeps_for(&profile);
+        let excess = if dynamics.has_momentum() { excess_between_nodes(dynamics, &profile) } else { 0.0 };
+        let good = needed <= substeps && excess <= LIMIT_TOLERANCE;
+        if good || report.status != NlpStatus::Converged || round == MAX_ROUNDS {
+            return Flown { status: report.status, profile, iterations };
+        }
+        substeps = substeps.max(needed);
+        reserve += 1.2 * excess.max(0.0);
+        // Slacks belong to the old limits: begin again from the primal point alone.
+        iterate = scaled(&profile, &scales);
+    }
+    unreachable!("the last round returns")
+}
+
+/// The middle one of the legs' turns, rad.
+fn typical_angle(waypoints: &[Waypoint]) -> f64 {
+    let mut angles: Vec<f64> = waypoints
+        .windows(2)
+        .map(|pair| pair[0].attitude.signed_turn_to(&pair[1].attitude).norm())
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    angles.get(angles.len() / 2).copied().unwrap_or(1.0)
+}
+
+fn scaled(profile: &Profile, scales: &Scales) -> Iterate {
+    let mut points = Vec::new();
+    for (attitude, wheels) in profile.attitudes.iter().zip(&profile.wheels) {
+        points.extend_from_slice(&attitude.xyzw());
+        points.extend(wheels.iter().map(|h| h / scales.momentum));
+    }
+    let mut controls = Vec::new();
+    for (pair, length) in profile.wheels.windows(2).zip(&profile.lengths) {
+        controls.extend(pair[1].iter().zip(pair[0].iter()).map(|(b, a)| (b - a) / scales.momentum));
+        controls.push(length / scales.time);
+    }
+    Iterate::cold(points, controls)
+}
+
+fn physical(iterate: &Iterate, scales: &Scales, wheels: usize) -> Profile {
+    let mut profile = Profile::empty();
+    for point in iterate.points.chunks_exact(4 + wheels) {
+        let components = [point[0], point[1], point[2], point[3]];
+        // Retraction keeps quaternions at unit length.
+        profile.attitudes.push(Attitude::from_xyzw(components).unwrap_or_else(Attitude::identity));
+        let momenta = point[4..].iter().map(|h| h * scales.momentum);
+        profile.wheels.push(DVector::from_iterator(wheels, momenta));
+    }
+    for control in iterate.controls.chunks_exact(wheels + 1) {
+        profile.lengths.push(control[wheels] * scales.time);
+    }
+    profile
+}
+
+fn substeps_for(profile: &Profile) -> usize {
+    let largest = profile
+        .attitudes
+        .windows(2)
+        .map(|pair| pair[0].angle_to(&pair[1]))
+        .fold(0.0, f64::max);
+    (largest / LARGEST_SUBSTEP).ceil() as usize
+}
+
+/// Relative excess over speed and rate limits inside intervals, judged at their middles: wheel
+/// momenta are linear there, so only the small turn of the stored momentum bends the rates.
+fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> f64 {
+    let mut worst = 0.0_f64;
+    for k in 0..profile.intervals() {
+        let (begin, end) = (&profile.attitudes[k], &profile.attitudes[k + 1]);
+        let wheels = (&profile.wheels[k] + &profile.wheels[k + 1]) * 0.5;
+        let middle = begin.retract(begin.signed_turn_to(end) * 0.5);
+        let rate = dynamics.rate(&middle, &wheels);
+        let at_nodes = [k, k + 1].map(|node| {
+            let rate = dynamics.rate(&profile.attitudes[node], &profile.wheels[node]);
+            dynamics.speed_usage(&rate, &profile.wheels[node])
+        });
+        let usage = dynamics.speed_usage(&rate, &wheels);
+        if usage > at_nodes[0].max(at_nodes[1]) {
+            worst = worst.max(usage - 1.0);
+        }
+    }
+    worst
+}

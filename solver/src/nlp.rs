@@ -1,0 +1,49 @@
+//! Nonlinear programs whose variables form a chain of stages, and an interior point for them.
+//!
+//! This module knows no physics. The problem, with `x_k` on a manifold and `v_k` in `R^m`:
+//!
+//! ```text
+//!   minimise   sum_k f_k(x_k, v_k)
+//!   subject to x_{k+1} = F_k(x_k, v_k)      k = 0 .. N-1   (links)
+//!              e_k(x_k) = 0                 k = 0 .. N     (node equalities)
+//!              g_k(x_k, v_k) >= 0           k = 0 .. N     (inequalities, no v_N)
+//! ```
+//!
+//! A state is stored as a *point* (a quaternion has four numbers) and moved by a *step* in its
+//! tangent space (a rotation vector has three). With `phi_k` the chart around the current `x_k`,
+//! that is the inverse of the retraction, a link reads `phi_{k+1}(F_k(x_k, v_k)) = 0` and its
+//! linearisation is explicit in the next step:
+//!
+//! ```text
+//!   dx_{k+1} = A_k dx_k + B_k dv_k + gap_k
+//! ```
+//!
+//! so a Newton step costs one Riccati sweep ([`riccati`]): linear in the number of stages.
+//! Lagrangian and multipliers:
+//!
+//! ```text
+//!   L = sum f + lambda_{k+1} . (phi_{k+1}(F_k) - dx_{k+1}) + nu_k . e_k - z_k . (g_k - s_k),  s, z >= 0
+//! ```
+//!
+//! The method is the primal-dual barrier method with a filter line search of Waechter and Biegler
+//! (Math. Program. 106, 2006), with exact second derivatives. Differences: node equalities enter
+//! the sweep as a proximal penalty whose centre is iterated to the exact multiplier, which keeps
+//! the factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
+
+pub(crate) mod chain;
+mod dense;
+mod filter;
+mod interior_point;
+mod iterate;
+mod model;
+mod restoration;
+mod riccati;
+mod settings;
+
+pub(crate) use chain::{Chain, Link, LinkMultipliers};
+pub(crate) use interior_point::InteriorPoint;
+pub(crate) use iterate::Iterate;
+#[cfg(test)]
+pub(crate) use model::models_of;
+pub(crate) use model::{LinkModel, LinkValues};
+pub(crate) use settings::{NlpReport, NlpStatus, Settings};

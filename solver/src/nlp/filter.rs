@@ -1,0 +1,115 @@
+//! The filter: which pairs of infeasibility and barrier cost are still progress.
+
+/// Fraction of the infeasibility by which a point must improve on a filter entry.
+const GAMMA_THETA: f64 = 1e-5;
+/// Fraction of the infeasibility by which the barrier cost must improve on a filter entry.
+const GAMMA_PHI: f64 = 1e-5;
+/// Sufficient decrease (Armijo) of the barrier cost.
+const ETA: f64 = 1e-4;
+
+/// Infeasibility and barrier cost of a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Merit {
+    /// Sum of absolute gaps, equalities and slack errors.
+    pub(super) theta: f64,
+    /// Cost minus the logarithmic barrier.
+    pub(super) phi: f64,
+}
+
+/// The filter of Waechter and Biegler, with its acceptance rules.
+#[derive(Debug, Default)]
+pub(super) struct Filter {
+    entries: Vec<Merit>,
+    theta_max: f64,
+    theta_min: f64,
+}
+
+/// Why a trial was accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Acceptance {
+    /// The barrier cost decreased sufficiently along a descent direction.
+    Descent,
+    /// Infeasibility or cost improved; the old point enters the filter.
+    Progress,
+}
+
+impl Filter {
+    /// Empties the filter and sets its scales from a point's infeasibility.
+    pub(super) fn reset(&mut self, theta: f64) {
+        self.entries.clear();
+        self.theta_max = 1e4 * theta.max(1.0);
+        self.theta_min = 1e-4 * theta.max(1.0);
+    }
+
+    /// Whether the filter itself lets a point pass.
+    pub(super) fn admits(&self, point: Merit) -> bool {
+        point.theta <= self.theta_max
+            && self.entries.iter().all(|entry| improves(point, *entry))
+    }
+
+    /// Judges a trial at step length `alpha`; `slope` is the derivative of the barrier cost along
+    /// the step.
+    pub(super) fn judge(
+        &self,
+        current: Merit,
+        trial: Merit,
+        slope: f64,
+        alpha: f64,
+    ) -> Option<Acceptance> {
+        if !self.admits(trial) {
+            return None;
+        }
+        // Rounding of the barrier cost must not reject the last, tiny steps.
+        let slack = 10.0 * f64::EPSILON * current.phi.abs().max(1.0);
+        let descends = slope < 0.0
+            && alpha * (-slope).powf(2.3) > current.theta.powf(1.1)
+            && current.theta <= self.theta_min;
+        if descends {
+            let enough = trial.phi - current.phi - slack <= ETA * alpha * slope;
+            return enough.then_some(Acceptance::Descent);
+        }
+        let relaxed = Merit { theta: trial.theta, phi: trial.phi - slack };
+        improves(relaxed, current).then_some(Acceptance::Progress)
+    }
+
+    /// Forbids everything that is not better than this point.
+    pub(super) fn add(&mut self, point: Merit) {
+        self.entries.retain(|entry| entry.theta < point.theta || entry.phi < point.phi);
+        self.entries.push(point);
+    }
+}
+
+fn improves(point: Merit, over: Merit) -> bool {
+    point.theta <= (1.0 - GAMMA_THETA) * over.theta
+        || point.phi <= over.phi - GAMMA_PHI * over.theta
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn merit(theta: f64, phi: f64) -> Merit {
+        Merit { theta, phi }
+    }
+
+    #[test]
+    fn a_dominated_point_is_refused_and_a_trade_is_not() {
+        let mut filter = Filter::default();
+        filter.reset(1.0);
+        filter.add(merit(1.0, 1.0));
+        assert!(!filter.admits(merit(1.0, 1.0)));
+        assert!(filter.admits(merit(0.5, 2.0)));
+        assert!(filter.admits(merit(2.0, 0.5)));
+        assert!(!filter.admits(merit(2e4, -5.0)), "beyond the largest infeasibility");
+    }
+
+    #[test]
+    fn feasible_points_must_descend() {
+        let mut filter = Filter::default();
+        filter.reset(1.0);
+        let here = merit(1e-9, 1.0);
+        let judge = |phi| filter.judge(here, merit(1e-9, phi), -1.0, 1.0);
+        assert_eq!(judge(0.5), Some(Acceptance::Descent));
+        assert_eq!(judge(1.0 + 1e-6), None);
+    }
+}

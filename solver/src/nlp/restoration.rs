@@ -1,0 +1,86 @@
+//! Restoration: when no step pleases the filter, walk back towards feasibility.
+//!
+//! Steps solve the Newton system without cost and Lagrangian curvature, with a small multiple of
+//! the identity instead: damped Gauss-Newton on gaps, equalities and slack errors, the barrier
+//! kept on the slacks.
+
+use super::chain::Chain;
+use super::interior_point::{InteriorPoint, to_boundary};
+use super::iterate::Iterate;
+use super::settings::NlpStatus;
+
+/// Weight of the proximity to the current point.
+const DAMPING: f64 = 1e-4;
+/// Infeasibility must fall to this fraction before the normal method resumes.
+const ENOUGH: f64 = 0.9;
+/// Steps before giving up.
+const MAX_STEPS: usize = 40;
+/// Halvings of a step.
+const MAX_BACKTRACKS: usize = 30;
+
+impl InteriorPoint {
+    /// Reduces infeasibility until the filter admits the point again.
+    pub(super) fn restore<C: Chain>(
+        &mut self,
+        chain: &C,
+        iterate: &mut Iterate,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(), NlpStatus> {
+        let begin = self.merit_of_models(&iterate.slack);
+        if begin.theta <= self.settings.tolerance {
+            // Feasible and yet stuck: the cost cannot be improved in floating point.
+            return Err(NlpStatus::NumericalError);
+        }
+        self.filter.add(begin);
+        for _ in 0..MAX_STEPS {
+            if stop() {
+                return Err(NlpStatus::Stopped);
+            }
+            if self.iterations >= self.settings.max_iterations {
+                return Err(NlpStatus::IterationLimit);
+            }
+            self.iterations += 1;
+            if !self.feasibility_step(chain, iterate) {
+                return Err(NlpStatus::InfeasibleSuspected);
+            }
+            self.evaluate(chain, iterate);
+            let now = self.merit_of_models(&iterate.slack);
+            if now.theta <= ENOUGH * begin.theta && self.filter.admits(now) {
+                iterate.lambda.fill(0.0);
+                iterate.nu.fill(0.0);
+                for (z, s) in iterate.z.iter_mut().zip(&iterate.slack) {
+                    *z = self.mu / s;
+                }
+                return Ok(());
+            }
+        }
+        Err(NlpStatus::InfeasibleSuspected)
+    }
+
+    /// One damped step that reduces infeasibility; false when none does.
+    fn feasibility_step<C: Chain>(&mut self, chain: &C, iterate: &mut Iterate) -> bool {
+        for (sigma, s) in self.sigma.iter_mut().zip(&iterate.slack) {
+            *sigma = self.mu / (s * s);
+        }
+        if !self.riccati.factor(&self.models, &self.sigma, DAMPING, false) {
+            return false;
+        }
+        self.fill_right_hand_side(iterate, 0.0);
+        self.step.nu.fill(0.0);
+        self.riccati.solve(&self.models, &self.rhs, &mut self.step);
+        self.inequality_steps(iterate);
+        let current = self.merit_of_models(&iterate.slack).theta;
+        let mut alpha = to_boundary(&iterate.slack, &self.slack_step, 0.99);
+        for _ in 0..MAX_BACKTRACKS {
+            let trial = self.trial_merit(chain, iterate, alpha);
+            if trial.is_some_and(|trial| trial.theta <= (1.0 - 1e-4 * alpha) * current) {
+                std::mem::swap(&mut iterate.points, &mut self.trial.points);
+                std::mem::swap(&mut iterate.controls, &mut self.trial.controls);
+                std::mem::swap(&mut iterate.slack, &mut self.trial.slack);
+                return true;
+            }
+            alpha *= 0.5;
+        }
+        false
+    }
+}

@@ -1,0 +1,46 @@
+//! A motion as the optimiser sees it: states at nodes and the time between them.
+
+use crate::attitude::Attitude;
+use nalgebra::DVector;
+
+/// A piecewise motion with constant torque between nodes; also used as a starting guess, and then
+/// neither flyable nor within limits.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Profile {
+    /// Attitude at every node, continuous in sign.
+    pub(crate) attitudes: Vec<Attitude>,
+    /// Wheel momenta at every node, N m s.
+    pub(crate) wheels: Vec<DVector<f64>>,
+    /// Time between nodes, s.
+    pub(crate) lengths: Vec<f64>,
+}
+
+impl Profile {
+    /// Duration, s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.lengths.iter().sum()
+    }
+
+    /// Number of intervals.
+    pub(crate) fn intervals(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Appends a motion that begins where this one ends, with its quaternion signs made to match.
+    pub(crate) fn append(&mut self, next: &Profile) {
+        let flip = match (self.attitudes.last(), next.attitudes.first()) {
+            (Some(here), Some(there)) => there.nearest_sign(here) != *there,
+            _ => false,
+        };
+        let skip = usize::from(!self.attitudes.is_empty());
+        let signed = |a: &Attitude| if flip { a.negated() } else { *a };
+        self.attitudes.extend(next.attitudes.iter().skip(skip).map(signed));
+        self.wheels.extend(next.wheels.iter().skip(skip).cloned());
+        self.lengths.extend_from_slice(&next.lengths);
+    }
+
+    /// An empty motion to append to.
+    pub(crate) fn empty() -> Self {
+        Self { attitudes: Vec::new(), wheels: Vec::new(), lengths: Vec::new() }
+    }
+}

@@ -1,0 +1,213 @@
+//! The order of the targets: branch and bound over partial orders.
+//!
+//! # Problem
+//!
+//! A tour leaves the start, visits each of n targets once and, where one is prescribed, goes on to
+//! an end. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left
+//! free at a target couple the slews before and after it, so `T` is no sum over pairs. Wanted are
+//! the order of least duration, the next best `k` orders, and a bound on what was not looked at.
+//!
+//! # Bounds
+//!
+//! A node fixes a prefix `p` of the order; `l` is its last place and `R` the set of targets not in
+//! it. Cut any tour that begins with `p` at the moment it leaves `l`:
+//!
+//! - What comes before lasts at least `head(p)`, the greater of [`TourModel::prefix_bound`] and
+//!   `head(parent) + d(parent's last, l)`, with `d` the pair bounds; `head` of the root is 0.
+//! - What comes after is a path from `l` through all of `R` (and to the end). Each of its legs
+//!   lasts at least its pair bound, so all of it lasts at least `rest(l, R)`, the shortest such
+//!   path in the pair table ([`remainder`]: dynamic programming over subsets, or the spanning tree
+//!   relaxation of it when there are many targets).
+//!
+//! Hence `head(p) + rest(l, R)` is a lower bound of every completion of `p`. So is the parent's
+//! bound, whose completions include those of `p`; the node takes the greater, and bounds never
+//! fall on the way down. A node enters the frontier with the bound that costs nothing (the
+//! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
+//!
+//! # Honesty
+//!
+//! Every order is at every moment in exactly one of these: flown, below a node of the frontier, in
+//! flight, or given up (pruned, not resolved, or dropped for memory). The reported bound is the
+//! least over the flown durations and the bounds of all the others.
+//!
+//! # Determinism
+//!
+//! A round takes a fixed number of nodes in the order (bound, prefix), evaluates them in parallel
+//! and merges the answers in that order. Unless the search is stopped from outside, nothing in
+//! the result depends on the number of threads.
+
+mod exhaustive;
+mod frontier;
+mod heuristics;
+mod incumbents;
+mod node;
+pub mod remainder;
+mod search;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use exhaustive::exhaustive;
+pub use search::search;
+pub use table::PairTable;
+
+use crate::stop::StopReason;
+
+/// Where a leg begins or ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// The state at time zero.
+    Start,
+    /// A target by its index.
+    Target(usize),
+    /// The prescribed end.
+    End,
+}
+
+/// Answer of [`TourModel::prefix_bound`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Evaluation {
+    /// The lower bound, s.
+    Value(f64),
+    /// The evaluation did not converge; nothing is known beyond the parent's bound.
+    Unresolved,
+    /// The evaluation was interrupted by the stop signal.
+    Stopped,
+}
+
+/// Answer of [`TourModel::tour`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TourEvaluation {
+    /// The order can be flown in this time, s.
+    Flown(f64),
+    /// The evaluation did not converge; the order may or may not be good.
+    Unresolved,
+    /// The evaluation was interrupted by the stop signal.
+    Stopped,
+}
+
+/// All that the search knows of slews.
+///
+/// Durations are in seconds, finite and not negative. Equal questions must get equal answers,
+/// whichever thread asks.
+pub trait TourModel: Sync {
+    /// Number of targets.
+    fn target_count(&self) -> usize;
+
+    /// Whether the tour goes on to a prescribed end after the last target.
+    fn has_end(&self) -> bool;
+
+    /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
+    /// dwelling at `to` are included. Cheap: the search asks once for every pair. A value that is
+    /// not finite says that nothing is known and is read as 0.
+    fn pair_bound(&self, from: Place, to: Place) -> f64;
+
+    /// Lower bound, s, of the time from the start to leaving the last target of a prefix, in any
+    /// tour that begins with it: the last target has its own conditions only. Expensive. The
+    /// prefix is never empty and never complete.
+    fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
+
+    /// Flies a whole order, to the end where there is one. Expensive.
+    fn tour(&self, order: &[usize]) -> TourEvaluation;
+}
+
+/// What to search for, and how long.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchSettings {
+    /// How many orders to prove and list besides the best.
+    pub alternatives: usize,
+    /// Branches that cannot beat the worst listed order by more than this share are not searched;
+    /// in `[0, 1)`.
+    pub relative_gap: f64,
+    /// Nodes to explore at most; `None` is unlimited.
+    pub node_limit: Option<u64>,
+    /// Memory for open nodes, bytes, roughly. Beyond it the nodes of the largest bounds are
+    /// dropped; their bounds stay in the result, which is then incomplete.
+    pub frontier_bytes: usize,
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self {
+            alternatives: 0,
+            relative_gap: 0.0,
+            node_limit: None,
+            frontier_bytes: frontier::DEFAULT_BYTES,
+        }
+    }
+}
+
+/// An order with its duration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlownOrder {
+    /// Indices of the targets in visiting order.
+    pub order: Vec<usize>,
+    /// Duration of the tour, s.
+    pub duration_s: f64,
+}
+
+/// Why the search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SearchEnd {
+    /// Nothing was left to explore.
+    Exhausted,
+    /// The node limit was reached.
+    NodeLimit,
+    /// The stop signal was given.
+    Stopped(StopReason),
+}
+
+/// How much work a search was, and where it was saved.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SearchStatistics {
+    /// Nodes explored: evaluated prefixes and flown leaves of the tree.
+    pub nodes_explored: u64,
+    /// Prefixes evaluated.
+    pub prefixes: u64,
+    /// Prefixes whose evaluation did not converge.
+    pub prefixes_unresolved: u64,
+    /// Whole orders evaluated, the heuristic ones included.
+    pub tours: u64,
+    /// Whole orders whose evaluation did not converge.
+    pub tours_unresolved: u64,
+    /// Nodes pruned by the pair table alone, before any evaluation of their own.
+    pub pruned_by_table: u64,
+    /// Nodes pruned by their own evaluation.
+    pub pruned_by_prefix: u64,
+    /// Open nodes pruned when a better order was found.
+    pub pruned_by_incumbent: u64,
+    /// Nodes dropped for want of memory.
+    pub dropped: u64,
+    /// Orders flown in less than a bound had allowed: the model's bounds are then not admissible,
+    /// for instance because a relaxed problem was solved to a local minimum only.
+    pub bounds_contradicted: u64,
+}
+
+/// What a search found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchResult {
+    /// The best order found.
+    pub best: Option<FlownOrder>,
+    /// The next best orders found, at most as many as asked for.
+    pub alternatives: Vec<FlownOrder>,
+    /// No order lasts less, s, provided that the model's bounds are admissible.
+    pub lower_bound_s: f64,
+    /// Whether the tree was exhausted within the gap: best and alternatives are proven.
+    pub complete: bool,
+    /// Why the search ended.
+    pub end: SearchEnd,
+    /// How much work it was.
+    pub statistics: SearchStatistics,
+}
+
+impl SearchResult {
+    /// Whether the best order is proven within a relative gap. This can hold while the
+    /// alternatives are still open, that is while the search is not complete.
+    #[must_use]
+    pub fn best_is_proven(&self, relative_gap: f64) -> bool {
+        self.best.as_ref().is_some_and(|best| {
+            let needed = best.duration_s * (1.0 - relative_gap);
+            incumbents::tie_class(self.lower_bound_s) >= incumbents::tie_class(needed)
+        })
+    }
+}

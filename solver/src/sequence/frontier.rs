@@ -1,0 +1,100 @@
+//! The open nodes, in order of their bounds, in bounded memory.
+
+use super::node::Node;
+use std::collections::BTreeSet;
+
+/// Memory for open nodes when nothing else is asked for: enough for some 300 000 nodes of twenty
+/// targets, little beside what the service may use.
+pub(super) const DEFAULT_BYTES: usize = 64 << 20;
+
+/// At least this many nodes are kept, whatever the memory: fewer could not even hold the children
+/// of one node and a few of their siblings.
+const FEWEST_NODES: usize = 16;
+
+/// The open nodes.
+#[derive(Debug)]
+pub(super) struct Frontier {
+    nodes: BTreeSet<Node>,
+    capacity: usize,
+}
+
+impl Frontier {
+    /// An empty frontier for so many targets within so many bytes.
+    pub(super) fn new(targets: usize, bytes: usize) -> Self {
+        let node_bytes = size_of::<Node>() + targets * size_of::<usize>();
+        Self {
+            nodes: BTreeSet::new(),
+            capacity: (bytes / node_bytes).max(FEWEST_NODES),
+        }
+    }
+
+    /// Adds a node.
+    pub(super) fn insert(&mut self, node: Node) {
+        self.nodes.insert(node);
+    }
+
+    /// Takes the node of the smallest bound.
+    pub(super) fn pop(&mut self) -> Option<Node> {
+        self.nodes.pop_first()
+    }
+
+    /// Takes the worst node if there are more than fit.
+    pub(super) fn pop_excess(&mut self) -> Option<Node> {
+        if self.nodes.len() > self.capacity {
+            self.nodes.pop_last()
+        } else {
+            None
+        }
+    }
+
+    /// Takes out all nodes for which this holds.
+    pub(super) fn take_if(&mut self, mut hopeless: impl FnMut(&Node) -> bool) -> Vec<Node> {
+        self.nodes.extract_if(.., |node| hopeless(node)).collect()
+    }
+
+    /// The smallest bound, s; infinite when nothing is open.
+    pub(super) fn bound(&self) -> f64 {
+        self.nodes.first().map_or(f64::INFINITY, |node| node.bound)
+    }
+
+    /// Whether nothing is open.
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn node(bound: f64, prefix: &[usize]) -> Node {
+        Node {
+            prefix: prefix.to_vec(),
+            ..Node::root(bound)
+        }
+    }
+
+    #[test]
+    fn nodes_come_out_by_bound_then_prefix() {
+        let mut frontier = Frontier::new(3, DEFAULT_BYTES);
+        for open in [node(2.0, &[0]), node(1.0, &[2]), node(1.0, &[1, 2])] {
+            frontier.insert(open);
+        }
+        let order: Vec<_> = std::iter::from_fn(|| frontier.pop())
+            .map(|n| n.prefix)
+            .collect();
+        assert_eq!(order, [vec![1, 2], vec![2], vec![0]]);
+    }
+
+    #[test]
+    fn the_worst_nodes_are_the_excess() {
+        let mut frontier = Frontier::new(100, 0);
+        for target in 0..FEWEST_NODES + 2 {
+            frontier.insert(node(target as f64, &[target]));
+        }
+        let dropped: Vec<_> = std::iter::from_fn(|| frontier.pop_excess()).collect();
+        assert_eq!(dropped.len(), 2);
+        assert!(dropped.iter().all(|node| node.prefix[0] >= FEWEST_NODES));
+        assert_eq!(frontier.bound().total_cmp(&0.0), std::cmp::Ordering::Equal);
+    }
+}

@@ -1,0 +1,67 @@
+//! A node of the search tree: all orders that begin with a prefix.
+
+use std::cmp::Ordering;
+
+/// A partial order with what is known about its completions.
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    /// The fixed first targets; all of them in a leaf.
+    pub(super) prefix: Vec<usize>,
+    /// Lower bound of the time until the last fixed target is left, s.
+    pub(super) head: f64,
+    /// Lower bound of every completion, s.
+    pub(super) bound: f64,
+    /// Whether the node's own evaluation is in the bounds, or was tried in vain.
+    pub(super) evaluated: bool,
+}
+
+impl Node {
+    /// The node of all orders.
+    pub(super) fn root(bound: f64) -> Self {
+        Self {
+            prefix: Vec::new(),
+            head: 0.0,
+            bound,
+            // There is no prefix to evaluate.
+            evaluated: true,
+        }
+    }
+
+    /// Takes in a better bound of the time until the last fixed target is left.
+    pub(super) fn raise_head(&mut self, head: f64, rest: f64) {
+        self.head = self.head.max(head);
+        self.bound = self.bound.max(self.head + rest);
+    }
+
+    /// The targets that are not fixed, in increasing order.
+    pub(super) fn remaining(&self, targets: usize) -> Vec<usize> {
+        let mut fixed = vec![false; targets];
+        for &target in &self.prefix {
+            fixed[target] = true;
+        }
+        (0..targets).filter(|&target| !fixed[target]).collect()
+    }
+}
+
+/// Smallest bound first, then by the indices of the prefix.
+impl Ord for Node {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.bound
+            .total_cmp(&other.bound)
+            .then_with(|| self.prefix.cmp(&other.prefix))
+    }
+}
+
+impl PartialOrd for Node {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Node {}

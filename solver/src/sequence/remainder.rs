@@ -1,0 +1,112 @@
+//! The least time from a place through all remaining targets, bounded from below by the pair table.
+
+mod spanning_tree;
+mod subsets;
+
+pub use spanning_tree::SpanningTrees;
+pub use subsets::SubsetTable;
+
+use super::PairTable;
+
+/// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 4 MiB here.
+pub const EXACT_TARGETS: usize = 15;
+
+/// Bounds what comes after a prefix.
+#[derive(Debug)]
+pub enum Remainder {
+    /// The shortest path in the pair table.
+    Exact(SubsetTable),
+    /// A relaxation of the shortest path.
+    Relaxed(SpanningTrees),
+}
+
+impl Remainder {
+    /// Prepares the bounds over a pair table.
+    #[must_use]
+    pub fn new(table: &PairTable) -> Self {
+        if table.targets() <= EXACT_TARGETS {
+            Self::Exact(SubsetTable::new(table))
+        } else {
+            Self::Relaxed(SpanningTrees::new(table))
+        }
+    }
+
+    /// Lower bound, s, of the path from a place (numbered as in the table) through all remaining
+    /// targets and to the end.
+    #[must_use]
+    pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
+        match self {
+            Self::Exact(subsets) => subsets.bound(table, from, remaining),
+            Self::Relaxed(trees) => trees.bound(table, from, remaining),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::RandomModel;
+    use super::*;
+
+    /// Shortest path by trying all of them, s.
+    fn shortest(table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
+        if remaining.is_empty() {
+            return table.bound(from, table.end());
+        }
+        remaining
+            .iter()
+            .map(|&to| {
+                let rest: Vec<usize> = remaining.iter().copied().filter(|&t| t != to).collect();
+                table.bound(from, to) + shortest(table, to, &rest)
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Start and last target of every case, and the targets between.
+    fn cases(table: &PairTable) -> Vec<(usize, Vec<usize>)> {
+        let all: Vec<usize> = (0..table.targets()).collect();
+        let mut cases = vec![(table.start(), all.clone())];
+        for from in 0..table.targets() {
+            for size in 0..table.targets() {
+                cases.push((
+                    from,
+                    all.iter()
+                        .copied()
+                        .filter(|&t| t != from)
+                        .take(size)
+                        .collect(),
+                ));
+            }
+        }
+        cases
+    }
+
+    #[test]
+    fn subsets_give_the_shortest_path() {
+        for seed in 0..10 {
+            let table = PairTable::new(&RandomModel::new(6, seed % 2 == 0, seed));
+            let exact = SubsetTable::new(&table);
+            for (from, remaining) in cases(&table) {
+                let expected = shortest(&table, from, &remaining);
+                assert!((exact.bound(&table, from, &remaining) - expected).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn trees_never_exceed_the_shortest_path() {
+        for seed in 0..20 {
+            let model = if seed < 10 {
+                RandomModel::new
+            } else {
+                RandomModel::with_ties
+            };
+            let table = PairTable::new(&model(7, seed % 2 == 0, seed));
+            let exact = SubsetTable::new(&table);
+            let trees = SpanningTrees::new(&table);
+            for (from, remaining) in cases(&table) {
+                let expected = exact.bound(&table, from, &remaining);
+                assert!(trees.bound(&table, from, &remaining) <= expected + 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Dynamic programming over subsets (Held and Karp 1962, Bellman 1962), backwards from the end.
+//!
+//! `rest(i, {}) = d(i, end)` and `rest(i, R) = min over j in R of d(i, j) + rest(j, R - j)`.
+
+use crate::sequence::PairTable;
+
+/// `rest(i, R)` for every target and every set of others, s.
+#[derive(Debug)]
+pub struct SubsetTable {
+    targets: usize,
+    /// Entry `set * targets + from`, sets as bit masks; unused where the set holds `from`.
+    rest: Vec<f64>,
+}
+
+impl SubsetTable {
+    /// Fills the table: `n^2 2^n` steps.
+    #[must_use]
+    pub fn new(table: &PairTable) -> Self {
+        let targets = table.targets();
+        let mut filled = Self {
+            targets,
+            rest: vec![f64::INFINITY; targets << targets],
+        };
+        // A set is greater, as a number, than its subsets.
+        for set in 0..1_usize << targets {
+            for from in (0..targets).filter(|from| set & (1 << from) == 0) {
+                filled.rest[set * targets + from] = filled.shortest(table, from, set);
+            }
+        }
+        filled
+    }
+
+    /// `rest(from, set)` out of the entries of smaller sets.
+    fn shortest(&self, table: &PairTable, from: usize, set: usize) -> f64 {
+        self.next(table, from, set)
+            .map_or_else(|| table.bound(from, table.end()), |(_, rest)| rest)
+    }
+
+    /// The best next target, the smallest index among equals, and the time it leads to.
+    fn next(&self, table: &PairTable, from: usize, set: usize) -> Option<(usize, f64)> {
+        (0..self.targets)
+            .filter(|to| set & (1 << to) != 0)
+            .map(|to| {
+                let after = self.rest[(set & !(1 << to)) * self.targets + to];
+                (to, table.bound(from, to) + after)
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Shortest path from a place through the remaining targets and to the end, s.
+    #[must_use]
+    pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
+        let set = remaining.iter().fold(0, |set, target| set | 1 << target);
+        if from < self.targets {
+            self.rest[set * self.targets + from]
+        } else {
+            self.shortest(table, from, set)
+        }
+    }
+
+    /// A shortest order of all targets in the table.
+    #[must_use]
+    pub fn shortest_order(&self, table: &PairTable) -> Vec<usize> {
+        let mut from = table.start();
+        let mut set = (1 << self.targets) - 1;
+        let mut order = Vec::with_capacity(self.targets);
+        while let Some((to, _)) = self.next(table, from, set) {
+            order.push(to);
+            set &= !(1 << to);
+            from = to;
+        }
+        order
+    }
+}

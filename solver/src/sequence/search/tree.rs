@@ -1,0 +1,264 @@
+//! The search tree: what is open, what is flown, what was given up and why.
+
+use crate::sequence::frontier::Frontier;
+use crate::sequence::heuristics;
+use crate::sequence::incumbents::Incumbents;
+use crate::sequence::node::Node;
+use crate::sequence::remainder::Remainder;
+use crate::sequence::{
+    FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
+};
+use crate::stop::StopSignal;
+use std::collections::BTreeMap;
+
+/// Relative error of an NLP's optimal duration that says nothing about its admissibility.
+const CONTRADICTION_RELATIVE: f64 = 1e-6;
+
+/// All orders, each in exactly one place.
+pub(super) struct Tree {
+    table: PairTable,
+    remainder: Remainder,
+    frontier: Frontier,
+    incumbents: Incumbents,
+    /// Orders evaluated before the search reached them: the duration, s, if they resolved.
+    candidates: BTreeMap<Vec<usize>, Option<f64>>,
+    /// Smallest bound of what was ruled out, s: it cannot be among the best up to the gap.
+    ruled_out_s: f64,
+    /// Smallest bound of what was lost, s: unresolved leaves and dropped nodes.
+    lost_s: f64,
+    /// Whether the incumbents have changed since the frontier was last pruned.
+    improved: bool,
+    statistics: SearchStatistics,
+}
+
+impl Tree {
+    /// A tree in which nothing is open yet.
+    pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings) -> Self {
+        let table = PairTable::new(model);
+        Self {
+            remainder: Remainder::new(&table),
+            frontier: Frontier::new(table.targets(), settings.frontier_bytes),
+            incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
+            candidates: BTreeMap::new(),
+            ruled_out_s: f64::INFINITY,
+            lost_s: f64::INFINITY,
+            improved: false,
+            statistics: SearchStatistics::default(),
+            table,
+        }
+    }
+
+    /// Orders worth flying first.
+    pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
+        heuristics::candidates(&self.table, &self.remainder, stop)
+    }
+
+    /// Takes in an order flown before the search.
+    pub(super) fn record_candidate(&mut self, order: Vec<usize>, answer: TourEvaluation) {
+        let duration = match answer {
+            TourEvaluation::Stopped => return,
+            TourEvaluation::Unresolved => None,
+            TourEvaluation::Flown(duration_s) => Some(duration_s),
+        };
+        self.statistics.tours += 1;
+        match duration {
+            Some(duration_s) => self.offer(order.clone(), duration_s),
+            None => self.statistics.tours_unresolved += 1,
+        }
+        self.candidates.insert(order, duration);
+    }
+
+    /// Opens the root.
+    pub(super) fn plant(&mut self) {
+        let remaining: Vec<usize> = (0..self.table.targets()).collect();
+        let bound = self
+            .remainder
+            .bound(&self.table, self.table.start(), &remaining);
+        self.admit(Node::root(bound));
+        self.tidy();
+    }
+
+    /// Whether all targets are fixed.
+    pub(super) fn is_leaf(&self, node: &Node) -> bool {
+        node.prefix.len() == self.table.targets()
+    }
+
+    /// Takes the next nodes to evaluate, expanding what is evaluated already.
+    pub(super) fn take_round(&mut self, size: u64, stop: &StopSignal) -> Vec<Node> {
+        let mut round = Vec::new();
+        // Expanding takes its time when there are many targets.
+        while (round.len() as u64) < size && !stop.is_set() {
+            let Some(node) = self.frontier.pop() else {
+                break;
+            };
+            if self.is_leaf(&node) || !node.evaluated {
+                round.push(node);
+            } else {
+                self.expand(&node);
+            }
+        }
+        round
+    }
+
+    /// Opens the children of a node.
+    fn expand(&mut self, parent: &Node) {
+        let remaining = parent.remaining(self.table.targets());
+        for &next in &remaining {
+            let mut left: Vec<usize> = remaining.iter().copied().filter(|&t| t != next).collect();
+            let mut child = Node {
+                prefix: parent.prefix.clone(),
+                evaluated: false,
+                ..*parent
+            };
+            self.append(&mut child, next);
+            // Where one target is left there is one order left: better flown than bounded.
+            if left.len() == 1 {
+                self.append(&mut child, left.remove(0));
+            }
+            let last = self.table.last_place(&child.prefix);
+            let rest = self.remainder.bound(&self.table, last, &left);
+            child.raise_head(child.head, rest);
+            self.admit(child);
+        }
+        self.drop_excess();
+    }
+
+    /// Fixes one more target by the pair table.
+    fn append(&self, node: &mut Node, target: usize) {
+        let last = self.table.last_place(&node.prefix);
+        node.head += self.table.bound(last, target);
+        node.prefix.push(target);
+    }
+
+    /// Opens a node unless it is decided already.
+    fn admit(&mut self, node: Node) {
+        if self.is_leaf(&node) {
+            match self.candidates.get(&node.prefix) {
+                Some(Some(duration_s)) => return self.check(&node, *duration_s),
+                Some(None) => return self.lose(node.bound),
+                None => {}
+            }
+        }
+        if self.incumbents.rule_out(node.bound, &node.prefix) {
+            self.statistics.pruned_by_table += 1;
+            self.rule_out(node.bound);
+        } else {
+            self.frontier.insert(node);
+        }
+    }
+
+    /// Takes in the evaluation of a prefix, `None` when it did not resolve.
+    pub(super) fn bounded(&mut self, mut node: Node, head: Option<f64>) {
+        self.statistics.nodes_explored += 1;
+        self.statistics.prefixes += 1;
+        node.evaluated = true;
+        if let Some(head) = head.filter(|head| head.is_finite()) {
+            let remaining = node.remaining(self.table.targets());
+            let last = self.table.last_place(&node.prefix);
+            node.raise_head(head, self.remainder.bound(&self.table, last, &remaining));
+        } else {
+            self.statistics.prefixes_unresolved += 1;
+        }
+        if self.incumbents.rule_out(node.bound, &node.prefix) {
+            self.statistics.pruned_by_prefix += 1;
+            self.rule_out(node.bound);
+        } else {
+            self.frontier.insert(node);
+        }
+    }
+
+    /// Takes in the duration of a leaf.
+    pub(super) fn flown(&mut self, node: &Node, flown: FlownOrder) {
+        self.statistics.nodes_explored += 1;
+        self.statistics.tours += 1;
+        self.check(node, flown.duration_s);
+        self.offer(flown.order, flown.duration_s);
+    }
+
+    /// Takes in that a leaf did not resolve.
+    pub(super) fn unresolved(&mut self, node: &Node) {
+        self.statistics.nodes_explored += 1;
+        self.statistics.tours += 1;
+        self.statistics.tours_unresolved += 1;
+        self.lose(node.bound);
+    }
+
+    /// Opens a node again whose evaluation was interrupted.
+    pub(super) fn put_back(&mut self, node: Node) {
+        self.frontier.insert(node);
+    }
+
+    /// Rules out what the incumbents allow, and drops what does not fit into memory.
+    pub(super) fn tidy(&mut self) {
+        if self.improved {
+            let incumbents = &self.incumbents;
+            for node in self
+                .frontier
+                .take_if(|node| incumbents.rule_out(node.bound, &node.prefix))
+            {
+                self.statistics.pruned_by_incumbent += 1;
+                self.rule_out(node.bound);
+            }
+            self.improved = false;
+        }
+        self.drop_excess();
+    }
+
+    fn drop_excess(&mut self) {
+        while let Some(node) = self.frontier.pop_excess() {
+            self.statistics.dropped += 1;
+            self.lose(node.bound);
+        }
+    }
+
+    fn offer(&mut self, order: Vec<usize>, duration_s: f64) {
+        self.improved |= self.incumbents.offer(FlownOrder { order, duration_s });
+    }
+
+    /// Notes when an order is flown faster than its bound allows, beyond what a solver resolves.
+    fn check(&mut self, node: &Node, duration_s: f64) {
+        if duration_s < node.bound * (1.0 - CONTRADICTION_RELATIVE) {
+            self.statistics.bounds_contradicted += 1;
+        }
+    }
+
+    fn rule_out(&mut self, bound: f64) {
+        self.ruled_out_s = self.ruled_out_s.min(bound);
+    }
+
+    fn lose(&mut self, bound: f64) {
+        self.lost_s = self.lost_s.min(bound);
+    }
+
+    /// Whether nothing is open.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.frontier.is_empty()
+    }
+
+    /// Whether the list of the best is proven up to the gap: nothing is open, and nothing that was
+    /// lost could have entered it.
+    pub(super) fn is_complete(&self) -> bool {
+        let nothing_lost = self.lost_s.is_infinite() || self.incumbents.rule_out_bound(self.lost_s);
+        self.is_exhausted() && nothing_lost
+    }
+
+    /// Lower bound of every order that has not been flown, s.
+    pub(super) fn open_bound(&self) -> f64 {
+        self.frontier.bound().min(self.ruled_out_s).min(self.lost_s)
+    }
+
+    /// Duration of the best order flown, s.
+    pub(super) fn best_s(&self) -> Option<f64> {
+        self.incumbents.best_s()
+    }
+
+    /// The work so far.
+    pub(super) fn statistics(&self) -> &SearchStatistics {
+        &self.statistics
+    }
+
+    /// The orders flown, best first.
+    pub(super) fn into_orders(self) -> Vec<FlownOrder> {
+        self.incumbents.into_orders()
+    }
+}

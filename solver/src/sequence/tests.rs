@@ -1,0 +1,29 @@
+//! The search against exhaustive enumeration, on cost models that couple neighbouring legs.
+
+mod anytime;
+mod exactness;
+mod models;
+
+pub(super) use models::RandomModel;
+
+use super::{SearchResult, SearchSettings, TourModel, search};
+use crate::pool::SolverPool;
+use crate::progress::Silent;
+use crate::stop::StopSignal;
+use std::num::NonZeroUsize;
+
+fn pool(threads: usize) -> SolverPool {
+    SolverPool::new(NonZeroUsize::new(threads)).expect("test threads start")
+}
+
+fn alternatives(count: usize) -> SearchSettings {
+    SearchSettings {
+        alternatives: count,
+        ..SearchSettings::default()
+    }
+}
+
+/// Searches on two threads without limits or observers.
+fn run(model: &dyn TourModel, settings: &SearchSettings) -> SearchResult {
+    search(model, settings, &pool(2), &StopSignal::new(), &Silent)
+}

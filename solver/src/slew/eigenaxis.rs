@@ -1,0 +1,143 @@
+//! The slew about the eigenaxis: the everyday baseline, and the first starting guess.
+//!
+//! Bang-coast-bang about a fixed axis with the wheels allocated by the pseudo-inverse and their
+//! null-space momentum held. Without total momentum its limits are constant along the way; with
+//! it they vary, and the slew is slowed down until all of them hold everywhere.
+
+use crate::attitude::Attitude;
+use crate::dynamics::Dynamics;
+use crate::profile::Profile;
+use nalgebra::{DVector, Vector3};
+
+/// Points along the way at which limits are tested when momentum makes them vary.
+const SAMPLES: usize = 65;
+/// Halvings of the slow-down factor's interval: six digits of the duration.
+const BISECTIONS: usize = 24;
+/// Slowest factor worth trying.
+const SLOWEST: f64 = 1e-3;
+
+/// A bang-coast-bang of a fixed angle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trapezoid {
+    /// Total angle, rad.
+    angle: f64,
+    /// Acceleration, rad/s².
+    acceleration: f64,
+    /// Duration of each ramp, s.
+    ramp: f64,
+    /// Duration, s.
+    pub(crate) duration: f64,
+}
+
+impl Trapezoid {
+    /// The fastest one within an acceleration (rad/s²) and a rate (rad/s) that may be infinite.
+    pub(crate) fn fastest(angle: f64, acceleration: f64, rate: f64) -> Self {
+        let ramp = (angle / acceleration).sqrt().min(rate / acceleration);
+        let duration = if ramp > 0.0 { angle / (ramp * acceleration) + ramp } else { 0.0 };
+        Self { angle, acceleration, ramp, duration }
+    }
+
+    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time.
+    pub(crate) fn at(&self, time: f64) -> (f64, f64, f64) {
+        let a = self.acceleration;
+        let left = self.duration - time;
+        if time < self.ramp {
+            (0.5 * a * time * time, a * time, a)
+        } else if left > self.ramp {
+            let rate = a * self.ramp;
+            (rate * (time - 0.5 * self.ramp), rate, 0.0)
+        } else {
+            (self.angle - 0.5 * a * left * left, a * left, -a)
+        }
+    }
+}
+
+/// A slew about the eigenaxis between two attitudes with given signs.
+#[derive(Debug, Clone)]
+pub(crate) struct EigenaxisSlew {
+    from: Attitude,
+    axis: Vector3<f64>,
+    null: DVector<f64>,
+    /// Its course in time.
+    pub(crate) trapezoid: Trapezoid,
+    /// Whether all limits hold.
+    pub(crate) flyable: bool,
+}
+
+impl EigenaxisSlew {
+    /// The fastest rest-to-rest slew of this kind; `null` is the wheels' null-space momentum.
+    pub(crate) fn fastest(
+        dynamics: &Dynamics,
+        from: &Attitude,
+        to: &Attitude,
+        null: &DVector<f64>,
+    ) -> Self {
+        let turn = from.signed_turn_to(to);
+        let angle = turn.norm();
+        let axis = if angle > 0.0 { turn / angle } else { Vector3::x() };
+        let acceleration = dynamics.axis_acceleration(&axis);
+        let rate = dynamics.axis_rate(&axis);
+        let at_factor = |factor: f64| Self {
+            from: *from,
+            axis,
+            null: null.clone(),
+            trapezoid: Trapezoid::fastest(angle, acceleration * factor * factor, rate * factor),
+            flyable: true,
+        };
+        let full = at_factor(1.0);
+        if full.usage(dynamics) <= 1.0 + 1e-9 {
+            return full;
+        }
+        let (mut slow, mut fast) = (SLOWEST, 1.0);
+        if at_factor(slow).usage(dynamics) > 1.0 {
+            return Self { flyable: false, ..at_factor(0.5) };
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (slow + fast);
+            if at_factor(middle).usage(dynamics) <= 1.0 {
+                slow = middle;
+            } else {
+                fast = middle;
+            }
+        }
+        at_factor(slow)
+    }
+
+    fn state(&self, dynamics: &Dynamics, time: f64) -> (Attitude, Vector3<f64>, DVector<f64>) {
+        let (angle, rate, _) = self.trapezoid.at(time);
+        let attitude = self.from.retract(self.axis * angle);
+        let rate = self.axis * rate;
+        let wheels = dynamics.wheels_at(&attitude, &rate, &self.null);
+        (attitude, rate, wheels)
+    }
+
+    /// Greatest share of any torque, speed or rate limit along the way.
+    fn usage(&self, dynamics: &Dynamics) -> f64 {
+        let mut worst = 0.0_f64;
+        for sample in 0..SAMPLES {
+            let time = self.trapezoid.duration * sample as f64 / (SAMPLES - 1) as f64;
+            let (attitude, rate, wheels) = self.state(dynamics, time);
+            let (_, _, acceleration) = self.trapezoid.at(time);
+            let body = attitude.to_body(dynamics.momentum);
+            let change = -rate.cross(&body) - dynamics.inertia * self.axis * acceleration;
+            let torque = &dynamics.axes_inverse * change;
+            worst = worst
+                .max(dynamics.speed_usage(&rate, &wheels))
+                .max(dynamics.torque_usage(&torque));
+        }
+        worst
+    }
+
+    /// The slew sampled at equal times.
+    pub(crate) fn profile(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
+        let length = self.trapezoid.duration / intervals as f64;
+        let mut profile = Profile::empty();
+        for node in 0..=intervals {
+            let (attitude, _, wheels) = self.state(dynamics, length * node as f64);
+            profile.attitudes.push(attitude);
+            profile.wheels.push(wheels);
+        }
+        profile.lengths = vec![length; intervals];
+        profile
+    }
+}

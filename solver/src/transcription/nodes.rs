@@ -1,0 +1,169 @@
+//! Conditions at nodes: which rows hold where.
+
+use super::Transcription;
+use super::rows::Row;
+use crate::attitude::Attitude;
+use crate::dynamics::Dynamics;
+use crate::kinematics::Quat;
+use crate::scenario::RateCondition;
+use nalgebra::{DVector, Vector3};
+
+/// What the wheel momenta must satisfy at a waypoint.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum WheelCondition {
+    /// Only the limits.
+    Free,
+    /// These null-space components, N m s.
+    NullSpace(DVector<f64>),
+    /// These momenta, N m s; with the attitude they fix the rates too.
+    Fixed(DVector<f64>),
+}
+
+/// A place to pass through.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Waypoint {
+    /// The attitude with the sign that the continuous quaternion has there.
+    pub(crate) attitude: Attitude,
+    /// Condition of each rate component.
+    pub(crate) rate: [RateCondition; 3],
+    /// Condition of the wheels.
+    pub(crate) wheels: WheelCondition,
+}
+
+impl Waypoint {
+    /// Whether conditions leave nothing free.
+    pub(crate) fn is_fixed(&self, dynamics: &Dynamics) -> bool {
+        let rates_fixed = self.rate.iter().all(|c| matches!(c, RateCondition::Fixed(_)));
+        match self.wheels {
+            WheelCondition::Fixed(_) => true,
+            WheelCondition::NullSpace(_) => rates_fixed,
+            WheelCondition::Free => rates_fixed && dynamics.wheel_count() == 3,
+        }
+    }
+}
+
+/// The rows of one node.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Node {
+    /// Attitude to be at.
+    pub(super) attitude: Option<Quat>,
+    /// Rows that are zero.
+    pub(super) equalities: Vec<Row>,
+    /// Rows that are not negative, beside the limits.
+    pub(super) inequalities: Vec<Row>,
+    /// Whether speed and rate limits are imposed: not where the state is fixed, since a fixed
+    /// state on a limit would leave no interior.
+    pub(super) limited: bool,
+}
+
+impl Transcription {
+    /// Nodes of all legs; a waypoint's conditions stand at the node between two legs.
+    pub(super) fn lay_out(&self, waypoints: &[Waypoint], intervals: &[usize]) -> Vec<Node> {
+        let mut nodes = Vec::with_capacity(intervals.iter().sum::<usize>() + 1);
+        for (waypoint, count) in waypoints.iter().zip(intervals) {
+            nodes.push(self.waypoint_node(waypoint));
+            let free = Node { limited: true, ..Node::default() };
+            nodes.extend(std::iter::repeat_n(free, count.saturating_sub(1)));
+        }
+        nodes.extend(waypoints.last().map(|waypoint| self.waypoint_node(waypoint)));
+        nodes
+    }
+
+    /// All inequality rows of a node except the norm limit.
+    pub(super) fn inequality_rows<'a>(&'a self, node: &'a Node) -> impl Iterator<Item = &'a Row> {
+        let limits: &[Row] = if node.limited { &self.limits } else { &[] };
+        limits.iter().chain(&node.inequalities)
+    }
+
+    /// Whether the norm of the rate is limited at a node.
+    pub(super) fn has_norm_row(&self, node: &Node) -> bool {
+        node.limited && self.dynamics.max_rate_norm.is_finite()
+    }
+
+    fn waypoint_node(&self, waypoint: &Waypoint) -> Node {
+        let mut node = Node {
+            attitude: Some(waypoint.attitude.xyzw()),
+            limited: !waypoint.is_fixed(&self.dynamics),
+            ..Node::default()
+        };
+        match &waypoint.wheels {
+            WheelCondition::Fixed(momenta) => {
+                for (i, h) in momenta.iter().enumerate() {
+                    node.equalities.push(Row {
+                        constant: -h / self.scales.momentum,
+                        rate: Vector3::zeros(),
+                        wheels: vec![(i, 1.0)],
+                    });
+                }
+                // Attitude and all wheel momenta determine the rates.
+                return node;
+            }
+            WheelCondition::NullSpace(components) => {
+                for (column, value) in self.dynamics.null_space.column_iter().zip(components.iter()) {
+                    node.equalities.push(Row {
+                        constant: -value / self.scales.momentum,
+                        rate: Vector3::zeros(),
+                        wheels: column.iter().copied().enumerate().collect(),
+                    });
+                }
+            }
+            WheelCondition::Free => {}
+        }
+        for (axis, condition) in waypoint.rate.iter().enumerate() {
+            self.add_rate_rows(axis, *condition, &mut node);
+        }
+        node
+    }
+
+    fn add_rate_rows(&self, axis: usize, condition: RateCondition, node: &mut Node) {
+        let unit = self.scales.rate.recip();
+        let row = |sign: f64, value: f64| Row {
+            constant: -sign * value * unit,
+            rate: Vector3::ith(axis, sign * unit),
+            wheels: Vec::new(),
+        };
+        match condition {
+            RateCondition::Free => {}
+            RateCondition::Fixed(value) => node.equalities.push(row(1.0, value)),
+            RateCondition::Within(low, high) if low >= high => node.equalities.push(row(1.0, low)),
+            RateCondition::Within(low, high) => {
+                if low.is_finite() {
+                    node.inequalities.push(row(1.0, low));
+                }
+                if high.is_finite() {
+                    node.inequalities.push(row(-1.0, high));
+                }
+            }
+        }
+    }
+
+    /// Rows `1 - reserve -+ speed / limit` of all finite speed and rate limits.
+    pub(super) fn limit_rows(&self, reserve: f64) -> Vec<Row> {
+        let mut rows = Vec::new();
+        for (i, wheel) in self.dynamics.actuators.iter().enumerate() {
+            if !wheel.max_speed.is_finite() {
+                continue;
+            }
+            for sign in [1.0, -1.0] {
+                rows.push(Row {
+                    constant: 1.0 - reserve,
+                    rate: wheel.axis * (sign / wheel.max_speed),
+                    wheels: vec![(i, -sign * self.scales.momentum / (wheel.inertia * wheel.max_speed))],
+                });
+            }
+        }
+        for axis in 0..3 {
+            let limit = self.dynamics.max_rate[axis];
+            if limit.is_finite() {
+                for sign in [1.0, -1.0] {
+                    rows.push(Row {
+                        constant: 1.0 - reserve,
+                        rate: Vector3::ith(axis, -sign / limit),
+                        wheels: Vec::new(),
+                    });
+                }
+            }
+        }
+        rows
+    }
+}

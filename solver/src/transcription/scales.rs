@@ -1,0 +1,68 @@
+//! Natural units in which every variable of the transcription is of order one.
+
+use crate::dynamics::Dynamics;
+use nalgebra::Vector3;
+
+/// What one interval lasts, as a share of a slew: sets the unit of time.
+const INTERVAL_SHARE: f64 = 0.2;
+
+/// Units of the scaled variables.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scales {
+    /// Unit of attitude steps, rad.
+    pub(crate) angle: f64,
+    /// Unit of time, s.
+    pub(crate) time: f64,
+    /// Unit of wheel momentum, N m s.
+    pub(crate) momentum: f64,
+    /// Unit of body rates, rad/s.
+    pub(crate) rate: f64,
+}
+
+impl Scales {
+    /// Units for slews of a typical angle, rad: a bang-coast-bang of that angle has order one.
+    pub(crate) fn for_angle(dynamics: &Dynamics, angle: f64) -> Self {
+        let angle = angle.clamp(1e-9, std::f64::consts::PI);
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let mean = |f: &dyn Fn(&Vector3<f64>) -> f64| {
+            (axes.iter().map(|axis| f(axis).ln()).sum::<f64>() / 3.0).exp()
+        };
+        let acceleration = mean(&|axis| dynamics.axis_acceleration(axis));
+        let top_rate = mean(&|axis| dynamics.axis_rate(axis));
+        let rate = top_rate.min((acceleration * angle).sqrt());
+        let per_rate = axes
+            .iter()
+            .map(|axis| (&dynamics.axes_inverse * (dynamics.inertia * axis)).amax())
+            .fold(0.0, f64::max);
+        Self {
+            angle: angle.min(1.0),
+            time: INTERVAL_SHARE * (angle / rate + rate / acceleration),
+            momentum: per_rate * rate,
+            rate,
+        }
+    }
+}
+
+impl Dynamics {
+    /// Greatest acceleration about a body axis from zero momentum, rad/s², wheels allocated by
+    /// the pseudo-inverse.
+    pub(crate) fn axis_acceleration(&self, axis: &Vector3<f64>) -> f64 {
+        let per_unit = &self.axes_inverse * (self.inertia * axis);
+        self.actuators
+            .iter()
+            .zip(per_unit.iter())
+            .map(|(wheel, share)| wheel.max_torque.min(-wheel.min_torque) / share.abs())
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Greatest rate about a body axis with zero momentum, rad/s, wheels allocated by the
+    /// pseudo-inverse; infinite when nothing limits it.
+    pub(crate) fn axis_rate(&self, axis: &Vector3<f64>) -> f64 {
+        let per_unit = &self.axes_inverse * (self.inertia * axis);
+        let no_momentum = self.actuators.iter().zip(per_unit.iter()).map(|(wheel, share)| {
+            wheel.max_speed / (share / wheel.inertia + wheel.axis.dot(axis)).abs()
+        });
+        let per_axis = self.max_rate.iter().zip(axis).map(|(limit, part)| limit / part.abs());
+        no_momentum.chain(per_axis).fold(self.max_rate_norm / axis.norm(), f64::min)
+    }
+}

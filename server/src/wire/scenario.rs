@@ -37,7 +37,10 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
     let replaced: Vec<&str> = shape
         .iter()
         .filter(|p| !matches!(p.code, Code::UnknownField | Code::DuplicateField))
-        .map(|p| p.pointer.as_str())
+        .map(|p| match p.pointer.as_str() {
+            "/spacecraft/ref" => "/spacecraft",
+            pointer => pointer,
+        })
         .collect();
     let any_related = |place| {
         replaced
@@ -53,9 +56,7 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
         // One entry per wheel, and nobody knows how many wheels were meant.
         Code::WrongLength => {
             any_related(&found.pointer)
-                || replaced
-                    .iter()
-                    .any(|p| *p == "/spacecraft/ref" || contains(p, "/spacecraft/wheels"))
+                || replaced.iter().any(|p| contains(p, "/spacecraft/wheels"))
         }
         Code::UnknownReference => {
             any_related(&found.pointer) || any_related("/spacecraft/boresights")

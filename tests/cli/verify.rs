@@ -164,24 +164,6 @@ fn plans_that_cannot_be_flown_are_refused_with_pointers() {
             "/trajectory/controls/0/wheel_torque_nm",
             "wrong_length",
         ),
-        (
-            "/trajectory/controls/0/duration_s",
-            json!(-1.0),
-            "/trajectory/controls/0/duration_s",
-            "out_of_range",
-        ),
-        (
-            "/trajectory/controls/0/start_s",
-            json!(0.5),
-            "/trajectory/controls/0",
-            "out_of_range",
-        ),
-        (
-            "/total_time_s",
-            json!(11.0),
-            "/trajectory/controls",
-            "out_of_range",
-        ),
     ];
     for (place, value, pointer, code) in cases {
         let mut plan = idle();
@@ -196,6 +178,29 @@ fn plans_that_cannot_be_flown_are_refused_with_pointers() {
             "{code}: {ended:?}"
         );
         assert!(ended.stderr.contains("hint: "), "{ended:?}");
+    }
+}
+
+#[test]
+fn times_that_do_not_fit_together_do_not_pass() {
+    let cases = [
+        ("/trajectory/controls/0/duration_s", json!(-1.0)),
+        ("/trajectory/controls/0/start_s", json!(0.5)),
+        ("/total_time_s", json!(11.0)),
+        ("/total_time_s", json!(-1.0)),
+        ("/passages/0/time_s", json!(6.0)),
+        ("/trajectory/controls", json!([])),
+        ("/trajectory/controls/0/wheel_torque_nm/0", json!(1e300)),
+    ];
+    for (place, value) in cases {
+        let mut plan = idle();
+        *plan.pointer_mut(place).expect("the place exists") = value;
+        let found = verify("two-targets.json", &plan).expect_code(3).json();
+        assert_eq!(found["passed"], false);
+        assert!(
+            !found["failures"].as_array().expect("a list").is_empty(),
+            "{place}: {found}"
+        );
     }
 }
 

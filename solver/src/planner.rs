@@ -1,11 +1,24 @@
 //! From a scenario to a verified plan.
 
-use crate::plan::Outcome;
+mod assemble;
+mod legs;
+mod places;
+mod tours;
+
+use crate::checker;
+use crate::nlp::NlpStatus;
+use crate::plan::{Alternative, LowerBoundKind, Optimality, Outcome, Plan, Statistics};
 use crate::pool::SolverPool;
-use crate::problem::Problem;
-use crate::progress::Observer;
+use crate::problem::{Code, Problem};
+use crate::progress::{Observer, Progress, Stage};
 use crate::scenario::Scenario;
+use crate::sequence::{FlownOrder, Place, SearchResult, SearchSettings, search};
 use crate::stop::StopSignal;
+use assemble::assemble;
+use places::Places;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+use tours::Tours;
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]
@@ -68,8 +81,41 @@ pub struct Shard {
 /// Solves a scenario: order, torques, bound, verification.
 #[must_use]
 pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
-    let _ = (scenario, run);
-    Outcome::StoppedEmpty
+    let begin = Instant::now();
+    let problems = feasibility_problems(scenario);
+    if !problems.is_empty() {
+        return Outcome::Infeasible(problems);
+    }
+    let stop = limited(scenario, run.stop);
+    let places = Places::of(scenario);
+    let pairs = tour_pairs(&places);
+    let rest = legs::solve_table(&places, LegKind::RestToRest, &pairs, run, &stop);
+    let free = legs::solve_table(&places, LegKind::LowerBound, &pairs, run, &stop);
+    let tours = Tours::new(&places, &rest, &free, &stop);
+    let settings = SearchSettings {
+        alternatives: scenario.options().alternatives,
+        relative_gap: scenario.options().relative_gap,
+        node_limit: scenario.options().node_limit,
+        ..SearchSettings::default()
+    };
+    let found = search(&tours, &settings, run.pool, &stop, run.observer);
+    let statistics = Statistics {
+        wall_time_s: begin.elapsed().as_secs_f64(),
+        nodes_explored: found.statistics.nodes_explored,
+        nlp_solves: tours.solves.load(Ordering::Relaxed)
+            + rest.solved().chain(free.solved()).map(|leg| leg.solves).sum::<u64>(),
+        legs_solved: rest.solved().chain(free.solved()).filter(|leg| leg.solves > 0).count() as u64,
+        legs_from_cache: 0,
+        threads: run.pool.threads(),
+    };
+    match &found.best {
+        Some(best) => {
+            let best = best.clone();
+            conclude(&tours, &best, &found, statistics, run)
+        }
+        None if stop.is_set() => Outcome::StoppedEmpty,
+        None => Outcome::Failed(unsolved(&tours)),
+    }
 }
 
 /// Solves all legs between start, targets and end, both directions listed.
@@ -82,8 +128,34 @@ pub fn leg_table(
     shard: Shard,
     run: Run<'_>,
 ) -> (Vec<LegRow>, bool) {
-    let _ = (scenario, kind, shard, run);
-    (Vec::new(), false)
+    let stop = limited(scenario, run.stop);
+    let places = Places::of(scenario);
+    let all = places.all();
+    let pairs: Vec<_> = all
+        .iter()
+        .flat_map(|from| all.iter().map(move |to| (*from, *to)))
+        .filter(|(from, to)| from != to)
+        .enumerate()
+        .filter(|(i, _)| i % shard.of.max(1) == shard.index)
+        .map(|(_, pair)| pair)
+        .collect();
+    let table = legs::solve_table(&places, kind, &pairs, run, &stop);
+    let rows: Vec<_> = pairs
+        .iter()
+        .filter_map(|(from, to)| {
+            let leg = table.get(*from, *to)?;
+            Some(LegRow {
+                from: places.name(*from),
+                to: places.name(*to),
+                kind,
+                duration_s: leg.flown.duration(),
+                solve_time_s: leg.took.as_secs_f64(),
+                status: leg.flown.status.as_str().into(),
+            })
+        })
+        .collect();
+    let complete = rows.len() == pairs.len();
+    (rows, complete)
 }
 
 /// What can be said against a valid scenario before it is solved: rests that the wheels cannot
@@ -91,4 +163,112 @@ pub fn leg_table(
 #[must_use]
 pub fn feasibility_problems(scenario: &Scenario) -> Vec<Problem> {
     crate::envelope::momentum_problems(scenario)
+}
+
+/// The stop signal with the scenario's own time limit.
+fn limited(scenario: &Scenario, stop: &StopSignal) -> StopSignal {
+    match scenario.options().time_limit_s {
+        Some(limit) => stop.with_time_limit(Duration::from_secs_f64(limit)),
+        None => stop.clone(),
+    }
+}
+
+/// The ordered pairs that a tour may fly.
+fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
+    let all = places.all();
+    let alone = places.scenario.targets().is_empty();
+    all.iter()
+        .flat_map(|from| all.iter().map(move |to| (*from, *to)))
+        .filter(|(from, to)| from != to && *from != Place::End && *to != Place::Start)
+        .filter(|(from, to)| alone || !(*from == Place::Start && *to == Place::End))
+        .collect()
+}
+
+/// Flies the best order once more for its torques, verifies it and reports.
+fn conclude(
+    tours: &Tours<'_>,
+    best: &FlownOrder,
+    found: &SearchResult,
+    statistics: Statistics,
+    run: Run<'_>,
+) -> Outcome {
+    let scenario = tours.places.scenario;
+    let route = tours.route(&best.order, true);
+    // Every segment is remembered from the search: nothing is solved here.
+    let (flight, legs) = assemble(tours, &route, &tours.fly_route(&route));
+    run.observer.progress(Progress {
+        stage: Stage::Verify,
+        done: 0,
+        total: None,
+        incumbent_s: Some(best.duration_s),
+        lower_bound_s: Some(found.lower_bound_s),
+    });
+    let report = checker::verify(scenario, &flight);
+    if !report.verification.passed {
+        let message = report.verification.failures.join("; ");
+        let hint = "report the scenario: a plan that does not fly is a defect of the solver";
+        return Outcome::Failed(vec![Problem::new("", Code::VerificationFailed, message, hint)]);
+    }
+    let total = flight.total_time_s;
+    let bound = found.lower_bound_s.min(total);
+    let name = |i: &usize| scenario.targets()[*i].id.clone();
+    let proven = found.best_is_proven(scenario.options().relative_gap);
+    Outcome::Planned(Box::new(Plan {
+        optimality: if proven { Optimality::Optimal } else { Optimality::Feasible },
+        total_time_s: total,
+        lower_bound_s: bound,
+        relative_gap: if total > 0.0 { (total - bound) / total } else { 0.0 },
+        lower_bound_kind: LowerBoundKind::NlpRelaxation,
+        alternatives: found
+            .alternatives
+            .iter()
+            .map(|other| Alternative {
+                sequence: other.order.iter().map(name).collect(),
+                total_time_s: other.duration_s,
+            })
+            .collect(),
+        legs,
+        flight,
+        states: report.states,
+        margins: report.margins,
+        verification: report.verification,
+        statistics,
+        warnings: report.keep_out,
+    }))
+}
+
+/// Why no order could be flown: the legs that found no solution.
+fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
+    let all = tours.places.all();
+    let mut problems: Vec<_> = all
+        .iter()
+        .flat_map(|from| all.iter().map(move |to| (*from, *to)))
+        .filter_map(|(from, to)| {
+            let leg = tours.free.get(from, to)?;
+            (leg.flown.status != NlpStatus::Converged).then(|| {
+                let message = format!(
+                    "the slew from {} to {} ended with status {}",
+                    tours.places.name(from),
+                    tours.places.name(to),
+                    leg.flown.status.as_str(),
+                );
+                Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)
+            })
+        })
+        .collect();
+    if problems.is_empty() {
+        let message = "every leg has a solution, but no whole order converged";
+        problems.push(Problem::new("/targets", Code::SlewNotSolved, message, SLEW_HINT));
+    }
+    problems
+}
+
+const SLEW_HINT: &str = "check that the wheels can hold the stored momentum along the way, or relax the conditions";
+
+fn pointer_of(place: Place) -> String {
+    match place {
+        Place::Start => "/start".into(),
+        Place::Target(i) => format!("/targets/{i}"),
+        Place::End => "/end".into(),
+    }
 }

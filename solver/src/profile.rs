@@ -43,4 +43,22 @@ impl Profile {
     pub(crate) fn empty() -> Self {
         Self { attitudes: Vec::new(), wheels: Vec::new(), lengths: Vec::new() }
     }
+
+    /// No motion at all, in no time.
+    pub(crate) fn standstill(attitude: Attitude, wheels: DVector<f64>, intervals: usize) -> Self {
+        Self {
+            attitudes: vec![attitude; intervals + 1],
+            wheels: vec![wheels; intervals + 1],
+            lengths: vec![0.0; intervals],
+        }
+    }
+
+    /// The motion flown backwards: wheel momenta change sign, torques do not.
+    pub(crate) fn reversed(&self) -> Self {
+        Self {
+            attitudes: self.attitudes.iter().rev().copied().collect(),
+            wheels: self.wheels.iter().rev().map(|h| -h).collect(),
+            lengths: self.lengths.iter().rev().copied().collect(),
+        }
+    }
 }

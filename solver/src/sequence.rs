@@ -32,9 +32,9 @@
 //!
 //! # Determinism
 //!
-//! A round takes a fixed number of nodes in the order (bound, prefix), evaluates them in parallel
-//! and merges the answers in that order. Unless the search is stopped from outside, nothing in
-//! the result depends on the number of threads.
+//! A round takes the first nodes in the order (bound, prefix), as many as follow from the number of
+//! nodes explored before, evaluates them in parallel and merges the answers in that order. Unless
+//! the search is stopped from outside, nothing in the result depends on the number of threads.
 
 mod exhaustive;
 mod frontier;
@@ -54,7 +54,7 @@ pub use table::PairTable;
 use crate::stop::StopReason;
 
 /// Where a leg begins or ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// The state at time zero.
     Start,
@@ -104,7 +104,8 @@ pub trait TourModel: Sync {
 
     /// Lower bound, s, of the time from the start to leaving the last target of a prefix, in any
     /// tour that begins with it: the last target has its own conditions only. Expensive. The
-    /// prefix is never empty and never complete.
+    /// prefix has at least two targets and lacks at least two: the pair bound of the first leg is
+    /// taken to be all that can be said of one target, and with one left the order is flown.
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
 
     /// Flies a whole order, to the end where there is one. Expensive.

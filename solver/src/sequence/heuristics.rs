@@ -17,10 +17,11 @@ pub(super) fn candidates(
     remainder: &Remainder,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
+    let all: Vec<usize> = (0..table.targets()).collect();
     let mut orders = match remainder {
-        _ if table.targets() == 0 => return Vec::new(),
-        Remainder::Exact(subsets) => vec![subsets.shortest_order(table)],
-        Remainder::Relaxed(_) => improved_constructions(table, stop),
+        _ if all.is_empty() => return Vec::new(),
+        Remainder::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
+        Remainder::Relaxed(_) => improved_constructions(table, &all, stop),
     };
     // Slews are nearly symmetric in time, and legs that are free at the targets are not: the
     // shortest order of the table is often best flown backwards.
@@ -35,17 +36,44 @@ pub(super) fn candidates(
     distinct
 }
 
+/// A short completion of a prefix.
+pub(super) fn complete(
+    table: &PairTable,
+    remainder: &Remainder,
+    prefix: &[usize],
+    remaining: &[usize],
+    stop: &StopSignal,
+) -> Vec<usize> {
+    let from = table.last_place(prefix);
+    let completion = match remainder {
+        Remainder::Exact(subsets) => subsets.shortest_order(table, from, remaining),
+        Remainder::Relaxed(_) => improve(
+            table,
+            from,
+            nearest_neighbours(table, from, remaining),
+            stop,
+        ),
+    };
+    [prefix, &completion].concat()
+}
+
 /// Nearest-neighbour orders after local search, shortest first.
-fn improved_constructions(table: &PairTable, stop: &StopSignal) -> Vec<Vec<usize>> {
-    let mut firsts: Vec<usize> = (0..table.targets()).collect();
+fn improved_constructions(table: &PairTable, all: &[usize], stop: &StopSignal) -> Vec<Vec<usize>> {
+    let start = table.start();
+    let mut firsts = all.to_vec();
     firsts.sort_by(|&a, &b| {
-        let far = |target| table.bound(table.start(), target);
+        let far = |target| table.bound(start, target);
         far(a).total_cmp(&far(b)).then(a.cmp(&b))
     });
     firsts.truncate(CONSTRUCTIONS);
     let mut orders: Vec<Vec<usize>> = firsts
         .into_iter()
-        .map(|first| improve(table, nearest_neighbours(table, first), stop))
+        .map(|first| {
+            let others: Vec<usize> = all.iter().copied().filter(|&t| t != first).collect();
+            let mut order = nearest_neighbours(table, first, &others);
+            order.insert(0, first);
+            improve(table, start, order, stop)
+        })
         .collect();
     orders.sort_by(|a, b| {
         length(table, a)
@@ -55,13 +83,11 @@ fn improved_constructions(table: &PairTable, stop: &StopSignal) -> Vec<Vec<usize
     orders
 }
 
-/// Always on to the nearest target, the smallest index among equals.
-fn nearest_neighbours(table: &PairTable, first: usize) -> Vec<usize> {
-    let mut order = vec![first];
-    let mut left: Vec<usize> = (0..table.targets())
-        .filter(|&target| target != first)
-        .collect();
-    let mut from = first;
+/// From a place always on to the nearest of the targets, the smallest index among equals.
+fn nearest_neighbours(table: &PairTable, from: usize, targets: &[usize]) -> Vec<usize> {
+    let mut from = from;
+    let mut left = targets.to_vec();
+    let mut order = Vec::with_capacity(left.len());
     while let Some((place, &to)) = left
         .iter()
         .enumerate()
@@ -94,12 +120,27 @@ mod tests {
     fn local_search_keeps_the_targets_and_shortens_the_order() {
         for seed in 0..5 {
             let table = PairTable::new(&RandomModel::new(30, seed % 2 == 0, seed));
-            let built = nearest_neighbours(&table, 0);
-            let improved = improve(&table, built.clone(), &StopSignal::new());
+            let all: Vec<usize> = (0..30).collect();
+            let built = nearest_neighbours(&table, table.start(), &all);
+            let improved = improve(&table, table.start(), built.clone(), &StopSignal::new());
             assert!(length(&table, &improved) < length(&table, &built));
             let mut targets = improved;
             targets.sort_unstable();
             assert!(targets.into_iter().eq(0..30));
+        }
+    }
+
+    #[test]
+    fn a_completion_keeps_the_prefix_and_visits_the_rest() {
+        for targets in [6, 20] {
+            let table = PairTable::new(&RandomModel::new(targets, true, 9));
+            let remainder = Remainder::new(&table);
+            let prefix = [3, 1];
+            let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
+            let mut order = complete(&table, &remainder, &prefix, &remaining, &StopSignal::new());
+            assert_eq!(order[..2], prefix);
+            order.sort_unstable();
+            assert!(order.into_iter().eq(0..targets));
         }
     }
 

@@ -4,25 +4,47 @@ mod account;
 mod tree;
 
 use super::node::Node;
-use super::{
-    Evaluation, FlownOrder, SearchEnd, SearchResult, SearchSettings, TourEvaluation, TourModel,
-};
+use super::{Evaluation, SearchEnd, SearchResult, SearchSettings, TourEvaluation, TourModel};
 use crate::pool::SolverPool;
 use crate::progress::Observer;
 use crate::stop::{StopReason, StopSignal};
 use account::Account;
 use tree::Tree;
 
-/// Nodes evaluated per round. A property of the search, not of the machine: were it the number of
-/// threads, the nodes explored would depend on that. Small, because the later nodes of a round are
-/// evaluated without the knowledge that the earlier ones bring.
-const ROUND_NODES: u64 = 8;
+/// Fewest and most nodes evaluated per round, and their share of the nodes explored before. The later
+/// nodes of a round are evaluated without the knowledge that the earlier ones bring, so a part of
+/// them is wasted: the share bounds that part, the fewest occupy a small machine from the beginning,
+/// the most a large one later on. All are properties of the search, not of the machine: were they
+/// the number of threads, the nodes explored would depend on that.
+const FEWEST_NODES: u64 = 4;
+const MOST_NODES: u64 = 32;
+const EXPLORED_PER_NODE: u64 = 8;
 
-/// Answer to the evaluation of a node.
+/// After so many nodes the most promising one is completed by the pair table and flown at once.
+/// Best-first search alone reaches whole orders late, and a stopped search should have a good one;
+/// an order costs as much as a few prefixes, so this may not happen often.
+const PROBE_NODES: u64 = 24;
+
+/// What is evaluated in a round.
+enum Task {
+    Node(Node),
+    Probe(Vec<usize>),
+}
+
+/// Answer to a task.
 #[derive(Clone, Copy)]
 enum Answer {
     Prefix(Evaluation),
-    Leaf(TourEvaluation),
+    Tour(TourEvaluation),
+}
+
+impl Answer {
+    fn is_stopped(self) -> bool {
+        matches!(
+            self,
+            Self::Prefix(Evaluation::Stopped) | Self::Tour(TourEvaluation::Stopped)
+        )
+    }
 }
 
 /// A search under way.
@@ -31,6 +53,8 @@ struct Search<'a> {
     pool: &'a SolverPool,
     stop: &'a StopSignal,
     node_limit: u64,
+    /// Number of explored nodes at which an order is probed next.
+    next_probe: u64,
     tree: Tree,
     account: Account<'a>,
 }
@@ -49,6 +73,7 @@ pub fn search(
         pool,
         stop,
         node_limit: settings.node_limit.unwrap_or(u64::MAX),
+        next_probe: PROBE_NODES,
         tree: Tree::new(model, settings),
         account: Account::new(observer),
     };
@@ -86,28 +111,51 @@ impl Search<'_> {
             return Some(self.stopped());
         }
         let explored = self.tree.statistics().nodes_explored;
-        let budget = ROUND_NODES.min(self.node_limit.saturating_sub(explored));
+        let budget = self.node_limit.saturating_sub(explored);
         if budget == 0 {
             return Some(SearchEnd::NodeLimit);
         }
-        let round = self.tree.take_round(budget, self.stop);
-        let answers = self.pool.map(&round, |node| self.evaluate(node));
+        let size = (explored / EXPLORED_PER_NODE).clamp(FEWEST_NODES, MOST_NODES);
+        let tasks = self.take_round(size.min(budget));
+        let answers = self.pool.map(&tasks, |task| self.evaluate(task));
         let mut interrupted = false;
-        for (node, answer) in round.into_iter().zip(answers) {
-            interrupted |= !self.merge(node, answer);
+        for (task, answer) in tasks.into_iter().zip(answers) {
+            interrupted |= answer.is_stopped();
+            match task {
+                Task::Node(node) => self.merge(node, answer),
+                Task::Probe(order) => self.merge_probe(order, answer),
+            }
         }
         self.tree.tidy();
         interrupted.then(|| self.stopped())
     }
 
-    /// Asks the model about a node.
-    fn evaluate(&self, node: &Node) -> Answer {
-        if self.tree.is_leaf(node) {
-            Answer::Leaf(self.fly(&node.prefix))
-        } else if self.stop.is_set() {
-            Answer::Prefix(Evaluation::Stopped)
-        } else {
-            Answer::Prefix(self.model.prefix_bound(&node.prefix))
+    /// The nodes of the next round, and now and then an order to probe.
+    fn take_round(&mut self, size: u64) -> Vec<Task> {
+        let nodes = self.tree.take_round(size, self.pool, self.stop);
+        let explored = self.tree.statistics().nodes_explored;
+        let mut probe = None;
+        if explored >= self.next_probe {
+            self.next_probe = explored + PROBE_NODES;
+            probe = nodes
+                .first()
+                .and_then(|best| self.tree.probe(best, self.stop))
+                .filter(|order| nodes.iter().all(|node| node.prefix != *order));
+        }
+        nodes
+            .into_iter()
+            .map(Task::Node)
+            .chain(probe.map(Task::Probe))
+            .collect()
+    }
+
+    /// Asks the model.
+    fn evaluate(&self, task: &Task) -> Answer {
+        match task {
+            Task::Probe(order) => Answer::Tour(self.fly(order)),
+            Task::Node(node) if self.tree.is_leaf(node) => Answer::Tour(self.fly(&node.prefix)),
+            Task::Node(_) if self.stop.is_set() => Answer::Prefix(Evaluation::Stopped),
+            Task::Node(node) => Answer::Prefix(self.model.prefix_bound(&node.prefix)),
         }
     }
 
@@ -124,22 +172,24 @@ impl Search<'_> {
         }
     }
 
-    /// Puts an answer into the tree; false when the evaluation was interrupted.
-    fn merge(&mut self, node: Node, answer: Answer) -> bool {
+    /// Puts the answer to a node into the tree.
+    fn merge(&mut self, node: Node, answer: Answer) {
         match answer {
-            Answer::Prefix(Evaluation::Stopped) | Answer::Leaf(TourEvaluation::Stopped) => {
-                self.tree.put_back(node);
-                return false;
-            }
             Answer::Prefix(Evaluation::Value(bound_s)) => self.tree.bounded(node, Some(bound_s)),
             Answer::Prefix(Evaluation::Unresolved) => self.tree.bounded(node, None),
-            Answer::Leaf(TourEvaluation::Flown(duration_s)) => {
-                let order = node.prefix.clone();
-                self.tree.flown(&node, FlownOrder { order, duration_s });
+            Answer::Tour(TourEvaluation::Flown(duration_s)) => self.tree.flown(&node, duration_s),
+            Answer::Tour(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
+            Answer::Prefix(Evaluation::Stopped) | Answer::Tour(TourEvaluation::Stopped) => {
+                self.tree.put_back(node);
             }
-            Answer::Leaf(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
         }
-        true
+    }
+
+    /// Puts the answer to a probe into the tree.
+    fn merge_probe(&mut self, order: Vec<usize>, answer: Answer) {
+        if let Answer::Tour(answer) = answer {
+            self.tree.record_candidate(order, answer);
+        }
     }
 
     /// The signal's reason; a model that stops of its own accord counts as a request.

@@ -29,10 +29,16 @@ enum Move {
     Shift(usize, usize, usize, bool),
 }
 
-/// Shortens an order until no move helps or the solve is stopped.
-pub(super) fn improve(table: &PairTable, order: Vec<usize>, stop: &StopSignal) -> Vec<usize> {
+/// Shortens the way from a place through some targets to the end until no move helps or the solve
+/// is stopped.
+pub(super) fn improve(
+    table: &PairTable,
+    from: usize,
+    order: Vec<usize>,
+    stop: &StopSignal,
+) -> Vec<usize> {
     let limit = MOVES_PER_TARGET * order.len();
-    let mut path = Path::new(table, order);
+    let mut path = Path::new(table, from, order);
     for _ in 0..limit {
         if stop.is_set() {
             break;
@@ -46,9 +52,9 @@ pub(super) fn improve(table: &PairTable, order: Vec<usize>, stop: &StopSignal) -
 }
 
 impl<'a> Path<'a> {
-    fn new(table: &'a PairTable, order: Vec<usize>) -> Self {
+    fn new(table: &'a PairTable, from: usize, order: Vec<usize>) -> Self {
         let mut places = order;
-        places.insert(0, table.start());
+        places.insert(0, from);
         places.push(table.end());
         let mut path = Self {
             table,

@@ -26,6 +26,8 @@ const FIRST_STEP: f64 = 0.5;
 pub struct SpanningTrees {
     charges: Vec<f64>,
     prices: Vec<f64>,
+    /// The lesser of the two charged legs between every two targets, by rows.
+    edges: Vec<f64>,
 }
 
 /// A least tree with its two outer edges.
@@ -41,8 +43,10 @@ impl SpanningTrees {
     #[must_use]
     pub fn new(table: &PairTable) -> Self {
         let targets = table.targets();
+        let charges = entry_charges(table);
         let mut trees = Self {
-            charges: entry_charges(table),
+            edges: undirected(table, &charges),
+            charges,
             prices: vec![0.0; targets],
         };
         let all: Vec<usize> = (0..targets).collect();
@@ -100,7 +104,7 @@ impl SpanningTrees {
         while !outside.is_empty() {
             let mut nearest = 0;
             for (place, &other) in outside.iter().enumerate() {
-                let weight = self.edge(table, remaining[joined], remaining[other]);
+                let weight = self.edge(remaining[joined], remaining[other]);
                 if weight < link[other].0 {
                     link[other] = (weight, joined);
                 }
@@ -118,11 +122,19 @@ impl SpanningTrees {
     }
 
     /// Weight of an edge between two targets, s.
-    fn edge(&self, table: &PairTable, a: usize, b: usize) -> f64 {
-        let there = table.bound(a, b) - self.charges[b];
-        let back = table.bound(b, a) - self.charges[a];
-        there.min(back) + self.prices[a] + self.prices[b]
+    fn edge(&self, a: usize, b: usize) -> f64 {
+        self.edges[a * self.charges.len() + b] + self.prices[a] + self.prices[b]
     }
+}
+
+/// The lesser of the two charged legs between every two targets, by rows, s.
+fn undirected(table: &PairTable, charges: &[f64]) -> Vec<f64> {
+    let leg = |from: usize, to: usize| table.bound(from, to) - charges[to];
+    let targets = charges.len();
+    (0..targets * targets)
+        .map(|place| (place / targets, place % targets))
+        .map(|(a, b)| leg(a, b).min(leg(b, a)))
+        .collect()
 }
 
 /// The charges that make the table most nearly symmetric in the sense of least squares, s.

@@ -50,7 +50,7 @@ impl SubsetTable {
     /// Shortest path from a place through the remaining targets and to the end, s.
     #[must_use]
     pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
-        let set = remaining.iter().fold(0, |set, target| set | 1 << target);
+        let set = mask(remaining);
         if from < self.targets {
             self.rest[set * self.targets + from]
         } else {
@@ -58,12 +58,17 @@ impl SubsetTable {
         }
     }
 
-    /// A shortest order of all targets in the table.
+    /// A shortest order of the remaining targets in the table, seen from a place.
     #[must_use]
-    pub fn shortest_order(&self, table: &PairTable) -> Vec<usize> {
-        let mut from = table.start();
-        let mut set = (1 << self.targets) - 1;
-        let mut order = Vec::with_capacity(self.targets);
+    pub fn shortest_order(
+        &self,
+        table: &PairTable,
+        from: usize,
+        remaining: &[usize],
+    ) -> Vec<usize> {
+        let mut from = from;
+        let mut set = mask(remaining);
+        let mut order = Vec::with_capacity(remaining.len());
         while let Some((to, _)) = self.next(table, from, set) {
             order.push(to);
             set &= !(1 << to);
@@ -71,4 +76,9 @@ impl SubsetTable {
         }
         order
     }
+}
+
+/// The set of some targets.
+fn mask(targets: &[usize]) -> usize {
+    targets.iter().fold(0, |set, target| set | 1 << target)
 }

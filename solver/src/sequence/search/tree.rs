@@ -1,5 +1,6 @@
 //! The search tree: what is open, what is flown, what was given up and why.
 
+use crate::pool::SolverPool;
 use crate::sequence::frontier::Frontier;
 use crate::sequence::heuristics;
 use crate::sequence::incumbents::Incumbents;
@@ -20,7 +21,7 @@ pub(super) struct Tree {
     remainder: Remainder,
     frontier: Frontier,
     incumbents: Incumbents,
-    /// Orders evaluated before the search reached them: the duration, s, if they resolved.
+    /// Orders flown before the search reached them: the duration, s, if they resolved.
     candidates: BTreeMap<Vec<usize>, Option<f64>>,
     /// Smallest bound of what was ruled out, s: it cannot be among the best up to the gap.
     ruled_out_s: f64,
@@ -53,7 +54,7 @@ impl Tree {
         heuristics::candidates(&self.table, &self.remainder, stop)
     }
 
-    /// Takes in an order flown before the search.
+    /// Takes in an order flown before the search reached it.
     pub(super) fn record_candidate(&mut self, order: Vec<usize>, answer: TourEvaluation) {
         let duration = match answer {
             TourEvaluation::Stopped => return,
@@ -84,7 +85,12 @@ impl Tree {
     }
 
     /// Takes the next nodes to evaluate, expanding what is evaluated already.
-    pub(super) fn take_round(&mut self, size: u64, stop: &StopSignal) -> Vec<Node> {
+    pub(super) fn take_round(
+        &mut self,
+        size: u64,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) -> Vec<Node> {
         let mut round = Vec::new();
         // Expanding takes its time when there are many targets.
         while (round.len() as u64) < size && !stop.is_set() {
@@ -94,33 +100,47 @@ impl Tree {
             if self.is_leaf(&node) || !node.evaluated {
                 round.push(node);
             } else {
-                self.expand(&node);
+                self.expand(&node, pool);
             }
         }
         round
     }
 
+    /// The completion of an open node that is shortest in the table, unless it was tried already.
+    pub(super) fn probe(&self, node: &Node, stop: &StopSignal) -> Option<Vec<usize>> {
+        if self.is_leaf(node) {
+            return None;
+        }
+        let remaining = node.remaining(self.table.targets());
+        let order =
+            heuristics::complete(&self.table, &self.remainder, &node.prefix, &remaining, stop);
+        (!self.candidates.contains_key(&order)).then_some(order)
+    }
+
     /// Opens the children of a node.
-    fn expand(&mut self, parent: &Node) {
+    fn expand(&mut self, parent: &Node, pool: &SolverPool) {
         let remaining = parent.remaining(self.table.targets());
-        for &next in &remaining {
-            let mut left: Vec<usize> = remaining.iter().copied().filter(|&t| t != next).collect();
-            let mut child = Node {
-                prefix: parent.prefix.clone(),
-                evaluated: false,
-                ..*parent
-            };
-            self.append(&mut child, next);
-            // Where one target is left there is one order left: better flown than bounded.
-            if left.len() == 1 {
-                self.append(&mut child, left.remove(0));
-            }
-            let last = self.table.last_place(&child.prefix);
-            let rest = self.remainder.bound(&self.table, last, &left);
-            child.raise_head(child.head, rest);
+        for child in pool.map(&remaining, |&next| self.child(parent, next, &remaining)) {
             self.admit(child);
         }
         self.drop_excess();
+    }
+
+    /// The node with one more target, bounded by the pair table.
+    fn child(&self, parent: &Node, next: usize, remaining: &[usize]) -> Node {
+        let mut left: Vec<usize> = remaining.iter().copied().filter(|&t| t != next).collect();
+        let mut child = parent.clone();
+        self.append(&mut child, next);
+        // Where one target is left there is one order left: better flown than bounded.
+        if left.len() == 1 {
+            self.append(&mut child, left.remove(0));
+        }
+        // Of one leg from the given start the pair table knows all.
+        child.evaluated = child.prefix.len() == 1;
+        let last = self.table.last_place(&child.prefix);
+        let rest = self.remainder.bound(&self.table, last, &left);
+        child.raise_head(child.head, rest);
+        child
     }
 
     /// Fixes one more target by the pair table.
@@ -168,11 +188,11 @@ impl Tree {
     }
 
     /// Takes in the duration of a leaf.
-    pub(super) fn flown(&mut self, node: &Node, flown: FlownOrder) {
+    pub(super) fn flown(&mut self, node: &Node, duration_s: f64) {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
-        self.check(node, flown.duration_s);
-        self.offer(flown.order, flown.duration_s);
+        self.check(node, duration_s);
+        self.offer(node.prefix.clone(), duration_s);
     }
 
     /// Takes in that a leaf did not resolve.

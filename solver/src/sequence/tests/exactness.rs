@@ -2,8 +2,13 @@
 
 use super::{RandomModel, alternatives, pool, run};
 use crate::progress::Silent;
-use crate::sequence::{FlownOrder, SearchEnd, SearchResult, SearchSettings, exhaustive, search};
+use crate::sequence::{
+    Evaluation, FlownOrder, Place, SearchEnd, SearchResult, SearchSettings, TourEvaluation,
+    TourModel, exhaustive, search,
+};
 use crate::stop::StopSignal;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 fn orders_of(result: &SearchResult) -> Vec<FlownOrder> {
     result
@@ -128,4 +133,60 @@ fn more_alternatives_than_orders_list_them_all() {
     let result = run(&RandomModel::new(3, true, 2), &alternatives(50));
     assert!(result.complete);
     assert_eq!(result.alternatives.len(), 5);
+}
+
+/// Counts the flights and bounds of every order and prefix.
+struct Counted {
+    inner: RandomModel,
+    asked: Mutex<BTreeMap<Vec<usize>, u64>>,
+}
+
+impl Counted {
+    fn count(&self, places: &[usize]) {
+        let mut asked = self.asked.lock().expect("no thread panicked");
+        *asked.entry(places.to_vec()).or_default() += 1;
+    }
+}
+
+impl TourModel for Counted {
+    fn target_count(&self) -> usize {
+        self.inner.target_count()
+    }
+
+    fn has_end(&self) -> bool {
+        self.inner.has_end()
+    }
+
+    fn pair_bound(&self, from: Place, to: Place) -> f64 {
+        self.inner.pair_bound(from, to)
+    }
+
+    fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
+        self.count(prefix);
+        self.inner.prefix_bound(prefix)
+    }
+
+    fn tour(&self, order: &[usize]) -> TourEvaluation {
+        self.count(order);
+        self.inner.tour(order)
+    }
+}
+
+#[test]
+fn nothing_is_evaluated_twice_and_everything_is_counted() {
+    for targets in 0..9 {
+        let model = Counted {
+            inner: RandomModel::new(targets, true, 21),
+            asked: Mutex::default(),
+        };
+        let statistics = run(&model, &alternatives(4)).statistics;
+        let asked = model.asked.into_inner().expect("no thread panicked");
+        assert!(asked.values().all(|&times| times == 1));
+        let tours = asked
+            .keys()
+            .filter(|places| places.len() == targets)
+            .count() as u64;
+        assert_eq!(statistics.tours, tours);
+        assert_eq!(statistics.prefixes, asked.len() as u64 - tours);
+    }
 }

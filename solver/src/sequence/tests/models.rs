@@ -95,7 +95,7 @@ impl TourModel for RandomModel {
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
-        assert!(!prefix.is_empty() && prefix.len() < self.targets);
+        assert!(prefix.len() >= 2 && prefix.len() + 2 <= self.targets);
         if (self.fails)(prefix) {
             return Evaluation::Unresolved;
         }

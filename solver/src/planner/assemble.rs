@@ -1,0 +1,122 @@
+//! From solved segments to a flight that can be checked and flown.
+
+use super::tours::Tours;
+use crate::multiphase::Flown;
+use crate::plan::{Control, Flight, Leg, Passage};
+use crate::sequence::Place;
+use crate::slew::INTERVALS;
+use crate::slew::eigenaxis::EigenaxisSlew;
+use crate::slew::kinematic::Arrival;
+use std::sync::Arc;
+
+/// Intervals shorter than this share of the tour are joined to their neighbour: the torque in
+/// them is a quotient of two vanishing numbers.
+const SHORTEST: f64 = 1e-9;
+
+/// A flight under construction.
+struct Assembly<'a> {
+    tours: &'a Tours<'a>,
+    clock: f64,
+    shortest: f64,
+    controls: Vec<Control>,
+    passages: Vec<Passage>,
+    legs: Vec<Leg>,
+}
+
+/// Puts the solved segments of a route together, settle and dwell included.
+pub(super) fn assemble(tours: &Tours<'_>, route: &[Place], segments: &[Arc<Flown>]) -> (Flight, Vec<Leg>) {
+    let total: f64 = segments.iter().map(|flown| flown.profile.duration()).sum();
+    let mut assembly = Assembly {
+        tours,
+        clock: 0.0,
+        shortest: SHORTEST * total,
+        controls: Vec::new(),
+        passages: Vec::new(),
+        legs: Vec::new(),
+    };
+    for (places, flown) in tours.split(route).iter().zip(segments) {
+        for (leg, pair) in places.windows(2).enumerate() {
+            let begin = leg * INTERVALS;
+            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + INTERVALS);
+            assembly.visit(pair[1]);
+        }
+    }
+    let flight = Flight {
+        total_time_s: assembly.clock,
+        passages: assembly.passages,
+        controls: assembly.controls,
+    };
+    (flight, assembly.legs)
+}
+
+impl Assembly<'_> {
+    fn fly_leg(&mut self, from: Place, to: Place, flown: &Flown, range: std::ops::Range<usize>) {
+        let begin = self.clock;
+        let profile = &flown.profile;
+        let end = range.end;
+        let mut first = range.start;
+        for k in range {
+            let length: f64 = profile.lengths[first..=k].iter().sum();
+            let rest: f64 = profile.lengths[k + 1..end].iter().sum();
+            // Wait for a neighbour when this one, or all that is left, is too short to stand alone.
+            let last = k + 1 == end;
+            if !last && (length < self.shortest || rest < self.shortest) {
+                continue;
+            }
+            if length > 0.0 {
+                let change = &profile.wheels[k + 1] - &profile.wheels[first];
+                self.push(length, change.iter().map(|m| m / length));
+            }
+            first = k + 1;
+        }
+        let duration = self.clock - begin;
+        self.legs.push(Leg {
+            from: self.tours.places.name(from),
+            to: self.tours.places.name(to),
+            start_s: begin,
+            duration_s: duration,
+            certified_lower_bound_s: None,
+            eigenaxis_duration_s: self.eigenaxis_duration(from, to),
+            solver_status: flown.status.as_str().into(),
+        });
+    }
+
+    /// Records the arrival at a target and holds still there as long as it asks for.
+    fn visit(&mut self, place: Place) {
+        let Place::Target(index) = place else { return };
+        let target = &self.tours.places.scenario.targets()[index];
+        let arrival = self.clock;
+        let service = self.tours.places.service_time(place);
+        if service > 0.0 {
+            let wheels = self.tours.places.dynamics.wheel_count();
+            self.push(service, std::iter::repeat_n(0.0, wheels));
+        }
+        self.passages.push(Passage {
+            target: target.id.clone(),
+            time_s: arrival,
+            departure_s: self.clock,
+        });
+    }
+
+    fn push(&mut self, duration: f64, torques: impl Iterator<Item = f64>) {
+        let places = self.tours.places;
+        let mut wheel_torque_nm = vec![0.0; places.scenario.spacecraft().wheels().len()];
+        for (actuator, torque) in places.dynamics.actuators.iter().zip(torques) {
+            // The quotient of two rounded numbers may leave the limits by a rounding error.
+            wheel_torque_nm[actuator.index] = torque.clamp(actuator.min_torque, actuator.max_torque);
+        }
+        self.controls.push(Control { start_s: self.clock, duration_s: duration, wheel_torque_nm });
+        self.clock += duration;
+    }
+
+    fn eigenaxis_duration(&self, from: Place, to: Place) -> Option<f64> {
+        let places = self.tours.places;
+        let (from, to) = (places.waypoint(from).attitude, places.waypoint(to).attitude);
+        let to = match places.arrival {
+            Arrival::Rotation => to.nearest_sign(&from),
+            Arrival::Quaternion => to,
+        };
+        let slew = EigenaxisSlew::fastest(&places.dynamics, &from, &to, &places.null);
+        slew.flyable.then_some(slew.trapezoid.duration)
+    }
+}

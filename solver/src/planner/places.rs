@@ -1,0 +1,126 @@
+//! Start, targets and end as waypoints.
+
+use crate::dynamics::Dynamics;
+use crate::scenario::{RateCondition, Scenario};
+use crate::sequence::Place;
+use crate::slew::kinematic::Arrival;
+use crate::spec::AttitudeEquivalence;
+use crate::transcription::{Waypoint, WheelCondition};
+use nalgebra::{DVector, Vector3};
+
+/// The places of a scenario, seen by the slew solver.
+pub(super) struct Places<'a> {
+    /// The scenario.
+    pub(super) scenario: &'a Scenario,
+    /// Its dynamics.
+    pub(super) dynamics: Dynamics,
+    /// Which quaternion signs count as arrived.
+    pub(super) arrival: Arrival,
+    /// Null-space momentum of the wheels at the start, N m s: held by rest-to-rest legs.
+    pub(super) null: DVector<f64>,
+}
+
+impl<'a> Places<'a> {
+    pub(super) fn of(scenario: &'a Scenario) -> Self {
+        let dynamics = Dynamics::of(scenario);
+        let start = scenario.start();
+        let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
+        Self {
+            null: dynamics.null_component(&wheels),
+            arrival: match scenario.options().attitude_equivalence {
+                AttitudeEquivalence::Rotation => Arrival::Rotation,
+                AttitudeEquivalence::Quaternion => Arrival::Quaternion,
+            },
+            dynamics,
+            scenario,
+        }
+    }
+
+    /// Start, all targets, and the end where there is one.
+    pub(super) fn all(&self) -> Vec<Place> {
+        let targets = (0..self.scenario.targets().len()).map(Place::Target);
+        let end = self.scenario.end().map(|_| Place::End);
+        std::iter::once(Place::Start).chain(targets).chain(end).collect()
+    }
+
+    /// Identifier of a place.
+    pub(super) fn name(&self, place: Place) -> String {
+        match place {
+            Place::Start => "start".into(),
+            Place::Target(i) => self.scenario.targets()[i].id.clone(),
+            Place::End => "end".into(),
+        }
+    }
+
+    /// Settle and dwell time at a place, s.
+    pub(super) fn service_time(&self, place: Place) -> f64 {
+        match place {
+            Place::Target(i) => self.scenario.targets()[i].settle + self.scenario.targets()[i].dwell,
+            Place::Start | Place::End => 0.0,
+        }
+    }
+
+    /// A place with its own conditions.
+    pub(super) fn waypoint(&self, place: Place) -> Waypoint {
+        let wheels = |rate: &Vector3<f64>, speeds: &[f64]| {
+            WheelCondition::Fixed(self.dynamics.wheels_of_speeds(rate, speeds))
+        };
+        let fixed = |rate: &Vector3<f64>| [0, 1, 2].map(|i| RateCondition::Fixed(rate[i]));
+        match place {
+            Place::Start => {
+                let start = self.scenario.start();
+                Waypoint {
+                    attitude: start.attitude,
+                    rate: fixed(&start.rate),
+                    wheels: wheels(&start.rate, &start.wheel_speed),
+                }
+            }
+            Place::Target(i) => {
+                let target = &self.scenario.targets()[i];
+                Waypoint {
+                    attitude: target.attitude,
+                    rate: target.rate,
+                    wheels: WheelCondition::Free,
+                }
+            }
+            Place::End => {
+                let end = self.scenario.end().expect("an end is only asked for where there is one");
+                let speeds = end.wheel_speed.as_ref();
+                Waypoint {
+                    attitude: end.attitude,
+                    rate: fixed(&end.rate),
+                    wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
+                }
+            }
+        }
+    }
+
+    /// A place at full rest with the null-space momentum of the start.
+    pub(super) fn at_rest(&self, place: Place) -> Waypoint {
+        Waypoint {
+            attitude: self.waypoint(place).attitude,
+            rate: [RateCondition::Fixed(0.0); 3],
+            wheels: WheelCondition::NullSpace(self.null.clone()),
+        }
+    }
+
+    /// Whether a flown leg may be flown backwards as the leg between the same places exchanged.
+    ///
+    /// With zero momentum and no locked wheel turning, `(q, h, u)(t)` and `(q, -h, u)(T - t)` obey
+    /// the same equations and torque and speed limits; conditions on rates and null-space
+    /// momentum must not change under the sign.
+    pub(super) fn reversible(&self, ends: [&Waypoint; 2]) -> bool {
+        let symmetric_rate = |condition: &RateCondition| match condition {
+            RateCondition::Free => true,
+            RateCondition::Fixed(value) => *value == 0.0,
+            RateCondition::Within(low, high) => *low == -*high,
+        };
+        let symmetric_wheels = |condition: &WheelCondition| match condition {
+            WheelCondition::Free => true,
+            WheelCondition::NullSpace(h) | WheelCondition::Fixed(h) => h.iter().all(|h| *h == 0.0),
+        };
+        !self.dynamics.has_momentum()
+            && self.dynamics.locked_momentum == Vector3::zeros()
+            && ends.iter().all(|end| end.rate.iter().all(symmetric_rate) && symmetric_wheels(&end.wheels))
+    }
+}

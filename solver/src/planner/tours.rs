@@ -1,0 +1,185 @@
+//! What the order search asks of the slews: bounds and durations of tours.
+//!
+//! A waypoint that leaves nothing free separates the slews before and after it, so a tour falls
+//! into segments between such waypoints, each a multi-phase problem of its own. Segments recur in
+//! many orders and are remembered.
+
+use super::legs::LegTable;
+use super::places::Places;
+use crate::multiphase::{Flown, fly};
+use crate::nlp::NlpStatus;
+use crate::profile::Profile;
+use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
+use crate::slew::INTERVALS;
+use crate::slew::eigenaxis::EigenaxisSlew;
+use crate::slew::kinematic::Arrival;
+use crate::stop::StopSignal;
+use crate::transcription::Waypoint;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Tours over solved tables of legs.
+pub(super) struct Tours<'a> {
+    pub(super) places: &'a Places<'a>,
+    /// Rest-to-rest legs: starting guesses.
+    pub(super) rest: &'a LegTable,
+    /// Legs with free ends: bounds.
+    pub(super) free: &'a LegTable,
+    pub(super) stop: &'a StopSignal,
+    pub(super) solves: AtomicU64,
+    segments: Mutex<HashMap<Vec<Place>, Arc<Flown>>>,
+}
+
+impl<'a> Tours<'a> {
+    pub(super) fn new(
+        places: &'a Places<'a>,
+        rest: &'a LegTable,
+        free: &'a LegTable,
+        stop: &'a StopSignal,
+    ) -> Self {
+        Self { places, rest, free, stop, solves: AtomicU64::new(0), segments: Mutex::default() }
+    }
+
+    /// The places of an order, start included and, for whole tours, the end.
+    pub(super) fn route(&self, order: &[usize], whole: bool) -> Vec<Place> {
+        let end = (whole && self.has_end()).then_some(Place::End);
+        let targets = order.iter().map(|i| Place::Target(*i));
+        std::iter::once(Place::Start).chain(targets).chain(end).collect()
+    }
+
+    /// The segments of a route, each solved; shorter than the route when one did not converge or
+    /// the solve was stopped.
+    pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<Flown>> {
+        let mut flown = Vec::new();
+        for segment in self.split(route) {
+            let solved = self.segment(segment);
+            let status = solved.status;
+            flown.push(solved);
+            if status != NlpStatus::Converged {
+                break;
+            }
+        }
+        flown
+    }
+
+    /// Cuts a route at every waypoint that leaves nothing free.
+    pub(super) fn split<'r>(&self, route: &'r [Place]) -> Vec<&'r [Place]> {
+        let mut segments = Vec::new();
+        let mut begin = 0;
+        for (i, place) in route.iter().enumerate().skip(1) {
+            let last = i + 1 == route.len();
+            if last || self.places.waypoint(*place).is_fixed(&self.places.dynamics) {
+                segments.push(&route[begin..=i]);
+                begin = i;
+            }
+        }
+        segments
+    }
+
+    fn segment(&self, route: &[Place]) -> Arc<Flown> {
+        if let [from, to] = route
+            && let Some(leg) = self.free.get(*from, *to)
+        {
+            return Arc::new(leg.flown.clone());
+        }
+        let known = self.segments.lock().unwrap_or_else(PoisonError::into_inner).get(route).cloned();
+        known.unwrap_or_else(|| {
+            let flown = Arc::new(self.solve_segment(route));
+            if flown.status != NlpStatus::Stopped {
+                let mut segments = self.segments.lock().unwrap_or_else(PoisonError::into_inner);
+                segments.insert(route.to_vec(), Arc::clone(&flown));
+            }
+            flown
+        })
+    }
+
+    fn solve_segment(&self, route: &[Place]) -> Flown {
+        let attempts: [&dyn Fn(Place, Place) -> Option<Profile>; 2] =
+            [&|from, to| self.solved_leg(from, to), &|_, _| None];
+        let mut last = None;
+        for guess_of in attempts {
+            let flown = self.solve_from(route, guess_of);
+            if matches!(flown.status, NlpStatus::Converged | NlpStatus::Stopped) {
+                return flown;
+            }
+            last = Some(flown);
+        }
+        last.expect("at least one attempt")
+    }
+
+    /// The rest-to-rest leg, when it could be solved.
+    fn solved_leg(&self, from: Place, to: Place) -> Option<Profile> {
+        let leg = self.rest.get(from, to)?;
+        (leg.flown.status == NlpStatus::Converged).then(|| leg.flown.profile.clone())
+    }
+
+    /// Solves a segment from legs joined end to end; legs that are not there are guessed by
+    /// eigenaxis slews.
+    fn solve_from(&self, route: &[Place], leg: &dyn Fn(Place, Place) -> Option<Profile>) -> Flown {
+        let mut guess = Profile::empty();
+        let mut waypoints = vec![self.places.waypoint(route[0])];
+        for pair in route.windows(2) {
+            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
+            let next = leg(pair[0], pair[1]).unwrap_or_else(|| self.eigenaxis(&from, &to));
+            guess.append(&next);
+            let mut arrived = to;
+            if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), self.places.arrival) {
+                arrived.attitude = arrived.attitude.nearest_sign(last);
+            }
+            waypoints.push(arrived);
+        }
+        self.solves.fetch_add(1, Ordering::Relaxed);
+        let intervals = vec![INTERVALS; route.len() - 1];
+        fly(&self.places.dynamics, &waypoints, &intervals, &guess, &|| self.stop.is_set())
+    }
+
+    fn eigenaxis(&self, from: &Waypoint, to: &Waypoint) -> Profile {
+        let target = match self.places.arrival {
+            Arrival::Rotation => to.attitude.nearest_sign(&from.attitude),
+            Arrival::Quaternion => to.attitude,
+        };
+        let Places { dynamics, null, .. } = self.places;
+        EigenaxisSlew::fastest(dynamics, &from.attitude, &target, null).profile(dynamics, INTERVALS)
+    }
+
+    /// Duration of a route with settle and dwell, or how its solve failed.
+    fn duration(&self, route: &[Place]) -> Result<f64, NlpStatus> {
+        let mut total: f64 = route.iter().map(|place| self.places.service_time(*place)).sum();
+        for flown in self.fly_route(route) {
+            total += flown.duration().ok_or(flown.status)?;
+        }
+        Ok(total)
+    }
+}
+
+impl TourModel for Tours<'_> {
+    fn target_count(&self) -> usize {
+        self.places.scenario.targets().len()
+    }
+
+    fn has_end(&self) -> bool {
+        self.places.scenario.end().is_some()
+    }
+
+    fn pair_bound(&self, from: Place, to: Place) -> f64 {
+        let leg = self.free.get(from, to).and_then(|leg| leg.flown.duration());
+        leg.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
+    }
+
+    fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
+        match self.duration(&self.route(prefix, false)) {
+            Ok(duration) => Evaluation::Value(duration),
+            Err(NlpStatus::Stopped) => Evaluation::Stopped,
+            Err(_) => Evaluation::Unresolved,
+        }
+    }
+
+    fn tour(&self, order: &[usize]) -> TourEvaluation {
+        match self.duration(&self.route(order, true)) {
+            Ok(duration) => TourEvaluation::Flown(duration),
+            Err(NlpStatus::Stopped) => TourEvaluation::Stopped,
+            Err(_) => TourEvaluation::Unresolved,
+        }
+    }
+}

@@ -9,14 +9,17 @@ use slewplan_solver::spec::{
     AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
 
-/// Reads and validates a scenario.
+/// Reads and validates a scenario; a time limit of the caller, s, replaces its own.
 ///
 /// # Errors
 ///
 /// Everything that is wrong with it.
-pub(crate) fn read(bytes: &[u8]) -> Result<Validated, Vec<Problem>> {
+pub(crate) fn read(bytes: &[u8], time_limit_s: Option<f64>) -> Result<Validated, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
-    let (spec, mut problems) = decode(&node);
+    let (mut spec, mut problems) = decode(&node);
+    if time_limit_s.is_some() {
+        spec.options.time_limit_s = time_limit_s;
+    }
     match Scenario::try_new(&spec) {
         Ok(validated) if problems.is_empty() => Ok(validated),
         Ok(_) => Err(problems),

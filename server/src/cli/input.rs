@@ -52,9 +52,9 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a valid scenario.
-pub(super) fn scenario(path: &Path) -> Result<Validated, Failure> {
-    wire::scenario::read(&read(path)?).map_err(|problems| Failure::Invalid {
+/// Reads a valid scenario; a time limit from the command line, s, replaces its own.
+pub(super) fn scenario(path: &Path, time_limit_s: Option<f64>) -> Result<Validated, Failure> {
+    wire::scenario::read(&read(path)?, time_limit_s).map_err(|problems| Failure::Invalid {
         name: name(path),
         problems,
     })

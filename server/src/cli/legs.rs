@@ -80,7 +80,7 @@ impl FromStr for ShardArgument {
 /// Solves the legs and writes the table.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
-    let scenario = input::scenario(&arguments.scenario)?.scenario;
+    let scenario = input::scenario(&arguments.scenario, None)?.scenario;
     let obstacles = planner::feasibility_problems(&scenario);
     if !obstacles.is_empty() {
         for obstacle in &obstacles {

@@ -74,6 +74,8 @@ fn temporary_beside(path: &Path) -> io::Result<(NamedTempFile, PathBuf)> {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
+    // Asked first, because its error is the plain one of the operating system.
+    fs::metadata(folder)?;
     let file = tempfile::Builder::new()
         .prefix(".slewplan-")
         // What any new file gets: the umask of the caller decides.

@@ -29,7 +29,7 @@ enum Format {
 /// Prints the findings on standard output.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = input::name(&arguments.scenario);
-    let (errors, warnings) = match wire::scenario::read(&input::read(&arguments.scenario)?) {
+    let (errors, warnings) = match wire::scenario::read(&input::read(&arguments.scenario)?, None) {
         Ok(valid) => (
             planner::feasibility_problems(&valid.scenario),
             valid.warnings,

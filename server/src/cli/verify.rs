@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
         return Err(Failure::StandardInputTwice);
     }
-    let valid = input::scenario(&arguments.scenario)?;
+    let valid = input::scenario(&arguments.scenario, None)?;
     let flight = wire::flight::read(&input::read(&arguments.plan)?, &valid.scenario).map_err(
         |problems| Failure::Invalid {
             name: input::name(&arguments.plan),

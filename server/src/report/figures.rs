@@ -1,5 +1,6 @@
 //! Blocks of figures that several reports share.
 
+use slewplan_solver::checker::NOT_COMPUTED;
 use slewplan_solver::plan::{Margins, Verification};
 use slewplan_solver::problem::Problem;
 use std::fmt::{Display, Write};
@@ -15,15 +16,18 @@ pub(super) fn verification(found: &Verification) -> String {
     let mut text = line(
         "verification",
         format_args!(
-            "{verdict}: attitude error {:.1e} rad, rate error {:.1e} rad/s",
-            found.max_attitude_error_rad, found.max_rate_error_rad_s
+            "{verdict}: attitude error {} rad, rate error {} rad/s",
+            error(found.max_attitude_error_rad),
+            error(found.max_rate_error_rad_s)
         ),
     );
     text += &line(
         "",
         format_args!(
-            "limits exceeded by (relative): torque {:.1e}, wheel speed {:.1e}, body rate {:.1e}",
-            found.max_torque_excess, found.max_wheel_speed_excess, found.max_rate_excess
+            "limits exceeded by (relative): torque {}, wheel speed {}, body rate {}",
+            error(found.max_torque_excess),
+            error(found.max_wheel_speed_excess),
+            error(found.max_rate_excess)
         ),
     );
     text += &line("", format_args!("flown again by {}", found.integrator));
@@ -33,13 +37,20 @@ pub(super) fn verification(found: &Verification) -> String {
     text
 }
 
+fn error(value: f64) -> String {
+    if value >= NOT_COMPUTED {
+        "not computed".to_owned()
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
 /// What is left of every limit.
 pub(super) fn margins(margins: &Margins) -> String {
-    let share = |value: Option<f64>| {
-        value.map_or_else(
-            || "unlimited".to_owned(),
-            |value| format!("{:.1} %", value * 100.0),
-        )
+    let share = |value: Option<f64>| match value {
+        None => "unlimited".to_owned(),
+        Some(value) if value <= -NOT_COMPUTED => "not computed".to_owned(),
+        Some(value) => format!("{:.1} %", value * 100.0),
     };
     let mut text = line(
         "margins",
@@ -97,4 +108,20 @@ pub(super) fn reasons(problems: &[Problem]) -> String {
 /// A number of things in English.
 pub(super) fn count(number: usize, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_computed_is_said_in_words() {
+        assert_eq!(error(NOT_COMPUTED), "not computed");
+        assert_eq!(error(2.5e-9), "2.5e-9");
+        let broken = Margins {
+            torque: -NOT_COMPUTED,
+            ..Margins::default()
+        };
+        assert!(margins(&broken).contains("torque not computed, wheel speed unlimited"));
+    }
 }

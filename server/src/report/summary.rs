@@ -139,9 +139,9 @@ fn work(plan: &Plan) -> String {
     line(
         "work",
         format_args!(
-            "{:.2} s on {} threads: {} nodes, {} NLPs, {} legs solved and {} from the cache",
+            "{:.2} s on {}: {} nodes, {} NLPs, {} legs solved and {} from the cache",
             work.wall_time_s,
-            work.threads,
+            count(work.threads, "thread"),
             work.nodes_explored,
             work.nlp_solves,
             work.legs_solved,

@@ -9,14 +9,17 @@ use slewplan_solver::spec::{
     AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
 
-/// Reads and validates a scenario.
+/// Reads and validates a scenario; a time limit of the caller, s, replaces its own.
 ///
 /// # Errors
 ///
 /// Everything that is wrong with it.
-pub(crate) fn read(bytes: &[u8]) -> Result<Validated, Vec<Problem>> {
+pub(crate) fn read(bytes: &[u8], time_limit_s: Option<f64>) -> Result<Validated, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
-    let (spec, mut problems) = decode(&node);
+    let (mut spec, mut problems) = decode(&node);
+    if time_limit_s.is_some() {
+        spec.options.time_limit_s = time_limit_s;
+    }
     match Scenario::try_new(&spec) {
         Ok(validated) if problems.is_empty() => Ok(validated),
         Ok(_) => Err(problems),
@@ -37,23 +40,41 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
     let replaced: Vec<&str> = shape
         .iter()
         .filter(|p| !matches!(p.code, Code::UnknownField | Code::DuplicateField))
-        .map(|p| p.pointer.as_str())
+        .map(|p| match p.pointer.as_str() {
+            "/spacecraft/ref" => "/spacecraft",
+            pointer => pointer,
+        })
         .collect();
     let any_related = |place| {
         replaced
             .iter()
             .any(|p| contains(p, place) || contains(place, p))
     };
-    any_related(&found.pointer)
-        || match found.code {
-            // One entry per wheel, and nobody knows how many wheels were meant.
-            Code::WrongLength => replaced
-                .iter()
-                .any(|p| *p == "/spacecraft/ref" || contains(p, "/spacecraft/wheels")),
-            Code::UnknownReference => any_related("/spacecraft/boresights"),
-            Code::EndMomentumInconsistent => !replaced.is_empty(),
-            _ => false,
+    match found.code {
+        // The substitute for a list of wheels has enough of them.
+        Code::TooFewWheels => false,
+        Code::WheelAxesCoplanar => replaced
+            .iter()
+            .any(|p| contains("/spacecraft/wheels", p) && loses_the_axis(p)),
+        // One entry per wheel, and nobody knows how many wheels were meant.
+        Code::WrongLength => {
+            any_related(&found.pointer)
+                || replaced.iter().any(|p| contains(p, "/spacecraft/wheels"))
         }
+        Code::UnknownReference => {
+            any_related(&found.pointer) || any_related("/spacecraft/boresights")
+        }
+        Code::EndMomentumInconsistent => !replaced.is_empty(),
+        // A locked wheel must end as it starts.
+        Code::ConflictingFields => any_related(&found.pointer) || any_related("/start"),
+        _ => any_related(&found.pointer),
+    }
+}
+
+/// Whether a place in the list of wheels is an axis, in one, or a whole wheel.
+fn loses_the_axis(pointer: &str) -> bool {
+    let mut parts = pointer.split('/').skip(4);
+    parts.next().is_none_or(|member| member == "axis")
 }
 
 /// Whether one place is the other or lies around it.
@@ -80,9 +101,15 @@ fn decode(node: &Node) -> (ScenarioSpec, Vec<Problem>) {
     ];
     let spec = Cursor::root(node, &sink)
         .object(known)
-        .map(|fields| scenario(&fields))
-        .unwrap_or_default();
+        .map_or_else(substitute, |fields| scenario(&fields));
     (spec, sink.into_problems())
+}
+
+fn substitute() -> ScenarioSpec {
+    ScenarioSpec {
+        spacecraft: spacecraft::substitute(),
+        ..ScenarioSpec::default()
+    }
 }
 
 fn scenario(fields: &Fields<'_>) -> ScenarioSpec {
@@ -376,6 +403,20 @@ mod tests {
         assert!(!follows("/start/wheel_speed_rad_s", Code::WrongLength));
         assert!(!follows("/spacecraft/wheels/10", Code::TorqueLimits));
         assert!(!follows("/targets/0", Code::DuplicateId));
+    }
+
+    #[test]
+    fn a_damaged_wheel_does_not_hide_that_there_are_too_few_or_coplanar_ones() {
+        let shape = [Problem::new(
+            "/spacecraft/wheels/0/inertia_kg_m2",
+            Code::MissingField,
+            "",
+            "",
+        )];
+        for code in [Code::TooFewWheels, Code::WheelAxesCoplanar] {
+            let found = Problem::new("/spacecraft/wheels", code, "", "");
+            assert!(!follows_from_a_substitute(&found, &shape), "{code}");
+        }
     }
 
     #[test]

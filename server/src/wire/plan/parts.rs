@@ -112,42 +112,38 @@ impl From<&State> for StateDocument {
     }
 }
 
-/// What is left of every limit. A flight that leaves all numbers behind has no figures: `null`.
+/// What is left of every limit.
 #[derive(Debug, Serialize)]
 pub(crate) struct MarginsDocument {
-    torque: Option<Number>,
+    torque: Number,
     wheel_speed: Option<Number>,
     body_rate: Option<Number>,
     wheel_zero_crossings: Vec<u32>,
-    keep_out_clearance_deg: Vec<Option<Number>>,
+    keep_out_clearance_deg: Vec<Number>,
 }
 
 impl From<&Margins> for MarginsDocument {
     fn from(margins: &Margins) -> Self {
         Self {
-            torque: Number::finite(margins.torque),
-            wheel_speed: margins.wheel_speed.and_then(Number::finite),
-            body_rate: margins.body_rate.and_then(Number::finite),
+            torque: Number(margins.torque),
+            wheel_speed: margins.wheel_speed.map(Number),
+            body_rate: margins.body_rate.map(Number),
             wheel_zero_crossings: margins.wheel_zero_crossings.clone(),
-            keep_out_clearance_deg: margins
-                .keep_out_clearance_deg
-                .iter()
-                .copied()
-                .map(Number::finite)
-                .collect(),
+            keep_out_clearance_deg: Number::all(&margins.keep_out_clearance_deg),
         }
     }
 }
 
-/// The re-integration. A flight that leaves all numbers behind has no figures: `null`.
+/// The re-integration. Figures that could not be computed are very large, never `null`: in many
+/// languages `null` is below any tolerance.
 #[derive(Debug, Serialize)]
 pub(crate) struct VerificationDocument<'a> {
     passed: bool,
-    max_attitude_error_rad: Option<Number>,
-    max_rate_error_rad_s: Option<Number>,
-    max_wheel_speed_excess: Option<Number>,
-    max_torque_excess: Option<Number>,
-    max_rate_excess: Option<Number>,
+    max_attitude_error_rad: Number,
+    max_rate_error_rad_s: Number,
+    max_wheel_speed_excess: Number,
+    max_torque_excess: Number,
+    max_rate_excess: Number,
     integrator: &'a str,
     failures: &'a [String],
 }
@@ -156,11 +152,11 @@ impl<'a> From<&'a Verification> for VerificationDocument<'a> {
     fn from(found: &'a Verification) -> Self {
         Self {
             passed: found.passed,
-            max_attitude_error_rad: Number::finite(found.max_attitude_error_rad),
-            max_rate_error_rad_s: Number::finite(found.max_rate_error_rad_s),
-            max_wheel_speed_excess: Number::finite(found.max_wheel_speed_excess),
-            max_torque_excess: Number::finite(found.max_torque_excess),
-            max_rate_excess: Number::finite(found.max_rate_excess),
+            max_attitude_error_rad: Number(found.max_attitude_error_rad),
+            max_rate_error_rad_s: Number(found.max_rate_error_rad_s),
+            max_wheel_speed_excess: Number(found.max_wheel_speed_excess),
+            max_torque_excess: Number(found.max_torque_excess),
+            max_rate_excess: Number(found.max_rate_excess),
             integrator: &found.integrator,
             failures: &found.failures,
         }

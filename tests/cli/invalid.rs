@@ -1,0 +1,372 @@
+//! Input of every bad kind: all problems at once, with pointer, code and hint, exit code 2.
+
+use crate::refusals::expect_refused;
+use crate::run::{fixture_json, slewplan, slewplan_fed};
+use serde_json::{Value, json};
+
+/// The two-target fixture with some values replaced, each named by its pointer.
+fn with(changes: &[(&str, Value)]) -> Vec<u8> {
+    let mut scenario = fixture_json("two-targets.json");
+    for (pointer, value) in changes {
+        let (parent, name) = pointer
+            .rsplit_once('/')
+            .expect("a pointer below the document");
+        let parent = scenario.pointer_mut(parent).expect("the parent exists");
+        match parent {
+            Value::Array(items) => items[name.parse::<usize>().expect("an index")] = value.clone(),
+            _ => parent[name] = value.clone(),
+        }
+    }
+    scenario.to_string().into_bytes()
+}
+
+/// The two-target fixture without a member.
+fn without(pointer: &str) -> Vec<u8> {
+    let mut scenario = fixture_json("two-targets.json");
+    let (parent, name) = pointer
+        .rsplit_once('/')
+        .expect("a pointer below the document");
+    let parent = scenario.pointer_mut(parent).expect("the parent exists");
+    parent
+        .as_object_mut()
+        .expect("an object")
+        .remove(name)
+        .expect("the member exists");
+    scenario.to_string().into_bytes()
+}
+
+/// The text of the two-target fixture with a number replaced by other text.
+fn with_text(number: &str, replacement: &str) -> Vec<u8> {
+    let text = fixture_json("two-targets.json").to_string();
+    assert!(text.contains(number));
+    text.replacen(number, replacement, 1).into_bytes()
+}
+
+#[test]
+fn documents_that_are_not_json() {
+    let nested = "[".repeat(100_000);
+    for text in [
+        "",
+        "  ",
+        "{",
+        "nonsense",
+        "{\"name\": \"x\",}",
+        "[1 2]",
+        "{} {}",
+        &nested,
+    ] {
+        expect_refused(text.as_bytes(), &[("", "malformed_json")]);
+    }
+    expect_refused(b"\xff\xfe{}", &[("", "malformed_json")]);
+    expect_refused(b"{\"name\": \"\xff\"}", &[("", "malformed_json")]);
+}
+
+#[test]
+fn malformed_json_names_line_and_column() {
+    let ended = slewplan_fed(&["solve", "-"], b"{\n  \"name\": NaN\n}").expect_code(2);
+    assert!(
+        ended.stderr.contains("line 2, column 11"),
+        "{}",
+        ended.stderr
+    );
+    assert!(ended.stderr.contains("JSON has no NaN"), "{}", ended.stderr);
+}
+
+#[test]
+fn numbers_that_json_does_not_have() {
+    for number in [
+        "NaN",
+        "Infinity",
+        "-Infinity",
+        "1e400",
+        "-1e400",
+        "0x10",
+        "+1",
+    ] {
+        expect_refused(&with_text("6.63", number), &[("", "malformed_json")]);
+    }
+}
+
+#[test]
+fn documents_of_another_kind() {
+    for text in ["[]", "null", "3", "\"text\""] {
+        expect_refused(text.as_bytes(), &[("", "wrong_type")]);
+    }
+    expect_refused(
+        b"{}",
+        &[
+            ("/spacecraft", "missing_field"),
+            ("/start", "missing_field"),
+            ("/targets", "missing_field"),
+        ],
+    );
+}
+
+#[test]
+fn text_where_a_number_belongs() {
+    let place = "/spacecraft/inertia_kg_m2/0/0";
+    expect_refused(&with(&[(place, json!("NaN"))]), &[(place, "wrong_type")]);
+    let place = "/targets/0/attitude/roll_pitch_yaw_deg/2";
+    expect_refused(&with(&[(place, json!(null))]), &[(place, "wrong_type")]);
+}
+
+#[test]
+fn missing_fields() {
+    for place in [
+        "/spacecraft",
+        "/spacecraft/inertia_kg_m2",
+        "/spacecraft/wheels",
+        "/start",
+        "/start/attitude",
+        "/targets",
+        "/targets/0/id",
+        "/targets/1/attitude",
+        "/keep_out/0/half_angle_deg",
+    ] {
+        let expected: &[(&str, &str)] = &[(place, "missing_field")];
+        expect_refused(&without(place), expected);
+    }
+}
+
+#[test]
+fn missing_wheel_fields() {
+    for name in ["axis", "inertia_kg_m2", "max_torque_nm"] {
+        let place = format!("/spacecraft/wheels/1/{name}");
+        expect_refused(&without(&place), &[(&place, "missing_field")]);
+    }
+}
+
+#[test]
+fn unknown_fields_come_with_a_proposal() {
+    let scenario = with(&[("/spacecraft/wheels/0/max_sped_rad_s", json!(1.0))]);
+    expect_refused(
+        &scenario,
+        &[("/spacecraft/wheels/0/max_sped_rad_s", "unknown_field")],
+    );
+    let told = slewplan_fed(&["validate", "-"], &scenario).stdout;
+    assert!(told.contains("did you mean \"max_speed_rad_s\"?"), "{told}");
+}
+
+#[test]
+fn pointers_of_unknown_fields_are_escaped() {
+    let scenario = fixture_json("two-targets.json").to_string();
+    let scenario = scenario.replacen('{', r#"{"a/b~c": 1, "#, 1);
+    expect_refused(scenario.as_bytes(), &[("/a~1b~0c", "unknown_field")]);
+}
+
+#[test]
+fn the_same_key_twice() {
+    let scenario = fixture_json("two-targets.json").to_string();
+    let scenario = scenario.replacen('{', r#"{"name": "first", "#, 1);
+    expect_refused(scenario.as_bytes(), &[("/name", "duplicate_field")]);
+}
+
+#[test]
+fn choices_and_lengths() {
+    let cases = [
+        (
+            "/options",
+            json!({"attitude_equivalence": "both"}),
+            "/attitude_equivalence",
+            "unknown_choice",
+        ),
+        (
+            "/options",
+            json!({"node_limit": -1}),
+            "/node_limit",
+            "wrong_type",
+        ),
+        (
+            "/options",
+            json!({"node_limit": 1.5}),
+            "/node_limit",
+            "wrong_type",
+        ),
+        (
+            "/targets/0/zero_rate_axes",
+            json!(["z", "w"]),
+            "/1",
+            "unknown_choice",
+        ),
+        (
+            "/targets/0/attitude/roll_pitch_yaw_deg",
+            json!([1, 2]),
+            "",
+            "wrong_length",
+        ),
+        (
+            "/spacecraft/inertia_kg_m2",
+            json!([[1, 0, 0], [0, 1, 0]]),
+            "",
+            "wrong_length",
+        ),
+        (
+            "/start/wheel_speed_rad_s",
+            json!([0, 0]),
+            "",
+            "wrong_length",
+        ),
+    ];
+    for (place, value, below, code) in cases {
+        expect_refused(
+            &with(&[(place, value)]),
+            &[(&format!("{place}{below}"), code)],
+        );
+    }
+}
+
+#[test]
+fn impossible_inertia() {
+    let place = "/spacecraft/inertia_kg_m2";
+    let cases = [
+        (
+            json!([[-6.63, 0, 0], [0, 8.9, 0], [0, 0, 9.63]]),
+            "inertia_not_positive",
+        ),
+        (json!([[1, 0, 0], [0, 1, 0], [0, 0, 3]]), "inertia_triangle"),
+        (
+            json!([[6.63, 1, 0], [0, 8.9, 0], [0, 0, 9.63]]),
+            "inertia_not_symmetric",
+        ),
+    ];
+    for (value, code) in cases {
+        expect_refused(&with(&[(place, value)]), &[(place, code)]);
+    }
+}
+
+#[test]
+fn impossible_wheels() {
+    let wheels = "/spacecraft/wheels";
+    let mut two = fixture_json("two-targets.json");
+    two["spacecraft"]["wheels"]
+        .as_array_mut()
+        .expect("a list")
+        .pop();
+    two["start"]["wheel_speed_rad_s"] = json!([0, 0]);
+    expect_refused(two.to_string().as_bytes(), &[(wheels, "too_few_wheels")]);
+
+    let disabled = with(&[("/spacecraft/wheels/2/enabled", json!(false))]);
+    expect_refused(&disabled, &[(wheels, "too_few_wheels")]);
+
+    let coplanar = with(&[("/spacecraft/wheels/2/axis", json!([1, 1, 0]))]);
+    expect_refused(&coplanar, &[(wheels, "wheel_axes_coplanar")]);
+
+    let zero = with(&[("/spacecraft/wheels/2/axis", json!([0, 0, 0]))]);
+    expect_refused(&zero, &[("/spacecraft/wheels/2/axis", "zero_direction")]);
+
+    let place = "/spacecraft/wheels/0/max_torque_nm";
+    expect_refused(&with(&[(place, json!(-0.01))]), &[(place, "torque_limits")]);
+}
+
+#[test]
+fn a_wheel_beyond_its_limit() {
+    let place = "/start/wheel_speed_rad_s/1";
+    expect_refused(
+        &with(&[(place, json!(-710.5))]),
+        &[(place, "wheel_speed_limit")],
+    );
+}
+
+#[test]
+fn impossible_attitudes() {
+    let place = "/targets/0/attitude";
+    let zero = json!({"quaternion": {"x": 0, "y": 0, "z": 0, "w": 0}});
+    let long = json!({"quaternion": {"x": 0, "y": 0, "z": 0, "w": 1.1}});
+    let both = json!({"mrp": [0, 0, 0], "roll_pitch_yaw_deg": [0, 0, 0]});
+    let sheared = json!({"matrix": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]});
+    let cases = [
+        (zero, "/quaternion", "quaternion_norm"),
+        (long, "/quaternion", "quaternion_norm"),
+        (both, "", "attitude_form"),
+        (json!({}), "", "attitude_form"),
+        (sheared, "/matrix", "matrix_not_rotation"),
+    ];
+    for (attitude, below, code) in cases {
+        expect_refused(
+            &with(&[(place, attitude)]),
+            &[(&format!("{place}{below}"), code)],
+        );
+    }
+}
+
+#[test]
+fn names_that_clash_or_refer_to_nothing() {
+    expect_refused(
+        &with(&[("/targets/1/id", json!("a"))]),
+        &[("/targets/1/id", "duplicate_id")],
+    );
+    expect_refused(
+        &with(&[("/keep_out/0/boresight", json!("radar"))]),
+        &[("/keep_out/0/boresight", "unknown_reference")],
+    );
+    expect_refused(
+        &with(&[("/spacecraft", json!({"ref": "stored"}))]),
+        &[("/spacecraft/ref", "unknown_reference")],
+    );
+}
+
+#[test]
+fn everything_that_is_wrong_is_said_at_once() {
+    let scenario = with(&[
+        ("/colour", json!("red")),
+        ("/spacecraft/inertia_kg_m2/0/0", json!(-1)),
+        ("/spacecraft/wheels/1/inertia_kg_m2", json!("heavy")),
+        ("/spacecraft/wheels/2/axis", json!([1, 1, 0])),
+        (
+            "/start/attitude",
+            json!({"quaternion": {"x": 0, "y": 0, "z": 0, "w": 0}}),
+        ),
+        ("/start/wheel_speed_rad_s/0", json!(1000)),
+        (
+            "/targets/0/attitude",
+            json!({"mrp": [0, 0, 0], "roll_pitch_yaw_deg": [0, 0, 0]}),
+        ),
+        ("/targets/1/id", json!("a")),
+    ]);
+    expect_refused(
+        &scenario,
+        &[
+            ("/colour", "unknown_field"),
+            ("/spacecraft/inertia_kg_m2", "inertia_not_positive"),
+            ("/spacecraft/wheels/1/inertia_kg_m2", "wrong_type"),
+            ("/spacecraft/wheels", "wheel_axes_coplanar"),
+            ("/start/attitude/quaternion", "quaternion_norm"),
+            ("/start/wheel_speed_rad_s/0", "wheel_speed_limit"),
+            ("/targets/0/attitude", "attitude_form"),
+            ("/targets/1/id", "duplicate_id"),
+        ],
+    );
+}
+
+#[test]
+fn arguments_that_do_not_exist() {
+    let scenario = crate::run::fixture("two-targets.json");
+    for arguments in [
+        &["solve", &scenario, "--format", "aem-kvn"][..],
+        &["solve", &scenario, "--threads", "0"],
+        &["solve", &scenario, "--time-limit", "-1"],
+        &["solve", &scenario, "--progress", "loud"],
+        &["legs", &scenario, "--kind", "certified"],
+        &["legs", &scenario, "--shard", "3/2"],
+        &["solve"],
+        &["fly", &scenario],
+        &["validate", &scenario, "--colour"],
+    ] {
+        let ended = slewplan(arguments).expect_code(2);
+        assert!(ended.stderr.contains("error: "), "{ended:?}");
+    }
+}
+
+#[test]
+fn a_scenario_that_cannot_be_read() {
+    for command in ["solve", "legs", "validate"] {
+        for path in ["no/such/file.json", "/"] {
+            let ended = slewplan(&[command, path]).expect_code(2);
+            assert!(
+                ended.stderr.contains(&format!("cannot read {path}: ")),
+                "{ended:?}"
+            );
+            assert_eq!(ended.stderr.lines().count(), 1, "{ended:?}");
+        }
+    }
+}

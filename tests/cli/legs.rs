@@ -1,0 +1,112 @@
+//! `slewplan legs`.
+
+use crate::run::{fixture, slewplan};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+fn rows(table: &Value) -> BTreeSet<(String, String)> {
+    let end = |row: &Value, name: &str| row[name].as_str().expect("a text").to_owned();
+    table["legs"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|row| (end(row, "from"), end(row, "to")))
+        .collect()
+}
+
+fn duration(table: &Value, from: &str, to: &str) -> f64 {
+    table["legs"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .find(|row| row["from"] == from && row["to"] == to)
+        .and_then(|row| row["duration_s"].as_f64())
+        .expect("a solved leg")
+}
+
+#[test]
+fn the_leg_between_the_first_two_published_targets_has_its_known_time() {
+    let table = slewplan(&["legs", &fixture("two-targets.json")])
+        .expect_code(0)
+        .json();
+    assert_eq!(table["kind"], "rest_to_rest");
+    assert_eq!(table["complete"], true);
+    let names = rows(&table);
+    for (from, to) in [
+        ("start", "a"),
+        ("start", "b"),
+        ("a", "b"),
+        ("b", "a"),
+        ("a", "end"),
+        ("b", "end"),
+    ] {
+        assert!(
+            names.contains(&(from.to_owned(), to.to_owned())),
+            "{from} to {to}: {names:?}"
+        );
+    }
+    for (from, to) in [("a", "b"), ("b", "a")] {
+        let time = duration(&table, from, to);
+        assert!((57.50..=57.60).contains(&time), "{from} to {to}: {time} s");
+    }
+    for row in table["legs"].as_array().expect("a list") {
+        assert!(
+            row["solve_time_s"].is_number() && row["status"].is_string(),
+            "{row}"
+        );
+    }
+}
+
+#[test]
+fn lower_bounds_are_below_the_rest_to_rest_times() {
+    let path = fixture("two-targets.json");
+    let rest = slewplan(&["legs", &path]).expect_code(0).json();
+    let bound = slewplan(&["legs", &path, "--kind", "lower_bound"])
+        .expect_code(0)
+        .json();
+    assert_eq!(bound["kind"], "lower_bound");
+    for (from, to) in rows(&rest) {
+        let (upper, lower) = (duration(&rest, &from, &to), duration(&bound, &from, &to));
+        assert!(
+            lower <= upper + 1e-6,
+            "{from} to {to}: {lower} above {upper}"
+        );
+    }
+}
+
+#[test]
+fn shards_together_are_the_table() {
+    let path = fixture("two-targets.json");
+    let whole = rows(&slewplan(&["legs", &path]).expect_code(0).json());
+    let first = rows(
+        &slewplan(&["legs", &path, "--shard", "1/2"])
+            .expect_code(0)
+            .json(),
+    );
+    let second = rows(
+        &slewplan(&["legs", &path, "--shard", "2/2"])
+            .expect_code(0)
+            .json(),
+    );
+    assert!(first.is_disjoint(&second));
+    assert_eq!(
+        first.union(&second).cloned().collect::<BTreeSet<_>>(),
+        whole
+    );
+}
+
+#[test]
+fn the_table_goes_to_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("legs.json");
+    let ended = slewplan(&[
+        "legs",
+        &fixture("two-targets.json"),
+        "-o",
+        path.to_str().expect("UTF-8"),
+    ])
+    .expect_code(0);
+    assert_eq!(ended.stdout, "");
+    let text = std::fs::read_to_string(path).expect("the table is there");
+    assert!(serde_json::from_str::<Value>(&text).is_ok());
+}

@@ -1,0 +1,98 @@
+//! `slewplan validate`.
+
+use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
+use serde_json::json;
+
+#[test]
+fn every_fixture_is_valid() {
+    for name in [
+        "olivares-a.json",
+        "olivares-b.json",
+        "olivares-c.json",
+        "two-targets.json",
+        "pyramid.json",
+        "pyramid-one-disabled.json",
+        "pyramid-momentum-bias.json",
+    ] {
+        let ended = slewplan(&["validate", &fixture(name)]).expect_code(0);
+        assert!(ended.stdout.ends_with("is valid\n"), "{ended:?}");
+        let document = slewplan(&["validate", &fixture(name), "--format", "json"]).json();
+        assert_eq!(
+            document,
+            json!({"valid": true, "errors": [], "warnings": []})
+        );
+    }
+}
+
+#[test]
+fn a_quaternion_that_is_off_by_little_is_a_warning() {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["targets"][0]["attitude"] =
+        json!({"quaternion": {"x": 0, "y": 0, "z": 0.0, "w": 1.0005}});
+    let text = scenario.to_string();
+    let document = slewplan_fed(&["validate", "-", "--format", "json"], text.as_bytes())
+        .expect_code(0)
+        .json();
+    assert_eq!(document["valid"], true);
+    assert_eq!(
+        document["warnings"][0]["pointer"],
+        "/targets/0/attitude/quaternion"
+    );
+    assert_eq!(document["warnings"][0]["code"], "attitude_normalized");
+    let told = slewplan_fed(&["validate", "-"], text.as_bytes())
+        .expect_code(0)
+        .stdout;
+    assert!(
+        told.contains("1 warning") && told.contains("[attitude_normalized]"),
+        "{told}"
+    );
+}
+
+/// Momentum along x that the x wheel holds at the start, but no wheel alone across the target.
+fn too_much_momentum() -> String {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["start"]["wheel_speed_rad_s"] = json!([700, 700, 700]);
+    scenario["targets"][1]["attitude"] = json!({"roll_pitch_yaw_deg": [0, 30, 45]});
+    scenario.to_string()
+}
+
+#[test]
+fn a_rest_that_the_wheels_cannot_hold_is_an_error() {
+    let scenario = too_much_momentum();
+    let document = slewplan_fed(&["validate", "-", "--format", "json"], scenario.as_bytes())
+        .expect_code(2)
+        .json();
+    let codes: Vec<(&str, &str)> = document["errors"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|e| {
+            (
+                e["pointer"].as_str().expect("text"),
+                e["code"].as_str().expect("text"),
+            )
+        })
+        .collect();
+    assert_eq!(codes, [("/targets/1", "momentum_exceeds_envelope")]);
+}
+
+#[test]
+fn solving_it_is_infeasible_with_the_same_reason() {
+    let ended = slewplan_fed(&["solve", "-"], too_much_momentum().as_bytes()).expect_code(3);
+    let plan = ended.json();
+    assert_eq!(plan["status"], "infeasible");
+    assert_eq!(plan["total_time_s"], serde_json::Value::Null);
+    assert_eq!(plan["reasons"][0]["pointer"], "/targets/1");
+    assert_eq!(plan["reasons"][0]["code"], "momentum_exceeds_envelope");
+    assert!(
+        ended.stderr.contains("momentum_exceeds_envelope"),
+        "{}",
+        ended.stderr
+    );
+    let ended = slewplan_fed(&["legs", "-"], too_much_momentum().as_bytes()).expect_code(3);
+    assert!(
+        ended.stderr.contains("momentum_exceeds_envelope"),
+        "{}",
+        ended.stderr
+    );
+}

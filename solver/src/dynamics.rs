@@ -158,18 +158,32 @@ impl Dynamics {
     /// Greatest share of its limit that any wheel speed or body rate has; infinite never, 0 when
     /// nothing is limited.
     pub(crate) fn speed_usage(&self, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
-        let spin = self.actuators.iter().zip(wheels.iter()).map(|(wheel, h)| {
-            (h / wheel.inertia - wheel.axis.dot(rate)).abs() / wheel.max_speed
-        });
-        let per_axis = rate.iter().zip(&self.max_rate).map(|(w, limit)| w.abs() / limit);
-        spin.chain(per_axis).fold(rate.norm() / self.max_rate_norm, f64::max)
+        let spin =
+            self.actuators.iter().zip(wheels.iter()).map(|(wheel, h)| {
+                (h / wheel.inertia - wheel.axis.dot(rate)).abs() / wheel.max_speed
+            });
+        let per_axis = rate
+            .iter()
+            .zip(&self.max_rate)
+            .map(|(w, limit)| w.abs() / limit);
+        spin.chain(per_axis)
+            .fold(rate.norm() / self.max_rate_norm, f64::max)
     }
 
     /// Greatest share of its limit that any wheel torque has.
     pub(crate) fn torque_usage(&self, torque: &DVector<f64>) -> f64 {
-        self.actuators.iter().zip(torque.iter()).fold(0.0, |worst, (wheel, u)| {
-            worst.max(u / if *u > 0.0 { wheel.max_torque } else { wheel.min_torque })
-        })
+        self.actuators
+            .iter()
+            .zip(torque.iter())
+            .fold(0.0, |worst, (wheel, u)| {
+                worst.max(
+                    u / if *u > 0.0 {
+                        wheel.max_torque
+                    } else {
+                        wheel.min_torque
+                    },
+                )
+            })
     }
 }
 
@@ -178,7 +192,8 @@ fn inverse_and_null_space(axes: &Matrix3xX<f64>) -> (DMatrix<f64>, DMatrix<f64>)
     let gram = axes * axes.transpose();
     // Axes that span space are part of a valid spacecraft.
     let gram_inverse = gram.try_inverse().expect("enabled wheel axes span space");
-    let inverse = DMatrix::from_iterator(count, 3, (axes.transpose() * gram_inverse).iter().copied());
+    let inverse =
+        DMatrix::from_iterator(count, 3, (axes.transpose() * gram_inverse).iter().copied());
     // The projector onto the null space has eigenvalues one (kept) and zero.
     let dense_axes = DMatrix::from_iterator(3, count, axes.iter().copied());
     let projector = DMatrix::identity(count, count) - &inverse * dense_axes;

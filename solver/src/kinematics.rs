@@ -27,6 +27,8 @@ pub(crate) const INPUTS: usize = 9;
 const INPUTS_WITHOUT_MOMENTUM: usize = 6;
 /// Most substeps of an interval.
 const MAX_SUBSTEPS: usize = 32;
+/// Substeps up to which the stages of an interval are kept on the stack.
+const USUAL_SUBSTEPS: usize = 2;
 
 const STAGES: usize = 7;
 /// J. C. Butcher, "On Runge-Kutta processes of high order", 1964.
@@ -35,9 +37,33 @@ const A: [[f64; STAGES]; STAGES] = [
     [1.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [0.0, 2.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [1.0 / 12.0, 1.0 / 3.0, -1.0 / 12.0, 0.0, 0.0, 0.0, 0.0],
-    [25.0 / 48.0, -55.0 / 24.0, 35.0 / 48.0, 15.0 / 8.0, 0.0, 0.0, 0.0],
-    [3.0 / 20.0, -11.0 / 24.0, -1.0 / 8.0, 1.0 / 2.0, 1.0 / 10.0, 0.0, 0.0],
-    [-261.0 / 260.0, 33.0 / 13.0, 43.0 / 156.0, -118.0 / 39.0, 32.0 / 195.0, 80.0 / 39.0, 0.0],
+    [
+        25.0 / 48.0,
+        -55.0 / 24.0,
+        35.0 / 48.0,
+        15.0 / 8.0,
+        0.0,
+        0.0,
+        0.0,
+    ],
+    [
+        3.0 / 20.0,
+        -11.0 / 24.0,
+        -1.0 / 8.0,
+        1.0 / 2.0,
+        1.0 / 10.0,
+        0.0,
+        0.0,
+    ],
+    [
+        -261.0 / 260.0,
+        33.0 / 13.0,
+        43.0 / 156.0,
+        -118.0 / 39.0,
+        32.0 / 195.0,
+        80.0 / 39.0,
+        0.0,
+    ],
 ];
 const B: [f64; STAGES] = [
     13.0 / 200.0,
@@ -48,7 +74,15 @@ const B: [f64; STAGES] = [
     4.0 / 25.0,
     13.0 / 200.0,
 ];
-const C: [f64; STAGES] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0, 5.0 / 6.0, 1.0 / 6.0, 1.0];
+const C: [f64; STAGES] = [
+    0.0,
+    1.0 / 3.0,
+    2.0 / 3.0,
+    1.0 / 3.0,
+    5.0 / 6.0,
+    1.0 / 6.0,
+    1.0,
+];
 
 /// Quaternion product.
 pub(crate) fn product(a: &Quat, b: &Quat) -> Quat {
@@ -122,12 +156,20 @@ struct StageRecord {
 impl TurnMap {
     /// A map with a number of substeps per interval, for `J_eff` inverse in matching units.
     pub(crate) fn new(inertia_inverse: Matrix3<f64>, with_momentum: bool, substeps: usize) -> Self {
-        Self { inertia_inverse, with_momentum, substeps: substeps.clamp(1, MAX_SUBSTEPS) }
+        Self {
+            inertia_inverse,
+            with_momentum,
+            substeps: substeps.clamp(1, MAX_SUBSTEPS),
+        }
     }
 
     /// Number of inputs with non-zero derivatives.
     pub(crate) fn inputs(&self) -> usize {
-        if self.with_momentum { INPUTS } else { INPUTS_WITHOUT_MOMENTUM }
+        if self.with_momentum {
+            INPUTS
+        } else {
+            INPUTS_WITHOUT_MOMENTUM
+        }
     }
 
     fn rate(&self, z: &TurnInputs, sigma: f64, p: &Quat) -> Vector3<f64> {
@@ -162,8 +204,18 @@ impl TurnMap {
 
     /// The turn with derivatives, the second ones weighted by `mu`.
     pub(crate) fn derivatives(&self, z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
+        if self.substeps <= USUAL_SUBSTEPS {
+            let mut records = [StageRecord::default(); STAGES * USUAL_SUBSTEPS];
+            self.sweep(z, mu, &mut records)
+        } else {
+            let mut records = vec![StageRecord::default(); STAGES * self.substeps];
+            self.sweep(z, mu, &mut records)
+        }
+    }
+
+    /// Forward over all substeps, then back.
+    fn sweep(&self, z: &TurnInputs, mu: &Quat, records: &mut [StageRecord]) -> TurnDerivatives {
         let h = 1.0 / self.substeps as f64;
-        let mut records = [StageRecord::default(); STAGES * MAX_SUBSTEPS];
         let mut p = [0.0, 0.0, 0.0, 1.0];
         let mut first = [[0.0; 4]; INPUTS];
         for step in 0..self.substeps {
@@ -182,7 +234,11 @@ impl TurnMap {
                 second[j][i] = second[i][j];
             }
         }
-        TurnDerivatives { turn: p, first, second }
+        TurnDerivatives {
+            turn: p,
+            first,
+            second,
+        }
     }
 
     fn forward_substep(
@@ -392,7 +448,11 @@ mod tests {
     #[test]
     fn a_constant_rate_turns_by_its_angle() {
         let rate = Vector3::new(0.3, -0.4, 0.2);
-        let z = TurnInputs { begin: rate, end: rate, momentum: Vector3::zeros() };
+        let z = TurnInputs {
+            begin: rate,
+            end: rate,
+            momentum: Vector3::zeros(),
+        };
         let p = map(false, 2).turn(&z);
         let angle = rate.norm();
         let expected = quat(&(rate * ((angle / 2.0).sin() / angle)), (angle / 2.0).cos());
@@ -407,7 +467,10 @@ mod tests {
         let fine = map(true, 32).turn(&z);
         let error = |substeps| {
             let p = map(true, substeps).turn(&z);
-            p.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            p.iter()
+                .zip(&fine)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max)
         };
         let order = (error(1) / error(2)).log2();
         assert!(order > 5.5, "observed order {order}");

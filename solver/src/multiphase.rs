@@ -62,10 +62,18 @@ pub(crate) fn fly(
         iterations += report.iterations;
         let profile = physical(&iterate, &scales, dynamics.wheel_count());
         let needed = substeps_for(&profile);
-        let excess = if dynamics.has_momentum() { excess_between_nodes(dynamics, &profile) } else { 0.0 };
+        let excess = if dynamics.has_momentum() {
+            excess_between_nodes(dynamics, &profile)
+        } else {
+            0.0
+        };
         let good = needed <= substeps && excess <= LIMIT_TOLERANCE;
         if good || report.status != NlpStatus::Converged || round == MAX_ROUNDS {
-            return Flown { status: report.status, profile, iterations };
+            return Flown {
+                status: report.status,
+                profile,
+                iterations,
+            };
         }
         substeps = substeps.max(needed);
         reserve += 1.2 * excess.max(0.0);
@@ -93,7 +101,12 @@ fn scaled(profile: &Profile, scales: &Scales) -> Iterate {
     }
     let mut controls = Vec::new();
     for (pair, length) in profile.wheels.windows(2).zip(&profile.lengths) {
-        controls.extend(pair[1].iter().zip(pair[0].iter()).map(|(b, a)| (b - a) / scales.momentum));
+        controls.extend(
+            pair[1]
+                .iter()
+                .zip(pair[0].iter())
+                .map(|(b, a)| (b - a) / scales.momentum),
+        );
         controls.push(length / scales.time);
     }
     Iterate::cold(points, controls)
@@ -104,7 +117,9 @@ fn physical(iterate: &Iterate, scales: &Scales, wheels: usize) -> Profile {
     for point in iterate.points.chunks_exact(4 + wheels) {
         let components = [point[0], point[1], point[2], point[3]];
         // Retraction keeps quaternions at unit length.
-        profile.attitudes.push(Attitude::from_xyzw(components).unwrap_or_else(Attitude::identity));
+        profile
+            .attitudes
+            .push(Attitude::from_xyzw(components).unwrap_or_else(Attitude::identity));
         let momenta = point[4..].iter().map(|h| h * scales.momentum);
         profile.wheels.push(DVector::from_iterator(wheels, momenta));
     }

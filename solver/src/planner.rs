@@ -99,13 +99,20 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         ..SearchSettings::default()
     };
     let found = search(&tours, &settings, run.pool, &stop, run.observer);
-    eprintln!("{found:#?}");
     let statistics = Statistics {
         wall_time_s: begin.elapsed().as_secs_f64(),
         nodes_explored: found.statistics.nodes_explored,
         nlp_solves: tours.solves.load(Ordering::Relaxed)
-            + rest.solved().chain(free.solved()).map(|leg| leg.solves).sum::<u64>(),
-        legs_solved: rest.solved().chain(free.solved()).filter(|leg| leg.solves > 0).count() as u64,
+            + rest
+                .solved()
+                .chain(free.solved())
+                .map(|leg| leg.solves)
+                .sum::<u64>(),
+        legs_solved: rest
+            .solved()
+            .chain(free.solved())
+            .filter(|leg| leg.solves > 0)
+            .count() as u64,
         legs_from_cache: 0,
         threads: run.pool.threads(),
     };
@@ -208,17 +215,30 @@ fn conclude(
     if !report.verification.passed {
         let message = report.verification.failures.join("; ");
         let hint = "report the scenario: a plan that does not fly is a defect of the solver";
-        return Outcome::Failed(vec![Problem::new("", Code::VerificationFailed, message, hint)]);
+        return Outcome::Failed(vec![Problem::new(
+            "",
+            Code::VerificationFailed,
+            message,
+            hint,
+        )]);
     }
     let total = flight.total_time_s;
     let bound = found.lower_bound_s.min(total);
     let name = |i: &usize| scenario.targets()[*i].id.clone();
     let proven = found.best_is_proven(scenario.options().relative_gap);
     Outcome::Planned(Box::new(Plan {
-        optimality: if proven { Optimality::Optimal } else { Optimality::Feasible },
+        optimality: if proven {
+            Optimality::Optimal
+        } else {
+            Optimality::Feasible
+        },
         total_time_s: total,
         lower_bound_s: bound,
-        relative_gap: if total > 0.0 { (total - bound) / total } else { 0.0 },
+        relative_gap: if total > 0.0 {
+            (total - bound) / total
+        } else {
+            0.0
+        },
         lower_bound_kind: LowerBoundKind::NlpRelaxation,
         alternatives: found
             .alternatives
@@ -259,12 +279,18 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .collect();
     if problems.is_empty() {
         let message = "every leg has a solution, but no whole order converged";
-        problems.push(Problem::new("/targets", Code::SlewNotSolved, message, SLEW_HINT));
+        problems.push(Problem::new(
+            "/targets",
+            Code::SlewNotSolved,
+            message,
+            SLEW_HINT,
+        ));
     }
     problems
 }
 
-const SLEW_HINT: &str = "check that the wheels can hold the stored momentum along the way, or relax the conditions";
+const SLEW_HINT: &str =
+    "check that the wheels can hold the stored momentum along the way, or relax the conditions";
 
 fn pointer_of(place: Place) -> String {
     match place {

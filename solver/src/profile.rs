@@ -34,14 +34,19 @@ impl Profile {
         };
         let skip = usize::from(!self.attitudes.is_empty());
         let signed = |a: &Attitude| if flip { a.negated() } else { *a };
-        self.attitudes.extend(next.attitudes.iter().skip(skip).map(signed));
+        self.attitudes
+            .extend(next.attitudes.iter().skip(skip).map(signed));
         self.wheels.extend(next.wheels.iter().skip(skip).cloned());
         self.lengths.extend_from_slice(&next.lengths);
     }
 
     /// An empty motion to append to.
     pub(crate) fn empty() -> Self {
-        Self { attitudes: Vec::new(), wheels: Vec::new(), lengths: Vec::new() }
+        Self {
+            attitudes: Vec::new(),
+            wheels: Vec::new(),
+            lengths: Vec::new(),
+        }
     }
 
     /// No motion at all, in no time.

@@ -45,7 +45,13 @@ pub(crate) fn solve(
         if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), arrival) {
             signed.attitude = to.attitude.nearest_sign(last);
         }
-        let flown = fly(dynamics, &[from.clone(), signed], &[INTERVALS], &guess, stop);
+        let flown = fly(
+            dynamics,
+            &[from.clone(), signed],
+            &[INTERVALS],
+            &guess,
+            stop,
+        );
         solves += 1;
         if best.as_ref().is_none_or(|best| improves(&flown, best)) {
             best = Some(flown);

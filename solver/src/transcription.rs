@@ -30,10 +30,10 @@ pub(crate) use nodes::{Waypoint, WheelCondition};
 pub(crate) use scales::Scales;
 
 use crate::dynamics::Dynamics;
-use crate::kinematics::{Quat, TurnMap, conjugate, imaginary, product, rotate_back};
-use crate::nlp::{Chain, Link, LinkMultipliers, LinkModel, LinkValues};
-use nodes::Node;
+use crate::kinematics::{Quat, TurnMap, conjugate, product, rotate_back};
+use crate::nlp::{Chain, Link, LinkModel, LinkMultipliers, LinkValues};
 use nalgebra::Vector3;
+use nodes::Node;
 use rows::{Row, StateView};
 
 /// Weight of the penalty that draws interval lengths together. Where torque does not change from
@@ -75,12 +75,21 @@ impl Transcription {
             scales,
             turn_map: TurnMap::new(inverse, dynamics.has_momentum(), substeps),
             rate_offset: inverse * dynamics.locked_momentum * scales.time,
-            rate_gain: dynamics.actuators.iter().map(|a| inverse * a.axis * factor).collect(),
+            rate_gain: dynamics
+                .actuators
+                .iter()
+                .map(|a| inverse * a.axis * factor)
+                .collect(),
             momentum_per_time: dynamics
                 .actuators
                 .iter()
                 .map(|a| (a.max_torque, a.min_torque))
-                .map(|(max, min)| (max * scales.time / scales.momentum, min * scales.time / scales.momentum))
+                .map(|(max, min)| {
+                    (
+                        max * scales.time / scales.momentum,
+                        min * scales.time / scales.momentum,
+                    )
+                })
                 .collect(),
             reference_length: 1.0,
             limits: Vec::new(),
@@ -112,8 +121,13 @@ impl Transcription {
         let wheels = &point[4..];
         let q = quaternion_of(point);
         let momentum = rotate_back(&q, &self.dynamics.momentum);
-        let scaled = self.dynamics.inertia_inverse * momentum - self.wheel_rate(wheels) / self.scales.time;
-        StateView { rate: scaled, momentum, wheels }
+        let scaled =
+            self.dynamics.inertia_inverse * momentum - self.wheel_rate(wheels) / self.scales.time;
+        StateView {
+            rate: scaled,
+            momentum,
+            wheels,
+        }
     }
 
     /// `offset + gain h`: minus the scaled rate that the wheels make.
@@ -125,10 +139,7 @@ impl Transcription {
         rate
     }
 
-    fn torque_margins<'a>(
-        &'a self,
-        control: &'a [f64],
-    ) -> impl Iterator<Item = f64> + 'a {
+    fn torque_margins<'a>(&'a self, control: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let tau = control[self.wheels()];
         self.momentum_per_time
             .iter()
@@ -140,7 +151,8 @@ impl Transcription {
         let state = self.view(point);
         let mut equalities = out.equality.as_mut_slice();
         if let Some(target) = &node.attitude {
-            let error = attitude_error(target, point) * (2.0 / self.scales.angle);
+            let relative = product(&conjugate(target), &quaternion_of(point));
+            let error = attitude_link::chart(&relative) / self.scales.angle;
             let (attitude, rest) = equalities.split_at_mut(3);
             attitude.copy_from_slice(error.as_slice());
             equalities = rest;
@@ -223,7 +235,11 @@ impl Chain for Transcription {
     }
 
     fn inequalities(&self, node: usize) -> usize {
-        let of_interval = if node < self.intervals() { 2 * self.wheels() } else { 0 };
+        let of_interval = if node < self.intervals() {
+            2 * self.wheels()
+        } else {
+            0
+        };
         let node = &self.nodes[node];
         self.inequality_rows(node).count() + usize::from(self.has_norm_row(node)) + of_interval
     }
@@ -248,7 +264,10 @@ impl Chain for Transcription {
             let tau = link.control[self.wheels()];
             out.cost = tau + 0.5 * LENGTH_PENALTY * (tau - self.reference_length).powi(2);
             self.write_gap(link, &mut out.gap);
-            for (out, margin) in out.inequality[count..].iter_mut().zip(self.torque_margins(link.control)) {
+            for (out, margin) in out.inequality[count..]
+                .iter_mut()
+                .zip(self.torque_margins(link.control))
+            {
                 *out = margin;
             }
         }
@@ -282,9 +301,4 @@ impl Chain for Transcription {
 
 fn quaternion_of(point: &[f64]) -> Quat {
     [point[0], point[1], point[2], point[3]]
-}
-
-/// Vector part of `target* q`.
-fn attitude_error(target: &Quat, point: &[f64]) -> Vector3<f64> {
-    imaginary(&product(&conjugate(target), &quaternion_of(point)))
 }

@@ -43,8 +43,7 @@ impl Filter {
 
     /// Whether the filter itself lets a point pass.
     pub(super) fn admits(&self, point: Merit) -> bool {
-        point.theta <= self.theta_max
-            && self.entries.iter().all(|entry| improves(point, *entry))
+        point.theta <= self.theta_max && self.entries.iter().all(|entry| improves(point, *entry))
     }
 
     /// Judges a trial at step length `alpha`; `slope` is the derivative of the barrier cost along
@@ -68,13 +67,17 @@ impl Filter {
             let enough = trial.phi - current.phi - slack <= ETA * alpha * slope;
             return enough.then_some(Acceptance::Descent);
         }
-        let relaxed = Merit { theta: trial.theta, phi: trial.phi - slack };
+        let relaxed = Merit {
+            theta: trial.theta,
+            phi: trial.phi - slack,
+        };
         improves(relaxed, current).then_some(Acceptance::Progress)
     }
 
     /// Forbids everything that is not better than this point.
     pub(super) fn add(&mut self, point: Merit) {
-        self.entries.retain(|entry| entry.theta < point.theta || entry.phi < point.phi);
+        self.entries
+            .retain(|entry| entry.theta < point.theta || entry.phi < point.phi);
         self.entries.push(point);
     }
 }
@@ -100,7 +103,10 @@ mod tests {
         assert!(!filter.admits(merit(1.0, 1.0)));
         assert!(filter.admits(merit(0.5, 2.0)));
         assert!(filter.admits(merit(2.0, 0.5)));
-        assert!(!filter.admits(merit(2e4, -5.0)), "beyond the largest infeasibility");
+        assert!(
+            !filter.admits(merit(2e4, -5.0)),
+            "beyond the largest infeasibility"
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::chain::Chain;
 use super::filter::{Acceptance, Filter, Merit};
 use super::iterate::{Iterate, Layout};
 use super::model::{LinkModel, LinkValues, models_of, values_of};
-use super::riccati::{RightHandSide, Riccati, Step};
+use super::riccati::{Riccati, RightHandSide, Step};
 use super::settings::{NlpReport, NlpStatus, Settings};
 
 /// Largest fraction of the way to the boundary of slacks and multipliers that a step may go.
@@ -172,7 +172,12 @@ impl InteriorPoint {
 
     /// Infeasibility and barrier cost of the current models with given slacks.
     pub(super) fn merit_of_models(&self, slack: &[f64]) -> Merit {
-        merit(&self.layout, self.mu, slack, self.models.iter().map(|model| &model.values))
+        merit(
+            &self.layout,
+            self.mu,
+            slack,
+            self.models.iter().map(|model| &model.values),
+        )
     }
 
     /// Scaled maximum norm of the optimality conditions for a barrier parameter.
@@ -198,23 +203,35 @@ impl InteriorPoint {
                 feasibility = feasibility.max((model.values.inequality[i] - s).abs());
                 complementarity = complementarity.max((s * z - mu).abs());
             }
-            stationarity = residual.iter().fold(stationarity, |worst, r| worst.max(r.abs()));
+            stationarity = residual
+                .iter()
+                .fold(stationarity, |worst, r| worst.max(r.abs()));
             feasibility = feasibility.max(model.values.defect_max());
         }
         let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
         let z_sum: f64 = iterate.z.iter().sum();
-        let all: f64 = iterate.lambda.iter().chain(&iterate.nu).map(|v| v.abs()).sum::<f64>() + z_sum;
+        let all: f64 = iterate
+            .lambda
+            .iter()
+            .chain(&iterate.nu)
+            .map(|v| v.abs())
+            .sum::<f64>()
+            + z_sum;
         let count = iterate.lambda.len() + iterate.nu.len() + iterate.z.len();
         let dual_scale = (mean(all, count) / MULTIPLIER_SCALE).max(1.0);
         let z_scale = (mean(z_sum, iterate.z.len()) / MULTIPLIER_SCALE).max(1.0);
-        (stationarity / dual_scale).max(feasibility).max(complementarity / z_scale)
+        (stationarity / dual_scale)
+            .max(feasibility)
+            .max(complementarity / z_scale)
     }
 
     /// Lowers the barrier as long as its problem is already solved well enough.
     fn shrink_barrier(&mut self, iterate: &Iterate) {
         let floor = self.settings.tolerance / 10.0;
         while self.mu > floor && self.error(iterate, self.mu) <= BARRIER_ACCURACY * self.mu {
-            self.mu = (BARRIER_FACTOR * self.mu).min(self.mu.powf(BARRIER_POWER)).max(floor);
+            self.mu = (BARRIER_FACTOR * self.mu)
+                .min(self.mu.powf(BARRIER_POWER))
+                .max(floor);
             let theta = self.merit_of_models(&iterate.slack).theta;
             self.filter.reset(theta);
         }
@@ -278,7 +295,8 @@ impl InteriorPoint {
             let control = &self.step.controls[self.layout.control(node)];
             for (i, index) in self.layout.inequality(node).enumerate() {
                 let row = model.inequality_row(i);
-                let moved = super::dense::dot(&row[..n], state) + super::dense::dot(&row[n..], control);
+                let moved =
+                    super::dense::dot(&row[..n], state) + super::dense::dot(&row[n..], control);
                 let (s, z) = (iterate.slack[index], iterate.z[index]);
                 let slack_step = moved + model.values.inequality[i] - s;
                 self.slack_step[index] = slack_step;
@@ -295,8 +313,7 @@ impl InteriorPoint {
         let mut alpha = longest;
         for _ in 0..MAX_BACKTRACKS {
             let trial = self.trial_merit(chain, iterate, alpha);
-            let verdict = trial
-                .and_then(|trial| self.filter.judge(current, trial, slope, alpha));
+            let verdict = trial.and_then(|trial| self.filter.judge(current, trial, slope, alpha));
             if let Some(acceptance) = verdict {
                 if acceptance == Acceptance::Progress {
                     self.filter.add(current);
@@ -318,10 +335,21 @@ impl InteriorPoint {
         let n = self.layout.states;
         let mut slope = 0.0;
         for (node, model) in self.models.iter().enumerate() {
-            slope += super::dense::dot(&model.gradient[..n], &self.step.states[self.layout.state(node)]);
-            slope += super::dense::dot(&model.gradient[n..], &self.step.controls[self.layout.control(node)]);
+            slope += super::dense::dot(
+                &model.gradient[..n],
+                &self.step.states[self.layout.state(node)],
+            );
+            slope += super::dense::dot(
+                &model.gradient[n..],
+                &self.step.controls[self.layout.control(node)],
+            );
         }
-        let barrier: f64 = self.slack_step.iter().zip(&iterate.slack).map(|(ds, s)| ds / s).sum();
+        let barrier: f64 = self
+            .slack_step
+            .iter()
+            .zip(&iterate.slack)
+            .map(|(ds, s)| ds / s)
+            .sum();
         slope - self.mu * barrier
     }
 
@@ -340,10 +368,24 @@ impl InteriorPoint {
                 *out = alpha * value;
             }
             let range = self.layout.point(node);
-            chain.retract(&iterate.points[range.clone()], move_by, &mut self.trial.points[range]);
+            chain.retract(
+                &iterate.points[range.clone()],
+                move_by,
+                &mut self.trial.points[range],
+            );
         }
-        advance(&iterate.controls, &self.step.controls, alpha, &mut self.trial.controls);
-        advance(&iterate.slack, &self.slack_step, alpha, &mut self.trial.slack);
+        advance(
+            &iterate.controls,
+            &self.step.controls,
+            alpha,
+            &mut self.trial.controls,
+        );
+        advance(
+            &iterate.slack,
+            &self.slack_step,
+            alpha,
+            &mut self.trial.slack,
+        );
         for (node, values) in self.trial_values.iter_mut().enumerate() {
             chain.values(&self.trial.link(&self.layout, node), values);
             if !values.is_finite() {
@@ -369,7 +411,9 @@ impl InteriorPoint {
 
     fn report(&self, status: NlpStatus) -> NlpReport {
         let values = || self.models.iter().map(|model| &model.values);
-        let below_zero = values().flat_map(|v| &v.inequality).fold(0.0_f64, |worst, g| worst.max(-g));
+        let below_zero = values()
+            .flat_map(|v| &v.inequality)
+            .fold(0.0_f64, |worst, g| worst.max(-g));
         NlpReport {
             status,
             cost: values().map(|v| v.cost).sum(),
@@ -385,11 +429,18 @@ fn merit<'a>(
     slack: &[f64],
     values: impl Iterator<Item = &'a LinkValues>,
 ) -> Merit {
-    let mut total = Merit { theta: 0.0, phi: 0.0 };
+    let mut total = Merit {
+        theta: 0.0,
+        phi: 0.0,
+    };
     for (node, values) in values.enumerate() {
         total.theta += values.defect_norm();
         total.phi += values.cost;
-        for (g, s) in values.inequality.iter().zip(&slack[layout.inequality(node)]) {
+        for (g, s) in values
+            .inequality
+            .iter()
+            .zip(&slack[layout.inequality(node)])
+        {
             total.theta += (g - s).abs();
             total.phi -= mu * s.ln();
         }
@@ -401,7 +452,11 @@ fn merit<'a>(
 /// to zero.
 pub(super) fn to_boundary(values: &[f64], steps: &[f64], fraction: f64) -> f64 {
     values.iter().zip(steps).fold(1.0, |alpha, (value, step)| {
-        if *step < 0.0 { alpha.min(-fraction * value / step) } else { alpha }
+        if *step < 0.0 {
+            alpha.min(-fraction * value / step)
+        } else {
+            alpha
+        }
     })
 }
 

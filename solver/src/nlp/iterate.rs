@@ -104,12 +104,20 @@ fn running_sum(counts: impl Iterator<Item = usize>) -> Vec<usize> {
 impl Iterate {
     /// An iterate with given primal values and neutral multipliers.
     pub(crate) fn cold(points: Vec<f64>, controls: Vec<f64>) -> Self {
-        Self { points, controls, ..Self::default() }
+        Self {
+            points,
+            controls,
+            ..Self::default()
+        }
     }
 
     /// The link that begins at a node.
     pub(crate) fn link<'a>(&'a self, layout: &Layout, node: usize) -> Link<'a> {
-        let next = if node < layout.intervals { layout.point(node + 1) } else { 0..0 };
+        let next = if node < layout.intervals {
+            layout.point(node + 1)
+        } else {
+            0..0
+        };
         Link {
             node,
             point: &self.points[layout.point(node)],

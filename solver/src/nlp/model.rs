@@ -37,7 +37,11 @@ pub(crate) struct LinkModel {
 
 impl LinkValues {
     fn for_node<C: Chain>(chain: &C, node: usize) -> Self {
-        let gap = if node < chain.intervals() { chain.state_dim() } else { 0 };
+        let gap = if node < chain.intervals() {
+            chain.state_dim()
+        } else {
+            0
+        };
         Self {
             cost: 0.0,
             gap: vec![0.0; gap],
@@ -53,12 +57,19 @@ impl LinkValues {
 
     /// Largest absolute gap or equality.
     pub(crate) fn defect_max(&self) -> f64 {
-        self.gap.iter().chain(&self.equality).fold(0.0, |worst, v| worst.max(v.abs()))
+        self.gap
+            .iter()
+            .chain(&self.equality)
+            .fold(0.0, |worst, v| worst.max(v.abs()))
     }
 
     /// Whether every value is a finite number.
     pub(crate) fn is_finite(&self) -> bool {
-        let vectors = self.gap.iter().chain(&self.equality).chain(&self.inequality);
+        let vectors = self
+            .gap
+            .iter()
+            .chain(&self.equality)
+            .chain(&self.inequality);
         self.cost.is_finite() && vectors.into_iter().all(|v| v.is_finite())
     }
 }
@@ -67,7 +78,11 @@ impl LinkModel {
     fn for_node<C: Chain>(chain: &C, node: usize) -> Self {
         let states = chain.state_dim();
         let last = node == chain.intervals();
-        let vars = if last { states } else { states + chain.control_dim() };
+        let vars = if last {
+            states
+        } else {
+            states + chain.control_dim()
+        };
         Self {
             values: LinkValues::for_node(chain, node),
             vars,
@@ -96,10 +111,14 @@ impl LinkModel {
 
 /// Storage for the values of all links of a chain.
 pub(crate) fn values_of<C: Chain>(chain: &C) -> Vec<LinkValues> {
-    (0..=chain.intervals()).map(|node| LinkValues::for_node(chain, node)).collect()
+    (0..=chain.intervals())
+        .map(|node| LinkValues::for_node(chain, node))
+        .collect()
 }
 
 /// Storage for the models of all links of a chain.
 pub(crate) fn models_of<C: Chain>(chain: &C) -> Vec<LinkModel> {
-    (0..=chain.intervals()).map(|node| LinkModel::for_node(chain, node)).collect()
+    (0..=chain.intervals())
+        .map(|node| LinkModel::for_node(chain, node))
+        .collect()
 }

@@ -62,7 +62,10 @@ impl InteriorPoint {
         for (sigma, s) in self.sigma.iter_mut().zip(&iterate.slack) {
             *sigma = self.mu / (s * s);
         }
-        if !self.riccati.factor(&self.models, &self.sigma, DAMPING, false) {
+        if !self
+            .riccati
+            .factor(&self.models, &self.sigma, DAMPING, false)
+        {
             return false;
         }
         self.fill_right_hand_side(iterate, 0.0);

@@ -15,7 +15,9 @@
 //! factorisation stays a plain Cholesky, and curvature along directions that the equalities fix
 //! need not be positive.
 
-use super::dense::{add_mul, add_outer_lower, add_transpose_mul, axpy, cholesky, cholesky_solve, dot};
+use super::dense::{
+    add_mul, add_outer_lower, add_transpose_mul, axpy, cholesky, cholesky_solve, dot,
+};
 use super::iterate::Layout;
 use super::model::LinkModel;
 
@@ -97,7 +99,9 @@ impl Riccati {
         };
         Self {
             layout: layout.clone(),
-            stages: (0..=layout.intervals).map(|k| stage(k == layout.intervals)).collect(),
+            stages: (0..=layout.intervals)
+                .map(|k| stage(k == layout.intervals))
+                .collect(),
             initial_factor: vec![0.0; n * n],
             scratch: vec![0.0; n * (n + m)],
         }
@@ -121,7 +125,9 @@ impl Riccati {
                 }
             } else {
                 let n = self.layout.states;
-                let Stage { matrix, cost_to_go, .. } = &mut self.stages[node];
+                let Stage {
+                    matrix, cost_to_go, ..
+                } = &mut self.stages[node];
                 for i in 0..n {
                     for j in 0..=i {
                         cost_to_go[i * n + j] = matrix[i * n + j];
@@ -131,11 +137,19 @@ impl Riccati {
             }
             self.add_equalities(node, &models[node]);
         }
-        self.initial_factor.copy_from_slice(&self.stages[0].cost_to_go);
+        self.initial_factor
+            .copy_from_slice(&self.stages[0].cost_to_go);
         cholesky(&mut self.initial_factor, self.layout.states)
     }
 
-    fn condense(&mut self, node: usize, model: &LinkModel, sigma: &[f64], delta: f64, hessian: bool) {
+    fn condense(
+        &mut self,
+        node: usize,
+        model: &LinkModel,
+        sigma: &[f64],
+        delta: f64,
+        hessian: bool,
+    ) {
         let matrix = &mut self.stages[node].matrix;
         if hessian {
             matrix.copy_from_slice(&model.hessian);
@@ -161,7 +175,11 @@ impl Riccati {
         for i in 0..n {
             let product = &mut self.scratch[i * vars..(i + 1) * vars];
             for j in 0..n {
-                axpy(next[i * n + j], &model.link_jacobian[j * vars..(j + 1) * vars], product);
+                axpy(
+                    next[i * n + j],
+                    &model.link_jacobian[j * vars..(j + 1) * vars],
+                    product,
+                );
             }
         }
         for r in 0..n {
@@ -176,7 +194,13 @@ impl Riccati {
     fn eliminate_controls(&mut self, node: usize) -> bool {
         let (n, m) = (self.layout.states, self.layout.controls);
         let vars = n + m;
-        let Stage { matrix, feedback, control_factor, cost_to_go, .. } = &mut self.stages[node];
+        let Stage {
+            matrix,
+            feedback,
+            control_factor,
+            cost_to_go,
+            ..
+        } = &mut self.stages[node];
         for i in 0..m {
             for j in 0..=i {
                 control_factor[i * m + j] = matrix[(n + i) * vars + n + j];
@@ -241,7 +265,12 @@ impl Riccati {
                 let next = &self.stages[node + 1];
                 let carried = &mut self.scratch[..n];
                 carried.copy_from_slice(&next.cost_vector);
-                add_mul(&next.cost_to_go, n, &rhs.gap[self.layout.link(node)], carried);
+                add_mul(
+                    &next.cost_to_go,
+                    n,
+                    &rhs.gap[self.layout.link(node)],
+                    carried,
+                );
                 add_transpose_mul(&model.link_jacobian, model.vars, carried, linear);
             }
             let stage = &mut self.stages[node];
@@ -278,7 +307,11 @@ impl Riccati {
             control.copy_from_slice(&stage.feedforward);
             add_mul(&stage.feedback, n, state, control);
             arrived.copy_from_slice(&rhs.gap[self.layout.link(node)]);
-            for (row, out) in model.link_jacobian.chunks_exact(model.vars).zip(arrived.iter_mut()) {
+            for (row, out) in model
+                .link_jacobian
+                .chunks_exact(model.vars)
+                .zip(arrived.iter_mut())
+            {
                 *out += dot(&row[..n], state) + dot(&row[n..], control);
             }
             let ahead = &self.stages[node + 1];
@@ -289,7 +322,12 @@ impl Riccati {
     }
 
     /// Moves the equality multipliers to their proximal update; returns the largest residual.
-    fn update_multipliers(&self, models: &[LinkModel], rhs: &RightHandSide, step: &mut Step) -> f64 {
+    fn update_multipliers(
+        &self,
+        models: &[LinkModel],
+        rhs: &RightHandSide,
+        step: &mut Step,
+    ) -> f64 {
         let n = self.layout.states;
         let mut worst = 0.0_f64;
         for (node, model) in models.iter().enumerate() {

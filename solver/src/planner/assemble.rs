@@ -24,7 +24,11 @@ struct Assembly<'a> {
 }
 
 /// Puts the solved segments of a route together, settle and dwell included.
-pub(super) fn assemble(tours: &Tours<'_>, route: &[Place], segments: &[Arc<Flown>]) -> (Flight, Vec<Leg>) {
+pub(super) fn assemble(
+    tours: &Tours<'_>,
+    route: &[Place],
+    segments: &[Arc<Flown>],
+) -> (Flight, Vec<Leg>) {
     let total: f64 = segments.iter().map(|flown| flown.profile.duration()).sum();
     let mut assembly = Assembly {
         tours,
@@ -103,9 +107,14 @@ impl Assembly<'_> {
         let mut wheel_torque_nm = vec![0.0; places.scenario.spacecraft().wheels().len()];
         for (actuator, torque) in places.dynamics.actuators.iter().zip(torques) {
             // The quotient of two rounded numbers may leave the limits by a rounding error.
-            wheel_torque_nm[actuator.index] = torque.clamp(actuator.min_torque, actuator.max_torque);
+            wheel_torque_nm[actuator.index] =
+                torque.clamp(actuator.min_torque, actuator.max_torque);
         }
-        self.controls.push(Control { start_s: self.clock, duration_s: duration, wheel_torque_nm });
+        self.controls.push(Control {
+            start_s: self.clock,
+            duration_s: duration,
+            wheel_torque_nm,
+        });
         self.clock += duration;
     }
 

@@ -63,14 +63,18 @@ pub(super) fn solve_table(
     stop: &StopSignal,
 ) -> LegTable {
     let count = 2 + places.scenario.targets().len();
-    let mut table = LegTable { places: count, legs: vec![None; count * count] };
+    let mut table = LegTable {
+        places: count,
+        legs: vec![None; count * count],
+    };
     let at = |(from, to): (Place, Place)| index(from, count) * count + index(to, count);
     let mirrored = |(from, to): (Place, Place)| {
         let (back, forth) = ((to, from), index(to, count) < index(from, count));
         let ends = [&end_of(places, kind, from), &end_of(places, kind, to)];
         (forth && pairs.contains(&back) && places.reversible(ends)).then_some(back)
     };
-    let (copies, fresh): (Vec<_>, Vec<_>) = pairs.iter().partition(|pair| mirrored(**pair).is_some());
+    let (copies, fresh): (Vec<_>, Vec<_>) =
+        pairs.iter().partition(|pair| mirrored(**pair).is_some());
     let done = AtomicU64::new(0);
     let solved = run.pool.map(&fresh, |(from, to)| {
         let leg = (!stop.is_set()).then(|| solve_leg(places, kind, *from, *to, stop));
@@ -87,7 +91,9 @@ pub(super) fn solve_table(
         table.legs[at(*pair)] = leg.filter(|leg| leg.flown.status != NlpStatus::Stopped);
     }
     for pair in copies {
-        let original = mirrored(pair).map(at).and_then(|at| table.legs[at].as_ref());
+        let original = mirrored(pair)
+            .map(at)
+            .and_then(|at| table.legs[at].as_ref());
         table.legs[at(pair)] = original.map(SolvedLeg::reversed);
     }
     table
@@ -109,12 +115,21 @@ fn solve_leg(
 ) -> SolvedLeg {
     let begin = Instant::now();
     let (from, to) = (end_of(places, kind, from), end_of(places, kind, to));
-    let Places { dynamics, arrival, null, .. } = places;
+    let Places {
+        dynamics,
+        arrival,
+        null,
+        ..
+    } = places;
     let solved = standstill(places, &from, &to).map_or_else(
         || slew::solve(dynamics, &from, &to, *arrival, null, &|| stop.is_set()),
         |flown| slew::Slew { flown, solves: 0 },
     );
-    SolvedLeg { flown: solved.flown, solves: solved.solves, took: begin.elapsed() }
+    SolvedLeg {
+        flown: solved.flown,
+        solves: solved.solves,
+        took: begin.elapsed(),
+    }
 }
 
 /// The leg between two equal rests: nothing moves and no time passes.
@@ -137,7 +152,14 @@ fn standstill(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Option<Flo
 
 impl SolvedLeg {
     fn reversed(&self) -> Self {
-        let flown = Flown { profile: self.flown.profile.reversed(), ..self.flown.clone() };
-        Self { flown, solves: 0, took: self.took }
+        let flown = Flown {
+            profile: self.flown.profile.reversed(),
+            ..self.flown.clone()
+        };
+        Self {
+            flown,
+            solves: 0,
+            took: self.took,
+        }
     }
 }

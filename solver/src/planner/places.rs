@@ -40,7 +40,10 @@ impl<'a> Places<'a> {
     pub(super) fn all(&self) -> Vec<Place> {
         let targets = (0..self.scenario.targets().len()).map(Place::Target);
         let end = self.scenario.end().map(|_| Place::End);
-        std::iter::once(Place::Start).chain(targets).chain(end).collect()
+        std::iter::once(Place::Start)
+            .chain(targets)
+            .chain(end)
+            .collect()
     }
 
     /// Identifier of a place.
@@ -55,7 +58,9 @@ impl<'a> Places<'a> {
     /// Settle and dwell time at a place, s.
     pub(super) fn service_time(&self, place: Place) -> f64 {
         match place {
-            Place::Target(i) => self.scenario.targets()[i].settle + self.scenario.targets()[i].dwell,
+            Place::Target(i) => {
+                self.scenario.targets()[i].settle + self.scenario.targets()[i].dwell
+            }
             Place::Start | Place::End => 0.0,
         }
     }
@@ -84,7 +89,10 @@ impl<'a> Places<'a> {
                 }
             }
             Place::End => {
-                let end = self.scenario.end().expect("an end is only asked for where there is one");
+                let end = self
+                    .scenario
+                    .end()
+                    .expect("an end is only asked for where there is one");
                 let speeds = end.wheel_speed.as_ref();
                 Waypoint {
                     attitude: end.attitude,
@@ -121,6 +129,8 @@ impl<'a> Places<'a> {
         };
         !self.dynamics.has_momentum()
             && self.dynamics.locked_momentum == Vector3::zeros()
-            && ends.iter().all(|end| end.rate.iter().all(symmetric_rate) && symmetric_wheels(&end.wheels))
+            && ends
+                .iter()
+                .all(|end| end.rate.iter().all(symmetric_rate) && symmetric_wheels(&end.wheels))
     }
 }

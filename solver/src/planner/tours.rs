@@ -38,14 +38,24 @@ impl<'a> Tours<'a> {
         free: &'a LegTable,
         stop: &'a StopSignal,
     ) -> Self {
-        Self { places, rest, free, stop, solves: AtomicU64::new(0), segments: Mutex::default() }
+        Self {
+            places,
+            rest,
+            free,
+            stop,
+            solves: AtomicU64::new(0),
+            segments: Mutex::default(),
+        }
     }
 
     /// The places of an order, start included and, for whole tours, the end.
     pub(super) fn route(&self, order: &[usize], whole: bool) -> Vec<Place> {
         let end = (whole && self.has_end()).then_some(Place::End);
         let targets = order.iter().map(|i| Place::Target(*i));
-        std::iter::once(Place::Start).chain(targets).chain(end).collect()
+        std::iter::once(Place::Start)
+            .chain(targets)
+            .chain(end)
+            .collect()
     }
 
     /// The segments of a route, each solved; shorter than the route when one did not converge or
@@ -83,7 +93,12 @@ impl<'a> Tours<'a> {
         {
             return Arc::new(leg.flown.clone());
         }
-        let known = self.segments.lock().unwrap_or_else(PoisonError::into_inner).get(route).cloned();
+        let known = self
+            .segments
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get(route)
+            .cloned();
         known.unwrap_or_else(|| {
             let flown = Arc::new(self.solve_segment(route));
             if flown.status != NlpStatus::Stopped {
@@ -131,7 +146,13 @@ impl<'a> Tours<'a> {
         }
         self.solves.fetch_add(1, Ordering::Relaxed);
         let intervals = vec![INTERVALS; route.len() - 1];
-        fly(&self.places.dynamics, &waypoints, &intervals, &guess, &|| self.stop.is_set())
+        fly(
+            &self.places.dynamics,
+            &waypoints,
+            &intervals,
+            &guess,
+            &|| self.stop.is_set(),
+        )
     }
 
     fn eigenaxis(&self, from: &Waypoint, to: &Waypoint) -> Profile {
@@ -145,7 +166,10 @@ impl<'a> Tours<'a> {
 
     /// Duration of a route with settle and dwell, or how its solve failed.
     fn duration(&self, route: &[Place]) -> Result<f64, NlpStatus> {
-        let mut total: f64 = route.iter().map(|place| self.places.service_time(*place)).sum();
+        let mut total: f64 = route
+            .iter()
+            .map(|place| self.places.service_time(*place))
+            .sum();
         for flown in self.fly_route(route) {
             total += flown.duration().ok_or(flown.status)?;
         }

@@ -33,8 +33,17 @@ impl Trapezoid {
     /// The fastest one within an acceleration (rad/s²) and a rate (rad/s) that may be infinite.
     pub(crate) fn fastest(angle: f64, acceleration: f64, rate: f64) -> Self {
         let ramp = (angle / acceleration).sqrt().min(rate / acceleration);
-        let duration = if ramp > 0.0 { angle / (ramp * acceleration) + ramp } else { 0.0 };
-        Self { angle, acceleration, ramp, duration }
+        let duration = if ramp > 0.0 {
+            angle / (ramp * acceleration) + ramp
+        } else {
+            0.0
+        };
+        Self {
+            angle,
+            acceleration,
+            ramp,
+            duration,
+        }
     }
 
     /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time.
@@ -74,7 +83,11 @@ impl EigenaxisSlew {
     ) -> Self {
         let turn = from.signed_turn_to(to);
         let angle = turn.norm();
-        let axis = if angle > 0.0 { turn / angle } else { Vector3::x() };
+        let axis = if angle > 0.0 {
+            turn / angle
+        } else {
+            Vector3::x()
+        };
         let acceleration = dynamics.axis_acceleration(&axis);
         let rate = dynamics.axis_rate(&axis);
         let at_factor = |factor: f64| Self {
@@ -90,7 +103,10 @@ impl EigenaxisSlew {
         }
         let (mut slow, mut fast) = (SLOWEST, 1.0);
         if at_factor(slow).usage(dynamics) > 1.0 {
-            return Self { flyable: false, ..at_factor(0.5) };
+            return Self {
+                flyable: false,
+                ..at_factor(0.5)
+            };
         }
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (slow + fast);

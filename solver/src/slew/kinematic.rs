@@ -66,7 +66,11 @@ pub(crate) fn guesses(
 ) -> Vec<Profile> {
     let angle = from.signed_turn_to(to).norm();
     let (box_rates, ramp) = box_of(dynamics, angle);
-    let search = Search { box_rates, target: from.relative_to(to).xyzw(), arrival };
+    let search = Search {
+        box_rates,
+        target: from.relative_to(to).xyzw(),
+        arrival,
+    };
     let mut chosen: Vec<Extremal> = Vec::new();
     for extremal in search.ranked() {
         if chosen.len() == count {
@@ -106,7 +110,11 @@ impl Search {
             .map(|i| {
                 let z = 1.0 - (2 * i + 1) as f64 / DIRECTIONS as f64;
                 let (radius, azimuth) = ((1.0 - z * z).sqrt(), golden * i as f64);
-                self.shoot(Vector3::new(radius * azimuth.cos(), radius * azimuth.sin(), z))
+                self.shoot(Vector3::new(
+                    radius * azimuth.cos(),
+                    radius * azimuth.sin(),
+                    z,
+                ))
             })
             .collect();
         all.sort_by(|a, b| a.score.total_cmp(&b.score));
@@ -117,7 +125,10 @@ impl Search {
     fn refine(&self, mut best: Extremal) -> Extremal {
         let mut step = FIRST_STEP;
         for _ in 0..REFINEMENTS {
-            let side = best.costate.cross(&Vector3::ith(best.costate.iamin(), 1.0)).normalize();
+            let side = best
+                .costate
+                .cross(&Vector3::ith(best.costate.iamin(), 1.0))
+                .normalize();
             let up = best.costate.cross(&side);
             let costate = best.costate;
             for i in 0..8 {
@@ -134,7 +145,12 @@ impl Search {
 
     /// Follows the extremal of a costate to its closest approach.
     fn shoot(&self, costate: Vector3<f64>) -> Extremal {
-        let mut best = Extremal { costate, arcs: Vec::new(), negative: false, score: f64::INFINITY };
+        let mut best = Extremal {
+            costate,
+            arcs: Vec::new(),
+            negative: false,
+            score: f64::INFINITY,
+        };
         let slowest = self.box_rates.min();
         let (mut q, mut m, mut time) = ([0.0, 0.0, 0.0, 1.0], costate, 0.0);
         let mut signs = m.map(|c| if c < 0.0 { -1.0 } else { 1.0 });
@@ -151,13 +167,19 @@ impl Search {
                 best.score = score;
                 best.negative = alignment < 0.0;
                 best.arcs.clone_from(&arcs);
-                best.arcs.push(Arc { rate, length: at / speed });
+                best.arcs.push(Arc {
+                    rate,
+                    length: at / speed,
+                });
             }
             time += turn / speed;
             if time >= best.score {
                 break;
             }
-            arcs.push(Arc { rate, length: turn / speed });
+            arcs.push(Arc {
+                rate,
+                length: turn / speed,
+            });
             q = product(&q, &quat(&(axis * (turn / 2.0).sin()), (turn / 2.0).cos()));
             m = rotated_back(&axis, turn, &m);
             match flip {
@@ -233,7 +255,10 @@ fn first_sign_change(
 impl Extremal {
     /// The signs of the rates on its arcs.
     fn word(&self) -> Vec<[bool; 3]> {
-        self.arcs.iter().map(|arc| [0, 1, 2].map(|i| arc.rate[i] > 0.0)).collect()
+        self.arcs
+            .iter()
+            .map(|arc| [0, 1, 2].map(|i| arc.rate[i] > 0.0))
+            .collect()
     }
 
     /// The motion with its rate jumps spread over the time that the wheels need for them.
@@ -253,7 +278,9 @@ impl Extremal {
             // Mean rate over the last ramp: zero at both ends, continuous between.
             let rate = (self.turned(time) - self.turned(time - ramp)) / ramp;
             let attitude = self.attitude(from, time - 0.5 * ramp);
-            profile.wheels.push(dynamics.wheels_at(&attitude, &rate, null));
+            profile
+                .wheels
+                .push(dynamics.wheels_at(&attitude, &rate, null));
             profile.attitudes.push(attitude);
         }
         profile.lengths = vec![length; intervals];
@@ -266,7 +293,9 @@ impl Extremal {
     }
 
     fn attitude(&self, from: &Attitude, time: f64) -> Attitude {
-        self.clipped(time).fold(*from, |attitude, (rate, length)| attitude.retract(rate * length))
+        self.clipped(time).fold(*from, |attitude, (rate, length)| {
+            attitude.retract(rate * length)
+        })
     }
 
     /// The arcs up to a time.

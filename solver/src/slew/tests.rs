@@ -1,78 +1,161 @@
+//! Slews with known answers.
+
 use super::*;
 use crate::attitude::Attitude;
 use crate::scenario::{RateCondition, Scenario};
-use crate::spec::{AttitudeEquivalence, AttitudeSpec};
+use crate::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
 use crate::transcription::WheelCondition;
+use nalgebra::Vector3;
 
-const RPY: [[f64; 3]; 19] = [
-    [0.0, 0.0, 0.0],
-    [15.0, 0.0, 10.0], [25.0, 0.0, 50.0], [15.0, 0.0, 130.0], [25.0, 0.0, 170.0], [15.0, 0.0, 250.0], [25.0, 0.0, 290.0],
-    [40.0, 0.0, 10.0], [50.0, 0.0, 50.0], [40.0, 0.0, 130.0], [50.0, 0.0, 170.0], [40.0, 0.0, 250.0], [50.0, 0.0, 290.0],
-    [85.0, 0.0, 10.0], [95.0, 0.0, 50.0], [85.0, 0.0, 130.0], [95.0, 0.0, 170.0], [85.0, 0.0, 250.0], [95.0, 0.0, 290.0],
-];
-
-fn at_rest(rpy: [f64; 3]) -> Waypoint {
-    let spec = AttitudeSpec::RollPitchYawDeg(rpy);
-    let attitude = Attitude::try_new(&spec, AttitudeEquivalence::Rotation, "").expect("valid").0;
-    Waypoint { attitude, rate: [RateCondition::Fixed(0.0); 3], wheels: WheelCondition::Free }
+fn dynamics(change: impl FnOnce(&mut ScenarioSpec)) -> Dynamics {
+    let mut spec = crate::scenario::reference::experiment_a();
+    change(&mut spec);
+    Dynamics::of(&Scenario::try_new(&spec).expect("a valid scenario").scenario)
 }
 
-#[test]
-fn explore() {
-    let scenario = Scenario::try_new(&crate::scenario::reference::experiment_a()).expect("valid").scenario;
-    let dynamics = Dynamics::of(&scenario);
-    let null = DVector::zeros(0);
-    let mut sums = [0.0; 4];
-    let mut wins = [0; 4];
-    let mut its = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
-    let begin = std::time::Instant::now();
-    let names: Vec<char> = "0abcdefghijklmnopqr".chars().collect();
-    for i in 0..19 {
-        for j in i + 1..19 {
-            let (from, to) = (at_rest(RPY[i]), at_rest(RPY[j]));
-            let mut results = Vec::new();
-            for (g, guess) in guesses(&dynamics, &from, &to, Arrival::Rotation, &null).iter().enumerate() {
-                let mut signed = to.clone();
-                signed.attitude = to.attitude.nearest_sign(guess.attitudes.last().unwrap());
-                let flown = fly(&dynamics, &[from.clone(), signed], &[INTERVALS], guess, &|| false);
-                its[g].push(flown.iterations);
-                results.push((flown.duration().unwrap_or(f64::NAN), flown.status, flown.iterations, guess.duration()));
-            }
-            let best = results.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
-            let win = results.iter().position(|r| r.0 <= best * 1.0001).unwrap_or(3);
-            wins[win] += 1;
-            sums[3] += best;
-            for (s, r) in sums.iter_mut().zip(&results) { *s += r.0; }
-            if win > 0 || results.iter().any(|r| r.0.is_nan()) {
-                println!("{}-{} {best:.4} {results:.3?}", names[i], names[j]);
-            }
-        }
+fn at_rest(attitude: Attitude) -> Waypoint {
+    Waypoint {
+        attitude,
+        rate: [RateCondition::Fixed(0.0); 3],
+        wheels: WheelCondition::Free,
     }
-    for list in &mut its { list.sort_unstable(); }
-    println!("sums {sums:?} wins {wins:?} time {:?}", begin.elapsed());
-    for list in &its { if !list.is_empty() { println!("median {} p90 {} max {}", list[list.len()/2], list[list.len()*9/10], list[list.len()-1]); } }
+}
+
+fn roll_pitch_yaw(angles_deg: [f64; 3]) -> Attitude {
+    let spec = AttitudeSpec::RollPitchYawDeg(angles_deg);
+    let read = Attitude::try_new(&spec, AttitudeEquivalence::Rotation, "");
+    read.expect("a valid attitude").0
+}
+
+fn rest_to_rest(dynamics: &Dynamics, from: Attitude, to: Attitude) -> f64 {
+    let (from, to) = (at_rest(from), at_rest(to));
+    let null = DVector::zeros(dynamics.wheel_count() - 3);
+    let slew = solve(dynamics, &from, &to, Arrival::Rotation, &null, &|| false);
+    slew.flown.duration().expect("the slew converges")
 }
 
 #[test]
-fn chain_of_signs() {
-    let scenario = Scenario::try_new(&crate::scenario::reference::experiment_a()).expect("valid").scenario;
-    let dynamics = Dynamics::of(&scenario);
+fn a_short_turn_about_one_axis_is_bang_bang() {
+    let dynamics = dynamics(|_| {});
+    let angle = 0.05;
+    let duration = rest_to_rest(
+        &dynamics,
+        Attitude::identity(),
+        Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, angle)),
+    );
+    let bang_bang = 2.0 * (angle * 9.63 / 0.0101_f64).sqrt();
+    assert!(
+        (duration / bang_bang - 1.0).abs() < 1e-5,
+        "{duration} against {bang_bang}"
+    );
+}
+
+#[test]
+fn a_turn_at_the_wheel_speed_limit_beats_bang_coast_bang_only_off_axis() {
+    let dynamics = dynamics(|_| {});
+    let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, 1.0));
+    let rate: f64 = 0.000_169 * 710.0 / 9.63;
+    let bang_coast_bang = 1.0 / rate + rate * 9.63 / 0.0101;
     let null = DVector::zeros(0);
-    let (s, e, f) = (at_rest(RPY[0]), at_rest(RPY[5]), at_rest(RPY[6]));
-    let one = solve(&dynamics, &s, &e, Arrival::Rotation, &null, &|| false).flown;
-    let two = solve(&dynamics, &e, &f, Arrival::Rotation, &null, &|| false).flown;
-    println!("{:?} {:?}", one.duration(), two.duration());
-    println!("{:?} {:?}", one.profile.attitudes.first().unwrap().xyzw(), one.profile.attitudes.last().unwrap().xyzw());
-    println!("{:?} {:?}", two.profile.attitudes.first().unwrap().xyzw(), two.profile.attitudes.last().unwrap().xyzw());
-    let mut guess = Profile::empty();
-    guess.append(&one.profile);
-    guess.append(&two.profile);
-    for pair in guess.attitudes.windows(2) { print!("{:.3} ", pair[0].signed_turn_to(&pair[1]).norm()); }
-    let mut e2 = e.clone();
-    e2.attitude = e.attitude.nearest_sign(&guess.attitudes[12]);
-    let mut f2 = f.clone();
-    f2.attitude = f.attitude.nearest_sign(&guess.attitudes[24]);
-    println!("\n{:?} {:?}", e2.attitude.xyzw(), f2.attitude.xyzw());
-    let all = fly(&dynamics, &[s, e2, f2], &[12, 12], &guess, &|| false);
-    println!("{:?} {}", all.status, all.iterations);
+    let eigenaxis = EigenaxisSlew::fastest(&dynamics, &Attitude::identity(), &to, &null);
+    // The wheel's speed relative to the body saturates a little later than its momentum.
+    let planned = eigenaxis.trapezoid.duration;
+    assert!(
+        (planned / bang_coast_bang - 1.0).abs() < 1e-4,
+        "{planned} against {bang_coast_bang}"
+    );
+    let duration = rest_to_rest(&dynamics, Attitude::identity(), to);
+    assert!(
+        duration < planned,
+        "the two other axes help: {duration} against {planned}"
+    );
+    assert!(duration > 0.75 * planned);
+}
+
+#[test]
+fn the_published_leg_and_the_roll_that_traps_local_solvers() {
+    let dynamics = dynamics(|_| {});
+    let (a, b) = (
+        roll_pitch_yaw([15.0, 0.0, 10.0]),
+        roll_pitch_yaw([25.0, 0.0, 50.0]),
+    );
+    let leg = rest_to_rest(&dynamics, a, b);
+    assert!((57.50..=57.60).contains(&leg), "{leg}");
+    let (h, n) = (
+        roll_pitch_yaw([50.0, 0.0, 50.0]),
+        roll_pitch_yaw([95.0, 0.0, 50.0]),
+    );
+    let roll = rest_to_rest(&dynamics, h, n);
+    assert!(
+        roll <= 54.05,
+        "{roll}: the eigenaxis start alone may end at 55.3"
+    );
+}
+
+#[test]
+fn signs_and_direction_of_travel_do_not_matter_without_momentum() {
+    let dynamics = dynamics(|_| {});
+    let (a, e) = (
+        roll_pitch_yaw([15.0, 0.0, 10.0]),
+        roll_pitch_yaw([15.0, 0.0, 250.0]),
+    );
+    let forth = rest_to_rest(&dynamics, a, e);
+    for duration in [
+        rest_to_rest(&dynamics, a, e.negated()),
+        rest_to_rest(&dynamics, a.negated(), e),
+        rest_to_rest(&dynamics, e, a),
+    ] {
+        assert!(
+            (duration / forth - 1.0).abs() < 1e-4,
+            "{duration} against {forth}"
+        );
+    }
+}
+
+#[test]
+fn free_end_rates_never_take_longer() {
+    let dynamics = dynamics(|_| {});
+    let (a, b) = (
+        roll_pitch_yaw([15.0, 0.0, 10.0]),
+        roll_pitch_yaw([25.0, 0.0, 50.0]),
+    );
+    let free = |attitude| Waypoint {
+        rate: [
+            RateCondition::Free,
+            RateCondition::Free,
+            RateCondition::Fixed(0.0),
+        ],
+        ..at_rest(attitude)
+    };
+    let null = DVector::zeros(0);
+    let slew = solve(
+        &dynamics,
+        &free(a),
+        &free(b),
+        Arrival::Rotation,
+        &null,
+        &|| false,
+    );
+    let bound = slew.flown.duration().expect("the slew converges");
+    assert!(bound < rest_to_rest(&dynamics, a, b));
+}
+
+#[test]
+fn a_long_way_round_is_flown_when_the_sign_asks_for_it() {
+    let dynamics = dynamics(|_| {});
+    let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, 0.8));
+    let null = DVector::zeros(0);
+    let (from, there) = (at_rest(Attitude::identity()), at_rest(to.negated()));
+    let slew = solve(
+        &dynamics,
+        &from,
+        &there,
+        Arrival::Quaternion,
+        &null,
+        &|| false,
+    );
+    let long = slew.flown.duration().expect("the slew converges");
+    assert!(long > 3.0 * rest_to_rest(&dynamics, Attitude::identity(), to));
+    let arrived = slew.flown.profile.attitudes.last().expect("nodes");
+    assert!(arrived.signed_turn_to(&to.negated()).norm() < 1e-6);
 }

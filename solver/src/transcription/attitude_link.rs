@@ -9,7 +9,7 @@
 //! ```
 
 use super::rows::{add_attitude_block, double_cross_curvature};
-use super::{Transcription, attitude_error, quaternion_of};
+use super::{Transcription, quaternion_of};
 use crate::kinematics::{
     INPUTS, Quat, TurnDerivatives, TurnInputs, conjugate, imaginary, product, quat, rotate_back,
 };
@@ -46,7 +46,7 @@ impl Transcription {
     pub(super) fn write_gap(&self, link: &Link<'_>, gap: &mut [f64]) {
         let turn = self.turn_map.turn(&self.turn_inputs(link));
         let relative = relative_attitude(link);
-        let error = imaginary(&product(&relative, &turn)) * (2.0 / self.scales.angle);
+        let error = chart(&product(&relative, &turn)) / self.scales.angle;
         gap[..3].copy_from_slice(error.as_slice());
         for i in 0..self.wheels() {
             gap[3 + i] = link.point[4 + i] + link.control[i] - link.next[4 + i];
@@ -133,7 +133,12 @@ impl Transcription {
     }
 
     /// `Z^T (mu . d2p/dz2) Z`.
-    fn add_input_curvature(&self, turn: &TurnDerivatives, inputs: &InputJacobian, out: &mut LinkModel) {
+    fn add_input_curvature(
+        &self,
+        turn: &TurnDerivatives,
+        inputs: &InputJacobian,
+        out: &mut LinkModel,
+    ) {
         let (n, vars) = (self.turn_map.inputs(), out.vars);
         for i in 0..n {
             let mut image = [0.0; MAX_VARS];
@@ -169,7 +174,11 @@ impl Transcription {
             for j in 0..self.turn_map.inputs() {
                 let weight = dot4(&covector, &turn.first[j]);
                 for (column, value) in inputs[j][..vars].iter().enumerate() {
-                    let (high, low) = if column > axis { (column, axis) } else { (axis, column) };
+                    let (high, low) = if column > axis {
+                        (column, axis)
+                    } else {
+                        (axis, column)
+                    };
                     let twice = if column == axis { 2.0 } else { 1.0 };
                     out.hessian[high * vars + low] += twice * weight * value;
                 }
@@ -178,7 +187,12 @@ impl Transcription {
     }
 
     /// Curvature of the inputs themselves, weighted by the gradient with respect to them.
-    fn add_curvature_of_inputs(&self, link: &Link<'_>, gradient: &[f64; INPUTS], out: &mut LinkModel) {
+    fn add_curvature_of_inputs(
+        &self,
+        link: &Link<'_>,
+        gradient: &[f64; INPUTS],
+        out: &mut LinkModel,
+    ) {
         let (wheels, vars) = (self.wheels(), out.vars);
         let tau_row = (3 + 2 * wheels) * vars;
         let part = |at: usize| Vector3::new(gradient[at], gradient[at + 1], gradient[at + 2]);
@@ -217,13 +231,27 @@ impl Transcription {
             }
         }
         let weight = Vector3::new(nu[0], nu[1], nu[2]) * (2.0 / self.scales.angle);
-        let bend = -0.25 * self.scales.angle.powi(2) * weight.dot(&attitude_error(target, point));
+        let bend = -0.25 * self.scales.angle.powi(2) * weight.dot(&imaginary(&relative));
         add_attitude_block(out, &(Matrix3::identity() * bend));
     }
 }
 
+/// The chart `2 vec(q)` of the hemisphere around the identity. Beyond it the vector part shrinks
+/// again towards `-1`, where it would pass for no error at all: not a number there, so that the
+/// line search stays on its side.
+pub(super) fn chart(q: &Quat) -> Vector3<f64> {
+    if q[3] > 0.0 {
+        imaginary(q) * 2.0
+    } else {
+        Vector3::repeat(f64::NAN)
+    }
+}
+
 fn relative_attitude(link: &Link<'_>) -> Quat {
-    product(&conjugate(&quaternion_of(link.next)), &quaternion_of(link.point))
+    product(
+        &conjugate(&quaternion_of(link.next)),
+        &quaternion_of(link.point),
+    )
 }
 
 fn dot4(a: &Quat, b: &Quat) -> f64 {

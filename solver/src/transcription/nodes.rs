@@ -33,7 +33,10 @@ pub(crate) struct Waypoint {
 impl Waypoint {
     /// Whether conditions leave nothing free.
     pub(crate) fn is_fixed(&self, dynamics: &Dynamics) -> bool {
-        let rates_fixed = self.rate.iter().all(|c| matches!(c, RateCondition::Fixed(_)));
+        let rates_fixed = self
+            .rate
+            .iter()
+            .all(|c| matches!(c, RateCondition::Fixed(_)));
         match self.wheels {
             WheelCondition::Fixed(_) => true,
             WheelCondition::NullSpace(_) => rates_fixed,
@@ -62,10 +65,17 @@ impl Transcription {
         let mut nodes = Vec::with_capacity(intervals.iter().sum::<usize>() + 1);
         for (waypoint, count) in waypoints.iter().zip(intervals) {
             nodes.push(self.waypoint_node(waypoint));
-            let free = Node { limited: true, ..Node::default() };
+            let free = Node {
+                limited: true,
+                ..Node::default()
+            };
             nodes.extend(std::iter::repeat_n(free, count.saturating_sub(1)));
         }
-        nodes.extend(waypoints.last().map(|waypoint| self.waypoint_node(waypoint)));
+        nodes.extend(
+            waypoints
+                .last()
+                .map(|waypoint| self.waypoint_node(waypoint)),
+        );
         nodes
     }
 
@@ -99,7 +109,12 @@ impl Transcription {
                 return node;
             }
             WheelCondition::NullSpace(components) => {
-                for (column, value) in self.dynamics.null_space.column_iter().zip(components.iter()) {
+                for (column, value) in self
+                    .dynamics
+                    .null_space
+                    .column_iter()
+                    .zip(components.iter())
+                {
                     node.equalities.push(Row {
                         constant: -value / self.scales.momentum,
                         rate: Vector3::zeros(),
@@ -148,7 +163,10 @@ impl Transcription {
                 rows.push(Row {
                     constant: 1.0 - reserve,
                     rate: wheel.axis * (sign / wheel.max_speed),
-                    wheels: vec![(i, -sign * self.scales.momentum / (wheel.inertia * wheel.max_speed))],
+                    wheels: vec![(
+                        i,
+                        -sign * self.scales.momentum / (wheel.inertia * wheel.max_speed),
+                    )],
                 });
             }
         }

@@ -59,10 +59,20 @@ impl Dynamics {
     /// pseudo-inverse; infinite when nothing limits it.
     pub(crate) fn axis_rate(&self, axis: &Vector3<f64>) -> f64 {
         let per_unit = &self.axes_inverse * (self.inertia * axis);
-        let no_momentum = self.actuators.iter().zip(per_unit.iter()).map(|(wheel, share)| {
-            wheel.max_speed / (share / wheel.inertia + wheel.axis.dot(axis)).abs()
-        });
-        let per_axis = self.max_rate.iter().zip(axis).map(|(limit, part)| limit / part.abs());
-        no_momentum.chain(per_axis).fold(self.max_rate_norm / axis.norm(), f64::min)
+        let no_momentum = self
+            .actuators
+            .iter()
+            .zip(per_unit.iter())
+            .map(|(wheel, share)| {
+                wheel.max_speed / (share / wheel.inertia + wheel.axis.dot(axis)).abs()
+            });
+        let per_axis = self
+            .max_rate
+            .iter()
+            .zip(axis)
+            .map(|(limit, part)| limit / part.abs());
+        no_momentum
+            .chain(per_axis)
+            .fold(self.max_rate_norm / axis.norm(), f64::min)
     }
 }

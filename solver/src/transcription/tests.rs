@@ -21,7 +21,11 @@ fn wheel(axis: [f64; 3], enabled: bool) -> WheelSpec {
 
 /// Five wheels, one of them locked, full inertia, stored momentum, every kind of limit.
 fn dynamics(biased: bool) -> Dynamics {
-    let speeds = if biased { vec![60.0, -20.0, 80.0, 40.0, 50.0] } else { vec![0.0; 5] };
+    let speeds = if biased {
+        vec![60.0, -20.0, 80.0, 40.0, 50.0]
+    } else {
+        vec![0.0; 5]
+    };
     let spec = ScenarioSpec {
         spacecraft: SpacecraftSpec {
             inertia_kg_m2: [[9.0, 0.4, -0.2], [0.4, 8.0, 0.3], [-0.2, 0.3, 7.0]],
@@ -36,8 +40,14 @@ fn dynamics(biased: bool) -> Dynamics {
             ],
             boresights: Vec::new(),
         },
-        start: StateSpec { wheel_speed_rad_s: Some(speeds), ..StateSpec::default() },
-        targets: vec![TargetSpec { id: "a".into(), ..TargetSpec::default() }],
+        start: StateSpec {
+            wheel_speed_rad_s: Some(speeds),
+            ..StateSpec::default()
+        },
+        targets: vec![TargetSpec {
+            id: "a".into(),
+            ..TargetSpec::default()
+        }],
         ..ScenarioSpec::default()
     };
     Dynamics::of(&Scenario::try_new(&spec).expect("a valid scenario").scenario)
@@ -49,7 +59,11 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
     let waypoints = [
         Waypoint {
             attitude: Attitude::identity(),
-            rate: [RateCondition::Free, RateCondition::Fixed(0.01), RateCondition::Within(-0.1, 0.2)],
+            rate: [
+                RateCondition::Free,
+                RateCondition::Fixed(0.01),
+                RateCondition::Within(-0.1, 0.2),
+            ],
             wheels: WheelCondition::NullSpace(null),
         },
         Waypoint {
@@ -97,9 +111,13 @@ impl Fixture {
     fn model(&self, step: &[f64]) -> LinkModel {
         let states = self.chain.state_dim();
         let mut point = vec![0.0; 8];
-        self.chain.retract(&unit(POINT), &step[..states], &mut point);
+        self.chain
+            .retract(&unit(POINT), &step[..states], &mut point);
         let mut control = CONTROL.to_vec();
-        control.iter_mut().zip(&step[states..]).for_each(|(c, s)| *c += s);
+        control
+            .iter_mut()
+            .zip(&step[states..])
+            .for_each(|(c, s)| *c += s);
         let last = self.node == self.chain.intervals();
         let mut iterate = Iterate::cold(Vec::new(), Vec::new());
         iterate.points = unit(NEXT);
@@ -122,7 +140,11 @@ impl Fixture {
     fn lagrangian(&self, model: &LinkModel) -> f64 {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let values = &model.values;
-        let gaps = if values.gap.is_empty() { 0.0 } else { dot(&self.gap, &values.gap) };
+        let gaps = if values.gap.is_empty() {
+            0.0
+        } else {
+            dot(&self.gap, &values.gap)
+        };
         values.cost + gaps + dot(&self.equality, &values.equality)
             - dot(&self.inequality, &values.inequality)
     }
@@ -139,7 +161,10 @@ fn check_first(fixture: &Fixture) {
         let minus = fixture.model(&step).values;
         let close = |exact: f64, plus: f64, minus: f64, what: &str| {
             let numeric = (plus - minus) / (2.0 * by);
-            assert!((exact - numeric).abs() < 1e-7, "{what} column {column}: {exact} {numeric}");
+            assert!(
+                (exact - numeric).abs() < 1e-7,
+                "{what} column {column}: {exact} {numeric}"
+            );
         };
         close(base.gradient[column], plus.cost, minus.cost, "cost");
         for (row, (p, m)) in plus.gap.iter().zip(&minus.gap).enumerate() {
@@ -150,7 +175,12 @@ fn check_first(fixture: &Fixture) {
         }
         if column < states {
             for (row, (p, m)) in plus.equality.iter().zip(&minus.equality).enumerate() {
-                close(base.equality_jacobian[row * states + column], *p, *m, "equality");
+                close(
+                    base.equality_jacobian[row * states + column],
+                    *p,
+                    *m,
+                    "equality",
+                );
             }
         }
     }
@@ -171,7 +201,10 @@ fn check_second(fixture: &Fixture) {
                 + at(i, -1.0, j, -1.0))
                 / (4.0 * by * by);
             let exact = base.hessian[i * vars + j];
-            assert!((exact - numeric).abs() < 2e-5, "hessian {i} {j}: {exact} {numeric}");
+            assert!(
+                (exact - numeric).abs() < 2e-5,
+                "hessian {i} {j}: {exact} {numeric}"
+            );
         }
     }
 }

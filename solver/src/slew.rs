@@ -77,7 +77,7 @@ fn guesses(
         Arrival::Quaternion => to.attitude,
     };
     let eigenaxis = EigenaxisSlew::fastest(dynamics, &from.attitude, &target, null);
-    let mut all = vec![eigenaxis.profile(dynamics, INTERVALS)];
+    let mut all = vec![eigenaxis.guess(dynamics, INTERVALS)];
     all.extend(kinematic::guesses(
         dynamics,
         &from.attitude,

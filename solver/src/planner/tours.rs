@@ -161,7 +161,7 @@ impl<'a> Tours<'a> {
             Arrival::Quaternion => to.attitude,
         };
         let Places { dynamics, null, .. } = self.places;
-        EigenaxisSlew::fastest(dynamics, &from.attitude, &target, null).profile(dynamics, INTERVALS)
+        EigenaxisSlew::fastest(dynamics, &from.attitude, &target, null).guess(dynamics, INTERVALS)
     }
 
     /// Duration of a route with settle and dwell, or how its solve failed.

@@ -16,6 +16,9 @@ const BISECTIONS: usize = 24;
 /// Slowest factor worth trying.
 const SLOWEST: f64 = 1e-3;
 
+/// Bow of a starting guess across the axis, as a share of the peak rate.
+const BOW: f64 = 0.05;
+
 /// A bang-coast-bang of a fixed angle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trapezoid {
@@ -144,14 +147,23 @@ impl EigenaxisSlew {
         worst
     }
 
-    /// The slew sampled at equal times.
-    pub(crate) fn profile(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
+    /// The slew sampled at equal times, as a starting guess.
+    ///
+    /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
+    /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
+    pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
         let length = self.trapezoid.duration / intervals as f64;
+        let peak = self.trapezoid.at(0.5 * self.trapezoid.duration).1;
+        let across = self.axis.cross(&Vector3::ith(self.axis.iamin(), 1.0)).normalize();
+        let bow = (across + across.cross(&self.axis)) * (BOW * peak);
         let mut profile = Profile::empty();
         for node in 0..=intervals {
-            let (attitude, _, wheels) = self.state(dynamics, length * node as f64);
+            let (attitude, rate, _) = self.state(dynamics, length * node as f64);
+            let phase = std::f64::consts::PI * node as f64 / intervals as f64;
+            // Exactly zero at both ends, where the rates are given.
+            let bowed = rate + if node < intervals { bow * phase.sin() } else { Vector3::zeros() };
+            profile.wheels.push(dynamics.wheels_at(&attitude, &bowed, &self.null));
             profile.attitudes.push(attitude);
-            profile.wheels.push(wheels);
         }
         profile.lengths = vec![length; intervals];
         profile

@@ -161,7 +161,7 @@ impl Search {
             let axis = rate / speed;
             let (flip, turn) = first_sign_change(&axis, &m, &signs);
             let (at, alignment) = self.closest(&q, &axis, turn);
-            let miss = 2.0 * alignment.abs().min(1.0).acos();
+            let miss = 2.0 * self.nearness(alignment).clamp(-1.0, 1.0).acos();
             let score = time + at / speed + miss / slowest;
             if score < best.score {
                 best.score = score;
@@ -190,6 +190,14 @@ impl Search {
         best
     }
 
+    /// Scalar product with the target as far as its sign counts.
+    fn nearness(&self, alignment: f64) -> f64 {
+        match self.arrival {
+            Arrival::Rotation => alignment.abs(),
+            Arrival::Quaternion => alignment,
+        }
+    }
+
     /// Turn angle on an arc at which the target is closest, with the scalar product there.
     fn closest(&self, q: &Quat, axis: &Vector3<f64>, end: f64) -> (f64, f64) {
         let dot = |a: &Quat| a.iter().zip(&self.target).map(|(x, y)| x * y).sum::<f64>();
@@ -203,17 +211,9 @@ impl Search {
                 continue;
             }
             let value = alignment(x);
-            let better = match self.arrival {
-                Arrival::Rotation => value.abs() > best.1.abs() + 1e-12,
-                Arrival::Quaternion => value > best.1 + 1e-12,
-            };
-            if better {
+            if self.nearness(value) > self.nearness(best.1) + 1e-12 {
                 best = (x, value);
             }
-        }
-        if self.arrival == Arrival::Quaternion && best.1 < 0.0 {
-            // The wrong hemisphere: as far away as it gets.
-            best.1 = 0.0;
         }
         best
     }

@@ -145,6 +145,12 @@ pub(crate) struct TurnMap {
     substeps: usize,
 }
 
+/// The turn so far with its derivatives.
+struct Flow {
+    p: Quat,
+    first: [Quat; INPUTS],
+}
+
 #[derive(Clone, Copy, Default)]
 struct StageRecord {
     sigma: f64,
@@ -216,27 +222,27 @@ impl TurnMap {
     /// Forward over all substeps, then back.
     fn sweep(&self, z: &TurnInputs, mu: &Quat, records: &mut [StageRecord]) -> TurnDerivatives {
         let h = 1.0 / self.substeps as f64;
-        let mut p = [0.0, 0.0, 0.0, 1.0];
-        let mut first = [[0.0; 4]; INPUTS];
-        for step in 0..self.substeps {
-            let records = &mut records[step * STAGES..(step + 1) * STAGES];
-            self.forward_substep(z, step, h, &mut p, &mut first, records);
+        let mut flow = Flow {
+            p: [0.0, 0.0, 0.0, 1.0],
+            first: [[0.0; 4]; INPUTS],
+        };
+        let chunks = records.chunks_exact_mut(STAGES).take(self.substeps);
+        for (step, records) in chunks.enumerate() {
+            self.forward_substep(z, step, h, &mut flow, records);
         }
         let mut second = [[0.0; INPUTS]; INPUTS];
         let mut adjoint = *mu;
-        for step in (0..self.substeps).rev() {
-            let records = &records[step * STAGES..(step + 1) * STAGES];
+        for records in records.chunks_exact(STAGES).take(self.substeps).rev() {
             self.reverse_substep(z, h, &mut adjoint, records, &mut second);
         }
-        let n = self.inputs();
-        for i in 0..n {
+        for i in 0..self.inputs() {
             for j in 0..i {
                 second[j][i] = second[i][j];
             }
         }
         TurnDerivatives {
-            turn: p,
-            first,
+            turn: flow.p,
+            first: flow.first,
             second,
         }
     }
@@ -246,8 +252,7 @@ impl TurnMap {
         z: &TurnInputs,
         step: usize,
         h: f64,
-        p: &mut Quat,
-        first: &mut [Quat; INPUTS],
+        flow: &mut Flow,
         records: &mut [StageRecord],
     ) {
         let n = self.inputs();
@@ -256,9 +261,9 @@ impl TurnMap {
         for i in 0..STAGES {
             let mut record = StageRecord {
                 sigma: h * (step as f64 + C[i]),
-                p: *p,
+                p: flow.p,
                 rate: Vector3::zeros(),
-                sensitivity: *first,
+                sensitivity: flow.first,
             };
             for j in 0..i {
                 if A[i][j] != 0.0 {
@@ -278,8 +283,8 @@ impl TurnMap {
             records[i] = record;
         }
         for i in 0..STAGES {
-            add_scaled(p, h * B[i], &k[i]);
-            for (out, value) in first[..n].iter_mut().zip(&dk[i]) {
+            add_scaled(&mut flow.p, h * B[i], &k[i]);
+            for (out, value) in flow.first[..n].iter_mut().zip(&dk[i]) {
                 add_scaled(out, h * B[i], value);
             }
         }
@@ -354,43 +359,32 @@ impl TurnMap {
             let pulled = imaginary(&product(&conjugate(&at.p), weight)) * 0.5;
             let y = self.inertia_inverse.tr_mul(&pulled);
             add_scaled(&mut carried, 2.0, &quadratic(&y, &z.momentum, &at.p));
-            self.accumulate_momentum(z, &y, at, second);
+            accumulate_momentum(z, &y, at, second);
         }
         carried
     }
+}
 
-    /// Adds `y . d2(R(p)^T zeta)` with `y . R(p)^T zeta = p^T Q(y, zeta) p`.
-    fn accumulate_momentum(
-        &self,
-        z: &TurnInputs,
-        y: &Vector3<f64>,
-        at: &StageRecord,
-        second: &mut [[f64; INPUTS]; INPUTS],
-    ) {
-        for i in 0..INPUTS {
-            let mut image = quadratic(y, &z.momentum, &at.sensitivity[i]);
-            for value in &mut image {
-                *value *= 2.0;
-            }
-            for j in 0..=i {
-                second[i][j] += dot4(&image, &at.sensitivity[j]);
-            }
+/// Adds `y . d2(R(p)^T zeta)` with `y . R(p)^T zeta = p^T Q(y, zeta) p`, lower triangle.
+fn accumulate_momentum(
+    z: &TurnInputs,
+    y: &Vector3<f64>,
+    at: &StageRecord,
+    second: &mut [[f64; INPUTS]; INPUTS],
+) {
+    for i in 0..INPUTS {
+        let image = quadratic(y, &z.momentum, &at.sensitivity[i]);
+        for j in 0..=i {
+            second[i][j] += 2.0 * dot4(&image, &at.sensitivity[j]);
         }
-        for axis in 0..3 {
-            let mut unit = Vector3::zeros();
-            unit[axis] = 1.0;
-            let image = quadratic(y, &unit, &at.p);
-            let row = 6 + axis;
-            for j in 0..INPUTS {
-                let value = 2.0 * dot4(&image, &at.sensitivity[j]);
-                if j < row {
-                    second[row][j] += value;
-                } else if j == row {
-                    second[row][row] += 2.0 * value;
-                } else {
-                    second[j][row] += value;
-                }
-            }
+    }
+    for axis in 0..3 {
+        let image = quadratic(y, &Vector3::ith(axis, 1.0), &at.p);
+        let row = 6 + axis;
+        for j in 0..INPUTS {
+            let value = 2.0 * dot4(&image, &at.sensitivity[j]);
+            let twice = if j == row { 2.0 } else { 1.0 };
+            second[row.max(j)][row.min(j)] += twice * value;
         }
     }
 }

@@ -16,6 +16,8 @@ const SUBSTEPS: usize = 2;
 const LARGEST_SUBSTEP: f64 = 0.35;
 /// Rounds of refining the substeps and the reserve at limits.
 const MAX_ROUNDS: usize = 4;
+/// Barrier parameter of a round that only integrates more finely: the iterate is nearly optimal.
+const WARM_BARRIER: f64 = 1e-7;
 /// Relative excess over a limit between nodes that is not worth another round; the checker's
 /// tolerance is ten times this.
 const LIMIT_TOLERANCE: f64 = 1e-7;
@@ -29,6 +31,8 @@ pub(crate) struct Flown {
     pub(crate) profile: Profile,
     /// Interior-point iterations.
     pub(crate) iterations: usize,
+    /// Largest violation of any condition at the end, scaled.
+    pub(crate) infeasibility: f64,
 }
 
 impl Flown {
@@ -47,7 +51,7 @@ pub(crate) fn fly(
     stop: &dyn Fn() -> bool,
 ) -> Flown {
     let scales = Scales::for_angle(dynamics, typical_angle(waypoints));
-    let settings = Settings::default();
+    let mut settings = Settings::default();
     let reference = guess.duration() / guess.intervals().max(1) as f64 / scales.time;
     let mut substeps = SUBSTEPS;
     let mut reserve = 0.0;
@@ -73,12 +77,18 @@ pub(crate) fn fly(
                 status: report.status,
                 profile,
                 iterations,
+                infeasibility: report.infeasibility,
             };
         }
         substeps = substeps.max(needed);
-        reserve += 1.2 * excess.max(0.0);
-        // Slacks belong to the old limits: begin again from the primal point alone.
-        iterate = scaled(&profile, &scales);
+        if excess > LIMIT_TOLERANCE {
+            // Slacks belong to the old limits: begin again from the primal point alone.
+            reserve += 1.2 * excess;
+            iterate = scaled(&profile, &scales);
+            settings = Settings::default();
+        } else {
+            settings.initial_barrier = WARM_BARRIER;
+        }
     }
     unreachable!("the last round returns")
 }
@@ -135,7 +145,10 @@ fn substeps_for(profile: &Profile) -> usize {
         .windows(2)
         .map(|pair| pair[0].angle_to(&pair[1]))
         .fold(0.0, f64::max);
-    (largest / LARGEST_SUBSTEP).ceil() as usize
+    // An interval turns by half a revolution at the very most.
+    (1..10_u8)
+        .find(|count| largest <= LARGEST_SUBSTEP * f64::from(*count))
+        .map_or(10, usize::from)
 }
 
 /// Relative excess over speed and rate limits inside intervals, judged at their middles: wheel

@@ -39,6 +39,8 @@ mod model;
 mod restoration;
 mod riccati;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use chain::{Chain, Link, LinkMultipliers};
 pub(crate) use interior_point::InteriorPoint;
@@ -46,4 +48,4 @@ pub(crate) use iterate::Iterate;
 #[cfg(test)]
 pub(crate) use model::models_of;
 pub(crate) use model::{LinkModel, LinkValues};
-pub(crate) use settings::{NlpReport, NlpStatus, Settings};
+pub(crate) use settings::{NlpStatus, Settings};

@@ -268,10 +268,13 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
             let leg = tours.free.get(from, to)?;
             (leg.flown.status != NlpStatus::Converged).then(|| {
                 let message = format!(
-                    "the slew from {} to {} ended with status {}",
+                    "the slew from {} to {} ended with status {} after {} iterations, its \
+                     conditions violated by {:.1e} (scaled)",
                     tours.places.name(from),
                     tours.places.name(to),
                     leg.flown.status.as_str(),
+                    leg.flown.iterations,
+                    leg.flown.infeasibility,
                 );
                 Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)
             })

@@ -19,6 +19,21 @@ pub(crate) const INTERVALS: usize = 12;
 /// Kinematic extremals that are tried as guesses beside the eigenaxis slew.
 const EXTREMALS: usize = 2;
 
+/// A slew between two waypoints.
+#[derive(Clone, Copy)]
+pub(crate) struct SlewProblem<'a> {
+    /// The spacecraft with its momentum.
+    pub(crate) dynamics: &'a Dynamics,
+    /// Where it begins.
+    pub(crate) from: &'a Waypoint,
+    /// Where it ends; the quaternion sign is free with [`Arrival::Rotation`].
+    pub(crate) to: &'a Waypoint,
+    /// Which signs count as arrived.
+    pub(crate) arrival: Arrival,
+    /// Null-space momentum of the wheels in the guesses, N m s.
+    pub(crate) null: &'a DVector<f64>,
+}
+
 /// The best solution of a slew.
 #[derive(Debug, Clone)]
 pub(crate) struct Slew {
@@ -28,30 +43,17 @@ pub(crate) struct Slew {
     pub(crate) solves: u64,
 }
 
-/// Solves a slew from all its guesses; the quaternion sign of `to` is free with
-/// [`Arrival::Rotation`].
-pub(crate) fn solve(
-    dynamics: &Dynamics,
-    from: &Waypoint,
-    to: &Waypoint,
-    arrival: Arrival,
-    null: &DVector<f64>,
-    stop: &dyn Fn() -> bool,
-) -> Slew {
+/// Solves a slew from all its guesses.
+pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
     let mut best: Option<Flown> = None;
     let mut solves = 0;
-    for guess in guesses(dynamics, from, to, arrival, null) {
-        let mut signed = to.clone();
-        if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), arrival) {
-            signed.attitude = to.attitude.nearest_sign(last);
+    for guess in guesses(slew) {
+        let mut to = slew.to.clone();
+        if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), slew.arrival) {
+            to.attitude = to.attitude.nearest_sign(last);
         }
-        let flown = fly(
-            dynamics,
-            &[from.clone(), signed],
-            &[INTERVALS],
-            &guess,
-            stop,
-        );
+        let waypoints = [slew.from.clone(), to];
+        let flown = fly(slew.dynamics, &waypoints, &[INTERVALS], &guess, stop);
         solves += 1;
         if best.as_ref().is_none_or(|best| improves(&flown, best)) {
             best = Some(flown);
@@ -60,33 +62,24 @@ pub(crate) fn solve(
             break;
         }
     }
-    // There is always the eigenaxis guess.
-    let flown = best.expect("at least one guess");
+    let flown = best.expect("there is always the eigenaxis guess");
     Slew { flown, solves }
 }
 
-fn guesses(
-    dynamics: &Dynamics,
-    from: &Waypoint,
-    to: &Waypoint,
-    arrival: Arrival,
-    null: &DVector<f64>,
-) -> Vec<Profile> {
-    let target = match arrival {
-        Arrival::Rotation => to.attitude.nearest_sign(&from.attitude),
-        Arrival::Quaternion => to.attitude,
-    };
-    let eigenaxis = EigenaxisSlew::fastest(dynamics, &from.attitude, &target, null);
-    let mut all = vec![eigenaxis.guess(dynamics, INTERVALS)];
-    all.extend(kinematic::guesses(
-        dynamics,
-        &from.attitude,
-        &target,
-        arrival,
-        null,
-        INTERVALS,
-        EXTREMALS,
-    ));
+impl SlewProblem<'_> {
+    /// The slew about the eigenaxis, the short way round unless the sign says otherwise.
+    pub(crate) fn eigenaxis(&self) -> EigenaxisSlew {
+        let target = match self.arrival {
+            Arrival::Rotation => self.to.attitude.nearest_sign(&self.from.attitude),
+            Arrival::Quaternion => self.to.attitude,
+        };
+        EigenaxisSlew::fastest(self.dynamics, &self.from.attitude, &target, self.null)
+    }
+}
+
+fn guesses(slew: &SlewProblem<'_>) -> Vec<Profile> {
+    let mut all = vec![slew.eigenaxis().guess(slew.dynamics, INTERVALS)];
+    all.extend(kinematic::guesses(slew, INTERVALS, EXTREMALS));
     all
 }
 

@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn clones_share_the_flag_and_cancel_outranks_request() {
         let signal = StopSignal::new();
-        let worker = signal.with_time_limit(Duration::from_secs(3600));
+        let worker = signal.with_time_limit(Duration::from_hours(1));
         assert!(!worker.is_set());
         signal.cancel();
         signal.request();

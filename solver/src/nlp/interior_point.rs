@@ -18,7 +18,7 @@ const BARRIER_POWER: f64 = 1.5;
 const KAPPA_SIGMA: f64 = 1e10;
 /// First regularisation tried on a non-convex system, its growth, and where to give up.
 const DELTA_FIRST: f64 = 1e-4;
-const DELTA_MIN: f64 = 1e-12;
+const DELTA_MIN: f64 = 1e-8;
 const DELTA_MAX: f64 = 1e12;
 /// Multipliers above this average scale the optimality error down.
 const MULTIPLIER_SCALE: f64 = 100.0;
@@ -128,26 +128,32 @@ impl InteriorPoint {
         self.last_delta = 0.0;
         self.mu = self.settings.initial_barrier;
         let rows = self.layout.all_inequalities();
-        if iterate.slack.len() != rows {
+        let warm = iterate.slack.len() == rows;
+        if !warm {
             iterate.lambda = vec![0.0; self.rhs.gap.len()];
             iterate.nu = vec![0.0; self.rhs.equality.len()];
             iterate.slack = vec![0.0; rows];
             iterate.z = vec![0.0; rows];
-            self.values_at(chain, iterate);
-            for (node, values) in self.trial_values.iter().enumerate() {
-                let range = self.layout.inequality(node);
-                for (slack, g) in iterate.slack[range].iter_mut().zip(&values.inequality) {
-                    *slack = g.max(self.settings.initial_slack);
-                }
-            }
-            for (z, slack) in iterate.z.iter_mut().zip(&iterate.slack) {
-                *z = self.mu / slack;
-            }
-        } else {
-            self.values_at(chain, iterate);
+        }
+        self.values_at(chain, iterate);
+        if !warm {
+            self.open_slacks(iterate);
         }
         let theta = self.merit_of_values(&iterate.slack).theta;
         self.filter.reset(theta);
+    }
+
+    /// Slacks at their inequalities where these are comfortably positive, multipliers to match.
+    fn open_slacks(&self, iterate: &mut Iterate) {
+        for (node, values) in self.trial_values.iter().enumerate() {
+            let range = self.layout.inequality(node);
+            for (slack, g) in iterate.slack[range].iter_mut().zip(&values.inequality) {
+                *slack = g.max(self.settings.initial_slack);
+            }
+        }
+        for (z, slack) in iterate.z.iter_mut().zip(&iterate.slack) {
+            *z = self.mu / slack;
+        }
     }
 
     /// Evaluates values only, into the trial storage.
@@ -416,7 +422,6 @@ impl InteriorPoint {
             .fold(0.0_f64, |worst, g| worst.max(-g));
         NlpReport {
             status,
-            cost: values().map(|v| v.cost).sum(),
             iterations: self.iterations,
             infeasibility: values().fold(below_zero, |worst, v| worst.max(v.defect_max())),
         }

@@ -58,8 +58,6 @@ impl NlpStatus {
 pub(crate) struct NlpReport {
     /// How it ended.
     pub(crate) status: NlpStatus,
-    /// Cost at the end.
-    pub(crate) cost: f64,
     /// Iterations, restoration included.
     pub(crate) iterations: usize,
     /// Largest gap, equality or inequality violation at the end.

@@ -5,8 +5,6 @@ use crate::multiphase::Flown;
 use crate::plan::{Control, Flight, Leg, Passage};
 use crate::sequence::Place;
 use crate::slew::INTERVALS;
-use crate::slew::eigenaxis::EigenaxisSlew;
-use crate::slew::kinematic::Arrival;
 use std::sync::Arc;
 
 /// Intervals shorter than this share of the tour are joined to their neighbour: the torque in
@@ -120,12 +118,8 @@ impl Assembly<'_> {
 
     fn eigenaxis_duration(&self, from: Place, to: Place) -> Option<f64> {
         let places = self.tours.places;
-        let (from, to) = (places.waypoint(from).attitude, places.waypoint(to).attitude);
-        let to = match places.arrival {
-            Arrival::Rotation => to.nearest_sign(&from),
-            Arrival::Quaternion => to,
-        };
-        let slew = EigenaxisSlew::fastest(&places.dynamics, &from, &to, &places.null);
+        let (from, to) = (places.waypoint(from), places.waypoint(to));
+        let slew = places.slew(&from, &to).eigenaxis();
         slew.flyable.then_some(slew.trapezoid.duration)
     }
 }

@@ -115,14 +115,9 @@ fn solve_leg(
 ) -> SolvedLeg {
     let begin = Instant::now();
     let (from, to) = (end_of(places, kind, from), end_of(places, kind, to));
-    let Places {
-        dynamics,
-        arrival,
-        null,
-        ..
-    } = places;
+    let slew = places.slew(&from, &to);
     let solved = standstill(places, &from, &to).map_or_else(
-        || slew::solve(dynamics, &from, &to, *arrival, null, &|| stop.is_set()),
+        || slew::solve(&slew, &|| stop.is_set()),
         |flown| slew::Slew { flown, solves: 0 },
     );
     SolvedLeg {
@@ -146,6 +141,7 @@ fn standstill(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Option<Flo
             status: NlpStatus::Converged,
             profile: Profile::standstill(from.attitude, wheels, slew::INTERVALS),
             iterations: 0,
+            infeasibility: 0.0,
         }
     })
 }

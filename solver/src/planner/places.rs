@@ -3,6 +3,7 @@
 use crate::dynamics::Dynamics;
 use crate::scenario::{RateCondition, Scenario};
 use crate::sequence::Place;
+use crate::slew::SlewProblem;
 use crate::slew::kinematic::Arrival;
 use crate::spec::AttitudeEquivalence;
 use crate::transcription::{Waypoint, WheelCondition};
@@ -112,6 +113,17 @@ impl<'a> Places<'a> {
         }
     }
 
+    /// The slew between two waypoints.
+    pub(super) fn slew<'s>(&'s self, from: &'s Waypoint, to: &'s Waypoint) -> SlewProblem<'s> {
+        SlewProblem {
+            dynamics: &self.dynamics,
+            from,
+            to,
+            arrival: self.arrival,
+            null: &self.null,
+        }
+    }
+
     /// Whether a flown leg may be flown backwards as the leg between the same places exchanged.
     ///
     /// With zero momentum and no locked wheel turning, `(q, h, u)(t)` and `(q, -h, u)(T - t)` obey
@@ -121,7 +133,7 @@ impl<'a> Places<'a> {
         let symmetric_rate = |condition: &RateCondition| match condition {
             RateCondition::Free => true,
             RateCondition::Fixed(value) => *value == 0.0,
-            RateCondition::Within(low, high) => *low == -*high,
+            RateCondition::Within(low, high) => low.to_bits() == (-high).to_bits(),
         };
         let symmetric_wheels = |condition: &WheelCondition| match condition {
             WheelCondition::Free => true,

@@ -11,10 +11,8 @@ use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 use crate::slew::INTERVALS;
-use crate::slew::eigenaxis::EigenaxisSlew;
 use crate::slew::kinematic::Arrival;
 use crate::stop::StopSignal;
-use crate::transcription::Waypoint;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -136,7 +134,10 @@ impl<'a> Tours<'a> {
         let mut waypoints = vec![self.places.waypoint(route[0])];
         for pair in route.windows(2) {
             let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-            let next = leg(pair[0], pair[1]).unwrap_or_else(|| self.eigenaxis(&from, &to));
+            let next = leg(pair[0], pair[1]).unwrap_or_else(|| {
+                let slew = self.places.slew(&from, &to);
+                slew.eigenaxis().guess(slew.dynamics, INTERVALS)
+            });
             guess.append(&next);
             let mut arrived = to;
             if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), self.places.arrival) {
@@ -153,15 +154,6 @@ impl<'a> Tours<'a> {
             &guess,
             &|| self.stop.is_set(),
         )
-    }
-
-    fn eigenaxis(&self, from: &Waypoint, to: &Waypoint) -> Profile {
-        let target = match self.places.arrival {
-            Arrival::Rotation => to.attitude.nearest_sign(&from.attitude),
-            Arrival::Quaternion => to.attitude,
-        };
-        let Places { dynamics, null, .. } = self.places;
-        EigenaxisSlew::fastest(dynamics, &from.attitude, &target, null).guess(dynamics, INTERVALS)
     }
 
     /// Duration of a route with settle and dwell, or how its solve failed.

@@ -154,15 +154,25 @@ impl EigenaxisSlew {
     pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
         let length = self.trapezoid.duration / intervals as f64;
         let peak = self.trapezoid.at(0.5 * self.trapezoid.duration).1;
-        let across = self.axis.cross(&Vector3::ith(self.axis.iamin(), 1.0)).normalize();
+        let across = self
+            .axis
+            .cross(&Vector3::ith(self.axis.iamin(), 1.0))
+            .normalize();
         let bow = (across + across.cross(&self.axis)) * (BOW * peak);
         let mut profile = Profile::empty();
         for node in 0..=intervals {
             let (attitude, rate, _) = self.state(dynamics, length * node as f64);
             let phase = std::f64::consts::PI * node as f64 / intervals as f64;
             // Exactly zero at both ends, where the rates are given.
-            let bowed = rate + if node < intervals { bow * phase.sin() } else { Vector3::zeros() };
-            profile.wheels.push(dynamics.wheels_at(&attitude, &bowed, &self.null));
+            let bowed = rate
+                + if node < intervals {
+                    bow * phase.sin()
+                } else {
+                    Vector3::zeros()
+                };
+            profile
+                .wheels
+                .push(dynamics.wheels_at(&attitude, &bowed, &self.null));
             profile.attitudes.push(attitude);
         }
         profile.lengths = vec![length; intervals];

@@ -7,11 +7,12 @@
 //! it pays, finds the shape of near-optimal motions, off-axis excursions and the better way round
 //! included, which the eigenaxis slew (a symmetric stationary point) hides from a local solver.
 
+use super::SlewProblem;
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::kinematics::{Quat, product, quat};
 use crate::profile::Profile;
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 
 /// Costate directions tried first: about 12 degrees apart.
 const DIRECTIONS: usize = 300;
@@ -41,8 +42,6 @@ struct Arc {
 struct Extremal {
     costate: Vector3<f64>,
     arcs: Vec<Arc>,
-    /// Sign with which it arrives.
-    negative: bool,
     /// Time of the approach plus the time that certainly covers the miss, s.
     score: f64,
 }
@@ -55,21 +54,13 @@ struct Search {
 }
 
 /// Guesses for a slew, best first, at most `count`, with different sequences of rate signs.
-pub(crate) fn guesses(
-    dynamics: &Dynamics,
-    from: &Attitude,
-    to: &Attitude,
-    arrival: Arrival,
-    null: &DVector<f64>,
-    intervals: usize,
-    count: usize,
-) -> Vec<Profile> {
-    let angle = from.signed_turn_to(to).norm();
-    let (box_rates, ramp) = box_of(dynamics, angle);
+pub(super) fn guesses(slew: &SlewProblem<'_>, intervals: usize, count: usize) -> Vec<Profile> {
+    let (from, to) = (&slew.from.attitude, &slew.to.attitude);
+    let (box_rates, ramp) = box_of(slew.dynamics, from.signed_turn_to(to).norm());
     let search = Search {
         box_rates,
         target: from.relative_to(to).xyzw(),
-        arrival,
+        arrival: slew.arrival,
     };
     let mut chosen: Vec<Extremal> = Vec::new();
     for extremal in search.ranked() {
@@ -84,7 +75,7 @@ pub(crate) fn guesses(
     chosen.sort_by(|a, b| a.score.total_cmp(&b.score));
     chosen
         .iter()
-        .map(|extremal| extremal.profile(dynamics, from, null, ramp, intervals))
+        .map(|extremal| extremal.guess(slew, ramp, intervals))
         .collect()
 }
 
@@ -148,7 +139,6 @@ impl Search {
         let mut best = Extremal {
             costate,
             arcs: Vec::new(),
-            negative: false,
             score: f64::INFINITY,
         };
         let slowest = self.box_rates.min();
@@ -165,7 +155,6 @@ impl Search {
             let score = time + at / speed + miss / slowest;
             if score < best.score {
                 best.score = score;
-                best.negative = alignment < 0.0;
                 best.arcs.clone_from(&arcs);
                 best.arcs.push(Arc {
                     rate,
@@ -262,14 +251,7 @@ impl Extremal {
     }
 
     /// The motion with its rate jumps spread over the time that the wheels need for them.
-    fn profile(
-        &self,
-        dynamics: &Dynamics,
-        from: &Attitude,
-        null: &DVector<f64>,
-        ramp: f64,
-        intervals: usize,
-    ) -> Profile {
+    fn guess(&self, slew: &SlewProblem<'_>, ramp: f64, intervals: usize) -> Profile {
         let duration = self.arcs.iter().map(|arc| arc.length).sum::<f64>() + ramp;
         let length = duration / intervals as f64;
         let mut profile = Profile::empty();
@@ -277,10 +259,10 @@ impl Extremal {
             let time = length * node as f64;
             // Mean rate over the last ramp: zero at both ends, continuous between.
             let rate = (self.turned(time) - self.turned(time - ramp)) / ramp;
-            let attitude = self.attitude(from, time - 0.5 * ramp);
+            let attitude = self.attitude(&slew.from.attitude, time - 0.5 * ramp);
             profile
                 .wheels
-                .push(dynamics.wheels_at(&attitude, &rate, null));
+                .push(slew.dynamics.wheels_at(&attitude, &rate, slew.null));
             profile.attitudes.push(attitude);
         }
         profile.lengths = vec![length; intervals];

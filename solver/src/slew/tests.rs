@@ -31,10 +31,27 @@ fn roll_pitch_yaw(angles_deg: [f64; 3]) -> Attitude {
 }
 
 fn rest_to_rest(dynamics: &Dynamics, from: Attitude, to: Attitude) -> f64 {
-    let (from, to) = (at_rest(from), at_rest(to));
-    let null = DVector::zeros(dynamics.wheel_count() - 3);
-    let slew = solve(dynamics, &from, &to, Arrival::Rotation, &null, &|| false);
-    slew.flown.duration().expect("the slew converges")
+    fly_between(dynamics, &at_rest(from), &at_rest(to), Arrival::Rotation).0
+}
+
+/// Duration and last attitude of a slew.
+fn fly_between(
+    dynamics: &Dynamics,
+    from: &Waypoint,
+    to: &Waypoint,
+    arrival: Arrival,
+) -> (f64, Attitude) {
+    let null = &DVector::zeros(dynamics.wheel_count() - 3);
+    let slew = SlewProblem {
+        dynamics,
+        from,
+        to,
+        arrival,
+        null,
+    };
+    let flown = solve(&slew, &|| false).flown;
+    let duration = flown.duration().expect("the slew converges");
+    (duration, *flown.profile.attitudes.last().expect("nodes"))
 }
 
 /// The spacecraft of experiment A, held so that it can turn about z only.
@@ -48,9 +65,15 @@ fn a_short_turn_about_one_axis_is_bang_bang() {
     let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, angle));
     let duration = rest_to_rest(&held_to_z(None), Attitude::identity(), to);
     let bang_bang = 2.0 * (angle * J_EFF_Z / 0.0101_f64).sqrt();
-    assert!((duration / bang_bang - 1.0).abs() < 2e-5, "{duration} against {bang_bang}");
+    assert!(
+        (duration / bang_bang - 1.0).abs() < 2e-5,
+        "{duration} against {bang_bang}"
+    );
     let free = rest_to_rest(&dynamics(|_| {}), Attitude::identity(), to);
-    assert!(free < bang_bang, "the two other axes help: {free} against {bang_bang}");
+    assert!(
+        free < bang_bang,
+        "the two other axes help: {free} against {bang_bang}"
+    );
 }
 
 #[test]
@@ -122,16 +145,7 @@ fn free_end_rates_never_take_longer() {
         ],
         ..at_rest(attitude)
     };
-    let null = DVector::zeros(0);
-    let slew = solve(
-        &dynamics,
-        &free(a),
-        &free(b),
-        Arrival::Rotation,
-        &null,
-        &|| false,
-    );
-    let bound = slew.flown.duration().expect("the slew converges");
+    let (bound, _) = fly_between(&dynamics, &free(a), &free(b), Arrival::Rotation);
     assert!(bound < rest_to_rest(&dynamics, a, b));
 }
 
@@ -139,18 +153,8 @@ fn free_end_rates_never_take_longer() {
 fn a_long_way_round_is_flown_when_the_sign_asks_for_it() {
     let dynamics = dynamics(|_| {});
     let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, 0.8));
-    let null = DVector::zeros(0);
     let (from, there) = (at_rest(Attitude::identity()), at_rest(to.negated()));
-    let slew = solve(
-        &dynamics,
-        &from,
-        &there,
-        Arrival::Quaternion,
-        &null,
-        &|| false,
-    );
-    let long = slew.flown.duration().expect("the slew converges");
+    let (long, arrived) = fly_between(&dynamics, &from, &there, Arrival::Quaternion);
     assert!(long > 3.0 * rest_to_rest(&dynamics, Attitude::identity(), to));
-    let arrived = slew.flown.profile.attitudes.last().expect("nodes");
     assert!(arrived.signed_turn_to(&to.negated()).norm() < 1e-6);
 }

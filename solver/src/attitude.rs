@@ -45,6 +45,15 @@ impl Attitude {
         (norm.is_finite() && norm > 0.0).then(|| Self(Unit::new_unchecked(q / norm)))
     }
 
+    /// From scalar-last components that are already of unit length, bit for bit.
+    ///
+    /// Returns `None` when they are not, by more than rounding.
+    pub(crate) fn from_unit_xyzw(components: [f64; 4]) -> Option<Self> {
+        let [x, y, z, w] = components;
+        let q = Quaternion::new(w, x, y, z);
+        ((q.norm() - 1.0).abs() < 1e-12).then(|| Self(Unit::new_unchecked(q)))
+    }
+
     /// The turn by a rotation vector (axis times angle), rad.
     #[must_use]
     pub fn from_rotation_vector(vector: Vector3<f64>) -> Self {

@@ -6,6 +6,7 @@ mod dynamics;
 pub mod envelope;
 mod findings;
 mod kinematics;
+pub mod legs;
 mod linear_program;
 mod multiphase;
 mod nlp;

@@ -1,11 +1,13 @@
 //! From a scenario to a verified plan.
 
 mod assemble;
+mod canonical;
 mod legs;
 mod places;
 mod tours;
 
 use crate::checker;
+use crate::legs::LegStore;
 use crate::nlp::NlpStatus;
 use crate::plan::{Alternative, LowerBoundKind, Optimality, Outcome, Plan, Statistics};
 use crate::pool::SolverPool;
@@ -15,6 +17,7 @@ use crate::scenario::Scenario;
 use crate::sequence::{FlownOrder, Place, SearchResult, SearchSettings, search};
 use crate::stop::StopSignal;
 use assemble::assemble;
+use legs::LegSolver;
 use places::Places;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -29,6 +32,8 @@ pub struct Run<'a> {
     pub stop: &'a StopSignal,
     /// Told about progress.
     pub observer: &'a dyn Observer,
+    /// Asked for legs before they are solved, and told about solved ones.
+    pub legs: &'a dyn LegStore,
 }
 
 /// Which boundary conditions a tabulated leg has.
@@ -89,8 +94,9 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let rest = legs::solve_table(&places, LegKind::RestToRest, &pairs, run, &stop);
-    let free = legs::solve_table(&places, LegKind::LowerBound, &pairs, run, &stop);
+    let mut solver = LegSolver::new(&places, run, &stop);
+    let rest = solver.table(LegKind::RestToRest, &pairs);
+    let free = solver.table(LegKind::LowerBound, &pairs);
     let tours = Tours::new(&places, &rest, &free, &stop);
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,
@@ -102,18 +108,9 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let statistics = Statistics {
         wall_time_s: begin.elapsed().as_secs_f64(),
         nodes_explored: found.statistics.nodes_explored,
-        nlp_solves: tours.solves.load(Ordering::Relaxed)
-            + rest
-                .solved()
-                .chain(free.solved())
-                .map(|leg| leg.solves)
-                .sum::<u64>(),
-        legs_solved: rest
-            .solved()
-            .chain(free.solved())
-            .filter(|leg| leg.solves > 0)
-            .count() as u64,
-        legs_from_cache: 0,
+        nlp_solves: solver.nlp_solves + tours.solves.load(Ordering::Relaxed),
+        legs_solved: solver.solved,
+        legs_from_cache: solver.from_store,
         threads: run.pool.threads(),
     };
     match &found.best {
@@ -147,7 +144,7 @@ pub fn leg_table(
         .filter(|(i, _)| i % shard.of.max(1) == shard.index)
         .map(|(_, pair)| pair)
         .collect();
-    let table = legs::solve_table(&places, kind, &pairs, run, &stop);
+    let table = LegSolver::new(&places, run, &stop).table(kind, &pairs);
     let rows: Vec<_> = pairs
         .iter()
         .filter_map(|(from, to)| {
@@ -157,7 +154,7 @@ pub fn leg_table(
                 to: places.name(*to),
                 kind,
                 duration_s: leg.flown.duration(),
-                solve_time_s: leg.took.as_secs_f64(),
+                solve_time_s: leg.solve_time,
                 status: leg.flown.status.as_str().into(),
             })
         })

@@ -8,6 +8,7 @@ use crate::progress::{self, ProgressMode};
 use crate::signals;
 use crate::wire::legs::LegTableDocument;
 use clap::ValueEnum;
+use slewplan_solver::legs::NoStore;
 use slewplan_solver::planner::{self, LegKind, LegRow, Run, Shard};
 use slewplan_solver::stop::StopSignal;
 use std::path::PathBuf;
@@ -97,6 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         pool: &pool,
         stop: &stop,
         observer: &*observer,
+        legs: &NoStore,
     };
     let (rows, complete) = planner::leg_table(&scenario, kind, shard, run);
     drop(observer);

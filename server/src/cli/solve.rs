@@ -8,6 +8,7 @@ use crate::report;
 use crate::signals::{self, Received};
 use crate::wire;
 use clap::ValueEnum;
+use slewplan_solver::legs::NoStore;
 use slewplan_solver::plan::{Optimality, Outcome};
 use slewplan_solver::planner::{self, Run};
 use slewplan_solver::pool::SolverPool;
@@ -98,6 +99,7 @@ fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Receive
         pool: &pool,
         stop: &stop,
         observer: &*observer,
+        legs: &NoStore,
     };
     Ok((planner::solve(scenario, run), received))
 }

@@ -1,20 +1,29 @@
 //! The tables of leg times.
+//!
+//! Pairs of places are reduced to canonical legs first, so that equal problems are solved once:
+//! in a table, between tables of one solve, and, through the store, between solves.
 
+use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::{LegKind, Run};
+use crate::attitude::Attitude;
+use crate::legs::StoredLeg;
 use crate::multiphase::Flown;
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::progress::{Progress, Stage};
+use crate::scenario::RateCondition;
 use crate::sequence::Place;
-use crate::slew;
+use crate::slew::{self, kinematic::Arrival};
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
+use nalgebra::{DVector, Vector3};
+use std::collections::HashMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// Attitudes closer than this are the same place, rad; a rest-to-rest leg between them takes no
-/// time.
+/// Attitudes closer than this are the same place, rad; a leg between equal rests takes no time.
 const SAME_ATTITUDE: f64 = 1e-11;
 
 /// A solved leg.
@@ -24,8 +33,8 @@ pub(super) struct SolvedLeg {
     pub(super) flown: Flown,
     /// NLPs solved for it.
     pub(super) solves: u64,
-    /// Wall-clock time of all starts.
-    pub(super) took: Duration,
+    /// Wall-clock time of all starts, s.
+    pub(super) solve_time: f64,
 }
 
 /// Legs of one kind between pairs of places.
@@ -37,12 +46,8 @@ pub(super) struct LegTable {
 impl LegTable {
     /// The leg between two places, when it has been solved.
     pub(super) fn get(&self, from: Place, to: Place) -> Option<&SolvedLeg> {
-        self.legs[index(from, self.places) * self.places + index(to, self.places)].as_ref()
-    }
-
-    /// All solved legs.
-    pub(super) fn solved(&self) -> impl Iterator<Item = &SolvedLeg> {
-        self.legs.iter().flatten()
+        let (from, to) = (index(from, self.places), index(to, self.places));
+        self.legs[from * self.places + to].as_ref()
     }
 }
 
@@ -54,49 +59,115 @@ fn index(place: Place, places: usize) -> usize {
     }
 }
 
-/// Solves the legs of a kind between the given pairs, on the pool; reversible pairs once.
-pub(super) fn solve_table(
-    places: &Places<'_>,
-    kind: LegKind,
-    pairs: &[(Place, Place)],
-    run: Run<'_>,
-    stop: &StopSignal,
-) -> LegTable {
-    let count = 2 + places.scenario.targets().len();
-    let mut table = LegTable {
-        places: count,
-        legs: vec![None; count * count],
-    };
-    let at = |(from, to): (Place, Place)| index(from, count) * count + index(to, count);
-    let mirrored = |(from, to): (Place, Place)| {
-        let (back, forth) = ((to, from), index(to, count) < index(from, count));
-        let ends = [&end_of(places, kind, from), &end_of(places, kind, to)];
-        (forth && pairs.contains(&back) && places.reversible(ends)).then_some(back)
-    };
-    let (copies, fresh): (Vec<_>, Vec<_>) =
-        pairs.iter().partition(|pair| mirrored(**pair).is_some());
-    let done = AtomicU64::new(0);
-    let solved = run.pool.map(&fresh, |(from, to)| {
-        let leg = (!stop.is_set()).then(|| solve_leg(places, kind, *from, *to, stop));
-        run.observer.progress(Progress {
-            stage: Stage::Legs,
-            done: done.fetch_add(1, Ordering::Relaxed) + 1,
-            total: Some(fresh.len() as u64),
-            incumbent_s: None,
-            lower_bound_s: None,
+/// Solves canonical legs and remembers them for the tables of one solve.
+pub(super) struct LegSolver<'a> {
+    places: &'a Places<'a>,
+    run: Run<'a>,
+    stop: &'a StopSignal,
+    known: HashMap<String, Arc<SolvedLeg>>,
+    /// Legs solved.
+    pub(super) solved: u64,
+    /// Legs taken from the store.
+    pub(super) from_store: u64,
+    /// NLPs solved for them.
+    pub(super) nlp_solves: u64,
+}
+
+impl<'a> LegSolver<'a> {
+    pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
+        Self {
+            places,
+            run,
+            stop,
+            known: HashMap::new(),
+            solved: 0,
+            from_store: 0,
+            nlp_solves: 0,
+        }
+    }
+
+    /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
+    /// out of the table.
+    pub(super) fn table(&mut self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+        let places = self.places;
+        let ends =
+            |(from, to): &(Place, Place)| (end_of(places, kind, *from), end_of(places, kind, *to));
+        let canonical: Vec<_> = pairs
+            .iter()
+            .map(|pair| {
+                let (from, to) = ends(pair);
+                CanonicalLeg::of(places, &from, &to)
+            })
+            .collect();
+        self.solve_missing(kind, &canonical);
+        let count = 2 + places.scenario.targets().len();
+        let mut legs = vec![None; count * count];
+        for (pair, canonical) in pairs.iter().zip(&canonical) {
+            let begin = ends(pair).0.attitude;
+            legs[index(pair.0, count) * count + index(pair.1, count)] =
+                self.known.get(&canonical.identity).map(|leg| {
+                    let profile = canonical.placed(&leg.flown.profile, &begin);
+                    let flown = Flown {
+                        profile,
+                        ..leg.flown.clone()
+                    };
+                    SolvedLeg {
+                        flown,
+                        ..SolvedLeg::clone(leg)
+                    }
+                });
+        }
+        LegTable {
+            places: count,
+            legs,
+        }
+    }
+
+    fn solve_missing(&mut self, kind: LegKind, canonical: &[CanonicalLeg]) {
+        let mut missing: Vec<&CanonicalLeg> = Vec::new();
+        for leg in canonical {
+            let listed = missing.iter().any(|other| other.identity == leg.identity);
+            if !listed && !self.known.contains_key(&leg.identity) {
+                missing.push(leg);
+            }
+        }
+        let done = AtomicU64::new(0);
+        let total = missing.len() as u64;
+        let solved = self.run.pool.map(&missing, |leg| {
+            let found = self
+                .run
+                .legs
+                .get(&leg.identity)
+                .and_then(|stored| recall(&stored));
+            let from_store = found.is_some();
+            let solved = found.or_else(|| (!self.stop.is_set()).then(|| solve(leg, self.stop)));
+            self.run.observer.progress(Progress {
+                stage: Stage::Legs,
+                done: done.fetch_add(1, Ordering::Relaxed) + 1,
+                total: Some(total),
+                incumbent_s: None,
+                lower_bound_s: None,
+            });
+            (solved, from_store)
         });
-        leg
-    });
-    for (pair, leg) in fresh.iter().zip(solved) {
-        table.legs[at(*pair)] = leg.filter(|leg| leg.flown.status != NlpStatus::Stopped);
+        for (leg, (solved, from_store)) in missing.into_iter().zip(solved) {
+            let Some(solved) = solved.filter(|s| s.flown.status != NlpStatus::Stopped) else {
+                continue;
+            };
+            if from_store {
+                self.from_store += 1;
+            } else {
+                self.solved += 1;
+                self.nlp_solves += solved.solves;
+                if solved.flown.status == NlpStatus::Converged {
+                    self.run
+                        .legs
+                        .put(&leg.identity, &stored(leg, kind, &solved));
+                }
+            }
+            self.known.insert(leg.identity.clone(), Arc::new(solved));
+        }
     }
-    for pair in copies {
-        let original = mirrored(pair)
-            .map(at)
-            .and_then(|at| table.legs[at].as_ref());
-        table.legs[at(pair)] = original.map(SolvedLeg::reversed);
-    }
-    table
 }
 
 fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
@@ -106,37 +177,36 @@ fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
     }
 }
 
-fn solve_leg(
-    places: &Places<'_>,
-    kind: LegKind,
-    from: Place,
-    to: Place,
-    stop: &StopSignal,
-) -> SolvedLeg {
+fn solve(leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLeg {
     let begin = Instant::now();
-    let (from, to) = (end_of(places, kind, from), end_of(places, kind, to));
-    let slew = places.slew(&from, &to);
-    let solved = standstill(places, &from, &to).map_or_else(
-        || slew::solve(&slew, &|| stop.is_set()),
+    let problem = leg.problem();
+    let solved = standstill(&problem).map_or_else(
+        || slew::solve(&problem, &|| stop.is_set()),
         |flown| slew::Slew { flown, solves: 0 },
     );
     SolvedLeg {
         flown: solved.flown,
         solves: solved.solves,
-        took: begin.elapsed(),
+        solve_time: begin.elapsed().as_secs_f64(),
     }
 }
 
 /// The leg between two equal rests: nothing moves and no time passes.
-fn standstill(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Option<Flown> {
-    let dynamics = &places.dynamics;
-    let turn = match places.arrival {
-        slew::kinematic::Arrival::Rotation => from.attitude.angle_to(&to.attitude),
-        slew::kinematic::Arrival::Quaternion => from.attitude.signed_turn_to(&to.attitude).norm(),
+fn standstill(leg: &slew::SlewProblem<'_>) -> Option<Flown> {
+    let (from, to) = (leg.from, leg.to);
+    let turn = match leg.arrival {
+        Arrival::Rotation => from.attitude.angle_to(&to.attitude),
+        Arrival::Quaternion => from.attitude.signed_turn_to(&to.attitude).norm(),
     };
     let same = turn <= SAME_ATTITUDE && from.rate == to.rate && from.wheels == to.wheels;
-    (same && from.is_fixed(dynamics)).then(|| {
-        let wheels = dynamics.wheels_at(&from.attitude, &nalgebra::Vector3::zeros(), &places.null);
+    let still = from
+        .rate
+        .iter()
+        .all(|rate| *rate == RateCondition::Fixed(0.0));
+    (still && same && from.is_fixed(leg.dynamics)).then(|| {
+        let wheels = leg
+            .dynamics
+            .wheels_at(&from.attitude, &Vector3::zeros(), leg.null);
         Flown {
             status: NlpStatus::Converged,
             profile: Profile::standstill(from.attitude, wheels, slew::INTERVALS),
@@ -146,16 +216,55 @@ fn standstill(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Option<Flo
     })
 }
 
-impl SolvedLeg {
-    fn reversed(&self) -> Self {
-        let flown = Flown {
-            profile: self.flown.profile.reversed(),
-            ..self.flown.clone()
-        };
-        Self {
-            flown,
-            solves: 0,
-            took: self.took,
-        }
+fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
+    let profile = &solved.flown.profile;
+    StoredLeg {
+        spacecraft: leg.spacecraft.clone(),
+        kind,
+        turn_xyzw: leg.to.attitude.xyzw(),
+        body_momentum_nms: leg.dynamics.momentum.into(),
+        duration_s: profile.duration(),
+        status: solved.flown.status.as_str().into(),
+        solve_time_s: solved.solve_time,
+        attitudes_xyzw: profile.attitudes.iter().map(Attitude::xyzw).collect(),
+        wheel_momenta_nms: profile
+            .wheels
+            .iter()
+            .map(|h| h.as_slice().to_vec())
+            .collect(),
+        lengths_s: profile.lengths.clone(),
     }
+}
+
+/// A stored leg as a solved one; `None` when its numbers do not fit together.
+fn recall(stored: &StoredLeg) -> Option<SolvedLeg> {
+    let attitudes: Option<Vec<_>> = stored
+        .attitudes_xyzw
+        .iter()
+        .map(|xyzw| Attitude::from_unit_xyzw(*xyzw))
+        .collect();
+    let profile = Profile {
+        attitudes: attitudes?,
+        wheels: stored
+            .wheel_momenta_nms
+            .iter()
+            .cloned()
+            .map(DVector::from_vec)
+            .collect(),
+        lengths: stored.lengths_s.clone(),
+    };
+    let nodes = slew::INTERVALS + 1;
+    let fits = profile.attitudes.len() == nodes
+        && profile.wheels.len() == nodes
+        && profile.intervals() == slew::INTERVALS;
+    fits.then_some(SolvedLeg {
+        flown: Flown {
+            status: NlpStatus::Converged,
+            profile,
+            iterations: 0,
+            infeasibility: 0.0,
+        },
+        solves: 0,
+        solve_time: stored.solve_time_s,
+    })
 }

@@ -1,0 +1,58 @@
+//! Solved legs as plain data, and the store that remembers them between solves.
+//!
+//! A leg is a problem of its own when nothing outside it matters: spacecraft, the turn, the total
+//! momentum in body axes at its beginning, and the conditions at both ends. Its *identity* is a
+//! canonical text of exactly these, so that scenarios which share a spacecraft and relative
+//! attitudes share legs, and a leg flown backwards is the same leg where that is valid. Legs are
+//! always solved in the frame in which they begin at the identity attitude; a stored leg therefore
+//! gives bit for bit what solving it again would give.
+
+use crate::planner::LegKind;
+
+/// A solved leg.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredLeg {
+    /// Canonical text of the spacecraft with the limits that a plan may use.
+    pub spacecraft: String,
+    /// The kind of table for which it was solved first.
+    pub kind: LegKind,
+    /// The turn from begin to end, scalar-last quaternion.
+    pub turn_xyzw: [f64; 4],
+    /// Total momentum in body axes at the beginning, N m s.
+    pub body_momentum_nms: [f64; 3],
+    /// Minimum time, s.
+    pub duration_s: f64,
+    /// How the solve ended; only `converged` legs are stored.
+    pub status: String,
+    /// Wall-clock time of the solve with all its starts, s.
+    pub solve_time_s: f64,
+    /// Attitude at every node relative to the begin, scalar-last quaternions.
+    pub attitudes_xyzw: Vec<[f64; 4]>,
+    /// Momentum of every enabled wheel about its axis at every node, N m s.
+    pub wheel_momenta_nms: Vec<Vec<f64>>,
+    /// Time between nodes, s; the torque there is the change of momentum over it.
+    pub lengths_s: Vec<f64>,
+}
+
+/// Remembers legs by their identity.
+///
+/// Called from the solver's workers; must not fail a solve: a store in trouble forgets.
+pub trait LegStore: Sync {
+    /// The leg of an identity, when it is known.
+    fn get(&self, identity: &str) -> Option<StoredLeg>;
+
+    /// Remembers a leg.
+    fn put(&self, identity: &str, leg: &StoredLeg);
+}
+
+/// A store that remembers nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoStore;
+
+impl LegStore for NoStore {
+    fn get(&self, _: &str) -> Option<StoredLeg> {
+        None
+    }
+
+    fn put(&self, _: &str, _: &StoredLeg) {}
+}

@@ -1,0 +1,190 @@
+//! The canonical form of a leg: what makes two legs the same problem.
+
+use super::places::Places;
+use crate::attitude::Attitude;
+use crate::dynamics::Dynamics;
+use crate::profile::Profile;
+use crate::scenario::RateCondition;
+use crate::slew::kinematic::Arrival;
+use crate::slew::{INTERVALS, SlewProblem};
+use crate::transcription::{Waypoint, WheelCondition};
+use nalgebra::{DVector, Vector3};
+use std::fmt::Write;
+
+/// Version of the canonical form and of the numerics behind it: stored legs of another are not
+/// found.
+const VERSION: &str = "leg-1";
+/// Turns and momenta are rounded to this many units of their own scale, far below every tolerance
+/// and far above the rounding of the caller's conversions.
+const RESOLUTION: f64 = 1e13;
+
+/// A leg in the frame in which it begins at the identity attitude.
+#[derive(Debug, Clone)]
+pub(super) struct CanonicalLeg {
+    /// The text that tells it from all other legs.
+    pub(super) identity: String,
+    /// The share of the identity that describes the spacecraft.
+    pub(super) spacecraft: String,
+    /// The spacecraft with the momentum in this frame.
+    pub(super) dynamics: Dynamics,
+    /// Begin, at the identity attitude.
+    pub(super) from: Waypoint,
+    /// End.
+    pub(super) to: Waypoint,
+    /// Whether it is the wanted leg flown backwards.
+    pub(super) mirrored: bool,
+    arrival: Arrival,
+    null: DVector<f64>,
+}
+
+impl CanonicalLeg {
+    /// The canonical form of the leg between two waypoints.
+    pub(super) fn of(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
+        let forth = Self::directed(places, from, to, false);
+        if !places.reversible([from, to]) {
+            return forth;
+        }
+        let back = Self::directed(places, to, from, true);
+        if back.identity < forth.identity {
+            back
+        } else {
+            forth
+        }
+    }
+
+    fn directed(places: &Places<'_>, from: &Waypoint, to: &Waypoint, mirrored: bool) -> Self {
+        let mut turn = rounded(&from.attitude.relative_to(&to.attitude));
+        if places.arrival == Arrival::Rotation {
+            turn = upper_hemisphere(&turn);
+        }
+        let mut dynamics = places.dynamics.clone();
+        dynamics.momentum = rounded_vector(from.attitude.to_body(dynamics.momentum));
+        let at = |attitude, place: &Waypoint| Waypoint {
+            attitude,
+            ..place.clone()
+        };
+        let (from, to) = (at(Attitude::identity(), from), at(turn, to));
+        let spacecraft = describe_spacecraft(&dynamics);
+        let mut identity = format!("{VERSION};intervals={INTERVALS};{:?};", places.arrival);
+        identity.push_str(&spacecraft);
+        let momentum = dynamics.momentum;
+        for part in [momentum.as_slice(), &turn.xyzw(), places.null.as_slice()] {
+            push_numbers(&mut identity, part);
+        }
+        for place in [&from, &to] {
+            describe_conditions(&mut identity, place);
+        }
+        Self {
+            identity,
+            spacecraft,
+            dynamics,
+            from,
+            to,
+            mirrored,
+            arrival: places.arrival,
+            null: places.null.clone(),
+        }
+    }
+
+    /// The problem to solve.
+    pub(super) fn problem(&self) -> SlewProblem<'_> {
+        SlewProblem {
+            dynamics: &self.dynamics,
+            from: &self.from,
+            to: &self.to,
+            arrival: self.arrival,
+            null: &self.null,
+        }
+    }
+
+    /// A solution of this form as the wanted leg that begins at an attitude.
+    pub(super) fn placed(&self, solution: &Profile, begin: &Attitude) -> Profile {
+        let mut profile = if self.mirrored {
+            solution.reversed()
+        } else {
+            solution.clone()
+        };
+        let Some(first) = profile.attitudes.first().copied() else {
+            return profile;
+        };
+        for attitude in &mut profile.attitudes {
+            *attitude = begin.then_in_body(&first.relative_to(attitude));
+        }
+        profile
+    }
+}
+
+fn rounded(attitude: &Attitude) -> Attitude {
+    let components = attitude
+        .xyzw()
+        .map(|c| (c * RESOLUTION).round() / RESOLUTION);
+    Attitude::from_xyzw(components).expect("rounding leaves a unit quaternion its length")
+}
+
+fn rounded_vector(vector: Vector3<f64>) -> Vector3<f64> {
+    let scale = vector.amax();
+    if scale == 0.0 {
+        return vector;
+    }
+    // A power of two, so that scaling itself does not round.
+    let unit = scale.log2().ceil().exp2() / RESOLUTION;
+    vector.map(|c| (c / unit).round() * unit)
+}
+
+/// The one of `q` and `-q` whose last component that is not zero is positive.
+fn upper_hemisphere(attitude: &Attitude) -> Attitude {
+    let leading = attitude.xyzw().into_iter().rev().find(|c| *c != 0.0);
+    if leading.is_some_and(|c| c < 0.0) {
+        attitude.negated()
+    } else {
+        *attitude
+    }
+}
+
+fn push_numbers(text: &mut String, numbers: &[f64]) {
+    for number in numbers {
+        // Adding zero turns -0 into 0. Writing to a string cannot fail.
+        let _ = write!(text, "{:e},", number + 0.0);
+    }
+    text.push(';');
+}
+
+fn describe_spacecraft(dynamics: &Dynamics) -> String {
+    let mut text = String::new();
+    push_numbers(&mut text, dynamics.inertia.as_slice());
+    for wheel in &dynamics.actuators {
+        push_numbers(&mut text, wheel.axis.as_slice());
+        let numbers = [
+            wheel.inertia,
+            wheel.min_torque,
+            wheel.max_torque,
+            wheel.max_speed,
+        ];
+        push_numbers(&mut text, &numbers);
+    }
+    push_numbers(&mut text, dynamics.locked_momentum.as_slice());
+    push_numbers(&mut text, dynamics.max_rate.as_slice());
+    push_numbers(&mut text, &[dynamics.max_rate_norm]);
+    text
+}
+
+fn describe_conditions(text: &mut String, place: &Waypoint) {
+    for rate in &place.rate {
+        match rate {
+            RateCondition::Free => text.push_str("free;"),
+            RateCondition::Fixed(value) => push_numbers(text, &[*value]),
+            RateCondition::Within(low, high) => push_numbers(text, &[*low, *high]),
+        }
+    }
+    match &place.wheels {
+        WheelCondition::Free => text.push_str("wheels free;"),
+        WheelCondition::NullSpace(h) => {
+            text.push_str("null ");
+            push_numbers(text, h.as_slice());
+        }
+        WheelCondition::Fixed(h) => {
+            text.push_str("fixed ");
+            push_numbers(text, h.as_slice());
+        }
+    }
+}

@@ -1,4 +1,75 @@
 //! Minimum-time attitude scheduling for spacecraft with reaction wheels.
+//!
+//! # The problem
+//!
+//! A rigid spacecraft with reaction wheels starts from a known state and has to pass through a set
+//! of attitudes `q_1 .. q_n` in an order of its own choice, at each of them with certain body-rate
+//! components zero, bounded or free, and to end in a given attitude and rate. Wanted is the order
+//! with the wheel torques that take the least time:
+//!
+//! ```text
+//!   minimise   T
+//!   subject to q' = 1/2 q (x) [w, 0],     J_eff w = R(q)^T H - A h,     h' = u
+//!              u_min <= u <= u_max,       |h_i / I_i - a_i . w| <= W_i,     |w_j| <= r_j
+//!              q(t_k) = q_order(k),       rate conditions at t_1 < t_2 < ... < T
+//! ```
+//!
+//! with `h` the wheels' momenta about their axes (the columns of `A`) and `H` the total momentum,
+//! constant in the reference frame: the body rate follows from attitude and wheels.
+//!
+//! # The way
+//!
+//! [`scenario::Scenario::try_new`] turns a description into a scenario that is valid by
+//! construction, or lists all that is wrong. [`planner::solve`] then solves the tables of leg
+//! times, searches the order by branch and bound with multi-phase nonlinear programs as nodes and
+//! leaves, and hands the winner to [`checker::verify`], which integrates the full dynamics again
+//! with code of its own. The mathematics, the symbols and the module map are in `solver/README.md`.
+//!
+//! # Example
+//!
+//! A quarter turn about the body's z axis, from rest to rest:
+//!
+//! ```
+//! use slewplan_solver::legs::NoStore;
+//! use slewplan_solver::plan::Outcome;
+//! use slewplan_solver::planner::{Run, solve};
+//! use slewplan_solver::pool::SolverPool;
+//! use slewplan_solver::progress::Silent;
+//! use slewplan_solver::scenario::Scenario;
+//! use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
+//! use slewplan_solver::stop::StopSignal;
+//!
+//! let wheel = |axis| WheelSpec {
+//!     axis,
+//!     normalize_axis: true,
+//!     inertia_kg_m2: 0.000_169,
+//!     max_torque_nm: 0.0101,
+//!     min_torque_nm: None,
+//!     max_speed_rad_s: Some(710.0),
+//!     enabled: true,
+//! };
+//! let spec = ScenarioSpec {
+//!     spacecraft: SpacecraftSpec {
+//!         inertia_kg_m2: [[6.63, 0.0, 0.0], [0.0, 8.90, 0.0], [0.0, 0.0, 9.63]],
+//!         wheels: vec![wheel([1.0, 0.0, 0.0]), wheel([0.0, 1.0, 0.0]), wheel([0.0, 0.0, 1.0])],
+//!         ..SpacecraftSpec::default()
+//!     },
+//!     targets: vec![TargetSpec {
+//!         id: "quarter".into(),
+//!         attitude: AttitudeSpec::RollPitchYawDeg([0.0, 0.0, 90.0]),
+//!         ..TargetSpec::default()
+//!     }],
+//!     ..ScenarioSpec::default()
+//! };
+//! let scenario = Scenario::try_new(&spec).expect("a valid description").scenario;
+//! let (pool, stop) = (SolverPool::new(None)?, StopSignal::new());
+//! let run = Run { pool: &pool, stop: &stop, observer: &Silent, legs: &NoStore };
+//! let Outcome::Planned(plan) = solve(&scenario, run) else { panic!("a quarter turn is possible") };
+//! assert!(plan.verification.passed);
+//! // About the eigenaxis it would take 138 s.
+//! assert!(plan.total_time_s < 114.0);
+//! # Ok::<(), slewplan_solver::pool::PoolError>(())
+//! ```
 
 pub mod attitude;
 pub mod checker;

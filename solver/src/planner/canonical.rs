@@ -59,11 +59,8 @@ impl CanonicalLeg {
         }
         let mut dynamics = places.dynamics.clone();
         dynamics.momentum = rounded_vector(from.attitude.to_body(dynamics.momentum));
-        let at = |attitude, place: &Waypoint| Waypoint {
-            attitude,
-            ..place.clone()
-        };
-        let (from, to) = (at(Attitude::identity(), from), at(turn, to));
+        let from = settled(&dynamics, Attitude::identity(), from);
+        let to = settled(&dynamics, turn, to);
         let spacecraft = describe_spacecraft(&dynamics);
         let mut identity = format!("{VERSION};intervals={INTERVALS};{:?};", places.arrival);
         identity.push_str(&spacecraft);
@@ -112,6 +109,31 @@ impl CanonicalLeg {
         }
         profile
     }
+}
+
+/// A place at an attitude of this frame; conditions that leave nothing free are written as the
+/// wheel momenta that they fix, so that different wordings of one state are one leg.
+fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoint {
+    let mut settled = Waypoint {
+        attitude,
+        ..place.clone()
+    };
+    if let [
+        RateCondition::Fixed(x),
+        RateCondition::Fixed(y),
+        RateCondition::Fixed(z),
+    ] = place.rate
+        && place.is_fixed(dynamics)
+    {
+        let null = match &place.wheels {
+            WheelCondition::NullSpace(null) => null.clone(),
+            WheelCondition::Free => DVector::zeros(0),
+            WheelCondition::Fixed(_) => return settled,
+        };
+        let wheels = dynamics.wheels_at(&attitude, &Vector3::new(x, y, z), &null);
+        settled.wheels = WheelCondition::Fixed(wheels);
+    }
+    settled
 }
 
 fn rounded(attitude: &Attitude) -> Attitude {

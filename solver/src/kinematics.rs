@@ -16,6 +16,9 @@
 //! propagated forward, second ones come from one reverse sweep, both of the discrete map itself,
 //! so that they are exact whatever the truncation error.
 
+#[cfg(test)]
+mod tests;
+
 use nalgebra::{Matrix3, Vector3};
 
 /// A quaternion, scalar last, of any length.
@@ -417,83 +420,4 @@ fn add_scaled(to: &mut Quat, scale: f64, from: &Quat) {
 
 fn dot4(a: &Quat, b: &Quat) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn inputs(z: &[f64; INPUTS]) -> TurnInputs {
-        TurnInputs {
-            begin: Vector3::new(z[0], z[1], z[2]),
-            end: Vector3::new(z[3], z[4], z[5]),
-            momentum: Vector3::new(z[6], z[7], z[8]),
-        }
-    }
-
-    fn map(with_momentum: bool, substeps: usize) -> TurnMap {
-        let inertia = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.5, 0.2, -0.1, 0.2, 2.5);
-        let inverse = inertia.try_inverse().expect("well conditioned");
-        TurnMap::new(inverse, with_momentum, substeps)
-    }
-
-    const Z: [f64; INPUTS] = [0.3, -0.2, 0.5, 0.1, 0.6, -0.4, 0.4, -0.7, 0.2];
-
-    #[test]
-    fn a_constant_rate_turns_by_its_angle() {
-        let rate = Vector3::new(0.3, -0.4, 0.2);
-        let z = TurnInputs {
-            begin: rate,
-            end: rate,
-            momentum: Vector3::zeros(),
-        };
-        let p = map(false, 2).turn(&z);
-        let angle = rate.norm();
-        let expected = quat(&(rate * ((angle / 2.0).sin() / angle)), (angle / 2.0).cos());
-        for (got, want) in p.iter().zip(expected) {
-            assert!((got - want).abs() < 1e-9, "{got} against {want}");
-        }
-    }
-
-    #[test]
-    fn the_method_has_order_six() {
-        let z = inputs(&Z);
-        let fine = map(true, 32).turn(&z);
-        let error = |substeps| {
-            let p = map(true, substeps).turn(&z);
-            p.iter()
-                .zip(&fine)
-                .map(|(a, b)| (a - b).abs())
-                .fold(0.0, f64::max)
-        };
-        let order = (error(1) / error(2)).log2();
-        assert!(order > 5.5, "observed order {order}");
-    }
-
-    #[test]
-    fn derivatives_match_finite_differences() {
-        for with_momentum in [false, true] {
-            let map = map(with_momentum, 2);
-            let weights = [0.7, -0.3, 0.9, 0.4];
-            let exact = map.derivatives(&inputs(&Z), &weights);
-            let at = |index: usize, by: f64| {
-                let mut z = Z;
-                z[index] += by;
-                map.derivatives(&inputs(&z), &weights)
-            };
-            let by = 1e-5;
-            for j in 0..map.inputs() {
-                let (plus, minus) = (at(j, by), at(j, -by));
-                for i in 0..4 {
-                    let first = (plus.turn[i] - minus.turn[i]) / (2.0 * by);
-                    assert!((first - exact.first[j][i]).abs() < 1e-9, "first {j} {i}");
-                }
-                for i in 0..map.inputs() {
-                    let change = dot4(&weights, &plus.first[i]) - dot4(&weights, &minus.first[i]);
-                    let second = change / (2.0 * by);
-                    assert!((second - exact.second[i][j]).abs() < 1e-8, "second {i} {j}");
-                }
-            }
-        }
-    }
 }

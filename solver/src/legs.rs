@@ -7,7 +7,26 @@
 //! always solved in the frame in which they begin at the identity attitude; a stored leg therefore
 //! gives bit for bit what solving it again would give.
 
-use crate::planner::LegKind;
+/// Which boundary conditions a tabulated leg has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LegKind {
+    /// All rates zero at both ends; with more than three wheels the null-space momentum of the
+    /// scenario's start is held at both ends.
+    RestToRest,
+    /// Each end with only its own conditions, everything else free: a lower bound of the leg.
+    LowerBound,
+}
+
+impl LegKind {
+    /// The stable text of the kind.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::RestToRest => "rest_to_rest",
+            Self::LowerBound => "lower_bound",
+        }
+    }
+}
 
 /// A solved leg.
 #[derive(Debug, Clone, PartialEq)]

@@ -31,6 +31,7 @@
 //! the factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
 
 pub(crate) mod chain;
+mod convergence;
 mod dense;
 mod filter;
 mod interior_point;

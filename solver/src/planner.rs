@@ -7,7 +7,7 @@ mod places;
 mod tours;
 
 use crate::checker;
-use crate::legs::LegStore;
+use crate::legs::{LegKind, LegStore};
 use crate::nlp::NlpStatus;
 use crate::plan::{Alternative, LowerBoundKind, Optimality, Outcome, Plan, Statistics};
 use crate::pool::SolverPool;
@@ -34,27 +34,6 @@ pub struct Run<'a> {
     pub observer: &'a dyn Observer,
     /// Asked for legs before they are solved, and told about solved ones.
     pub legs: &'a dyn LegStore,
-}
-
-/// Which boundary conditions a tabulated leg has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LegKind {
-    /// All rates zero at both ends; with more than three wheels the null-space momentum of the
-    /// scenario's start is held at both ends.
-    RestToRest,
-    /// Each end with only its own conditions, everything else free: a lower bound of the leg.
-    LowerBound,
-}
-
-impl LegKind {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::RestToRest => "rest_to_rest",
-            Self::LowerBound => "lower_bound",
-        }
-    }
 }
 
 /// One entry of the table of leg times.

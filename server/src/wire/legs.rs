@@ -2,7 +2,8 @@
 
 use super::number::Number;
 use serde::Serialize;
-use slewplan_solver::planner::{LegKind, LegRow, Shard};
+use slewplan_solver::legs::LegKind;
+use slewplan_solver::planner::{LegRow, Shard};
 
 /// The answer of `legs`.
 #[derive(Debug, Serialize)]

@@ -3,11 +3,11 @@
 //! Pairs of places are reduced to canonical legs first, so that equal problems are solved once:
 //! in a table, between tables of one solve, and, through the store, between solves.
 
+use super::Run;
 use super::canonical::CanonicalLeg;
 use super::places::Places;
-use super::{LegKind, Run};
 use crate::attitude::Attitude;
-use crate::legs::StoredLeg;
+use crate::legs::{LegKind, StoredLeg};
 use crate::multiphase::Flown;
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;

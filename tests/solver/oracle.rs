@@ -8,6 +8,10 @@ use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, on_threads, plan_of, scenario_of};
 
 /// What a random scenario is to have; the seed decides the rest.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each says whether a scenario has a trait"
+)]
 struct Case {
     seed: u64,
     targets: usize,

@@ -45,6 +45,10 @@ impl Generator {
     }
 
     /// One of the numbers below a count.
+    ///
+    /// # Panics
+    ///
+    /// When the count is zero.
     pub fn below(&mut self, count: usize) -> usize {
         let count = count as u64;
         usize::try_from(self.next() % count).expect("less than a count of things in memory")

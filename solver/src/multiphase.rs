@@ -12,8 +12,9 @@ use nalgebra::DVector;
 
 /// Runge-Kutta substeps of an interval to begin with.
 const SUBSTEPS: usize = 2;
-/// Turn per substep, rad, up to which the integration error of a whole tour stays below 1e-7 rad.
-const LARGEST_SUBSTEP: f64 = 0.35;
+/// Turn per substep, rad, up to which the integration error stays below 3e-7 rad, also where
+/// stored momentum and torque at the limits bend the motion within an interval.
+const LARGEST_SUBSTEP: f64 = 0.25;
 /// Rounds of refining the substeps and the reserve at limits.
 const MAX_ROUNDS: usize = 4;
 /// Barrier parameter of a round that only integrates more finely: the iterate is nearly optimal.

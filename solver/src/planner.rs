@@ -14,7 +14,7 @@ use crate::pool::SolverPool;
 use crate::problem::{Code, Problem};
 use crate::progress::{Observer, Progress, Stage};
 use crate::scenario::Scenario;
-use crate::sequence::{FlownOrder, Place, SearchResult, SearchSettings, search};
+use crate::sequence::{FlownOrder, Place, SearchResult, SearchSettings, exhaustive, search};
 use crate::stop::StopSignal;
 use assemble::assemble;
 use legs::LegSolver;
@@ -100,6 +100,23 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         None if stop.is_set() => Outcome::StoppedEmpty,
         None => Outcome::Failed(unsolved(&tours)),
     }
+}
+
+/// Flies every order of the targets and lists them, best first: the answer that the search of
+/// [`solve`] must find with less work.
+///
+/// For a handful of targets only. Orders that do not converge, or are not reached before the stop
+/// signal, are left out.
+#[must_use]
+pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
+    let stop = limited(scenario, run.stop);
+    let places = Places::of(scenario);
+    let pairs = tour_pairs(&places);
+    let rest = legs::solve_table(&places, LegKind::RestToRest, &pairs, run, &stop);
+    let free = legs::solve_table(&places, LegKind::LowerBound, &pairs, run, &stop);
+    let tours = Tours::new(&places, &rest, &free, &stop);
+    let orders = (1..=scenario.targets().len()).product();
+    exhaustive(&tours, orders, run.pool)
 }
 
 /// Solves all legs between start, targets and end, both directions listed.

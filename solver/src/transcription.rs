@@ -57,6 +57,8 @@ pub(crate) struct Transcription {
     reference_length: f64,
     /// Limits that hold at every node whose state is not fixed.
     limits: Vec<Row>,
+    /// Share of the norm limit of the rate that nodes may use.
+    norm_share: f64,
     nodes: Vec<Node>,
 }
 
@@ -93,6 +95,7 @@ impl Transcription {
                 .collect(),
             reference_length: 1.0,
             limits: Vec::new(),
+            norm_share: 1.0,
             nodes: Vec::new(),
             dynamics: dynamics.clone(),
         };
@@ -104,6 +107,7 @@ impl Transcription {
     /// The same with a relative reserve kept from every speed and rate limit.
     pub(crate) fn with_reserve(mut self, reserve: f64) -> Self {
         self.limits = self.limit_rows(reserve);
+        self.norm_share = 1.0 - reserve;
         self
     }
 

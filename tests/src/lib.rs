@@ -4,6 +4,9 @@
 //! rigid body with three wheels on its axes, only the z component of the rate vanishing at a
 //! target); the pyramid is that of the published envelope of a square array of four wheels.
 
+pub mod random;
+pub mod solving;
+
 use slewplan_solver::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
 };
@@ -40,6 +43,16 @@ pub fn experiment_a_spec() -> ScenarioSpec {
 #[must_use]
 pub fn experiment_c_spec() -> ScenarioSpec {
     experiment_spec("experiment-c", TARGETS.len())
+}
+
+/// Some targets of the published experiments by their identifiers, without an end.
+#[must_use]
+pub fn published_targets_spec(ids: &[&str]) -> ScenarioSpec {
+    let mut spec = experiment_c_spec();
+    spec.targets
+        .retain(|target| ids.contains(&target.id.as_str()));
+    spec.end = None;
+    spec
 }
 
 /// The published spacecraft with its first targets: from the identity at rest and back there.

@@ -69,9 +69,9 @@ impl Transcription {
         }
     }
 
-    /// Value of the norm limit `1 - |w|^2 / limit^2`.
+    /// Value of the norm limit `share^2 - |w|^2 / limit^2`.
     pub(super) fn norm_margin(&self, state: &StateView<'_>) -> f64 {
-        1.0 - state.rate.norm_squared() / self.dynamics.max_rate_norm.powi(2)
+        self.norm_share.powi(2) - state.rate.norm_squared() / self.dynamics.max_rate_norm.powi(2)
     }
 
     /// Writes the norm limit's derivative and adds its curvature times `-z`.

@@ -1,0 +1,135 @@
+//! What cannot be flown, and the corners of what can.
+
+use slewplan_solver::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::problem::Code;
+use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
+use slewplan_tests::solving::{agree, outcome_of, plan_of};
+use slewplan_tests::{experiment_a_spec, target};
+
+/// The published spacecraft with these targets and no end.
+fn visits(targets: impl IntoIterator<Item = TargetSpec>) -> ScenarioSpec {
+    ScenarioSpec {
+        targets: targets.into_iter().collect(),
+        end: None,
+        ..experiment_a_spec()
+    }
+}
+
+/// A target at which only the z rate vanishes.
+fn passing(id: &str, angles: [f64; 3]) -> TargetSpec {
+    TargetSpec {
+        zero_rate_axes: Some([false, false, true]),
+        ..target(id, angles)
+    }
+}
+
+fn optimal(spec: &ScenarioSpec) -> Plan {
+    let plan = plan_of(spec);
+    assert_eq!(plan.optimality, Optimality::Optimal);
+    plan
+}
+
+/// Time, s, of the fastest turn about z alone by an angle in rad: full torque up to the rate that
+/// the wheel's speed limit allows, and the same backwards.
+fn turn_about_z(angle: f64) -> f64 {
+    let (inertia, wheel): (f64, f64) = (9.63, 0.000_169);
+    // No momentum in all: at the rate w the wheel has the speed J w / I against the body, and its
+    // torque moves what is left of the body without it.
+    let acceleration = 0.0101 / (inertia - wheel);
+    let fastest = (wheel * 710.0 / inertia).min(0.04);
+    if angle < fastest * fastest / acceleration {
+        2.0 * (angle / acceleration).sqrt()
+    } else {
+        angle / fastest + fastest / acceleration
+    }
+}
+
+#[test]
+fn a_rest_that_the_wheels_cannot_hold_is_named() {
+    let mut spec = visits([
+        target("held", [10.0, 0.0, 0.0]),
+        target("lost", [0.0, 0.0, 45.0]),
+    ]);
+    // Shared by two wheels at the start, all on one of them after a yaw of 45 degrees.
+    spec.start.wheel_speed_rad_s = Some(vec![600.0, 600.0, 0.0]);
+    let outcome = outcome_of(&spec);
+    let Outcome::Infeasible(problems) = outcome else {
+        panic!("{outcome:?}");
+    };
+    let named: Vec<_> = problems
+        .iter()
+        .map(|p| (p.code, p.pointer.as_str()))
+        .collect();
+    assert_eq!(named, [(Code::MomentumExceedsEnvelope, "/targets/1")]);
+}
+
+#[test]
+fn two_targets_at_one_rest_cost_no_more_than_one() {
+    let (a, again) = ([15.0, 0.0, 10.0], "again");
+    let b = target("b", [25.0, 0.0, 50.0]);
+    let once = optimal(&visits([target("a", a), b.clone()]));
+    let twice = optimal(&visits([target("a", a), b, target(again, a)]));
+    let (once, twice) = (once.total_time_s, twice.total_time_s);
+    assert!(agree(once, twice, 1e-6), "{once} and {twice} s");
+}
+
+#[test]
+fn two_targets_at_one_passage_cost_no_more_than_one() {
+    let (a, again) = ([15.0, 0.0, 10.0], "again");
+    let b = passing("b", [25.0, 0.0, 50.0]);
+    let once = optimal(&visits([passing("a", a), b.clone()]));
+    let twice = optimal(&visits([passing("a", a), b, passing(again, a)]));
+    let (once, twice) = (once.total_time_s, twice.total_time_s);
+    assert!(agree(once, twice, 1e-6), "{once} and {twice} s");
+}
+
+#[test]
+fn a_target_at_the_start_costs_nothing() {
+    let b = target("b", [25.0, 0.0, 50.0]);
+    let here = target("here", [0.0; 3]);
+    let direct = optimal(&visits([b.clone()]));
+    let both = optimal(&visits([b, here.clone()]));
+    let alone = optimal(&visits([here]));
+    assert!(agree(direct.total_time_s, both.total_time_s, 1e-6));
+    assert!(alone.total_time_s < 1e-6);
+}
+
+#[test]
+fn a_single_target_needs_no_end() {
+    let plan = optimal(&visits([target("only", [0.0, 0.0, 30.0])]));
+    assert_eq!(plan.legs.len(), 1);
+    assert_eq!(plan.flight.passages.len(), 1);
+    assert!(plan.total_time_s <= turn_about_z(30.0_f64.to_radians()) * 1.001);
+}
+
+#[test]
+fn an_end_needs_no_target() {
+    let mut spec = visits([]);
+    spec.end = Some(StateSpec {
+        attitude: AttitudeSpec::RollPitchYawDeg([15.0, 0.0, 10.0]),
+        ..StateSpec::default()
+    });
+    let plan = optimal(&spec);
+    let with_target = optimal(&visits([target("a", [15.0, 0.0, 10.0])]));
+    assert!(plan.flight.passages.is_empty());
+    assert!(agree(plan.total_time_s, with_target.total_time_s, 1e-6));
+}
+
+#[test]
+fn a_half_turn_is_flown_either_way_round() {
+    let half = |z: f64| TargetSpec {
+        attitude: AttitudeSpec::Quaternion([0.0, 0.0, z, 0.0]),
+        ..target("half", [0.0; 3])
+    };
+    let [one, other] = [1.0, -1.0].map(|z| optimal(&visits([half(z)])).total_time_s);
+    assert!(agree(one, other, 1e-6), "{one} and {other} s");
+    assert!(one <= turn_about_z(std::f64::consts::PI) * 1.001);
+}
+
+#[test]
+fn a_tiny_turn_takes_its_analytic_time() {
+    let angle: f64 = 1e-5;
+    let time = optimal(&visits([target("near", [0.0, 0.0, angle.to_degrees()])])).total_time_s;
+    // Turns about three axes at once buy nothing for so small an angle.
+    assert!(agree(time, turn_about_z(angle), 1e-3), "{time} s");
+}

@@ -1,0 +1,112 @@
+//! What must not change an answer.
+
+use slewplan_solver::attitude::Attitude;
+use slewplan_solver::plan::{Flight, Plan};
+use slewplan_solver::planner;
+use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec};
+use slewplan_tests::published_targets_spec;
+use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, planned, scenario_of};
+
+/// Three published targets with stored momentum, a full inertia and no end.
+fn lopsided_spec() -> ScenarioSpec {
+    let mut spec = published_targets_spec(&["a", "d", "h"]);
+    spec.spacecraft.inertia_kg_m2 = [[6.63, 0.4, -0.2], [0.4, 8.90, 0.3], [-0.2, 0.3, 9.63]];
+    spec.start.wheel_speed_rad_s = Some(vec![60.0, -90.0, 40.0]);
+    spec
+}
+
+fn quaternion_of(attitude: &Attitude) -> AttitudeSpec {
+    AttitudeSpec::Quaternion(attitude.xyzw())
+}
+
+/// All of a plan but the work it was.
+fn answer(plan: &Plan) -> impl PartialEq + std::fmt::Debug {
+    let flight: Flight = plan.flight.clone();
+    let figures = [plan.total_time_s, plan.lower_bound_s, plan.relative_gap];
+    (
+        flight,
+        figures,
+        plan.optimality,
+        plan.alternatives.clone(),
+        plan.legs.clone(),
+        plan.states.clone(),
+        plan.verification.clone(),
+    )
+}
+
+#[test]
+fn the_sign_of_a_quaternion_is_no_part_of_a_rotation() {
+    let spec = lopsided_spec();
+    let mut negated = spec.clone();
+    let targets = scenario_of(&spec).targets().to_vec();
+    for (spec, target) in negated.targets.iter_mut().zip(&targets) {
+        spec.attitude = quaternion_of(&target.attitude.negated());
+    }
+    let (plan, other) = (plan_of(&spec), plan_of(&negated));
+    assert_eq!(order_of(&plan), order_of(&other));
+    assert!(agree(plan.total_time_s, other.total_time_s, 1e-9));
+    assert_eq!(plan.flight.controls.len(), other.flight.controls.len());
+    for (a, b) in plan.flight.controls.iter().zip(&other.flight.controls) {
+        for (a, b) in a.wheel_torque_nm.iter().zip(&b.wheel_torque_nm) {
+            assert!((a - b).abs() < 1e-9, "{a} and {b} N m");
+        }
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit_of_the_answer() {
+    let scenario = scenario_of(&published_targets_spec(&["a", "b", "e", "h"]));
+    let [one, two, three] =
+        [1, 2, 3].map(|count| planned(on_threads(count, |run| planner::solve(&scenario, run))));
+    assert_eq!(answer(&one), answer(&two));
+    assert_eq!(answer(&one), answer(&three));
+}
+
+#[test]
+fn the_order_of_the_list_of_targets_changes_no_duration() {
+    let spec = lopsided_spec();
+    let mut turned = spec.clone();
+    turned.targets.rotate_left(1);
+    let mut reversed = spec.clone();
+    reversed.targets.reverse();
+    let plan = plan_of(&spec);
+    for other in [turned, reversed].iter().map(plan_of) {
+        assert!(agree(plan.total_time_s, other.total_time_s, 1e-6));
+        assert_eq!(order_of(&plan), order_of(&other));
+    }
+}
+
+/// The same spacecraft with its body axes turned by 90 degrees about z: a vector with components
+/// (x, y, z) now has (-y, x, z).
+fn relabelled(spec: &ScenarioSpec) -> ScenarioSpec {
+    let scenario = scenario_of(spec);
+    let back = Attitude::from_rotation_vector([0.0, 0.0, -90.0_f64.to_radians()].into());
+    let turn = |attitude: &Attitude| quaternion_of(&attitude.then_in_body(&back));
+    let mut spec = spec.clone();
+    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = spec.spacecraft.inertia_kg_m2;
+    spec.spacecraft.inertia_kg_m2 = [[yy, -xy, -yz], [-xy, xx, xz], [-yz, xz, zz]];
+    spec.spacecraft.max_body_rate_rad_s.swap(0, 1);
+    for wheel in &mut spec.spacecraft.wheels {
+        let [x, y, z] = wheel.axis;
+        wheel.axis = [-y, x, z];
+    }
+    spec.start.attitude = turn(&scenario.start().attitude);
+    for (spec, target) in spec.targets.iter_mut().zip(scenario.targets()) {
+        spec.attitude = turn(&target.attitude);
+        if let Some(axes) = &mut spec.zero_rate_axes {
+            axes.swap(0, 1);
+        }
+    }
+    spec
+}
+
+#[test]
+fn the_names_of_the_body_axes_change_no_duration() {
+    let mut spec = lopsided_spec();
+    spec.spacecraft.max_body_rate_rad_s = [Some(0.03), Some(0.04), None];
+    spec.targets[0].zero_rate_axes = Some([true, false, true]);
+    let (plan, other) = (plan_of(&spec), plan_of(&relabelled(&spec)));
+    let (a, b) = (plan.total_time_s, other.total_time_s);
+    assert!(agree(a, b, 1e-4), "{a} and {b} s");
+    assert_eq!(order_of(&plan), order_of(&other));
+}

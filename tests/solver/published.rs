@@ -1,0 +1,142 @@
+//! Published cases: the scheduling experiments A and C, and the pyramid of four wheels.
+//!
+//! The published durations of the experiments rest on two intervals per leg and cannot be flown;
+//! the figures here are those of the same problems solved on fine grids.
+
+use slewplan_solver::plan::{Optimality, Plan};
+use slewplan_solver::planner::{LegKind, LegRow, Shard, leg_table};
+use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_tests::solving::{on_threads, order_of, plan_of, scenario_of};
+use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec, pyramid_spec};
+
+const BOTH_WAYS: [&str; 2] = ["abcdef", "fedcba"];
+
+fn assert_flown_within_tolerances(plan: &Plan) {
+    let found = &plan.verification;
+    assert!(found.passed, "{found:?}");
+    assert!(found.max_attitude_error_rad <= 1e-6, "{found:?}");
+    assert!(found.max_rate_error_rad_s <= 1e-7, "{found:?}");
+    let excesses = [
+        found.max_wheel_speed_excess,
+        found.max_torque_excess,
+        found.max_rate_excess,
+    ];
+    assert!(excesses.iter().all(|excess| *excess <= 1e-6), "{found:?}");
+}
+
+fn rest_to_rest(spec: &ScenarioSpec) -> Vec<LegRow> {
+    let scenario = scenario_of(spec);
+    let all = Shard { index: 0, of: 1 };
+    let (rows, complete) = on_threads(2, |run| leg_table(&scenario, LegKind::RestToRest, all, run));
+    assert!(complete);
+    assert!(rows.iter().all(|row| row.status == "converged"), "{rows:?}");
+    rows
+}
+
+fn duration(rows: &[LegRow], from: &str, to: &str) -> f64 {
+    let row = rows.iter().find(|row| row.from == from && row.to == to);
+    row.and_then(|row| row.duration_s).expect("a solved leg")
+}
+
+#[test]
+fn experiment_a_is_solved_proven_and_flown() {
+    let plan = plan_of(&experiment_a_spec());
+    assert!(BOTH_WAYS.contains(&order_of(&plan).as_str()));
+    assert!(plan.total_time_s <= 468.0, "{}", plan.total_time_s);
+    assert_eq!(plan.optimality, Optimality::Optimal);
+    assert!(plan.relative_gap.abs() <= f64::EPSILON);
+    assert_flown_within_tolerances(&plan);
+}
+
+#[test]
+fn experiment_a_with_signed_quaternions_goes_the_published_targets_in_turn() {
+    let mut spec = experiment_a_spec();
+    spec.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
+    spec.options.alternatives = 3;
+    let plan = plan_of(&spec);
+    let best = order_of(&plan);
+    assert!(BOTH_WAYS.contains(&best.as_str()), "{best}");
+    assert!(
+        (610.0..=611.6).contains(&plan.total_time_s),
+        "{}",
+        plan.total_time_s
+    );
+    assert_flown_within_tolerances(&plan);
+    assert_passes_with_the_signs_as_given(&spec, &plan);
+
+    let others: Vec<String> = plan
+        .alternatives
+        .iter()
+        .map(|other| other.sequence.concat())
+        .collect();
+    let mut next = others[1..].to_vec();
+    next.sort();
+    assert!(BOTH_WAYS.contains(&others[0].as_str()) && others[0] != best);
+    assert_eq!(next, ["afedcb", "bcdefa"]);
+    for other in &plan.alternatives[1..] {
+        assert!((620.0..=621.0).contains(&other.total_time_s), "{other:?}");
+    }
+}
+
+fn assert_passes_with_the_signs_as_given(spec: &ScenarioSpec, plan: &Plan) {
+    let scenario = scenario_of(spec);
+    for passage in &plan.flight.passages {
+        let state = plan
+            .states
+            .iter()
+            .min_by(|a, b| {
+                let distance = |time: f64| (time - passage.time_s).abs();
+                distance(a.time_s).total_cmp(&distance(b.time_s))
+            })
+            .expect("a plan has states");
+        let target = scenario.targets().iter().find(|t| t.id == passage.target);
+        let wanted = target.expect("passages are at targets").attitude;
+        let missed = state.attitude.signed_turn_to(&wanted).norm();
+        assert!(missed <= 1e-6, "{} missed by {missed}", passage.target);
+        let negative = ["e", "f"].contains(&passage.target.as_str());
+        assert_eq!(state.attitude.xyzw()[3] < 0.0, negative, "{passage:?}");
+    }
+}
+
+#[test]
+fn the_leg_from_a_to_b_has_its_known_time() {
+    let rows = rest_to_rest(&published_targets_spec(&["a", "b"]));
+    let time = duration(&rows, "a", "b");
+    assert!((57.50..=57.60).contains(&time), "{time}");
+}
+
+#[test]
+fn the_leg_from_h_to_n_avoids_the_slower_eigenaxis_solution() {
+    let rows = rest_to_rest(&published_targets_spec(&["h", "n"]));
+    let time = duration(&rows, "h", "n");
+    assert!(time <= 54.05, "{time}");
+}
+
+#[test]
+fn all_pairs_of_experiment_c_are_solved_alike_both_ways() {
+    let mut spec = experiment_c_spec();
+    spec.end = None;
+    let rows = rest_to_rest(&spec);
+    assert_eq!(rows.len(), 2 * 171);
+    let mut sum = 0.0;
+    for row in rows.iter().filter(|row| row.to != "start") {
+        let time = duration(&rows, &row.from, &row.to);
+        let back = duration(&rows, &row.to, &row.from);
+        assert!((time - back).abs() <= 1e-9 * time, "{row:?}");
+        // Every pair of targets is met twice, every pair with the start once.
+        sum += if row.from == "start" {
+            time
+        } else {
+            time / 2.0
+        };
+    }
+    println!("sum over the 171 pairs: {sum:.3} s");
+    assert!(sum <= 18_525.0, "{sum}");
+}
+
+#[test]
+fn the_pyramid_turns_by_120_degrees_in_the_known_time() {
+    let plan = plan_of(&pyramid_spec());
+    assert!(plan.total_time_s <= 38.4, "{}", plan.total_time_s);
+    assert_flown_within_tolerances(&plan);
+}

@@ -1,0 +1,107 @@
+//! Stop requests and limits: what is known so far is returned, and soon.
+
+use slewplan_solver::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::planner::{self, Run};
+use slewplan_solver::progress::{Observer, Progress, Stage};
+use slewplan_solver::scenario::Scenario;
+use slewplan_solver::spec::ScenarioSpec;
+use slewplan_solver::stop::StopSignal;
+use slewplan_tests::published_targets_spec;
+use slewplan_tests::solving::{on_threads, planned, pool, scenario_of};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+/// Much more than the quarter of a second that is promised, for machines with other work to do.
+const SOON: Duration = Duration::from_secs(2);
+
+/// Seven targets of which many orders are nearly equal: long to search, short to tabulate.
+fn long_spec() -> ScenarioSpec {
+    published_targets_spec(&["a", "c", "e", "g", "i", "k", "m"])
+}
+
+/// Requests a stop at the first report that meets a condition.
+struct StopsWhen<'a> {
+    met: fn(&Progress) -> bool,
+    stop: &'a StopSignal,
+    requested: OnceLock<Instant>,
+}
+
+impl Observer for StopsWhen<'_> {
+    fn progress(&self, progress: Progress) {
+        if (self.met)(&progress) {
+            self.requested.get_or_init(Instant::now);
+            self.stop.request();
+        }
+    }
+}
+
+/// The outcome and the time from the request to it.
+fn stopped_when(scenario: &Scenario, met: fn(&Progress) -> bool) -> (Outcome, Duration) {
+    let (pool, stop) = (pool(2), StopSignal::new());
+    let observer = StopsWhen {
+        met,
+        stop: &stop,
+        requested: OnceLock::new(),
+    };
+    let run = Run {
+        pool: &pool,
+        stop: &stop,
+        observer: &observer,
+    };
+    let outcome = planner::solve(scenario, run);
+    let requested = observer.requested.get().expect("a stop was requested");
+    (outcome, requested.elapsed())
+}
+
+fn assert_honest(plan: &Plan) {
+    assert_eq!(plan.optimality, Optimality::Feasible);
+    assert!(plan.lower_bound_s > 0.0 && plan.lower_bound_s < plan.total_time_s);
+    let gap = (plan.total_time_s - plan.lower_bound_s) / plan.total_time_s;
+    assert!((plan.relative_gap - gap).abs() < 1e-12);
+}
+
+#[test]
+fn a_stop_among_the_first_legs_ends_soon_and_empty() {
+    let (outcome, took) = stopped_when(&scenario_of(&long_spec()), |progress| {
+        progress.stage == Stage::Legs && progress.done >= 3
+    });
+    assert!(matches!(outcome, Outcome::StoppedEmpty), "{outcome:?}");
+    assert!(took < SOON, "{took:?}");
+}
+
+#[test]
+fn a_stop_in_the_search_ends_soon_with_the_best_plan_and_its_bound() {
+    let (outcome, took) = stopped_when(&scenario_of(&long_spec()), |progress| {
+        progress.stage == Stage::Search && progress.incumbent_s.is_some()
+    });
+    assert!(took < SOON, "{took:?}");
+    assert_honest(&planned(outcome));
+}
+
+#[test]
+fn a_node_limit_stops_at_the_same_plan_for_any_number_of_threads() {
+    let mut spec = long_spec();
+    spec.options.node_limit = Some(5);
+    let scenario = scenario_of(&spec);
+    let [one, two] =
+        [1, 2].map(|count| planned(on_threads(count, |run| planner::solve(&scenario, run))));
+    assert_honest(&one);
+    assert_eq!(one.flight, two.flight);
+    assert!((one.lower_bound_s - two.lower_bound_s).abs() <= 0.0);
+    assert_eq!(one.statistics.nodes_explored, 5);
+}
+
+#[test]
+fn a_time_limit_ends_the_solve() {
+    let mut spec = long_spec();
+    let limit = Duration::from_millis(50);
+    spec.options.time_limit_s = Some(limit.as_secs_f64());
+    let scenario = Scenario::try_new(&spec).expect("valid").scenario;
+    let begin = Instant::now();
+    let outcome = on_threads(2, |run| planner::solve(&scenario, run));
+    assert!(begin.elapsed() < limit + SOON);
+    match outcome {
+        Outcome::StoppedEmpty => {}
+        other => assert_honest(&planned(other)),
+    }
+}

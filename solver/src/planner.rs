@@ -112,8 +112,9 @@ pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let rest = legs::solve_table(&places, LegKind::RestToRest, &pairs, run, &stop);
-    let free = legs::solve_table(&places, LegKind::LowerBound, &pairs, run, &stop);
+    let mut solver = LegSolver::new(&places, run, &stop);
+    let rest = solver.table(LegKind::RestToRest, &pairs);
+    let free = solver.table(LegKind::LowerBound, &pairs);
     let tours = Tours::new(&places, &rest, &free, &stop);
     let orders = (1..=scenario.targets().len()).product();
     exhaustive(&tours, orders, run.pool)

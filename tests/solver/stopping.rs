@@ -47,6 +47,7 @@ fn stopped_when(scenario: &Scenario, met: fn(&Progress) -> bool) -> (Outcome, Du
         pool: &pool,
         stop: &stop,
         observer: &observer,
+        legs: &slewplan_solver::legs::NoStore,
     };
     let outcome = planner::solve(scenario, run);
     let requested = observer.requested.get().expect("a stop was requested");

@@ -43,6 +43,7 @@ pub fn on_threads<R>(threads: usize, work: impl FnOnce(Run<'_>) -> R) -> R {
         pool: &pool,
         stop: &StopSignal::new(),
         observer: &Silent,
+        legs: &slewplan_solver::legs::NoStore,
     })
 }
 

@@ -6,3 +6,4 @@ mod invariance;
 mod oracle;
 mod published;
 mod stopping;
+mod structure;

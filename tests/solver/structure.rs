@@ -1,0 +1,94 @@
+//! The arrows between the solver's modules, as `solver/README.md` draws them.
+
+use std::path::{Path, PathBuf};
+
+fn sources() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../solver/src");
+    let mut open = vec![root.clone()];
+    let mut found = Vec::new();
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).expect("the solver's sources are there") {
+            let path: PathBuf = entry.expect("a readable entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(&root).expect("below the root");
+                let text = std::fs::read_to_string(&path).expect("a readable source");
+                found.push((name.display().to_string(), text));
+            }
+        }
+    }
+    assert!(
+        found.len() > 50,
+        "the walk found {} files only",
+        found.len()
+    );
+    found
+}
+
+/// Modules of the crate that the files of a module name in their code.
+fn used_by(module: &str) -> Vec<(String, String)> {
+    let own =
+        |name: &str| name == format!("{module}.rs") || name.starts_with(&format!("{module}/"));
+    let mut used = Vec::new();
+    for (name, text) in sources().into_iter().filter(|(name, _)| own(name)) {
+        let code = text
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"));
+        for line in code {
+            for tail in line.split("crate::").skip(1) {
+                let target: String = tail
+                    .chars()
+                    .take_while(|c| c.is_alphanumeric() || *c == '_')
+                    .collect();
+                used.push((name.clone(), target));
+            }
+        }
+    }
+    assert!(
+        !used.is_empty() || module == "nlp",
+        "{module} was not found"
+    );
+    used
+}
+
+#[test]
+fn the_engine_knows_no_physics() {
+    for (file, target) in used_by("nlp") {
+        assert_eq!(target, "nlp", "{file} uses {target}");
+    }
+}
+
+#[test]
+fn the_checker_uses_nothing_of_the_optimiser() {
+    let given = [
+        "attitude",
+        "checker",
+        "plan",
+        "problem",
+        "scenario",
+        "spacecraft",
+        "spec",
+    ];
+    for (file, target) in used_by("checker") {
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+}
+
+#[test]
+fn the_search_knows_slews_through_its_trait_only() {
+    let given = ["sequence", "pool", "progress", "stop"];
+    for (file, target) in used_by("sequence") {
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+}
+
+#[test]
+fn one_file_names_clarabel() {
+    let naming: Vec<_> = sources()
+        .into_iter()
+        .filter(|(_, text)| text.contains("clarabel::"))
+        .map(|(name, _)| name)
+        .collect();
+    assert_eq!(naming, ["linear_program.rs"]);
+}

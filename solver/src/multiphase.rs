@@ -19,7 +19,7 @@ const SUBSTEPS: usize = 2;
 /// stored momentum and torque at the limits bend the motion within an interval.
 const LARGEST_SUBSTEP: f64 = 0.25;
 /// Rounds of refining the substeps and the reserve at limits.
-const MAX_ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 6;
 /// Barrier parameter of a round that only integrates more finely: the iterate is nearly optimal.
 const WARM_BARRIER: f64 = 1e-7;
 /// Relative excess over a limit between nodes that is not worth another round; the checker's
@@ -60,41 +60,47 @@ pub(crate) fn fly(
     let mut substeps = SUBSTEPS;
     let mut reserve = 0.0;
     let mut iterate = scaled(guess, &scales);
-    let mut iterations = 0;
-    for round in 0.. {
+    let mut flown = Flown {
+        status: NlpStatus::IterationLimit,
+        profile: guess.clone(),
+        iterations: 0,
+        infeasibility: f64::MAX,
+    };
+    for _ in 0..MAX_ROUNDS {
         let chain = Transcription::new(dynamics, scales, waypoints, intervals, substeps)
             .with_reserve(reserve)
             .with_reference_length(reference);
         let mut engine = InteriorPoint::new(&chain, settings);
         let report = engine.solve(&chain, &mut iterate, stop);
-        iterations += report.iterations;
-        let profile = physical(&iterate, &scales, dynamics.wheel_count());
-        let needed = substeps_for(&profile);
-        let excess = if dynamics.has_momentum() {
-            excess_between_nodes(dynamics, &profile)
-        } else {
-            0.0
+        flown = Flown {
+            status: report.status,
+            profile: physical(&iterate, &scales, dynamics.wheel_count()),
+            iterations: flown.iterations + report.iterations,
+            infeasibility: report.infeasibility,
         };
-        let good = needed <= substeps && excess <= LIMIT_TOLERANCE;
-        if good || report.status != NlpStatus::Converged || round == MAX_ROUNDS {
-            return Flown {
-                status: report.status,
-                profile,
-                iterations,
-                infeasibility: report.infeasibility,
-            };
+        if report.status != NlpStatus::Converged {
+            return flown;
+        }
+        let needed = substeps_for(&flown.profile);
+        let excess = excess_between_nodes(dynamics, &flown.profile);
+        if needed <= substeps && excess <= LIMIT_TOLERANCE {
+            return flown;
         }
         substeps = substeps.max(needed);
         if excess > LIMIT_TOLERANCE {
             // Slacks belong to the old limits: begin again from the primal point alone.
             reserve += 1.2 * excess;
-            iterate = scaled(&profile, &scales);
+            iterate = scaled(&flown.profile, &scales);
             settings = Settings::default();
         } else {
             settings.initial_barrier = WARM_BARRIER;
         }
     }
-    unreachable!("the last round returns")
+    // Converged at the nodes, and yet not to be flown: more rounds would be needed.
+    Flown {
+        status: NlpStatus::IterationLimit,
+        ..flown
+    }
 }
 
 /// The middle one of the legs' turns, rad.

@@ -248,8 +248,18 @@ fn conclude(
         margins: report.margins,
         verification: report.verification,
         statistics,
-        warnings: report.keep_out,
+        warnings: doubts(found).into_iter().chain(report.keep_out).collect(),
     }))
+}
+
+/// What the search itself casts doubt on.
+fn doubts(found: &SearchResult) -> Option<Problem> {
+    let count = found.statistics.bounds_contradicted;
+    (count > 0).then(|| {
+        let message = format!("{count} orders were flown faster than a lower bound had allowed");
+        let hint = "take the bound as an estimate: a relaxed problem ended in a local minimum";
+        Problem::new("", Code::BoundContradicted, message, hint)
+    })
 }
 
 /// Why no order could be flown: the legs that found no solution.

@@ -134,6 +134,9 @@ codes! {
     SlewNotSolved = "slew_not_solved",
     /// The finished plan failed its independent verification.
     VerificationFailed = "verification_failed",
+    /// An order was flown faster than a lower bound had allowed, so that some relaxed problem ended
+    /// in a local minimum and the bounds are doubtful (warning).
+    BoundContradicted = "bound_contradicted",
     /// A boresight enters a keep-out cone (warning).
     KeepOutViolated = "keep_out_violated",
 }

@@ -11,6 +11,10 @@ const SAMPLES: usize = 16;
 /// Greatest relative excess over speed and rate limits inside intervals. Wheel momenta are linear
 /// there, but the turn of the stored momentum bends the rates.
 pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> f64 {
+    if !dynamics.has_momentum() {
+        // Rates are linear between nodes, and so is every limit, or convex.
+        return 0.0;
+    }
     let mut worst = 0.0_f64;
     for k in 0..profile.intervals() {
         let usage = usage_inside(dynamics, profile, k);

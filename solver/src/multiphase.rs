@@ -7,14 +7,13 @@ mod between_nodes;
 
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
+use crate::kinematics::TurnMap;
 use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
 use crate::profile::Profile;
 use crate::transcription::{Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
 use nalgebra::DVector;
 
-/// Runge-Kutta substeps of an interval to begin with.
-const SUBSTEPS: usize = 2;
 /// Turn per substep, rad, up to which the integration error stays below 3e-7 rad, also where
 /// stored momentum and torque at the limits bend the motion within an interval.
 const LARGEST_SUBSTEP: f64 = 0.25;
@@ -57,7 +56,9 @@ pub(crate) fn fly(
     let scales = Scales::for_angle(dynamics, typical_angle(waypoints));
     let mut settings = Settings::default();
     let reference = guess.duration() / guess.intervals().max(1) as f64 / scales.time;
-    let mut substeps = SUBSTEPS;
+    let (inverse, with_momentum) = (dynamics.inertia_inverse, dynamics.has_momentum());
+    let mut substeps = 0;
+    let mut turn_map = TurnMap::fast(inverse, with_momentum);
     let mut reserve = 0.0;
     let mut iterate = scaled(guess, &scales);
     let mut flown = Flown {
@@ -67,7 +68,7 @@ pub(crate) fn fly(
         infeasibility: f64::MAX,
     };
     for _ in 0..MAX_ROUNDS {
-        let chain = Transcription::new(dynamics, scales, waypoints, intervals, substeps)
+        let chain = Transcription::new(dynamics, scales, waypoints, intervals, turn_map)
             .with_reserve(reserve)
             .with_reference_length(reference);
         let mut engine = InteriorPoint::new(&chain, settings);
@@ -87,6 +88,7 @@ pub(crate) fn fly(
             return flown;
         }
         substeps = substeps.max(needed);
+        turn_map = TurnMap::exact(inverse, with_momentum, substeps);
         if excess > LIMIT_TOLERANCE {
             // Slacks belong to the old limits: begin again from the primal point alone.
             reserve += 1.2 * excess;

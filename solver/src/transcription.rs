@@ -69,13 +69,13 @@ impl Transcription {
         scales: Scales,
         waypoints: &[Waypoint],
         intervals: &[usize],
-        substeps: usize,
+        turn_map: TurnMap,
     ) -> Self {
         let factor = scales.time * scales.momentum;
         let inverse = dynamics.inertia_inverse;
         let mut transcription = Self {
             scales,
-            turn_map: TurnMap::new(inverse, dynamics.has_momentum(), substeps),
+            turn_map,
             rate_offset: inverse * dynamics.locked_momentum * scales.time,
             rate_gain: dynamics
                 .actuators

@@ -11,7 +11,8 @@
 use super::rows::{add_attitude_block, double_cross_curvature};
 use super::{Transcription, quaternion_of};
 use crate::kinematics::{
-    INPUTS, Quat, TurnDerivatives, TurnInputs, conjugate, imaginary, product, quat, rotate_back,
+    INPUTS, Quat, TurnDerivatives, TurnInputs, conjugate, dot4, imaginary, product, quat,
+    rotate_back,
 };
 use crate::nlp::{Link, LinkModel};
 use nalgebra::{Matrix3, Vector3};
@@ -252,8 +253,4 @@ fn relative_attitude(link: &Link<'_>) -> Quat {
         &conjugate(&quaternion_of(link.next)),
         &quaternion_of(link.point),
     )
-}
-
-fn dot4(a: &Quat, b: &Quat) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

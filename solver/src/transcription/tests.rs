@@ -56,6 +56,7 @@ fn dynamics(biased: bool) -> Dynamics {
 fn transcription(dynamics: &Dynamics) -> Transcription {
     let scales = Scales::for_angle(dynamics, 0.8);
     let null = DVector::from_vec(vec![0.03]);
+    let map = TurnMap::fast(dynamics.inertia_inverse, dynamics.has_momentum());
     let waypoints = [
         Waypoint {
             attitude: Attitude::identity(),
@@ -72,7 +73,7 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
             wheels: WheelCondition::Free,
         },
     ];
-    Transcription::new(dynamics, scales, &waypoints, &[2], 2)
+    Transcription::new(dynamics, scales, &waypoints, &[2], map)
 }
 
 const POINT: [f64; 8] = [0.1, -0.2, 0.15, 0.95, 0.3, -0.2, 0.5, 0.1];

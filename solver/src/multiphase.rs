@@ -43,7 +43,19 @@ impl Flown {
     pub(crate) fn duration(&self) -> Option<f64> {
         (self.status == NlpStatus::Converged).then(|| self.profile.duration())
     }
+
+    /// Whether it beats another flight: converged ones beat all others, ties go to the other.
+    pub(crate) fn improves(&self, other: &Flown) -> bool {
+        match (self.duration(), other.duration()) {
+            (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
+            (Some(_), None) => true,
+            (None, _) => false,
+        }
+    }
 }
+
+/// Relative difference below which two durations are the same.
+const SAME_DURATION: f64 = 1e-9;
 
 /// Flies through waypoints from a guess whose nodes are split into legs by `intervals`.
 pub(crate) fn fly(

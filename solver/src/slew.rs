@@ -7,10 +7,9 @@ mod tests;
 
 use crate::dynamics::Dynamics;
 use crate::multiphase::{Flown, fly};
-use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::transcription::Waypoint;
-use eigenaxis::EigenaxisSlew;
+use eigenaxis::{EigenaxisSlew, Side};
 use kinematic::Arrival;
 use nalgebra::DVector;
 
@@ -55,7 +54,7 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
         let waypoints = [slew.from.clone(), to];
         let flown = fly(slew.dynamics, &waypoints, &[INTERVALS], &guess, stop);
         solves += 1;
-        if best.as_ref().is_none_or(|best| improves(&flown, best)) {
+        if best.as_ref().is_none_or(|best| flown.improves(best)) {
             best = Some(flown);
         }
         if stop() {
@@ -78,17 +77,10 @@ impl SlewProblem<'_> {
 }
 
 fn guesses(slew: &SlewProblem<'_>) -> Vec<Profile> {
-    let mut all = vec![slew.eigenaxis().guess(slew.dynamics, INTERVALS)];
+    let eigenaxis = slew.eigenaxis();
+    let mut all: Vec<_> = [Side::Near, Side::Far]
+        .map(|side| eigenaxis.guess(slew.dynamics, INTERVALS, side))
+        .into();
     all.extend(kinematic::guesses(slew, INTERVALS, EXTREMALS));
     all
-}
-
-/// Whether a flight beats another; converged ones beat all others, and ties go to the earlier.
-fn improves(flown: &Flown, best: &Flown) -> bool {
-    match (flown.duration(), best.duration()) {
-        (Some(new), Some(old)) => new < old * (1.0 - 1e-9),
-        (Some(_), None) => true,
-        (None, Some(_)) => false,
-        (None, None) => best.status == NlpStatus::NumericalError && flown.status != best.status,
-    }
 }

@@ -11,11 +11,16 @@ use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 use crate::slew::INTERVALS;
+use crate::slew::eigenaxis::Side;
 use crate::slew::kinematic::Arrival;
 use crate::stop::StopSignal;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Starts of a segment when all goes well: from legs at rest and from legs with free ends; eigenaxis
+/// slews are for segments that converge from neither.
+const USUAL_STARTS: usize = 2;
 
 /// Tours over solved tables of legs.
 pub(super) struct Tours<'a> {
@@ -107,24 +112,29 @@ impl<'a> Tours<'a> {
         })
     }
 
+    /// The best of several starts: a chain of legs has local minima that none of its legs has.
     fn solve_segment(&self, route: &[Place]) -> Flown {
-        let attempts: [&dyn Fn(Place, Place) -> Option<Profile>; 2] =
-            [&|from, to| self.solved_leg(from, to), &|_, _| None];
-        let mut last = None;
-        for guess_of in attempts {
-            let flown = self.solve_from(route, guess_of);
-            if matches!(flown.status, NlpStatus::Converged | NlpStatus::Stopped) {
-                return flown;
+        let solved = |table: &LegTable, from: Place, to: Place| {
+            let leg = table.get(from, to)?;
+            (leg.flown.status == NlpStatus::Converged).then(|| leg.flown.profile.clone())
+        };
+        let starts: [&dyn Fn(Place, Place) -> Option<Profile>; 3] = [
+            &|from, to| solved(self.rest, from, to),
+            &|from, to| solved(self.free, from, to),
+            &|_, _| None,
+        ];
+        let mut best = self.solve_from(route, starts[0]);
+        for (tried, start) in starts.iter().enumerate().skip(1) {
+            let settled = best.status == NlpStatus::Converged && tried >= USUAL_STARTS;
+            if settled || best.status == NlpStatus::Stopped {
+                break;
             }
-            last = Some(flown);
+            let flown = self.solve_from(route, start);
+            if flown.improves(&best) || flown.status == NlpStatus::Stopped {
+                best = flown;
+            }
         }
-        last.expect("at least one attempt")
-    }
-
-    /// The rest-to-rest leg, when it could be solved.
-    fn solved_leg(&self, from: Place, to: Place) -> Option<Profile> {
-        let leg = self.rest.get(from, to)?;
-        (leg.flown.status == NlpStatus::Converged).then(|| leg.flown.profile.clone())
+        best
     }
 
     /// Solves a segment from legs joined end to end; legs that are not there are guessed by
@@ -136,7 +146,7 @@ impl<'a> Tours<'a> {
             let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
             let next = leg(pair[0], pair[1]).unwrap_or_else(|| {
                 let slew = self.places.slew(&from, &to);
-                slew.eigenaxis().guess(slew.dynamics, INTERVALS)
+                slew.eigenaxis().guess(slew.dynamics, INTERVALS, Side::Near)
             });
             guess.append(&next);
             let mut arrived = to;

@@ -19,6 +19,24 @@ const SLOWEST: f64 = 1e-3;
 /// Bow of a starting guess across the axis, as a share of the peak rate.
 const BOW: f64 = 0.05;
 
+/// To which side a guess bows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// To one.
+    Near,
+    /// To the other.
+    Far,
+}
+
+impl Side {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Near => 1.0,
+            Self::Far => -1.0,
+        }
+    }
+}
+
 /// A bang-coast-bang of a fixed angle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trapezoid {
@@ -151,14 +169,14 @@ impl EigenaxisSlew {
     ///
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
     /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
-    pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
+    pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize, side: Side) -> Profile {
         let length = self.trapezoid.duration / intervals as f64;
         let peak = self.trapezoid.at(0.5 * self.trapezoid.duration).1;
         let across = self
             .axis
             .cross(&Vector3::ith(self.axis.iamin(), 1.0))
             .normalize();
-        let bow = (across + across.cross(&self.axis)) * (BOW * peak);
+        let bow = (across + across.cross(&self.axis)) * (side.sign() * BOW * peak);
         let mut profile = Profile::empty();
         for node in 0..=intervals {
             let (attitude, rate, _) = self.state(dynamics, length * node as f64);

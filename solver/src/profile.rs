@@ -58,6 +58,17 @@ impl Profile {
         }
     }
 
+    /// Inserts intervals of no length at a node.
+    pub(crate) fn pause_at(&mut self, node: usize, intervals: usize) {
+        let (attitude, wheels) = (self.attitudes[node], self.wheels[node].clone());
+        self.attitudes
+            .splice(node..node, std::iter::repeat_n(attitude, intervals));
+        self.wheels
+            .splice(node..node, std::iter::repeat_n(wheels, intervals));
+        self.lengths
+            .splice(node..node, std::iter::repeat_n(0.0, intervals));
+    }
+
     /// The motion flown backwards: wheel momenta change sign, torques do not.
     pub(crate) fn reversed(&self) -> Self {
         Self {

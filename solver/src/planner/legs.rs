@@ -5,7 +5,7 @@
 
 use super::Run;
 use super::canonical::CanonicalLeg;
-use super::places::Places;
+use super::places::{Places, SAME_ATTITUDE};
 use crate::attitude::Attitude;
 use crate::legs::{LegKind, StoredLeg};
 use crate::multiphase::Flown;
@@ -22,9 +22,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-
-/// Attitudes closer than this are the same place, rad; a leg between equal rests takes no time.
-const SAME_ATTITUDE: f64 = 1e-11;
 
 /// A solved leg.
 #[derive(Debug, Clone)]

@@ -9,6 +9,9 @@ use crate::spec::AttitudeEquivalence;
 use crate::transcription::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
 
+/// Attitudes closer than this are the same, rad.
+pub(super) const SAME_ATTITUDE: f64 = 1e-11;
+
 /// The places of a scenario, seen by the slew solver.
 pub(super) struct Places<'a> {
     /// The scenario.
@@ -122,6 +125,16 @@ impl<'a> Places<'a> {
             arrival: self.arrival,
             null: &self.null,
         }
+    }
+
+    /// Whether two places are one waypoint: the same attitude under the same conditions.
+    pub(super) fn coincide(&self, one: Place, other: Place) -> bool {
+        let (one, other) = (self.waypoint(one), self.waypoint(other));
+        let turn = match self.arrival {
+            Arrival::Rotation => one.attitude.angle_to(&other.attitude),
+            Arrival::Quaternion => one.attitude.signed_turn_to(&other.attitude).norm(),
+        };
+        turn <= SAME_ATTITUDE && one.rate == other.rate && one.wheels == other.wheels
     }
 
     /// Whether a flown leg may be flown backwards as the leg between the same places exchanged.

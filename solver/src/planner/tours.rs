@@ -112,8 +112,26 @@ impl<'a> Tours<'a> {
         })
     }
 
-    /// The best of several starts: a chain of legs has local minima that none of its legs has.
+    /// Solves a segment; places that coincide are one waypoint of it, since a flight that meets the
+    /// same conditions twice is never shorter than one that meets them once.
     fn solve_segment(&self, route: &[Place]) -> Flown {
+        let repeats = |pair: &[Place]| self.places.coincide(pair[0], pair[1]);
+        let fresh = route
+            .windows(2)
+            .filter(|pair| !repeats(pair))
+            .map(|pair| pair[1]);
+        let distinct: Vec<Place> = std::iter::once(route[0]).chain(fresh).collect();
+        let mut flown = self.solve_distinct(&distinct);
+        for (leg, pair) in route.windows(2).enumerate() {
+            if repeats(pair) {
+                flown.profile.pause_at(leg * INTERVALS, INTERVALS);
+            }
+        }
+        flown
+    }
+
+    /// The best of several starts: a chain of legs has local minima that none of its legs has.
+    fn solve_distinct(&self, route: &[Place]) -> Flown {
         let solved = |table: &LegTable, from: Place, to: Place| {
             let leg = table.get(from, to)?;
             (leg.flown.status == NlpStatus::Converged).then(|| leg.flown.profile.clone())

@@ -18,7 +18,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             tolerance: 1e-8,
-            initial_barrier: 1e-2,
+            initial_barrier: 1e-1,
             initial_slack: 1e-2,
             max_iterations: 200,
         }

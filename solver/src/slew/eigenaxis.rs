@@ -176,7 +176,11 @@ impl EigenaxisSlew {
             .axis
             .cross(&Vector3::ith(self.axis.iamin(), 1.0))
             .normalize();
-        let bow = (across + across.cross(&self.axis)) * (side.sign() * BOW * peak);
+        let mut bow = (across + across.cross(&self.axis)) * (side.sign() * BOW * peak);
+        for i in 0..3 {
+            let most = 0.5 * dynamics.axis_rate(&Vector3::ith(i, 1.0));
+            bow[i] = bow[i].clamp(-most, most);
+        }
         let mut profile = Profile::empty();
         for node in 0..=intervals {
             let (attitude, rate, _) = self.state(dynamics, length * node as f64);

@@ -6,13 +6,17 @@ use std::process::ExitCode;
 mod failure;
 mod input;
 mod legs;
+mod openapi;
 mod output;
+
 mod panics;
+mod remembered;
+mod serve;
 mod solve;
 mod validate;
 mod verify;
 
-use failure::Failure;
+pub(crate) use failure::Failure;
 
 /// Multi-target attitude scheduling for spacecraft with reaction wheels.
 #[derive(Debug, Parser)]
@@ -36,11 +40,15 @@ enum Command {
     Validate(validate::Arguments),
     /// Fly a plan made by anyone again and test every limit
     Verify(verify::Arguments),
+    /// Run the HTTP service
+    Serve(serve::Arguments),
+    /// Print the description of the HTTP service
+    Openapi,
 }
 
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Exit {
+pub(crate) enum Exit {
     /// The answer is complete: optimal, valid, passed.
     Complete,
     /// An error of ours or of the machine, or no answer found.
@@ -91,6 +99,8 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Legs(arguments) => legs::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
+        Command::Serve(arguments) => serve::run(arguments),
+        Command::Openapi => openapi::run(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Why a command could not do its work.
 
 use super::Exit;
+use crate::service::ServiceError;
 use slewplan_solver::pool::PoolError;
 use slewplan_solver::problem::Problem;
 use std::fmt::Write;
@@ -8,7 +9,7 @@ use std::io;
 
 /// Ends a command with a message on standard error.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Failure {
+pub(crate) enum Failure {
     /// An input that cannot be opened or read.
     #[error("cannot read {name}: {source}")]
     Unreadable {
@@ -44,6 +45,17 @@ pub(super) enum Failure {
         /// What the operating system says.
         source: io::Error,
     },
+    /// A setting that means nothing.
+    #[error("{name}: {what}")]
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// The service cannot run.
+    #[error(transparent)]
+    Service(#[from] ServiceError),
     /// The operating system refused threads.
     #[error(transparent)]
     Pool(#[from] PoolError),
@@ -62,10 +74,13 @@ impl Failure {
             Self::Unreadable { .. }
             | Self::TooLarge { .. }
             | Self::StandardInputTwice
+            | Self::Setting { .. }
             | Self::Invalid { .. } => Exit::Invalid,
-            Self::Unwritable { .. } | Self::Pool(_) | Self::Signals(_) | Self::Unspeakable(_) => {
-                Exit::Failed
-            }
+            Self::Unwritable { .. }
+            | Self::Service(_)
+            | Self::Pool(_)
+            | Self::Signals(_)
+            | Self::Unspeakable(_) => Exit::Failed,
         }
     }
 }

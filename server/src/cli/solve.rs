@@ -2,13 +2,14 @@
 
 use super::failure::Failure;
 use super::output::{self, Destination};
+use super::remembered::RememberedLegs;
 use super::{Exit, input};
 use crate::progress::{self, ProgressMode};
 use crate::report;
 use crate::signals::{self, Received};
 use crate::wire;
 use clap::ValueEnum;
-use slewplan_solver::legs::NoStore;
+use slewplan_solver::legs::{LegStore, NoStore};
 use slewplan_solver::plan::{Optimality, Outcome};
 use slewplan_solver::planner::{self, Run};
 use slewplan_solver::pool::SolverPool;
@@ -38,6 +39,9 @@ pub(super) struct Arguments {
     /// Stop with the best plan so far after this time, s, whatever the scenario says
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<f64>,
+    /// Take known legs from this database of the service, and remember new ones in it
+    #[arg(long, value_name = "FILE")]
+    database: Option<PathBuf>,
     /// How to show progress on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     progress: ProgressMode,
@@ -95,11 +99,18 @@ fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Receive
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
     let observer = progress::observer(arguments.progress);
+    let remembered = arguments
+        .database
+        .as_deref()
+        .map(RememberedLegs::open)
+        .transpose()?;
     let run = Run {
         pool: &pool,
         stop: &stop,
         observer: &*observer,
-        legs: &NoStore,
+        legs: remembered
+            .as_ref()
+            .map_or(&NoStore as &dyn LegStore, RememberedLegs::legs),
     };
     Ok((planner::solve(scenario, run), received))
 }

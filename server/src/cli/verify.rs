@@ -4,9 +4,7 @@ use super::failure::Failure;
 use super::{Exit, input, output};
 use crate::report;
 use crate::wire;
-use crate::wire::plan::{MarginsDocument, VerificationDocument};
-use crate::wire::problems::{ProblemDocument, documents};
-use serde::Serialize;
+use crate::wire::verification::ReportDocument;
 use slewplan_solver::checker;
 use slewplan_solver::problem::Problem;
 use std::io::{IsTerminal, stdout};
@@ -22,15 +20,6 @@ pub(super) struct Arguments {
     /// Print text for people, as on a terminal
     #[arg(long)]
     summary: bool,
-}
-
-/// The answer of `verify`.
-#[derive(Serialize)]
-struct Document<'a> {
-    #[serde(flatten)]
-    verification: VerificationDocument<'a>,
-    margins: MarginsDocument,
-    warnings: Vec<ProblemDocument<'a>>,
 }
 
 /// Prints the verification on standard output.
@@ -50,11 +39,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     output::print(&if arguments.summary || stdout().is_terminal() {
         report::verification(&found.verification, &found.margins, &warnings)
     } else {
-        output::json(&Document {
-            verification: (&found.verification).into(),
-            margins: (&found.margins).into(),
-            warnings: documents(&warnings),
-        })?
+        let document = ReportDocument::new(&found.verification, &found.margins, &warnings);
+        output::json(&document)?
     })?;
     Ok(if found.verification.passed {
         Exit::Complete

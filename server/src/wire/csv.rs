@@ -1,6 +1,7 @@
 //! A plan's trajectory as a table: one row per sampled state.
 
-use slewplan_solver::plan::{Control, Plan};
+use serde::Deserialize;
+use slewplan_solver::plan::Plan;
 use std::fmt::Write;
 
 const HEAD: &str = "time_s,q_x,q_y,q_z,q_w,body_rate_x_rad_s,body_rate_y_rad_s,body_rate_z_rad_s";
@@ -14,10 +15,95 @@ const HEAD: &str = "time_s,q_x,q_y,q_z,q_w,body_rate_x_rad_s,body_rate_y_rad_s,b
 ///
 /// When a number is not finite.
 pub(crate) fn table(plan: &Plan) -> Result<String, std::fmt::Error> {
-    let wheels = plan
-        .states
-        .first()
-        .map_or(0, |state| state.wheel_speed_rad_s.len());
+    let states = plan.states.iter().map(|state| Row {
+        time_s: state.time_s,
+        xyzw: state.attitude.xyzw(),
+        body_rate: state.body_rate_rad_s.into(),
+        wheel_speed: &state.wheel_speed_rad_s,
+    });
+    let torques = plan.flight.controls.iter();
+    write_table(
+        &states.collect::<Vec<_>>(),
+        &torques
+            .map(|control| (control.start_s, &*control.wheel_torque_nm))
+            .collect::<Vec<_>>(),
+    )
+}
+
+/// The table of a plan that was written as JSON, digit for digit; `None` when it has no
+/// trajectory.
+///
+/// # Errors
+///
+/// When the document is no plan of this program.
+pub(crate) fn table_of_document(document: &[u8]) -> Result<Option<String>, serde_json::Error> {
+    let WrittenPlan {
+        trajectory: WrittenTrajectory { states, controls },
+    } = serde_json::from_slice(document)?;
+    if states.is_empty() {
+        return Ok(None);
+    }
+    let rows = states.iter().map(|state| Row {
+        time_s: state.time_s,
+        xyzw: [
+            state.quaternion.x,
+            state.quaternion.y,
+            state.quaternion.z,
+            state.quaternion.w,
+        ],
+        body_rate: state.body_rate_rad_s,
+        wheel_speed: &state.wheel_speed_rad_s,
+    });
+    let torques = controls
+        .iter()
+        .map(|control| (control.start_s, &*control.wheel_torque_nm));
+    write_table(&rows.collect::<Vec<_>>(), &torques.collect::<Vec<_>>())
+        .map(Some)
+        .map_err(serde::de::Error::custom)
+}
+
+#[derive(Deserialize)]
+struct WrittenPlan {
+    trajectory: WrittenTrajectory,
+}
+
+#[derive(Deserialize)]
+struct WrittenTrajectory {
+    states: Vec<WrittenState>,
+    controls: Vec<WrittenControl>,
+}
+
+#[derive(Deserialize)]
+struct WrittenState {
+    time_s: f64,
+    quaternion: WrittenQuaternion,
+    body_rate_rad_s: [f64; 3],
+    wheel_speed_rad_s: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct WrittenQuaternion {
+    x: f64,
+    y: f64,
+    z: f64,
+    w: f64,
+}
+
+#[derive(Deserialize)]
+struct WrittenControl {
+    start_s: f64,
+    wheel_torque_nm: Vec<f64>,
+}
+
+struct Row<'a> {
+    time_s: f64,
+    xyzw: [f64; 4],
+    body_rate: [f64; 3],
+    wheel_speed: &'a [f64],
+}
+
+fn write_table(states: &[Row<'_>], torques: &[(f64, &[f64])]) -> Result<String, std::fmt::Error> {
+    let wheels = states.first().map_or(0, |state| state.wheel_speed.len());
     let mut text = HEAD.to_owned();
     for wheel in 0..wheels {
         write!(text, ",wheel_{wheel}_speed_rad_s")?;
@@ -27,12 +113,12 @@ pub(crate) fn table(plan: &Plan) -> Result<String, std::fmt::Error> {
     }
     text.push('\n');
     let idle = vec![0.0; wheels];
-    for state in &plan.states {
-        let torque = torque_at(&plan.flight.controls, state.time_s).unwrap_or(&idle);
+    for state in states {
+        let torque = torque_at(torques, state.time_s).unwrap_or(&idle);
         let row = std::iter::once(state.time_s)
-            .chain(state.attitude.xyzw())
-            .chain(state.body_rate_rad_s.iter().copied())
-            .chain(state.wheel_speed_rad_s.iter().copied())
+            .chain(state.xyzw)
+            .chain(state.body_rate)
+            .chain(state.wheel_speed.iter().copied())
             .chain(torque.iter().copied());
         write_row(&mut text, row)?;
     }
@@ -52,17 +138,18 @@ fn write_row(text: &mut String, row: impl Iterator<Item = f64>) -> std::fmt::Res
     Ok(())
 }
 
-fn torque_at(controls: &[Control], time_s: f64) -> Option<&Vec<f64>> {
-    let begun = controls.partition_point(|control| control.start_s <= time_s);
-    controls
+fn torque_at<'a>(torques: &[(f64, &'a [f64])], time_s: f64) -> Option<&'a [f64]> {
+    let begun = torques.partition_point(|(start_s, _)| *start_s <= time_s);
+    torques
         .get(begun.saturating_sub(1))
-        .map(|control| &control.wheel_torque_nm)
+        .map(|(_, torque)| *torque)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::sample;
+    use slewplan_solver::plan::Outcome;
 
     #[test]
     fn every_row_has_the_columns_of_the_head() {
@@ -76,12 +163,21 @@ mod tests {
     #[test]
     fn a_boundary_has_the_torque_that_begins_there() {
         let plan = sample::plan();
-        let controls = &plan.flight.controls;
-        let first = |time| torque_at(controls, time).unwrap()[0].to_string();
+        let controls = plan.flight.controls.iter();
+        let torques: Vec<_> = controls.map(|c| (c.start_s, &*c.wheel_torque_nm)).collect();
+        let first = |time| torque_at(&torques, time).unwrap()[0].to_string();
         assert_eq!(
             [first(0.0), first(9.0), first(10.0), first(30.0)],
             ["0.5", "0.5", "-0.5", "0.25"]
         );
+    }
+
+    #[test]
+    fn a_written_plan_has_the_same_table() {
+        let outcome = Outcome::Planned(Box::new(sample::plan()));
+        let written = serde_json::to_vec(&crate::wire::plan::document(&outcome, &[])).unwrap();
+        let expected = table(&sample::plan()).unwrap();
+        assert_eq!(table_of_document(&written).unwrap(), Some(expected));
     }
 
     #[test]

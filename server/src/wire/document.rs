@@ -2,6 +2,7 @@
 //! members and duplicate keys.
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::ser::{Serialize, SerializeMap, Serializer};
 use slewplan_solver::problem::{Code, Problem};
 use std::fmt;
 
@@ -98,6 +99,33 @@ fn malformed_hint(text: &[u8], error: &serde_json::Error, what: &str) -> &'stati
     }
 }
 
+impl Node {
+    /// The tree as JSON text again.
+    pub(crate) fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a parsed tree has only finite numbers and text keys")
+    }
+}
+
+impl Serialize for Node {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Null => serializer.serialize_unit(),
+            Self::Bool(value) => serializer.serialize_bool(*value),
+            Self::Integer(value) => serializer.serialize_u64(*value),
+            Self::Number(value) => serializer.serialize_f64(*value),
+            Self::Text(text) => serializer.serialize_str(text),
+            Self::List(items) => serializer.collect_seq(items),
+            Self::Object(members) => {
+                let mut map = serializer.serialize_map(Some(members.len()))?;
+                for (name, value) in members {
+                    map.serialize_entry(name, value)?;
+                }
+                map.end()
+            }
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for Node {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(NodeVisitor)
@@ -171,6 +199,12 @@ mod tests {
             ("b".to_owned(), Node::Number(-2.0)),
         ];
         assert_eq!(node, Node::Object(expected));
+    }
+
+    #[test]
+    fn a_tree_is_written_as_it_was_read() {
+        let text = r#"{"b":[1,-2.0,1e-7,true,null],"a":{"x":"y"},"b":18446744073709551615}"#;
+        assert_eq!(parse(text.as_bytes()).unwrap().to_json(), text);
     }
 
     #[test]

@@ -15,9 +15,20 @@ use std::collections::HashSet;
 ///
 /// Everything that keeps it from being flown, with pointers into the plan.
 pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<Flight, Vec<Problem>> {
-    let node = document::parse(bytes).map_err(|problem| vec![problem])?;
+    read_node(
+        &document::parse(bytes).map_err(|problem| vec![problem])?,
+        scenario,
+    )
+}
+
+/// Reads the flight of a plan that has been parsed.
+///
+/// # Errors
+///
+/// Everything that keeps it from being flown, with pointers into the plan.
+pub(crate) fn read_node(node: &Node, scenario: &Scenario) -> Result<Flight, Vec<Problem>> {
     let sink = Sink::default();
-    let flight = decode(&node, scenario, &sink);
+    let flight = decode(node, scenario, &sink);
     let problems = sink.into_problems();
     match flight {
         Some(flight) if problems.is_empty() => Ok(flight),

@@ -1,6 +1,8 @@
 //! Numbers that are safe to write.
 
 use serde::ser::{Error, Serialize, Serializer};
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
 
 /// A number whose writing fails when it is not finite, instead of silently becoming `null`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +14,14 @@ impl Number {
         values.iter().copied().map(Self).collect()
     }
 }
+
+impl PartialSchema for Number {
+    fn schema() -> RefOr<Schema> {
+        f64::schema()
+    }
+}
+
+impl ToSchema for Number {}
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -5,14 +5,18 @@ use super::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::plan::{Alternative, Optimality, Outcome, Plan, State};
 use slewplan_solver::problem::Problem;
+use utoipa::ToSchema;
 
 mod parts;
 
-use parts::{ControlDocument, LegDocument, PassageDocument, StateDocument, StatisticsDocument};
-pub(crate) use parts::{MarginsDocument, VerificationDocument};
+pub(crate) use parts::{
+    ControlDocument, MarginsDocument, QuaternionDocument, VerificationDocument,
+};
+use parts::{LegDocument, PassageDocument, StateDocument, StatisticsDocument};
 
 /// The answer of `solve`. All times are `null` and all lists empty when there is no plan.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Serialize, ToSchema)]
+#[schema(as = Plan)]
 pub(crate) struct PlanDocument<'a> {
     status: &'static str,
     total_time_s: Option<Number>,
@@ -32,13 +36,15 @@ pub(crate) struct PlanDocument<'a> {
 }
 
 /// What is flown.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Serialize, ToSchema)]
+#[schema(as = Trajectory)]
 struct TrajectoryDocument {
     controls: Vec<ControlDocument>,
     states: Vec<StateDocument>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Alternative)]
 struct AlternativeDocument<'a> {
     sequence: Vec<&'a str>,
     total_time_s: Number,

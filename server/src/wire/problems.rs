@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 use slewplan_solver::problem::Problem;
+use utoipa::ToSchema;
 
 /// A problem: where, what, what to do.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Finding)]
 pub(crate) struct ProblemDocument<'a> {
     pointer: &'a str,
     code: &'static str,
@@ -29,7 +31,8 @@ pub(crate) fn documents(problems: &[Problem]) -> Vec<ProblemDocument<'_>> {
 }
 
 /// The answer of `validate`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Validation)]
 pub(crate) struct ValidationDocument<'a> {
     valid: bool,
     errors: Vec<ProblemDocument<'a>>,

@@ -16,7 +16,16 @@ use slewplan_solver::spec::{
 /// Everything that is wrong with it.
 pub(crate) fn read(bytes: &[u8], time_limit_s: Option<f64>) -> Result<Validated, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
-    let (mut spec, mut problems) = decode(&node);
+    read_node(&node, time_limit_s)
+}
+
+/// Reads and validates a scenario that has been parsed.
+///
+/// # Errors
+///
+/// Everything that is wrong with it.
+pub(crate) fn read_node(node: &Node, time_limit_s: Option<f64>) -> Result<Validated, Vec<Problem>> {
+    let (mut spec, mut problems) = decode(node);
     if time_limit_s.is_some() {
         spec.options.time_limit_s = time_limit_s;
     }
@@ -147,7 +156,7 @@ fn label(fields: &Fields<'_>, name: &str) -> Option<String> {
         .and_then(|text| text.text().map(str::to_owned))
 }
 
-fn state(cursor: &Cursor<'_>) -> StateSpec {
+pub(super) fn state(cursor: &Cursor<'_>) -> StateSpec {
     let Some(fields) = cursor.object(&["attitude", "body_rate_rad_s", "wheel_speed_rad_s"]) else {
         return StateSpec::default();
     };
@@ -213,7 +222,7 @@ fn target(cursor: &Cursor<'_>) -> TargetSpec {
     }
 }
 
-fn zero_rate_axes(cursor: &Cursor<'_>) -> Option<[bool; 3]> {
+pub(super) fn zero_rate_axes(cursor: &Cursor<'_>) -> Option<[bool; 3]> {
     let mut axes = [false; 3];
     for name in cursor.list()? {
         if let Some(axis) = name.choice(&[("x", 0), ("y", 1), ("z", 2)]) {
@@ -239,7 +248,7 @@ fn keep_out(cursor: &Cursor<'_>) -> KeepOutSpec {
     }
 }
 
-fn options(cursor: &Cursor<'_>) -> OptionsSpec {
+pub(super) fn options(cursor: &Cursor<'_>) -> OptionsSpec {
     let default = OptionsSpec::default();
     let known = &[
         "attitude_equivalence",

@@ -1,8 +1,10 @@
 //! Reading the spacecraft.
 
-use super::reader::{Cursor, Fields};
-use slewplan_solver::problem::Code;
-use slewplan_solver::spec::{BoresightSpec, SpacecraftSpec, WheelSpec};
+use super::document::Node;
+use super::reader::{Cursor, Fields, Sink};
+use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::scenario::Scenario;
+use slewplan_solver::spec::{BoresightSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
 
 /// Stands in where the inertia cannot be read: larger than that of any wheel.
 const SUBSTITUTE_INERTIA: [[f64; 3]; 3] = [[1e6, 0.0, 0.0], [0.0, 1e6, 0.0], [0.0, 0.0, 1e6]];
@@ -10,6 +12,30 @@ const SUBSTITUTE_INERTIA: [[f64; 3]; 3] = [[1e6, 0.0, 0.0], [0.0, 1e6, 0.0], [0.
 /// Reads the spacecraft; harmless values stand in where it cannot be read.
 pub(super) fn read(cursor: &Cursor<'_>) -> SpacecraftSpec {
     try_read(cursor).unwrap_or_else(substitute)
+}
+
+/// Everything that is wrong with a spacecraft alone, with pointers into it.
+pub(crate) fn problems(node: &Node) -> Vec<Problem> {
+    let sink = Sink::default();
+    let spec = ScenarioSpec {
+        spacecraft: read(&Cursor::root(node, &sink)),
+        targets: vec![TargetSpec {
+            id: "t".into(),
+            ..TargetSpec::default()
+        }],
+        ..ScenarioSpec::default()
+    };
+    let shape = sink.into_problems();
+    if !shape.is_empty() {
+        return shape;
+    }
+    // At rest at the identity nothing is wrong but what is wrong with the spacecraft.
+    let found = Scenario::try_new(&spec).err().unwrap_or_default();
+    let within = |problem: Problem| {
+        let pointer = problem.pointer.strip_prefix("/spacecraft")?.to_owned();
+        Some(Problem { pointer, ..problem })
+    };
+    found.into_iter().filter_map(within).collect()
 }
 
 /// A spacecraft with which nothing is wrong.

@@ -138,6 +138,12 @@ impl<'a> LegSolver<'a> {
                 .and_then(|stored| recall(&stored));
             let from_store = found.is_some();
             let solved = found.or_else(|| (!self.stop.is_set()).then(|| solve(leg, self.stop)));
+            if let (Some(fresh), false) = (&solved, from_store)
+                && fresh.flown.status == NlpStatus::Converged
+            {
+                // At once, so that a solve that is killed has not worked in vain.
+                self.run.legs.put(&leg.identity, &stored(leg, kind, fresh));
+            }
             self.run.observer.progress(Progress {
                 stage: Stage::Legs,
                 done: done.fetch_add(1, Ordering::Relaxed) + 1,
@@ -156,11 +162,6 @@ impl<'a> LegSolver<'a> {
             } else {
                 self.solved += 1;
                 self.nlp_solves += solved.solves;
-                if solved.flown.status == NlpStatus::Converged {
-                    self.run
-                        .legs
-                        .put(&leg.identity, &stored(leg, kind, &solved));
-                }
             }
             self.known.insert(leg.identity.clone(), Arc::new(solved));
         }

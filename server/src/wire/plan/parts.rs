@@ -4,9 +4,12 @@ use crate::wire::number::Number;
 use serde::Serialize;
 use slewplan_solver::attitude::Attitude;
 use slewplan_solver::plan::{Control, Leg, Margins, Passage, State, Statistics, Verification};
+use utoipa::ToSchema;
 
-#[derive(Debug, Serialize)]
-pub(super) struct QuaternionDocument {
+/// A unit quaternion, scalar part `w`.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = UnitQuaternion)]
+pub(crate) struct QuaternionDocument {
     x: Number,
     y: Number,
     z: Number,
@@ -15,12 +18,19 @@ pub(super) struct QuaternionDocument {
 
 impl From<&Attitude> for QuaternionDocument {
     fn from(attitude: &Attitude) -> Self {
-        let [x, y, z, w] = attitude.xyzw().map(Number);
+        attitude.xyzw().into()
+    }
+}
+
+impl From<[f64; 4]> for QuaternionDocument {
+    fn from(xyzw: [f64; 4]) -> Self {
+        let [x, y, z, w] = xyzw.map(Number);
         Self { x, y, z, w }
     }
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Leg)]
 pub(super) struct LegDocument<'a> {
     from: &'a str,
     to: &'a str,
@@ -45,12 +55,14 @@ impl<'a> From<&'a Leg> for LegDocument<'a> {
     }
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = PassageAttitude)]
 struct AttitudeDocument {
     quaternion: QuaternionDocument,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Passage)]
 pub(super) struct PassageDocument<'a> {
     target: &'a str,
     time_s: Number,
@@ -76,8 +88,10 @@ impl<'a> PassageDocument<'a> {
     }
 }
 
-#[derive(Debug, Serialize)]
-pub(super) struct ControlDocument {
+/// Constant motor torques, N m.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Control)]
+pub(crate) struct ControlDocument {
     start_s: Number,
     duration_s: Number,
     wheel_torque_nm: Vec<Number>,
@@ -85,15 +99,27 @@ pub(super) struct ControlDocument {
 
 impl From<&Control> for ControlDocument {
     fn from(control: &Control) -> Self {
+        Self::new(
+            control.start_s,
+            control.duration_s,
+            &control.wheel_torque_nm,
+        )
+    }
+}
+
+impl ControlDocument {
+    /// Constant torques, N m, from a time on for so long, s.
+    pub(crate) fn new(start_s: f64, duration_s: f64, torque_nm: &[f64]) -> Self {
         Self {
-            start_s: Number(control.start_s),
-            duration_s: Number(control.duration_s),
-            wheel_torque_nm: Number::all(&control.wheel_torque_nm),
+            start_s: Number(start_s),
+            duration_s: Number(duration_s),
+            wheel_torque_nm: Number::all(torque_nm),
         }
     }
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = State)]
 pub(super) struct StateDocument {
     time_s: Number,
     quaternion: QuaternionDocument,
@@ -113,7 +139,8 @@ impl From<&State> for StateDocument {
 }
 
 /// What is left of every limit.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Margins)]
 pub(crate) struct MarginsDocument {
     torque: Number,
     wheel_speed: Option<Number>,
@@ -136,7 +163,8 @@ impl From<&Margins> for MarginsDocument {
 
 /// The re-integration. Figures that could not be computed are very large, never `null`: in many
 /// languages `null` is below any tolerance.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Verification)]
 pub(crate) struct VerificationDocument<'a> {
     passed: bool,
     max_attitude_error_rad: Number,
@@ -163,7 +191,8 @@ impl<'a> From<&'a Verification> for VerificationDocument<'a> {
     }
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Statistics)]
 pub(super) struct StatisticsDocument {
     wall_time_s: Number,
     nodes_explored: u64,

@@ -1,0 +1,11 @@
+//! `slewplan openapi`: the description of the service.
+
+use super::failure::Failure;
+use super::{Exit, output};
+use crate::http;
+
+/// Prints the description on standard output.
+pub(super) fn run() -> Result<Exit, Failure> {
+    output::print(&http::openapi())?;
+    Ok(Exit::Complete)
+}

@@ -1,0 +1,48 @@
+//! The legs of a database for one command.
+
+use super::failure::Failure;
+use crate::leg_cache::LegCache;
+use crate::service::ServiceError;
+use crate::store::Store;
+use slewplan_solver::legs::LegStore;
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+use tokio::runtime::Runtime;
+
+/// Remembered legs; new ones are written at the latest when the value is dropped.
+pub(super) struct RememberedLegs {
+    // Dropped before the runtime that it needs for that.
+    legs: LegCache,
+    _runtime: Runtime,
+}
+
+impl RememberedLegs {
+    /// Opens or creates a database.
+    pub(super) fn open(database: &Path) -> Result<Self, Failure> {
+        let runtime = runtime().map_err(|source| ServiceError::System {
+            what: "cannot start the threads of the database".into(),
+            source,
+        })?;
+        let store = runtime
+            .block_on(Store::open(database))
+            .map_err(ServiceError::from)?;
+        let legs = LegCache::new(store, runtime.handle().clone(), Arc::default());
+        Ok(Self {
+            legs,
+            _runtime: runtime,
+        })
+    }
+
+    /// The legs.
+    pub(super) fn legs(&self) -> &dyn LegStore {
+        &self.legs
+    }
+}
+
+fn runtime() -> io::Result<Runtime> {
+    tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()
+}

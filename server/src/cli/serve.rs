@@ -1,0 +1,102 @@
+//! `slewplan serve`: the service.
+
+use super::Exit;
+use super::failure::Failure;
+use super::output;
+use crate::service::{self, Settings};
+use clap::ValueEnum;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use tracing_subscriber::EnvFilter;
+
+/// What `serve` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// Address to listen on; port 0 takes any free one
+    #[arg(long, env = "SLEWPLAN_LISTEN", default_value = "127.0.0.1:8080")]
+    listen: SocketAddr,
+    /// The database; created when there is none
+    #[arg(
+        long,
+        env = "SLEWPLAN_DATABASE",
+        value_name = "FILE",
+        default_value = "slewplan.db"
+    )]
+    database: PathBuf,
+    /// Threads of the solver [default: one per core]
+    #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Largest body of a request, bytes
+    #[arg(long, env = "SLEWPLAN_MAX_BODY_BYTES", value_name = "BYTES", default_value_t = 4 << 20,
+        value_parser = clap::value_parser!(u32).range(1024..))]
+    max_body_bytes: u32,
+    /// Most targets of a scenario
+    #[arg(long, env = "SLEWPLAN_MAX_TARGETS", value_name = "N", default_value_t = 200,
+        value_parser = clap::value_parser!(u32).range(1..))]
+    max_targets: u32,
+    /// Most jobs that wait
+    #[arg(
+        long,
+        env = "SLEWPLAN_QUEUE_LIMIT",
+        value_name = "N",
+        default_value_t = 1000
+    )]
+    queue_limit: u32,
+    /// Form of the log on standard error
+    #[arg(long, env = "SLEWPLAN_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
+    log_format: LogFormat,
+    /// What is logged: a level, or levels by module
+    #[arg(
+        long,
+        env = "SLEWPLAN_LOG",
+        value_name = "FILTER",
+        default_value = "info"
+    )]
+    log: String,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum LogFormat {
+    /// Lines for people
+    Text,
+    /// One JSON object per line
+    Json,
+}
+
+/// Serves until a signal ends it.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    start_log(arguments)?;
+    let settings = Settings {
+        listen: arguments.listen,
+        database: arguments.database.clone(),
+        threads: arguments.threads.map(usize::from),
+        max_body_bytes: arguments.max_body_bytes as usize,
+        max_targets: arguments.max_targets as usize,
+        queue_limit: arguments.queue_limit.into(),
+    };
+    service::run(&settings, |address| {
+        output::print(&format!("listening on http://{address}\n"))
+    })
+}
+
+fn start_log(arguments: &Arguments) -> Result<(), Failure> {
+    let filter = EnvFilter::try_new(&arguments.log).map_err(|error| Failure::Setting {
+        name: "--log",
+        what: error.to_string(),
+    })?;
+    let log = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr);
+    match arguments.log_format {
+        LogFormat::Text => log.with_ansi(false).init(),
+        LogFormat::Json => log.json().init(),
+    }
+    // A panic costs one job or request; the log keeps what it was.
+    std::panic::set_hook(Box::new(|info| {
+        let message = info.payload_as_str().unwrap_or("no message");
+        let place = info.location().map(ToString::to_string).unwrap_or_default();
+        tracing::error!(message, place, "panic");
+    }));
+    Ok(())
+}

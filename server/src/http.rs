@@ -1,0 +1,94 @@
+//! HTTP: routes, what they take and what they answer. No SQL and no solving here.
+
+mod describe;
+mod error;
+mod extract;
+mod legs;
+mod metrics;
+mod observe;
+mod operations;
+mod plans;
+mod respond;
+mod router;
+mod spacecraft;
+mod stored;
+mod verify;
+
+pub(crate) use router::{openapi, router};
+
+use crate::jobs::Jobs;
+use crate::lifecycle::Shutdown;
+use crate::store::Store;
+use metrics::Metrics;
+use slewplan_solver::pool::SolverPool;
+use std::sync::Arc;
+use tokio::sync::Semaphore;
+
+/// What every handler can reach.
+#[derive(Clone)]
+pub(crate) struct App(Arc<Parts>);
+
+/// The parts of the service.
+struct Parts {
+    /// The queue.
+    jobs: Jobs,
+    /// What a request may ask for at most.
+    limits: Limits,
+    /// When the service ends.
+    shutdown: Shutdown,
+    /// Where jobs and queries are solved.
+    pool: Arc<SolverPool>,
+    /// Where legs are looked up, so that this never waits for a solve.
+    lookups: Arc<SolverPool>,
+    /// Queries that compute take turns.
+    computing: Semaphore,
+    /// What is known about requests.
+    metrics: Metrics,
+}
+
+/// What a request may ask for at most.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Largest body, bytes.
+    pub(crate) body_bytes: usize,
+    /// Most targets of a scenario.
+    pub(crate) targets: usize,
+    /// Most jobs that wait.
+    pub(crate) queue: i64,
+}
+
+impl App {
+    /// The state of a service: its queue, limits, end, and the pools for solving and for looking up.
+    pub(crate) fn new(
+        jobs: Jobs,
+        limits: Limits,
+        shutdown: Shutdown,
+        [pool, lookups]: [Arc<SolverPool>; 2],
+    ) -> Self {
+        Self(Arc::new(Parts {
+            jobs,
+            limits,
+            shutdown,
+            pool,
+            lookups,
+            computing: Semaphore::new(1),
+            metrics: Metrics::default(),
+        }))
+    }
+
+    fn jobs(&self) -> &Jobs {
+        &self.0.jobs
+    }
+
+    fn store(&self) -> &Store {
+        self.0.jobs.store()
+    }
+
+    fn limits(&self) -> &Limits {
+        &self.0.limits
+    }
+
+    fn shutdown(&self) -> &Shutdown {
+        &self.0.shutdown
+    }
+}

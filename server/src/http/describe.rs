@@ -1,0 +1,15 @@
+//! What the documents look like, for the description of the interface.
+//!
+//! Inputs are read by hand, so that every problem is found at once; the types here only describe
+//! them. That they describe what is read is tested from outside: the examples are posted, and a
+//! fuzzer generates requests from the description.
+
+mod examples;
+mod inputs;
+mod outcomes;
+
+pub(super) use examples::{
+    experiment_a, leg_matrix, leg_pair, spacecraft, two_targets, verify_request,
+};
+pub(super) use inputs::{LegQueryBody, Scenario, Spacecraft, VerifyBody};
+pub(super) use outcomes::{BodyErrors, Conflict, NotFound, ParameterErrors, ServerErrors};

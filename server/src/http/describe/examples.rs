@@ -1,0 +1,66 @@
+//! Examples that are really answered with success.
+
+use serde_json::{Value, json};
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).expect("an embedded fixture is JSON")
+}
+
+/// A small scenario with most features.
+pub(in crate::http) fn two_targets() -> Value {
+    parsed(include_str!("../../../../tests/fixtures/two-targets.json"))
+}
+
+/// The published experiment A.
+pub(in crate::http) fn experiment_a() -> Value {
+    parsed(include_str!("../../../../tests/fixtures/olivares-a.json"))
+}
+
+/// The spacecraft of the published experiments.
+pub(in crate::http) fn spacecraft() -> Value {
+    experiment_a()["spacecraft"].take()
+}
+
+/// A query for a full matrix.
+pub(in crate::http) fn leg_matrix() -> Value {
+    json!({
+        "spacecraft": spacecraft(),
+        "attitudes": [
+            {"roll_pitch_yaw_deg": [0, 0, 0]},
+            {"roll_pitch_yaw_deg": [15, 0, 10]},
+            {"roll_pitch_yaw_deg": [25, 0, 50]},
+        ],
+        "kind": "rest_to_rest",
+        "mode": "compute",
+    })
+}
+
+/// A query for one leg.
+pub(in crate::http) fn leg_pair() -> Value {
+    json!({
+        "spacecraft": spacecraft(),
+        "pairs": [{
+            "from": {"roll_pitch_yaw_deg": [15, 0, 10]},
+            "to": {"quaternion": {"x": 0, "y": 0, "z": 0, "w": 1}},
+        }],
+        "mode": "cached_only",
+    })
+}
+
+/// A plan that does nothing for a second, and so misses its target: the verification says so.
+pub(in crate::http) fn verify_request() -> Value {
+    let scenario = json!({
+        "spacecraft": spacecraft(),
+        "start": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 0]}},
+        "targets": [{"id": "a", "attitude": {"roll_pitch_yaw_deg": [15, 0, 10]}}],
+    });
+    let plan = json!({
+        "total_time_s": 1.0,
+        "sequence": ["a"],
+        "passages": [{"target": "a", "time_s": 1.0, "departure_s": 1.0}],
+        "trajectory": {
+            "controls": [{"start_s": 0.0, "duration_s": 1.0, "wheel_torque_nm": [0.0, 0.0, 0.0]}],
+        },
+    });
+    json!({"scenario": scenario, "plan": plan})
+}

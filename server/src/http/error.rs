@@ -1,0 +1,210 @@
+//! The one form of every error: RFC 9457 problem details.
+
+use crate::store::StoreError;
+use crate::wire::problems::ProblemDocument;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use slewplan_solver::problem::{Code, Problem};
+use utoipa::ToSchema;
+
+/// Most problems of one input that are listed.
+const MOST_PROBLEMS: usize = 100;
+/// The media type of every error.
+pub(super) const PROBLEM_JSON: &str = "application/problem+json";
+
+macro_rules! error_codes {
+    ($($name:ident = $text:literal, $status:ident, $title:literal;)+) => {
+        /// Stable codes of errors of the service; those of an input are in its `errors`.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub(super) enum ErrorCode { $($name,)+ }
+
+        impl ErrorCode {
+            /// All codes, for the error index.
+            pub(super) const ALL: &'static [Self] = &[$(Self::$name,)+];
+
+            /// The stable text of the code.
+            pub(super) const fn as_str(self) -> &'static str {
+                match self { $(Self::$name => $text,)+ }
+            }
+
+            /// The status it is answered with.
+            pub(super) const fn status(self) -> StatusCode {
+                match self { $(Self::$name => StatusCode::$status,)+ }
+            }
+
+            /// What it means.
+            pub(super) const fn title(self) -> &'static str {
+                match self { $(Self::$name => $title,)+ }
+            }
+        }
+    };
+}
+
+error_codes! {
+    MalformedJson = "malformed_json", BAD_REQUEST, "The body is not valid JSON";
+    BadRequest = "bad_request", BAD_REQUEST, "The request cannot be understood";
+    InvalidParameter = "invalid_parameter", BAD_REQUEST, "A parameter or header is not valid";
+    NotFound = "not_found", NOT_FOUND, "There is nothing here";
+    MethodNotAllowed = "method_not_allowed", METHOD_NOT_ALLOWED, "The method does not exist here";
+    NotAcceptable = "not_acceptable", NOT_ACCEPTABLE, "The answer has none of the accepted forms";
+    NotRunning = "not_running", CONFLICT, "The job has not begun yet";
+    JobHasEnded = "job_has_ended", CONFLICT, "The job has ended before";
+    ResultNotReady = "result_not_ready", CONFLICT, "The job has no result yet";
+    NoResult = "no_result", CONFLICT, "The job ended without such a result";
+    BodyTooLarge = "body_too_large", PAYLOAD_TOO_LARGE, "The body is too large";
+    TooManyTargets = "too_many_targets", PAYLOAD_TOO_LARGE, "The scenario has too many targets";
+    TooManyPairs = "too_many_pairs", PAYLOAD_TOO_LARGE, "The query asks for too many legs";
+    UnsupportedMediaType = "unsupported_media_type", UNSUPPORTED_MEDIA_TYPE,
+        "The body has a form that is not supported";
+    InvalidInput = "invalid_input", UNPROCESSABLE_ENTITY, "The input is not valid";
+    IdempotencyKeyReused = "idempotency_key_reused", UNPROCESSABLE_ENTITY,
+        "The idempotency key belongs to another request";
+    QueueFull = "queue_full", SERVICE_UNAVAILABLE, "Too many jobs wait already";
+    Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy";
+    NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now";
+    DiskFull = "disk_full", INSUFFICIENT_STORAGE, "The disk of the service is full";
+    Internal = "internal_error", INTERNAL_SERVER_ERROR, "Something went wrong inside";
+}
+
+/// An error on its way to the caller.
+#[derive(Debug)]
+pub(super) struct ApiError {
+    code: ErrorCode,
+    detail: String,
+    problems: Vec<Problem>,
+    retry_after_s: Option<u32>,
+}
+
+/// RFC 9457 problem details.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Problem)]
+pub(super) struct ErrorDocument<'a> {
+    /// Where the code is explained.
+    #[schema(format = "uri-reference")]
+    r#type: String,
+    title: &'static str,
+    status: u16,
+    /// What is wrong with this request.
+    detail: &'a str,
+    /// Stable code.
+    code: &'static str,
+    /// What is wrong with the input, each with its place.
+    errors: Vec<ProblemDocument<'a>>,
+}
+
+impl ApiError {
+    /// An error with what is wrong in this case.
+    pub(super) fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
+        Self {
+            code,
+            detail: detail.into(),
+            problems: Vec::new(),
+            retry_after_s: None,
+        }
+    }
+
+    /// Says when to come again.
+    pub(super) fn retry_after(self, seconds: u32) -> Self {
+        Self {
+            retry_after_s: Some(seconds),
+            ..self
+        }
+    }
+
+    /// Nothing of this identifier.
+    pub(super) fn not_found(what: &str, id: &str) -> Self {
+        Self::new(ErrorCode::NotFound, format!("there is no {what} {id:?}"))
+    }
+
+    /// An input with problems: not JSON at all, or JSON that means nothing.
+    pub(super) fn input(problems: Vec<Problem>) -> Self {
+        let malformed = problems
+            .iter()
+            .any(|problem| problem.code == Code::MalformedJson);
+        let count = problems.len();
+        let plural = if count == 1 { "" } else { "s" };
+        let detail = match problems.first() {
+            Some(only) if count == 1 => format!("{}: {}", place(only), only.message),
+            _ => format!("{count} problem{plural}, listed in errors"),
+        };
+        let code = if malformed {
+            ErrorCode::MalformedJson
+        } else {
+            ErrorCode::InvalidInput
+        };
+        Self {
+            problems,
+            ..Self::new(code, detail)
+        }
+    }
+
+    /// The error that stands for a bare status.
+    pub(super) fn of_status(status: StatusCode) -> Self {
+        let code = ErrorCode::ALL.iter().copied().find(|code| match status {
+            StatusCode::BAD_REQUEST => *code == ErrorCode::BadRequest,
+            _ => code.status() == status,
+        });
+        let code = code.unwrap_or(if status.is_client_error() {
+            ErrorCode::BadRequest
+        } else {
+            ErrorCode::Internal
+        });
+        Self::new(code, code.title())
+    }
+}
+
+fn place(problem: &Problem) -> &str {
+    if problem.pointer.is_empty() {
+        "the document"
+    } else {
+        &problem.pointer
+    }
+}
+
+impl From<StoreError> for ApiError {
+    fn from(error: StoreError) -> Self {
+        tracing::error!(%error, "the database failed");
+        if error.is_disk_full() {
+            Self::new(
+                ErrorCode::DiskFull,
+                "nothing more can be stored until space is made",
+            )
+        } else if error.is_busy() {
+            Self::new(ErrorCode::Busy, "the database is busy").retry_after(1)
+        } else {
+            Self::new(
+                ErrorCode::Internal,
+                "the cause is in the log, under the request's id",
+            )
+        }
+    }
+}
+
+impl IntoResponse for ApiError {
+    fn into_response(self) -> Response {
+        let status = self.code.status();
+        let document = ErrorDocument {
+            r#type: format!("/docs/errors#{}", self.code.as_str()),
+            title: self.code.title(),
+            status: status.as_u16(),
+            detail: &self.detail,
+            code: self.code.as_str(),
+            errors: self
+                .problems
+                .iter()
+                .take(MOST_PROBLEMS)
+                .map(ProblemDocument::from)
+                .collect(),
+        };
+        let body = serde_json::to_vec(&document).unwrap_or_default();
+        let form = HeaderValue::from_static(PROBLEM_JSON);
+        let mut response = (status, [(header::CONTENT_TYPE, form)], body).into_response();
+        if let Some(seconds) = self.retry_after_s {
+            response
+                .headers_mut()
+                .insert(header::RETRY_AFTER, seconds.into());
+        }
+        response
+    }
+}

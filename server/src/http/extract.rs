@@ -1,0 +1,114 @@
+//! What requests bring: bodies, parameters, headers.
+
+use super::App;
+use super::error::{ApiError, ErrorCode};
+use crate::wire::document::{self, Node};
+use axum::body::Bytes;
+use axum::extract::{FromRequest, FromRequestParts, Request};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
+use http_body_util::{BodyExt, Limited};
+use serde::de::DeserializeOwned;
+
+/// A JSON body: as it came, and as a tree.
+pub(super) struct JsonBody {
+    /// The bytes as they came.
+    pub(super) bytes: Bytes,
+    /// What they say.
+    pub(super) node: Node,
+}
+
+impl FromRequest<App> for JsonBody {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, ApiError> {
+        check_form(request.headers())?;
+        let bytes = read(request, app.limits().body_bytes).await?;
+        let node = document::parse(&bytes).map_err(|problem| ApiError::input(vec![problem]))?;
+        Ok(Self { bytes, node })
+    }
+}
+
+fn check_form(headers: &HeaderMap) -> Result<(), ApiError> {
+    let text = |name| {
+        headers
+            .get(name)
+            .and_then(|value| value.to_str().ok())
+            .unwrap_or("")
+    };
+    let form = text(header::CONTENT_TYPE)
+        .split(';')
+        .next()
+        .unwrap_or("")
+        .trim();
+    if !form.eq_ignore_ascii_case("application/json") {
+        let detail = format!("expected Content-Type: application/json, found {form:?}");
+        return Err(ApiError::new(ErrorCode::UnsupportedMediaType, detail));
+    }
+    let coding = text(header::CONTENT_ENCODING).trim();
+    if !coding.is_empty() && !coding.eq_ignore_ascii_case("identity") {
+        let detail = format!("send the body as it is, without Content-Encoding: {coding}");
+        return Err(ApiError::new(ErrorCode::UnsupportedMediaType, detail));
+    }
+    Ok(())
+}
+
+async fn read(request: Request, limit: usize) -> Result<Bytes, ApiError> {
+    let too_large = || {
+        let detail = format!("the limit is {limit} bytes (max_body_bytes)");
+        ApiError::new(ErrorCode::BodyTooLarge, detail)
+    };
+    let announced: Option<usize> = request
+        .headers()
+        .get(header::CONTENT_LENGTH)
+        .and_then(|length| length.to_str().ok()?.parse().ok());
+    if announced.is_some_and(|length| length > limit) {
+        return Err(too_large());
+    }
+    match Limited::new(request.into_body(), limit).collect().await {
+        Ok(body) => Ok(body.to_bytes()),
+        Err(error) if error.is::<http_body_util::LengthLimitError>() => Err(too_large()),
+        Err(error) => Err(ApiError::new(
+            ErrorCode::BadRequest,
+            format!("the body did not arrive: {error}"),
+        )),
+    }
+}
+
+/// Parameters of the query; unknown ones are refused.
+pub(super) struct Parameters<T>(pub(super) T);
+
+impl<T: DeserializeOwned> FromRequestParts<App> for Parameters<T> {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, _: &App) -> Result<Self, ApiError> {
+        axum::extract::Query::try_from_uri(&parts.uri)
+            .map(|axum::extract::Query(parameters)| Self(parameters))
+            .map_err(|error| ApiError::new(ErrorCode::InvalidParameter, error.body_text()))
+    }
+}
+
+/// A header as text, when it is there.
+pub(super) fn header_text<'a>(
+    headers: &'a HeaderMap,
+    name: &'static str,
+) -> Result<Option<&'a str>, ApiError> {
+    let not_text = |_| {
+        let detail = format!("the header {name} has characters that are not ASCII");
+        ApiError::new(ErrorCode::InvalidParameter, detail)
+    };
+    headers
+        .get(name)
+        .map(|value| value.to_str().map_err(not_text))
+        .transpose()
+}
+
+/// The place that a cursor stands for.
+pub(super) fn cursor(text: Option<&str>) -> Result<Option<i64>, ApiError> {
+    let wrong = |_| {
+        let detail = "the cursor is not one that was given as next_cursor";
+        ApiError::new(ErrorCode::InvalidParameter, detail)
+    };
+    text.map(|text| text.parse::<u32>().map(i64::from).map_err(wrong))
+        .transpose()
+}

@@ -1,0 +1,5 @@
+//! Leg times.
+
+pub(super) mod get;
+pub(super) mod list;
+pub(super) mod query;

@@ -1,0 +1,117 @@
+//! `GET /v1/legs`: the cached legs, page by page.
+
+use super::super::App;
+use super::super::describe::{ParameterErrors, ServerErrors};
+use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::extract::{self, Parameters};
+use crate::store::LegFilter;
+use crate::wire::stored_legs::{StoredLegDocument, StoredLegListDocument};
+use axum::Json;
+use axum::extract::State;
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+const DEFAULT_LIMIT: u16 = 50;
+const LARGEST_LIMIT: u16 = 200;
+/// What remains of an attitude that was written with six digits, degrees.
+const DEFAULT_TOLERANCE_DEG: f64 = 1e-3;
+
+/// What to list.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::http) struct Query {
+    /// Only legs of the spacecraft with this key.
+    #[param(pattern = "^[0-9a-f]{64}$")]
+    spacecraft_key: Option<String>,
+    /// Only legs whose turn, the attitude at the end relative to that at the begin, is near this
+    /// quaternion `x,y,z,w`; a leg that can be flown backwards is found from either side.
+    #[param(
+        example = "0.130526,0,0,0.991445",
+        pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
+    )]
+    attitude: Option<String>,
+    /// How near, degrees.
+    #[param(minimum = 0, maximum = 180, default = 0.001)]
+    tolerance_deg: Option<f64>,
+    /// Where the page begins: `next_cursor` of the page before.
+    #[param(pattern = "^[0-9]{1,9}$")]
+    cursor: Option<String>,
+    /// Most legs of the page.
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u16>,
+}
+
+/// List cached legs in the order in which they were stored
+#[utoipa::path(
+    get, path = "/v1/legs", tag = "legs", operation_id = "list_legs",
+    params(Query),
+    responses(
+        (status = 200, description = "A page of legs", body = StoredLegListDocument),
+        (status = 422, description = "The attitude has no direction",
+            body = ErrorDocument<'static>, content_type = "application/problem+json"),
+        ParameterErrors, ServerErrors,
+    ),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    Parameters(query): Parameters<Query>,
+) -> Result<Json<StoredLegListDocument>, ApiError> {
+    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
+    if !(1..=LARGEST_LIMIT).contains(&limit) {
+        return Err(wrong(format!("limit is from 1 to {LARGEST_LIMIT}")));
+    }
+    let tolerance = query.tolerance_deg.unwrap_or(DEFAULT_TOLERANCE_DEG);
+    if !(0.0..=180.0).contains(&tolerance) {
+        return Err(wrong("tolerance_deg is from 0 to 180"));
+    }
+    let is_key = |text: &String| {
+        text.len() == 64 && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
+    };
+    if query
+        .spacecraft_key
+        .as_ref()
+        .is_some_and(|key| !is_key(key))
+    {
+        return Err(wrong(
+            "spacecraft_key has 64 hexadecimal digits in lower case",
+        ));
+    }
+    let turn = query.attitude.as_deref().map(quaternion).transpose()?;
+    let filter = LegFilter {
+        spacecraft: query.spacecraft_key,
+        turn: turn.map(|turn| (turn, tolerance.to_radians())),
+        after: extract::cursor(query.cursor.as_deref())?,
+        limit: i64::from(limit) + 1,
+    };
+    let mut rows = app.store().legs(&filter).await?;
+    let more = rows.len() > usize::from(limit);
+    rows.truncate(limit.into());
+    Ok(Json(StoredLegListDocument {
+        next_cursor: rows
+            .last()
+            .filter(|_| more)
+            .map(|leg| leg.sequence.to_string()),
+        legs: rows.iter().map(StoredLegDocument::from).collect(),
+    }))
+}
+
+fn wrong(detail: impl Into<String>) -> ApiError {
+    ApiError::new(ErrorCode::InvalidParameter, detail)
+}
+
+/// A quaternion of any length but zero, scaled to one.
+fn quaternion(text: &str) -> Result<[f64; 4], ApiError> {
+    let parts: Option<Vec<f64>> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok())
+        .collect();
+    let read: Option<[f64; 4]> = parts.and_then(|parts| parts.try_into().ok());
+    let xyzw = read.ok_or_else(|| wrong("attitude is a quaternion x,y,z,w of four numbers"))?;
+    let norm = xyzw.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if norm > 0.0 && norm.is_finite() {
+        return Ok(xyzw.map(|part| part / norm));
+    }
+    let detail = format!("the attitude {text} has the length {norm}, and so no direction");
+    Err(ApiError::new(ErrorCode::InvalidInput, detail))
+}

@@ -1,0 +1,204 @@
+//! `POST /v1/legs/query`: leg times between attitudes.
+
+use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::JsonBody;
+use super::super::{App, stored};
+use crate::store::leg_key;
+use crate::wire::leg_query::{
+    self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
+};
+use crate::wire::number::Number;
+use axum::Json;
+use axum::extract::State;
+use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};
+use slewplan_solver::planner::{self, Run, Shard};
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::progress::Silent;
+use slewplan_solver::stop::StopSignal;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tokio::runtime::Handle;
+
+/// Most legs of one query: the full matrix of 32 attitudes.
+pub(in crate::http) const MOST_PAIRS: usize = 1000;
+/// Longest time that a query may compute, s; what is not done then is missing.
+pub(in crate::http) const LONGEST_S: u64 = 60;
+const RETRY_S: u32 = 5;
+/// With a start and two targets, the fourth of six pairs leads from the first target to the second.
+const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
+
+/// Ask for leg times
+///
+/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with what
+/// is known; `compute` solves what is not, for at most a minute.
+#[utoipa::path(
+    post, path = "/v1/legs/query", tag = "legs", operation_id = "query_legs",
+    request_body(content = LegQueryBody, examples(
+        ("matrix" = (summary = "The full matrix of three attitudes",
+            value = json!(describe::leg_matrix()))),
+        ("pair" = (summary = "One leg, only if it is known",
+            value = json!(describe::leg_pair()))),
+    )),
+    responses(
+        (status = 200, description = "One answer for every leg", body = LegAnswersDocument),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    body: JsonBody,
+) -> Result<Json<LegAnswersDocument>, ApiError> {
+    let (node, _) = stored::write_out(&app, body.node).await?;
+    let query = leg_query::read(&node, MOST_PAIRS).map_err(|refusal| match refusal {
+        Refusal::Invalid(problems) => ApiError::input(problems),
+        Refusal::TooMany(count) => {
+            let detail = format!("{count} legs; the limit is {MOST_PAIRS} (max_leg_pairs)");
+            ApiError::new(ErrorCode::TooManyPairs, detail)
+        }
+    })?;
+    let stop = StopSignal::new();
+    if !query.compute {
+        stop.request();
+        return run(&app, query, stop, false).await;
+    }
+    let patience = Duration::from_secs(LONGEST_S);
+    let turn = tokio::time::timeout(patience, app.0.computing.acquire()).await;
+    let Ok(Ok(_permit)) = turn else {
+        let error = ApiError::new(ErrorCode::Busy, "other queries are being computed");
+        return Err(error.retry_after(RETRY_S));
+    };
+    run(&app, query, stop, true).await
+}
+
+/// Stops the work when nobody waits for it any more.
+struct StopOnDrop(StopSignal);
+
+impl Drop for StopOnDrop {
+    fn drop(&mut self) {
+        self.0.cancel();
+    }
+}
+
+async fn run(
+    app: &App,
+    query: LegQuery,
+    stop: StopSignal,
+    compute: bool,
+) -> Result<Json<LegAnswersDocument>, ApiError> {
+    let cache = app.jobs().legs(Handle::current());
+    let pool = Arc::clone(if compute { &app.0.pool } else { &app.0.lookups });
+    let _guard = StopOnDrop(stop.clone());
+    let signal = stop.clone();
+    let mut work = tokio::task::spawn_blocking(move || {
+        let answers = answers(&query, &pool, &signal, &cache);
+        // Written before the answer names their keys.
+        drop(cache);
+        answers
+    });
+    let mut shutdown = app.shutdown().clone();
+    let finished = tokio::select! {
+        finished = &mut work => finished,
+        () = tokio::time::sleep(Duration::from_secs(LONGEST_S)) => { stop.request(); work.await }
+        () = shutdown.begun() => { stop.cancel(); work.await }
+    };
+    finished.map(Json).map_err(|error| {
+        tracing::error!(%error, "a query for legs failed");
+        ApiError::new(ErrorCode::Internal, "the legs could not be computed")
+    })
+}
+
+fn answers(
+    query: &LegQuery,
+    pool: &SolverPool,
+    stop: &StopSignal,
+    cache: &dyn LegStore,
+) -> LegAnswersDocument {
+    let answered = pool.map(&query.pairs, |pair| {
+        answer(pair, query.kind, pool, stop, cache)
+    });
+    let spacecraft_key = answered
+        .iter()
+        .find_map(|(_, spacecraft)| spacecraft.clone());
+    LegAnswersDocument {
+        kind: query.kind.as_str(),
+        spacecraft_key,
+        legs: answered.into_iter().map(|(leg, _)| leg).collect(),
+    }
+}
+
+/// The answer for a leg and the key of its spacecraft.
+fn answer(
+    pair: &Pair,
+    kind: LegKind,
+    pool: &SolverPool,
+    stop: &StopSignal,
+    cache: &dyn LegStore,
+) -> (LegAnswerDocument, Option<String>) {
+    let witness = Witness {
+        cache,
+        seen: Mutex::default(),
+    };
+    let run = Run {
+        pool,
+        stop,
+        observer: &Silent,
+        legs: &witness,
+    };
+    let (rows, _) = planner::leg_table(&pair.scenario, kind, BETWEEN_TARGETS, run);
+    let seen = witness
+        .seen
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner);
+    let row = rows.into_iter().next();
+    let source = match (&row, &seen) {
+        (Some(_), Some(seen)) if seen.found => Source::Cached,
+        (Some(row), _) if row.duration_s.is_some() => Source::Computed,
+        _ => Source::Missing,
+    };
+    let document = LegAnswerDocument {
+        from: pair.from,
+        to: pair.to,
+        duration_s: row.as_ref().and_then(|row| row.duration_s).map(Number),
+        status: row.map(|row| row.status),
+        source,
+        key: seen.as_ref().map(|seen| seen.key.clone()),
+    };
+    (document, seen.map(|seen| seen.spacecraft))
+}
+
+/// Notes which leg the solver asked for.
+struct Witness<'a> {
+    cache: &'a dyn LegStore,
+    seen: Mutex<Option<Seen>>,
+}
+
+struct Seen {
+    key: String,
+    spacecraft: String,
+    found: bool,
+}
+
+impl Witness<'_> {
+    fn note(&self, identity: &str, leg: &StoredLeg, found: bool) {
+        let seen = Seen {
+            key: leg_key(identity),
+            spacecraft: leg_key(&leg.spacecraft),
+            found,
+        };
+        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = Some(seen);
+    }
+}
+
+impl LegStore for Witness<'_> {
+    fn get(&self, identity: &str) -> Option<StoredLeg> {
+        let leg = self.cache.get(identity)?;
+        self.note(identity, &leg, true);
+        Some(leg)
+    }
+
+    fn put(&self, identity: &str, leg: &StoredLeg) {
+        self.cache.put(identity, leg);
+        self.note(identity, leg, false);
+    }
+}

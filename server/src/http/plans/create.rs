@@ -1,0 +1,199 @@
+//! `POST /v1/plans`: a scenario becomes a job.
+
+use super::super::App;
+use super::super::describe::{BodyErrors, Scenario, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::{JsonBody, Parameters, header_text};
+use super::super::{respond, stored};
+use crate::digest;
+use crate::store::{JobRow, Submission, Submitted};
+use crate::wire;
+use crate::wire::jobs::JobDocument;
+use crate::wire::plan::PlanDocument;
+use crate::wire::problems::ValidationDocument;
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use slewplan_solver::planner;
+use slewplan_solver::scenario::Validated;
+use std::time::Duration;
+use utoipa::IntoParams;
+use uuid::Uuid;
+
+/// Longest wait of a request for its plan, s.
+pub(in crate::http) const LONGEST_WAIT_S: u64 = 60;
+/// Time after which a full queue is worth another try, s.
+const RETRY_FULL_S: u32 = 10;
+const LONGEST_KEY: usize = 255;
+
+/// Parameters of a submission.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::http) struct Query {
+    /// Only say what is wrong or doubtful; nothing is queued.
+    #[serde(default)]
+    validate_only: bool,
+}
+
+/// Submit a scenario
+///
+/// Answers with a job, or, with `Prefer: wait=N`, with the finished plan when it is ready within
+/// N seconds (at most 60).
+#[utoipa::path(
+    post, path = "/v1/plans", tag = "plans", operation_id = "create_plan",
+    params(
+        Query,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+            pattern = "^[!-~]+$",
+            description = "The same request under the same key makes one job"),
+        ("Prefer" = Option<String>, Header,
+            description = "`wait=N`: answer with the plan when it is ready within N seconds"),
+    ),
+    request_body(content = Scenario, examples(
+        ("two-targets" = (summary = "Two targets, one with settle and dwell",
+            value = json!(super::super::describe::two_targets()))),
+        ("experiment-a" = (summary = "The published experiment A",
+            value = json!(super::super::describe::experiment_a()))),
+    )),
+    responses(
+        (status = 200, description = "The finished plan, or what validation says",
+            body = inline(Finished)),
+        (status = 202, description = "The job, queued or already running",
+            body = JobDocument,
+            headers(("Location" = String, description = "Address of the job"))),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    Parameters(query): Parameters<Query>,
+    headers: HeaderMap,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let key = idempotency_key(&headers)?;
+    let fingerprint = digest::hex(&body.bytes);
+    let (node, written_out) = stored::write_out(&app, body.node).await?;
+    let valid = wire::scenario::read_node(&node, None).map_err(ApiError::input)?;
+    let targets = valid.scenario.targets().len();
+    if targets > app.limits().targets {
+        let limit = app.limits().targets;
+        let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
+        return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
+    }
+    if query.validate_only {
+        return validation(&valid);
+    }
+    let submission = Submission {
+        id: Uuid::now_v7().to_string(),
+        name: valid.scenario.name().map(str::to_owned),
+        scenario: if written_out {
+            node.to_json().into()
+        } else {
+            body.bytes.into()
+        },
+        targets: i64::try_from(targets).unwrap_or(i64::MAX),
+        key: key.map(|key| (key, fingerprint)),
+    };
+    let (job, replayed) = submit(&app, &submission).await?;
+    let mut response = answer(&app, job, wait(&headers)).await?;
+    if replayed {
+        let name = header::HeaderName::from_static("idempotency-replayed");
+        response
+            .headers_mut()
+            .insert(name, HeaderValue::from_static("true"));
+    }
+    Ok(response)
+}
+
+/// What a finished request answers.
+#[derive(serde::Serialize, utoipa::ToSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "only describes the answer")]
+enum Finished {
+    /// With `Prefer: wait`.
+    Plan(Box<PlanDocument<'static>>),
+    /// With `validate_only`.
+    Validation(ValidationDocument<'static>),
+}
+
+fn validation(valid: &Validated) -> Result<Response, ApiError> {
+    let obstacles = planner::feasibility_problems(&valid.scenario);
+    if !obstacles.is_empty() {
+        return Err(ApiError::input(obstacles));
+    }
+    Ok(Json(ValidationDocument::new(&[], &valid.warnings)).into_response())
+}
+
+async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), ApiError> {
+    if app.shutdown().has_begun() {
+        let error = ApiError::new(ErrorCode::NotReady, "the service is about to end");
+        return Err(error.retry_after(RETRY_FULL_S));
+    }
+    match app.jobs().submit(submission).await? {
+        Submitted::New(job) => {
+            tracing::info!(job_id = job.id, targets = job.targets, "job queued");
+            Ok((job, false))
+        }
+        Submitted::Replayed(job) => Ok((job, true)),
+        Submitted::KeyReused => Err(ApiError::new(
+            ErrorCode::IdempotencyKeyReused,
+            "another body was submitted under this Idempotency-Key",
+        )),
+        Submitted::QueueFull => {
+            let limit = app.jobs().queue_limit();
+            let detail = format!("{limit} jobs wait already (queue_limit)");
+            Err(ApiError::new(ErrorCode::QueueFull, detail).retry_after(RETRY_FULL_S))
+        }
+    }
+}
+
+/// The plan when it is ready in time, the job otherwise.
+async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
+    let mut job = job;
+    if let Some(patience) = wait {
+        let id = job.id.clone();
+        job = respond::await_end(app, &id, patience)
+            .await?
+            .ok_or_else(|| ApiError::not_found("plan", &id))?;
+        if let Some(result) = app.store().result(job.sequence).await? {
+            return Ok(located(super::result::json(&result), &job));
+        }
+    }
+    Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job))
+}
+
+fn located(mut response: Response, job: &JobRow) -> Response {
+    if let Ok(location) = HeaderValue::from_str(&format!("/v1/plans/{}", job.id)) {
+        response.headers_mut().insert(header::LOCATION, location);
+    }
+    response
+}
+
+fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, ApiError> {
+    let Some(key) = header_text(headers, "idempotency-key")? else {
+        return Ok(None);
+    };
+    let visible = key.bytes().all(|byte| byte.is_ascii_graphic());
+    if key.is_empty() || key.len() > LONGEST_KEY || !visible {
+        let detail =
+            format!("an Idempotency-Key has 1 to {LONGEST_KEY} visible ASCII characters, no space");
+        return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
+    }
+    Ok(Some(key.to_owned()))
+}
+
+/// The wait of `Prefer: wait=N`. Preferences that are not understood are ignored, as RFC 7240 says.
+fn wait(headers: &HeaderMap) -> Option<Duration> {
+    let preferences = headers
+        .get_all("prefer")
+        .iter()
+        .filter_map(|value| value.to_str().ok());
+    preferences
+        .flat_map(|value| value.split([',', ';']))
+        .filter_map(|preference| preference.trim().strip_prefix("wait="))
+        .find_map(|seconds| seconds.trim().parse::<u64>().ok())
+        .map(|seconds| Duration::from_secs(seconds.min(LONGEST_WAIT_S)))
+}

@@ -1,0 +1,24 @@
+//! `DELETE /v1/plans/{id}`: a job and all that belongs to it.
+
+use super::super::App;
+use super::super::describe::{NotFound, ServerErrors};
+use super::super::error::ApiError;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+
+/// Delete a job with its result and events; a running one is cancelled
+#[utoipa::path(
+    delete, path = "/v1/plans/{id}", tag = "plans", operation_id = "delete_plan",
+    params(("id" = String, Path, format = "uuid", description = "Identifier of the job")),
+    responses((status = 204, description = "Deleted"), NotFound, ServerErrors),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    Path(id): Path<String>,
+) -> Result<StatusCode, ApiError> {
+    if app.jobs().delete(&id).await? {
+        Ok(StatusCode::NO_CONTENT)
+    } else {
+        Err(ApiError::not_found("plan", &id))
+    }
+}

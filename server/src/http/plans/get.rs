@@ -1,0 +1,23 @@
+//! `GET /v1/plans/{id}`: how a job stands.
+
+use super::super::App;
+use super::super::describe::{NotFound, ServerErrors};
+use super::super::error::ApiError;
+use super::super::respond;
+use crate::wire::jobs::JobDocument;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::response::Response;
+
+/// Read a job: state, stage, incumbent, bound, gap and times
+#[utoipa::path(
+    get, path = "/v1/plans/{id}", tag = "plans", operation_id = "get_plan",
+    params(("id" = String, Path, format = "uuid", description = "Identifier of the job")),
+    responses((status = 200, description = "The job", body = JobDocument), NotFound, ServerErrors),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    Path(id): Path<String>,
+) -> Result<Response, ApiError> {
+    respond::job(StatusCode::OK, &super::find(&app, &id).await?)
+}

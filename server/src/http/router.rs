@@ -1,0 +1,77 @@
+//! The only list of routes, and what every request passes through.
+
+use super::{App, legs, observe, operations, plans, spacecraft, verify};
+use crate::wire::jobs::EventDocument;
+use axum::Router;
+use axum::middleware::{from_fn, from_fn_with_state};
+use tower_http::catch_panic::CatchPanicLayer;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use utoipa_swagger_ui::SwaggerUi;
+
+/// What the description says about itself.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "slewplan",
+        description = "Minimum-time multi-target attitude scheduling for spacecraft with reaction \
+            wheels.\n\nNumbers are SI with the unit in the field name. Unknown fields are \
+            refused. Every error is RFC 9457 problem details; `/docs/errors` lists the codes.",
+    ),
+    components(schemas(EventDocument)),
+    tags(
+        (name = "plans", description = "Planning jobs"),
+        (name = "legs", description = "Leg times"),
+        (name = "spacecraft", description = "Stored spacecraft"),
+        (name = "verify", description = "Independent verification"),
+        (name = "operations", description = "Running the service"),
+    ),
+)]
+struct Description;
+
+fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(Description::openapi())
+        .routes(routes!(plans::create::handler, plans::list::handler))
+        .routes(routes!(plans::get::handler, plans::delete::handler))
+        .routes(routes!(plans::result::handler))
+        .routes(routes!(plans::events::handler))
+        .routes(routes!(plans::stop::handler))
+        .routes(routes!(plans::cancel::handler))
+        .routes(routes!(legs::query::handler))
+        .routes(routes!(legs::list::handler))
+        .routes(routes!(legs::get::handler))
+        .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
+        .routes(routes!(verify::handler))
+        .routes(routes!(operations::limits::handler))
+        .routes(routes!(operations::version::handler))
+        .routes(routes!(operations::docs::openapi))
+        .routes(routes!(operations::docs::errors))
+        .routes(routes!(operations::health::live))
+        .routes(routes!(operations::health::ready))
+        .routes(routes!(operations::metrics::handler))
+}
+
+/// The whole service.
+pub(crate) fn router(app: App) -> Router {
+    let (router, _) = routes().split_for_parts();
+    let page = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
+    router
+        .merge(page)
+        .layer(CatchPanicLayer::custom(observe::panicked))
+        .layer(from_fn(observe::envelop))
+        .layer(from_fn_with_state(app.clone(), observe::observe))
+        .with_state(app)
+}
+
+/// The description of the interface as YAML.
+///
+/// # Panics
+///
+/// Never: the description is made of types that all can be written.
+pub(crate) fn openapi() -> String {
+    let description = routes().into_openapi();
+    description
+        .to_yaml()
+        .expect("the description can be written as YAML")
+}

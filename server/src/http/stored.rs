@@ -1,0 +1,63 @@
+//! Stored spacecraft written out where a scenario refers to them.
+
+use super::App;
+use super::error::ApiError;
+use crate::wire::document::{self, Node};
+use crate::wire::reader::{Cursor, Sink};
+use slewplan_solver::problem::{Code, Problem};
+
+/// Replaces `{"ref": name}` or `{"ref": name, "version": n}` under `spacecraft` by the stored
+/// document; the tree is unchanged when there is none. The flag tells whether there was one.
+pub(super) async fn write_out(app: &App, node: Node) -> Result<(Node, bool), ApiError> {
+    let Some((name, version)) = reference(&node)? else {
+        return Ok((node, false));
+    };
+    let found = app.store().spacecraft(&name, version).await?;
+    let Some(row) = found else {
+        let what = match version {
+            Some(version) => format!("version {version} of the spacecraft {name:?}"),
+            None => format!("the spacecraft {name:?}"),
+        };
+        return Err(ApiError::input(vec![Problem::new(
+            "/spacecraft/ref",
+            Code::UnknownReference,
+            format!("{what} is not stored here"),
+            "store it with PUT /v1/spacecraft/{name}, or write it out in the scenario",
+        )]));
+    };
+    let stored = document::parse(row.document.as_bytes())
+        .map_err(|problem| ApiError::input(vec![problem]))?;
+    Ok((replaced(node, stored), true))
+}
+
+fn reference(node: &Node) -> Result<Option<(String, Option<i64>)>, ApiError> {
+    let sink = Sink::default();
+    let found = Cursor::root(node, &sink)
+        .member("spacecraft")
+        .filter(|spacecraft| spacecraft.member("ref").is_some())
+        .and_then(|spacecraft| {
+            let fields = spacecraft.object(&["ref", "version"])?;
+            let name = fields.required("ref")?.text()?.to_owned();
+            let version = match fields.optional("version") {
+                Some(version) => Some(i64::try_from(version.integer()?).unwrap_or(i64::MAX)),
+                None => None,
+            };
+            Some((name, version))
+        });
+    let problems = sink.into_problems();
+    if problems.is_empty() {
+        Ok(found)
+    } else {
+        Err(ApiError::input(problems))
+    }
+}
+
+fn replaced(node: Node, stored: Node) -> Node {
+    let Node::Object(mut members) = node else {
+        return node;
+    };
+    if let Some((_, spacecraft)) = members.iter_mut().find(|(name, _)| name == "spacecraft") {
+        *spacecraft = stored;
+    }
+    Node::Object(members)
+}

@@ -1,0 +1,88 @@
+//! `POST /v1/verify`: a plan made by anyone is flown again.
+
+use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
+use super::error::{ApiError, ErrorCode};
+use super::extract::JsonBody;
+use super::{App, stored};
+use crate::wire;
+use crate::wire::document::Node;
+use crate::wire::reader::{Cursor, Sink};
+use crate::wire::verification::ReportDocument;
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use slewplan_solver::checker;
+use slewplan_solver::problem::Problem;
+
+/// Fly a plan again and test every limit
+#[utoipa::path(
+    post, path = "/v1/verify", tag = "verify", operation_id = "verify_plan",
+    request_body(content = VerifyBody, example = json!(describe::verify_request())),
+    responses(
+        (status = 200, description = "What the flight showed", body = ReportDocument<'static>),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(super) async fn handler(State(app): State<App>, body: JsonBody) -> Result<Response, ApiError> {
+    let (scenario, plan) = parts(body.node)?;
+    let (scenario, _) = stored::write_out(&app, scenario).await?;
+    // Integrating a long flight takes long, and the answer borrows from what it integrates.
+    let work = tokio::task::spawn_blocking(move || verify(&scenario, &plan));
+    let json = work.await.map_err(|error| {
+        tracing::error!(%error, "a verification failed");
+        ApiError::new(
+            ErrorCode::Internal,
+            "the verification could not be finished",
+        )
+    })??;
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+}
+
+fn parts(node: Node) -> Result<(Node, Node), ApiError> {
+    let sink = Sink::default();
+    if let Some(fields) = Cursor::root(&node, &sink).object(&["scenario", "plan"]) {
+        fields.required("scenario");
+        fields.required("plan");
+    }
+    let problems = sink.into_problems();
+    let Node::Object(members) = node else {
+        return Err(ApiError::input(problems));
+    };
+    if !problems.is_empty() {
+        return Err(ApiError::input(problems));
+    }
+    let (mut scenario, mut plan) = (Node::Null, Node::Null);
+    for (name, value) in members {
+        *(if name == "scenario" {
+            &mut scenario
+        } else {
+            &mut plan
+        }) = value;
+    }
+    Ok((scenario, plan))
+}
+
+fn verify(scenario: &Node, plan: &Node) -> Result<Vec<u8>, ApiError> {
+    let valid = wire::scenario::read_node(scenario, None)
+        .map_err(|problems| ApiError::input(under("/scenario", problems)))?;
+    let flight = wire::flight::read_node(plan, &valid.scenario)
+        .map_err(|problems| ApiError::input(under("/plan", problems)))?;
+    let found = checker::verify(&valid.scenario, &flight);
+    let warnings: Vec<Problem> = under("/scenario", valid.warnings)
+        .into_iter()
+        .chain(under("/scenario", found.keep_out))
+        .collect();
+    let report = ReportDocument::new(&found.verification, &found.margins, &warnings);
+    serde_json::to_vec(&report).map_err(|error| {
+        tracing::error!(%error, "a verification cannot be written");
+        ApiError::new(ErrorCode::Internal, "the verification cannot be written")
+    })
+}
+
+fn under(place: &str, problems: Vec<Problem>) -> Vec<Problem> {
+    let moved = |problem: Problem| Problem {
+        pointer: format!("{place}{}", problem.pointer),
+        ..problem
+    };
+    problems.into_iter().map(moved).collect()
+}

@@ -1,0 +1,129 @@
+//! The queue at work: one job at a time, in the order of submission, on the solver's own threads.
+
+mod progress;
+mod solve;
+mod worker;
+
+pub(crate) use worker::Worker;
+
+use crate::clock::now_us;
+use crate::leg_cache::{LegCache, Tally};
+use crate::store::{JobRow, Store, StoreError, Submission, Submitted};
+use slewplan_solver::stop::StopSignal;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::runtime::Handle;
+use tokio::sync::{Notify, watch};
+
+/// What the routes and the worker share about jobs.
+#[derive(Debug, Clone)]
+pub(crate) struct Jobs(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    store: Store,
+    /// Counts changes of any job, so that those who wait for one look again.
+    changes: watch::Sender<u64>,
+    /// Something has been queued.
+    queued: Notify,
+    active: Mutex<Option<Active>>,
+    queue_limit: i64,
+    tally: Arc<Tally>,
+}
+
+#[derive(Debug)]
+struct Active {
+    id: String,
+    stop: StopSignal,
+}
+
+impl Jobs {
+    /// Jobs of a store, of which at most so many wait.
+    pub(crate) fn new(store: Store, queue_limit: i64) -> Self {
+        Self(Arc::new(Shared {
+            store,
+            changes: watch::Sender::new(0),
+            queued: Notify::new(),
+            active: Mutex::new(None),
+            queue_limit,
+            tally: Arc::default(),
+        }))
+    }
+
+    /// The store behind the jobs.
+    pub(crate) fn store(&self) -> &Store {
+        &self.0.store
+    }
+
+    /// The remembered legs, for one solve on threads outside of the runtime.
+    pub(crate) fn legs(&self, runtime: Handle) -> LegCache {
+        LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.tally))
+    }
+
+    /// How often legs were found.
+    pub(crate) fn tally(&self) -> &Tally {
+        &self.0.tally
+    }
+
+    /// Told of every change of any job.
+    pub(crate) fn changes(&self) -> watch::Receiver<u64> {
+        self.0.changes.subscribe()
+    }
+
+    fn changed(&self) {
+        self.0
+            .changes
+            .send_modify(|count| *count = count.wrapping_add(1));
+    }
+
+    /// Most jobs that may wait.
+    pub(crate) fn queue_limit(&self) -> i64 {
+        self.0.queue_limit
+    }
+
+    /// Queues a job.
+    pub(crate) async fn submit(&self, submission: &Submission) -> Result<Submitted, StoreError> {
+        let submitted = self
+            .store()
+            .submit(submission, self.0.queue_limit, now_us())
+            .await?;
+        if let Submitted::New(_) = submitted {
+            self.0.queued.notify_one();
+            self.changed();
+        }
+        Ok(submitted)
+    }
+
+    /// Asks a running job for the best plan so far.
+    pub(crate) async fn stop(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
+        let job = self.store().request_stop(id, now_us()).await?;
+        self.with_active(id, StopSignal::request);
+        Ok(job)
+    }
+
+    /// Abandons a job.
+    pub(crate) async fn cancel(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
+        let job = self.store().request_cancel(id, now_us()).await?;
+        self.with_active(id, StopSignal::cancel);
+        self.changed();
+        Ok(job)
+    }
+
+    /// Deletes a job; a running one is cancelled first.
+    pub(crate) async fn delete(&self, id: &str) -> Result<bool, StoreError> {
+        let deleted = self.store().delete(id).await?;
+        self.with_active(id, StopSignal::cancel);
+        self.changed();
+        Ok(deleted)
+    }
+
+    fn with_active(&self, id: &str, act: impl FnOnce(&StopSignal)) {
+        let active = self.0.active.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(active) = active.as_ref().filter(|active| active.id == id) {
+            act(&active.stop);
+        }
+    }
+
+    fn set_active(&self, active: Option<Active>) {
+        *self.0.active.lock().unwrap_or_else(PoisonError::into_inner) = active;
+    }
+}

@@ -1,0 +1,89 @@
+//! One job from its scenario to how it ended.
+
+use crate::store::{Ended, JobState};
+use crate::wire;
+use slewplan_solver::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::planner::{self, Run};
+use slewplan_solver::problem::Problem;
+use slewplan_solver::scenario::Validated;
+use slewplan_solver::stop::StopReason;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Solves a scenario as stored. A panic costs this job and no other.
+pub(super) fn solve(scenario: &[u8], run: Run<'_>) -> Ended {
+    catch_unwind(AssertUnwindSafe(|| attempt(scenario, run))).unwrap_or_else(|_| {
+        without_plan(
+            JobState::Failed,
+            "an internal error ended the solve; please report the scenario",
+        )
+    })
+}
+
+fn attempt(scenario: &[u8], run: Run<'_>) -> Ended {
+    let Validated { scenario, warnings } = match wire::scenario::read(scenario, None) {
+        Ok(valid) => valid,
+        // It was valid when it was accepted: another version of the program reads it now.
+        Err(problems) => return without_plan(JobState::Failed, &sentence(&problems)),
+    };
+    let outcome = planner::solve(&scenario, run);
+    if run.stop.reason() == Some(StopReason::Cancelled) {
+        return without_plan(JobState::Cancelled, "abandoned on request");
+    }
+    match serde_json::to_vec(&wire::plan::document(&outcome, &warnings)) {
+        Ok(document) => Ended {
+            document: Some(document),
+            ..described(&outcome)
+        },
+        Err(error) => without_plan(
+            JobState::Failed,
+            &format!("the plan cannot be written: {error}"),
+        ),
+    }
+}
+
+fn described(outcome: &Outcome) -> Ended {
+    match outcome {
+        Outcome::Planned(plan) => planned(plan),
+        Outcome::Infeasible(reasons) => without_plan(JobState::Infeasible, &sentence(reasons)),
+        Outcome::Failed(reasons) => without_plan(JobState::Failed, &sentence(reasons)),
+        Outcome::StoppedEmpty => {
+            without_plan(JobState::Failed, "stopped before a first plan was found")
+        }
+    }
+}
+
+fn planned(plan: &Plan) -> Ended {
+    Ended {
+        state: match plan.optimality {
+            Optimality::Optimal => JobState::Succeeded,
+            Optimality::Feasible => JobState::Stopped,
+        },
+        document: None,
+        incumbent_s: Some(plan.total_time_s),
+        lower_bound_s: Some(plan.lower_bound_s),
+        detail: None,
+    }
+}
+
+fn without_plan(state: JobState, detail: &str) -> Ended {
+    Ended {
+        state,
+        document: None,
+        incumbent_s: None,
+        lower_bound_s: None,
+        detail: Some(detail.to_owned()),
+    }
+}
+
+fn sentence(problems: &[Problem]) -> String {
+    let parts: Vec<String> = problems
+        .iter()
+        .map(|problem| {
+            format!(
+                "{}: {} [{}]",
+                problem.pointer, problem.message, problem.code
+            )
+        })
+        .collect();
+    parts.join("; ")
+}

@@ -1,0 +1,227 @@
+//! The bridge between the asynchronous service and the solver's threads.
+//!
+//! One plain thread claims a job, solves it on the pool and records its end. The database is
+//! reached through the handle of the runtime; nothing is computed on the runtime's threads.
+
+use super::progress::{Reporter, record};
+use super::{Active, Jobs, solve};
+use crate::clock::now_us;
+use crate::store::{Claim, Ended, JobRow, JobState, StoreError};
+use slewplan_solver::planner::Run;
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::stop::StopSignal;
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use tokio::runtime::Handle;
+
+/// How long a claim lasts without a beat, and how often it beats.
+const LEASE: Duration = Duration::from_secs(10);
+const BEAT: Duration = Duration::from_secs(2);
+/// Pause after a failure of the database before it is asked again.
+const RETRY: Duration = Duration::from_millis(500);
+/// How often the queue is looked at when nobody said that something is in it.
+const POLL: Duration = Duration::from_secs(5);
+
+/// The thread that solves.
+#[derive(Debug)]
+pub(crate) struct Worker {
+    jobs: Jobs,
+    draining: Arc<AtomicBool>,
+    thread: JoinHandle<()>,
+}
+
+impl Worker {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    ///
+    /// When the operating system refuses it.
+    pub(crate) fn start(jobs: Jobs, pool: Arc<SolverPool>, boot_id: String) -> io::Result<Self> {
+        let draining = Arc::new(AtomicBool::new(false));
+        let bench = Bench {
+            jobs: jobs.clone(),
+            pool,
+            boot_id,
+            draining: Arc::clone(&draining),
+            runtime: Handle::current(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("slewplan-worker".into())
+            .spawn(move || bench.run())?;
+        Ok(Self {
+            jobs,
+            draining,
+            thread,
+        })
+    }
+
+    /// Claims nothing more and gives a running job back to the queue; returns when that is done.
+    pub(crate) async fn drain(self) {
+        self.draining.store(true, Ordering::SeqCst);
+        self.jobs.0.queued.notify_one();
+        {
+            let active = self.jobs.0.active.lock();
+            let active = active.unwrap_or_else(std::sync::PoisonError::into_inner);
+            if let Some(active) = active.as_ref() {
+                active.stop.cancel();
+            }
+        }
+        let ended = tokio::task::spawn_blocking(move || self.thread.join()).await;
+        if !matches!(ended, Ok(Ok(()))) {
+            tracing::error!("the worker ended with a panic");
+        }
+    }
+}
+
+/// What the thread works with.
+struct Bench {
+    jobs: Jobs,
+    pool: Arc<SolverPool>,
+    boot_id: String,
+    draining: Arc<AtomicBool>,
+    runtime: Handle,
+}
+
+impl Bench {
+    fn run(&self) {
+        while !self.draining.load(Ordering::SeqCst) {
+            match self.runtime.block_on(self.next()) {
+                Ok(Some(claim)) => self.work(&claim),
+                Ok(None) => {}
+                Err(error) => {
+                    tracing::error!(%error, "no job can be claimed");
+                    std::thread::sleep(RETRY);
+                }
+            }
+        }
+    }
+
+    /// Waits for a job and claims it; `None` when it is time to look around.
+    async fn next(&self) -> Result<Option<Claim>, StoreError> {
+        let now = now_us();
+        let claim = self
+            .jobs
+            .store()
+            .claim(&self.boot_id, lease_end(now), now)
+            .await?;
+        if claim.is_none() {
+            // A notification that came before this wait is kept for it.
+            let _ = tokio::time::timeout(POLL, self.jobs.0.queued.notified()).await;
+        }
+        Ok(claim)
+    }
+
+    fn work(&self, claim: &Claim) {
+        let job = &claim.job;
+        let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
+        let _entered = span.enter();
+        tracing::info!(targets = job.targets, "solve begins");
+        self.jobs.changed();
+        let stop = StopSignal::new();
+        self.jobs.set_active(Some(Active {
+            id: job.id.clone(),
+            stop: stop.clone(),
+        }));
+        self.catch_up(job, &stop);
+        let (reporter, reports) = Reporter::new();
+        let recorder = self
+            .runtime
+            .spawn(record(self.jobs.clone(), job.clone(), reports));
+        let heart = self
+            .runtime
+            .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
+        let legs = self.jobs.legs(self.runtime.clone());
+        let run = Run {
+            pool: &self.pool,
+            stop: &stop,
+            observer: &reporter,
+            legs: &legs,
+        };
+        let ended = solve::solve(&claim.scenario, run);
+        // Legs are written before the end is told: whoever asks then finds them.
+        drop(legs);
+        drop(reporter);
+        heart.abort();
+        if self.runtime.block_on(recorder).is_err() {
+            tracing::error!("progress was not recorded to its end");
+        }
+        self.conclude(job, &ended);
+        self.jobs.set_active(None);
+        self.jobs.changed();
+    }
+
+    /// Obeys requests that came between the claim and the moment when the signal was in place.
+    fn catch_up(&self, job: &JobRow, stop: &StopSignal) {
+        match self.runtime.block_on(self.jobs.store().job(&job.id)) {
+            Ok(Some(job)) => {
+                if job.stop_requested_us.is_some() {
+                    stop.request();
+                }
+                if job.cancel_requested_us.is_some() {
+                    stop.cancel();
+                }
+            }
+            Ok(None) => stop.cancel(),
+            Err(error) => tracing::warn!(%error, "requests of the past cannot be read"),
+        }
+        if self.draining.load(Ordering::SeqCst) {
+            stop.cancel();
+        }
+    }
+
+    /// Records the end; tries again until the database takes it or the claim is lost.
+    fn conclude(&self, job: &JobRow, ended: &Ended) {
+        let interrupted =
+            self.draining.load(Ordering::SeqCst) && ended.state == JobState::Cancelled;
+        loop {
+            let recorded = self.runtime.block_on(async {
+                match self.jobs.store().job(&job.id).await? {
+                    Some(now) if interrupted && now.cancel_requested_us.is_none() => {
+                        self.jobs.store().release(job, now_us()).await
+                    }
+                    _ => self.jobs.store().finish(job, ended, now_us()).await,
+                }
+            });
+            match recorded {
+                Ok(true) => {
+                    tracing::info!(state = ended.state.as_str(), interrupted, "solve ended");
+                    return;
+                }
+                Ok(false) => {
+                    tracing::warn!("the job was deleted or taken over; its end is not recorded");
+                    return;
+                }
+                Err(error) if self.draining.load(Ordering::SeqCst) => {
+                    tracing::error!(%error, "the end of the job is not recorded");
+                    return;
+                }
+                Err(error) => {
+                    tracing::error!(%error, "the end of the job cannot be recorded yet");
+                    std::thread::sleep(RETRY);
+                }
+            }
+        }
+    }
+}
+
+fn lease_end(now_us: i64) -> i64 {
+    now_us.saturating_add(i64::try_from(LEASE.as_micros()).unwrap_or(i64::MAX))
+}
+
+/// Prolongs the lease of a claim; a lost claim is not worked on any longer.
+async fn beat(jobs: Jobs, claim: JobRow, stop: StopSignal) {
+    loop {
+        tokio::time::sleep(BEAT).await;
+        match jobs.store().beat(&claim, lease_end(now_us())).await {
+            Ok(true) => {}
+            Ok(false) => {
+                stop.cancel();
+                return;
+            }
+            Err(error) => tracing::warn!(job_id = claim.id, %error, "lease not prolonged"),
+        }
+    }
+}

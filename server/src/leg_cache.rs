@@ -1,0 +1,141 @@
+//! Legs remembered in the database, as the solver's threads see them.
+
+use crate::clock::now_us;
+use crate::store::{LegTrajectory, NewLeg, Store};
+use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::runtime::Handle;
+
+/// Legs that are written together.
+const BATCH: usize = 64;
+
+/// How often legs were found.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    hits: AtomicU64,
+    misses: AtomicU64,
+}
+
+impl Tally {
+    /// Legs that were found.
+    pub(crate) fn hits(&self) -> u64 {
+        self.hits.load(Ordering::Relaxed)
+    }
+
+    /// Legs that were not.
+    pub(crate) fn misses(&self) -> u64 {
+        self.misses.load(Ordering::Relaxed)
+    }
+}
+
+/// The legs of a database for one solve. What is new is written in batches; the rest of it when
+/// the value is dropped, which must not happen on a thread of the runtime.
+#[derive(Debug)]
+pub(crate) struct LegCache {
+    store: Store,
+    runtime: Handle,
+    tally: Arc<Tally>,
+    unwritten: Mutex<Vec<NewLeg>>,
+}
+
+impl LegCache {
+    /// The legs of a store, reached from threads outside of the runtime.
+    pub(crate) fn new(store: Store, runtime: Handle, tally: Arc<Tally>) -> Self {
+        Self {
+            store,
+            runtime,
+            tally,
+            unwritten: Mutex::default(),
+        }
+    }
+
+    fn unwritten(&self) -> MutexGuard<'_, Vec<NewLeg>> {
+        self.unwritten
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn write(&self, legs: &[NewLeg]) {
+        if legs.is_empty() {
+            return;
+        }
+        // A leg that is forgotten is solved again: no reason to fail.
+        if let Err(error) = self.runtime.block_on(self.store.put_legs(legs, now_us())) {
+            tracing::warn!(%error, legs = legs.len(), "solved legs are forgotten");
+        }
+    }
+}
+
+impl LegStore for LegCache {
+    fn get(&self, identity: &str) -> Option<StoredLeg> {
+        let found = self.runtime.block_on(self.store.known_leg(identity));
+        let leg = found.unwrap_or_else(|error| {
+            tracing::warn!(%error, "a leg cannot be looked up and is solved again");
+            None
+        });
+        let tally = if leg.is_some() {
+            &self.tally.hits
+        } else {
+            &self.tally.misses
+        };
+        tally.fetch_add(1, Ordering::Relaxed);
+        let (row, spacecraft, trajectory) = leg?;
+        Some(StoredLeg {
+            spacecraft,
+            kind: kind(&row.kind)?,
+            turn_xyzw: row.turn_xyzw(),
+            body_momentum_nms: row.momentum(),
+            duration_s: row.duration_s,
+            status: row.status,
+            solve_time_s: row.solve_time_s,
+            attitudes_xyzw: trajectory.attitudes_xyzw,
+            wheel_momenta_nms: trajectory.wheel_momenta_nms,
+            lengths_s: trajectory.lengths_s,
+        })
+    }
+
+    fn put(&self, identity: &str, leg: &StoredLeg) {
+        let batch = {
+            let mut unwritten = self.unwritten();
+            unwritten.push(new_leg(identity, leg));
+            if unwritten.len() < BATCH {
+                Vec::new()
+            } else {
+                std::mem::take(&mut *unwritten)
+            }
+        };
+        self.write(&batch);
+    }
+}
+
+impl Drop for LegCache {
+    fn drop(&mut self) {
+        let rest = std::mem::take(&mut *self.unwritten());
+        self.write(&rest);
+    }
+}
+
+fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
+    NewLeg {
+        identity: identity.to_owned(),
+        spacecraft: leg.spacecraft.clone(),
+        kind: leg.kind.as_str(),
+        turn_xyzw: leg.turn_xyzw,
+        momentum: leg.body_momentum_nms,
+        duration_s: leg.duration_s,
+        solve_time_s: leg.solve_time_s,
+        status: leg.status.clone(),
+        trajectory: LegTrajectory {
+            attitudes_xyzw: leg.attitudes_xyzw.clone(),
+            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
+            lengths_s: leg.lengths_s.clone(),
+        },
+    }
+}
+
+fn kind(text: &str) -> Option<LegKind> {
+    [LegKind::RestToRest, LegKind::LowerBound]
+        .into_iter()
+        .find(|kind| kind.as_str() == text)
+}

@@ -1,0 +1,53 @@
+//! The end of the service: told to everybody, with a deadline.
+
+use std::io;
+use std::time::Duration;
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::watch;
+
+/// Time for open requests and the running job to end.
+pub(crate) const GRACE: Duration = Duration::from_secs(20);
+
+/// Tells when the service ends.
+#[derive(Debug, Clone)]
+pub(crate) struct Shutdown(watch::Receiver<bool>);
+
+impl Shutdown {
+    /// Begins with the first SIGTERM or SIGINT; the second ends the process at once.
+    ///
+    /// # Errors
+    ///
+    /// When the operating system refuses the handlers.
+    pub(crate) fn on_signals() -> io::Result<Self> {
+        let mut terminate = signal(SignalKind::terminate())?;
+        let mut interrupt = signal(SignalKind::interrupt())?;
+        let (sender, receiver) = watch::channel(false);
+        tokio::spawn(async move {
+            for first in [true, false] {
+                let code = tokio::select! {
+                    _ = terminate.recv() => 143,
+                    _ = interrupt.recv() => 130,
+                };
+                if !first {
+                    std::process::exit(code);
+                }
+                tracing::info!("the service ends");
+                sender.send_replace(true);
+            }
+        });
+        Ok(Self(receiver))
+    }
+
+    /// Whether the end has begun.
+    pub(crate) fn has_begun(&self) -> bool {
+        *self.0.borrow()
+    }
+
+    /// Waits for the begin of the end.
+    pub(crate) async fn begun(&mut self) {
+        // Without its sender nothing can end any more.
+        if self.0.wait_for(|begun| *begun).await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The database: all SQL of the program, and nothing else.
+//!
+//! One connection writes, a few read. Every write transaction begins IMMEDIATE, so that it never
+//! finds out at its end that somebody else wrote meanwhile; no transaction is open while anything
+//! is computed or sent.
+
+mod error;
+mod events;
+mod jobs;
+mod legs;
+mod results;
+mod rows;
+mod spacecraft;
+
+pub(crate) use error::StoreError;
+pub(crate) use events::EventRow;
+pub(crate) use jobs::{Claim, Listing, Submission, Submitted};
+pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
+pub(crate) use results::ResultRow;
+pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
+pub(crate) use spacecraft::SpacecraftRow;
+
+use sqlx::sqlite::{
+    SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
+};
+use sqlx::{Connection as _, Sqlite, Transaction};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Embedded when building.
+static MIGRATOR: sqlx::migrate::Migrator = sqlx::migrate!("../migrations");
+
+/// Older versions can corrupt the write-ahead log when a writer and a checkpoint meet.
+const OLDEST_SQLITE: i32 = 3_051_003;
+const READERS: u32 = 4;
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The database of the service.
+#[derive(Debug, Clone)]
+pub(crate) struct Store {
+    writer: SqlitePool,
+    readers: SqlitePool,
+}
+
+/// Keeps other services off the same database while it lives.
+#[derive(Debug)]
+pub(crate) struct DatabaseLock {
+    _file: File,
+}
+
+impl DatabaseLock {
+    /// Takes the lock.
+    ///
+    /// # Errors
+    ///
+    /// When another process has it, or its file cannot be opened.
+    pub(crate) fn take(database: &Path) -> Result<Self, StoreError> {
+        let mut path = database.as_os_str().to_owned();
+        path.push(".lock");
+        let path = PathBuf::from(path);
+        let unusable = |source| StoreError::Lock {
+            path: path.clone(),
+            source,
+        };
+        let file = File::options()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&path)
+            .map_err(unusable)?;
+        file.try_lock().map_err(|error| unusable(error.into()))?;
+        Ok(Self { _file: file })
+    }
+}
+
+impl Store {
+    /// Opens or creates the database and brings its schema up to date.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be used, or the embedded SQLite is too old to be trusted.
+    pub(crate) async fn open(path: &Path) -> Result<Self, StoreError> {
+        let options = SqliteConnectOptions::new()
+            .filename(path)
+            .create_if_missing(true)
+            .journal_mode(SqliteJournalMode::Wal)
+            // What was acknowledged survives the loss of power, not only of the process.
+            .synchronous(SqliteSynchronous::Full)
+            .busy_timeout(PATIENCE)
+            .foreign_keys(true)
+            .pragma("temp_store", "memory")
+            .pragma("trusted_schema", "off")
+            .pragma("journal_size_limit", "67108864");
+        let writer = SqlitePoolOptions::new()
+            .max_connections(1)
+            .acquire_timeout(PATIENCE)
+            // A failed COMMIT can leave a connection inside a transaction that nobody owns.
+            .before_acquire(|connection, _| {
+                Box::pin(async move { Ok(!connection.is_in_transaction()) })
+            })
+            .connect_with(options.clone())
+            .await?;
+        check_version(&writer).await?;
+        MIGRATOR.run(&writer).await?;
+        let readers = SqlitePoolOptions::new()
+            .max_connections(READERS)
+            .acquire_timeout(PATIENCE)
+            .connect_with(options.read_only(true).create_if_missing(false))
+            .await?;
+        Ok(Self { writer, readers })
+    }
+
+    /// Closes all connections, which folds the write-ahead log into the database.
+    pub(crate) async fn close(&self) {
+        self.readers.close().await;
+        self.writer.close().await;
+    }
+
+    /// Really writes, to find out whether that is possible.
+    pub(crate) async fn check_writable(&self, now_us: i64) -> Result<(), StoreError> {
+        let mut transaction = self.begin().await?;
+        sqlx::query(
+            "INSERT INTO readiness (one, checked_us) VALUES (1, ?) \
+             ON CONFLICT (one) DO UPDATE SET checked_us = excluded.checked_us",
+        )
+        .bind(now_us)
+        .execute(&mut *transaction)
+        .await?;
+        Ok(transaction.commit().await?)
+    }
+
+    async fn begin(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
+        Ok(self.writer.begin_with("BEGIN IMMEDIATE").await?)
+    }
+}
+
+async fn check_version(pool: &SqlitePool) -> Result<(), StoreError> {
+    let text: String = sqlx::query_scalar("SELECT sqlite_version()")
+        .fetch_one(pool)
+        .await?;
+    let mut parts = text.split('.').map(|part| part.parse::<i32>().unwrap_or(0));
+    let mut next = || parts.next().unwrap_or(0);
+    let number = next() * 1_000_000 + next() * 1000 + next();
+    if number < OLDEST_SQLITE {
+        return Err(StoreError::OldSqlite(text));
+    }
+    Ok(())
+}

@@ -1,0 +1,62 @@
+//! What happened to a job, in order.
+
+use super::{JobRow, Store, StoreError};
+use crate::wire::jobs::EventDocument;
+use sqlx::{FromRow, SqliteConnection};
+
+/// Something that happened to a job.
+#[derive(Debug, Clone, FromRow)]
+pub(crate) struct EventRow {
+    /// Counts from 1 within the job.
+    pub(crate) id: i64,
+    /// `state` or `progress`.
+    pub(crate) kind: String,
+    /// The event as JSON.
+    pub(crate) data: String,
+}
+
+/// Most events that are read at once.
+const BATCH: i64 = 256;
+
+/// Appends an event that tells how a job stands now.
+pub(super) async fn append(
+    connection: &mut SqliteConnection,
+    kind: &'static str,
+    job: &JobRow,
+    now_us: i64,
+) -> Result<(), StoreError> {
+    let data = serde_json::to_string(&EventDocument::new(job, now_us)?).map_err(|error| {
+        StoreError::Inconsistent {
+            table: "jobs",
+            what: error.to_string(),
+        }
+    })?;
+    sqlx::query(
+        "INSERT INTO events (job, id, kind, data) \
+         SELECT ?1, 1 + coalesce(max(id), 0), ?2, ?3 FROM events WHERE job = ?1",
+    )
+    .bind(job.sequence)
+    .bind(kind)
+    .bind(data)
+    .execute(connection)
+    .await?;
+    Ok(())
+}
+
+impl Store {
+    /// The next events of a job after one that is known.
+    pub(crate) async fn events_after(
+        &self,
+        job: i64,
+        known: i64,
+    ) -> Result<Vec<EventRow>, StoreError> {
+        Ok(sqlx::query_as(
+            "SELECT id, kind, data FROM events WHERE job = ? AND id > ? ORDER BY id LIMIT ?",
+        )
+        .bind(job)
+        .bind(known)
+        .bind(BATCH)
+        .fetch_all(&self.readers)
+        .await?)
+    }
+}

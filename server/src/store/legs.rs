@@ -1,0 +1,254 @@
+//! Solved legs.
+
+use super::{Store, StoreError};
+use serde::{Deserialize, Serialize};
+use sqlx::{FromRow, Row, SqliteConnection};
+
+/// Legs of other versions of the solver are not found, and replaced when they are solved again.
+const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// A leg to be remembered.
+#[derive(Debug, Clone)]
+pub(crate) struct NewLeg {
+    /// Canonical text of its problem.
+    pub(crate) identity: String,
+    /// Canonical text of the spacecraft.
+    pub(crate) spacecraft: String,
+    /// The kind of table for which it was solved.
+    pub(crate) kind: &'static str,
+    /// The turn from begin to end, scalar-last quaternion.
+    pub(crate) turn_xyzw: [f64; 4],
+    /// Total momentum in body axes at the begin, N m s.
+    pub(crate) momentum: [f64; 3],
+    /// Minimum time, s.
+    pub(crate) duration_s: f64,
+    /// Wall-clock time of the solve, s.
+    pub(crate) solve_time_s: f64,
+    /// How the solve ended.
+    pub(crate) status: String,
+    /// The motion.
+    pub(crate) trajectory: LegTrajectory,
+}
+
+/// The motion of a leg.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LegTrajectory {
+    /// Attitude at every node relative to the begin, scalar-last quaternions.
+    pub(crate) attitudes_xyzw: Vec<[f64; 4]>,
+    /// Momentum of every enabled wheel about its axis at every node, N m s.
+    pub(crate) wheel_momenta_nms: Vec<Vec<f64>>,
+    /// Time between nodes, s.
+    pub(crate) lengths_s: Vec<f64>,
+}
+
+/// A remembered leg without its motion.
+#[derive(Debug, Clone, FromRow)]
+pub(crate) struct LegRow {
+    /// Order in which legs were stored.
+    pub(crate) sequence: i64,
+    /// SHA-256 of the identity, hex.
+    pub(crate) key: String,
+    /// SHA-256 of the spacecraft's canonical text, hex.
+    pub(crate) spacecraft: String,
+    /// The kind of table for which it was solved.
+    pub(crate) kind: String,
+    turn_x: f64,
+    turn_y: f64,
+    turn_z: f64,
+    turn_w: f64,
+    momentum_x: f64,
+    momentum_y: f64,
+    momentum_z: f64,
+    /// Minimum time, s.
+    pub(crate) duration_s: f64,
+    /// Wall-clock time of the solve, s.
+    pub(crate) solve_time_s: f64,
+    /// How the solve ended.
+    pub(crate) status: String,
+    /// Version that solved it.
+    pub(crate) solver_version: String,
+    /// When it was stored.
+    pub(crate) created_us: i64,
+}
+
+impl LegRow {
+    /// The turn from begin to end, scalar-last quaternion.
+    pub(crate) fn turn_xyzw(&self) -> [f64; 4] {
+        [self.turn_x, self.turn_y, self.turn_z, self.turn_w]
+    }
+
+    /// Total momentum in body axes at the begin, N m s.
+    pub(crate) fn momentum(&self) -> [f64; 3] {
+        [self.momentum_x, self.momentum_y, self.momentum_z]
+    }
+}
+
+macro_rules! leg_columns {
+    () => {
+        "sequence, key, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, momentum_x, \
+         momentum_y, momentum_z, duration_s, solve_time_s, status, solver_version, created_us"
+    };
+}
+
+/// Which legs to list.
+#[derive(Debug)]
+pub(crate) struct LegFilter {
+    /// Only legs of this spacecraft.
+    pub(crate) spacecraft: Option<String>,
+    /// Only legs whose turn is close to this one: scalar-last quaternion and tolerance, rad.
+    pub(crate) turn: Option<([f64; 4], f64)>,
+    /// Only legs stored after this one.
+    pub(crate) after: Option<i64>,
+    /// At most so many.
+    pub(crate) limit: i64,
+}
+
+/// The key of a canonical text.
+pub(crate) fn key(identity: &str) -> String {
+    crate::digest::hex(identity.as_bytes())
+}
+
+impl Store {
+    /// A leg that this version of the solver would solve the same.
+    pub(crate) async fn known_leg(
+        &self,
+        identity: &str,
+    ) -> Result<Option<(LegRow, String, LegTrajectory)>, StoreError> {
+        let row = sqlx::query(concat!(
+            "SELECT document, trajectory, ",
+            leg_columns!(),
+            " FROM legs JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) \
+             ON spacecraft_key = spacecraft \
+             WHERE key = ? AND identity = ? AND solver_version = ?"
+        ))
+        .bind(key(identity))
+        .bind(identity)
+        .bind(SOLVER_VERSION)
+        .fetch_optional(&self.readers)
+        .await?;
+        row.map(|row| {
+            let trajectory = read_trajectory(row.try_get("trajectory")?)?;
+            Ok((
+                LegRow::from_row(&row)?,
+                row.try_get("document")?,
+                trajectory,
+            ))
+        })
+        .transpose()
+    }
+
+    /// Remembers legs, all of them or none.
+    pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<(), StoreError> {
+        let mut transaction = self.begin().await?;
+        for leg in legs {
+            put_leg(&mut transaction, leg, now_us).await?;
+        }
+        Ok(transaction.commit().await?)
+    }
+
+    /// A leg by its key, with its motion.
+    pub(crate) async fn leg(
+        &self,
+        key: &str,
+    ) -> Result<Option<(LegRow, LegTrajectory)>, StoreError> {
+        let row = sqlx::query(concat!(
+            "SELECT trajectory, ",
+            leg_columns!(),
+            " FROM legs WHERE key = ?"
+        ))
+        .bind(key)
+        .fetch_optional(&self.readers)
+        .await?;
+        row.map(|row| {
+            Ok((
+                LegRow::from_row(&row)?,
+                read_trajectory(row.try_get("trajectory")?)?,
+            ))
+        })
+        .transpose()
+    }
+
+    /// Legs in the order in which they were stored.
+    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<LegRow>, StoreError> {
+        let ([x, y, z, w], tolerance) = filter.turn.unwrap_or_default();
+        Ok(sqlx::query_as(concat!(
+            "SELECT ",
+            leg_columns!(),
+            " FROM legs WHERE (?1 IS NULL OR spacecraft = ?1) AND (?2 IS NULL OR sequence > ?2) \
+             AND (NOT ?3 \
+             OR abs(turn_x * ?4 + turn_y * ?5 + turn_z * ?6 + turn_w * ?7) >= ?8 \
+             OR (momentum_x = 0 AND momentum_y = 0 AND momentum_z = 0 AND \
+             abs(turn_w * ?7 - turn_x * ?4 - turn_y * ?5 - turn_z * ?6) >= ?8)) \
+             ORDER BY sequence LIMIT ?9"
+        ))
+        .bind(&filter.spacecraft)
+        .bind(filter.after)
+        .bind(filter.turn.is_some())
+        .bind(x)
+        .bind(y)
+        .bind(z)
+        .bind(w)
+        .bind((tolerance / 2.0).cos())
+        .bind(filter.limit)
+        .fetch_all(&self.readers)
+        .await?)
+    }
+
+    /// Number of remembered legs.
+    pub(crate) async fn leg_count(&self) -> Result<i64, StoreError> {
+        Ok(sqlx::query_scalar("SELECT count(*) FROM legs")
+            .fetch_one(&self.readers)
+            .await?)
+    }
+}
+
+fn read_trajectory(json: &[u8]) -> Result<LegTrajectory, StoreError> {
+    serde_json::from_slice(json).map_err(|error| StoreError::Inconsistent {
+        table: "legs",
+        what: error.to_string(),
+    })
+}
+
+async fn put_leg(
+    connection: &mut SqliteConnection,
+    leg: &NewLeg,
+    now_us: i64,
+) -> Result<(), StoreError> {
+    let trajectory =
+        serde_json::to_vec(&leg.trajectory).map_err(|error| StoreError::Inconsistent {
+            table: "legs",
+            what: error.to_string(),
+        })?;
+    let spacecraft = key(&leg.spacecraft);
+    sqlx::query("INSERT INTO leg_spacecraft (key, document) VALUES (?, ?) ON CONFLICT DO NOTHING")
+        .bind(&spacecraft)
+        .bind(&leg.spacecraft)
+        .execute(&mut *connection)
+        .await?;
+    let mut query = sqlx::query(
+        "INSERT INTO legs (key, identity, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, \
+         momentum_x, momentum_y, momentum_z, duration_s, solve_time_s, status, solver_version, \
+         trajectory, created_us) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
+         ON CONFLICT (key) DO UPDATE SET duration_s = excluded.duration_s, \
+         solve_time_s = excluded.solve_time_s, status = excluded.status, \
+         solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
+         created_us = excluded.created_us WHERE solver_version <> excluded.solver_version",
+    )
+    .bind(key(&leg.identity))
+    .bind(&leg.identity)
+    .bind(spacecraft)
+    .bind(leg.kind);
+    for number in leg.turn_xyzw.into_iter().chain(leg.momentum) {
+        query = query.bind(number);
+    }
+    query
+        .bind(leg.duration_s)
+        .bind(leg.solve_time_s)
+        .bind(&leg.status)
+        .bind(SOLVER_VERSION)
+        .bind(trajectory)
+        .bind(now_us)
+        .execute(connection)
+        .await?;
+    Ok(())
+}

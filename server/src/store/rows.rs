@@ -1,0 +1,170 @@
+//! What the tables hold, as types.
+
+use super::StoreError;
+use sqlx::FromRow;
+use sqlx::sqlite::SqliteRow;
+use std::str::FromStr;
+
+macro_rules! states {
+    ($($(#[$doc:meta])+ $name:ident = $text:literal,)+) => {
+        /// Where a job stands.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, utoipa::ToSchema)]
+        #[serde(rename_all = "lowercase")]
+        pub(crate) enum JobState {
+            $($(#[$doc])+ $name,)+
+        }
+
+        impl JobState {
+            /// All states.
+            pub(crate) const ALL: &'static [JobState] = &[$(JobState::$name,)+];
+
+            /// The stable text of the state.
+            pub(crate) const fn as_str(self) -> &'static str {
+                match self { $(Self::$name => $text,)+ }
+            }
+        }
+    };
+}
+
+states! {
+    /// Waits for its turn.
+    Queued = "queued",
+    /// Is being solved.
+    Running = "running",
+    /// Ended with an optimal plan.
+    Succeeded = "succeeded",
+    /// Ended early with the best plan so far.
+    Stopped = "stopped",
+    /// No plan can exist.
+    Infeasible = "infeasible",
+    /// No plan was found.
+    Failed = "failed",
+    /// Abandoned on request.
+    Cancelled = "cancelled",
+    /// Given up: its process died at every attempt.
+    Dead = "dead",
+}
+
+impl JobState {
+    /// Whether the state never changes again.
+    pub(crate) const fn is_final(self) -> bool {
+        !matches!(self, Self::Queued | Self::Running)
+    }
+}
+
+impl FromStr for JobState {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let found = Self::ALL.iter().find(|state| state.as_str() == text);
+        found
+            .copied()
+            .ok_or_else(|| format!("{text:?} is not a state of a job"))
+    }
+}
+
+/// A job without its scenario.
+#[derive(Debug, Clone, FromRow)]
+pub(crate) struct JobRow {
+    /// Order of submission.
+    pub(crate) sequence: i64,
+    /// Public identifier.
+    pub(crate) id: String,
+    #[sqlx(rename = "state")]
+    state_text: String,
+    /// Name of the scenario.
+    pub(crate) name: Option<String>,
+    /// Number of targets.
+    pub(crate) targets: i64,
+    /// What the solve is busy with.
+    pub(crate) stage: Option<String>,
+    /// Steps of the stage that are done.
+    pub(crate) done: Option<i64>,
+    /// Steps of the stage in all.
+    pub(crate) total: Option<i64>,
+    /// Duration of the best plan so far, s.
+    pub(crate) incumbent_s: Option<f64>,
+    /// Lower bound on the duration, s.
+    pub(crate) lower_bound_s: Option<f64>,
+    /// Why there is no plan.
+    pub(crate) detail: Option<String>,
+    /// How often it has been begun.
+    pub(crate) attempt: i64,
+    /// Number of its newest claim.
+    pub(crate) fence: i64,
+    /// When a stop was asked for.
+    pub(crate) stop_requested_us: Option<i64>,
+    /// When it was abandoned.
+    pub(crate) cancel_requested_us: Option<i64>,
+    /// When it was submitted.
+    pub(crate) submitted_us: i64,
+    /// When its newest attempt began.
+    pub(crate) started_us: Option<i64>,
+    /// When it ended.
+    pub(crate) finished_us: Option<i64>,
+}
+
+/// The columns of [`JobRow`].
+macro_rules! job_columns {
+    () => {
+        "sequence, id, state, name, targets, stage, done, total, incumbent_s, lower_bound_s, \
+         detail, attempt, fence, stop_requested_us, cancel_requested_us, submitted_us, \
+         started_us, finished_us"
+    };
+}
+pub(super) use job_columns;
+
+impl JobRow {
+    /// Where the job stands.
+    pub(crate) fn state(&self) -> Result<JobState, StoreError> {
+        self.state_text
+            .parse()
+            .map_err(|what| StoreError::Inconsistent {
+                table: "jobs",
+                what,
+            })
+    }
+
+    pub(super) fn of(row: &SqliteRow) -> Result<Self, StoreError> {
+        Ok(Self::from_row(row)?)
+    }
+}
+
+/// Progress of a running job.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ProgressRow {
+    /// What the solve is busy with.
+    pub(crate) stage: &'static str,
+    /// Steps of the stage that are done.
+    pub(crate) done: i64,
+    /// Steps of the stage in all.
+    pub(crate) total: Option<i64>,
+    /// Duration of the best plan so far, s.
+    pub(crate) incumbent_s: Option<f64>,
+    /// Lower bound on the duration, s.
+    pub(crate) lower_bound_s: Option<f64>,
+}
+
+/// How a job ended.
+#[derive(Debug, Clone)]
+pub(crate) struct Ended {
+    /// One of the final states.
+    pub(crate) state: JobState,
+    /// The plan as JSON, when there is an answer.
+    pub(crate) document: Option<Vec<u8>>,
+    /// Duration of the plan, s.
+    pub(crate) incumbent_s: Option<f64>,
+    /// Lower bound on the duration, s.
+    pub(crate) lower_bound_s: Option<f64>,
+    /// Why there is no plan.
+    pub(crate) detail: Option<String>,
+}
+
+/// Number of jobs in a state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Counts {
+    /// The state.
+    pub(crate) state: JobState,
+    /// How many are in it.
+    pub(crate) jobs: i64,
+}

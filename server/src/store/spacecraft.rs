@@ -1,0 +1,70 @@
+//! Spacecraft stored by name, every version of them.
+
+use super::{Store, StoreError};
+use sqlx::FromRow;
+
+/// A version of a stored spacecraft.
+#[derive(Debug, Clone, FromRow)]
+pub(crate) struct SpacecraftRow {
+    /// Counts from 1 for each name.
+    pub(crate) version: i64,
+    /// The spacecraft as JSON.
+    pub(crate) document: String,
+    /// When it was stored.
+    pub(crate) created_us: i64,
+}
+
+impl Store {
+    /// Stores a spacecraft as the newest version; the same document again is no new version.
+    pub(crate) async fn put_spacecraft(
+        &self,
+        name: &str,
+        document: &str,
+        now_us: i64,
+    ) -> Result<SpacecraftRow, StoreError> {
+        let mut transaction = self.begin().await?;
+        let newest: Option<SpacecraftRow> = sqlx::query_as(
+            "SELECT version, document, created_us FROM spacecraft \
+             WHERE name = ? ORDER BY version DESC LIMIT 1",
+        )
+        .bind(name)
+        .fetch_optional(&mut *transaction)
+        .await?;
+        let version = match newest {
+            Some(newest) if newest.document == document => return Ok(newest),
+            Some(newest) => newest.version + 1,
+            None => 1,
+        };
+        sqlx::query(
+            "INSERT INTO spacecraft (name, version, document, created_us) VALUES (?, ?, ?, ?)",
+        )
+        .bind(name)
+        .bind(version)
+        .bind(document)
+        .bind(now_us)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(SpacecraftRow {
+            version,
+            document: document.to_owned(),
+            created_us: now_us,
+        })
+    }
+
+    /// A version of a stored spacecraft, or the newest.
+    pub(crate) async fn spacecraft(
+        &self,
+        name: &str,
+        version: Option<i64>,
+    ) -> Result<Option<SpacecraftRow>, StoreError> {
+        Ok(sqlx::query_as(
+            "SELECT version, document, created_us FROM spacecraft \
+             WHERE name = ?1 AND (?2 IS NULL OR version = ?2) ORDER BY version DESC LIMIT 1",
+        )
+        .bind(name)
+        .bind(version)
+        .fetch_optional(&self.readers)
+        .await?)
+    }
+}

@@ -1,0 +1,80 @@
+//! What survives the end of the process, expected or not.
+
+use crate::running::{Service, large, small};
+use std::time::{Duration, Instant};
+
+#[test]
+fn a_killed_solve_runs_again_and_nothing_acknowledged_is_lost() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("killed.db");
+    let mut service = Service::on(&database, &[]);
+    let ids = [service.submit(&large()), service.submit(&small())];
+    service.wait(&ids[0], |job| job["state"] == "running");
+    service.kill();
+    let service = Service::on(&database, &[]);
+    let jobs = ids.each_ref().map(|id| service.wait_end(id));
+    assert_eq!(
+        (&jobs[0]["state"], jobs[0]["attempt"].as_i64()),
+        (&"succeeded".into(), Some(2))
+    );
+    assert_eq!(
+        (&jobs[1]["state"], jobs[1]["attempt"].as_i64()),
+        (&"succeeded".into(), Some(1))
+    );
+}
+
+#[test]
+fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("ended.db");
+    let mut service = Service::on(&database, &[]);
+    let id = service.submit(&large());
+    service.wait(&id, |job| job["state"] == "running");
+    let begin = Instant::now();
+    assert!(service.terminate());
+    assert!(
+        begin.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        begin.elapsed()
+    );
+    let service = Service::on(&database, &[]);
+    let job = service.wait_end(&id);
+    assert_eq!(
+        (&job["state"], job["attempt"].as_i64()),
+        (&"succeeded".into(), Some(1))
+    );
+}
+
+#[test]
+fn a_database_has_one_service() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("shared.db");
+    let _service = Service::on(&database, &[]);
+    let second = std::process::Command::new(env!("CARGO_BIN_EXE_slewplan"))
+        .args(["serve", "--listen", "127.0.0.1:0", "--database"])
+        .arg(&database)
+        .output()
+        .expect("the binary starts");
+    assert_eq!(second.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&second.stderr).contains("another service"));
+}
+
+#[test]
+fn a_command_shares_legs_with_the_service() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("legs.db");
+    let service = Service::on(&database, &[]);
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let fixture = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../tests/fixtures/two-targets.json"
+    );
+    let solved = std::process::Command::new(env!("CARGO_BIN_EXE_slewplan"))
+        .args(["solve", fixture, "--format", "json", "--database"])
+        .arg(&database)
+        .output()
+        .expect("the binary starts");
+    let plan: serde_json::Value = serde_json::from_slice(&solved.stdout).expect("a plan");
+    assert_eq!(plan["statistics"]["legs_solved"], 0);
+}

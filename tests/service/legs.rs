@@ -1,0 +1,135 @@
+//! Leg times.
+
+use crate::running::{Service, small};
+use serde_json::{Value, json};
+
+fn attitude(roll: f64, yaw: f64) -> Value {
+    json!({"roll_pitch_yaw_deg": [roll, 0, yaw]})
+}
+
+fn sources(answer: &Value) -> Vec<&str> {
+    let legs = answer["legs"].as_array().expect("a list");
+    legs.iter()
+        .map(|leg| leg["source"].as_str().expect("text"))
+        .collect()
+}
+
+#[test]
+fn a_query_computes_once_and_finds_legs_from_either_side() {
+    let service = Service::start();
+    let mut query = json!({
+        "spacecraft": small()["spacecraft"], "mode": "cached_only",
+        "pairs": [{"from": attitude(15.0, 10.0), "to": attitude(25.0, 50.0)}],
+    });
+    let ask = |query: &Value| service.post("/v1/legs/query", query).expect(200).json();
+    assert_eq!(sources(&ask(&query)), ["missing"]);
+    query["mode"] = json!("compute");
+    let computed = ask(&query);
+    assert_eq!(sources(&computed), ["computed"]);
+    query["mode"] = json!("cached_only");
+    query["pairs"] = json!([{"from": attitude(25.0, 50.0), "to": attitude(15.0, 10.0)}]);
+    let backwards = ask(&query);
+    assert_eq!(sources(&backwards), ["cached"]);
+    assert_eq!(backwards["legs"][0]["key"], computed["legs"][0]["key"]);
+    let times = [&backwards, &computed].map(|answer| answer["legs"][0]["duration_s"].as_f64());
+    let [Some(back), Some(forth)] = times else {
+        panic!("{times:?}");
+    };
+    // The same intervals, added up in the other order.
+    assert!((back - forth).abs() < 1e-12 * forth, "{back} {forth}");
+    let key = computed["legs"][0]["key"].as_str().expect("a key");
+    let leg = service.get(&format!("/v1/legs/{key}")).expect(200).json();
+    let controls = leg["trajectory"]["controls"].as_array().expect("a list");
+    let total: f64 = controls
+        .iter()
+        .filter_map(|control| control["duration_s"].as_f64())
+        .sum();
+    let duration = leg["duration_s"].as_f64().expect("a number");
+    assert!((total - duration).abs() < 1e-9 * duration);
+}
+
+#[test]
+fn a_plan_leaves_its_legs_for_a_query() {
+    let service = Service::start();
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let query = json!({
+        "spacecraft": small()["spacecraft"], "mode": "cached_only",
+        "attitudes": [attitude(0.0, 0.0), attitude(15.0, 10.0), attitude(25.0, 50.0)],
+    });
+    let answer = service.post("/v1/legs/query", &query).expect(200).json();
+    assert_eq!(sources(&answer), ["cached"; 6]);
+    let key = answer["spacecraft_key"].as_str().expect("a key");
+    let all = service
+        .get(&format!("/v1/legs?spacecraft_key={key}"))
+        .expect(200)
+        .json();
+    assert!(all["legs"].as_array().expect("a list").len() >= 3);
+    let turn = &all["legs"][0]["turn"];
+    let near = ["x", "y", "z", "w"]
+        .map(|part| turn[part].to_string())
+        .join(",");
+    let found = service
+        .get(&format!("/v1/legs?attitude={near}&tolerance_deg=0.01"))
+        .json();
+    assert_eq!(found["legs"][0]["key"], all["legs"][0]["key"]);
+    let none = service
+        .get(&format!("/v1/legs?spacecraft_key={}", "0".repeat(64)))
+        .json();
+    assert_eq!(none["legs"], json!([]));
+}
+
+#[test]
+fn wrong_queries_are_refused_with_pointers() {
+    let service = Service::start();
+    let spacecraft = &small()["spacecraft"];
+    let cases = [
+        (json!({"spacecraft": spacecraft}), "/attitudes"),
+        (
+            json!({"spacecraft": spacecraft, "attitudes": [attitude(0.0, 0.0)]}),
+            "/attitudes",
+        ),
+        (json!({"spacecraft": spacecraft, "pairs": []}), "/pairs"),
+        (
+            json!({"spacecraft": spacecraft, "pairs": [{"from": attitude(0.0, 0.0),
+                "to": {"quaternion": {"x": 0, "y": 0, "z": 0, "w": 2}}}]}),
+            "/pairs/0/to/quaternion",
+        ),
+        (
+            json!({"spacecraft": spacecraft, "pairs": [{}], "kind": "fast"}),
+            "/pairs/0/from",
+        ),
+    ];
+    for (query, pointer) in cases {
+        let problem = service
+            .post("/v1/legs/query", &query)
+            .expect_problem(422, "invalid_input");
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
+    }
+    let attitudes: Vec<Value> = (0..40)
+        .map(|number| attitude(f64::from(number), 0.0))
+        .collect();
+    let query = json!({"spacecraft": spacecraft, "attitudes": attitudes});
+    let problem = service
+        .post("/v1/legs/query", &query)
+        .expect_problem(413, "too_many_pairs");
+    assert!(
+        problem["detail"]
+            .as_str()
+            .expect("text")
+            .contains("max_leg_pairs")
+    );
+    service
+        .get("/v1/legs/unknown")
+        .expect_problem(404, "not_found");
+    for wrong in [
+        "attitude=1,2",
+        "tolerance_deg=-1",
+        "limit=0",
+        "spacecraft_key=x",
+    ] {
+        service
+            .get(&format!("/v1/legs?{wrong}"))
+            .expect_problem(400, "invalid_parameter");
+    }
+}

@@ -1,0 +1,14 @@
+//! The service as a caller sees it: every route with its success and its errors.
+
+mod client;
+mod durability;
+mod events;
+mod examples;
+mod idempotency;
+mod legs;
+mod operations;
+mod plans;
+mod refusals;
+mod running;
+mod spacecraft;
+mod verify;

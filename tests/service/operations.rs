@@ -1,0 +1,55 @@
+//! Running the service.
+
+use crate::client::Request;
+use crate::running::{Service, small};
+
+#[test]
+fn the_service_tells_about_itself() {
+    let service = Service::start();
+    let request = Request::new("GET", "/v1/version").header("X-Request-Id", "my-id.7");
+    let answer = service.send(&request).expect(200);
+    assert_eq!(answer.header("x-request-id"), Some("my-id.7"));
+    assert_eq!(answer.json()["version"], env!("CARGO_PKG_VERSION"));
+    let limits = service.get("/v1/limits").expect(200).json();
+    assert!(limits["max_body_bytes"].as_u64() > Some(1 << 20));
+    for path in ["/health/live", "/health/ready"] {
+        assert_eq!(service.get(path).expect(200).json()["status"], "ok");
+    }
+}
+
+#[test]
+fn metrics_count_jobs_legs_and_requests() {
+    let service = Service::start();
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let figures = service.get("/metrics").expect(200).body;
+    for line in [
+        "slewplan_jobs{state=\"succeeded\"} 1",
+        "slewplan_jobs{state=\"queued\"} 0",
+    ] {
+        assert!(figures.lines().any(|found| found == line), "{figures}");
+    }
+    let posted = "slewplan_http_request_duration_seconds_count{method=\"POST\",\
+                  route=\"/v1/plans\",status=\"202\"} 1";
+    assert!(figures.lines().any(|found| found == posted), "{figures}");
+    let misses = figures
+        .lines()
+        .find(|line| line.contains("outcome=\"miss\""))
+        .expect("misses");
+    assert!(!misses.ends_with(" 0"));
+}
+
+#[test]
+fn the_documentation_needs_no_other_host() {
+    let service = Service::start();
+    let page = service.get("/docs/").expect(200).body;
+    assert!(
+        page.contains("swagger-ui") && !page.contains("https://"),
+        "{page}"
+    );
+    service.get("/docs/swagger-ui-bundle.js").expect(200);
+    let index = service.get("/docs/errors").expect(200).body;
+    for code in ["queue_full", "momentum_exceeds_envelope", "malformed_json"] {
+        assert!(index.contains(code), "{code}");
+    }
+}

@@ -1,0 +1,237 @@
+//! Jobs from submission to deletion.
+
+use crate::client::Request;
+use crate::running::{Service, large, small};
+use serde_json::{Value, json};
+use std::time::{Duration, Instant};
+
+#[test]
+fn a_job_ends_with_a_verified_plan() {
+    let service = Service::start();
+    let id = service.submit(&small());
+    let job = service.wait_end(&id);
+    assert_eq!(
+        (&job["state"], &job["attempt"]),
+        (&json!("succeeded"), &json!(1))
+    );
+    assert_eq!(
+        (&job["name"], &job["targets"]),
+        (&json!("two-targets"), &json!(2))
+    );
+    let answer = service.get(&format!("/v1/plans/{id}/result")).expect(200);
+    let plan = answer.json();
+    assert_eq!(plan["status"], "optimal");
+    assert_eq!(plan["verification"]["passed"], true);
+    assert_eq!(plan["total_time_s"], job["incumbent_s"]);
+
+    let tag = answer.header("etag").expect("a tag");
+    let again = Request::new("GET", &format!("/v1/plans/{id}/result")).header("If-None-Match", tag);
+    assert_eq!(service.send(&again).expect(304).body, "");
+}
+
+#[test]
+fn a_second_run_solves_no_leg_and_gives_the_same_plan() {
+    let service = Service::start();
+    let plan = || {
+        let request = Request::new("POST", "/v1/plans").header("Prefer", "wait=60");
+        let mut plan = service.send(&request.json(&small())).expect(200).json();
+        (plan["statistics"].take(), plan)
+    };
+    let (cold, first) = plan();
+    let (warm, second) = plan();
+    assert_eq!(cold["legs_from_cache"], 0);
+    assert_eq!(warm["legs_solved"], 0);
+    assert_eq!(warm["legs_from_cache"], cold["legs_solved"]);
+    assert_eq!(first, second);
+}
+
+#[test]
+fn the_form_of_a_result_is_chosen_by_query_or_by_accept() {
+    let service = Service::start();
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let path = format!("/v1/plans/{id}/result");
+    let by_query = service.get(&format!("{path}?format=csv")).expect(200);
+    assert!(by_query.body.starts_with("time_s,q_x,"));
+    let accepting = |form: &str| service.send(&Request::new("GET", &path).header("Accept", form));
+    assert_eq!(accepting("text/csv").expect(200).body, by_query.body);
+    accepting("image/png").expect_problem(406, "not_acceptable");
+    service
+        .get(&format!("{path}?format=xml"))
+        .expect_problem(400, "invalid_parameter");
+}
+
+#[test]
+fn validation_alone_queues_nothing() {
+    let service = Service::start();
+    let valid = service
+        .post("/v1/plans?validate_only=true", &small())
+        .expect(200)
+        .json();
+    assert_eq!(
+        (&valid["valid"], &valid["errors"]),
+        (&json!(true), &json!([]))
+    );
+    let mut wrong = small();
+    wrong["targets"][1]["id"] = json!("a");
+    let problem = service.post("/v1/plans?validate_only=true", &wrong);
+    let problem = problem.expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/targets/1/id");
+    assert_eq!(
+        service.get("/v1/plans").expect(200).json()["plans"],
+        json!([])
+    );
+}
+
+#[test]
+fn an_impossible_scenario_ends_infeasible_with_its_reasons() {
+    let service = Service::start();
+    let mut scenario = small();
+    scenario["start"]["wheel_speed_rad_s"] = json!([700, 700, 700]);
+    scenario["options"] = json!({"momentum_authority": 1.0});
+    let id = service.submit(&scenario);
+    let job = service.wait_end(&id);
+    assert_eq!(job["state"], "infeasible", "{job}");
+    let plan = service
+        .get(&format!("/v1/plans/{id}/result"))
+        .expect(200)
+        .json();
+    assert_eq!(plan["status"], "infeasible");
+    assert_eq!(plan["reasons"][0]["code"], "momentum_exceeds_envelope");
+    service
+        .get(&format!("/v1/plans/{id}/result?format=csv"))
+        .expect_problem(409, "no_result");
+}
+
+#[test]
+fn a_list_is_filtered_and_paged() {
+    let service = Service::start();
+    let ids: Vec<String> = (0..3)
+        .map(|number| {
+            let mut scenario = small();
+            scenario["name"] = json!(format!("n{number}"));
+            service.submit(&scenario)
+        })
+        .collect();
+    service.wait_end(&ids[2]);
+    let identifiers = |page: &Value| -> Vec<String> {
+        let plans = page["plans"].as_array().expect("a list");
+        plans
+            .iter()
+            .map(|job| job["id"].as_str().expect("text").to_owned())
+            .collect()
+    };
+    let first = service.get("/v1/plans?limit=2").expect(200).json();
+    assert_eq!(identifiers(&first), [ids[2].clone(), ids[1].clone()]);
+    let cursor = first["next_cursor"].as_str().expect("there is more");
+    let second = service
+        .get(&format!("/v1/plans?limit=2&cursor={cursor}"))
+        .expect(200)
+        .json();
+    assert_eq!(identifiers(&second), [ids[0].clone()]);
+    assert!(second["next_cursor"].is_null());
+    let named = service
+        .get("/v1/plans?name=n1&state=succeeded")
+        .expect(200)
+        .json();
+    assert_eq!(identifiers(&named), [ids[1].clone()]);
+    for wrong in [
+        "limit=0",
+        "limit=x",
+        "state=asleep",
+        "cursor=-1",
+        "colour=red",
+    ] {
+        service
+            .get(&format!("/v1/plans?{wrong}"))
+            .expect_problem(400, "invalid_parameter");
+    }
+}
+
+#[test]
+fn stop_gives_the_best_plan_so_far_at_once() {
+    let service = Service::start();
+    let id = service.submit(&large());
+    let queued = service.submit(&small());
+    service
+        .post(&format!("/v1/plans/{queued}/stop"), &json!(null))
+        .expect_problem(409, "not_running");
+    service
+        .get(&format!("/v1/plans/{id}/result"))
+        .expect_problem(409, "result_not_ready");
+    service.wait(&id, |job| !job["incumbent_s"].is_null());
+    let begin = Instant::now();
+    let job = service
+        .send(&Request::new("POST", &format!("/v1/plans/{id}/stop")))
+        .expect(200)
+        .json();
+    assert!(
+        begin.elapsed() < Duration::from_secs(2),
+        "{:?}",
+        begin.elapsed()
+    );
+    assert!(
+        job["state"] == "stopped" || job["state"] == "succeeded",
+        "{job}"
+    );
+    let plan = service
+        .get(&format!("/v1/plans/{id}/result"))
+        .expect(200)
+        .json();
+    assert_eq!(plan["verification"]["passed"], true);
+    assert!(plan["lower_bound_s"].as_f64() <= plan["total_time_s"].as_f64());
+    service
+        .post(&format!("/v1/plans/{id}/cancel"), &json!(null))
+        .expect_problem(409, "job_has_ended");
+}
+
+#[test]
+fn cancel_frees_the_core_for_the_next_job() {
+    let service = Service::start();
+    let id = service.submit(&large());
+    let next = service.submit(&small());
+    service.wait(&id, |job| job["state"] == "running");
+    let cancel = Request::new("POST", &format!("/v1/plans/{id}/cancel"));
+    assert_eq!(
+        service.send(&cancel).expect(200).json()["state"],
+        "cancelled"
+    );
+    assert_eq!(
+        service.send(&cancel).expect(200).json()["state"],
+        "cancelled"
+    );
+    assert_eq!(service.wait_end(&next)["state"], "succeeded");
+    service
+        .get(&format!("/v1/plans/{id}/result"))
+        .expect_problem(409, "no_result");
+}
+
+#[test]
+fn a_deleted_job_is_gone_and_a_running_one_is_abandoned() {
+    let service = Service::start();
+    let id = service.submit(&large());
+    let next = service.submit(&small());
+    service.wait(&id, |job| job["state"] == "running");
+    let path = format!("/v1/plans/{id}");
+    assert_eq!(
+        service
+            .send(&Request::new("DELETE", &path))
+            .expect(204)
+            .body,
+        ""
+    );
+    for gone in [Request::new("DELETE", &path), Request::new("GET", &path)] {
+        service.send(&gone).expect_problem(404, "not_found");
+    }
+    for part in ["result", "events"] {
+        service
+            .get(&format!("{path}/{part}"))
+            .expect_problem(404, "not_found");
+    }
+    for act in ["stop", "cancel"] {
+        service
+            .send(&Request::new("POST", &format!("{path}/{act}")))
+            .expect_problem(404, "not_found");
+    }
+    assert_eq!(service.wait_end(&next)["state"], "succeeded");
+}

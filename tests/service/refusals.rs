@@ -1,0 +1,83 @@
+//! Requests that no route takes, all answered with problem details.
+
+use crate::client::Request;
+use crate::running::{Service, large, small};
+
+#[test]
+fn what_is_no_request_is_refused_in_one_form() {
+    let service = Service::start_with(&["--max-body-bytes", "2000", "--max-targets", "2"]);
+    let post = || Request::new("POST", "/v1/plans").header("Content-Type", "application/json");
+    let cases = [
+        (Request::new("GET", "/nothing"), 404, "not_found"),
+        (Request::new("GET", "/v1/plans/none"), 404, "not_found"),
+        (Request::new("GET", "/v1/plans/%ff"), 400, "bad_request"),
+        (
+            Request::new("PATCH", "/v1/plans"),
+            405,
+            "method_not_allowed",
+        ),
+        (
+            Request::new("POST", "/v1/plans").body("{}"),
+            415,
+            "unsupported_media_type",
+        ),
+        (
+            post().header("Content-Encoding", "gzip").body("{}"),
+            415,
+            "unsupported_media_type",
+        ),
+        (post().body("{"), 400, "malformed_json"),
+        (post().body("[1e400]"), 400, "malformed_json"),
+        (post().body(""), 400, "malformed_json"),
+        (post().body("{}"), 422, "invalid_input"),
+        (post().body(large().to_string()), 413, "body_too_large"),
+        (
+            Request::new("POST", "/v1/plans?validate_only=perhaps").json(&small()),
+            400,
+            "invalid_parameter",
+        ),
+    ];
+    for (request, status, code) in cases {
+        let answer = service.send(&request);
+        assert!(answer.header("x-request-id").is_some(), "{request:?}");
+        answer.expect_problem(status, code);
+    }
+    let wrong_method = service.send(&Request::new("PUT", "/v1/plans"));
+    assert!(
+        wrong_method
+            .header("allow")
+            .is_some_and(|allow| allow.contains("POST"))
+    );
+}
+
+#[test]
+fn a_limit_that_is_exceeded_is_named() {
+    let service = Service::start_with(&["--max-targets", "3"]);
+    let problem = service
+        .post("/v1/plans", &large())
+        .expect_problem(413, "too_many_targets");
+    assert!(
+        problem["detail"]
+            .as_str()
+            .is_some_and(|detail| detail.contains("max_targets"))
+    );
+    assert_eq!(
+        service.get("/v1/limits").expect(200).json()["max_targets"],
+        3
+    );
+}
+
+#[test]
+fn a_full_queue_says_when_to_come_again() {
+    let service = Service::start_with(&["--queue-limit", "1"]);
+    let running = service.submit(&large());
+    service.wait(&running, |job| job["state"] == "running");
+    service.submit(&small());
+    let answer = service.post("/v1/plans", &small());
+    assert!(answer.header("retry-after").is_some());
+    answer.expect_problem(503, "queue_full");
+    service
+        .get("/health/ready")
+        .expect_problem(503, "not_ready");
+    service.get("/health/live").expect(200);
+}

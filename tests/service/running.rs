@@ -1,0 +1,150 @@
+//! The service as a child process with a database of its own.
+
+use crate::client::{Answer, Request};
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A running service; it ends with the value.
+pub(crate) struct Service {
+    child: Child,
+    pub(crate) address: String,
+    folder: Option<TempDir>,
+}
+
+impl Service {
+    /// Starts a service on an empty database.
+    pub(crate) fn start() -> Self {
+        Self::start_with(&[])
+    }
+
+    /// Starts a service on an empty database with further arguments.
+    pub(crate) fn start_with(arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut service = Self::on(&folder.path().join("test.db"), arguments);
+        service.folder = Some(folder);
+        service
+    }
+
+    /// Starts a service on a database.
+    pub(crate) fn on(database: &Path, arguments: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_slewplan"))
+            .args([
+                "serve",
+                "--listen",
+                "127.0.0.1:0",
+                "--log",
+                "warn",
+                "--database",
+            ])
+            .arg(database)
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+        let mut line = String::new();
+        let stdout = child.stdout.take().expect("standard output is piped");
+        BufReader::new(stdout).read_line(&mut line).expect("a line");
+        let address = line
+            .trim()
+            .strip_prefix("listening on http://")
+            .expect("the address");
+        Self {
+            address: address.to_owned(),
+            child,
+            folder: None,
+        }
+    }
+
+    pub(crate) fn get(&self, path: &str) -> Answer {
+        Request::new("GET", path).send(&self.address)
+    }
+
+    pub(crate) fn post(&self, path: &str, document: &Value) -> Answer {
+        Request::new("POST", path)
+            .json(document)
+            .send(&self.address)
+    }
+
+    pub(crate) fn send(&self, request: &Request) -> Answer {
+        request.send(&self.address)
+    }
+
+    /// Submits a scenario; the identifier of its job.
+    pub(crate) fn submit(&self, scenario: &Value) -> String {
+        let answer = self.post("/v1/plans", scenario).expect(202);
+        let id = answer.json()["id"]
+            .as_str()
+            .expect("an identifier")
+            .to_owned();
+        assert_eq!(answer.header("location"), Some(&*format!("/v1/plans/{id}")));
+        id
+    }
+
+    pub(crate) fn job(&self, id: &str) -> Value {
+        self.get(&format!("/v1/plans/{id}")).expect(200).json()
+    }
+
+    /// Waits until a job satisfies a condition.
+    pub(crate) fn wait(&self, id: &str, until: impl Fn(&Value) -> bool) -> Value {
+        let begin = Instant::now();
+        loop {
+            let job = self.job(id);
+            if until(&job) {
+                return job;
+            }
+            assert!(begin.elapsed() < Duration::from_mins(2), "still {job}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits until a job has ended.
+    pub(crate) fn wait_end(&self, id: &str) -> Value {
+        self.wait(id, |job| !job["finished_at"].is_null())
+    }
+
+    /// Kills the service without warning.
+    pub(crate) fn kill(&mut self) {
+        self.child.kill().expect("it is killed");
+        self.child.wait().expect("it ends");
+    }
+
+    /// Asks the service to end; whether it did so without complaint.
+    pub(crate) fn terminate(&mut self) -> bool {
+        let sent = Command::new("kill")
+            .arg(self.child.id().to_string())
+            .status();
+        assert!(sent.expect("kill is there").success());
+        self.child.wait().expect("it ends").success()
+    }
+}
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A fixture as a document.
+pub(crate) fn fixture(name: &str) -> Value {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "tests", "fixtures", name]
+        .iter()
+        .collect();
+    let text = std::fs::read_to_string(path).expect("the fixture is there");
+    serde_json::from_str(&text).expect("the fixture is JSON")
+}
+
+/// A scenario that is solved at once.
+pub(crate) fn small() -> Value {
+    fixture("two-targets.json")
+}
+
+/// A scenario that takes seconds.
+pub(crate) fn large() -> Value {
+    fixture("olivares-c.json")
+}

@@ -1,0 +1,65 @@
+//! Stored spacecraft.
+
+use crate::client::Request;
+use crate::running::{Service, small};
+use serde_json::{Value, json};
+
+#[test]
+fn a_spacecraft_is_stored_in_versions_and_used_by_name() {
+    let service = Service::start();
+    let put = |document: &Value| {
+        service.send(&Request::new("PUT", "/v1/spacecraft/sat-1").json(document))
+    };
+    let mut document = small()["spacecraft"].clone();
+    assert_eq!(put(&document).expect(201).json()["version"], 1);
+    assert_eq!(put(&document).expect(200).json()["version"], 1);
+    document["max_body_rate_rad_s"] = json!([0.01, 0.01, 0.01]);
+    assert_eq!(put(&document).expect(200).json()["version"], 2);
+    let newest = service.get("/v1/spacecraft/sat-1").expect(200).json();
+    assert_eq!(
+        (&newest["version"], &newest["spacecraft"]),
+        (&json!(2), &document)
+    );
+    let first = service
+        .get("/v1/spacecraft/sat-1?version=1")
+        .expect(200)
+        .json();
+    assert_eq!(first["spacecraft"], small()["spacecraft"]);
+
+    let plan = |spacecraft| {
+        let mut scenario = small();
+        scenario["spacecraft"] = spacecraft;
+        let request = Request::new("POST", "/v1/plans").header("Prefer", "wait=60");
+        service.send(&request.json(&scenario)).expect(200).json()
+    };
+    let (by_name, written_out) = (plan(json!({"ref": "sat-1"})), plan(document));
+    assert_eq!(by_name["trajectory"], written_out["trajectory"]);
+    let old = plan(json!({"ref": "sat-1", "version": 1}));
+    assert!(old["total_time_s"].as_f64() < by_name["total_time_s"].as_f64());
+}
+
+#[test]
+fn wrong_spacecraft_and_unknown_names_are_refused() {
+    let service = Service::start();
+    let put = |name: &str, document: &Value| {
+        service.send(&Request::new("PUT", &format!("/v1/spacecraft/{name}")).json(document))
+    };
+    let mut document = small()["spacecraft"].clone();
+    put("-", &document).expect_problem(400, "invalid_parameter");
+    document["wheels"][0]["max_torque_nm"] = json!(-1);
+    let problem = put("sat", &document).expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/wheels/0/max_torque_nm");
+    service
+        .get("/v1/spacecraft/sat")
+        .expect_problem(404, "not_found");
+    service
+        .get("/v1/spacecraft/sat?version=0")
+        .expect_problem(400, "invalid_parameter");
+    let mut scenario = small();
+    scenario["spacecraft"] = json!({"ref": "sat"});
+    let problem = service
+        .post("/v1/plans", &scenario)
+        .expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/spacecraft/ref");
+    assert_eq!(problem["errors"][0]["code"], "unknown_reference");
+}

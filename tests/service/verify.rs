@@ -1,0 +1,41 @@
+//! Verification of plans made by anyone.
+
+use crate::client::Request;
+use crate::running::{Service, small};
+use serde_json::{Value, json};
+
+#[test]
+fn a_plan_of_the_service_passes_and_a_damaged_one_does_not() {
+    let service = Service::start();
+    let request = Request::new("POST", "/v1/plans")
+        .header("Prefer", "wait=60")
+        .json(&small());
+    let mut plan = service.send(&request).expect(200).json();
+    let verify =
+        |plan: &Value| service.post("/v1/verify", &json!({"scenario": small(), "plan": plan}));
+    let report = verify(&plan).expect(200).json();
+    assert_eq!(
+        (&report["passed"], &report["failures"]),
+        (&json!(true), &json!([]))
+    );
+    plan["trajectory"]["controls"][0]["wheel_torque_nm"][0] = json!(0.0);
+    let report = verify(&plan).expect(200).json();
+    assert_eq!(report["passed"], false);
+    assert_ne!(report["failures"], json!([]));
+}
+
+#[test]
+fn what_cannot_be_flown_is_refused_with_pointers() {
+    let service = Service::start();
+    let problem = service.post("/v1/verify", &json!({"scenario": small()}));
+    assert_eq!(
+        problem.expect_problem(422, "invalid_input")["errors"][0]["pointer"],
+        "/plan"
+    );
+    let problem = service.post("/v1/verify", &json!({"scenario": small(), "plan": {}}));
+    let problem = problem.expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/plan/total_time_s");
+    let problem = service.post("/v1/verify", &json!({"scenario": {}, "plan": {}}));
+    let problem = problem.expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/scenario/spacecraft");
+}

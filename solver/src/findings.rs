@@ -4,7 +4,7 @@
 //! a value that it cannot use, so that one fault neither hides nor invents another.
 
 use crate::problem::{Code, Problem};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Problems and warnings, in the order in which they were found.
 #[derive(Debug, Default)]
@@ -79,6 +79,15 @@ impl Findings {
             all &= self.finite(&format!("{pointer}/{i}"), value).is_some();
         }
         all.then_some(values)
+    }
+
+    /// A finite matrix, given by rows; each fault points at its entry.
+    pub(crate) fn matrix(&mut self, pointer: &str, rows: &[[f64; 3]; 3]) -> Option<Matrix3<f64>> {
+        let mut finite = true;
+        for (i, row) in rows.iter().enumerate() {
+            finite &= self.finite_all(&format!("{pointer}/{i}"), *row).is_some();
+        }
+        finite.then(|| Matrix3::from_fn(|i, j| rows[i][j]))
     }
 
     /// A finite vector.

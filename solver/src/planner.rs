@@ -72,10 +72,8 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    let pairs = tour_pairs(&places);
     let mut solver = LegSolver::new(&places, run, &stop);
-    let rest = solver.table(LegKind::RestToRest, &pairs);
-    let free = solver.table(LegKind::LowerBound, &pairs);
+    let (rest, free) = solver.tour_tables(&tour_pairs(&places));
     let tours = Tours::new(&places, &rest, &free, &stop);
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,
@@ -93,10 +91,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         threads: run.pool.threads(),
     };
     match &found.best {
-        Some(best) => {
-            let best = best.clone();
-            conclude(&tours, &best, &found, statistics, run)
-        }
+        Some(best) => conclude(&tours, best, &found, statistics, run),
         None if stop.is_set() => Outcome::StoppedEmpty,
         None => Outcome::Failed(unsolved(&tours)),
     }
@@ -111,10 +106,8 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
 pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    let pairs = tour_pairs(&places);
     let mut solver = LegSolver::new(&places, run, &stop);
-    let rest = solver.table(LegKind::RestToRest, &pairs);
-    let free = solver.table(LegKind::LowerBound, &pairs);
+    let (rest, free) = solver.tour_tables(&tour_pairs(&places));
     let tours = Tours::new(&places, &rest, &free, &stop);
     let orders = (1..=scenario.targets().len()).product();
     exhaustive(&tours, orders, run.pool)

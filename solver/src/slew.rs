@@ -48,8 +48,8 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
     let mut solves = 0;
     for guess in guesses(slew) {
         let mut to = slew.to.clone();
-        if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), slew.arrival) {
-            to.attitude = to.attitude.nearest_sign(last);
+        if let Some(last) = guess.attitudes.last() {
+            to.attitude = slew.arrival.signed(&to.attitude, last);
         }
         let waypoints = [slew.from.clone(), to];
         let flown = fly(slew.dynamics, &waypoints, &[INTERVALS], &guess, stop);
@@ -68,11 +68,9 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
 impl SlewProblem<'_> {
     /// The slew about the eigenaxis, the short way round unless the sign says otherwise.
     pub(crate) fn eigenaxis(&self) -> EigenaxisSlew {
-        let target = match self.arrival {
-            Arrival::Rotation => self.to.attitude.nearest_sign(&self.from.attitude),
-            Arrival::Quaternion => self.to.attitude,
-        };
-        EigenaxisSlew::fastest(self.dynamics, &self.from.attitude, &target, self.null)
+        let from = &self.from.attitude;
+        let target = self.arrival.signed(&self.to.attitude, from);
+        EigenaxisSlew::fastest(self.dynamics, from, &target, self.null)
     }
 }
 

@@ -149,16 +149,7 @@ fn mrp(s: [f64; 3], pointer: &str, findings: &mut Findings) -> Option<Attitude> 
 }
 
 fn matrix(rows: &[[f64; 3]; 3], pointer: &str, findings: &mut Findings) -> Option<Attitude> {
-    let mut finite = true;
-    for (i, row) in rows.iter().enumerate() {
-        finite &= findings
-            .finite_all(&format!("{pointer}/{i}"), *row)
-            .is_some();
-    }
-    if !finite {
-        return None;
-    }
-    let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
+    let matrix = findings.matrix(pointer, rows)?;
     let deviation = (matrix.transpose() * matrix - Matrix3::identity()).amax();
     let determinant = matrix.determinant();
     // Written so that an overflow to NaN is refused as well.

@@ -14,11 +14,11 @@ use crate::profile::Profile;
 use crate::progress::{Progress, Stage};
 use crate::scenario::RateCondition;
 use crate::sequence::Place;
-use crate::slew::{self, kinematic::Arrival};
+use crate::slew;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
 use nalgebra::{DVector, Vector3};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -120,14 +120,18 @@ impl<'a> LegSolver<'a> {
         }
     }
 
+    /// The tables of a tour: rest-to-rest legs to start from, legs with free ends for bounds.
+    pub(super) fn tour_tables(&mut self, pairs: &[(Place, Place)]) -> (LegTable, LegTable) {
+        let rest = self.table(LegKind::RestToRest, pairs);
+        (rest, self.table(LegKind::LowerBound, pairs))
+    }
+
     fn solve_missing(&mut self, kind: LegKind, canonical: &[CanonicalLeg]) {
-        let mut missing: Vec<&CanonicalLeg> = Vec::new();
-        for leg in canonical {
-            let listed = missing.iter().any(|other| other.identity == leg.identity);
-            if !listed && !self.known.contains_key(&leg.identity) {
-                missing.push(leg);
-            }
-        }
+        let mut listed = HashSet::new();
+        let missing: Vec<&CanonicalLeg> = canonical
+            .iter()
+            .filter(|leg| !self.known.contains_key(&leg.identity) && listed.insert(&leg.identity))
+            .collect();
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
         let solved = self.run.pool.map(&missing, |leg| {
@@ -192,10 +196,7 @@ fn solve(leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLeg {
 /// The leg between two equal rests: nothing moves and no time passes.
 fn standstill(leg: &slew::SlewProblem<'_>) -> Option<Flown> {
     let (from, to) = (leg.from, leg.to);
-    let turn = match leg.arrival {
-        Arrival::Rotation => from.attitude.angle_to(&to.attitude),
-        Arrival::Quaternion => from.attitude.signed_turn_to(&to.attitude).norm(),
-    };
+    let turn = leg.arrival.turn(&from.attitude, &to.attitude);
     let same = turn <= SAME_ATTITUDE && from.rate == to.rate && from.wheels == to.wheels;
     let still = from
         .rate

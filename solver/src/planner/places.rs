@@ -130,10 +130,7 @@ impl<'a> Places<'a> {
     /// Whether two places are one waypoint: the same attitude under the same conditions.
     pub(super) fn coincide(&self, one: Place, other: Place) -> bool {
         let (one, other) = (self.waypoint(one), self.waypoint(other));
-        let turn = match self.arrival {
-            Arrival::Rotation => one.attitude.angle_to(&other.attitude),
-            Arrival::Quaternion => one.attitude.signed_turn_to(&other.attitude).norm(),
-        };
+        let turn = self.arrival.turn(&one.attitude, &other.attitude);
         turn <= SAME_ATTITUDE && one.rate == other.rate && one.wheels == other.wheels
     }
 

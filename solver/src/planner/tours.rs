@@ -12,7 +12,6 @@ use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 use crate::slew::INTERVALS;
 use crate::slew::eigenaxis::Side;
-use crate::slew::kinematic::Arrival;
 use crate::stop::StopSignal;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -168,8 +167,8 @@ impl<'a> Tours<'a> {
             });
             guess.append(&next);
             let mut arrived = to;
-            if let (Some(last), Arrival::Rotation) = (guess.attitudes.last(), self.places.arrival) {
-                arrived.attitude = arrived.attitude.nearest_sign(last);
+            if let Some(last) = guess.attitudes.last() {
+                arrived.attitude = self.places.arrival.signed(&arrived.attitude, last);
             }
             waypoints.push(arrived);
         }

@@ -31,6 +31,21 @@ pub(crate) enum Arrival {
     Quaternion,
 }
 
+impl Arrival {
+    /// The attitude with the sign to arrive at from near another one.
+    pub(crate) fn signed(self, attitude: &Attitude, near: &Attitude) -> Attitude {
+        match self {
+            Self::Rotation => attitude.nearest_sign(near),
+            Self::Quaternion => *attitude,
+        }
+    }
+
+    /// The turn between two attitudes as far as signs count, rad.
+    pub(crate) fn turn(self, from: &Attitude, to: &Attitude) -> f64 {
+        from.signed_turn_to(&self.signed(to, from)).norm()
+    }
+}
+
 #[derive(Debug, Clone, Copy, Default)]
 struct Arc {
     rate: Vector3<f64>,

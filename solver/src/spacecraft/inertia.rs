@@ -18,16 +18,7 @@ pub(super) fn read(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<Matrix3<f64>> {
-    let mut finite = true;
-    for (i, row) in rows.iter().enumerate() {
-        finite &= findings
-            .finite_all(&format!("{pointer}/{i}"), *row)
-            .is_some();
-    }
-    if !finite {
-        return None;
-    }
-    let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
+    let matrix = findings.matrix(pointer, rows)?;
     let symmetric = symmetrised(&matrix, pointer, findings)?;
     let [smallest, middle, largest] = principal_moments(&symmetric);
     if smallest <= DEFINITENESS_THRESHOLD * largest.abs() {

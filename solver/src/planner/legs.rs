@@ -144,8 +144,10 @@ impl<'a> LegSolver<'a> {
             let solved = found.or_else(|| (!self.stop.is_set()).then(|| solve(leg, self.stop)));
             if let (Some(fresh), false) = (&solved, from_store)
                 && fresh.flown.status == NlpStatus::Converged
+                && !self.stop.is_set()
             {
-                // At once, so that a solve that is killed has not worked in vain.
+                // At once, so that a solve that is killed has not worked in vain; but not when
+                // stopped, since then perhaps not all starts have been tried.
                 self.run.legs.put(&leg.identity, &stored(leg, kind, fresh));
             }
             self.run.observer.progress(Progress {

@@ -4,6 +4,7 @@
 //! finds out at its end that somebody else wrote meanwhile; no transaction is open while anything
 //! is computed or sent.
 
+mod claims;
 mod error;
 mod events;
 mod jobs;
@@ -11,12 +12,15 @@ mod legs;
 mod results;
 mod rows;
 mod spacecraft;
+#[cfg(test)]
+mod tests;
 
+pub(crate) use claims::Claim;
 pub(crate) use error::StoreError;
 pub(crate) use events::EventRow;
-pub(crate) use jobs::{Claim, Listing, Submission, Submitted};
+pub(crate) use jobs::{Listing, Submission, Submitted};
 pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
-pub(crate) use results::ResultRow;
+pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
 pub(crate) use spacecraft::SpacecraftRow;
 

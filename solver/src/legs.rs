@@ -39,6 +39,8 @@ pub struct StoredLeg {
     pub turn_xyzw: [f64; 4],
     /// Total momentum in body axes at the beginning, N m s.
     pub body_momentum_nms: [f64; 3],
+    /// Whether it can be flown backwards, and so is the leg from its end to its begin too.
+    pub reversible: bool,
     /// Minimum time, s.
     pub duration_s: f64,
     /// How the solve ended; only `converged` legs are stored.

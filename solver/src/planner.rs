@@ -2,24 +2,23 @@
 
 mod assemble;
 mod canonical;
+mod conclude;
 mod legs;
 mod places;
 mod tours;
 
-use crate::checker;
 use crate::legs::{LegKind, LegStore};
 use crate::nlp::NlpStatus;
-use crate::plan::{Alternative, LowerBoundKind, Optimality, Outcome, Plan, Statistics};
+use crate::plan::Outcome;
 use crate::pool::SolverPool;
 use crate::problem::{Code, Problem};
-use crate::progress::{Observer, Progress, Stage};
+use crate::progress::Observer;
 use crate::scenario::Scenario;
-use crate::sequence::{FlownOrder, Place, SearchResult, SearchSettings, exhaustive, search};
+use crate::sequence::{FlownOrder, Place, SearchSettings, exhaustive, search};
 use crate::stop::StopSignal;
-use assemble::assemble;
+use conclude::Conclusions;
 use legs::LegSolver;
 use places::Places;
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use tours::Tours;
 
@@ -81,17 +80,10 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         node_limit: scenario.options().node_limit,
         ..SearchSettings::default()
     };
-    let found = search(&tours, &settings, run.pool, &stop, run.observer);
-    let statistics = Statistics {
-        wall_time_s: begin.elapsed().as_secs_f64(),
-        nodes_explored: found.statistics.nodes_explored,
-        nlp_solves: solver.nlp_solves + tours.solves.load(Ordering::Relaxed),
-        legs_solved: solver.solved,
-        legs_from_cache: solver.from_store,
-        threads: run.pool.threads(),
-    };
+    let conclusions = Conclusions::new(&tours, &solver, run, begin);
+    let found = search(&tours, &settings, run.pool, &stop, &conclusions);
     match &found.best {
-        Some(best) => conclude(&tours, best, &found, statistics, run),
+        Some(best) => conclusions.outcome(best, &found),
         None if stop.is_set() => Outcome::StoppedEmpty,
         None => Outcome::Failed(unsolved(&tours)),
     }
@@ -177,82 +169,6 @@ fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
         .filter(|(from, to)| from != to && *from != Place::End && *to != Place::Start)
         .filter(|(from, to)| alone || !(*from == Place::Start && *to == Place::End))
         .collect()
-}
-
-/// Flies the best order once more for its torques, verifies it and reports.
-fn conclude(
-    tours: &Tours<'_>,
-    best: &FlownOrder,
-    found: &SearchResult,
-    statistics: Statistics,
-    run: Run<'_>,
-) -> Outcome {
-    let scenario = tours.places.scenario;
-    let route = tours.route(&best.order, true);
-    // Every segment is remembered from the search: nothing is solved here.
-    let (flight, legs) = assemble(tours, &route, &tours.fly_route(&route));
-    run.observer.progress(Progress {
-        stage: Stage::Verify,
-        done: 0,
-        total: None,
-        incumbent_s: Some(best.duration_s),
-        lower_bound_s: Some(found.lower_bound_s),
-    });
-    let report = checker::verify(scenario, &flight);
-    if !report.verification.passed {
-        let message = report.verification.failures.join("; ");
-        let hint = "report the scenario: a plan that does not fly is a defect of the solver";
-        return Outcome::Failed(vec![Problem::new(
-            "",
-            Code::VerificationFailed,
-            message,
-            hint,
-        )]);
-    }
-    let total = flight.total_time_s;
-    let bound = found.lower_bound_s.min(total);
-    let name = |i: &usize| scenario.targets()[*i].id.clone();
-    let proven = found.best_is_proven(scenario.options().relative_gap);
-    Outcome::Planned(Box::new(Plan {
-        optimality: if proven {
-            Optimality::Optimal
-        } else {
-            Optimality::Feasible
-        },
-        total_time_s: total,
-        lower_bound_s: bound,
-        relative_gap: if total > 0.0 {
-            (total - bound) / total
-        } else {
-            0.0
-        },
-        lower_bound_kind: LowerBoundKind::NlpRelaxation,
-        alternatives: found
-            .alternatives
-            .iter()
-            .map(|other| Alternative {
-                sequence: other.order.iter().map(name).collect(),
-                total_time_s: other.duration_s,
-            })
-            .collect(),
-        legs,
-        flight,
-        states: report.states,
-        margins: report.margins,
-        verification: report.verification,
-        statistics,
-        warnings: doubts(found).into_iter().chain(report.keep_out).collect(),
-    }))
-}
-
-/// What the search itself casts doubt on.
-fn doubts(found: &SearchResult) -> Option<Problem> {
-    let count = found.statistics.bounds_contradicted;
-    (count > 0).then(|| {
-        let message = format!("{count} orders were flown faster than a lower bound had allowed");
-        let hint = "take the bound as an estimate: a relaxed problem ended in a local minimum";
-        Problem::new("", Code::BoundContradicted, message, hint)
-    })
 }
 
 /// Why no order could be flown: the legs that found no solution.

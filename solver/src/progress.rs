@@ -1,5 +1,7 @@
 //! Progress as an injected observer.
 
+use crate::plan::Plan;
+
 /// What a solve is busy with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
@@ -53,6 +55,13 @@ impl Progress {
 pub trait Observer: Sync {
     /// Called at every step worth showing; must return quickly.
     fn progress(&self, progress: Progress);
+
+    /// Called whenever a better order has been found and the search goes on: its plan, verified,
+    /// `feasible`, with the bound of that moment. The progress that tells of it comes after. The
+    /// search waits meanwhile: must return quickly.
+    fn incumbent(&self, plan: &Plan) {
+        let _ = plan;
+    }
 }
 
 /// An observer that ignores everything.

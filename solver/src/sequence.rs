@@ -51,6 +51,7 @@ pub use exhaustive::exhaustive;
 pub use search::search;
 pub use table::PairTable;
 
+use crate::progress::Progress;
 use crate::stop::StopReason;
 
 /// Where a leg begins or ends.
@@ -110,6 +111,29 @@ pub trait TourModel: Sync {
 
     /// Flies a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
+}
+
+/// Told how a search goes, between its rounds.
+pub trait SearchObserver: Sync {
+    /// How it stands.
+    fn progress(&self, progress: Progress);
+
+    /// A better order than all before has been flown, and the search goes on. Comes before the
+    /// progress that tells its duration, at most once in a round.
+    fn improved(&self, incumbent: &Incumbent<'_>);
+}
+
+/// The best of a search that goes on.
+#[derive(Debug, Clone, Copy)]
+pub struct Incumbent<'a> {
+    /// The best order.
+    pub best: &'a FlownOrder,
+    /// The next best orders.
+    pub alternatives: &'a [FlownOrder],
+    /// No order lasts less, s, provided that the model's bounds are admissible.
+    pub lower_bound_s: f64,
+    /// The work so far.
+    pub statistics: SearchStatistics,
 }
 
 /// What to search for, and how long.

@@ -79,6 +79,65 @@ fn a_plan_leaves_its_legs_for_a_query() {
     assert_eq!(none["legs"], json!([]));
 }
 
+/// Keys of the legs between two attitudes, quaternions `x,y,z,w`.
+fn found_between(service: &Service, from: &str, to: &str) -> Vec<String> {
+    let page = service
+        .get(&format!("/v1/legs?from={from}&attitude={to}"))
+        .expect(200)
+        .json();
+    let legs = page["legs"].as_array().expect("a list");
+    legs.iter()
+        .map(|leg| leg["key"].as_str().expect("a key").to_owned())
+        .collect()
+}
+
+#[test]
+fn a_leg_is_listed_by_the_attitudes_at_its_ends_from_either_side_where_that_is_valid() {
+    let service = Service::start();
+    // A turn of 60 degrees about x, begun 90 degrees about z away from the reference.
+    let ends = [
+        "0,0,0.707106781,0.707106781",
+        "0.353553391,0.353553391,0.612372436,0.612372436",
+    ];
+    let place = |text: &str| {
+        let parts: Vec<f64> = text
+            .split(',')
+            .map(|part| part.parse().expect("a number"))
+            .collect();
+        json!({"quaternion": {"x": parts[0], "y": parts[1], "z": parts[2], "w": parts[3]}})
+    };
+    let mut query = json!({
+        "spacecraft": small()["spacecraft"], "mode": "compute",
+        "pairs": [{"from": place(ends[0]), "to": place(ends[1])}],
+    });
+    let computed = |query: &Value| {
+        let answer = service.post("/v1/legs/query", query).expect(200).json();
+        assert_eq!(sources(&answer), ["computed"]);
+        answer["legs"][0]["key"].as_str().expect("a key").to_owned()
+    };
+    let symmetric = computed(&query);
+    for (from, to) in [(ends[0], ends[1]), (ends[1], ends[0])] {
+        assert_eq!(found_between(&service, from, to), [symmetric.as_str()]);
+    }
+    // The turn alone, seen from the identity; not the absolute attitude of an end.
+    assert_eq!(
+        found_between(&service, "0,0,0,1", "0.5,0,0,0.866025404"),
+        [symmetric.as_str()]
+    );
+    assert_eq!(found_between(&service, "0,0,0,1", ends[1]), [""; 0]);
+
+    // With stored momentum the way back is another leg.
+    query["start"] = json!({"attitude": place("0,0,0,1"), "wheel_speed_rad_s": [30, 20, 10]});
+    let forth = computed(&query);
+    query["pairs"] = json!([{"from": place(ends[1]), "to": place(ends[0])}]);
+    let back = computed(&query);
+    assert_eq!(
+        found_between(&service, ends[0], ends[1]),
+        [symmetric.clone(), forth]
+    );
+    assert_eq!(found_between(&service, ends[1], ends[0]), [symmetric, back]);
+}
+
 #[test]
 fn wrong_queries_are_refused_with_pointers() {
     let service = Service::start();
@@ -124,6 +183,7 @@ fn wrong_queries_are_refused_with_pointers() {
         .expect_problem(404, "not_found");
     for wrong in [
         "attitude=1,2",
+        "from=1,2,3",
         "tolerance_deg=-1",
         "limit=0",
         "spacecraft_key=x",
@@ -132,4 +192,13 @@ fn wrong_queries_are_refused_with_pointers() {
             .get(&format!("/v1/legs?{wrong}"))
             .expect_problem(400, "invalid_parameter");
     }
+    service
+        .get("/v1/legs?attitude=0,0,0,0")
+        .expect_problem(422, "invalid_input");
+    let mut unknown = json!({"attitudes": [attitude(0.0, 0.0), attitude(1.0, 0.0)]});
+    unknown["spacecraft"] = json!({"ref": "nowhere"});
+    let problem = service
+        .post("/v1/legs/query", &unknown)
+        .expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/spacecraft/ref");
 }

@@ -1,5 +1,6 @@
 //! The service as a caller sees it: every route with its success and its errors.
 
+mod best_so_far;
 mod client;
 mod durability;
 mod events;

@@ -38,4 +38,15 @@ fn what_cannot_be_flown_is_refused_with_pointers() {
     let problem = service.post("/v1/verify", &json!({"scenario": {}, "plan": {}}));
     let problem = problem.expect_problem(422, "invalid_input");
     assert_eq!(problem["errors"][0]["pointer"], "/scenario/spacecraft");
+    let mut unknown = small();
+    unknown["spacecraft"] = json!({"ref": "nowhere"});
+    let problem = service.post("/v1/verify", &json!({"scenario": unknown, "plan": {}}));
+    let problem = problem.expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/scenario/spacecraft/ref");
+    assert_eq!(problem["errors"][0]["code"], "unknown_reference");
+    let mut misspelt = small();
+    misspelt["spacecraft"] = json!({"ref": 7});
+    let problem = service.post("/v1/verify", &json!({"scenario": misspelt, "plan": {}}));
+    let problem = problem.expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/scenario/spacecraft/ref");
 }

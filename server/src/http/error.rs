@@ -50,7 +50,7 @@ error_codes! {
     NotAcceptable = "not_acceptable", NOT_ACCEPTABLE, "The answer has none of the accepted forms";
     NotRunning = "not_running", CONFLICT, "The job has not begun yet";
     JobHasEnded = "job_has_ended", CONFLICT, "The job has ended before";
-    ResultNotReady = "result_not_ready", CONFLICT, "The job has no result yet";
+    ResultNotReady = "result_not_ready", CONFLICT, "The job has no plan yet";
     NoResult = "no_result", CONFLICT, "The job ended without such a result";
     BodyTooLarge = "body_too_large", PAYLOAD_TOO_LARGE, "The body is too large";
     TooManyTargets = "too_many_targets", PAYLOAD_TOO_LARGE, "The scenario has too many targets";

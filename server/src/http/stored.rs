@@ -8,8 +8,13 @@ use slewplan_solver::problem::{Code, Problem};
 
 /// Replaces `{"ref": name}` or `{"ref": name, "version": n}` under `spacecraft` by the stored
 /// document; the tree is unchanged when there is none. The flag tells whether there was one.
-pub(super) async fn write_out(app: &App, node: Node) -> Result<(Node, bool), ApiError> {
-    let Some((name, version)) = reference(&node)? else {
+/// Problems point below the place of the tree in the request.
+pub(super) async fn write_out(
+    app: &App,
+    node: Node,
+    place: &str,
+) -> Result<(Node, bool), ApiError> {
+    let Some((name, version)) = reference(&node, place)? else {
         return Ok((node, false));
     };
     let found = app.store().spacecraft(&name, version).await?;
@@ -19,7 +24,7 @@ pub(super) async fn write_out(app: &App, node: Node) -> Result<(Node, bool), Api
             None => format!("the spacecraft {name:?}"),
         };
         return Err(ApiError::input(vec![Problem::new(
-            "/spacecraft/ref",
+            format!("{place}/spacecraft/ref"),
             Code::UnknownReference,
             format!("{what} is not stored here"),
             "store it with PUT /v1/spacecraft/{name}, or write it out in the scenario",
@@ -30,9 +35,9 @@ pub(super) async fn write_out(app: &App, node: Node) -> Result<(Node, bool), Api
     Ok((replaced(node, stored), true))
 }
 
-fn reference(node: &Node) -> Result<Option<(String, Option<i64>)>, ApiError> {
+fn reference(node: &Node, place: &str) -> Result<Option<(String, Option<i64>)>, ApiError> {
     let sink = Sink::default();
-    let found = Cursor::root(node, &sink)
+    let found = Cursor::at(node, place, &sink)
         .member("spacecraft")
         .filter(|spacecraft| spacecraft.member("ref").is_some())
         .and_then(|spacecraft| {

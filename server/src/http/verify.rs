@@ -25,7 +25,7 @@ use slewplan_solver::problem::Problem;
 )]
 pub(super) async fn handler(State(app): State<App>, body: JsonBody) -> Result<Response, ApiError> {
     let (scenario, plan) = parts(body.node)?;
-    let (scenario, _) = stored::write_out(&app, scenario).await?;
+    let (scenario, _) = stored::write_out(&app, scenario, "/scenario").await?;
     // Integrating a long flight takes long, and the answer borrows from what it integrates.
     let work = tokio::task::spawn_blocking(move || verify(&scenario, &plan));
     let json = work.await.map_err(|error| {

@@ -2,44 +2,96 @@
 
 use super::Jobs;
 use crate::clock::now_us;
-use crate::store::{JobRow, ProgressRow};
+use crate::store::{JobRow, NewIncumbent, ProgressRow};
+use crate::wire;
+use slewplan_solver::plan::Plan;
+use slewplan_solver::problem::Problem;
 use slewplan_solver::progress::{Observer, Progress};
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch;
 
 /// Time between two recorded events of a job: what comes faster is dropped except for the newest.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Keeps the newest progress for the recorder; never waits.
-pub(super) struct Reporter(watch::Sender<Option<Progress>>);
+/// The newest of a solve.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Report {
+    progress: Option<Progress>,
+    incumbent: Option<Arc<NewIncumbent>>,
+}
+
+/// Keeps the newest progress and plan for the recorder; never waits.
+pub(super) struct Reporter(watch::Sender<Report>);
 
 impl Reporter {
     /// A reporter and where its reports arrive.
-    pub(super) fn new() -> (Self, watch::Receiver<Option<Progress>>) {
-        let (sender, receiver) = watch::channel(None);
+    pub(super) fn new() -> (Self, watch::Receiver<Report>) {
+        let (sender, receiver) = watch::channel(Report::default());
         (Self(sender), receiver)
+    }
+
+    /// The observer of the solve of a scenario about which there are doubts.
+    pub(super) fn observer<'a>(&'a self, doubts: &'a [Problem]) -> impl Observer + use<'a> {
+        Watch {
+            reports: &self.0,
+            doubts,
+        }
     }
 }
 
-impl Observer for Reporter {
+struct Watch<'a> {
+    reports: &'a watch::Sender<Report>,
+    doubts: &'a [Problem],
+}
+
+impl Observer for Watch<'_> {
     fn progress(&self, progress: Progress) {
-        self.0.send_replace(Some(progress));
+        self.reports
+            .send_modify(|report| report.progress = Some(progress));
+    }
+
+    fn incumbent(&self, plan: &Plan) {
+        let document = match serde_json::to_vec(&wire::plan::plan(plan, self.doubts)) {
+            Ok(document) => document,
+            Err(error) => return tracing::error!(%error, "the best plan so far cannot be written"),
+        };
+        let incumbent = Arc::new(NewIncumbent {
+            document,
+            total_time_s: plan.total_time_s,
+            lower_bound_s: plan.lower_bound_s,
+        });
+        // The progress that tells of it wakes the recorder: both are recorded together.
+        self.reports.send_if_modified(|report| {
+            report.incumbent = Some(incumbent);
+            false
+        });
     }
 }
 
 /// Records reports until the reporter is dropped or the claim is lost.
-pub(super) async fn record(
-    jobs: Jobs,
-    claim: JobRow,
-    mut reports: watch::Receiver<Option<Progress>>,
-) {
+pub(super) async fn record(jobs: Jobs, claim: JobRow, mut reports: watch::Receiver<Report>) {
     let mut recorded = None;
+    let mut kept: Option<Arc<NewIncumbent>> = None;
     loop {
         let open = reports.changed().await.is_ok();
-        let newest = reports.borrow_and_update().as_ref().map(row);
+        let Report {
+            progress,
+            incumbent,
+        } = reports.borrow_and_update().clone();
+        let newest = progress.as_ref().map(row);
         if let Some(progress) = newest.filter(|row| recorded.as_ref() != Some(row)) {
-            match jobs.store().progress(&claim, &progress, now_us()).await {
-                Ok(true) => jobs.changed(),
+            // Written once, and again after a failure.
+            let fresh =
+                incumbent.filter(|plan| !kept.as_ref().is_some_and(|k| Arc::ptr_eq(k, plan)));
+            let written = jobs
+                .store()
+                .progress(&claim, &progress, fresh.as_deref(), now_us());
+            match written.await {
+                Ok(true) => {
+                    kept = fresh.or(kept);
+                    jobs.changed();
+                }
                 Ok(false) => return,
                 Err(error) => tracing::warn!(job_id = claim.id, %error, "progress not recorded"),
             }

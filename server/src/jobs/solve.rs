@@ -1,17 +1,32 @@
 //! One job from its scenario to how it ended.
 
+use super::progress::Reporter;
 use crate::store::{Ended, JobState};
 use crate::wire;
+use slewplan_solver::legs::LegStore;
 use slewplan_solver::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::planner::{self, Run};
+use slewplan_solver::pool::SolverPool;
 use slewplan_solver::problem::Problem;
 use slewplan_solver::scenario::Validated;
-use slewplan_solver::stop::StopReason;
+use slewplan_solver::stop::{StopReason, StopSignal};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+/// What a job is solved with.
+pub(super) struct Means<'a> {
+    /// Where the work is done.
+    pub(super) pool: &'a SolverPool,
+    /// Requests of callers.
+    pub(super) stop: &'a StopSignal,
+    /// Told about progress and better plans.
+    pub(super) reporter: &'a Reporter,
+    /// The remembered legs.
+    pub(super) legs: &'a dyn LegStore,
+}
+
 /// Solves a scenario as stored. A panic costs this job and no other.
-pub(super) fn solve(scenario: &[u8], run: Run<'_>) -> Ended {
-    catch_unwind(AssertUnwindSafe(|| attempt(scenario, run))).unwrap_or_else(|_| {
+pub(super) fn solve(scenario: &[u8], means: &Means<'_>) -> Ended {
+    catch_unwind(AssertUnwindSafe(|| attempt(scenario, means))).unwrap_or_else(|_| {
         without_plan(
             JobState::Failed,
             "an internal error ended the solve; please report the scenario",
@@ -19,11 +34,18 @@ pub(super) fn solve(scenario: &[u8], run: Run<'_>) -> Ended {
     })
 }
 
-fn attempt(scenario: &[u8], run: Run<'_>) -> Ended {
+fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
     let Validated { scenario, warnings } = match wire::scenario::read(scenario, None) {
         Ok(valid) => valid,
         // It was valid when it was accepted: another version of the program reads it now.
         Err(problems) => return without_plan(JobState::Failed, &sentence(&problems)),
+    };
+    let observer = means.reporter.observer(&warnings);
+    let run = Run {
+        pool: means.pool,
+        stop: means.stop,
+        observer: &observer,
+        legs: means.legs,
     };
     let outcome = planner::solve(&scenario, run);
     if run.stop.reason() == Some(StopReason::Cancelled) {
@@ -46,9 +68,10 @@ fn described(outcome: &Outcome) -> Ended {
         Outcome::Planned(plan) => planned(plan),
         Outcome::Infeasible(reasons) => without_plan(JobState::Infeasible, &sentence(reasons)),
         Outcome::Failed(reasons) => without_plan(JobState::Failed, &sentence(reasons)),
-        Outcome::StoppedEmpty => {
-            without_plan(JobState::Failed, "stopped before a first plan was found")
-        }
+        Outcome::StoppedEmpty => Ended {
+            early: true,
+            ..without_plan(JobState::Failed, "stopped before a first plan was found")
+        },
     }
 }
 
@@ -62,6 +85,7 @@ fn planned(plan: &Plan) -> Ended {
         incumbent_s: Some(plan.total_time_s),
         lower_bound_s: Some(plan.lower_bound_s),
         detail: None,
+        early: plan.optimality == Optimality::Feasible,
     }
 }
 
@@ -72,6 +96,7 @@ fn without_plan(state: JobState, detail: &str) -> Ended {
         incumbent_s: None,
         lower_bound_s: None,
         detail: Some(detail.to_owned()),
+        early: false,
     }
 }
 

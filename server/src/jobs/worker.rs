@@ -4,10 +4,10 @@
 //! reached through the handle of the runtime; nothing is computed on the runtime's threads.
 
 use super::progress::{Reporter, record};
-use super::{Active, Jobs, solve};
+use super::solve::{self, Means};
+use super::{Active, Jobs};
 use crate::clock::now_us;
 use crate::store::{Claim, Ended, JobRow, JobState, StoreError};
-use slewplan_solver::planner::Run;
 use slewplan_solver::pool::SolverPool;
 use slewplan_solver::stop::StopSignal;
 use std::io;
@@ -134,13 +134,13 @@ impl Bench {
             .runtime
             .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
         let legs = self.jobs.legs(self.runtime.clone());
-        let run = Run {
+        let means = Means {
             pool: &self.pool,
             stop: &stop,
-            observer: &reporter,
+            reporter: &reporter,
             legs: &legs,
         };
-        let ended = solve::solve(&claim.scenario, run);
+        let ended = solve::solve(&claim.scenario, &means);
         // Legs are written before the end is told: whoever asks then finds them.
         drop(legs);
         drop(reporter);

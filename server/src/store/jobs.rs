@@ -1,14 +1,8 @@
-//! The queue and the life of a job.
-//!
-//! A claim carries a number, its fence. Whatever a claim writes later is written only while it is
-//! still the newest one: a worker that was taken for dead cannot overwrite its successor.
+//! Jobs as their callers see them: submitted, read, asked to end, deleted.
 
 use super::rows::job_columns;
-use super::{Counts, Ended, JobRow, JobState, ProgressRow, Store, StoreError, events, results};
-use sqlx::{FromRow, Row, SqliteConnection};
-
-/// Attempts after which a job whose process dies each time is given up.
-const MOST_ATTEMPTS: i64 = 3;
+use super::{Counts, JobRow, JobState, Store, StoreError, events};
+use sqlx::{FromRow, Row, Sqlite, SqliteConnection, Transaction};
 
 /// A job to be queued.
 #[derive(Debug)]
@@ -36,26 +30,6 @@ pub(crate) enum Submitted {
     KeyReused,
     /// Too many jobs wait already.
     QueueFull,
-}
-
-/// A job that this process works on.
-#[derive(Debug)]
-pub(crate) struct Claim {
-    /// The job as claimed.
-    pub(crate) job: JobRow,
-    /// Its scenario as JSON.
-    pub(crate) scenario: Vec<u8>,
-}
-
-/// What became of jobs whose process has died.
-#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Recovered {
-    /// Queued again.
-    pub(crate) queued: usize,
-    /// Had been cancelled.
-    pub(crate) cancelled: usize,
-    /// Given up.
-    pub(crate) dead: usize,
 }
 
 /// Which jobs to list.
@@ -125,204 +99,15 @@ impl Store {
         Ok(Submitted::New(job))
     }
 
-    /// Claims the job that waits longest.
-    pub(crate) async fn claim(
-        &self,
-        boot_id: &str,
-        lease_until_us: i64,
-        now_us: i64,
-    ) -> Result<Option<Claim>, StoreError> {
-        let mut transaction = self.begin().await?;
-        let row = sqlx::query(concat!(
-            "UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, \
-             boot_id = ?, lease_until_us = ?, started_us = ?, stage = NULL, done = NULL, \
-             total = NULL, incumbent_s = NULL, lower_bound_s = NULL WHERE sequence = \
-             (SELECT sequence FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1) \
-             RETURNING scenario, ",
-            job_columns!()
-        ))
-        .bind(boot_id)
-        .bind(lease_until_us)
-        .bind(now_us)
-        .fetch_optional(&mut *transaction)
-        .await?;
-        let Some(row) = row else {
-            return Ok(None);
-        };
-        let claim = Claim {
-            job: JobRow::of(&row)?,
-            scenario: row.try_get("scenario")?,
-        };
-        events::append(&mut transaction, "state", &claim.job, now_us).await?;
-        transaction.commit().await?;
-        Ok(Some(claim))
-    }
-
-    /// Prolongs the lease of a claim; `false` when it has been lost.
-    pub(crate) async fn beat(
-        &self,
-        claim: &JobRow,
-        lease_until_us: i64,
-    ) -> Result<bool, StoreError> {
-        let done = sqlx::query(
-            "UPDATE jobs SET lease_until_us = ? \
-             WHERE sequence = ? AND fence = ? AND state = 'running'",
-        )
-        .bind(lease_until_us)
-        .bind(claim.sequence)
-        .bind(claim.fence)
-        .execute(&self.writer)
-        .await?;
-        Ok(done.rows_affected() > 0)
-    }
-
-    /// Records progress with its event; `false` when the claim has been lost.
-    pub(crate) async fn progress(
-        &self,
-        claim: &JobRow,
-        progress: &ProgressRow,
-        now_us: i64,
-    ) -> Result<bool, StoreError> {
-        let mut transaction = self.begin().await?;
-        let row = sqlx::query(concat!(
-            "UPDATE jobs SET stage = ?, done = ?, total = ?, incumbent_s = ?, lower_bound_s = ? \
-             WHERE sequence = ? AND fence = ? AND state = 'running' RETURNING ",
-            job_columns!()
-        ))
-        .bind(progress.stage)
-        .bind(progress.done)
-        .bind(progress.total)
-        .bind(progress.incumbent_s)
-        .bind(progress.lower_bound_s)
-        .bind(claim.sequence)
-        .bind(claim.fence)
-        .fetch_optional(&mut *transaction)
-        .await?;
-        let Some(row) = row else {
-            return Ok(false);
-        };
-        events::append(&mut transaction, "progress", &JobRow::of(&row)?, now_us).await?;
-        transaction.commit().await?;
-        Ok(true)
-    }
-
-    /// Records the end of a claim: state, result and event together; `false` when it has been lost.
-    ///
-    /// A cancellation that was acknowledged meanwhile wins.
-    pub(crate) async fn finish(
-        &self,
-        claim: &JobRow,
-        ended: &Ended,
-        now_us: i64,
-    ) -> Result<bool, StoreError> {
-        let mut transaction = self.begin().await?;
-        let row = sqlx::query(concat!(
-            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN ? ELSE 'cancelled' \
-             END, incumbent_s = coalesce(?, incumbent_s), lower_bound_s = coalesce(?, lower_bound_s), detail = ?, finished_us = ?, \
-             boot_id = NULL, lease_until_us = NULL \
-             WHERE sequence = ? AND fence = ? AND state = 'running' RETURNING ",
-            job_columns!()
-        ))
-        .bind(ended.state.as_str())
-        .bind(ended.incumbent_s)
-        .bind(ended.lower_bound_s)
-        .bind(&ended.detail)
-        .bind(now_us)
-        .bind(claim.sequence)
-        .bind(claim.fence)
-        .fetch_optional(&mut *transaction)
-        .await?;
-        let Some(row) = row else {
-            return Ok(false);
-        };
-        let job = JobRow::of(&row)?;
-        if let Some(document) = &ended.document
-            && job.state()? != JobState::Cancelled
-        {
-            results::insert(&mut transaction, claim.sequence, document).await?;
-        }
-        events::append(&mut transaction, "state", &job, now_us).await?;
-        transaction.commit().await?;
-        Ok(true)
-    }
-
-    /// Gives a claim back unfinished; the attempt does not count.
-    pub(crate) async fn release(&self, claim: &JobRow, now_us: i64) -> Result<bool, StoreError> {
-        let mut transaction = self.begin().await?;
-        let row = sqlx::query(concat!(
-            "UPDATE jobs SET state = 'queued', attempt = attempt - 1, boot_id = NULL, \
-             lease_until_us = NULL WHERE sequence = ? AND fence = ? AND state = 'running' \
-             RETURNING ",
-            job_columns!()
-        ))
-        .bind(claim.sequence)
-        .bind(claim.fence)
-        .fetch_optional(&mut *transaction)
-        .await?;
-        let Some(row) = row else {
-            return Ok(false);
-        };
-        events::append(&mut transaction, "state", &JobRow::of(&row)?, now_us).await?;
-        transaction.commit().await?;
-        Ok(true)
-    }
-
-    /// Takes running jobs from processes that are no more: of another boot, or with their lease
-    /// run out.
-    pub(crate) async fn recover(
-        &self,
-        boot_id: &str,
-        now_us: i64,
-    ) -> Result<Recovered, StoreError> {
-        let mut transaction = self.begin().await?;
-        let rows = sqlx::query(concat!(
-            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NOT NULL THEN 'cancelled' \
-             WHEN attempt >= ?1 THEN 'dead' ELSE 'queued' END, \
-             finished_us = CASE WHEN cancel_requested_us IS NULL AND attempt < ?1 THEN NULL \
-             ELSE ?2 END, \
-             detail = CASE WHEN cancel_requested_us IS NULL AND attempt >= ?1 THEN \
-             'its process ended unexpectedly at every attempt' END, \
-             boot_id = NULL, lease_until_us = NULL \
-             WHERE state = 'running' AND (boot_id <> ?3 OR lease_until_us < ?2) RETURNING ",
-            job_columns!()
-        ))
-        .bind(MOST_ATTEMPTS)
-        .bind(now_us)
-        .bind(boot_id)
-        .fetch_all(&mut *transaction)
-        .await?;
-        let mut recovered = Recovered::default();
-        for row in &rows {
-            let job = JobRow::of(row)?;
-            match job.state()? {
-                JobState::Queued => recovered.queued += 1,
-                JobState::Cancelled => recovered.cancelled += 1,
-                _ => recovered.dead += 1,
-            }
-            events::append(&mut transaction, "state", &job, now_us).await?;
-        }
-        transaction.commit().await?;
-        Ok(recovered)
-    }
-
     /// Notes that a running job shall finish with the best so far; the job as it is then.
     pub(crate) async fn request_stop(
         &self,
         id: &str,
         now_us: i64,
     ) -> Result<Option<JobRow>, StoreError> {
-        let mut transaction = self.begin().await?;
-        sqlx::query(
-            "UPDATE jobs SET stop_requested_us = coalesce(stop_requested_us, ?) \
-             WHERE id = ? AND state = 'running'",
-        )
-        .bind(now_us)
-        .bind(id)
-        .execute(&mut *transaction)
-        .await?;
-        let job = find(&mut transaction, id).await?;
-        transaction.commit().await?;
-        Ok(job)
+        let note = "UPDATE jobs SET stop_requested_us = coalesce(stop_requested_us, ?) \
+             WHERE id = ? AND state = 'running'";
+        noted(self.begin().await?, note, id, now_us).await
     }
 
     /// Abandons a job: a queued one ends at once, a running one when its worker has noticed; the
@@ -345,17 +130,9 @@ impl Store {
         if let Some(row) = ended {
             events::append(&mut transaction, "state", &JobRow::of(&row)?, now_us).await?;
         }
-        sqlx::query(
-            "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
-             WHERE id = ? AND state = 'running'",
-        )
-        .bind(now_us)
-        .bind(id)
-        .execute(&mut *transaction)
-        .await?;
-        let job = find(&mut transaction, id).await?;
-        transaction.commit().await?;
-        Ok(job)
+        let note = "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
+             WHERE id = ? AND state = 'running'";
+        noted(transaction, note, id, now_us).await
     }
 
     /// Deletes a job with all that belongs to it; `false` when there is none.
@@ -403,6 +180,23 @@ impl Store {
             })
             .collect())
     }
+}
+
+/// Notes a request with a running job; the job as it is then.
+async fn noted(
+    mut transaction: Transaction<'static, Sqlite>,
+    note: &'static str,
+    id: &str,
+    now_us: i64,
+) -> Result<Option<JobRow>, StoreError> {
+    sqlx::query(note)
+        .bind(now_us)
+        .bind(id)
+        .execute(&mut *transaction)
+        .await?;
+    let job = find(&mut transaction, id).await?;
+    transaction.commit().await?;
+    Ok(job)
 }
 
 async fn find(connection: &mut SqliteConnection, id: &str) -> Result<Option<JobRow>, StoreError> {

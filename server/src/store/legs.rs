@@ -7,6 +7,9 @@ use sqlx::{FromRow, Row, SqliteConnection};
 /// Legs of other versions of the solver are not found, and replaced when they are solved again.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
+/// Far above the rounding of the product of two unit quaternions; as an angle less than 1e-6 rad.
+const ROUNDING: f64 = 1e-14;
+
 /// A leg to be remembered.
 #[derive(Debug, Clone)]
 pub(crate) struct NewLeg {
@@ -20,6 +23,8 @@ pub(crate) struct NewLeg {
     pub(crate) turn_xyzw: [f64; 4],
     /// Total momentum in body axes at the begin, N m s.
     pub(crate) momentum: [f64; 3],
+    /// Whether it can be flown backwards.
+    pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
     /// Wall-clock time of the solve, s.
@@ -59,6 +64,8 @@ pub(crate) struct LegRow {
     momentum_x: f64,
     momentum_y: f64,
     momentum_z: f64,
+    /// Whether it can be flown backwards.
+    pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
     /// Wall-clock time of the solve, s.
@@ -86,7 +93,8 @@ impl LegRow {
 macro_rules! leg_columns {
     () => {
         "sequence, key, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, momentum_x, \
-         momentum_y, momentum_z, duration_s, solve_time_s, status, solver_version, created_us"
+         momentum_y, momentum_z, reversible, duration_s, solve_time_s, status, solver_version, \
+         created_us"
     };
 }
 
@@ -95,7 +103,8 @@ macro_rules! leg_columns {
 pub(crate) struct LegFilter {
     /// Only legs of this spacecraft.
     pub(crate) spacecraft: Option<String>,
-    /// Only legs whose turn is close to this one: scalar-last quaternion and tolerance, rad.
+    /// Only legs whose turn is close to this one, or, when they can be flown backwards, to its
+    /// inverse: scalar-last quaternion and tolerance, rad.
     pub(crate) turn: Option<([f64; 4], f64)>,
     /// Only legs stored after this one.
     pub(crate) after: Option<i64>,
@@ -177,7 +186,7 @@ impl Store {
             " FROM legs WHERE (?1 IS NULL OR spacecraft = ?1) AND (?2 IS NULL OR sequence > ?2) \
              AND (NOT ?3 \
              OR abs(turn_x * ?4 + turn_y * ?5 + turn_z * ?6 + turn_w * ?7) >= ?8 \
-             OR (momentum_x = 0 AND momentum_y = 0 AND momentum_z = 0 AND \
+             OR (reversible AND \
              abs(turn_w * ?7 - turn_x * ?4 - turn_y * ?5 - turn_z * ?6) >= ?8)) \
              ORDER BY sequence LIMIT ?9"
         ))
@@ -188,7 +197,8 @@ impl Store {
         .bind(y)
         .bind(z)
         .bind(w)
-        .bind((tolerance / 2.0).cos())
+        // The product of two equal quaternions is one up to rounding.
+        .bind((tolerance / 2.0).cos() - ROUNDING)
         .bind(filter.limit)
         .fetch_all(&self.readers)
         .await?)
@@ -227,9 +237,10 @@ async fn put_leg(
         .await?;
     let mut query = sqlx::query(
         "INSERT INTO legs (key, identity, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, \
-         momentum_x, momentum_y, momentum_z, duration_s, solve_time_s, status, solver_version, \
-         trajectory, created_us) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
-         ON CONFLICT (key) DO UPDATE SET duration_s = excluded.duration_s, \
+         momentum_x, momentum_y, momentum_z, reversible, duration_s, solve_time_s, status, \
+         solver_version, trajectory, created_us) \
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
+         ON CONFLICT (key) DO UPDATE SET reversible = excluded.reversible, duration_s = excluded.duration_s, \
          solve_time_s = excluded.solve_time_s, status = excluded.status, \
          solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
          created_us = excluded.created_us WHERE solver_version <> excluded.solver_version",
@@ -242,6 +253,7 @@ async fn put_leg(
         query = query.bind(number);
     }
     query
+        .bind(leg.reversible)
         .bind(leg.duration_s)
         .bind(leg.solve_time_s)
         .bind(&leg.status)

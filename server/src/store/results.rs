@@ -1,40 +1,128 @@
-//! Finished plans.
+//! Plans: the best so far of jobs that go on, and those that jobs ended with.
+//!
+//! The best so far is kept here rather than in memory: what was read once can be read again until
+//! something better replaces it, through a restart too. It is written together with the progress
+//! that tells of it, at most as often as that, and never by the solver's threads. It is a table of
+//! its own, so that a plan of an attempt that was cut off cannot pass for the end of a job.
 
-use super::{Store, StoreError};
-use sqlx::{FromRow, SqliteConnection};
+use super::{Ended, JobState, Store, StoreError};
+use sqlx::{FromRow, Row, SqliteConnection};
 
-/// A stored plan.
+/// A plan that can be read.
 #[derive(Debug, Clone, FromRow)]
 pub(crate) struct ResultRow {
     /// The plan as JSON.
     pub(crate) document: Vec<u8>,
     /// SHA-256 of the document, hex.
     pub(crate) digest: String,
+    /// Whether the job ended with it.
+    pub(crate) is_final: bool,
 }
 
-/// Stores the plan of a job that ends in the same transaction.
-pub(super) async fn insert(
+/// The plan of a better order, found while a job goes on.
+#[derive(Debug, Clone)]
+pub(crate) struct NewIncumbent {
+    /// The plan as JSON.
+    pub(crate) document: Vec<u8>,
+    /// Its duration, s.
+    pub(crate) total_time_s: f64,
+    /// Lower bound on the duration when it was found, s.
+    pub(crate) lower_bound_s: f64,
+}
+
+/// Keeps the plan of a running job unless one as good is kept already.
+pub(super) async fn keep(
     connection: &mut SqliteConnection,
     job: i64,
-    document: &[u8],
+    incumbent: &NewIncumbent,
 ) -> Result<(), StoreError> {
-    sqlx::query("INSERT INTO results (job, document, digest) VALUES (?, ?, ?)")
+    sqlx::query(
+        "INSERT INTO incumbents (job, total_time_s, lower_bound_s, document, digest) \
+         VALUES (?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
+         total_time_s = excluded.total_time_s, lower_bound_s = excluded.lower_bound_s, \
+         document = excluded.document, digest = excluded.digest \
+         WHERE excluded.total_time_s < total_time_s",
+    )
+    .bind(job)
+    .bind(incumbent.total_time_s)
+    .bind(incumbent.lower_bound_s)
+    .bind(&incumbent.document)
+    .bind(crate::digest::hex(&incumbent.document))
+    .execute(connection)
+    .await?;
+    Ok(())
+}
+
+/// The kept plan as the end of a job, when it is better than what the job would end with.
+pub(super) async fn better(
+    connection: &mut SqliteConnection,
+    job: i64,
+    ended: &Ended,
+) -> Result<Option<Ended>, StoreError> {
+    let kept: Option<(Vec<u8>, f64, f64)> = sqlx::query_as(
+        "SELECT document, total_time_s, lower_bound_s FROM incumbents \
+         WHERE job = ?1 AND (?2 IS NULL OR total_time_s < ?2)",
+    )
+    .bind(job)
+    .bind(ended.incumbent_s)
+    .fetch_optional(connection)
+    .await?;
+    Ok(kept.map(|(document, total_time_s, lower_bound_s)| Ended {
+        state: JobState::Stopped,
+        document: Some(document),
+        incumbent_s: Some(total_time_s),
+        lower_bound_s: Some(lower_bound_s),
+        detail: None,
+        early: true,
+    }))
+}
+
+/// Replaces the kept plan by the one that the job ends with in the same transaction, if any.
+pub(super) async fn conclude(
+    connection: &mut SqliteConnection,
+    job: i64,
+    document: Option<&[u8]>,
+) -> Result<(), StoreError> {
+    sqlx::query("DELETE FROM incumbents WHERE job = ?")
         .bind(job)
-        .bind(document)
-        .bind(crate::digest::hex(document))
-        .execute(connection)
+        .execute(&mut *connection)
         .await?;
+    if let Some(document) = document {
+        sqlx::query("INSERT INTO results (job, document, digest) VALUES (?, ?, ?)")
+            .bind(job)
+            .bind(document)
+            .bind(crate::digest::hex(document))
+            .execute(connection)
+            .await?;
+    }
     Ok(())
 }
 
 impl Store {
-    /// The plan of a job.
-    pub(crate) async fn result(&self, job: i64) -> Result<Option<ResultRow>, StoreError> {
-        Ok(
-            sqlx::query_as("SELECT document, digest FROM results WHERE job = ?")
-                .bind(job)
-                .fetch_optional(&self.readers)
-                .await?,
+    /// Where a job stands and its plan: the one that it ended with, or the best so far unless it
+    /// is abandoned; `None` when there is no such job.
+    pub(crate) async fn result(
+        &self,
+        id: &str,
+    ) -> Result<Option<(JobState, Option<ResultRow>)>, StoreError> {
+        // One statement, so that state and plan are of one moment.
+        let row = sqlx::query(
+            "SELECT state, coalesce(r.document, i.document) AS document, \
+             coalesce(r.digest, i.digest) AS digest, r.job IS NOT NULL AS is_final FROM jobs \
+             LEFT JOIN results r ON r.job = sequence \
+             LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = ?",
         )
+        .bind(id)
+        .fetch_optional(&self.readers)
+        .await?;
+        let Some(row) = row else {
+            return Ok(None);
+        };
+        let state = JobState::stored(row.try_get("state")?)?;
+        let plan = match row.try_get::<Option<&str>, _>("digest")? {
+            Some(_) => Some(ResultRow::from_row(&row)?),
+            None => None,
+        };
+        Ok(Some((state, plan)))
     }
 }

@@ -50,6 +50,14 @@ impl JobState {
     pub(crate) const fn is_final(self) -> bool {
         !matches!(self, Self::Queued | Self::Running)
     }
+
+    /// The state that a row holds.
+    pub(super) fn stored(text: &str) -> Result<Self, StoreError> {
+        text.parse().map_err(|what| StoreError::Inconsistent {
+            table: "jobs",
+            what,
+        })
+    }
 }
 
 impl FromStr for JobState {
@@ -117,12 +125,7 @@ pub(super) use job_columns;
 impl JobRow {
     /// Where the job stands.
     pub(crate) fn state(&self) -> Result<JobState, StoreError> {
-        self.state_text
-            .parse()
-            .map_err(|what| StoreError::Inconsistent {
-                table: "jobs",
-                what,
-            })
+        JobState::stored(&self.state_text)
     }
 
     pub(super) fn of(row: &SqliteRow) -> Result<Self, StoreError> {
@@ -158,6 +161,8 @@ pub(crate) struct Ended {
     pub(crate) lower_bound_s: Option<f64>,
     /// Why there is no plan.
     pub(crate) detail: Option<String>,
+    /// Whether it ended before it was done: a better plan of an earlier attempt still counts.
+    pub(crate) early: bool,
 }
 
 /// Number of jobs in a state.

@@ -62,11 +62,18 @@ impl<'a> From<&'a Alternative> for AlternativeDocument<'a> {
 /// The document of an outcome, with the doubts about its scenario.
 pub(crate) fn document<'a>(outcome: &'a Outcome, doubts: &'a [Problem]) -> PlanDocument<'a> {
     let mut document = match outcome {
-        Outcome::Planned(plan) => planned(plan),
+        Outcome::Planned(found) => return plan(found, doubts),
         Outcome::Infeasible(reasons) => without_plan("infeasible", reasons),
         Outcome::Failed(reasons) => without_plan("failed", reasons),
         Outcome::StoppedEmpty => without_plan("failed", &[]),
     };
+    document.warnings = documents(doubts);
+    document
+}
+
+/// The document of a plan, with the doubts about its scenario.
+pub(crate) fn plan<'a>(plan: &'a Plan, doubts: &'a [Problem]) -> PlanDocument<'a> {
+    let mut document = planned(plan);
     document.warnings.splice(0..0, documents(doubts));
     document
 }

@@ -36,9 +36,14 @@ pub(crate) struct Cursor<'a> {
 impl<'a> Cursor<'a> {
     /// The whole document.
     pub(crate) fn root(node: &'a Node, sink: &'a Sink) -> Self {
+        Self::at(node, "", sink)
+    }
+
+    /// A part of a larger document that stands at this JSON pointer.
+    pub(crate) fn at(node: &'a Node, pointer: &str, sink: &'a Sink) -> Self {
         Self {
             node,
-            pointer: String::new(),
+            pointer: pointer.to_owned(),
             sink,
         }
     }

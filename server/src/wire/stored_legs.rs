@@ -21,6 +21,8 @@ pub(crate) struct StoredLegDocument {
     turn: QuaternionDocument,
     /// Total angular momentum in body axes at the begin, N m s.
     body_momentum_nms: [Number; 3],
+    /// Whether it can be flown backwards: it then is the leg from its end to its begin too.
+    reversible: bool,
     /// Minimum time, s.
     duration_s: Number,
     /// Wall-clock time of the solve with all its starts, s.
@@ -83,6 +85,7 @@ impl From<&LegRow> for StoredLegDocument {
             kind: row.kind.clone(),
             turn: row.turn_xyzw().into(),
             body_momentum_nms: row.momentum().map(Number),
+            reversible: row.reversible,
             duration_s: Number(row.duration_s),
             solve_time_s: Number(row.solve_time_s),
             status: row.status.clone(),

@@ -33,6 +33,8 @@ pub(super) struct CanonicalLeg {
     pub(super) to: Waypoint,
     /// Whether it is the wanted leg flown backwards.
     pub(super) mirrored: bool,
+    /// Whether it may be flown backwards.
+    pub(super) reversible: bool,
     arrival: Arrival,
     null: DVector<f64>,
 }
@@ -41,7 +43,7 @@ impl CanonicalLeg {
     /// The canonical form of the leg between two waypoints.
     pub(super) fn of(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
         let forth = Self::directed(places, from, to, false);
-        if !places.reversible([from, to]) {
+        if !forth.reversible {
             return forth;
         }
         let back = Self::directed(places, to, from, true);
@@ -53,6 +55,7 @@ impl CanonicalLeg {
     }
 
     fn directed(places: &Places<'_>, from: &Waypoint, to: &Waypoint, mirrored: bool) -> Self {
+        let reversible = places.reversible([from, to]);
         let mut turn = rounded(&from.attitude.relative_to(&to.attitude));
         if places.arrival == Arrival::Rotation {
             turn = upper_hemisphere(&turn);
@@ -78,6 +81,7 @@ impl CanonicalLeg {
             from,
             to,
             mirrored,
+            reversible,
             arrival: places.arrival,
             null: places.null.clone(),
         }

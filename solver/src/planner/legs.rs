@@ -224,6 +224,7 @@ fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
         kind,
         turn_xyzw: leg.to.attitude.xyzw(),
         body_momentum_nms: leg.dynamics.momentum.into(),
+        reversible: leg.reversible,
         duration_s: profile.duration(),
         status: solved.flown.status.as_str().into(),
         solve_time_s: solved.solve_time,

@@ -84,6 +84,11 @@ impl Incumbents {
         tie_class(bound).total_cmp(&tie_class(worst * (1.0 - self.relative_gap)))
     }
 
+    /// The orders so far, best first.
+    pub(super) fn orders(&self) -> &[FlownOrder] {
+        &self.orders
+    }
+
     /// The orders, best first.
     pub(super) fn into_orders(self) -> Vec<FlownOrder> {
         self.orders

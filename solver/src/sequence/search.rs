@@ -4,9 +4,10 @@ mod account;
 mod tree;
 
 use super::node::Node;
-use super::{Evaluation, SearchEnd, SearchResult, SearchSettings, TourEvaluation, TourModel};
+use super::{
+    Evaluation, SearchEnd, SearchObserver, SearchResult, SearchSettings, TourEvaluation, TourModel,
+};
 use crate::pool::SolverPool;
-use crate::progress::Observer;
 use crate::stop::{StopReason, StopSignal};
 use account::Account;
 use tree::Tree;
@@ -66,7 +67,7 @@ pub fn search(
     settings: &SearchSettings,
     pool: &SolverPool,
     stop: &StopSignal,
-    observer: &dyn Observer,
+    observer: &dyn SearchObserver,
 ) -> SearchResult {
     let mut search = Search {
         model,
@@ -79,6 +80,7 @@ pub fn search(
     };
     let mut end = search.fly_candidates();
     while end.is_none() {
+        search.account.hand_over(&search.tree);
         search.account.report(&search.tree);
         end = search.explore_round();
     }

@@ -6,11 +6,17 @@ mod models;
 
 pub(super) use models::RandomModel;
 
-use super::{SearchResult, SearchSettings, TourModel, search};
+use super::{Incumbent, SearchObserver, SearchResult, SearchSettings, TourModel, search};
 use crate::pool::SolverPool;
-use crate::progress::Silent;
+use crate::progress::{Progress, Silent};
 use crate::stop::StopSignal;
 use std::num::NonZeroUsize;
+
+impl SearchObserver for Silent {
+    fn progress(&self, _: Progress) {}
+
+    fn improved(&self, _: &Incumbent<'_>) {}
+}
 
 fn pool(threads: usize) -> SolverPool {
     SolverPool::new(NonZeroUsize::new(threads)).expect("test threads start")

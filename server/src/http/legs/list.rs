@@ -9,6 +9,7 @@ use crate::wire::stored_legs::{StoredLegDocument, StoredLegListDocument};
 use axum::Json;
 use axum::extract::State;
 use serde::Deserialize;
+use slewplan_solver::attitude::Attitude;
 use utoipa::IntoParams;
 
 const DEFAULT_LIMIT: u16 = 50;
@@ -24,14 +25,23 @@ pub(in crate::http) struct Query {
     /// Only legs of the spacecraft with this key.
     #[param(pattern = "^[0-9a-f]{64}$")]
     spacecraft_key: Option<String>,
-    /// Only legs whose turn, the attitude at the end relative to that at the begin, is near this
-    /// quaternion `x,y,z,w`; a leg that can be flown backwards is found from either side.
+    /// Only legs that lead to this attitude, a quaternion `x,y,z,w`. A leg is stored without the
+    /// place where it was flown, so what counts is the relative attitude: the turn to here from
+    /// `from`. A leg that is `reversible` is found from either side.
     #[param(
         example = "0.130526,0,0,0.991445",
         pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
     )]
     attitude: Option<String>,
-    /// How near, degrees.
+    /// Only legs that lead from this attitude, a quaternion `x,y,z,w`. Of `from` and `attitude`
+    /// the one that is left out is the identity.
+    #[param(
+        example = "0,0,0,1",
+        pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
+    )]
+    from: Option<String>,
+    /// Largest angle, degrees, between the relative attitude that is asked for and the `turn` of a
+    /// leg.
     #[param(minimum = 0, maximum = 180, default = 0.001)]
     tolerance_deg: Option<f64>,
     /// Where the page begins: `next_cursor` of the page before.
@@ -77,7 +87,7 @@ pub(in crate::http) async fn handler(
             "spacecraft_key has 64 hexadecimal digits in lower case",
         ));
     }
-    let turn = query.attitude.as_deref().map(quaternion).transpose()?;
+    let turn = turn(query.from.as_deref(), query.attitude.as_deref())?;
     let filter = LegFilter {
         spacecraft: query.spacecraft_key,
         turn: turn.map(|turn| (turn, tolerance.to_radians())),
@@ -100,18 +110,29 @@ fn wrong(detail: impl Into<String>) -> ApiError {
     ApiError::new(ErrorCode::InvalidParameter, detail)
 }
 
-/// A quaternion of any length but zero, scaled to one.
-fn quaternion(text: &str) -> Result<[f64; 4], ApiError> {
+/// The relative attitude that is asked for, if one is.
+fn turn(from: Option<&str>, to: Option<&str>) -> Result<Option<[f64; 4]>, ApiError> {
+    if from.is_none() && to.is_none() {
+        return Ok(None);
+    }
+    let attitude = |name, text: Option<&str>| {
+        text.map_or(Ok(Attitude::identity()), |text| quaternion(name, text))
+    };
+    let (from, to) = (attitude("from", from)?, attitude("attitude", to)?);
+    Ok(Some(from.relative_to(&to).xyzw()))
+}
+
+/// A quaternion of any length but zero.
+fn quaternion(name: &str, text: &str) -> Result<Attitude, ApiError> {
     let parts: Option<Vec<f64>> = text
         .split(',')
         .map(|part| part.trim().parse().ok())
         .collect();
-    let read: Option<[f64; 4]> = parts.and_then(|parts| parts.try_into().ok());
-    let xyzw = read.ok_or_else(|| wrong("attitude is a quaternion x,y,z,w of four numbers"))?;
-    let norm = xyzw.iter().map(|part| part * part).sum::<f64>().sqrt();
-    if norm > 0.0 && norm.is_finite() {
-        return Ok(xyzw.map(|part| part / norm));
-    }
-    let detail = format!("the attitude {text} has the length {norm}, and so no direction");
-    Err(ApiError::new(ErrorCode::InvalidInput, detail))
+    let xyzw: Option<[f64; 4]> = parts.and_then(|parts| parts.try_into().ok());
+    let xyzw =
+        xyzw.ok_or_else(|| wrong(format!("{name} is a quaternion x,y,z,w of four numbers")))?;
+    Attitude::from_xyzw(xyzw).ok_or_else(|| {
+        let detail = format!("{name}={text} has no direction: its length is zero or not finite");
+        ApiError::new(ErrorCode::InvalidInput, detail)
+    })
 }

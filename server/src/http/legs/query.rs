@@ -49,7 +49,7 @@ pub(in crate::http) async fn handler(
     State(app): State<App>,
     body: JsonBody,
 ) -> Result<Json<LegAnswersDocument>, ApiError> {
-    let (node, _) = stored::write_out(&app, body.node).await?;
+    let (node, _) = stored::write_out(&app, body.node, "").await?;
     let query = leg_query::read(&node, MOST_PAIRS).map_err(|refusal| match refusal {
         Refusal::Invalid(problems) => ApiError::input(problems),
         Refusal::TooMany(count) => {

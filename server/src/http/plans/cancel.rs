@@ -2,7 +2,7 @@
 
 use super::super::App;
 use super::super::describe::{Conflict, NotFound, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::respond;
 use crate::store::JobState;
 use crate::wire::jobs::JobDocument;
@@ -26,26 +26,11 @@ pub(in crate::http) async fn handler(
     State(app): State<App>,
     Path(id): Path<String>,
 ) -> Result<Response, ApiError> {
-    let absent = || ApiError::not_found("plan", &id);
-    let job = app.jobs().cancel(&id).await?.ok_or_else(absent)?;
+    let job = super::present(app.jobs().cancel(&id).await?, &id)?;
     match job.state()? {
         JobState::Queued | JobState::Running => {}
         JobState::Cancelled => return respond::job(StatusCode::OK, &job),
-        ended => {
-            let detail = format!("the job has ended {}", ended.as_str());
-            return Err(ApiError::new(ErrorCode::JobHasEnded, detail));
-        }
+        ended => return Err(super::has_ended(ended)),
     }
-    let job = respond::await_end(&app, &id, super::PATIENCE)
-        .await?
-        .ok_or_else(absent)?;
-    let ended = job.state()?.is_final();
-    respond::job(
-        if ended {
-            StatusCode::OK
-        } else {
-            StatusCode::ACCEPTED
-        },
-        &job,
-    )
+    super::ending(&app, &id).await
 }

@@ -75,7 +75,7 @@ pub(in crate::http) async fn handler(
 ) -> Result<Response, ApiError> {
     let key = idempotency_key(&headers)?;
     let fingerprint = digest::hex(&body.bytes);
-    let (node, written_out) = stored::write_out(&app, body.node).await?;
+    let (node, written_out) = stored::write_out(&app, body.node, "").await?;
     let valid = wire::scenario::read_node(&node, None).map_err(ApiError::input)?;
     let targets = valid.scenario.targets().len();
     if targets > app.limits().targets {
@@ -158,7 +158,8 @@ async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Respon
         job = respond::await_end(app, &id, patience)
             .await?
             .ok_or_else(|| ApiError::not_found("plan", &id))?;
-        if let Some(result) = app.store().result(job.sequence).await? {
+        let result = app.store().result(&id).await?.and_then(|(_, plan)| plan);
+        if let Some(result) = result.filter(|result| result.is_final) {
             return Ok(located(super::result::json(&result), &job));
         }
     }

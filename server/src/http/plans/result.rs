@@ -4,14 +4,18 @@ use super::super::App;
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::extract::{Parameters, header_text};
-use crate::store::ResultRow;
+use crate::store::{JobState, ResultRow};
 use crate::wire::csv;
 use crate::wire::plan::PlanDocument;
 use axum::extract::{Path, State};
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
+
+const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
+/// Time after which a first plan is worth asking for again, s.
+const RETRY_S: u32 = 1;
 
 /// Parameters of a result.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -33,7 +37,12 @@ pub(in crate::http) enum Format {
     Csv,
 }
 
-/// Read the result of a job that has ended with one
+/// Read the plan of a job: the final one, or the best so far
+///
+/// While a job goes on this is the best plan that it has found: complete, verified, `feasible`,
+/// with the bound of the moment when it was found (the job has the newest). Every better plan has
+/// another `ETag`, and so has the one that the job ends with. `Job-State` tells whether it has
+/// ended. After a restart of the service the best plan so far stays until there is a better one.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/result", tag = "plans", operation_id = "get_result",
     params(
@@ -45,12 +54,17 @@ pub(in crate::http) enum Format {
     responses(
         (status = 200, description = "The plan, or why there is none",
             content((PlanDocument<'static> = "application/json"), (String = "text/csv")),
-            headers(("ETag" = String, description = "Hash of the content"))),
+            headers(
+                ("ETag" = String, description = "Hash of the content"),
+                ("Job-State" = inline(JobState),
+                    description = "`queued` or `running`: not final, a better plan may follow"),
+            )),
         (status = 304, description = "Not changed"),
         (status = 406, description = "No accepted form", body = ErrorDocument<'static>,
             content_type = "application/problem+json"),
-        (status = 409, description = "No result yet, or none at all",
-            body = ErrorDocument<'static>, content_type = "application/problem+json"),
+        (status = 409, description = "No plan yet (`result_not_ready`), or none at all (`no_result`)",
+            body = ErrorDocument<'static>, content_type = "application/problem+json",
+            headers(("Retry-After" = u32, description = "When to come again, s, if no plan yet"))),
         ParameterErrors, NotFound, ServerErrors,
     ),
 )]
@@ -60,34 +74,35 @@ pub(in crate::http) async fn handler(
     Parameters(query): Parameters<Query>,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
-    let job = super::find(&app, &id).await?;
+    let found = app.store().result(&id).await?;
+    let (state, result) = found.ok_or_else(|| ApiError::not_found("plan", &id))?;
     let format = query.format.or_else(|| accepted(&headers)).ok_or_else(|| {
         ApiError::new(
             ErrorCode::NotAcceptable,
             "there is application/json and text/csv",
         )
     })?;
-    let Some(result) = app.store().result(job.sequence).await? else {
-        return Err(if job.state()?.is_final() {
-            let detail = format!("the job ended {}", job.state()?.as_str());
+    let Some(result) = result else {
+        return Err(if state.is_final() {
+            let detail = format!("the job ended {}", state.as_str());
             ApiError::new(ErrorCode::NoResult, detail)
         } else {
-            let detail = "follow the events, or stop the job for the best plan so far";
-            ApiError::new(ErrorCode::ResultNotReady, detail)
+            let detail = "no plan has been found so far; follow the events";
+            ApiError::new(ErrorCode::ResultNotReady, detail).retry_after(RETRY_S)
         });
     };
-    let response = match format {
+    let mut response = match format {
         Format::Json => json(&result),
         Format::Csv => table(&result)?,
     };
     let known = header_text(&headers, "if-none-match")?.unwrap_or("");
     let tag = response.headers().get(header::ETAG).cloned();
-    match tag {
-        Some(tag) if is_known(known, &tag) => {
-            Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, tag)]).into_response())
-        }
-        _ => Ok(response),
+    if let Some(tag) = tag.filter(|tag| is_known(known, tag)) {
+        response = (StatusCode::NOT_MODIFIED, [(header::ETAG, tag)]).into_response();
     }
+    let state = HeaderValue::from_static(state.as_str());
+    response.headers_mut().insert(JOB_STATE, state);
+    Ok(response)
 }
 
 fn is_known(known: &str, tag: &HeaderValue) -> bool {

@@ -26,8 +26,7 @@ pub(in crate::http) async fn handler(
     State(app): State<App>,
     Path(id): Path<String>,
 ) -> Result<Response, ApiError> {
-    let absent = || ApiError::not_found("plan", &id);
-    let job = app.jobs().stop(&id).await?.ok_or_else(absent)?;
+    let job = super::present(app.jobs().stop(&id).await?, &id)?;
     match job.state()? {
         JobState::Running => {}
         JobState::Queued => {
@@ -36,21 +35,7 @@ pub(in crate::http) async fn handler(
         }
         // Asked for again, or too late to matter: the caller has what it wants.
         JobState::Stopped | JobState::Succeeded => return respond::job(StatusCode::OK, &job),
-        ended => {
-            let detail = format!("the job has ended {}", ended.as_str());
-            return Err(ApiError::new(ErrorCode::JobHasEnded, detail));
-        }
+        ended => return Err(super::has_ended(ended)),
     }
-    let job = respond::await_end(&app, &id, super::PATIENCE)
-        .await?
-        .ok_or_else(absent)?;
-    let ended = job.state()?.is_final();
-    respond::job(
-        if ended {
-            StatusCode::OK
-        } else {
-            StatusCode::ACCEPTED
-        },
-        &job,
-    )
+    super::ending(&app, &id).await
 }

@@ -277,6 +277,11 @@ impl Tree {
         &self.statistics
     }
 
+    /// The best orders flown so far, best first.
+    pub(super) fn orders(&self) -> &[FlownOrder] {
+        self.incumbents.orders()
+    }
+
     /// The orders flown, best first.
     pub(super) fn into_orders(self) -> Vec<FlownOrder> {
         self.incumbents.into_orders()

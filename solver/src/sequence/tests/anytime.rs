@@ -1,9 +1,10 @@
 //! What the search says when it cannot finish.
 
 use super::{RandomModel, alternatives, pool, run};
-use crate::progress::{Observer, Progress, Silent, Stage};
+use crate::progress::{Progress, Silent, Stage};
 use crate::sequence::{
-    Evaluation, Place, SearchEnd, SearchSettings, TourEvaluation, TourModel, exhaustive, search,
+    Evaluation, FlownOrder, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings,
+    TourEvaluation, TourModel, exhaustive, search,
 };
 use crate::stop::{StopReason, StopSignal};
 use std::sync::Mutex;
@@ -12,6 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Remembers everything, and stops the search after a number of calls.
 struct Recorder {
     told: Mutex<Vec<Progress>>,
+    improved: Mutex<Vec<FlownOrder>>,
     stop: StopSignal,
     stop_after: usize,
 }
@@ -20,6 +22,7 @@ impl Recorder {
     fn new(stop_after: usize) -> Self {
         Self {
             told: Mutex::default(),
+            improved: Mutex::default(),
             stop: StopSignal::new(),
             stop_after,
         }
@@ -30,13 +33,19 @@ impl Recorder {
     }
 }
 
-impl Observer for Recorder {
+impl SearchObserver for Recorder {
     fn progress(&self, progress: Progress) {
         let mut told = self.told.lock().expect("no thread panicked");
         told.push(progress);
         if told.len() == self.stop_after {
             self.stop.request();
         }
+    }
+
+    fn improved(&self, incumbent: &Incumbent<'_>) {
+        assert!(incumbent.lower_bound_s <= incumbent.best.duration_s);
+        let mut improved = self.improved.lock().expect("no thread panicked");
+        improved.push(incumbent.best.clone());
     }
 }
 
@@ -266,4 +275,34 @@ fn forty_targets_give_an_order_and_a_bound_at_any_time() {
         bounds.push(result.lower_bound_s);
     }
     assert!(bounds[0] < bounds[1]);
+}
+
+#[test]
+fn every_better_order_is_handed_over_once_before_it_is_told() {
+    let mut better = 0;
+    for seed in 0..10 {
+        let recorder = Recorder::new(usize::MAX);
+        let model = RandomModel::new(7, seed % 2 == 0, seed);
+        let stop = StopSignal::new();
+        search(&model, &alternatives(1), &pool(2), &stop, &recorder);
+        let improved = recorder
+            .improved
+            .lock()
+            .expect("no thread panicked")
+            .clone();
+        let durations: Vec<f64> = improved.iter().map(|order| order.duration_s).collect();
+        assert!(durations.windows(2).all(|pair| pair[1] < pair[0]));
+        for order in &improved {
+            let flown = TourEvaluation::Flown(order.duration_s);
+            assert_eq!(model.tour(&order.order), flown, "seed {seed}");
+        }
+        let told = recorder.told();
+        let (_, while_running) = told.split_last().expect("at least one report");
+        for progress in while_running {
+            let incumbent = progress.incumbent_s.expect("candidates are flown first");
+            assert!(durations.contains(&incumbent), "seed {seed}");
+        }
+        better += improved.len() - 1;
+    }
+    assert!(better > 0, "no search found a better order on its way");
 }

@@ -1,0 +1,133 @@
+//! What a claim that was lost must not do, and what is kept for its successor.
+
+use super::{
+    Claim, Ended, JobState, NewIncumbent, ProgressRow, ResultRow, Store, Submission, Submitted,
+};
+
+const ID: &str = "00000000-0000-7000-8000-000000000000";
+
+fn plan(total_time_s: f64) -> NewIncumbent {
+    NewIncumbent {
+        document: format!("{{\"total_time_s\":{total_time_s}}}").into(),
+        total_time_s,
+        lower_bound_s: 10.0,
+    }
+}
+
+fn progress(incumbent_s: f64) -> ProgressRow {
+    ProgressRow {
+        stage: "search",
+        done: 1,
+        total: None,
+        incumbent_s: Some(incumbent_s),
+        lower_bound_s: Some(10.0),
+    }
+}
+
+fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
+    Ended {
+        state,
+        incumbent_s: plan.as_ref().map(|plan| plan.total_time_s),
+        lower_bound_s: plan.as_ref().map(|plan| plan.lower_bound_s),
+        document: plan.map(|plan| plan.document),
+        detail: None,
+        early: true,
+    }
+}
+
+async fn submitted(store: &Store) {
+    let submission = Submission {
+        id: ID.into(),
+        name: None,
+        scenario: b"{}".into(),
+        targets: 1,
+        key: None,
+    };
+    let queued = store.submit(&submission, 1, 1).await.expect("stored");
+    assert!(matches!(queued, Submitted::New(_)));
+}
+
+async fn claim(store: &Store, boot_id: &str) -> Claim {
+    let claim = store.claim(boot_id, 1_000, 2).await.expect("claimed");
+    claim.expect("a job waits")
+}
+
+async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
+    let found = store.result(ID).await.expect("read");
+    found.expect("the job is there")
+}
+
+/// Runs a scene on an empty database.
+fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all();
+    let runtime = { runtime }.build().expect("a runtime");
+    runtime.block_on(async {
+        let path = folder.path().join("store.db");
+        scene(Store::open(&path).await.expect("opened")).await;
+    });
+}
+
+#[test]
+fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let lost = claim(&store, "first").await.job;
+        store.recover("second", 3).await.expect("recovered");
+        let newest = claim(&store, "second").await.job;
+        let written = store.progress(&lost, &progress(20.0), Some(&plan(20.0)), 4);
+        assert!(!written.await.expect("tried"));
+        assert!(result(&store).await.1.is_none());
+        let written = store.progress(&newest, &progress(30.0), Some(&plan(30.0)), 5);
+        assert!(written.await.expect("written"));
+        let end = ended(JobState::Stopped, Some(plan(20.0)));
+        assert!(!store.finish(&lost, &end, 6).await.expect("tried"));
+        let (state, kept) = result(&store).await;
+        let kept = kept.expect("a plan");
+        assert_eq!((state, kept.is_final), (JobState::Running, false));
+        assert_eq!(kept.document, plan(30.0).document);
+    });
+}
+
+#[test]
+fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let first = claim(&store, "first").await.job;
+        for total in [30.0, 20.0] {
+            let written = store.progress(&first, &progress(total), Some(&plan(total)), 3);
+            assert!(written.await.expect("written"));
+        }
+        store.recover("second", 4).await.expect("recovered");
+        let second = claim(&store, "second").await.job;
+        assert_eq!((second.attempt, second.incumbent_s), (2, Some(20.0)));
+        let written = store.progress(&second, &progress(30.0), Some(&plan(30.0)), 5);
+        assert!(written.await.expect("written"));
+        let (state, kept) = result(&store).await;
+        let kept = kept.expect("a plan");
+        assert_eq!((state, kept.is_final), (JobState::Running, false));
+        assert_eq!(kept.document, plan(20.0).document);
+        // Stopped before it had any plan of its own.
+        let end = ended(JobState::Failed, None);
+        assert!(store.finish(&second, &end, 6).await.expect("written"));
+        let (state, last) = result(&store).await;
+        let last = last.expect("a plan");
+        assert_eq!((state, last.is_final), (JobState::Stopped, true));
+        assert_eq!(last.document, plan(20.0).document);
+    });
+}
+
+#[test]
+fn an_abandoned_job_has_no_plan() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let first = claim(&store, "first").await.job;
+        let written = store.progress(&first, &progress(20.0), Some(&plan(20.0)), 3);
+        assert!(written.await.expect("written"));
+        store.request_cancel(ID, 4).await.expect("noted");
+        store.recover("second", 5).await.expect("recovered");
+        let (state, none) = result(&store).await;
+        assert_eq!(state, JobState::Cancelled);
+        assert!(none.is_none());
+    });
+}

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Generates requests from openapi.yaml and holds the answers against it.
 #
-#   tests/schemathesis.sh [EXAMPLES]     examples for each operation, 20 without it
+#   tests/schemathesis.sh [EXAMPLES [OPTION...]]     examples for each operation, 20 without it
 #
-# SLEWPLAN names a built binary; without it the binary is built. The long form is EXAMPLES=2000.
+# SLEWPLAN names a built binary; without it the binary is built. The long form is EXAMPLES=2000; it
+# takes the generator, not the service, more than an hour on a busy machine. Options go to
+# schemathesis: --phases examples,coverage,fuzzing and --phases stateful can run side by side.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 examples=${1:-20}
@@ -34,7 +36,7 @@ address=$(sed -n 's/^listening on //p' "$work/out")
 status=0
 "$tools/bin/schemathesis" --config-file tests/schemathesis.toml run openapi.yaml \
     --url "$address" --checks all --max-examples "$examples" --seed 1 \
-    --generation-database none --request-timeout 90 || status=$?
+    --generation-database none --request-timeout 90 "${@:2}" || status=$?
 if grep -E 'ERROR|panic' "$work/log"; then
     echo "the service logged errors" >&2
     status=1

@@ -1,14 +1,22 @@
 //! What survives the end of the process, expected or not.
 
 use crate::running::{Service, large, small};
+use serde_json::{Value, json};
 use std::time::{Duration, Instant};
+
+/// A scenario that takes seconds and ends by itself on any machine.
+fn sizeable() -> Value {
+    let mut scenario = large();
+    scenario["options"] = json!({"relative_gap": 0.05, "time_limit_s": null});
+    scenario
+}
 
 #[test]
 fn a_killed_solve_runs_again_and_nothing_acknowledged_is_lost() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("killed.db");
     let mut service = Service::on(&database, &[]);
-    let ids = [service.submit(&large()), service.submit(&small())];
+    let ids = [service.submit(&sizeable()), service.submit(&small())];
     service.wait(&ids[0], |job| job["state"] == "running");
     service.kill();
     let service = Service::on(&database, &[]);
@@ -28,7 +36,7 @@ fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("ended.db");
     let mut service = Service::on(&database, &[]);
-    let id = service.submit(&large());
+    let id = service.submit(&sizeable());
     service.wait(&id, |job| job["state"] == "running");
     let begin = Instant::now();
     assert!(service.terminate());
@@ -75,6 +83,6 @@ fn a_command_shares_legs_with_the_service() {
         .arg(&database)
         .output()
         .expect("the binary starts");
-    let plan: serde_json::Value = serde_json::from_slice(&solved.stdout).expect("a plan");
+    let plan: Value = serde_json::from_slice(&solved.stdout).expect("a plan");
     assert_eq!(plan["statistics"]["legs_solved"], 0);
 }

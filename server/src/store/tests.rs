@@ -1,7 +1,8 @@
 //! What a claim that was lost must not do, and what is kept for its successor.
 
 use super::{
-    Claim, Ended, JobState, NewIncumbent, ProgressRow, ResultRow, Store, Submission, Submitted,
+    Claim, Ended, JobRow, JobState, NewIncumbent, ProgressRow, ResultRow, Store, Submission,
+    Submitted,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -14,14 +15,18 @@ fn plan(total_time_s: f64) -> NewIncumbent {
     }
 }
 
-fn progress(incumbent_s: f64) -> ProgressRow {
-    ProgressRow {
+/// Whether a better plan of a claim was taken in.
+async fn improve(store: &Store, claim: &JobRow, total_time_s: f64) -> bool {
+    let progress = ProgressRow {
         stage: "search",
         done: 1,
         total: None,
-        incumbent_s: Some(incumbent_s),
+        incumbent_s: Some(total_time_s),
         lower_bound_s: Some(10.0),
-    }
+    };
+    let plan = plan(total_time_s);
+    let written = store.progress(claim, &progress, Some(&plan), 3).await;
+    written.expect("tried")
 }
 
 fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
@@ -60,8 +65,10 @@ async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
 /// Runs a scene on an empty database.
 fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
     let folder = tempfile::tempdir().expect("a folder");
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all();
-    let runtime = { runtime }.build().expect("a runtime");
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .expect("a runtime");
     runtime.block_on(async {
         let path = folder.path().join("store.db");
         scene(Store::open(&path).await.expect("opened")).await;
@@ -75,11 +82,9 @@ fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
         let lost = claim(&store, "first").await.job;
         store.recover("second", 3).await.expect("recovered");
         let newest = claim(&store, "second").await.job;
-        let written = store.progress(&lost, &progress(20.0), Some(&plan(20.0)), 4);
-        assert!(!written.await.expect("tried"));
+        assert!(!improve(&store, &lost, 20.0).await);
         assert!(result(&store).await.1.is_none());
-        let written = store.progress(&newest, &progress(30.0), Some(&plan(30.0)), 5);
-        assert!(written.await.expect("written"));
+        assert!(improve(&store, &newest, 30.0).await);
         let end = ended(JobState::Stopped, Some(plan(20.0)));
         assert!(!store.finish(&lost, &end, 6).await.expect("tried"));
         let (state, kept) = result(&store).await;
@@ -95,14 +100,12 @@ fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
         submitted(&store).await;
         let first = claim(&store, "first").await.job;
         for total in [30.0, 20.0] {
-            let written = store.progress(&first, &progress(total), Some(&plan(total)), 3);
-            assert!(written.await.expect("written"));
+            assert!(improve(&store, &first, total).await);
         }
         store.recover("second", 4).await.expect("recovered");
         let second = claim(&store, "second").await.job;
         assert_eq!((second.attempt, second.incumbent_s), (2, Some(20.0)));
-        let written = store.progress(&second, &progress(30.0), Some(&plan(30.0)), 5);
-        assert!(written.await.expect("written"));
+        assert!(improve(&store, &second, 30.0).await);
         let (state, kept) = result(&store).await;
         let kept = kept.expect("a plan");
         assert_eq!((state, kept.is_final), (JobState::Running, false));
@@ -122,8 +125,7 @@ fn an_abandoned_job_has_no_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let first = claim(&store, "first").await.job;
-        let written = store.progress(&first, &progress(20.0), Some(&plan(20.0)), 3);
-        assert!(written.await.expect("written"));
+        assert!(improve(&store, &first, 20.0).await);
         store.request_cancel(ID, 4).await.expect("noted");
         store.recover("second", 5).await.expect("recovered");
         let (state, none) = result(&store).await;

@@ -284,7 +284,8 @@ fn every_better_order_is_handed_over_once_before_it_is_told() {
         let recorder = Recorder::new(usize::MAX);
         let model = RandomModel::new(7, seed % 2 == 0, seed);
         let stop = StopSignal::new();
-        search(&model, &alternatives(1), &pool(2), &stop, &recorder);
+        let result = search(&model, &alternatives(1), &pool(2), &stop, &recorder);
+        assert!(result.complete);
         let improved = recorder
             .improved
             .lock()

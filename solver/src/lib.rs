@@ -76,6 +76,7 @@ pub mod checker;
 mod dynamics;
 pub mod envelope;
 mod findings;
+pub mod kinematic_bound;
 mod kinematics;
 pub mod legs;
 mod linear_program;

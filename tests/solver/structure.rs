@@ -84,6 +84,14 @@ fn the_search_knows_slews_through_its_trait_only() {
 }
 
 #[test]
+fn the_kinematic_bound_knows_rotations_only() {
+    let given = ["attitude", "kinematic_bound", "kinematics"];
+    for (file, target) in used_by("kinematic_bound") {
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+}
+
+#[test]
 fn one_file_names_clarabel() {
     let naming: Vec<_> = sources()
         .into_iter()

@@ -1,7 +1,7 @@
 //! The shortest turns within a box of body rates, enclosed by proved bounds.
 //!
 //! `V(R)` is the least time in which `R' = R S(w)`, `|w_i| <= r_i`, leads from the identity to a
-//! rotation `R`: a problem without inertia, faster than any slew within the box (`ramps` makes
+//! rotation `R`: a problem without inertia, faster than any slew within the box ([`ramps`] makes
 //! that a bound on slews). `V` is invariant under inversion and under conjugation by half turns about
 //! the body axes, obeys the triangle inequality, and falls when a rate rises. The conventions are
 //! those of [`crate::attitude`]; both signs of a quaternion are one rotation.
@@ -73,6 +73,7 @@ mod closing;
 mod extremal;
 mod interior;
 mod levels;
+pub mod ramps;
 mod search;
 mod singular;
 #[cfg(test)]

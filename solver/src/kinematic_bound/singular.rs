@@ -11,6 +11,8 @@ use super::words::{FIRST, Octant, SingleWord, Step, corner, sense};
 use crate::kinematics::{Quat, product};
 use std::f64::consts::{PI, TAU};
 
+/// Most arcs of an interior.
+const MOST_STEPS: usize = 500;
 /// A sequence of fixed arcs is no part of a shortest motion if it can be replaced by one shorter by
 /// this share.
 const CLEARLY_SHORTER: f64 = 1e-6;
@@ -142,12 +144,20 @@ impl Circle<'_> {
             let word = SingleWord::new(self.c, at.first, steps.clone(), octant, range, false);
             self.words.extend(word);
         }
+        // Refused rather than followed without end, should rounding make arcs vanish.
+        if steps.len() == MOST_STEPS {
+            return None;
+        }
         let count = self.events.len();
         let event = (at.event + count).saturating_add_signed(direction as isize) % count;
         let mut arc = (f64::from(direction) * (self.events[event].0 - self.events[at.event].0))
             .rem_euclid(TAU);
         if event == at.event {
             arc = TAU;
+        }
+        // Two walls without a saddle between them: no dwell will come.
+        if at.dwell.is_none() && matches!(self.events[event].1, Event::Wall(..)) {
+            return Some(());
         }
         steps.push(Step {
             rate: corner(self.c, octant),

@@ -1,4 +1,5 @@
 mod motions;
+mod ramped;
 mod table;
 
 use super::*;
@@ -146,6 +147,14 @@ fn no_turn_takes_no_time_and_signs_do_not_matter() {
         table.query(&target.negated(), 1e-6),
     );
     assert!((one.upper_s - other.upper_s).abs() < 1e-9 * one.upper_s);
+}
+
+#[test]
+fn levels_that_meet_are_no_trouble() {
+    // A saddle on the level of a vertex: the gap between two walls vanishes.
+    for rates in [[1.0, 0.8, 0.6], [0.6, 0.8, 1.0], [0.8, 1.0, 0.600_000_001]] {
+        checked(rates, &rate_box(rates), &turn([0.4, 1.1, -0.9]), 1e-6);
+    }
 }
 
 #[test]

@@ -20,15 +20,15 @@ impl Generator {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.next() as f64 / (1_u64 << 53) as f64
     }
 
-    fn axis(&mut self) -> usize {
+    pub(super) fn axis(&mut self) -> usize {
         self.vector().iamax()
     }
 
-    fn vector(&mut self) -> Vector3<f64> {
+    pub(super) fn vector(&mut self) -> Vector3<f64> {
         Vector3::from_fn(|_, _| self.between(-1.0, 1.0))
     }
 }

@@ -1,0 +1,257 @@
+//! From the least time of turns to lower bounds on slews with limited accelerations.
+//!
+//! Let every motion of the spacecraft have `|w_i| <= r_i` and `|w_i'| <= a_i` in body axes, and let
+//! `b_i`, `e_i` bound `|w_i|` at the two ends of a leg of duration `T` (0 where the component is
+//! stopped, the value where it is known, no bound where it is free). Then, whatever the motion,
+//!
+//! ```text
+//!   |w_i(t)| <= m_i(t; T) = min(r_i, b_i + a_i t, e_i + a_i (T - t))
+//! ```
+//!
+//! **Any box.** For rates `p_i > 0` let `s(T) = int_0^T max_i m_i / p_i dt`. Along the motion take
+//! `s` as the time instead, `ds / dt = max_i m_i / p_i`: then `dR / ds = R S(w / s')` with
+//! `|w_i / s'| <= p_i`, a motion within the box `p` that lasts `s(T)`. So `V_p(R) <= s(T)`, and as `s`
+//! does not decrease with `T` (neither the integrand nor the range does),
+//!
+//! ```text
+//!   T >= s^-1(V_p(R))    for every box p: the best of them counts.
+//! ```
+//!
+//! Special cases, with `p = r`:
+//!
+//! * both ends at rest, `r_i = a_i tau` for all axes: `s = T - tau` for `T >= 2 tau`, else
+//!   `T^2 / (4 tau)`. Hence `T >= V + tau` if `V >= tau`, else `T >= 2 sqrt(tau V)` (**short slews**).
+//!   With unequal `tau_i`, `m_i / r_i` is largest for the least of them: the same with that one, and
+//!   other boxes do better;
+//! * one end at rest, one free: `m_i / r_i = min(1, t / tau)`, so `T >= V + tau / 2` if
+//!   `V >= tau / 2`, else `sqrt(2 tau V)`;
+//! * some components free at both ends: `m_i = r_i` for these, `s = T`, `T >= V`; boxes that are
+//!   narrower on the stopped axes do better where these are the bottleneck;
+//! * known end rates: `b_i = |w_i(0)|`, `e_i = |w_i(T)|`.
+//!
+//! **Tours.** For a motion through several rotations the argument holds on each leg, and `s` adds
+//! up: the sum of `V_p` over the legs is at most `s(T)` of the whole, with the end conditions of the
+//! tour. Where all components stop at every target, the legs are independent and their bounds add up
+//! instead.
+//!
+//! The boxes tried are those of the mean rates `1 / T int m_i dt` that are to be had in some durations
+//! `T`, from `r` (long slews) to the shape of `a` (short ones at rest). Any choice is valid.
+
+use super::RateBox;
+use crate::attitude::Attitude;
+use nalgebra::Vector3;
+
+/// Durations whose mean rates make the boxes, in units of the longest ramp.
+const DURATIONS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
+/// A box is no narrower than this share of the rates, relative to its widest axis: more extreme
+/// boxes have many extremals and gain nothing.
+const NARROWEST: f64 = 0.1;
+/// Boxes whose shapes differ by less than this are one.
+const SAME_SHAPE: f64 = 0.02;
+/// Halvings of the duration: to rounding.
+const HALVINGS: usize = 60;
+/// Share taken off for the rounding of `s`.
+const DEFLATION: f64 = 1e-9;
+
+/// What no motion of the spacecraft exceeds, per body axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlewLimits {
+    /// Largest rates, rad/s, positive.
+    pub rates_rad_s: Vector3<f64>,
+    /// Largest angular accelerations, rad/s^2, positive.
+    pub accelerations_rad_s2: Vector3<f64>,
+}
+
+/// What the rates do not exceed at the ends of a leg or tour, per body axis: 0 where they are
+/// stopped, infinite where they are free.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndRates {
+    /// At the beginning, rad/s.
+    pub begin_rad_s: Vector3<f64>,
+    /// At the end, rad/s.
+    pub end_rad_s: Vector3<f64>,
+}
+
+impl EndRates {
+    /// All components stopped at both ends.
+    #[must_use]
+    pub fn at_rest() -> Self {
+        Self {
+            begin_rad_s: Vector3::zeros(),
+            end_rad_s: Vector3::zeros(),
+        }
+    }
+}
+
+/// Lower bounds on slews of one kind: built once per spacecraft and kind of ends.
+#[derive(Debug, Clone)]
+pub struct SlewBound {
+    limits: SlewLimits,
+    ends: EndRates,
+    /// Boxes with their rates, that of the limits first.
+    boxes: Vec<(Vector3<f64>, RateBox)>,
+}
+
+impl SlewBound {
+    /// For slews within limits and with such ends. `None` when limits are not positive and finite,
+    /// an end rate is negative or not a number, or [`RateBox::new`] refuses the rates.
+    #[must_use]
+    pub fn new(limits: SlewLimits, ends: EndRates) -> Option<Self> {
+        let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
+        let bounds = |v: &Vector3<f64>| v.iter().all(|x| *x >= 0.0);
+        if !positive(&limits.accelerations_rad_s2)
+            || !bounds(&ends.begin_rad_s)
+            || !bounds(&ends.end_rad_s)
+        {
+            return None;
+        }
+        let rates = limits.rates_rad_s;
+        let mut bound = Self {
+            limits,
+            ends,
+            boxes: vec![(rates, RateBox::new(rates)?)],
+        };
+        let longest = rates.component_div(&limits.accelerations_rad_s2).max();
+        for duration in DURATIONS {
+            let candidate = bound.mean_rates(duration * longest);
+            let known = bound.boxes.iter().any(|(other, _)| {
+                let ratio = candidate.component_div(other);
+                ratio.max() < ratio.min() * (1.0 + SAME_SHAPE)
+            });
+            if !known {
+                // The others do without a box that is refused.
+                let table = RateBox::new(candidate);
+                bound.boxes.extend(table.map(|table| (candidate, table)));
+            }
+        }
+        Some(bound)
+    }
+
+    /// A duration, s, that no slew undercuts that makes these turns one after the other, each in the
+    /// body axes where the one before ended; one turn for a leg. Only the ends of the whole have the
+    /// end rates, between the turns all are free.
+    ///
+    /// The turns' least times are computed to the relative tolerance; the result is valid for any. It
+    /// is rounded down to seven digits, so that it does not depend on the mathematical library.
+    #[must_use]
+    pub fn lower_bound_s(&self, turns: &[Attitude], tolerance: f64) -> f64 {
+        let best = self.boxes.iter().fold(0.0, |best, (rates, table)| {
+            let least: f64 = turns
+                .iter()
+                .map(|turn| table.lower_bound(turn, tolerance))
+                .sum();
+            f64::max(best, self.duration_of(rates, least))
+        });
+        rounded_down(best * (1.0 - DEFLATION))
+    }
+
+    /// `m_i(t; T)`.
+    fn available(&self, axis: usize, at: f64, duration: f64) -> f64 {
+        let acceleration = self.limits.accelerations_rad_s2[axis];
+        let begin = self.ends.begin_rad_s[axis] + acceleration * at;
+        let end = self.ends.end_rad_s[axis] + acceleration * (duration - at);
+        self.limits.rates_rad_s[axis].min(begin).min(end)
+    }
+
+    /// Times at which some `m_i` may have a kink, in order, with both ends.
+    fn kinks(&self, duration: f64) -> [f64; 11] {
+        let mut times = [0.0; 11];
+        times[1] = duration;
+        for i in 0..3 {
+            let (rate, acceleration) = (
+                self.limits.rates_rad_s[i],
+                self.limits.accelerations_rad_s2[i],
+            );
+            // A free end has no ramp: beyond the rate it bounds nothing.
+            let begin = self.ends.begin_rad_s[i].min(rate);
+            let end = self.ends.end_rad_s[i].min(rate);
+            let at = [
+                (rate - begin) / acceleration,
+                duration - (rate - end) / acceleration,
+                0.5 * (duration + (end - begin) / acceleration),
+            ];
+            for k in 0..3 {
+                times[2 + 3 * i + k] = at[k].clamp(0.0, duration);
+            }
+        }
+        times.sort_by(f64::total_cmp);
+        times
+    }
+
+    /// Means of `m_i` over a duration, none much narrower than the widest in its share of the limit.
+    fn mean_rates(&self, duration: f64) -> Vector3<f64> {
+        let kinks = self.kinks(duration);
+        let shares = Vector3::from_fn(|i, _| {
+            let area: f64 = kinks
+                .windows(2)
+                .map(|t| {
+                    let ends = [t[0], t[1]].map(|t| self.available(i, t, duration));
+                    0.5 * (ends[0] + ends[1]) * (t[1] - t[0])
+                })
+                .sum();
+            area / (duration * self.limits.rates_rad_s[i])
+        });
+        let least = NARROWEST * shares.max();
+        self.limits
+            .rates_rad_s
+            .component_mul(&shares.map(|share| share.max(least)))
+    }
+
+    /// `s(T)` for a box: the integrand is linear between kinks and crossings of the `m_i / p_i`.
+    fn effective(&self, rates: &Vector3<f64>, duration: f64) -> f64 {
+        let kinks = self.kinks(duration);
+        let mut sum = 0.0;
+        for pair in kinks.windows(2) {
+            let (from, length) = (pair[0], pair[1] - pair[0]);
+            if length <= 0.0 {
+                continue;
+            }
+            let shares =
+                |t: f64| Vector3::from_fn(|i, _| self.available(i, t, duration) / rates[i]);
+            let (first, last) = (shares(from), shares(pair[1]));
+            let mut cuts = [0.0, 1.0, 1.0, 1.0, 1.0];
+            for (cut, (i, j)) in cuts[1..4].iter_mut().zip([(0, 1), (1, 2), (2, 0)]) {
+                let (before, after) = (first[i] - first[j], last[i] - last[j]);
+                if before * after < 0.0 {
+                    *cut = before / (before - after);
+                }
+            }
+            cuts[..4].sort_by(f64::total_cmp);
+            let value = |cut: f64| (first + (last - first) * cut).max();
+            sum += cuts
+                .windows(2)
+                .map(|cut| 0.5 * (value(cut[0]) + value(cut[1])) * (cut[1] - cut[0]) * length)
+                .sum::<f64>();
+        }
+        sum
+    }
+
+    /// A duration whose `s` is at most the least time of the turns, to rounding: `s^-1` from below.
+    fn duration_of(&self, rates: &Vector3<f64>, least: f64) -> f64 {
+        // No slew is faster than the largest rates of all make it.
+        let mut high = least * rates.component_div(&self.limits.rates_rad_s).min();
+        let mut low = 0.0;
+        while self.effective(rates, high) < least {
+            low = high;
+            high *= 2.0;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if self.effective(rates, middle) < least {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+}
+
+/// Seven digits, never more than the number.
+fn rounded_down(x: f64) -> f64 {
+    if x <= 0.0 {
+        return 0.0;
+    }
+    let unit = 10.0_f64.powf(x.log10().floor() - 6.0);
+    ((x / unit).floor() * unit).min(x)
+}

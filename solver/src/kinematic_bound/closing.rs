@@ -22,17 +22,31 @@ const COMPONENT: f64 = 2e-15;
 
 /// The target as words see it that begin and end in given octants.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Probe {
-    /// `C1 cos u`, `C1 sin u`, `C2 cos v`, `C2 sin v` of an interior are its products with these.
-    parts: [Quat; 4],
+pub(super) struct Probe<'a> {
+    image: &'a Image,
+    /// Index of the last octant or of its opposite.
+    last: usize,
+    /// Signs of the first and of the last octant.
+    signs: [f64; 2],
     /// `c_0 . R c_f`.
     pub(super) target: f64,
 }
 
-/// All pairs of first and last octants, for the four images of a target under half turns about the
-/// body axes.
+/// An image of half the target's quaternion `q` under a half turn, with its products with the
+/// corners: octants that are opposite to each other differ by signs only.
 #[derive(Debug)]
-pub(super) struct Probes([[[Probe; 8]; 2]; 4]);
+struct Image {
+    /// `q / 2` and `c_0 q / 2`.
+    target: [Quat; 2],
+    /// `q c_f / 2` and `c_0 q c_f / 2`.
+    ends: [[Quat; 2]; 4],
+    /// `c_0 . R c_f`.
+    cosines: [f64; 4],
+}
+
+/// The four images of a target under half turns about the body axes.
+#[derive(Debug)]
+pub(super) struct Probes([Image; 4]);
 
 /// Signs of the body axes under the half turns that make the images.
 pub(super) const IMAGES: [[f64; 3]; 4] = [
@@ -50,33 +64,39 @@ pub(super) fn image_of(q: &Quat, image: usize) -> Quat {
 
 impl Probes {
     pub(super) fn new(q: &Quat, c: &[f64; 3]) -> Self {
-        let pure = |v: [f64; 3]| [v[0], v[1], v[2], 0.0];
+        let pure = |octant: Octant| {
+            let [x, y, z] = corner(c, octant);
+            [x, y, z, 0.0]
+        };
         Self([0, 1, 2, 3].map(|image| {
-            let q = image_of(q, image);
-            [0, 1].map(|first| {
-                let before = product(&pure(corner(c, FIRST[first])), &q);
-                [0, 1, 2, 3, 4, 5, 6, 7].map(|last: Octant| {
-                    let end = pure(corner(c, last));
-                    let (after, both) = (product(&q, &end), product(&before, &end));
-                    let mix =
-                        |a: &Quat, s: f64, b: &Quat| [0, 1, 2, 3].map(|i| 0.5 * (a[i] + s * b[i]));
-                    let minus = after.map(|x| -x);
-                    Probe {
-                        parts: [
-                            mix(&q, -1.0, &both),
-                            mix(&minus, -1.0, &before),
-                            mix(&q, 1.0, &both),
-                            mix(&after, -1.0, &before),
-                        ],
-                        target: dot4(&before, &after),
-                    }
-                })
-            })
+            let half = image_of(q, image).map(|x| 0.5 * x);
+            let before = product(&pure(FIRST[0]), &half);
+            let ends = [0, 1, 2, 3].map(|last| {
+                let end = pure(last);
+                [product(&half, &end), product(&before, &end)]
+            });
+            Image {
+                target: [half, before],
+                cosines: ends.map(|[after, _]| 4.0 * dot4(&before, &after)),
+                ends,
+            }
         }))
     }
 
-    pub(super) fn of(&self, image: usize, first: usize, last: Octant) -> &Probe {
-        &self.0[image][first][last]
+    pub(super) fn of(&self, image: usize, first: usize, last: Octant) -> Probe<'_> {
+        let image = &self.0[image];
+        let (last, sign) = if last < 4 {
+            (last, 1.0)
+        } else {
+            (7 - last, -1.0)
+        };
+        let signs = [if first == 0 { 1.0 } else { -1.0 }, sign];
+        Probe {
+            image,
+            last,
+            signs,
+            target: signs[0] * signs[1] * image.cosines[last],
+        }
     }
 }
 
@@ -94,11 +114,18 @@ pub(super) struct Closing {
     pub(super) last: f64,
 }
 
-impl Probe {
+impl Probe<'_> {
     /// What closes an interior that is known within a turn of `2 half_eta`, rad: `None` when
     /// nothing can.
     pub(super) fn close(&self, interior: &Quat, half_eta: f64) -> Option<Closing> {
-        let [x1, y1, x2, y2] = [0, 1, 2, 3].map(|i| dot4(&self.parts[i], interior));
+        // <q, P>, <c_0* q, P>, <q c_f*, P> and <c_0* q c_f*, P>, halved.
+        let [first, last] = self.signs;
+        let [after, both] = &self.image.ends[self.last];
+        let plain = dot4(&self.image.target[0], interior);
+        let begun = -first * dot4(&self.image.target[1], interior);
+        let ended = -last * dot4(after, interior);
+        let both = first * last * dot4(both, interior);
+        let (x1, y1, x2, y2) = (plain - both, begun + ended, plain + both, begun - ended);
         let (c1, c2) = ((x1 * x1 + y1 * y1).sqrt(), (x2 * x2 + y2 * y2).sqrt());
         // The sum must reach the cosine of half the turn within which the interior is known, and
         // cos x >= 1 - x^2 / 2. It never exceeds one: what it exceeds its least value by is known

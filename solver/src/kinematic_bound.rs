@@ -131,6 +131,8 @@ pub struct ShortestTurn {
     pub upper_s: f64,
     /// The motion, in order.
     pub arcs: Vec<RateArc>,
+    /// Cells of the branch and bound: the work that it took.
+    pub cells: usize,
 }
 
 impl RateBox {
@@ -186,6 +188,7 @@ impl RateBox {
             lower_s: self.lower(&search).min(upper_s),
             upper_s,
             arcs,
+            cells: search.cells,
         }
     }
 

@@ -119,6 +119,65 @@ impl Dynamics {
         self.momentum != Vector3::zeros()
     }
 
+    /// Greatest rate about each body axis, rad/s, that wheel speeds within their limits allow at
+    /// any attitude: `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`.
+    pub(crate) fn reachable_rates(&self) -> Vector3<f64> {
+        let locked = self
+            .actuators
+            .iter()
+            .map(|wheel| wheel.axis * wheel.inertia * wheel.axis.transpose())
+            .sum::<Matrix3<f64>>();
+        let Some(inverse) = (self.inertia + locked).try_inverse() else {
+            return Vector3::repeat(f64::INFINITY);
+        };
+        let held = (inverse * self.locked_momentum).abs();
+        let turned = inverse.map(|c| c * c).column_sum().map(f64::sqrt) * self.momentum.norm();
+        self.actuators.iter().fold(held + turned, |sum, wheel| {
+            let share = (inverse * wheel.axis).abs() * wheel.inertia;
+            // A wheel without a limit that does not turn an axis leaves it alone.
+            sum + share.map(|share| {
+                if share > 0.0 {
+                    share * wheel.max_speed
+                } else {
+                    0.0
+                }
+            })
+        })
+    }
+
+    /// Orthonormal axes, as columns, along which rates are limited most independently: the body
+    /// axes when their rates have limits, else those nearest to the axes of the three wheels that
+    /// span the largest volume, which turn with the spacecraft and not with its description.
+    pub(crate) fn natural_axes(&self) -> Matrix3<f64> {
+        if self.max_rate.iter().any(|limit| limit.is_finite()) {
+            return Matrix3::identity();
+        }
+        let (mut widest, mut largest) = (Matrix3::identity(), 0.0);
+        for (i, first) in self.actuators.iter().enumerate() {
+            for (j, second) in self.actuators.iter().enumerate().skip(i + 1) {
+                for third in &self.actuators[j + 1..] {
+                    let axes = [first, second, third].map(|wheel| wheel.axis.normalize());
+                    let triple = Matrix3::from_columns(&axes);
+                    let volume = triple.determinant().abs();
+                    // The first of equal ones, however they were rounded.
+                    if volume > largest + 1e-6 {
+                        (widest, largest) = (triple, volume);
+                    }
+                }
+            }
+        }
+        // The orthogonal factor of the polar decomposition is the nearest orthogonal matrix.
+        let decomposition = widest.svd(true, true);
+        let mut axes = match (decomposition.u, decomposition.v_t) {
+            (Some(u), Some(v_t)) => u * v_t,
+            _ => Matrix3::identity(),
+        };
+        if axes.determinant() < 0.0 {
+            axes.column_mut(2).neg_mut();
+        }
+        axes
+    }
+
     /// Body rate, rad/s, of an attitude and wheel momenta.
     pub(crate) fn rate(&self, attitude: &Attitude, wheels: &DVector<f64>) -> Vector3<f64> {
         let body = attitude.to_body(self.momentum) - self.locked_momentum - &self.axes * wheels;
@@ -155,19 +214,28 @@ impl Dynamics {
         self.null_space.tr_mul(wheels)
     }
 
+    /// Shares of their limits that wheel speeds, rate components and the norm of the rate have,
+    /// with their signs, in this order; zero where nothing is limited.
+    pub(crate) fn limit_shares<'a>(
+        &'a self,
+        rate: &'a Vector3<f64>,
+        wheels: &'a DVector<f64>,
+    ) -> impl Iterator<Item = f64> + 'a {
+        let spin = self
+            .actuators
+            .iter()
+            .zip(wheels.iter())
+            .map(|(wheel, h)| (h / wheel.inertia - wheel.axis.dot(rate)) / wheel.max_speed);
+        let per_axis = rate.iter().zip(&self.max_rate).map(|(w, limit)| w / limit);
+        spin.chain(per_axis)
+            .chain(std::iter::once(rate.norm() / self.max_rate_norm))
+    }
+
     /// Greatest share of its limit that any wheel speed or body rate has; infinite never, 0 when
     /// nothing is limited.
     pub(crate) fn speed_usage(&self, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
-        let spin =
-            self.actuators.iter().zip(wheels.iter()).map(|(wheel, h)| {
-                (h / wheel.inertia - wheel.axis.dot(rate)).abs() / wheel.max_speed
-            });
-        let per_axis = rate
-            .iter()
-            .zip(&self.max_rate)
-            .map(|(w, limit)| w.abs() / limit);
-        spin.chain(per_axis)
-            .fold(rate.norm() / self.max_rate_norm, f64::max)
+        self.limit_shares(rate, wheels)
+            .fold(0.0, |worst, share| worst.max(share.abs()))
     }
 
     /// Greatest share of its limit that any wheel torque has.

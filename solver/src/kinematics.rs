@@ -12,8 +12,9 @@
 //! make them, `Ji` is the inverse of `J_eff`, and `zeta` is the total momentum at the beginning
 //! times the length. With zero momentum only `a` and `c` remain. The inputs are `z = (a, c, zeta)`.
 //!
-//! Two maps: [`magnus`] for zero momentum, fast and good to about 1e-6 rad, and [`runge_kutta`].
-//! The derivatives of both are exact derivatives of the discrete map.
+//! Two maps: [`magnus`] for zero momentum, fast and good to about 1e-5 rad, and [`runge_kutta`],
+//! with momentum too and as exact as its substeps make it. The derivatives of both are exact
+//! derivatives of the discrete map.
 
 mod magnus;
 mod quaternion;
@@ -55,10 +56,37 @@ pub(crate) struct TurnDerivatives {
     pub(crate) second: [[f64; INPUTS]; INPUTS],
 }
 
+/// Difference between two turns, the second with half the step, at which the second is exact: its
+/// error is a sixty-fourth of that.
+const EXACT: f64 = 1e-9;
+/// Halvings of the step on the way there.
+const MAX_HALVINGS: usize = 5;
+
+/// The turn over an interval without discretisation error, as far as that matters anywhere.
+pub(crate) fn exact_turn(
+    inertia_inverse: Matrix3<f64>,
+    with_momentum: bool,
+    z: &TurnInputs,
+) -> Quat {
+    let mut map = RungeKutta::new(inertia_inverse, with_momentum, 1);
+    let mut turn = map.turn(z);
+    for _ in 0..MAX_HALVINGS {
+        map = map.finer();
+        let finer = map.turn(z);
+        let change = finer.iter().zip(&turn).map(|(a, b)| (a - b).abs());
+        let exact = change.fold(0.0, f64::max) <= EXACT;
+        turn = finer;
+        if exact {
+            break;
+        }
+    }
+    turn
+}
+
 /// The map from inputs to turns.
 #[derive(Debug, Clone)]
 pub(crate) enum TurnMap {
-    /// Two Magnus steps of order six.
+    /// One Magnus step of order six.
     Magnus,
     /// Runge-Kutta of order six.
     RungeKutta(RungeKutta),
@@ -68,19 +96,18 @@ impl TurnMap {
     /// The map to iterate with; `inertia_inverse` is that of `J_eff` in matching units.
     pub(crate) fn fast(inertia_inverse: Matrix3<f64>, with_momentum: bool) -> Self {
         if with_momentum {
-            Self::exact(inertia_inverse, true, FAST_SUBSTEPS)
+            Self::RungeKutta(RungeKutta::new(inertia_inverse, true, FAST_SUBSTEPS))
         } else {
             Self::Magnus
         }
     }
 
-    /// A map as exact as its number of substeps makes it.
-    pub(crate) fn exact(
-        inertia_inverse: Matrix3<f64>,
-        with_momentum: bool,
-        substeps: usize,
-    ) -> Self {
-        Self::RungeKutta(RungeKutta::new(inertia_inverse, with_momentum, substeps))
+    /// A map with half the step.
+    pub(crate) fn finer(&self, inertia_inverse: Matrix3<f64>) -> Self {
+        Self::RungeKutta(match self {
+            Self::Magnus => RungeKutta::new(inertia_inverse, false, FAST_SUBSTEPS),
+            Self::RungeKutta(map) => map.finer(),
+        })
     }
 
     /// Number of inputs with non-zero derivatives.

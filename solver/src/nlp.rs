@@ -26,7 +26,9 @@
 //! ```
 //!
 //! The method is the primal-dual barrier method with a filter line search of Waechter and Biegler
-//! (Math. Program. 106, 2006), with exact second derivatives. Differences: node equalities enter
+//! (Math. Program. 106, 2006), with exact second derivatives and second-order corrections.
+//! Differences: a system that is convex but too flat for its step is regularised in the next
+//! iteration, which shortens steps in directions that hardly matter; node equalities enter
 //! the sweep as a proximal penalty whose centre is iterated to the exact multiplier, which keeps
 //! the factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
 
@@ -36,7 +38,11 @@ mod dense;
 mod filter;
 mod interior_point;
 mod iterate;
+mod line_search;
+mod merit;
 mod model;
+mod newton;
+mod regularisation;
 mod restoration;
 mod riccati;
 mod settings;

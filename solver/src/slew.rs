@@ -6,17 +6,61 @@ pub(crate) mod kinematic;
 mod tests;
 
 use crate::dynamics::Dynamics;
-use crate::multiphase::{Flown, fly};
+use crate::multiphase::{Flown, fly, polish};
+use crate::nlp::NlpStatus;
 use crate::profile::Profile;
-use crate::transcription::Waypoint;
+use crate::scenario::RateCondition;
+use crate::spec::Accuracy;
+use crate::transcription::{Waypoint, WheelCondition};
 use eigenaxis::{EigenaxisSlew, Side};
 use kinematic::Arrival;
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
-/// Intervals of a leg: beyond twelve the measured durations of 171 legs gain less than 1e-4.
-pub(crate) const INTERVALS: usize = 12;
+/// How finely slews are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Resolution {
+    /// Intervals of a leg.
+    pub(crate) intervals: usize,
+    /// Whether solutions are freed of what draws interval lengths together.
+    pub(crate) polished: bool,
+}
+
+impl Resolution {
+    /// The resolution of an accuracy.
+    pub(crate) fn of(accuracy: Accuracy, dynamics: &Dynamics) -> Self {
+        let bent = if dynamics.has_momentum() {
+            WITH_MOMENTUM
+        } else {
+            0
+        };
+        let usual = LEAST_INTERVALS + PER_SPARE_WHEEL * (dynamics.wheel_count() - 3) + bent;
+        match accuracy {
+            Accuracy::Standard => Self {
+                intervals: usual,
+                polished: false,
+            },
+            Accuracy::Tight => Self {
+                intervals: 2 * usual,
+                polished: true,
+            },
+        }
+    }
+}
+
+/// Intervals of a leg with three wheels and without momentum: with more the measured durations of
+/// 171 legs gain less than 1e-4.
+const LEAST_INTERVALS: usize = 12;
+/// Further intervals for every further wheel, which switches at times of its own, and for stored
+/// momentum, which turns in the body while the torque of an interval does not.
+const PER_SPARE_WHEEL: usize = 2;
+const WITH_MOMENTUM: usize = 6;
 /// Kinematic extremals that are tried as guesses beside the eigenaxis slew.
 const EXTREMALS: usize = 2;
+
+/// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
+const EIGENAXIS_TOLERANCE: f64 = 1e-6;
+/// Relative difference below which wheel momenta are the same.
+const SAME_MOMENTUM: f64 = 1e-9;
 
 /// A slew between two waypoints.
 #[derive(Clone, Copy)]
@@ -31,6 +75,8 @@ pub(crate) struct SlewProblem<'a> {
     pub(crate) arrival: Arrival,
     /// Null-space momentum of the wheels in the guesses, N m s.
     pub(crate) null: &'a DVector<f64>,
+    /// How finely it is solved.
+    pub(crate) resolution: Resolution,
 }
 
 /// The best solution of a slew.
@@ -47,12 +93,7 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
     let mut best: Option<Flown> = None;
     let mut solves = 0;
     for guess in guesses(slew) {
-        let mut to = slew.to.clone();
-        if let Some(last) = guess.attitudes.last() {
-            to.attitude = slew.arrival.signed(&to.attitude, last);
-        }
-        let waypoints = [slew.from.clone(), to];
-        let flown = fly(slew.dynamics, &waypoints, &[INTERVALS], &guess, stop);
+        let flown = slew.fly(&guess, stop);
         solves += 1;
         if best.as_ref().is_none_or(|best| flown.improves(best)) {
             best = Some(flown);
@@ -61,11 +102,93 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
             break;
         }
     }
-    let flown = best.expect("there is always the eigenaxis guess");
+    let mut flown = best.expect("there is always the eigenaxis guess");
+    if !stop()
+        && let Some(better) = slew.eigenaxis_at_worst(&flown, stop)
+    {
+        flown = better;
+        solves += 1;
+    }
+    if slew.resolution.polished {
+        let waypoints = slew.waypoints(&flown.profile);
+        flown = polish(
+            slew.dynamics,
+            &waypoints,
+            &[slew.resolution.intervals],
+            flown,
+            stop,
+        );
+    }
     Slew { flown, solves }
 }
 
 impl SlewProblem<'_> {
+    /// Flies from a guess.
+    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> bool) -> Flown {
+        let waypoints = self.waypoints(guess);
+        fly(
+            self.dynamics,
+            &waypoints,
+            &[self.resolution.intervals],
+            guess,
+            stop,
+        )
+    }
+
+    /// A flight that takes no longer than the slew about the eigenaxis, where that can be flown and
+    /// another flight is slower than it: from the exact slew, or the slew itself.
+    fn eigenaxis_at_worst(&self, flown: &Flown, stop: &dyn Fn() -> bool) -> Option<Flown> {
+        let eigenaxis = self.eigenaxis();
+        let allowed = eigenaxis.trapezoid.duration * (1.0 + EIGENAXIS_TOLERANCE);
+        let fast = |flown: &Flown| flown.duration().is_some_and(|time| time <= allowed);
+        if fast(flown) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
+            return None;
+        }
+        let exact = eigenaxis.exact(self.dynamics, self.resolution.intervals);
+        let solved = self.fly(&exact, stop);
+        if fast(&solved) || self.dynamics.has_momentum() {
+            // With momentum its torque is not piecewise constant.
+            return solved.improves(flown).then_some(solved);
+        }
+        Some(Flown {
+            status: NlpStatus::Converged,
+            profile: exact,
+            iterations: solved.iterations,
+            infeasibility: 0.0,
+        })
+    }
+
+    /// Whether the conditions of both ends admit rest with the null-space momentum of the guesses.
+    fn begins_and_ends_at_rest(&self) -> bool {
+        [self.from, self.to].iter().all(|end| {
+            let still = end.rate.iter().all(|rate| match rate {
+                RateCondition::Free => true,
+                RateCondition::Fixed(value) => *value == 0.0,
+                RateCondition::Within(low, high) => *low <= 0.0 && *high >= 0.0,
+            });
+            let rest = self
+                .dynamics
+                .wheels_at(&end.attitude, &Vector3::zeros(), self.null);
+            still
+                && match &end.wheels {
+                    WheelCondition::Free => true,
+                    WheelCondition::NullSpace(null) => null == self.null,
+                    WheelCondition::Fixed(held) => {
+                        (held - &rest).amax() <= SAME_MOMENTUM * rest.amax()
+                    }
+                }
+        })
+    }
+
+    /// Both ends, the second with the sign at which a motion arrives.
+    fn waypoints(&self, motion: &Profile) -> [Waypoint; 2] {
+        let mut to = self.to.clone();
+        if let Some(last) = motion.attitudes.last() {
+            to.attitude = self.arrival.signed(&to.attitude, last);
+        }
+        [self.from.clone(), to]
+    }
+
     /// The slew about the eigenaxis, the short way round unless the sign says otherwise.
     pub(crate) fn eigenaxis(&self) -> EigenaxisSlew {
         let from = &self.from.attitude;
@@ -75,10 +198,10 @@ impl SlewProblem<'_> {
 }
 
 fn guesses(slew: &SlewProblem<'_>) -> Vec<Profile> {
-    let eigenaxis = slew.eigenaxis();
+    let (eigenaxis, intervals) = (slew.eigenaxis(), slew.resolution.intervals);
     let mut all: Vec<_> = [Side::Near, Side::Far]
-        .map(|side| eigenaxis.guess(slew.dynamics, INTERVALS, side))
+        .map(|side| eigenaxis.guess(slew.dynamics, intervals, side))
         .into();
-    all.extend(kinematic::guesses(slew, INTERVALS, EXTREMALS));
+    all.extend(kinematic::guesses(slew, intervals, EXTREMALS));
     all
 }

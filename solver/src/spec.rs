@@ -149,9 +149,22 @@ pub enum AttitudeEquivalence {
     Quaternion,
 }
 
+/// How closely durations come to the minimum over all torque histories.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Accuracy {
+    /// Within 0.05 % of the converged minimum.
+    #[default]
+    Standard,
+    /// Twice the intervals, no penalty on their lengths: durations repeat to 1e-6 relative
+    /// whatever the units and axes in which a problem is stated. Several times slower.
+    Tight,
+}
+
 /// Options of a solve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OptionsSpec {
+    /// Accuracy of the durations.
+    pub accuracy: Accuracy,
     /// Meaning of equal attitudes.
     pub attitude_equivalence: AttitudeEquivalence,
     /// Wall-clock limit, s.
@@ -173,6 +186,7 @@ pub struct OptionsSpec {
 impl Default for OptionsSpec {
     fn default() -> Self {
         Self {
+            accuracy: Accuracy::Standard,
             attitude_equivalence: AttitudeEquivalence::Rotation,
             time_limit_s: Some(60.0),
             node_limit: None,

@@ -15,31 +15,31 @@
 //! `h_{k+1} = h_k + m_k`, `min_torque tau <= m <= max_torque tau` (which implies `tau >= 0`), and
 //! an interval may shrink to nothing without any variable losing its meaning. Speed and rate
 //! limits hold at nodes; between nodes `h` is linear, so without total momentum they hold there
-//! too, and with it the checker's finding tightens them ([`Transcription::with_reserve`]).
+//! too, and with it what is found between nodes tightens them ([`Reserves`]).
 //!
 //! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of [`crate::kinematics`].
 
 mod attitude_link;
 mod nodes;
+mod reserves;
 mod rows;
 mod scales;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use nodes::{Waypoint, WheelCondition};
+pub(crate) use reserves::Reserves;
 pub(crate) use scales::Scales;
 
 use crate::dynamics::Dynamics;
-use crate::kinematics::{Quat, TurnMap, conjugate, product, rotate_back};
-use crate::nlp::{Chain, Link, LinkModel, LinkMultipliers, LinkValues};
+use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product, rotate_back};
+use crate::nlp::{Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues};
 use nalgebra::Vector3;
 use nodes::Node;
-use rows::{Row, StateView};
+use rows::{LimitRow, StateView};
 
-/// Weight of the penalty that draws interval lengths together. Where torque does not change from
-/// one interval to the next the cost is flat in the node between them; the penalty settles it.
-/// Measured on 171 legs: durations suffer by 1e-5 relative, iterations fall from 47 to 20.
-const LENGTH_PENALTY: f64 = 1e-3;
+/// The quaternion of no turn.
+const NO_TURN: Quat = [0.0, 0.0, 0.0, 1.0];
 
 /// A flight through waypoints as a nonlinear program.
 #[derive(Debug, Clone)]
@@ -47,18 +47,23 @@ pub(crate) struct Transcription {
     dynamics: Dynamics,
     scales: Scales,
     turn_map: TurnMap,
+    /// What the turn map misses on each interval, see [`Transcription::correct`].
+    corrections: Vec<Quat>,
     /// `ts Ji h_locked` and `ts hs Ji A`: the wheels' share of the scaled rate is
     /// `-(offset + gain h)`.
     rate_offset: Vector3<f64>,
     rate_gain: Vec<Vector3<f64>>,
     /// Greatest and least `m` per unit of `tau`.
     momentum_per_time: Vec<(f64, f64)>,
-    /// Length, scaled, towards which a weak penalty pulls all intervals.
-    reference_length: f64,
+    /// Lengths, scaled, to which a penalty draws the intervals, and its weight. Where torque does
+    /// not change from one interval to the next the cost is flat in the node between them; the
+    /// penalty settles it.
+    reference_lengths: Vec<f64>,
+    length_penalty: f64,
     /// Limits that hold at every node whose state is not fixed.
-    limits: Vec<Row>,
-    /// Share of the norm limit of the rate that nodes may use.
-    norm_share: f64,
+    limits: Vec<LimitRow>,
+    /// Reserve kept from every limit at every node.
+    reserves: Reserves,
     nodes: Vec<Node>,
 }
 
@@ -69,13 +74,13 @@ impl Transcription {
         scales: Scales,
         waypoints: &[Waypoint],
         intervals: &[usize],
-        turn_map: TurnMap,
     ) -> Self {
         let factor = scales.time * scales.momentum;
         let inverse = dynamics.inertia_inverse;
         let mut transcription = Self {
             scales,
-            turn_map,
+            turn_map: TurnMap::fast(inverse, dynamics.has_momentum()),
+            corrections: vec![NO_TURN; intervals.iter().sum()],
             rate_offset: inverse * dynamics.locked_momentum * scales.time,
             rate_gain: dynamics
                 .actuators
@@ -93,28 +98,65 @@ impl Transcription {
                     )
                 })
                 .collect(),
-            reference_length: 1.0,
+            reference_lengths: vec![1.0; intervals.iter().sum()],
+            length_penalty: 0.0,
             limits: Vec::new(),
-            norm_share: 1.0,
+            reserves: Reserves::none(dynamics, intervals.iter().sum()),
             nodes: Vec::new(),
             dynamics: dynamics.clone(),
         };
-        transcription.limits = transcription.limit_rows(0.0);
+        transcription.limits = transcription.limit_rows();
         transcription.nodes = transcription.lay_out(waypoints, intervals);
         transcription
     }
 
-    /// The same with a relative reserve kept from every speed and rate limit.
-    pub(crate) fn with_reserve(mut self, reserve: f64) -> Self {
-        self.limits = self.limit_rows(reserve);
-        self.norm_share = 1.0 - reserve;
-        self
+    /// Keeps reserves from speed and rate limits from now on.
+    pub(crate) fn keep(&mut self, reserves: &Reserves) {
+        self.reserves.clone_from(reserves);
     }
 
-    /// The same with its intervals weakly drawn to a scaled length.
-    pub(crate) fn with_reference_length(mut self, length: f64) -> Self {
-        self.reference_length = length;
-        self
+    /// Draws the intervals to the lengths of an iterate from now on, with a penalty of this weight.
+    pub(crate) fn draw_lengths_to(&mut self, iterate: &Iterate, weight: f64) {
+        let controls = iterate.controls.chunks_exact(self.control_dim());
+        for (reference, control) in self.reference_lengths.iter_mut().zip(controls) {
+            *reference = control[control.len() - 1];
+        }
+        self.length_penalty = weight;
+    }
+
+    /// Makes the turn map exact where an iterate is: a fixed turn `e_k = p_k* p_exact` follows the
+    /// map's turn `p_k` on every interval from now on. Returns the sum of the angles, rad, by which
+    /// the corrections change: how far the iterate misses its end.
+    ///
+    /// The solution of a corrected program flies to where it should; that its derivatives are still
+    /// those of the map moves the optimum by a share of the square of the map's error.
+    pub(crate) fn correct(&mut self, iterate: &Iterate) -> f64 {
+        let (points, controls) = (self.point_len(), self.control_dim());
+        let inverse = self.dynamics.inertia_inverse;
+        let with_momentum = self.dynamics.has_momentum();
+        let mut missed = 0.0;
+        for node in 0..self.intervals() {
+            let link = Link {
+                node,
+                point: &iterate.points[node * points..(node + 1) * points],
+                control: &iterate.controls[node * controls..(node + 1) * controls],
+                next: &iterate.points[(node + 1) * points..(node + 2) * points],
+            };
+            let inputs = self.turn_inputs(&link);
+            let exact = exact_turn(inverse, with_momentum, &inputs);
+            let correction = product(&conjugate(&self.turn_map.turn(&inputs)), &exact);
+            let change = product(&conjugate(&self.corrections[node]), &correction);
+            missed += 2.0 * imaginary(&change).norm();
+            self.corrections[node] = correction;
+        }
+        missed
+    }
+
+    /// Goes on with a finer map of the turn, when the one in use is too far from the truth for its
+    /// derivatives to lead there.
+    pub(crate) fn refine(&mut self, iterate: &Iterate) {
+        self.turn_map = self.turn_map.finer(self.dynamics.inertia_inverse);
+        self.correct(iterate);
     }
 
     fn wheels(&self) -> usize {
@@ -151,7 +193,8 @@ impl Transcription {
             .flat_map(move |((max, min), m)| [tau - m / max, tau - m / min])
     }
 
-    fn write_state_values(&self, node: &Node, point: &[f64], out: &mut LinkValues) -> usize {
+    fn write_state_values(&self, at: usize, point: &[f64], out: &mut LinkValues) -> usize {
+        let (node, reserves) = (&self.nodes[at], self.reserves.at(at));
         let state = self.view(point);
         let mut equalities = out.equality.as_mut_slice();
         if let Some(target) = &node.attitude {
@@ -169,8 +212,12 @@ impl Transcription {
             out.inequality[count] = row.value(&state);
             count += 1;
         }
+        for (value, limit) in out.inequality.iter_mut().zip(self.limits_of(node)) {
+            *value -= reserves[limit.share] * limit.row.constant;
+        }
         if self.has_norm_row(node) {
-            out.inequality[count] = self.norm_margin(&state);
+            let norm = self.wheels() + 3;
+            out.inequality[count] = self.norm_margin(&state, reserves[norm]);
             count += 1;
         }
         count
@@ -262,11 +309,12 @@ impl Chain for Transcription {
     }
 
     fn values(&self, link: &Link<'_>, out: &mut LinkValues) {
-        let count = self.write_state_values(&self.nodes[link.node], link.point, out);
+        let count = self.write_state_values(link.node, link.point, out);
         out.cost = 0.0;
         if link.has_interval() {
             let tau = link.control[self.wheels()];
-            out.cost = tau + 0.5 * LENGTH_PENALTY * (tau - self.reference_length).powi(2);
+            let away = tau - self.reference_lengths[link.node];
+            out.cost = tau + 0.5 * self.length_penalty * away.powi(2);
             self.write_gap(link, &mut out.gap);
             for (out, margin) in out.inequality[count..]
                 .iter_mut()
@@ -286,8 +334,9 @@ impl Chain for Transcription {
         let (wheels, states) = (self.wheels(), self.state_dim());
         let tau = states + wheels;
         let length = link.control[wheels];
-        out.gradient[tau] = 1.0 + LENGTH_PENALTY * (length - self.reference_length);
-        out.hessian[tau * out.vars + tau] += LENGTH_PENALTY;
+        out.gradient[tau] =
+            1.0 + self.length_penalty * (length - self.reference_lengths[link.node]);
+        out.hessian[tau * out.vars + tau] += self.length_penalty;
         self.write_attitude_link(link, duals.gap, out);
         for i in 0..wheels {
             let row = (3 + i) * out.vars;

@@ -1,9 +1,12 @@
 //! What the solver promises, through its public interface only.
 
 mod arrays;
+mod boundaries;
 mod infeasible;
 mod invariance;
 mod oracle;
 mod published;
+mod random_suite;
 mod stopping;
 mod structure;
+mod tight;

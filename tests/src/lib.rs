@@ -6,6 +6,7 @@
 
 pub mod random;
 pub mod solving;
+pub mod suite;
 
 use slewplan_solver::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,

@@ -39,6 +39,11 @@ impl Generator {
         low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// A positive number between two bounds, its logarithm without preference.
+    pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
     /// Three numbers between two bounds.
     pub fn vector(&mut self, low: f64, high: f64) -> [f64; 3] {
         [(); 3].map(|()| self.between(low, high))
@@ -104,15 +109,10 @@ impl Generator {
         let count = 3 + self.below(4);
         let locked = (count > 3 && self.coin()).then_some(count - 1);
         let enabled = count - usize::from(locked.is_some());
-        let wheels = loop {
-            let mut wheels: Vec<_> = (0..count).map(|_| self.wheel()).collect();
-            if let Some(locked) = locked {
-                wheels[locked].enabled = false;
-            }
-            if widest_span(&wheels[..enabled]) > LEAST_SPAN {
-                break wheels;
-            }
-        };
+        let mut wheels = self.wheel_array(count, enabled, Self::wheel);
+        if let Some(locked) = locked {
+            wheels[locked].enabled = false;
+        }
         let speeds = wheels.iter().map(|wheel| {
             let limit = wheel.max_speed_rad_s.unwrap_or(500.0);
             self.between(-0.15, 0.15) * limit
@@ -123,7 +123,7 @@ impl Generator {
         };
         let limits = [(); 3].map(|()| self.coin().then(|| self.between(0.02, 0.1)));
         let spacecraft = SpacecraftSpec {
-            inertia_kg_m2: self.inertia(),
+            inertia_kg_m2: self.inertia(6.5, 12.0, true),
             max_body_rate_rad_s: limits,
             max_body_rate_norm_rad_s: self.coin().then(|| self.between(0.03, 0.1)),
             wheels,
@@ -164,10 +164,30 @@ impl Generator {
         }
     }
 
-    /// Principal moments that a body can have, turned anyhow.
-    fn inertia(&mut self) -> [[f64; 3]; 3] {
-        let moments = self.vector(6.5, 12.0);
-        let turn = Attitude::from_xyzw(self.quaternion()).expect("unit length");
+    /// Wheels of which the first `enabled` span space well.
+    pub fn wheel_array(
+        &mut self,
+        count: usize,
+        enabled: usize,
+        wheel: impl Fn(&mut Self) -> WheelSpec,
+    ) -> Vec<WheelSpec> {
+        loop {
+            let wheels: Vec<_> = (0..count).map(|_| wheel(self)).collect();
+            if widest_span(&wheels[..enabled]) > LEAST_SPAN {
+                return wheels;
+            }
+        }
+    }
+
+    /// Principal moments between two bounds, kg m² (a body can have them when the upper is at most
+    /// twice the lower), about the body axes or turned anyhow.
+    pub fn inertia(&mut self, low: f64, high: f64, turned: bool) -> [[f64; 3]; 3] {
+        let moments = self.vector(low, high);
+        let turn = if turned {
+            Attitude::from_xyzw(self.quaternion()).unwrap_or_else(Attitude::identity)
+        } else {
+            Attitude::identity()
+        };
         let axes = turn.matrix();
         // Mirrored entries are computed alike, so that the matrix is symmetric to the last bit.
         let entry = |i: usize, j: usize| {

@@ -6,7 +6,7 @@ use super::{attitude, spacecraft};
 use slewplan_solver::problem::{Code, Problem};
 use slewplan_solver::scenario::{Scenario, Validated};
 use slewplan_solver::spec::{
-    AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
+    Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
 
 /// Reads and validates a scenario; a time limit of the caller, s, replaces its own.
@@ -251,6 +251,7 @@ fn keep_out(cursor: &Cursor<'_>) -> KeepOutSpec {
 pub(super) fn options(cursor: &Cursor<'_>) -> OptionsSpec {
     let default = OptionsSpec::default();
     let known = &[
+        "accuracy",
         "attitude_equivalence",
         "time_limit_s",
         "node_limit",
@@ -273,7 +274,12 @@ pub(super) fn options(cursor: &Cursor<'_>) -> OptionsSpec {
         ("rotation", AttitudeEquivalence::Rotation),
         ("quaternion", AttitudeEquivalence::Quaternion),
     ];
+    let accuracies = [("standard", Accuracy::Standard), ("tight", Accuracy::Tight)];
     OptionsSpec {
+        accuracy: fields
+            .optional("accuracy")
+            .and_then(|text| text.choice(&accuracies))
+            .unwrap_or_default(),
         attitude_equivalence: fields
             .optional("attitude_equivalence")
             .and_then(|text| text.choice(&meanings))
@@ -324,7 +330,7 @@ mod tests {
         "targets": [{"id": "t", "attitude": {"mrp": [0.1, 0, 0]}, "zero_rate_axes": ["z", "x"],
             "rate_min_rad_s": [null, -0.1, null], "dwell_s": 1, "settle_s": 2.5}],
         "keep_out": [{"boresight": "camera", "direction": [1, 0, 0], "half_angle_deg": 30}],
-        "options": {"attitude_equivalence": "quaternion", "time_limit_s": null, "node_limit": 7,
+        "options": {"accuracy": "tight", "attitude_equivalence": "quaternion", "time_limit_s": null, "node_limit": 7,
             "relative_gap": 0.01, "alternatives": 3, "torque_authority": 0.9,
             "momentum_authority": 0.8, "seed": 18446744073709551615}
     }"#;
@@ -367,6 +373,7 @@ mod tests {
     #[test]
     fn every_option_arrives() {
         let expected = OptionsSpec {
+            accuracy: Accuracy::Tight,
             attitude_equivalence: AttitudeEquivalence::Quaternion,
             time_limit_s: None,
             node_limit: Some(7),

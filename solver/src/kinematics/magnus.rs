@@ -1,6 +1,6 @@
-//! The turn with zero momentum by the Magnus expansion: closed form, two half intervals.
+//! The turn with zero momentum by the Magnus expansion: closed form.
 //!
-//! On a half interval with the integral `u` of the rate and its change `v` times the length, the
+//! With the integral `u` of the rate over an interval and its change `v` times the length, the
 //! rotation vector of the turn is, to order six,
 //!
 //! ```text
@@ -8,73 +8,62 @@
 //! ```
 //!
 //! (Blanes, Casas, Oteo and Ros, Phys. Rep. 470, 2009, section 4, for a linear rate that multiplies
-//! on the right). With `a` and `c` at the ends of the whole interval, `u_1 = (3 a + c) / 8`,
-//! `u_2 = (a + 3 c) / 8` and `v = (c - a) / 4` on both halves.
+//! on the right). With `a` and `c` at the ends, `u = (a + c) / 2` and `v = c - a`.
 
-use super::quaternion::{Quat, conjugate, dot4, imaginary, product, quat};
+use super::quaternion::{Quat, imaginary, quat};
 use super::{INPUTS, TurnDerivatives, TurnInputs};
 use nalgebra::{Matrix3, Vector3};
 
-/// Share of `a` and `c` in `u_1`, `u_2` and `v`.
-const SHARES: [[f64; 2]; 3] = [[0.375, 0.125], [0.125, 0.375], [-0.25, 0.25]];
-
-/// A half interval's turn with its derivatives by `(u, v)`.
-struct Half {
-    turn: Quat,
-    first: [Quat; 6],
-}
-
 /// The turn over the interval.
 pub(super) fn turn(z: &TurnInputs) -> Quat {
-    let [first, second, change] = halves(z);
-    let exp = |u: &Vector3<f64>| Exponential::of(&rotation_vector(u, &change)).turn();
-    product(&exp(&first), &exp(&second))
+    let (u, v) = integral_and_change(z);
+    Exponential::of(&rotation_vector(&u, &v)).turn()
 }
 
 /// The turn with derivatives, the second ones weighted by `mu`.
 pub(super) fn derivatives(z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
-    let [u1, u2, v] = halves(z);
-    let (begin, end) = (Half::of(&u1, &v), Half::of(&u2, &v));
-    let bend1 = curvature(&u1, &v, &product(mu, &conjugate(&end.turn)));
-    let bend2 = curvature(&u2, &v, &product(&conjugate(&begin.turn), mu));
+    let (u, v) = integral_and_change(z);
+    let exponential = Exponential::of(&rotation_vector(&u, &v));
+    let [by_u, by_v] = rotation_jacobians(&u, &v);
+    // u = (a + c) / 2 and v = c - a.
+    let by_input = [by_u * 0.5 - by_v, by_u * 0.5 + by_v];
+    let by_omega = exponential.jacobian();
+    let (gradient, hessian) = exponential.weighted(mu);
+    let [uu, uv, vv] = rotation_curvature(&u, &v, &gradient);
+    let (quarter, skew, sum) = (uu * 0.25, (uv - uv.transpose()) * 0.5, uv + uv.transpose());
+    let even = quarter + vv;
+    let own = [even - sum * 0.5, even + sum * 0.5];
     let mut first = [[0.0; 4]; INPUTS];
     let mut second = [[0.0; INPUTS]; INPUTS];
-    // Derivatives by (u1, v) of the first and (u2, v) of the second half, spread over (a, c).
-    let share = |half: usize, i: usize| if i < 3 { SHARES[half] } else { SHARES[2] };
-    let spread = |i: usize, side: usize| 3 * side + i % 3;
-    for i in 0..6 {
-        let by_begin = product(&begin.first[i], &end.turn);
-        let by_end = product(&begin.turn, &end.first[i]);
+    let image = by_input.map(|by| hessian * by);
+    let blocks = [
+        by_input[0].tr_mul(&image[0]) + own[0],
+        by_input[0].tr_mul(&image[1]) + quarter - vv + skew,
+        by_input[1].tr_mul(&image[1]) + own[1],
+    ];
+    for j in 0..3 {
         for side in 0..2 {
-            for (out, (b, e)) in first[spread(i, side)]
-                .iter_mut()
-                .zip(by_begin.iter().zip(&by_end))
-            {
-                *out += share(0, i)[side] * b + share(1, i)[side] * e;
+            let column = by_input[side].column(j);
+            for (out, row) in first[3 * side + j].iter_mut().zip(&by_omega) {
+                *out = row.dot(&column);
             }
         }
-        let pulled = product(mu, &conjugate(&end.first[i]));
-        for j in 0..6 {
-            let cross = dot4(&begin.first[j], &pulled);
-            for (si, sj) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let (row, column) = (spread(i, si), spread(j, sj));
-                let mixed = share(1, i)[si] * share(0, j)[sj] * cross;
-                second[row][column] += share(0, i)[si] * share(0, j)[sj] * bend1[i][j]
-                    + share(1, i)[si] * share(1, j)[sj] * bend2[i][j]
-                    + mixed;
-                second[column][row] += mixed;
-            }
+        for i in 0..3 {
+            second[i][j] = blocks[0][(i, j)];
+            second[i][3 + j] = blocks[1][(i, j)];
+            second[3 + j][i] = blocks[1][(i, j)];
+            second[3 + i][3 + j] = blocks[2][(i, j)];
         }
     }
     TurnDerivatives {
-        turn: product(&begin.turn, &end.turn),
+        turn: exponential.turn(),
         first,
         second,
     }
 }
 
-fn halves(z: &TurnInputs) -> [Vector3<f64>; 3] {
-    SHARES.map(|[a, c]| z.begin * a + z.end * c)
+fn integral_and_change(z: &TurnInputs) -> (Vector3<f64>, Vector3<f64>) {
+    ((z.begin + z.end) * 0.5, z.end - z.begin)
 }
 
 /// `Omega(u, v)`.
@@ -93,48 +82,6 @@ fn rotation_jacobians(u: &Vector3<f64>, v: &Vector3<f64>) -> [Matrix3<f64>; 2] {
         + across_v * across_v / 240.0;
     let by_v = across_u * weight + (w.cross_matrix() - across_v * across_u) / 240.0;
     [by_u, by_v]
-}
-
-impl Half {
-    fn of(u: &Vector3<f64>, v: &Vector3<f64>) -> Self {
-        let exponential = Exponential::of(&rotation_vector(u, v));
-        let by_omega = exponential.jacobian();
-        let jacobians = rotation_jacobians(u, v);
-        let first = std::array::from_fn(|i| {
-            let column = jacobians[i / 3].column(i % 3);
-            let mut moved = [0.0; 4];
-            for (out, row) in moved.iter_mut().zip(&by_omega) {
-                *out = row.dot(&column);
-            }
-            moved
-        });
-        Self {
-            turn: exponential.turn(),
-            first,
-        }
-    }
-}
-
-/// Second derivatives by `(u, v)` of `mu . exp(Omega(u, v))`.
-fn curvature(u: &Vector3<f64>, v: &Vector3<f64>, mu: &Quat) -> [[f64; 6]; 6] {
-    let exponential = Exponential::of(&rotation_vector(u, v));
-    let (gradient, hessian) = exponential.weighted(mu);
-    let [by_u, by_v] = rotation_jacobians(u, v);
-    let (image_u, image_v) = (hessian * by_u, hessian * by_v);
-    let [uu, uv, vv] = rotation_curvature(u, v, &gradient);
-    let uu = by_u.tr_mul(&image_u) + uu;
-    let uv = by_u.tr_mul(&image_v) + uv;
-    let vv = by_v.tr_mul(&image_v) + vv;
-    let mut all = [[0.0; 6]; 6];
-    for i in 0..3 {
-        for j in 0..3 {
-            all[i][j] = uu[(i, j)];
-            all[i][3 + j] = uv[(i, j)];
-            all[3 + j][i] = uv[(i, j)];
-            all[3 + i][3 + j] = vv[(i, j)];
-        }
-    }
-    all
 }
 
 /// Blocks `uu`, `uv` and `vv` of the second derivative of `g . Omega(u, v)`.

@@ -100,6 +100,11 @@ impl RungeKutta {
         }
     }
 
+    /// The map with half the step.
+    pub(super) fn finer(&self) -> Self {
+        Self::new(self.inertia_inverse, self.with_momentum, 2 * self.substeps)
+    }
+
     /// Number of inputs with non-zero derivatives.
     pub(super) fn inputs(&self) -> usize {
         if self.with_momentum {

@@ -1,6 +1,5 @@
 //! Limits inside intervals, where the program imposes them at the nodes only.
 
-use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::profile::Profile;
 
@@ -8,26 +7,36 @@ use crate::profile::Profile;
 /// radian, and the stored momentum with it.
 const SAMPLES: usize = 16;
 
-/// Greatest relative excess over speed and rate limits inside intervals. Wheel momenta are linear
-/// there, but the turn of the stored momentum bends the rates.
-pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> f64 {
+/// Relative excess over every speed and rate limit inside every interval, in the order of
+/// [`Dynamics::limit_shares`]; nothing without momentum. Wheel momenta are linear there, but the
+/// turn of the stored momentum bends the rates.
+pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Vec<f64> {
     if !dynamics.has_momentum() {
         // Rates are linear between nodes, and so is every limit, or convex.
-        return 0.0;
+        return Vec::new();
     }
-    let mut worst = 0.0_f64;
-    for k in 0..profile.intervals() {
-        let usage = usage_inside(dynamics, profile, k);
-        let peak = peak(&usage);
-        if peak > usage[0].max(usage[SAMPLES]) {
-            worst = worst.max(peak - 1.0);
-        }
-    }
-    worst
+    (0..profile.intervals())
+        .flat_map(|k| shares_inside(dynamics, profile, k))
+        .map(|shares| excess(&shares))
+        .collect()
 }
 
-/// Usage of the limits at even times of an interval, both ends included.
-fn usage_inside(dynamics: &Dynamics, profile: &Profile, k: usize) -> Vec<f64> {
+/// How far a share's peak exceeds one, when it lies between the ends.
+fn excess(shares: &[f64]) -> f64 {
+    let over = |sign: f64| {
+        let usage: Vec<_> = shares.iter().map(|share| sign * share).collect();
+        let peak = peak(&usage);
+        if peak > usage[0].max(usage[SAMPLES]) {
+            (peak - 1.0).max(0.0)
+        } else {
+            0.0
+        }
+    };
+    over(1.0).max(over(-1.0))
+}
+
+/// Every limit's share at even times of an interval, both ends included.
+fn shares_inside(dynamics: &Dynamics, profile: &Profile, k: usize) -> Vec<Vec<f64>> {
     let (from, to) = (&profile.wheels[k], &profile.wheels[k + 1]);
     let step = profile.lengths[k] / SAMPLES as f64;
     let wheels = |at: f64| from + (to - from) * (at / SAMPLES as f64);
@@ -42,17 +51,21 @@ fn usage_inside(dynamics: &Dynamics, profile: &Profile, k: usize) -> Vec<f64> {
     // The midpoint rule drifts by little; the known end takes most of that away.
     let drift = attitudes[SAMPLES]
         .signed_turn_to(&profile.attitudes[k + 1].nearest_sign(&attitudes[SAMPLES]));
-    let usage = |(i, q): (usize, &Attitude)| {
+    let mut shares = vec![Vec::with_capacity(SAMPLES + 1); dynamics.wheel_count() + 4];
+    for (i, q) in attitudes.iter().enumerate() {
         let at = i as f64;
         let (q, wheels) = (q.retract(drift * (at / SAMPLES as f64)), wheels(at));
-        dynamics.speed_usage(&dynamics.rate(&q, &wheels), &wheels)
-    };
-    attitudes.iter().enumerate().map(usage).collect()
+        let rate = dynamics.rate(&q, &wheels);
+        for (series, share) in shares.iter_mut().zip(dynamics.limit_shares(&rate, &wheels)) {
+            series.push(share);
+        }
+    }
+    shares
 }
 
 /// Greatest value of samples and of the parabolas through each three of them.
 fn peak(samples: &[f64]) -> f64 {
-    let highest = samples.iter().copied().fold(0.0, f64::max);
+    let highest = samples.iter().copied().fold(f64::MIN, f64::max);
     samples.windows(3).fold(highest, |highest, three| {
         let (slope, bend) = (three[2] - three[0], 2.0 * three[1] - three[0] - three[2]);
         let inside = bend > 0.0 && slope.abs() <= 2.0 * bend;

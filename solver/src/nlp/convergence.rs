@@ -7,16 +7,39 @@ use super::iterate::Iterate;
 /// Multipliers above this average scale the optimality error down.
 const MULTIPLIER_SCALE: f64 = 100.0;
 
+/// Scaled maximum norms of the optimality conditions.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Residuals {
+    stationarity: f64,
+    /// Largest gap, equality or slack error.
+    pub(super) feasibility: f64,
+    /// Least and greatest product of slack and multiplier.
+    products: (f64, f64),
+    z_scale: f64,
+}
+
+impl Residuals {
+    /// The error of the barrier problem with parameter `mu`.
+    pub(super) fn of_barrier(&self, mu: f64) -> f64 {
+        self.optimality(mu).max(self.feasibility)
+    }
+
+    /// The error of stationarity and complementarity.
+    pub(super) fn optimality(&self, mu: f64) -> f64 {
+        let (least, greatest) = self.products;
+        let complementarity = (greatest - mu).max(mu - least).max(0.0);
+        self.stationarity.max(complementarity / self.z_scale)
+    }
+}
+
 impl InteriorPoint {
-    /// Scaled maximum norm of the optimality conditions for a barrier parameter.
-    pub(super) fn error(&self, iterate: &Iterate, mu: f64) -> f64 {
+    /// Measures the optimality conditions where the models have been evaluated.
+    pub(super) fn residuals(&mut self, iterate: &Iterate) -> Residuals {
         let n = self.layout.states;
-        let mut stationarity = 0.0_f64;
-        let mut feasibility = 0.0_f64;
-        let mut complementarity = 0.0_f64;
-        let mut residual = [0.0; 64];
+        let mut found = Residuals::default();
+        let mut products = (f64::INFINITY, f64::NEG_INFINITY);
         for (node, model) in self.models.iter().enumerate() {
-            let residual = &mut residual[..model.vars];
+            let residual = &mut self.residual[..model.vars];
             let duals = iterate.multipliers(&self.layout, node);
             residual.copy_from_slice(&model.gradient);
             add_transpose_mul(&model.link_jacobian, model.vars, duals.gap, residual);
@@ -28,28 +51,29 @@ impl InteriorPoint {
             let slack = &iterate.slack[self.layout.inequality(node)];
             for (i, (&z, &s)) in duals.inequality.iter().zip(slack).enumerate() {
                 axpy(-z, model.inequality_row(i), residual);
-                feasibility = feasibility.max((model.values.inequality[i] - s).abs());
-                complementarity = complementarity.max((s * z - mu).abs());
+                found.feasibility = found
+                    .feasibility
+                    .max((model.values.inequality[i] - s).abs());
+                products = (products.0.min(s * z), products.1.max(s * z));
             }
-            stationarity = residual
-                .iter()
-                .fold(stationarity, |worst, r| worst.max(r.abs()));
-            feasibility = feasibility.max(model.values.defect_max());
+            found.stationarity = max_abs(residual, found.stationarity);
+            found.feasibility = found.feasibility.max(model.values.defect_max());
         }
         let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
         let z_sum: f64 = iterate.z.iter().sum();
-        let all: f64 = iterate
-            .lambda
-            .iter()
-            .chain(&iterate.nu)
-            .map(|v| v.abs())
-            .sum::<f64>()
-            + z_sum;
+        let others = iterate.lambda.iter().chain(&iterate.nu);
+        let all = others.map(|v| v.abs()).sum::<f64>() + z_sum;
         let count = iterate.lambda.len() + iterate.nu.len() + iterate.z.len();
-        let dual_scale = (mean(all, count) / MULTIPLIER_SCALE).max(1.0);
-        let z_scale = (mean(z_sum, iterate.z.len()) / MULTIPLIER_SCALE).max(1.0);
-        (stationarity / dual_scale)
-            .max(feasibility)
-            .max(complementarity / z_scale)
+        found.stationarity /= (mean(all, count) / MULTIPLIER_SCALE).max(1.0);
+        found.z_scale = (mean(z_sum, iterate.z.len()) / MULTIPLIER_SCALE).max(1.0);
+        if iterate.z.is_empty() {
+            products = (0.0, 0.0);
+        }
+        found.products = products;
+        found
     }
+}
+
+fn max_abs(values: &[f64], least: f64) -> f64 {
+    values.iter().fold(least, |worst, v| worst.max(v.abs()))
 }

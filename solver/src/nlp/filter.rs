@@ -1,20 +1,17 @@
 //! The filter: which pairs of infeasibility and barrier cost are still progress.
 
+use super::merit::Merit;
+
 /// Fraction of the infeasibility by which a point must improve on a filter entry.
 const GAMMA_THETA: f64 = 1e-5;
 /// Fraction of the infeasibility by which the barrier cost must improve on a filter entry.
 const GAMMA_PHI: f64 = 1e-5;
+/// Largest infeasibility that is ever admitted, as a multiple of that at the filter's reset and
+/// absolute: near a solution a better cost is not worth much of it.
+const RANGE: f64 = 1e4;
+const LEAST_RANGE: f64 = 1e-2;
 /// Sufficient decrease (Armijo) of the barrier cost.
 const ETA: f64 = 1e-4;
-
-/// Infeasibility and barrier cost of a point.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Merit {
-    /// Sum of absolute gaps, equalities and slack errors.
-    pub(super) theta: f64,
-    /// Cost minus the logarithmic barrier.
-    pub(super) phi: f64,
-}
 
 /// The filter of Waechter and Biegler, with its acceptance rules.
 #[derive(Debug, Default)]
@@ -37,7 +34,7 @@ impl Filter {
     /// Empties the filter and sets its scales from a point's infeasibility.
     pub(super) fn reset(&mut self, theta: f64) {
         self.entries.clear();
-        self.theta_max = 1e4 * theta.max(1.0);
+        self.theta_max = (RANGE * theta).max(LEAST_RANGE);
         self.theta_min = 1e-4 * theta.max(1.0);
     }
 

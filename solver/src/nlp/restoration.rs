@@ -5,8 +5,9 @@
 //! kept on the slacks.
 
 use super::chain::Chain;
-use super::interior_point::{InteriorPoint, to_boundary};
+use super::interior_point::InteriorPoint;
 use super::iterate::Iterate;
+use super::line_search::to_boundary;
 use super::settings::NlpStatus;
 
 /// Weight of the proximity to the current point.
@@ -27,7 +28,7 @@ impl InteriorPoint {
         stop: &dyn Fn() -> bool,
     ) -> Result<(), NlpStatus> {
         let begin = self.merit_of_models(&iterate.slack);
-        if begin.theta <= self.settings.tolerance {
+        if begin.theta <= self.settings.feasibility {
             // Feasible and yet stuck: the cost cannot be improved in floating point.
             return Err(NlpStatus::NumericalError);
         }
@@ -63,23 +64,22 @@ impl InteriorPoint {
             *sigma = self.mu / (s * s);
         }
         if !self
-            .riccati
+            .system
             .factor(&self.models, &self.sigma, DAMPING, false)
         {
             return false;
         }
-        self.fill_right_hand_side(iterate, 0.0);
+        self.fill_residuals(iterate);
+        self.fill_gradient(iterate, 0.0);
         self.step.nu.fill(0.0);
-        self.riccati.solve(&self.models, &self.rhs, &mut self.step);
+        self.system.solve(&self.models, &self.rhs, &mut self.step);
         self.inequality_steps(iterate);
         let current = self.merit_of_models(&iterate.slack).theta;
         let mut alpha = to_boundary(&iterate.slack, &self.slack_step, 0.99);
         for _ in 0..MAX_BACKTRACKS {
             let trial = self.trial_merit(chain, iterate, alpha);
             if trial.is_some_and(|trial| trial.theta <= (1.0 - 1e-4 * alpha) * current) {
-                std::mem::swap(&mut iterate.points, &mut self.trial.points);
-                std::mem::swap(&mut iterate.controls, &mut self.trial.controls);
-                std::mem::swap(&mut iterate.slack, &mut self.trial.slack);
+                self.take_trial(iterate);
                 return true;
             }
             alpha *= 0.5;

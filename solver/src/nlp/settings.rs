@@ -3,9 +3,11 @@
 /// Tolerances and limits; all in the problem's own scaled variables.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
-    /// Largest allowed optimality, feasibility and complementarity error (absolute; the scaled
-    /// variables are of order one).
+    /// Largest error of stationarity and complementarity (absolute; the scaled variables are of
+    /// order one, and so is a minimum's share that this can cost).
     pub(crate) tolerance: f64,
+    /// Largest gap, equality or slack error.
+    pub(crate) feasibility: f64,
     /// Barrier parameter to begin with.
     pub(crate) initial_barrier: f64,
     /// Smallest slack of an inequality to begin with.
@@ -14,15 +16,15 @@ pub(crate) struct Settings {
     pub(crate) max_iterations: usize,
 }
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-8,
-            initial_barrier: 1e-1,
-            initial_slack: 1e-2,
-            max_iterations: 200,
-        }
-    }
+impl Settings {
+    /// From a guess without multipliers to an accurate solution.
+    pub(crate) const COLD: Self = Self {
+        tolerance: 1e-5,
+        feasibility: 1e-9,
+        initial_barrier: 1e-2,
+        initial_slack: 3e-2,
+        max_iterations: 200,
+    };
 }
 
 /// How a solve ended.

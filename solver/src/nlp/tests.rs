@@ -37,7 +37,7 @@ impl Cart {
             .flat_map(|_| [0.0, self.length()])
             .collect();
         let mut iterate = Iterate::cold(points, controls);
-        let mut engine = InteriorPoint::new(self, Settings::default());
+        let mut engine = InteriorPoint::new(self, Settings::COLD);
         let report = engine.solve(self, &mut iterate, &|| false);
         (report.status, iterate)
     }
@@ -237,7 +237,7 @@ fn a_stop_signal_ends_the_solve() {
         limit: None,
     };
     let mut iterate = Iterate::cold(vec![0.0; 10], vec![0.1; 8]);
-    let mut engine = InteriorPoint::new(&cart, Settings::default());
+    let mut engine = InteriorPoint::new(&cart, Settings::COLD);
     let report = engine.solve(&cart, &mut iterate, &|| true);
     assert_eq!(report.status, NlpStatus::Stopped);
 }
@@ -271,7 +271,7 @@ fn more_intervals_cost_in_proportion() {
                 .flat_map(|_| [0.0, 1.0 / intervals as f64])
                 .collect(),
         );
-        let mut engine = InteriorPoint::new(&cart, Settings::default());
+        let mut engine = InteriorPoint::new(&cart, Settings::COLD);
         engine.solve(&cart, &mut iterate, &|| false).iterations
     };
     assert!(count(160) <= 2 * count(10));

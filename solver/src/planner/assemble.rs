@@ -4,7 +4,6 @@ use super::tours::Tours;
 use crate::multiphase::Flown;
 use crate::plan::{Control, Flight, Leg, Passage};
 use crate::sequence::Place;
-use crate::slew::INTERVALS;
 use std::sync::Arc;
 
 /// Intervals shorter than this share of the tour are joined to their neighbour: the torque in
@@ -38,8 +37,8 @@ pub(super) fn assemble(
     };
     for (places, flown) in tours.split(route).iter().zip(segments) {
         for (leg, pair) in places.windows(2).enumerate() {
-            let begin = leg * INTERVALS;
-            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + INTERVALS);
+            let begin = leg * tours.intervals();
+            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + tours.intervals());
             assembly.visit(pair[1]);
         }
     }

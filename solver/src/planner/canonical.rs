@@ -6,14 +6,14 @@ use crate::dynamics::Dynamics;
 use crate::profile::Profile;
 use crate::scenario::RateCondition;
 use crate::slew::kinematic::Arrival;
-use crate::slew::{INTERVALS, SlewProblem};
+use crate::slew::{Resolution, SlewProblem};
 use crate::transcription::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
 use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it: stored legs of another are not
 /// found.
-const VERSION: &str = "leg-1";
+const VERSION: &str = "leg-2";
 /// Turns and momenta are rounded to this many units of their own scale, far below every tolerance
 /// and far above the rounding of the caller's conversions.
 const RESOLUTION: f64 = 1e13;
@@ -37,6 +37,8 @@ pub(super) struct CanonicalLeg {
     pub(super) reversible: bool,
     arrival: Arrival,
     null: DVector<f64>,
+    /// How finely it is solved.
+    pub(super) resolution: Resolution,
 }
 
 impl CanonicalLeg {
@@ -65,7 +67,7 @@ impl CanonicalLeg {
         let from = settled(&dynamics, Attitude::identity(), from);
         let to = settled(&dynamics, turn, to);
         let spacecraft = describe_spacecraft(&dynamics);
-        let mut identity = format!("{VERSION};intervals={INTERVALS};{:?};", places.arrival);
+        let mut identity = format!("{VERSION};{:?};{:?};", places.resolution, places.arrival);
         identity.push_str(&spacecraft);
         let momentum = dynamics.momentum;
         for part in [momentum.as_slice(), &turn.xyzw(), places.null.as_slice()] {
@@ -84,6 +86,7 @@ impl CanonicalLeg {
             reversible,
             arrival: places.arrival,
             null: places.null.clone(),
+            resolution: places.resolution,
         }
     }
 
@@ -95,6 +98,7 @@ impl CanonicalLeg {
             to: &self.to,
             arrival: self.arrival,
             null: &self.null,
+            resolution: self.resolution,
         }
     }
 

@@ -122,7 +122,9 @@ impl<'a> LegSolver<'a> {
 
     /// The tables of a tour: rest-to-rest legs to start from, legs with free ends for bounds.
     pub(super) fn tour_tables(&mut self, pairs: &[(Place, Place)]) -> (LegTable, LegTable) {
-        let rest = self.table(LegKind::RestToRest, pairs);
+        // A single leg has nothing to start a longer segment from.
+        let rest_pairs = if pairs.len() > 1 { pairs } else { &[] };
+        let rest = self.table(LegKind::RestToRest, rest_pairs);
         (rest, self.table(LegKind::LowerBound, pairs))
     }
 
@@ -139,7 +141,7 @@ impl<'a> LegSolver<'a> {
                 .run
                 .legs
                 .get(&leg.identity)
-                .and_then(|stored| recall(&stored));
+                .and_then(|stored| recall(&stored, leg.resolution.intervals));
             let from_store = found.is_some();
             let solved = found.or_else(|| (!self.stop.is_set()).then(|| solve(leg, self.stop)));
             if let (Some(fresh), false) = (&solved, from_store)
@@ -210,7 +212,7 @@ fn standstill(leg: &slew::SlewProblem<'_>) -> Option<Flown> {
             .wheels_at(&from.attitude, &Vector3::zeros(), leg.null);
         Flown {
             status: NlpStatus::Converged,
-            profile: Profile::standstill(from.attitude, wheels, slew::INTERVALS),
+            profile: Profile::standstill(from.attitude, wheels, leg.resolution.intervals),
             iterations: 0,
             infeasibility: 0.0,
         }
@@ -239,7 +241,7 @@ fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
-fn recall(stored: &StoredLeg) -> Option<SolvedLeg> {
+fn recall(stored: &StoredLeg, intervals: usize) -> Option<SolvedLeg> {
     let attitudes: Option<Vec<_>> = stored
         .attitudes_xyzw
         .iter()
@@ -255,10 +257,10 @@ fn recall(stored: &StoredLeg) -> Option<SolvedLeg> {
             .collect(),
         lengths: stored.lengths_s.clone(),
     };
-    let nodes = slew::INTERVALS + 1;
+    let nodes = intervals + 1;
     let fits = profile.attitudes.len() == nodes
         && profile.wheels.len() == nodes
-        && profile.intervals() == slew::INTERVALS;
+        && profile.intervals() == intervals;
     fits.then_some(SolvedLeg {
         flown: Flown {
             status: NlpStatus::Converged,

@@ -3,8 +3,8 @@
 use crate::dynamics::Dynamics;
 use crate::scenario::{RateCondition, Scenario};
 use crate::sequence::Place;
-use crate::slew::SlewProblem;
 use crate::slew::kinematic::Arrival;
+use crate::slew::{Resolution, SlewProblem};
 use crate::spec::AttitudeEquivalence;
 use crate::transcription::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
@@ -22,6 +22,8 @@ pub(super) struct Places<'a> {
     pub(super) arrival: Arrival,
     /// Null-space momentum of the wheels at the start, N m s: held by rest-to-rest legs.
     pub(super) null: DVector<f64>,
+    /// How finely slews are solved.
+    pub(super) resolution: Resolution,
 }
 
 impl<'a> Places<'a> {
@@ -31,6 +33,7 @@ impl<'a> Places<'a> {
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         Self {
             null: dynamics.null_component(&wheels),
+            resolution: Resolution::of(scenario.options().accuracy, &dynamics),
             arrival: match scenario.options().attitude_equivalence {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,
                 AttitudeEquivalence::Quaternion => Arrival::Quaternion,
@@ -124,6 +127,7 @@ impl<'a> Places<'a> {
             to,
             arrival: self.arrival,
             null: &self.null,
+            resolution: self.resolution,
         }
     }
 

@@ -6,13 +6,13 @@
 
 use super::legs::LegTable;
 use super::places::Places;
-use crate::multiphase::{Flown, fly};
+use crate::multiphase::{Flown, fly, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
-use crate::slew::INTERVALS;
 use crate::slew::eigenaxis::Side;
 use crate::stop::StopSignal;
+use crate::transcription::Waypoint;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -48,6 +48,11 @@ impl<'a> Tours<'a> {
             solves: AtomicU64::new(0),
             segments: Mutex::default(),
         }
+    }
+
+    /// Intervals of every leg.
+    pub(super) fn intervals(&self) -> usize {
+        self.places.resolution.intervals
     }
 
     /// The places of an order, start included and, for whole tours, the end.
@@ -114,6 +119,7 @@ impl<'a> Tours<'a> {
     /// Solves a segment; places that coincide are one waypoint of it, since a flight that meets the
     /// same conditions twice is never shorter than one that meets them once.
     fn solve_segment(&self, route: &[Place]) -> Flown {
+        let intervals = self.intervals();
         let repeats = |pair: &[Place]| self.places.coincide(pair[0], pair[1]);
         let fresh = route
             .windows(2)
@@ -123,7 +129,7 @@ impl<'a> Tours<'a> {
         let mut flown = self.solve_distinct(&distinct);
         for (leg, pair) in route.windows(2).enumerate() {
             if repeats(pair) {
-                flown.profile.pause_at(leg * INTERVALS, INTERVALS);
+                flown.profile.pause_at(leg * intervals, intervals);
             }
         }
         flown
@@ -151,6 +157,13 @@ impl<'a> Tours<'a> {
                 best = flown;
             }
         }
+        if self.places.resolution.polished {
+            let dynamics = &self.places.dynamics;
+            let (waypoints, intervals) = self.program(route, &best.profile);
+            best = polish(dynamics, &waypoints, &intervals, best, &|| {
+                self.stop.is_set()
+            });
+        }
         best
     }
 
@@ -158,29 +171,37 @@ impl<'a> Tours<'a> {
     /// eigenaxis slews.
     fn solve_from(&self, route: &[Place], leg: &dyn Fn(Place, Place) -> Option<Profile>) -> Flown {
         let mut guess = Profile::empty();
-        let mut waypoints = vec![self.places.waypoint(route[0])];
         for pair in route.windows(2) {
             let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
             let next = leg(pair[0], pair[1]).unwrap_or_else(|| {
                 let slew = self.places.slew(&from, &to);
-                slew.eigenaxis().guess(slew.dynamics, INTERVALS, Side::Near)
+                let intervals = self.intervals();
+                slew.eigenaxis().guess(slew.dynamics, intervals, Side::Near)
             });
             guess.append(&next);
-            let mut arrived = to;
-            if let Some(last) = guess.attitudes.last() {
-                arrived.attitude = self.places.arrival.signed(&arrived.attitude, last);
-            }
-            waypoints.push(arrived);
         }
         self.solves.fetch_add(1, Ordering::Relaxed);
-        let intervals = vec![INTERVALS; route.len() - 1];
-        fly(
-            &self.places.dynamics,
-            &waypoints,
-            &intervals,
-            &guess,
-            &|| self.stop.is_set(),
-        )
+        let dynamics = &self.places.dynamics;
+        let (waypoints, intervals) = self.program(route, &guess);
+        fly(dynamics, &waypoints, &intervals, &guess, &|| {
+            self.stop.is_set()
+        })
+    }
+
+    /// The waypoints of a route, with the signs at which a motion passes them, and the intervals
+    /// between them.
+    fn program(&self, route: &[Place], motion: &Profile) -> (Vec<Waypoint>, Vec<usize>) {
+        let signed = |(i, place): (usize, &Place)| {
+            let mut waypoint = self.places.waypoint(*place);
+            if i > 0
+                && let Some(there) = motion.attitudes.get(i * self.intervals())
+            {
+                waypoint.attitude = self.places.arrival.signed(&waypoint.attitude, there);
+            }
+            waypoint
+        };
+        let waypoints = route.iter().enumerate().map(signed).collect();
+        (waypoints, vec![self.intervals(); route.len() - 1])
     }
 
     /// Duration of a route with settle and dwell, or how its solve failed.

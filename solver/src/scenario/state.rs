@@ -12,6 +12,8 @@ use nalgebra::Vector3;
 /// Disagreement of the momentum at the end with the conserved one, relative to the sizes of the
 /// terms, that rounding of the wheel speeds explains.
 const MOMENTUM_TOLERANCE: f64 = 1e-6;
+/// The same relative to what the wheels can hold, for momenta that are zero but for rounding.
+const CAPACITY_TOLERANCE: f64 = 1e-9;
 
 pub(super) fn read_start(
     spec: &StateSpec,
@@ -165,8 +167,15 @@ pub(super) fn end_conserves_momentum(
         .norm()
         .max(stored)
         .max((spacecraft.inertia() * end.rate).norm());
+    let limited = spacecraft
+        .wheels()
+        .iter()
+        .filter(|w| w.max_speed.is_finite());
+    let capacity: f64 = limited
+        .map(|w| w.axis.norm() * w.inertia * w.max_speed)
+        .sum();
     let error = (given - conserved).norm();
-    if error <= MOMENTUM_TOLERANCE * scale {
+    if error <= (MOMENTUM_TOLERANCE * scale).max(CAPACITY_TOLERANCE * capacity) {
         return true;
     }
     findings.refuse(

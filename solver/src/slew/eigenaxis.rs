@@ -16,8 +16,12 @@ const BISECTIONS: usize = 24;
 /// Slowest factor worth trying.
 const SLOWEST: f64 = 1e-3;
 
+/// Intervals of a ramp in a starting guess.
+const RAMP_INTERVALS: usize = 2;
+/// Share of the duration below which a coast is not worth nodes of its own.
+const LEAST_COAST: f64 = 1e-3;
 /// Bow of a starting guess across the axis, as a share of the peak rate.
-const BOW: f64 = 0.05;
+const BOW: f64 = 0.1;
 
 /// To which side a guess bows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +69,27 @@ impl Trapezoid {
             ramp,
             duration,
         }
+    }
+
+    /// Times that cut it into intervals, s: the ramps into [`RAMP_INTERVALS`] each where that cuts
+    /// them finer than equal intervals would.
+    fn node_times(&self, intervals: usize) -> Vec<f64> {
+        let even = |begin: f64, end: f64, count: usize| {
+            (0..count).map(move |i| begin + (end - begin) * i as f64 / count as f64)
+        };
+        let (ramp, end) = (self.ramp, self.duration);
+        let equal = end / intervals as f64;
+        let finer = ramp < equal * RAMP_INTERVALS as f64 && end - 2.0 * ramp > LEAST_COAST * end;
+        let mut times: Vec<f64> = if finer && intervals > 2 * RAMP_INTERVALS {
+            even(0.0, ramp, RAMP_INTERVALS)
+                .chain(even(ramp, end - ramp, intervals - 2 * RAMP_INTERVALS))
+                .chain(even(end - ramp, end, RAMP_INTERVALS))
+                .collect()
+        } else {
+            even(0.0, end, intervals).collect()
+        };
+        times.push(end);
+        times
     }
 
     /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time.
@@ -165,26 +190,68 @@ impl EigenaxisSlew {
         worst
     }
 
-    /// The slew sampled at equal times, as a starting guess.
+    /// The slew itself: nodes where its ramps end, and evenly between.
+    pub(crate) fn exact(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
+        let ramp = intervals / 3;
+        let coast = intervals - 2 * ramp;
+        let Trapezoid {
+            ramp: ramping,
+            duration,
+            ..
+        } = self.trapezoid;
+        let coasting = (duration - 2.0 * ramping).max(0.0);
+        let mut profile = Profile::empty();
+        let mut push = |time: f64| {
+            let (attitude, _, wheels) = self.state(dynamics, time);
+            profile.attitudes.push(attitude);
+            profile.wheels.push(wheels);
+        };
+        for node in 0..ramp {
+            push(ramping * node as f64 / ramp as f64);
+        }
+        for node in 0..coast {
+            push(ramping + coasting * node as f64 / coast as f64);
+        }
+        for node in (0..=ramp).rev() {
+            push(duration - ramping * node as f64 / ramp as f64);
+        }
+        profile.lengths = [(ramp, ramping), (coast, coasting), (ramp, ramping)]
+            .into_iter()
+            .flat_map(|(count, time)| std::iter::repeat_n(time / count as f64, count))
+            .collect();
+        profile
+    }
+
+    /// A direction across the axis that turns with the spacecraft: that of the wheel axis least
+    /// along it, the first of equal ones.
+    fn across(&self, dynamics: &Dynamics) -> Vector3<f64> {
+        let (mut across, mut least) = (Vector3::zeros(), f64::INFINITY);
+        for wheel in &dynamics.actuators {
+            let axis = wheel.axis.normalize();
+            let along = axis.dot(&self.axis).abs();
+            if along < least - 1e-6 {
+                (across, least) = (self.axis.cross(&axis), along);
+            }
+        }
+        // Wheel axes span space, so one of them lies across.
+        across.normalize()
+    }
+
+    /// The slew sampled at its nodes, as a starting guess.
     ///
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
     /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
     pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize, side: Side) -> Profile {
-        let length = self.trapezoid.duration / intervals as f64;
+        let times = self.trapezoid.node_times(intervals);
         let peak = self.trapezoid.at(0.5 * self.trapezoid.duration).1;
-        let across = self
-            .axis
-            .cross(&Vector3::ith(self.axis.iamin(), 1.0))
-            .normalize();
-        let mut bow = (across + across.cross(&self.axis)) * (side.sign() * BOW * peak);
-        for i in 0..3 {
-            let most = 0.5 * dynamics.axis_rate(&Vector3::ith(i, 1.0));
-            bow[i] = bow[i].clamp(-most, most);
-        }
+        let across = self.across(dynamics);
+        let direction = (across + across.cross(&self.axis)).normalize();
+        let most = 0.5 * dynamics.axis_rate(&direction);
+        let bow = direction * (side.sign() * (BOW * peak).min(most));
         let mut profile = Profile::empty();
-        for node in 0..=intervals {
-            let (attitude, rate, _) = self.state(dynamics, length * node as f64);
-            let phase = std::f64::consts::PI * node as f64 / intervals as f64;
+        for (node, time) in times.iter().enumerate() {
+            let (attitude, rate, _) = self.state(dynamics, *time);
+            let phase = std::f64::consts::PI * time / self.trapezoid.duration;
             // Exactly zero at both ends, where the rates are given.
             let bowed = rate
                 + if node < intervals {
@@ -197,7 +264,7 @@ impl EigenaxisSlew {
                 .push(dynamics.wheels_at(&attitude, &bowed, &self.null));
             profile.attitudes.push(attitude);
         }
-        profile.lengths = vec![length; intervals];
+        profile.lengths = times.windows(2).map(|t| t[1] - t[0]).collect();
         profile
     }
 }

@@ -10,9 +10,9 @@
 use super::SlewProblem;
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
-use crate::kinematics::{Quat, product, quat};
+use crate::kinematics::{Quat, imaginary, product, quat};
 use crate::profile::Profile;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Costate directions tried first: about 12 degrees apart.
 const DIRECTIONS: usize = 300;
@@ -71,10 +71,12 @@ struct Search {
 /// Guesses for a slew, best first, at most `count`, with different sequences of rate signs.
 pub(super) fn guesses(slew: &SlewProblem<'_>, intervals: usize, count: usize) -> Vec<Profile> {
     let (from, to) = (&slew.from.attitude, &slew.to.attitude);
-    let (box_rates, ramp) = box_of(slew.dynamics, from.signed_turn_to(to).norm());
+    let axes = slew.dynamics.natural_axes();
+    let (box_rates, ramp) = box_of(slew.dynamics, &axes, from.signed_turn_to(to).norm());
+    let target = from.relative_to(to).xyzw();
     let search = Search {
         box_rates,
-        target: from.relative_to(to).xyzw(),
+        target: quat(&axes.tr_mul(&imaginary(&target)), target[3]),
         arrival: slew.arrival,
     };
     let mut chosen: Vec<Extremal> = Vec::new();
@@ -90,16 +92,16 @@ pub(super) fn guesses(slew: &SlewProblem<'_>, intervals: usize, count: usize) ->
     chosen.sort_by(|a, b| a.score.total_cmp(&b.score));
     chosen
         .iter()
-        .map(|extremal| extremal.guess(slew, ramp, intervals))
+        .map(|extremal| extremal.in_body_axes(&axes).guess(slew, ramp, intervals))
         .collect()
 }
 
-/// Rates that the wheels can give about each body axis, rad/s, and the time to reach them, s.
-fn box_of(dynamics: &Dynamics, angle: f64) -> (Vector3<f64>, f64) {
+/// Rates that the wheels can give about each of some axes, rad/s, and the time to reach them, s.
+fn box_of(dynamics: &Dynamics, axes: &Matrix3<f64>, angle: f64) -> (Vector3<f64>, f64) {
     let mut rates = Vector3::zeros();
     let mut ramp = 0.0_f64;
     for i in 0..3 {
-        let axis = Vector3::ith(i, 1.0);
+        let axis = axes.column(i).into_owned();
         let acceleration = dynamics.axis_acceleration(&axis);
         // A short slew never reaches its top rate: then the peak of a bang-bang is the scale.
         rates[i] = dynamics.axis_rate(&axis).min((acceleration * angle).sqrt());
@@ -263,6 +265,15 @@ impl Extremal {
             .iter()
             .map(|arc| [0, 1, 2].map(|i| arc.rate[i] > 0.0))
             .collect()
+    }
+
+    /// The same with its rates in body axes instead of the search's.
+    fn in_body_axes(&self, axes: &Matrix3<f64>) -> Self {
+        let mut turned = self.clone();
+        for arc in &mut turned.arcs {
+            arc.rate = axes * arc.rate;
+        }
+        turned
     }
 
     /// The motion with its rate jumps spread over the time that the wheels need for them.

@@ -48,6 +48,7 @@ fn fly_between(
         to,
         arrival,
         null,
+        resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
     let flown = solve(&slew, &|| false).flown;
     let duration = flown.duration().expect("the slew converges");

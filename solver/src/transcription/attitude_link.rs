@@ -8,23 +8,36 @@
 //!   2 l . vec(r d p) = mu . (d (x) p)
 //! ```
 
-use super::rows::{add_attitude_block, double_cross_curvature};
+mod momentum;
+
+use super::rows::add_attitude_block;
 use super::{Transcription, quaternion_of};
 use crate::kinematics::{
-    INPUTS, Quat, TurnDerivatives, TurnInputs, conjugate, dot4, imaginary, product, quat,
-    rotate_back,
+    Quat, TurnDerivatives, TurnInputs, conjugate, dot4, imaginary, product, quat, rotate_back,
 };
 use crate::nlp::{Link, LinkModel};
 use nalgebra::{Matrix3, Vector3};
 
-/// Most variables of an interval.
-const MAX_VARS: usize = 32;
-
-/// Derivatives of the turn's inputs with respect to the variables of a link.
-type InputJacobian = [[f64; MAX_VARS]; INPUTS];
+/// What the derivatives of one link are made of.
+struct LinkTerms<'a> {
+    /// Length of the interval.
+    tau: f64,
+    /// Minus the rate that the wheels make, at the beginning and at the end, per unit of time.
+    begin: Vector3<f64>,
+    end: Vector3<f64>,
+    /// `ts R(q)^T H`.
+    momentum: Vector3<f64>,
+    /// Slopes of the gap, three numbers, by the turn's inputs.
+    slopes: [Matrix3<f64>; 3],
+    /// Mixed second derivatives: rows an attitude step, columns an input.
+    mixed: [Matrix3<f64>; 3],
+    /// Gradient of the weighted turn by its inputs.
+    gradient: [Vector3<f64>; 3],
+    turn: &'a TurnDerivatives,
+}
 
 impl Transcription {
-    fn turn_inputs(&self, link: &Link<'_>) -> TurnInputs {
+    pub(super) fn turn_inputs(&self, link: &Link<'_>) -> TurnInputs {
         let tau = link.control[self.wheels()];
         let begin = self.wheel_rate(&link.point[4..]);
         let mut end = begin;
@@ -45,7 +58,10 @@ impl Transcription {
 
     /// Writes the gap of a link: attitude, then wheel momenta.
     pub(super) fn write_gap(&self, link: &Link<'_>, gap: &mut [f64]) {
-        let turn = self.turn_map.turn(&self.turn_inputs(link));
+        let turn = product(
+            &self.turn_map.turn(&self.turn_inputs(link)),
+            &self.corrections[link.node],
+        );
         let relative = relative_attitude(link);
         let error = chart(&product(&relative, &turn)) / self.scales.angle;
         gap[..3].copy_from_slice(error.as_slice());
@@ -60,159 +76,140 @@ impl Transcription {
         let relative = relative_attitude(link);
         let covector = Vector3::new(lambda[0], lambda[1], lambda[2]) * (2.0 / angle);
         let mu = product(&conjugate(&relative), &quat(&covector, 0.0));
-        let turn = self.turn_map.derivatives(&self.turn_inputs(link), &mu);
-        let inputs = self.input_jacobian(link);
-        self.write_attitude_jacobian(&relative, &turn, &inputs, out);
-        self.add_input_curvature(&turn, &inputs, out);
-        self.add_cross_curvature(&mu, &turn, &inputs, out);
-        let gradient: [f64; INPUTS] = std::array::from_fn(|j| dot4(&mu, &turn.first[j]));
-        self.add_curvature_of_inputs(link, &gradient, out);
+        let turn = self.corrected_turn(link, &mu);
+        let terms = self.terms(link, &relative, &mu, &turn);
+        for column in 0..3 {
+            // The unit of the step cancels the unit of the gap.
+            let unit = quat(&Vector3::ith(column, 1.0), 0.0);
+            let moved = imaginary(&product(&product(&relative, &unit), &turn.turn));
+            for row in 0..3 {
+                out.link_jacobian[row * out.vars + column] = moved[row];
+            }
+        }
+        self.write_wheel_slopes(&terms, out);
+        self.add_wheel_curvature(&terms, out);
+        if self.dynamics.has_momentum() {
+            self.add_momentum_terms(&terms, out);
+        }
         let bend = -0.25 * angle * angle * dot4(&mu, &turn.turn);
         add_attitude_block(out, &(Matrix3::identity() * bend));
     }
 
-    fn input_jacobian(&self, link: &Link<'_>) -> InputJacobian {
-        let (wheels, tau) = (self.wheels(), link.control[self.wheels()]);
-        let tau_column = 3 + 2 * wheels;
-        let mut jacobian = [[0.0; MAX_VARS]; INPUTS];
-        let begin = self.wheel_rate(&link.point[4..]);
-        let mut end = begin;
-        for (i, gain) in self.rate_gain.iter().enumerate() {
-            end += gain * link.control[i];
-            for axis in 0..3 {
-                let slope = -tau * gain[axis];
-                jacobian[axis][3 + i] = slope;
-                jacobian[3 + axis][3 + i] = slope;
-                jacobian[3 + axis][3 + wheels + i] = slope;
-            }
-        }
-        for axis in 0..3 {
-            jacobian[axis][tau_column] = -begin[axis];
-            jacobian[3 + axis][tau_column] = -end[axis];
-        }
-        if self.dynamics.has_momentum() {
-            let momentum = self.scaled_momentum(link.point);
-            let by_attitude = momentum.cross_matrix() * (tau * self.scales.angle);
-            for axis in 0..3 {
-                for column in 0..3 {
-                    jacobian[6 + axis][column] = by_attitude[(axis, column)];
-                }
-                jacobian[6 + axis][tau_column] = momentum[axis];
-            }
-        }
-        jacobian
-    }
-
-    fn write_attitude_jacobian(
-        &self,
-        relative: &Quat,
-        turn: &TurnDerivatives,
-        inputs: &InputJacobian,
-        out: &mut LinkModel,
-    ) {
-        let factor = 2.0 / self.scales.angle;
-        let mut by_input = [Vector3::zeros(); INPUTS];
-        for (column, first) in by_input.iter_mut().zip(&turn.first) {
-            *column = imaginary(&product(relative, first)) * factor;
-        }
-        for row in 0..3 {
-            let line = &mut out.link_jacobian[row * out.vars..(row + 1) * out.vars];
-            for (column, weights) in by_input.iter().zip(inputs).take(self.turn_map.inputs()) {
-                for (out, weight) in line.iter_mut().zip(weights) {
-                    *out += column[row] * weight;
-                }
-            }
-        }
-        for column in 0..3 {
-            // The unit of the step cancels the unit of the gap.
-            let unit = quat(&Vector3::ith(column, 1.0), 0.0);
-            let moved = imaginary(&product(&product(relative, &unit), &turn.turn));
-            for row in 0..3 {
-                out.link_jacobian[row * out.vars + column] += moved[row];
-            }
-        }
-    }
-
-    /// `Z^T (mu . d2p/dz2) Z`.
-    fn add_input_curvature(
-        &self,
-        turn: &TurnDerivatives,
-        inputs: &InputJacobian,
-        out: &mut LinkModel,
-    ) {
-        let (n, vars) = (self.turn_map.inputs(), out.vars);
-        for i in 0..n {
-            let mut image = [0.0; MAX_VARS];
-            for j in 0..n {
-                let weight = turn.second[i][j];
-                for (out, value) in image[..vars].iter_mut().zip(&inputs[j]) {
-                    *out += weight * value;
-                }
-            }
-            for a in 0..vars {
-                let weight = inputs[i][a];
-                if weight != 0.0 {
-                    for b in 0..=a {
-                        out.hessian[a * vars + b] += weight * image[b];
-                    }
-                }
-            }
-        }
-    }
-
-    /// Second derivatives that pair an attitude step with the turn's inputs.
-    fn add_cross_curvature(
-        &self,
-        mu: &Quat,
-        turn: &TurnDerivatives,
-        inputs: &InputJacobian,
-        out: &mut LinkModel,
-    ) {
-        let vars = out.vars;
-        for axis in 0..3 {
-            let half_unit = quat(&Vector3::ith(axis, -0.5 * self.scales.angle), 0.0);
-            let covector = product(&half_unit, mu);
-            for j in 0..self.turn_map.inputs() {
-                let weight = dot4(&covector, &turn.first[j]);
-                for (column, value) in inputs[j][..vars].iter().enumerate() {
-                    let (high, low) = if column > axis {
-                        (column, axis)
-                    } else {
-                        (axis, column)
-                    };
-                    let twice = if column == axis { 2.0 } else { 1.0 };
-                    out.hessian[high * vars + low] += twice * weight * value;
-                }
-            }
-        }
-    }
-
-    /// Curvature of the inputs themselves, weighted by the gradient with respect to them.
-    fn add_curvature_of_inputs(
+    fn terms<'a>(
         &self,
         link: &Link<'_>,
-        gradient: &[f64; INPUTS],
-        out: &mut LinkModel,
-    ) {
-        let (wheels, vars) = (self.wheels(), out.vars);
-        let tau_row = (3 + 2 * wheels) * vars;
-        let part = |at: usize| Vector3::new(gradient[at], gradient[at + 1], gradient[at + 2]);
-        let (begin, end) = (part(0), part(3));
-        for (i, gain) in self.rate_gain.iter().enumerate() {
-            out.hessian[tau_row + 3 + i] -= (begin + end).dot(gain);
-            out.hessian[tau_row + 3 + wheels + i] -= end.dot(gain);
+        relative: &Quat,
+        mu: &Quat,
+        turn: &'a TurnDerivatives,
+    ) -> LinkTerms<'a> {
+        let factor = 2.0 / self.scales.angle;
+        let half_units: [Quat; 3] = std::array::from_fn(|axis| {
+            product(
+                &quat(&Vector3::ith(axis, -0.5 * self.scales.angle), 0.0),
+                mu,
+            )
+        });
+        let mut terms = LinkTerms {
+            tau: link.control[self.wheels()],
+            begin: self.wheel_rate(&link.point[4..]),
+            end: Vector3::zeros(),
+            momentum: Vector3::zeros(),
+            slopes: [Matrix3::zeros(); 3],
+            mixed: [Matrix3::zeros(); 3],
+            gradient: [Vector3::zeros(); 3],
+            turn,
+        };
+        terms.end = terms.begin;
+        for (gain, m) in self.rate_gain.iter().zip(link.control) {
+            terms.end += gain * *m;
         }
         if self.dynamics.has_momentum() {
-            let (angle, tau) = (self.scales.angle, link.control[wheels]);
-            let momentum = self.scaled_momentum(link.point);
-            let weight = part(6);
-            let mixed = weight.cross(&momentum) * angle;
-            for column in 0..3 {
-                out.hessian[tau_row + column] += mixed[column];
-            }
-            let bend = double_cross_curvature(&weight, &momentum) * (tau * angle * angle);
-            add_attitude_block(out, &bend);
+            terms.momentum = self.scaled_momentum(link.point);
         }
+        for (j, first) in turn.first.iter().take(self.turn_map.inputs()).enumerate() {
+            let (input, axis) = (j / 3, j % 3);
+            let slope = imaginary(&product(relative, first)) * factor;
+            terms.slopes[input].set_column(axis, &slope);
+            for row in 0..3 {
+                terms.mixed[input][(row, axis)] = dot4(&half_units[row], first);
+            }
+            terms.gradient[input][axis] = dot4(mu, first);
+        }
+        terms
+    }
+
+    /// The turn with its correction `e` and derivatives; `mu . (d p e) = (mu e*) . (d p)`.
+    fn corrected_turn(&self, link: &Link<'_>, mu: &Quat) -> TurnDerivatives {
+        let correction = &self.corrections[link.node];
+        let pulled = product(mu, &conjugate(correction));
+        let mut turn = self.turn_map.derivatives(&self.turn_inputs(link), &pulled);
+        turn.turn = product(&turn.turn, correction);
+        for first in turn.first.iter_mut().take(self.turn_map.inputs()) {
+            *first = product(first, correction);
+        }
+        turn
+    }
+
+    /// The gap by wheel momenta, their changes and the length: `a = -tau b`, `c = -tau e` with the
+    /// wheels' rates `b = offset + gain h` and `e = b + gain m`.
+    fn write_wheel_slopes(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
+        let (wheels, vars) = (self.wheels(), out.vars);
+        let [by_begin, by_end, _] = terms.slopes;
+        let by_both = by_begin + by_end;
+        for (i, gain) in self.rate_gain.iter().enumerate() {
+            let by_start = by_both * gain * -terms.tau;
+            let by_change = by_end * gain * -terms.tau;
+            for row in 0..3 {
+                out.link_jacobian[row * vars + 3 + i] = by_start[row];
+                out.link_jacobian[row * vars + 3 + wheels + i] = by_change[row];
+            }
+        }
+        let by_length = by_begin * terms.begin + by_end * terms.end;
+        for row in 0..3 {
+            out.link_jacobian[row * vars + 3 + 2 * wheels] = -by_length[row];
+        }
+    }
+
+    /// Second derivatives by the same variables and attitude steps.
+    fn add_wheel_curvature(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
+        let (wheels, vars, tau) = (self.wheels(), out.vars, terms.tau);
+        let [aa, ac, cc] = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| terms.block(i, j));
+        let (with_end, [mixed_begin, mixed_end, _]) = (ac.transpose() + cc, terms.mixed);
+        let (both, mixed_both) = (aa + ac + with_end, mixed_begin + mixed_end);
+        // Of a change of length, as the slopes of (a, c) along (b, e).
+        let along_end = ac.tr_mul(&terms.begin) + cc * terms.end;
+        let along_both = aa * terms.begin + ac * terms.end + along_end;
+        let [by_begin, by_end, _] = terms.gradient;
+        let (length_h, length_m) = (
+            along_both * tau - by_begin - by_end,
+            along_end * tau - by_end,
+        );
+        let length_row = (3 + 2 * wheels) * vars;
+        for (i, gain) in self.rate_gain.iter().enumerate() {
+            let (h_row, m_row) = ((3 + i) * vars, (3 + wheels + i) * vars);
+            let weighted = gain * (tau * tau);
+            let (hh, mh, mm) = (both * weighted, with_end.tr_mul(&weighted), cc * weighted);
+            for (j, other) in self.rate_gain.iter().enumerate() {
+                if j <= i {
+                    out.hessian[h_row + 3 + j] += hh.dot(other);
+                    out.hessian[m_row + 3 + wheels + j] += mm.dot(other);
+                }
+                out.hessian[m_row + 3 + j] += mh.dot(other);
+            }
+            let (h_mixed, m_mixed) = (mixed_both * gain * -tau, mixed_end * gain * -tau);
+            for axis in 0..3 {
+                out.hessian[h_row + axis] += h_mixed[axis];
+                out.hessian[m_row + axis] += m_mixed[axis];
+            }
+            out.hessian[length_row + 3 + i] += length_h.dot(gain);
+            out.hessian[length_row + 3 + wheels + i] += length_m.dot(gain);
+        }
+        let mixed = mixed_begin * terms.begin + mixed_end * terms.end;
+        for axis in 0..3 {
+            out.hessian[length_row + axis] -= mixed[axis];
+        }
+        let along = terms.begin.dot(&(along_both - along_end)) + terms.end.dot(&along_end);
+        out.hessian[length_row + 3 + 2 * wheels] += along;
     }
 
     /// Rows of `2 vec(target* q) = 0`.
@@ -234,6 +231,13 @@ impl Transcription {
         let weight = Vector3::new(nu[0], nu[1], nu[2]) * (2.0 / self.scales.angle);
         let bend = -0.25 * self.scales.angle.powi(2) * weight.dot(&imaginary(&relative));
         add_attitude_block(out, &(Matrix3::identity() * bend));
+    }
+}
+
+impl LinkTerms<'_> {
+    /// Second derivatives of the weighted turn by two of its inputs, three components each.
+    fn block(&self, row: usize, column: usize) -> Matrix3<f64> {
+        Matrix3::from_fn(|i, j| self.turn.second[3 * row + i][3 * column + j])
     }
 }
 

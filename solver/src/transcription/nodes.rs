@@ -1,7 +1,7 @@
 //! Conditions at nodes: which rows hold where.
 
 use super::Transcription;
-use super::rows::Row;
+use super::rows::{LimitRow, Row};
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::kinematics::Quat;
@@ -45,6 +45,10 @@ impl Waypoint {
     }
 }
 
+/// Least unit of a rate limit's row, in units of a typical rate: in that of a limit near zero the
+/// row would be steeper than anything else by orders of magnitude.
+const LEAST_RATE_UNIT: f64 = 1e-2;
+
 /// The rows of one node.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Node {
@@ -81,8 +85,13 @@ impl Transcription {
 
     /// All inequality rows of a node except the norm limit.
     pub(super) fn inequality_rows<'a>(&'a self, node: &'a Node) -> impl Iterator<Item = &'a Row> {
-        let limits: &[Row] = if node.limited { &self.limits } else { &[] };
-        limits.iter().chain(&node.inequalities)
+        let limits = self.limits_of(node).iter().map(|limit| &limit.row);
+        limits.chain(&node.inequalities)
+    }
+
+    /// The limit rows of a node.
+    pub(super) fn limits_of(&self, node: &Node) -> &[LimitRow] {
+        if node.limited { &self.limits } else { &[] }
     }
 
     /// Whether the norm of the rate is limited at a node.
@@ -152,33 +161,37 @@ impl Transcription {
         }
     }
 
-    /// Rows `1 - reserve -+ speed / limit` of all finite speed and rate limits.
-    pub(super) fn limit_rows(&self, reserve: f64) -> Vec<Row> {
+    /// Rows `1 -+ share` of all speed and rate limits that can be reached.
+    pub(super) fn limit_rows(&self) -> Vec<LimitRow> {
         let mut rows = Vec::new();
         for (i, wheel) in self.dynamics.actuators.iter().enumerate() {
             if !wheel.max_speed.is_finite() {
                 continue;
             }
             for sign in [1.0, -1.0] {
-                rows.push(Row {
-                    constant: 1.0 - reserve,
+                let per_momentum = self.scales.momentum / (wheel.inertia * wheel.max_speed);
+                let row = Row {
+                    constant: 1.0,
                     rate: wheel.axis * (sign / wheel.max_speed),
-                    wheels: vec![(
-                        i,
-                        -sign * self.scales.momentum / (wheel.inertia * wheel.max_speed),
-                    )],
-                });
+                    wheels: vec![(i, -sign * per_momentum)],
+                };
+                rows.push(LimitRow { row, share: i });
             }
         }
+        let reachable = self.dynamics.reachable_rates();
         for axis in 0..3 {
             let limit = self.dynamics.max_rate[axis];
-            if limit.is_finite() {
+            if limit.is_finite() && limit <= reachable[axis] {
+                // In units of the limit, but for an axis that is hardly allowed to turn at all.
+                let unit = limit.max(LEAST_RATE_UNIT * self.scales.rate);
                 for sign in [1.0, -1.0] {
-                    rows.push(Row {
-                        constant: 1.0 - reserve,
-                        rate: Vector3::ith(axis, -sign / limit),
+                    let row = Row {
+                        constant: limit / unit,
+                        rate: Vector3::ith(axis, -sign / unit),
                         wheels: Vec::new(),
-                    });
+                    };
+                    let share = self.wheels() + axis;
+                    rows.push(LimitRow { row, share });
                 }
             }
         }

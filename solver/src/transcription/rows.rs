@@ -22,6 +22,15 @@ pub(super) struct Row {
     pub(super) wheels: Vec<(usize, f64)>,
 }
 
+/// One side of a speed or rate limit, `1 -+ share >= reserve`.
+#[derive(Debug, Clone)]
+pub(super) struct LimitRow {
+    /// The margin without a reserve.
+    pub(super) row: Row,
+    /// Index among the shares of [`crate::dynamics::Dynamics::limit_shares`].
+    pub(super) share: usize,
+}
+
 /// A state seen through the dynamics.
 pub(super) struct StateView<'a> {
     /// Body rate, rad/s.
@@ -69,9 +78,9 @@ impl Transcription {
         }
     }
 
-    /// Value of the norm limit `share^2 - |w|^2 / limit^2`.
-    pub(super) fn norm_margin(&self, state: &StateView<'_>) -> f64 {
-        self.norm_share.powi(2) - state.rate.norm_squared() / self.dynamics.max_rate_norm.powi(2)
+    /// Value of the norm limit `(1 - reserve)^2 - |w|^2 / limit^2`.
+    pub(super) fn norm_margin(&self, state: &StateView<'_>, reserve: f64) -> f64 {
+        (1.0 - reserve).powi(2) - state.rate.norm_squared() / self.dynamics.max_rate_norm.powi(2)
     }
 
     /// Writes the norm limit's derivative and adds its curvature times `-z`.

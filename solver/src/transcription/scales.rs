@@ -5,6 +5,8 @@ use nalgebra::Vector3;
 
 /// What one interval lasts, as a share of a slew: sets the unit of time.
 const INTERVAL_SHARE: f64 = 0.2;
+/// Peak rate of a slew in units of its mean rate, between one (a long coast) and two (none).
+const PEAK_SHARE: f64 = 1.5;
 
 /// Units of the scaled variables.
 #[derive(Debug, Clone, Copy)]
@@ -20,23 +22,18 @@ pub(crate) struct Scales {
 }
 
 impl Scales {
-    /// Units for slews of a typical angle, rad: a bang-coast-bang of that angle has order one.
-    pub(crate) fn for_angle(dynamics: &Dynamics, angle: f64) -> Self {
+    /// Units for legs that turn by a typical angle, rad, in a typical duration, s.
+    pub(crate) fn for_legs(dynamics: &Dynamics, angle: f64, duration: f64) -> Self {
         let angle = angle.clamp(1e-9, std::f64::consts::PI);
-        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-        let mean = |f: &dyn Fn(&Vector3<f64>) -> f64| {
-            (axes.iter().map(|axis| f(axis).ln()).sum::<f64>() / 3.0).exp()
-        };
-        let acceleration = mean(&|axis| dynamics.axis_acceleration(axis));
-        let top_rate = mean(&|axis| dynamics.axis_rate(axis));
-        let rate = top_rate.min((acceleration * angle).sqrt());
-        let per_rate = axes
-            .iter()
-            .map(|axis| (&dynamics.axes_inverse * (dynamics.inertia * axis)).amax())
+        let rate = PEAK_SHARE * angle / duration;
+        // Greatest momentum of a wheel per unit of rate about any axis.
+        let per_rate = (&dynamics.axes_inverse * dynamics.inertia)
+            .row_iter()
+            .map(|row| row.norm())
             .fold(0.0, f64::max);
         Self {
             angle: angle.min(1.0),
-            time: INTERVAL_SHARE * (angle / rate + rate / acceleration),
+            time: INTERVAL_SHARE * duration,
             momentum: per_rate * rate,
             rate,
         }

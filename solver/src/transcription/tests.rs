@@ -54,9 +54,8 @@ fn dynamics(biased: bool) -> Dynamics {
 }
 
 fn transcription(dynamics: &Dynamics) -> Transcription {
-    let scales = Scales::for_angle(dynamics, 0.8);
+    let scales = Scales::for_legs(dynamics, 0.8, 50.0);
     let null = DVector::from_vec(vec![0.03]);
-    let map = TurnMap::fast(dynamics.inertia_inverse, dynamics.has_momentum());
     let waypoints = [
         Waypoint {
             attitude: Attitude::identity(),
@@ -73,7 +72,12 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
             wheels: WheelCondition::Free,
         },
     ];
-    Transcription::new(dynamics, scales, &waypoints, &[2], map)
+    let mut chain = Transcription::new(dynamics, scales, &waypoints, &[2]);
+    // Larger than any that a solution needs.
+    let correction = Attitude::from_rotation_vector(Vector3::new(0.01, -0.02, 0.015));
+    chain.corrections.fill(correction.xyzw());
+    chain.draw_lengths_to(&Iterate::cold(Vec::new(), [0.6; 10].into()), 0.3);
+    chain
 }
 
 const POINT: [f64; 8] = [0.1, -0.2, 0.15, 0.95, 0.3, -0.2, 0.5, 0.1];

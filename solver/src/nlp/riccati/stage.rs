@@ -1,0 +1,295 @@
+//! One stage of the Riccati recursion, in blocks of fixed size.
+//!
+//! With `[L_vv; L_xv]` the factor of the controls' columns of `M + [A B]^T P+ [A B]`, the cost to go
+//! is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`. The
+//! controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
+
+use crate::nlp::model::LinkModel;
+
+/// A row-major matrix.
+pub(super) type Matrix<const ROWS: usize, const COLUMNS: usize> = [[f64; COLUMNS]; ROWS];
+
+/// What the sweeps keep of a stage.
+#[derive(Debug, Clone)]
+pub(super) struct Stage<const N: usize, const M: usize> {
+    /// `A`.
+    by_state: Matrix<N, N>,
+    /// `B`.
+    by_control: Matrix<N, M>,
+    /// `L_vv`, with the inverse of its diagonal.
+    control_factor: Matrix<M, M>,
+    /// `L_xv`.
+    coupling: Matrix<N, M>,
+    /// `y`.
+    feedforward: [f64; M],
+    /// `P`, both triangles.
+    pub(super) cost_to_go: Matrix<N, N>,
+    /// `p`.
+    pub(super) cost_vector: [f64; N],
+}
+
+impl<const N: usize, const M: usize> Default for Stage<N, M> {
+    fn default() -> Self {
+        Self {
+            by_state: [[0.0; N]; N],
+            by_control: [[0.0; M]; N],
+            control_factor: [[0.0; M]; M],
+            coupling: [[0.0; M]; N],
+            feedforward: [0.0; M],
+            cost_to_go: [[0.0; N]; N],
+            cost_vector: [0.0; N],
+        }
+    }
+}
+
+impl<const N: usize, const M: usize> Stage<N, M> {
+    /// Copies the derivatives of the link from a model of `n` states.
+    pub(super) fn read_links(&mut self, model: &LinkModel, n: usize) {
+        for (i, row) in model.link_jacobian.chunks_exact(model.vars).enumerate() {
+            let (states, controls) = row.split_at(n);
+            self.by_state[i][..n].copy_from_slice(states);
+            self.by_control[i][..controls.len()].copy_from_slice(controls);
+        }
+    }
+
+    /// Carries the costate at arrival to this stage; returns `p` without the equalities.
+    pub(super) fn carry(
+        &mut self,
+        carried: &[f64; N],
+        mut states: [f64; N],
+        mut controls: [f64; M],
+    ) -> [f64; N] {
+        for (i, value) in carried.iter().enumerate() {
+            axpy(*value, &self.by_state[i], &mut states);
+            axpy(*value, &self.by_control[i], &mut controls);
+        }
+        solve_lower(&self.control_factor, &mut controls);
+        for (out, row) in states.iter_mut().zip(&self.coupling) {
+            *out -= dot(row, &controls);
+        }
+        self.feedforward = controls;
+        states
+    }
+
+    /// The step of the controls at a step of the state.
+    pub(super) fn control(&self, state: &[f64; N]) -> [f64; M] {
+        let mut control = self.feedforward.map(|y| -y);
+        for (row, value) in self.coupling.iter().zip(state) {
+            axpy(-value, row, &mut control);
+        }
+        solve_upper(&self.control_factor, &mut control);
+        control
+    }
+
+    /// The next state's step.
+    pub(super) fn arrival(&self, state: &[f64; N], control: &[f64; M], gap: [f64; N]) -> [f64; N] {
+        let mut arrived = gap;
+        for (i, out) in arrived.iter_mut().enumerate() {
+            *out += dot(&self.by_state[i], state) + dot(&self.by_control[i], control);
+        }
+        arrived
+    }
+}
+
+/// The quadratic form of a stage: `M`, then `M` with the cost to go, then the Schur complement.
+pub(super) struct Blocks<const N: usize, const M: usize> {
+    states: Matrix<N, N>,
+    /// Rows of controls, columns of states.
+    mixed: Matrix<M, N>,
+    controls: Matrix<M, M>,
+}
+
+impl<const N: usize, const M: usize> Blocks<N, M> {
+    /// `H + J^T sigma J + delta I` of a model of `n` states, the identity in the rows to spare.
+    pub(super) fn condensed(
+        model: &LinkModel,
+        n: usize,
+        sigma: &[f64],
+        delta: f64,
+        hessian: bool,
+    ) -> Self {
+        let (vars, m) = (model.vars, model.vars - n);
+        let mut blocks = Self {
+            states: [[0.0; N]; N],
+            mixed: [[0.0; N]; M],
+            controls: [[0.0; M]; M],
+        };
+        if hessian {
+            for (i, row) in model.hessian.chunks_exact(vars).enumerate() {
+                if i < n {
+                    blocks.states[i][..=i].copy_from_slice(&row[..=i]);
+                } else {
+                    blocks.mixed[i - n][..n].copy_from_slice(&row[..n]);
+                    blocks.controls[i - n][..=i - n].copy_from_slice(&row[n..=i]);
+                }
+            }
+        }
+        for (weight, row) in sigma
+            .iter()
+            .zip(model.inequality_jacobian.chunks_exact(vars))
+        {
+            blocks.add_row(*weight, &row[..n], &row[n..]);
+        }
+        for i in 0..N {
+            blocks.states[i][i] += if i < n { delta } else { 1.0 };
+        }
+        for i in 0..M {
+            blocks.controls[i][i] += if i < m { delta } else { 1.0 };
+        }
+        blocks
+    }
+
+    /// Adds a weighted outer product, skipping the zeros of a sparse row.
+    fn add_row(&mut self, weight: f64, states: &[f64], controls: &[f64]) {
+        let (mut x, mut v) = ([0.0; N], [0.0; M]);
+        x[..states.len()].copy_from_slice(states);
+        v[..controls.len()].copy_from_slice(controls);
+        for i in 0..N {
+            if x[i] != 0.0 {
+                axpy(weight * x[i], &x, &mut self.states[i]);
+            }
+        }
+        for i in 0..M {
+            if v[i] != 0.0 {
+                axpy(weight * v[i], &x, &mut self.mixed[i]);
+                axpy(weight * v[i], &v, &mut self.controls[i]);
+            }
+        }
+    }
+
+    /// Adds `[A B]^T P+ [A B]`.
+    pub(super) fn add_cost_to_go(&mut self, stage: &Stage<N, M>, next: &Matrix<N, N>) {
+        for (i, row) in next.iter().enumerate() {
+            let (mut by_state, mut by_control) = ([0.0; N], [0.0; M]);
+            for (j, value) in row.iter().enumerate() {
+                axpy(*value, &stage.by_state[j], &mut by_state);
+                axpy(*value, &stage.by_control[j], &mut by_control);
+            }
+            for (out, value) in self.states.iter_mut().zip(&stage.by_state[i]) {
+                axpy(*value, &by_state, out);
+            }
+            for (j, value) in stage.by_control[i].iter().enumerate() {
+                axpy(*value, &by_state, &mut self.mixed[j]);
+                axpy(*value, &by_control, &mut self.controls[j]);
+            }
+        }
+    }
+
+    /// Eliminates the controls into a stage; false when they have a direction without curvature.
+    pub(super) fn eliminate_controls(&mut self, stage: &mut Stage<N, M>) -> bool {
+        stage.control_factor = self.controls;
+        if !cholesky(&mut stage.control_factor) {
+            return false;
+        }
+        for i in 0..N {
+            let row = &mut stage.coupling[i];
+            *row = std::array::from_fn(|j| self.mixed[j][i]);
+            solve_lower(&stage.control_factor, row);
+            for j in 0..=i {
+                self.states[i][j] -= dot(&stage.coupling[i], &stage.coupling[j]);
+            }
+        }
+        true
+    }
+
+    /// `P`: the states' block, both triangles, with the penalty of node equalities.
+    pub(super) fn with_equalities(&self, rows: &[f64], n: usize, rho: f64) -> Matrix<N, N> {
+        let mut matrix = self.states;
+        for i in 0..N {
+            for j in 0..i {
+                matrix[j][i] = matrix[i][j];
+            }
+        }
+        for row in rows.chunks_exact(n) {
+            for (i, &value) in row.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                for (out, other) in matrix[i].iter_mut().zip(row) {
+                    *out += value / rho * other;
+                }
+            }
+        }
+        matrix
+    }
+}
+
+/// Scalar product.
+pub(super) fn dot<const L: usize>(a: &[f64; L], b: &[f64; L]) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..L {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// `y += scale x`.
+fn axpy<const L: usize>(scale: f64, x: &[f64; L], y: &mut [f64; L]) {
+    for i in 0..L {
+        y[i] += scale * x[i];
+    }
+}
+
+/// Cholesky factor of the symmetric matrix in the lower triangle, in place, with the inverses of
+/// its diagonal in the diagonal's place. False when a pivot is not safely positive.
+pub(super) fn cholesky<const L: usize>(a: &mut Matrix<L, L>) -> bool {
+    for i in 0..L {
+        for j in 0..i {
+            let mut value = a[i][j];
+            for c in 0..j {
+                value -= a[i][c] * a[j][c];
+            }
+            a[i][j] = value * a[j][j];
+        }
+        let diagonal = a[i][i];
+        let mut pivot = diagonal;
+        for c in 0..i {
+            pivot -= a[i][c] * a[i][c];
+        }
+        // Positive by more than the cancellation error of the pivot itself.
+        if !(pivot > 1e-14 * diagonal.abs() && pivot > 1e-300) {
+            return false;
+        }
+        a[i][i] = pivot.sqrt().recip();
+    }
+    true
+}
+
+/// Solves `L x = b` in place.
+pub(super) fn solve_lower<const L: usize>(factor: &Matrix<L, L>, b: &mut [f64; L]) {
+    for i in 0..L {
+        let mut value = b[i];
+        for j in 0..i {
+            value -= factor[i][j] * b[j];
+        }
+        b[i] = value * factor[i][i];
+    }
+}
+
+/// Solves `L^T x = b` in place.
+pub(super) fn solve_upper<const L: usize>(factor: &Matrix<L, L>, b: &mut [f64; L]) {
+    for i in (0..L).rev() {
+        let value = b[i] * factor[i][i];
+        b[i] = value;
+        for j in 0..i {
+            b[j] -= factor[i][j] * value;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cholesky_solves_and_refuses_indefinite() {
+        let full = [[4.0, 2.0, -1.0], [2.0, 5.0, 1.0], [-1.0, 1.0, 3.0]];
+        let mut factor = full;
+        assert!(cholesky(&mut factor));
+        let right = [1.0, -2.0, 0.5];
+        let mut x = right;
+        solve_lower(&factor, &mut x);
+        solve_upper(&factor, &mut x);
+        for (row, want) in full.iter().zip(right) {
+            assert!((dot(row, &x) - want).abs() < 1e-14);
+        }
+        assert!(!cholesky(&mut [[1.0, 2.0], [2.0, 1.0]]));
+    }
+}

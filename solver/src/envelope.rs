@@ -4,7 +4,7 @@
 //! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels share this in many
 //! ways; the best is the one whose most loaded wheel is loaded least, which a linear program finds.
 
-use crate::linear_program::{Ending, LinearProgram};
+use crate::convex::{ConvexProgram, Ending};
 use crate::problem::{Code, Problem};
 use crate::scenario::{RateCondition, Scenario};
 use crate::spacecraft::{Spacecraft, Wheel};
@@ -85,7 +85,8 @@ fn least_loaded(wheels: &[(usize, &Wheel)], demand: Vector3<f64>) -> Option<DVec
     let axes = DMatrix::from_fn(3, count, |row, column| wheels[column].1.axis[row]);
     let weights = weights(wheels);
     // Unknowns: the momenta, then the largest weighted size, which is the cost.
-    let program = LinearProgram {
+    let program = ConvexProgram {
+        quadratic: None,
         cost: DVector::from_fn(count + 1, |i, _| if i == count { 1.0 } else { 0.0 }),
         equal: axes.clone().insert_column(count, 0.0),
         equal_to: DVector::from_column_slice(demand.as_slice()),
@@ -100,8 +101,8 @@ fn least_loaded(wheels: &[(usize, &Wheel)], demand: Vector3<f64>) -> Option<DVec
         at_most: DVector::zeros(2 * count),
     };
     match program.minimise() {
-        Ending::Solved(solution, _) => {
-            let momenta = solution.rows(0, count).into_owned();
+        Ending::Solved(minimum) => {
+            let momenta = minimum.unknowns.rows(0, count).into_owned();
             // The equations hold to solver accuracy only; the least correction makes them exact.
             let residual = &program.equal_to - &axes * &momenta;
             let correction = axes.svd(true, true).solve(&residual, f64::EPSILON).ok()?;

@@ -73,13 +73,13 @@
 
 pub mod attitude;
 pub mod checker;
+mod convex;
 mod dynamics;
 pub mod envelope;
 mod findings;
 pub mod kinematic_bound;
 mod kinematics;
 pub mod legs;
-mod linear_program;
 mod multiphase;
 mod nlp;
 pub mod plan;
@@ -89,6 +89,8 @@ pub mod problem;
 mod profile;
 pub mod progress;
 pub mod scenario;
+#[cfg(test)]
+mod second_engine;
 pub mod sequence;
 mod slew;
 pub mod spacecraft;

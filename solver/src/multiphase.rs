@@ -4,10 +4,12 @@
 //! a waypoint leaves free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
+#[cfg(test)]
+mod tests;
 
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
-use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
+use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
 use crate::profile::Profile;
 use crate::transcription::{Reserves, Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
@@ -107,7 +109,7 @@ pub(crate) fn fly(
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> bool,
+    stop: &dyn Fn() -> Option<Interruption>,
 ) -> Flown {
     Flight::new(dynamics, waypoints, intervals, guess).solve(&FROM_A_GUESS, stop)
 }
@@ -121,7 +123,7 @@ pub(crate) fn polish(
     waypoints: &[Waypoint],
     intervals: &[usize],
     mut flown: Flown,
-    stop: &dyn Fn() -> bool,
+    stop: &dyn Fn() -> Option<Interruption>,
 ) -> Flown {
     for _ in 0..POLISH_ROUNDS {
         let Some(before) = flown.duration() else {
@@ -179,7 +181,7 @@ impl<'a> Flight<'a> {
     }
 
     /// Solves one phase after the other, and the last one until its solution can be flown.
-    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> bool) -> Flown {
+    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> Flown {
         for phase in phases {
             self.chain
                 .draw_lengths_to(&self.iterate, phase.length_penalty);
@@ -220,7 +222,7 @@ impl<'a> Flight<'a> {
     }
 
     /// Runs the engine from where the flight is; whether it converges.
-    fn converges(&mut self, stop: &dyn Fn() -> bool) -> bool {
+    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
         self.flown = Flown {
             status: report.status,

@@ -32,6 +32,7 @@
 //! the sweep as a proximal penalty whose centre is iterated to the exact multiplier, which keeps
 //! the factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
 
+mod breakdown;
 pub(crate) mod chain;
 mod convergence;
 mod dense;
@@ -47,12 +48,16 @@ mod restoration;
 mod riccati;
 mod settings;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub(crate) use chain::{Chain, Link, LinkMultipliers};
 pub(crate) use interior_point::InteriorPoint;
 pub(crate) use iterate::Iterate;
 #[cfg(test)]
-pub(crate) use model::models_of;
+pub(crate) use iterate::Layout;
 pub(crate) use model::{LinkModel, LinkValues};
-pub(crate) use settings::{NlpStatus, Settings};
+#[cfg(test)]
+pub(crate) use model::{models_of, values_of};
+#[cfg(test)]
+pub(crate) use settings::NlpReport;
+pub(crate) use settings::{Interruption, NlpStatus, Settings};

@@ -8,14 +8,14 @@ mod places;
 mod tours;
 
 use crate::legs::{LegKind, LegStore};
-use crate::nlp::NlpStatus;
+use crate::nlp::{Interruption, NlpStatus};
 use crate::plan::Outcome;
 use crate::pool::SolverPool;
 use crate::problem::{Code, Problem};
 use crate::progress::Observer;
 use crate::scenario::Scenario;
 use crate::sequence::{FlownOrder, Place, SearchSettings, exhaustive, search};
-use crate::stop::StopSignal;
+use crate::stop::{StopReason, StopSignal};
 use conclude::Conclusions;
 use legs::LegSolver;
 use places::Places;
@@ -160,6 +160,15 @@ fn limited(scenario: &Scenario, stop: &StopSignal) -> StopSignal {
     }
 }
 
+/// What a stop signal means to a solve under way: whoever wants the best answer so far no longer
+/// wants this one.
+fn interruption(stop: &StopSignal) -> Option<Interruption> {
+    stop.reason().map(|reason| match reason {
+        StopReason::TimeLimit => Interruption::TimeLimit,
+        StopReason::Requested | StopReason::Cancelled => Interruption::Cancelled,
+    })
+}
+
 /// The ordered pairs that a tour may fly.
 fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
     let all = places.all();
@@ -185,7 +194,7 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
                      conditions violated by {:.1e} (scaled)",
                     tours.places.name(from),
                     tours.places.name(to),
-                    leg.flown.status.as_str(),
+                    leg.flown.status,
                     leg.flown.iterations,
                     leg.flown.infeasibility,
                 );

@@ -7,7 +7,7 @@ mod tests;
 
 use crate::dynamics::Dynamics;
 use crate::multiphase::{Flown, fly, polish};
-use crate::nlp::NlpStatus;
+use crate::nlp::{Interruption, NlpStatus};
 use crate::profile::Profile;
 use crate::scenario::RateCondition;
 use crate::spec::Accuracy;
@@ -89,7 +89,7 @@ pub(crate) struct Slew {
 }
 
 /// Solves a slew from all its guesses.
-pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
+pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> Option<Interruption>) -> Slew {
     let mut best: Option<Flown> = None;
     let mut solves = 0;
     for guess in guesses(slew) {
@@ -98,12 +98,12 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
         if best.as_ref().is_none_or(|best| flown.improves(best)) {
             best = Some(flown);
         }
-        if stop() {
+        if stop().is_some() {
             break;
         }
     }
     let mut flown = best.expect("there is always the eigenaxis guess");
-    if !stop()
+    if stop().is_none()
         && let Some(better) = slew.eigenaxis_at_worst(&flown, stop)
     {
         flown = better;
@@ -124,7 +124,7 @@ pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> bool) -> Slew {
 
 impl SlewProblem<'_> {
     /// Flies from a guess.
-    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> bool) -> Flown {
+    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> Flown {
         let waypoints = self.waypoints(guess);
         fly(
             self.dynamics,
@@ -137,7 +137,11 @@ impl SlewProblem<'_> {
 
     /// A flight that takes no longer than the slew about the eigenaxis, where that can be flown and
     /// another flight is slower than it: from the exact slew, or the slew itself.
-    fn eigenaxis_at_worst(&self, flown: &Flown, stop: &dyn Fn() -> bool) -> Option<Flown> {
+    fn eigenaxis_at_worst(
+        &self,
+        flown: &Flown,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Option<Flown> {
         let eigenaxis = self.eigenaxis();
         let allowed = eigenaxis.trapezoid.duration * (1.0 + EIGENAXIS_TOLERANCE);
         let fast = |flown: &Flown| flown.duration().is_some_and(|time| time <= allowed);

@@ -60,6 +60,14 @@ fn the_engine_knows_no_physics() {
 }
 
 #[test]
+fn the_second_engine_knows_problems_and_a_general_solver() {
+    for (file, target) in used_by("second_engine") {
+        let given = ["convex", "nlp", "second_engine"];
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+}
+
+#[test]
 fn the_checker_uses_nothing_of_the_optimiser() {
     let given = [
         "attitude",
@@ -98,5 +106,5 @@ fn one_file_names_clarabel() {
         .filter(|(_, text)| text.contains("clarabel::"))
         .map(|(name, _)| name)
         .collect();
-    assert_eq!(naming, ["linear_program.rs"]);
+    assert_eq!(naming, ["convex.rs"]);
 }

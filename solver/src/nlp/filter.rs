@@ -13,6 +13,11 @@ const LEAST_RANGE: f64 = 1e-2;
 /// Sufficient decrease (Armijo) of the barrier cost.
 const ETA: f64 = 1e-4;
 
+/// Barrier costs closer than this, relative, and infeasibilities below it are rounding. The last
+/// steps only settle the multipliers; judged by their noise they would be cut to nothing.
+const PHI_NOISE: f64 = 1e-11;
+const THETA_NOISE: f64 = 1e-12;
+
 /// The filter of Waechter and Biegler, with its acceptance rules.
 #[derive(Debug, Default)]
 pub(super) struct Filter {
@@ -31,6 +36,14 @@ pub(super) enum Acceptance {
 }
 
 impl Filter {
+    /// An empty filter with room for this many entries.
+    pub(super) fn with_capacity(entries: usize) -> Self {
+        Self {
+            entries: Vec::with_capacity(entries),
+            ..Self::default()
+        }
+    }
+
     /// Empties the filter and sets its scales from a point's infeasibility.
     pub(super) fn reset(&mut self, theta: f64) {
         self.entries.clear();
@@ -52,11 +65,14 @@ impl Filter {
         slope: f64,
         alpha: f64,
     ) -> Option<Acceptance> {
-        if !self.admits(trial) {
+        let slack = PHI_NOISE * current.phi.abs().max(1.0);
+        let relaxed = Merit {
+            theta: trial.theta,
+            phi: trial.phi - slack,
+        };
+        if !self.admits(relaxed) {
             return None;
         }
-        // Rounding of the barrier cost must not reject the last, tiny steps.
-        let slack = 10.0 * f64::EPSILON * current.phi.abs().max(1.0);
         let descends = slope < 0.0
             && alpha * (-slope).powf(2.3) > current.theta.powf(1.1)
             && current.theta <= self.theta_min;
@@ -64,10 +80,6 @@ impl Filter {
             let enough = trial.phi - current.phi - slack <= ETA * alpha * slope;
             return enough.then_some(Acceptance::Descent);
         }
-        let relaxed = Merit {
-            theta: trial.theta,
-            phi: trial.phi - slack,
-        };
         improves(relaxed, current).then_some(Acceptance::Progress)
     }
 
@@ -80,7 +92,7 @@ impl Filter {
 }
 
 fn improves(point: Merit, over: Merit) -> bool {
-    point.theta <= (1.0 - GAMMA_THETA) * over.theta
+    point.theta.max(THETA_NOISE) <= (1.0 - GAMMA_THETA) * over.theta
         || point.phi <= over.phi - GAMMA_PHI * over.theta
 }
 
@@ -104,6 +116,18 @@ mod tests {
             !filter.admits(merit(2e4, -5.0)),
             "beyond the largest infeasibility"
         );
+    }
+
+    #[test]
+    fn rounding_neither_forbids_nor_counts_as_progress() {
+        let mut filter = Filter::default();
+        filter.reset(1.0);
+        let here = merit(1e-14, 46.0);
+        filter.add(merit(2e-14, 46.0));
+        // Uphill by less than the noise, and a larger infeasibility that is noise too.
+        let judge = |theta, phi| filter.judge(here, merit(theta, phi), 1e-12, 1.0);
+        assert_eq!(judge(3e-14, 46.0 + 1e-11), Some(Acceptance::Progress));
+        assert_eq!(judge(1e-15, 46.0 + 1e-6), None);
     }
 
     #[test]

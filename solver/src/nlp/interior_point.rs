@@ -7,7 +7,7 @@ use super::iterate::{Iterate, Layout};
 use super::model::{LinkModel, LinkValues, models_of, values_of};
 use super::regularisation::Regularisation;
 use super::riccati::{NewtonSystem, RightHandSide, Step, system_for};
-use super::settings::{NlpReport, NlpStatus, Settings};
+use super::settings::{Interruption, NlpReport, NlpStatus, Settings};
 
 /// Barrier problems are solved to this multiple of the barrier parameter.
 const BARRIER_ACCURACY: f64 = 10.0;
@@ -33,6 +33,8 @@ pub(crate) struct InteriorPoint {
     pub(super) mu: f64,
     pub(super) iterations: usize,
     pub(super) regularisation: Regularisation,
+    /// Where the last factorisation that failed did so.
+    pub(super) failed_stage: usize,
     /// Of one node's stationarity.
     pub(super) residual: Vec<f64>,
     /// Share of the step to the trial point.
@@ -76,10 +78,12 @@ impl InteriorPoint {
                 slack: vec![0.0; rows],
                 ..Iterate::default()
             },
-            filter: Filter::default(),
+            // Two entries per iteration at most.
+            filter: Filter::with_capacity(2 * settings.max_iterations),
             mu: settings.initial_barrier,
             iterations: 0,
             regularisation: Regularisation::default(),
+            failed_stage: 0,
             residual: vec![0.0; layout.states + layout.controls],
             trial_step: vec![0.0; states],
             layout,
@@ -88,35 +92,37 @@ impl InteriorPoint {
 
     /// Solves from an iterate, which is left at the best point reached.
     ///
-    /// Multipliers and slacks of the right length are taken over as a warm start.
+    /// Multipliers and slacks of the right length are taken over as a warm start. `stop` is asked
+    /// before every evaluation and every factorisation; once it has a reason it must keep it.
     pub(crate) fn solve<C: Chain>(
         &mut self,
         chain: &C,
         iterate: &mut Iterate,
-        stop: &dyn Fn() -> bool,
+        stop: &dyn Fn() -> Option<Interruption>,
     ) -> NlpReport {
         self.initialise(chain, iterate);
         loop {
             self.evaluate(chain, iterate);
-            if !self.models.iter().all(|model| model.values.is_finite()) {
-                return self.report(NlpStatus::NumericalError);
+            if let Some(broken) = self.broken_value() {
+                return self.report(broken);
             }
             let residuals = self.residuals(iterate);
             if self.is_solved(&residuals) {
                 return self.report(NlpStatus::Converged);
             }
             self.shrink_barrier(iterate, &residuals);
-            if stop() {
-                return self.report(NlpStatus::Stopped);
+            if let Some(reason) = stop() {
+                return self.report(reason.into());
             }
             if self.iterations >= self.settings.max_iterations {
                 return self.report(NlpStatus::IterationLimit);
             }
             self.iterations += 1;
-            if !self.newton_step(iterate) {
-                return self.report(NlpStatus::NumericalError);
+            if !self.newton_step(iterate, stop) {
+                let status = stop().map_or_else(|| self.broken_system(), NlpStatus::from);
+                return self.report(status);
             }
-            if !self.line_search(chain, iterate)
+            if !self.line_search(chain, iterate, stop)
                 && let Err(status) = self.restore(chain, iterate, stop)
             {
                 return self.report(status);
@@ -129,7 +135,7 @@ impl InteriorPoint {
         self.regularisation = Regularisation::default();
         self.mu = self.settings.initial_barrier;
         let rows = self.layout.all_inequalities();
-        let warm = iterate.slack.len() == rows;
+        let warm = iterate.slack.len() == rows && iterate.lambda.len() == self.rhs.gap.len();
         if !warm {
             iterate.lambda = vec![0.0; self.rhs.gap.len()];
             iterate.nu = vec![0.0; self.rhs.equality.len()];

@@ -6,6 +6,7 @@ use super::filter::Acceptance;
 use super::interior_point::InteriorPoint;
 use super::iterate::Iterate;
 use super::merit::Merit;
+use super::settings::Interruption;
 
 /// Largest fraction of the way to the boundary of slacks and multipliers that a step may go.
 const TO_BOUNDARY: f64 = 0.99;
@@ -28,8 +29,13 @@ struct Here {
 }
 
 impl InteriorPoint {
-    /// Goes along the step until the filter accepts; false when it never does.
-    pub(super) fn line_search<C: Chain>(&mut self, chain: &C, iterate: &mut Iterate) -> bool {
+    /// Goes along the step until the filter accepts; false when it never does, or stopped.
+    pub(super) fn line_search<C: Chain>(
+        &mut self,
+        chain: &C,
+        iterate: &mut Iterate,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> bool {
         let longest = to_boundary(&iterate.slack, &self.slack_step, self.fraction());
         let here = Here {
             merit: self.merit_of_models(&iterate.slack),
@@ -43,13 +49,19 @@ impl InteriorPoint {
                 self.regularisation.stepped(alpha / longest);
                 return true;
             }
+            if stop().is_some() {
+                return false;
+            }
             if attempt == 0
                 && let Some(trial) = trial
                 && trial.theta >= here.merit.theta
-                && self.corrected(chain, iterate, here, trial.theta)
+                && self.corrected(chain, iterate, here, trial.theta, stop)
             {
                 self.regularisation.stepped(1.0);
                 return true;
+            }
+            if stop().is_some() {
+                return false;
             }
             alpha *= 0.5;
         }
@@ -65,6 +77,7 @@ impl InteriorPoint {
         iterate: &mut Iterate,
         here: Here,
         mut theta: f64,
+        stop: &dyn Fn() -> Option<Interruption>,
     ) -> bool {
         std::mem::swap(&mut self.step, &mut self.uncorrected);
         let mut alpha = here.longest;
@@ -77,7 +90,9 @@ impl InteriorPoint {
                 return true;
             }
             match trial {
-                Some(trial) if trial.theta < CORRECTION_GAIN * theta => theta = trial.theta,
+                Some(trial) if trial.theta < CORRECTION_GAIN * theta && stop().is_none() => {
+                    theta = trial.theta;
+                }
                 _ => break,
             }
         }

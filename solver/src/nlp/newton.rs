@@ -3,18 +3,24 @@
 use super::dense::{axpy, dot};
 use super::interior_point::InteriorPoint;
 use super::iterate::Iterate;
+use super::settings::Interruption;
 
 impl InteriorPoint {
-    /// Computes the Newton step; false when no regularisation makes the system convex.
-    pub(super) fn newton_step(&mut self, iterate: &Iterate) -> bool {
+    /// Computes the Newton step; false when no regularisation makes the system convex, or stopped.
+    pub(super) fn newton_step(
+        &mut self,
+        iterate: &Iterate,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> bool {
         for ((sigma, z), s) in self.sigma.iter_mut().zip(&iterate.z).zip(&iterate.slack) {
             *sigma = z / s;
         }
         let mut delta = self.regularisation.first();
-        while !self.system.factor(&self.models, &self.sigma, delta, true) {
+        while let Err(stage) = self.system.factor(&self.models, &self.sigma, delta, true) {
+            self.failed_stage = stage;
             match self.regularisation.next(delta) {
-                Some(next) => delta = next,
-                None => return false,
+                Some(next) if stop().is_none() => delta = next,
+                _ => return false,
             }
         }
         self.regularisation.succeeded(delta);

@@ -8,7 +8,7 @@ use super::chain::Chain;
 use super::interior_point::InteriorPoint;
 use super::iterate::Iterate;
 use super::line_search::to_boundary;
-use super::settings::NlpStatus;
+use super::settings::{Interruption, NlpStatus};
 
 /// Weight of the proximity to the current point.
 const DAMPING: f64 = 1e-4;
@@ -25,24 +25,24 @@ impl InteriorPoint {
         &mut self,
         chain: &C,
         iterate: &mut Iterate,
-        stop: &dyn Fn() -> bool,
+        stop: &dyn Fn() -> Option<Interruption>,
     ) -> Result<(), NlpStatus> {
+        if let Some(reason) = stop() {
+            return Err(reason.into());
+        }
         let begin = self.merit_of_models(&iterate.slack);
         if begin.theta <= self.settings.feasibility {
             // Feasible and yet stuck: the cost cannot be improved in floating point.
-            return Err(NlpStatus::NumericalError);
+            return Err(self.broken_step());
         }
         self.filter.add(begin);
         for _ in 0..MAX_STEPS {
-            if stop() {
-                return Err(NlpStatus::Stopped);
-            }
             if self.iterations >= self.settings.max_iterations {
                 return Err(NlpStatus::IterationLimit);
             }
             self.iterations += 1;
-            if !self.feasibility_step(chain, iterate) {
-                return Err(NlpStatus::InfeasibleSuspected);
+            if !self.feasibility_step(chain, iterate, stop) {
+                return Err(stop().map_or(NlpStatus::InfeasibleSuspected, NlpStatus::from));
             }
             self.evaluate(chain, iterate);
             let now = self.merit_of_models(&iterate.slack);
@@ -58,15 +58,20 @@ impl InteriorPoint {
         Err(NlpStatus::InfeasibleSuspected)
     }
 
-    /// One damped step that reduces infeasibility; false when none does.
-    fn feasibility_step<C: Chain>(&mut self, chain: &C, iterate: &mut Iterate) -> bool {
+    /// One damped step that reduces infeasibility; false when none does, or stopped.
+    fn feasibility_step<C: Chain>(
+        &mut self,
+        chain: &C,
+        iterate: &mut Iterate,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> bool {
         for (sigma, s) in self.sigma.iter_mut().zip(&iterate.slack) {
             *sigma = self.mu / (s * s);
         }
-        if !self
+        let factored = self
             .system
-            .factor(&self.models, &self.sigma, DAMPING, false)
-        {
+            .factor(&self.models, &self.sigma, DAMPING, false);
+        if factored.is_err() {
             return false;
         }
         self.fill_residuals(iterate);
@@ -77,6 +82,9 @@ impl InteriorPoint {
         let current = self.merit_of_models(&iterate.slack).theta;
         let mut alpha = to_boundary(&iterate.slack, &self.slack_step, 0.99);
         for _ in 0..MAX_BACKTRACKS {
+            if stop().is_some() {
+                return false;
+            }
             let trial = self.trial_merit(chain, iterate, alpha);
             if trial.is_some_and(|trial| trial.theta <= (1.0 - 1e-4 * alpha) * current) {
                 self.take_trial(iterate);

@@ -63,9 +63,19 @@ pub(super) struct Step {
 
 /// A Newton system with its factors.
 pub(super) trait NewtonSystem: Send {
-    /// Factorises the system; false when it is not convex on the null space of the constraints,
-    /// so that a larger `delta` is needed. Without `hessian` only `J^T sigma J + delta I` is used.
-    fn factor(&mut self, models: &[LinkModel], sigma: &[f64], delta: f64, hessian: bool) -> bool;
+    /// Factorises the system. Without `hessian` only `J^T sigma J + delta I` is used.
+    ///
+    /// # Errors
+    ///
+    /// The node at which it is not convex on the null space of the constraints, so that a larger
+    /// `delta` is needed.
+    fn factor(
+        &mut self,
+        models: &[LinkModel],
+        sigma: &[f64],
+        delta: f64,
+        hessian: bool,
+    ) -> Result<(), usize>;
 
     /// Solves for a step; `step.nu` holds the current multipliers of the equalities on entry.
     fn solve(&mut self, models: &[LinkModel], rhs: &RightHandSide, step: &mut Step);
@@ -195,7 +205,13 @@ impl<const N: usize, const M: usize> Riccati<N, M> {
 }
 
 impl<const N: usize, const M: usize> NewtonSystem for Riccati<N, M> {
-    fn factor(&mut self, models: &[LinkModel], sigma: &[f64], delta: f64, hessian: bool) -> bool {
+    fn factor(
+        &mut self,
+        models: &[LinkModel],
+        sigma: &[f64],
+        delta: f64,
+        hessian: bool,
+    ) -> Result<(), usize> {
         let n = self.layout.states;
         for (node, model) in models.iter().enumerate().rev() {
             let weights = &sigma[self.layout.inequality(node)];
@@ -207,7 +223,7 @@ impl<const N: usize, const M: usize> NewtonSystem for Riccati<N, M> {
                 let next = tail.first().map_or(&self.last.0, |next| &next.cost_to_go);
                 blocks.add_cost_to_go(stage, next);
                 if !blocks.eliminate_controls(stage) {
-                    return false;
+                    return Err(node);
                 }
             }
             let cost_to_go = blocks.with_equalities(&model.equality_jacobian, n, RHO);
@@ -217,7 +233,7 @@ impl<const N: usize, const M: usize> NewtonSystem for Riccati<N, M> {
             }
         }
         self.initial = *self.cost_to_go(0).0;
-        stage::cholesky(&mut self.initial)
+        stage::cholesky(&mut self.initial).then_some(()).ok_or(0)
     }
 
     fn solve(&mut self, models: &[LinkModel], rhs: &RightHandSide, step: &mut Step) {

@@ -1,5 +1,7 @@
 //! Settings and endings of the interior point.
 
+use std::fmt;
+
 /// Tolerances and limits; all in the problem's own scaled variables.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
@@ -36,10 +38,49 @@ pub(crate) enum NlpStatus {
     InfeasibleSuspected,
     /// Out of iterations.
     IterationLimit,
-    /// A stop signal was seen.
-    Stopped,
-    /// A number stopped being finite, or no regularisation made a step possible.
-    NumericalError,
+    /// The time is up.
+    TimeLimit,
+    /// The caller asked for an end.
+    Cancelled,
+    /// A number stopped being finite, or no step was possible.
+    NumericalError(Breakdown),
+}
+
+/// Why a solve is to end before its time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Interruption {
+    /// The time is up.
+    TimeLimit,
+    /// The caller asked for it.
+    Cancelled,
+}
+
+/// Where the numbers broke down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Breakdown {
+    /// Index of the node with its interval.
+    pub(crate) stage: usize,
+    /// What broke down there.
+    pub(crate) quantity: Quantity,
+}
+
+/// What can break down at a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    /// The cost is not finite.
+    Cost,
+    /// The gap to the next node is not finite.
+    Gap,
+    /// An equality is not finite.
+    Equality,
+    /// An inequality is not finite.
+    Inequality,
+    /// A derivative is not finite.
+    Derivative,
+    /// No regularisation makes the curvature positive.
+    Curvature,
+    /// The step is the longest there, and no part of it makes progress.
+    Step,
 }
 
 impl NlpStatus {
@@ -49,8 +90,50 @@ impl NlpStatus {
             Self::Converged => "converged",
             Self::InfeasibleSuspected => "infeasible_suspected",
             Self::IterationLimit => "iteration_limit",
-            Self::Stopped => "stopped",
-            Self::NumericalError => "numerical_error",
+            Self::TimeLimit => "time_limit",
+            Self::Cancelled => "cancelled",
+            Self::NumericalError(_) => "numerical_error",
+        }
+    }
+
+    /// Whether the solve was ended from outside.
+    pub(crate) const fn is_interrupted(self) -> bool {
+        matches!(self, Self::TimeLimit | Self::Cancelled)
+    }
+}
+
+impl From<Interruption> for NlpStatus {
+    fn from(interruption: Interruption) -> Self {
+        match interruption {
+            Interruption::TimeLimit => Self::TimeLimit,
+            Interruption::Cancelled => Self::Cancelled,
+        }
+    }
+}
+
+/// The stable text, with where the numbers broke down.
+impl fmt::Display for NlpStatus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())?;
+        match self {
+            Self::NumericalError(Breakdown { stage, quantity }) => {
+                write!(f, " ({} of stage {stage})", quantity.as_str())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Quantity {
+    const fn as_str(self) -> &'static str {
+        match self {
+            Self::Cost => "cost",
+            Self::Gap => "gap",
+            Self::Equality => "equality",
+            Self::Inequality => "inequality",
+            Self::Derivative => "derivative",
+            Self::Curvature => "curvature",
+            Self::Step => "step",
         }
     }
 }

@@ -3,9 +3,9 @@
 //! Pairs of places are reduced to canonical legs first, so that equal problems are solved once:
 //! in a table, between tables of one solve, and, through the store, between solves.
 
-use super::Run;
 use super::canonical::CanonicalLeg;
 use super::places::{Places, SAME_ATTITUDE};
+use super::{Run, interruption};
 use crate::attitude::Attitude;
 use crate::legs::{LegKind, StoredLeg};
 use crate::multiphase::Flown;
@@ -162,7 +162,7 @@ impl<'a> LegSolver<'a> {
             (solved, from_store)
         });
         for (leg, (solved, from_store)) in missing.into_iter().zip(solved) {
-            let Some(solved) = solved.filter(|s| s.flown.status != NlpStatus::Stopped) else {
+            let Some(solved) = solved.filter(|s| !s.flown.status.is_interrupted()) else {
                 continue;
             };
             if from_store {
@@ -187,7 +187,7 @@ fn solve(leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLeg {
     let begin = Instant::now();
     let problem = leg.problem();
     let solved = standstill(&problem).map_or_else(
-        || slew::solve(&problem, &|| stop.is_set()),
+        || slew::solve(&problem, &|| interruption(stop)),
         |flown| slew::Slew { flown, solves: 0 },
     );
     SolvedLeg {

@@ -4,6 +4,7 @@
 //! into segments between such waypoints, each a multi-phase problem of its own. Segments recur in
 //! many orders and are remembered.
 
+use super::interruption;
 use super::legs::LegTable;
 use super::places::Places;
 use crate::multiphase::{Flown, fly, polish};
@@ -108,7 +109,7 @@ impl<'a> Tours<'a> {
             .cloned();
         known.unwrap_or_else(|| {
             let flown = Arc::new(self.solve_segment(route));
-            if flown.status != NlpStatus::Stopped {
+            if !flown.status.is_interrupted() {
                 let mut segments = self.segments.lock().unwrap_or_else(PoisonError::into_inner);
                 segments.insert(route.to_vec(), Arc::clone(&flown));
             }
@@ -149,11 +150,11 @@ impl<'a> Tours<'a> {
         let mut best = self.solve_from(route, starts[0]);
         for (tried, start) in starts.iter().enumerate().skip(1) {
             let settled = best.status == NlpStatus::Converged && tried >= USUAL_STARTS;
-            if settled || best.status == NlpStatus::Stopped {
+            if settled || best.status.is_interrupted() {
                 break;
             }
             let flown = self.solve_from(route, start);
-            if flown.improves(&best) || flown.status == NlpStatus::Stopped {
+            if flown.improves(&best) || flown.status.is_interrupted() {
                 best = flown;
             }
         }
@@ -161,7 +162,7 @@ impl<'a> Tours<'a> {
             let dynamics = &self.places.dynamics;
             let (waypoints, intervals) = self.program(route, &best.profile);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
-                self.stop.is_set()
+                interruption(self.stop)
             });
         }
         best
@@ -184,7 +185,7 @@ impl<'a> Tours<'a> {
         let dynamics = &self.places.dynamics;
         let (waypoints, intervals) = self.program(route, &guess);
         fly(dynamics, &waypoints, &intervals, &guess, &|| {
-            self.stop.is_set()
+            interruption(self.stop)
         })
     }
 
@@ -234,7 +235,7 @@ impl TourModel for Tours<'_> {
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
         match self.duration(&self.route(prefix, false)) {
             Ok(duration) => Evaluation::Value(duration),
-            Err(NlpStatus::Stopped) => Evaluation::Stopped,
+            Err(status) if status.is_interrupted() => Evaluation::Stopped,
             Err(_) => Evaluation::Unresolved,
         }
     }
@@ -242,7 +243,7 @@ impl TourModel for Tours<'_> {
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         match self.duration(&self.route(order, true)) {
             Ok(duration) => TourEvaluation::Flown(duration),
-            Err(NlpStatus::Stopped) => TourEvaluation::Stopped,
+            Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,
         }
     }

@@ -1,4 +1,4 @@
-//! Small dense linear programs, solved by an interior point method.
+//! Small dense linear and quadratic programs, solved by an interior point method.
 //!
 //! The only file that names the solver behind it, so that it can be exchanged here.
 
@@ -10,9 +10,12 @@ use nalgebra::{DMatrix, DVector};
 /// Relative and absolute accuracy asked of the solver: tight, since the programs are tiny.
 const TOLERANCE: f64 = 1e-10;
 
-/// Minimise `cost . x` subject to `equal x = equal_to` and `below x <= at_most`.
+/// Minimise `1/2 x . quadratic x + cost . x` subject to `equal x = equal_to` and
+/// `below x <= at_most`.
 #[derive(Debug, Clone)]
-pub(crate) struct LinearProgram {
+pub(crate) struct ConvexProgram {
+    /// Symmetric and positive semidefinite, upper triangle; `None` for a linear program.
+    pub(crate) quadratic: Option<DMatrix<f64>>,
     /// One entry per unknown.
     pub(crate) cost: DVector<f64>,
     /// Left-hand sides of the equations.
@@ -25,18 +28,29 @@ pub(crate) struct LinearProgram {
     pub(crate) at_most: DVector<f64>,
 }
 
-/// How a linear program ended.
+/// How a convex program ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ending {
-    /// Solved, possibly to reduced accuracy: the unknowns and the cost.
-    Solved(DVector<f64>, f64),
+    /// Solved, possibly to reduced accuracy.
+    Solved(Minimum),
     /// Proved to have no feasible point.
     Infeasible,
     /// Neither, with the solver's word for it.
     Failed(String),
 }
 
-impl LinearProgram {
+/// The solution of a convex program.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Minimum {
+    /// The unknowns.
+    pub(crate) unknowns: DVector<f64>,
+    /// The multipliers `y` of the equations, then `z >= 0` of the inequalities:
+    /// `quadratic x + cost + equal^T y + below^T z = 0`.
+    #[cfg(test)]
+    pub(crate) multipliers: DVector<f64>,
+}
+
+impl ConvexProgram {
     /// Solves the program on the calling thread, always with the same result.
     pub(crate) fn minimise(&self) -> Ending {
         let unknowns = self.cost.len();
@@ -58,7 +72,10 @@ impl LinearProgram {
             ZeroConeT(self.equal_to.len()),
             NonnegativeConeT(self.at_most.len()),
         ];
-        let quadratic = CscMatrix::zeros((unknowns, unknowns));
+        let quadratic = match &self.quadratic {
+            Some(matrix) => sparse(&matrix.upper_triangle()),
+            None => CscMatrix::zeros((unknowns, unknowns)),
+        };
         let cost = self.cost.as_slice();
         match DefaultSolver::new(&quadratic, cost, &sparse(&rows), &sides, &cones, settings()) {
             Ok(mut solver) => {
@@ -73,9 +90,11 @@ impl LinearProgram {
 fn ending(solver: &DefaultSolver<f64>) -> Ending {
     let solution = &solver.solution;
     match solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => {
-            Ending::Solved(DVector::from_column_slice(&solution.x), solution.obj_val)
-        }
+        SolverStatus::Solved | SolverStatus::AlmostSolved => Ending::Solved(Minimum {
+            unknowns: DVector::from_column_slice(&solution.x),
+            #[cfg(test)]
+            multipliers: DVector::from_column_slice(&solution.z),
+        }),
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Ending::Infeasible,
         other => Ending::Failed(format!("{other:?}")),
     }
@@ -117,9 +136,10 @@ mod tests {
     use super::*;
     use nalgebra::{dmatrix, dvector};
 
-    /// Minimise `x + 2 y` on the segment `x + y = 1`, `x <= limit`, `y >= 0`.
-    fn segment(limit: f64, y_at_most: f64) -> LinearProgram {
-        LinearProgram {
+    /// Minimise `x + 2 y` on the segment `x + y = 1`, `x <= limit`, `0 <= y <= y_at_most`.
+    fn segment(limit: f64, y_at_most: f64) -> ConvexProgram {
+        ConvexProgram {
+            quadratic: None,
             cost: dvector![1.0, 2.0],
             equal: dmatrix![1.0, 1.0],
             equal_to: dvector![1.0],
@@ -128,16 +148,37 @@ mod tests {
         }
     }
 
+    fn solved(program: &ConvexProgram) -> Minimum {
+        match program.minimise() {
+            Ending::Solved(minimum) => minimum,
+            other => panic!("not solved: {other:?}"),
+        }
+    }
+
     #[test]
     fn the_vertex_is_found() {
-        let Ending::Solved(x, value) = segment(0.75, 10.0).minimise() else {
-            panic!("not solved");
+        let x = solved(&segment(0.75, 10.0)).unknowns;
+        assert!((x - dvector![0.75, 0.25]).amax() < 1e-8);
+    }
+
+    #[test]
+    fn a_quadratic_cost_has_its_minimum_inside_with_multipliers_to_match() {
+        // 1/2 (x^2 + 3 y^2) + x y + x + 2 y on x + y = 1: with x = 1 - y it is y^2 + y + 3/2,
+        // least at y = 0 where the bound holds, so that the bound's multiplier is its slope, one.
+        let program = ConvexProgram {
+            quadratic: Some(dmatrix![1.0, 1.0; 1.0, 3.0]),
+            ..segment(10.0, 10.0)
         };
-        assert!(
-            (x[0] - 0.75).abs() < 1e-8 && (x[1] - 0.25).abs() < 1e-8,
-            "{x}"
-        );
-        assert!((value - 1.25).abs() < 1e-8, "{value}");
+        let minimum = solved(&program);
+        assert!((minimum.unknowns - dvector![1.0, 0.0]).amax() < 1e-7);
+        let expected = dvector![-2.0, 0.0, 1.0, 0.0];
+        assert!((minimum.multipliers - expected).amax() < 1e-7);
+        // Without the cost of y the minimum lies between the bounds: y^2 - y + 3/2.
+        let inside = ConvexProgram {
+            cost: dvector![1.0, 0.0],
+            ..program
+        };
+        assert!((solved(&inside).unknowns - dvector![0.5, 0.5]).amax() < 1e-7);
     }
 
     #[test]
@@ -147,11 +188,11 @@ mod tests {
 
     #[test]
     fn an_unbounded_cost_is_a_failure() {
-        let program = LinearProgram {
+        let program = ConvexProgram {
             cost: dvector![1.0, -1.0],
             ..segment(1.0, f64::MAX.sqrt())
         };
-        let unbounded = LinearProgram {
+        let unbounded = ConvexProgram {
             below: dmatrix![1.0, 0.0],
             at_most: dvector![1.0],
             ..program

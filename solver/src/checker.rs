@@ -12,6 +12,7 @@ mod dynamics;
 mod extremum;
 mod integrator;
 mod keep_out;
+mod leg;
 mod limits;
 mod samples;
 mod series;
@@ -20,6 +21,7 @@ mod visits;
 mod wording;
 
 pub use keep_out::Intrusion;
+pub(crate) use leg::{Arrival, leg_faults};
 
 use crate::attitude::Attitude;
 use crate::plan::{Flight, Margins, State, Verification};

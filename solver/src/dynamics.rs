@@ -145,6 +145,15 @@ impl Dynamics {
         })
     }
 
+    /// Greatest acceleration about each body axis, rad/s², that wheel torques within their limits
+    /// make without momentum: `J_eff w' = -A u`.
+    pub(crate) fn reachable_accelerations(&self) -> Vector3<f64> {
+        self.actuators.iter().fold(Vector3::zeros(), |sum, wheel| {
+            let torque = wheel.max_torque.max(-wheel.min_torque);
+            sum + (self.inertia_inverse * wheel.axis).abs() * torque
+        })
+    }
+
     /// Orthonormal axes, as columns, along which rates are limited most independently: the body
     /// axes when their rates have limits, else those nearest to the axes of the three wheels that
     /// span the largest volume, which turn with the spacecraft and not with its description.

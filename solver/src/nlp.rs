@@ -60,4 +60,4 @@ pub(crate) use model::{LinkModel, LinkValues};
 pub(crate) use model::{models_of, values_of};
 #[cfg(test)]
 pub(crate) use settings::NlpReport;
-pub(crate) use settings::{Interruption, NlpStatus, Settings};
+pub(crate) use settings::{Breakdown, Interruption, NlpStatus, Quantity, Settings};

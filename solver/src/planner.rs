@@ -5,7 +5,9 @@ mod canonical;
 mod conclude;
 mod legs;
 mod places;
+mod torques;
 mod tours;
+mod verified;
 
 use crate::legs::{LegKind, LegStore};
 use crate::nlp::{Interruption, NlpStatus};

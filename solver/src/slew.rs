@@ -1,6 +1,7 @@
 //! One slew between two waypoints: guesses, solves, the best of them.
 
 pub(crate) mod eigenaxis;
+pub(crate) mod evidence;
 pub(crate) mod kinematic;
 #[cfg(test)]
 mod tests;
@@ -13,6 +14,7 @@ use crate::scenario::RateCondition;
 use crate::spec::Accuracy;
 use crate::transcription::{Waypoint, WheelCondition};
 use eigenaxis::{EigenaxisSlew, Side};
+use evidence::Evidence;
 use kinematic::Arrival;
 use nalgebra::{DVector, Vector3};
 
@@ -88,17 +90,32 @@ pub(crate) struct Slew {
     pub(crate) solves: u64,
 }
 
-/// Solves a slew from all its guesses.
-pub(crate) fn solve(slew: &SlewProblem<'_>, stop: &dyn Fn() -> Option<Interruption>) -> Slew {
+/// Solves a slew from one guess after the other, until the evidence says that it is the best.
+pub(crate) fn solve(
+    slew: &SlewProblem<'_>,
+    evidence: Option<&Evidence>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Slew {
+    let eigenaxis = slew.eigenaxis();
+    let intervals = slew.resolution.intervals;
+    let bowed = [Side::Near, Side::Far]
+        .into_iter()
+        .map(|side| eigenaxis.guess(slew.dynamics, intervals, side));
+    // Extremals take longer to find than a program takes to solve: only where they are needed.
+    let extremals = std::iter::once_with(|| kinematic::guesses(slew, intervals, EXTREMALS));
     let mut best: Option<Flown> = None;
     let mut solves = 0;
-    for guess in guesses(slew) {
+    for guess in bowed.chain(extremals.flatten()) {
         let flown = slew.fly(&guess, stop);
         solves += 1;
+        let duration = flown.duration();
         if best.as_ref().is_none_or(|best| flown.improves(best)) {
             best = Some(flown);
         }
-        if stop().is_some() {
+        let settled = evidence
+            .zip(duration)
+            .is_some_and(|(evidence, duration)| evidence.settles(slew, duration));
+        if settled || stop().is_some() {
             break;
         }
     }
@@ -199,13 +216,4 @@ impl SlewProblem<'_> {
         let target = self.arrival.signed(&self.to.attitude, from);
         EigenaxisSlew::fastest(self.dynamics, from, &target, self.null)
     }
-}
-
-fn guesses(slew: &SlewProblem<'_>) -> Vec<Profile> {
-    let (eigenaxis, intervals) = (slew.eigenaxis(), slew.resolution.intervals);
-    let mut all: Vec<_> = [Side::Near, Side::Far]
-        .map(|side| eigenaxis.guess(slew.dynamics, intervals, side))
-        .into();
-    all.extend(kinematic::guesses(slew, intervals, EXTREMALS));
-    all
 }

@@ -46,7 +46,7 @@ fn fault(name: &str, spec: &ScenarioSpec) -> Option<String> {
     }
 }
 
-fn assert_all_fly(cases: Vec<(String, ScenarioSpec)>) {
+fn assert_all_fly(cases: &[(String, ScenarioSpec)]) {
     let faults: Vec<_> = cases
         .iter()
         .filter_map(|(name, spec)| fault(name, spec))
@@ -68,7 +68,7 @@ fn every_condition_of_every_rate_component_is_met() {
             }
         }
     }
-    assert_all_fly(cases);
+    assert_all_fly(&cases);
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn rates_at_start_and_end_are_met() {
             }
         }
     }
-    assert_all_fly(cases);
+    assert_all_fly(&cases);
 }
 
 fn last_wheel_speeds(plan: &Plan) -> Vec<f64> {
@@ -144,7 +144,7 @@ fn any_number_of_wheels_of_any_size_flies() {
             cases.push((format!("{count} wheels, momentum {momentum}"), spec));
         }
     }
-    assert_all_fly(cases);
+    assert_all_fly(&cases);
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn any_subset_of_limits_is_kept() {
         }
         cases.push((format!("limits {subset:05b}"), spec));
     }
-    assert_all_fly(cases);
+    assert_all_fly(&cases);
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn wheels_that_begin_near_their_limits_fly() {
         spec.start.wheel_speed_rad_s = Some(vec![limit, 0.0, 0.0, 0.0]);
         cases.push((format!("one of four at {share}"), spec));
     }
-    assert_all_fly(cases);
+    assert_all_fly(&cases);
 }
 
 #[test]
@@ -244,5 +244,5 @@ fn slews_of_every_size_fly() {
             }
         }
     }
-    assert_all_fly(cases);
+    assert_all_fly(&cases);
 }

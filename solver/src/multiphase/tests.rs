@@ -22,8 +22,8 @@ const ACCURACY: f64 = 1e-6;
 const PROGRAMS: usize = 60;
 /// Intervals of a leg: dense quadratic programs are slow with more.
 const INTERVALS: usize = 8;
-/// Between those of the phases of a flight.
-const LENGTH_PENALTY: f64 = 0.05;
+/// That of polishing.
+const LENGTH_PENALTY: f64 = 1e-3;
 /// Largest displacements of the variables, of order one, where the second engine starts beside the
 /// solution of the first, tried in this order.
 const DISPLACEMENTS: [f64; 3] = [2e-3, 5e-4, 1e-4];

@@ -81,6 +81,8 @@ pub(crate) enum Quantity {
     Curvature,
     /// The step is the longest there, and no part of it makes progress.
     Step,
+    /// The solution does not fly there when it is integrated by other means.
+    Flight,
 }
 
 impl NlpStatus {
@@ -134,6 +136,7 @@ impl Quantity {
             Self::Derivative => "derivative",
             Self::Curvature => "curvature",
             Self::Step => "step",
+            Self::Flight => "flight",
         }
     }
 }

@@ -1,14 +1,11 @@
 //! From solved segments to a flight that can be checked and flown.
 
+use super::torques::{SHORTEST, torques};
 use super::tours::Tours;
 use crate::multiphase::Flown;
 use crate::plan::{Control, Flight, Leg, Passage};
 use crate::sequence::Place;
 use std::sync::Arc;
-
-/// Intervals shorter than this share of the tour are joined to their neighbour: the torque in
-/// them is a quotient of two vanishing numbers.
-const SHORTEST: f64 = 1e-9;
 
 /// A flight under construction.
 struct Assembly<'a> {
@@ -53,22 +50,8 @@ pub(super) fn assemble(
 impl Assembly<'_> {
     fn fly_leg(&mut self, from: Place, to: Place, flown: &Flown, range: std::ops::Range<usize>) {
         let begin = self.clock;
-        let profile = &flown.profile;
-        let end = range.end;
-        let mut first = range.start;
-        for k in range {
-            let length: f64 = profile.lengths[first..=k].iter().sum();
-            let rest: f64 = profile.lengths[k + 1..end].iter().sum();
-            // Wait for a neighbour when this one, or all that is left, is too short to stand alone.
-            let last = k + 1 == end;
-            if !last && (length < self.shortest || rest < self.shortest) {
-                continue;
-            }
-            if length > 0.0 {
-                let change = &profile.wheels[k + 1] - &profile.wheels[first];
-                self.push(length, change.iter().map(|m| m / length));
-            }
-            first = k + 1;
+        for (length, torque) in torques(&flown.profile, range, self.shortest) {
+            self.push(length, torque.iter().copied());
         }
         let duration = self.clock - begin;
         self.legs.push(Leg {

@@ -5,11 +5,12 @@
 
 use super::canonical::CanonicalLeg;
 use super::places::{Places, SAME_ATTITUDE};
+use super::verified::flies;
 use super::{Run, interruption};
 use crate::attitude::Attitude;
 use crate::legs::{LegKind, StoredLeg};
 use crate::multiphase::Flown;
-use crate::nlp::NlpStatus;
+use crate::nlp::{Breakdown, NlpStatus, Quantity};
 use crate::profile::Profile;
 use crate::progress::{Progress, Stage};
 use crate::scenario::RateCondition;
@@ -143,7 +144,8 @@ impl<'a> LegSolver<'a> {
                 .get(&leg.identity)
                 .and_then(|stored| recall(&stored, leg.resolution.intervals));
             let from_store = found.is_some();
-            let solved = found.or_else(|| (!self.stop.is_set()).then(|| solve(leg, self.stop)));
+            let solved =
+                found.or_else(|| (!self.stop.is_set()).then(|| solve(self.places, leg, self.stop)));
             if let (Some(fresh), false) = (&solved, from_store)
                 && fresh.flown.status == NlpStatus::Converged
                 && !self.stop.is_set()
@@ -183,13 +185,21 @@ fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
     }
 }
 
-fn solve(leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLeg {
+/// Solves a leg, refines it until it can be flown, and has it flown by the checker.
+fn solve(places: &Places<'_>, leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLeg {
     let begin = Instant::now();
     let problem = leg.problem();
-    let solved = standstill(&problem).map_or_else(
-        || slew::solve(&problem, &|| interruption(stop)),
+    let mut solved = standstill(&problem).map_or_else(
+        || slew::solve(&problem, places.evidence.as_ref(), &|| interruption(stop)),
         |flown| slew::Slew { flown, solves: 0 },
     );
+    let converged = solved.flown.status == NlpStatus::Converged;
+    if converged && !flies(places, leg, &solved.flown.profile) {
+        solved.flown.status = NlpStatus::NumericalError(Breakdown {
+            stage: solved.flown.profile.intervals(),
+            quantity: Quantity::Flight,
+        });
+    }
     SolvedLeg {
         flown: solved.flown,
         solves: solved.solves,

@@ -50,7 +50,7 @@ fn fly_between(
         null,
         resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
-    let flown = solve(&slew, &|| None).flown;
+    let flown = solve(&slew, None, &|| None).flown;
     let duration = flown.duration().expect("the slew converges");
     (duration, *flown.profile.attitudes.last().expect("nodes"))
 }

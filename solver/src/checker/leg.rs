@@ -1,0 +1,78 @@
+//! One leg flown on its own: from any state, not from the start of a scenario.
+
+use super::dynamics::{Body, Quaternion, Snapshot, conjugate, product};
+use super::integrator::{STEP_TOLERANCE, fly};
+use super::limits::{self, Limits};
+use super::wording::figure;
+use super::{ATTITUDE_TOLERANCE, RATE_TOLERANCE, timeline};
+use crate::plan::{Flight, State};
+use crate::scenario::Scenario;
+
+/// Where a leg is to end.
+#[derive(Debug, Clone)]
+pub(crate) struct Arrival {
+    /// Attitude as components; the sign is that with which the motion arrives.
+    pub(crate) quaternion: Quaternion,
+    /// Body rate components that are required, rad/s.
+    pub(crate) rate: [Option<f64>; 3],
+}
+
+/// What is wrong with a leg that begins in a state and flies the controls of a flight; empty when
+/// it arrives within the tolerances and keeps all limits of the scenario on the way.
+pub(crate) fn leg_faults(
+    scenario: &Scenario,
+    begin: &State,
+    flight: &Flight,
+    arrival: &Arrival,
+) -> Vec<String> {
+    let spacecraft = scenario.spacecraft();
+    let intervals = match timeline::intervals(flight, spacecraft.wheels()) {
+        Ok(intervals) => intervals,
+        Err(faults) => return faults,
+    };
+    let Some(body) = Body::new(spacecraft.inertia(), spacecraft.wheels()) else {
+        return vec!["the inertia without the wheels' spin has no inverse".to_owned()];
+    };
+    let start = Snapshot {
+        time_s: 0.0,
+        quaternion: begin.attitude.xyzw(),
+        rate: begin.body_rate_rad_s,
+        wheel_speed: begin.wheel_speed_rad_s.clone(),
+    };
+    let mut limits = Limits::new(scenario);
+    let mut end = start.clone();
+    let flown = fly(&body, start, &intervals, STEP_TOLERANCE, |step| {
+        limits.observe(step);
+        end = step.motion.state(step.end_s - step.begin_s);
+    });
+    let mut faults = limits::torque(scenario, flight).1;
+    if let Err(sentence) = flown {
+        faults.push(sentence);
+        return faults;
+    }
+    faults.extend(limits.failures());
+    faults.extend(misses(&end, arrival));
+    faults
+}
+
+fn misses(end: &Snapshot, arrival: &Arrival) -> Vec<String> {
+    let mut faults = Vec::new();
+    let between = product(&conjugate(&arrival.quaternion), &end.quaternion);
+    let vector = between[..3].iter().map(|c| c * c).sum::<f64>().sqrt();
+    let error = 2.0 * vector.atan2(between[3]);
+    if !(error <= ATTITUDE_TOLERANCE) {
+        faults.push(format!("the end is missed by {} rad", figure(error)));
+    }
+    for (axis, required) in arrival.rate.iter().enumerate() {
+        let Some(required) = required else { continue };
+        let error = (end.rate[axis] - required).abs();
+        if !(error <= RATE_TOLERANCE) {
+            let axis = ["x", "y", "z"][axis];
+            let error = figure(error);
+            faults.push(format!(
+                "the rate about {axis} is off by {error} rad/s at the end"
+            ));
+        }
+    }
+    faults
+}

@@ -3,6 +3,7 @@
 mod assemble;
 mod canonical;
 mod conclude;
+mod fixed_order;
 mod legs;
 mod places;
 mod torques;
@@ -23,6 +24,8 @@ use legs::LegSolver;
 use places::Places;
 use std::time::{Duration, Instant};
 use tours::Tours;
+
+pub use fixed_order::{OrderError, fly_order};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]

@@ -60,13 +60,13 @@ fn misses(end: &Snapshot, arrival: &Arrival) -> Vec<String> {
     let between = product(&conjugate(&arrival.quaternion), &end.quaternion);
     let vector = between[..3].iter().map(|c| c * c).sum::<f64>().sqrt();
     let error = 2.0 * vector.atan2(between[3]);
-    if !(error <= ATTITUDE_TOLERANCE) {
+    if error.is_nan() || error > ATTITUDE_TOLERANCE {
         faults.push(format!("the end is missed by {} rad", figure(error)));
     }
     for (axis, required) in arrival.rate.iter().enumerate() {
         let Some(required) = required else { continue };
         let error = (end.rate[axis] - required).abs();
-        if !(error <= RATE_TOLERANCE) {
+        if error.is_nan() || error > RATE_TOLERANCE {
             let axis = ["x", "y", "z"][axis];
             let error = figure(error);
             faults.push(format!(

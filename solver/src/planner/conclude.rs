@@ -8,7 +8,7 @@ use crate::checker;
 use crate::plan::{Alternative, LowerBoundKind, Optimality, Outcome, Plan, Statistics};
 use crate::problem::{Code, Problem};
 use crate::progress::{Progress, Stage};
-use crate::sequence::{FlownOrder, Incumbent, SearchObserver, SearchResult};
+use crate::sequence::{FlownOrder, Incumbent, SearchObserver, SearchResult, SearchStatistics};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -65,17 +65,30 @@ impl<'a> Conclusions<'a> {
             lower_bound_s: found.lower_bound_s,
             statistics: found.statistics,
         };
-        match self.plan(&last, optimality) {
-            Ok(plan) => Outcome::Planned(Box::new(plan)),
-            Err(problem) => Outcome::Failed(vec![problem]),
-        }
+        outcome(self.plan(&last, optimality, LowerBoundKind::NlpRelaxation))
+    }
+
+    /// The plan of an order that was given and not searched for, with the sum of its legs as bound.
+    pub(super) fn given(&self, order: &FlownOrder, lower_bound_s: f64) -> Outcome {
+        let only = Incumbent {
+            best: order,
+            alternatives: &[],
+            lower_bound_s,
+            statistics: SearchStatistics::default(),
+        };
+        outcome(self.plan(&only, Optimality::Feasible, LowerBoundKind::PairTable))
     }
 
     /// Puts an order together and verifies it.
-    fn plan(&self, order: &Incumbent<'_>, optimality: Optimality) -> Result<Plan, Problem> {
+    fn plan(
+        &self,
+        order: &Incumbent<'_>,
+        optimality: Optimality,
+        lower_bound_kind: LowerBoundKind,
+    ) -> Result<Plan, Problem> {
         let scenario = self.tours.places.scenario;
-        let route = self.tours.route(&order.best.order, true);
-        // Every segment is remembered from the search: nothing is solved here.
+        let route = self.tours.places.route(&order.best.order, true);
+        // Every segment is remembered from its evaluation: nothing is solved here.
         let (flight, legs) = assemble(self.tours, &route, &self.tours.fly_route(&route));
         let report = checker::verify(scenario, &flight);
         if !report.verification.passed {
@@ -95,7 +108,7 @@ impl<'a> Conclusions<'a> {
             } else {
                 0.0
             },
-            lower_bound_kind: LowerBoundKind::NlpRelaxation,
+            lower_bound_kind,
             alternatives: order
                 .alternatives
                 .iter()
@@ -127,9 +140,17 @@ impl SearchObserver for Conclusions<'_> {
 
     fn improved(&self, incumbent: &Incumbent<'_>) {
         // One that does not fly is kept back; the end of the search tells if it stays the best.
-        if let Ok(plan) = self.plan(incumbent, Optimality::Feasible) {
+        let kind = LowerBoundKind::NlpRelaxation;
+        if let Ok(plan) = self.plan(incumbent, Optimality::Feasible, kind) {
             self.run.observer.incumbent(&plan);
         }
+    }
+}
+
+fn outcome(plan: Result<Plan, Problem>) -> Outcome {
+    match plan {
+        Ok(plan) => Outcome::Planned(Box::new(plan)),
+        Err(problem) => Outcome::Failed(vec![problem]),
     }
 }
 

@@ -57,6 +57,16 @@ impl<'a> Places<'a> {
             .collect()
     }
 
+    /// The places of an order, start included and, for whole tours, the end.
+    pub(super) fn route(&self, order: &[usize], whole: bool) -> Vec<Place> {
+        let end = self.scenario.end().filter(|_| whole).map(|_| Place::End);
+        let targets = order.iter().map(|i| Place::Target(*i));
+        std::iter::once(Place::Start)
+            .chain(targets)
+            .chain(end)
+            .collect()
+    }
+
     /// Identifier of a place.
     pub(super) fn name(&self, place: Place) -> String {
         match place {

@@ -56,16 +56,6 @@ impl<'a> Tours<'a> {
         self.places.resolution.intervals
     }
 
-    /// The places of an order, start included and, for whole tours, the end.
-    pub(super) fn route(&self, order: &[usize], whole: bool) -> Vec<Place> {
-        let end = (whole && self.has_end()).then_some(Place::End);
-        let targets = order.iter().map(|i| Place::Target(*i));
-        std::iter::once(Place::Start)
-            .chain(targets)
-            .chain(end)
-            .collect()
-    }
-
     /// The segments of a route, each solved; shorter than the route when one did not converge or
     /// the solve was stopped.
     pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<Flown>> {
@@ -233,7 +223,7 @@ impl TourModel for Tours<'_> {
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
-        match self.duration(&self.route(prefix, false)) {
+        match self.duration(&self.places.route(prefix, false)) {
             Ok(duration) => Evaluation::Value(duration),
             Err(status) if status.is_interrupted() => Evaluation::Stopped,
             Err(_) => Evaluation::Unresolved,
@@ -241,7 +231,7 @@ impl TourModel for Tours<'_> {
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
-        match self.duration(&self.route(order, true)) {
+        match self.duration(&self.places.route(order, true)) {
             Ok(duration) => TourEvaluation::Flown(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,

@@ -1,0 +1,85 @@
+//! The targets in an order that is given.
+
+use super::conclude::Conclusions;
+use super::legs::LegSolver;
+use super::places::Places;
+use super::tours::Tours;
+use super::{Run, feasibility_problems, limited, unsolved};
+use crate::plan::Outcome;
+use crate::scenario::Scenario;
+use crate::sequence::{FlownOrder, Place, TourEvaluation, TourModel};
+use std::time::Instant;
+
+/// A list of indices is not an order of a scenario's targets.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("an order lists the indices of all {targets} targets, each of them once")]
+pub struct OrderError {
+    /// Number of targets.
+    pub targets: usize,
+}
+
+/// Visits the targets in a given order in minimum time: torques, bound and verification, without a
+/// search.
+///
+/// `order` lists indices into [`Scenario::targets`]. The work is linear in their number, since only
+/// the legs of this order are solved. The plan is the one that [`super::solve`] makes of the order
+/// when it finds it best. Its bound holds for this order only: the sum of its legs with free ends;
+/// nothing is said of other orders, so the plan is never called optimal.
+///
+/// # Errors
+///
+/// When `order` does not name every target exactly once.
+pub fn fly_order(
+    scenario: &Scenario,
+    order: &[usize],
+    run: Run<'_>,
+) -> Result<Outcome, OrderError> {
+    let targets = scenario.targets().len();
+    let mut named = order.to_vec();
+    named.sort_unstable();
+    if !named.into_iter().eq(0..targets) {
+        return Err(OrderError { targets });
+    }
+    Ok(fly(scenario, order, run))
+}
+
+fn fly(scenario: &Scenario, order: &[usize], run: Run<'_>) -> Outcome {
+    let begin = Instant::now();
+    let problems = feasibility_problems(scenario);
+    if !problems.is_empty() {
+        return Outcome::Infeasible(problems);
+    }
+    let stop = limited(scenario, run.stop);
+    let places = Places::of(scenario);
+    let route = places.route(order, true);
+    let mut solver = LegSolver::new(&places, run, &stop);
+    let (rest, free) = solver.tour_tables(&legs_of(&places, &route));
+    let tours = Tours::new(&places, &rest, &free, &stop);
+    match tours.tour(order) {
+        TourEvaluation::Flown(duration_s) => {
+            let order = order.to_vec();
+            let flown = FlownOrder { order, duration_s };
+            let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
+            // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
+            let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
+            Conclusions::new(&tours, &solver, run, begin).given(&flown, lower_bound_s)
+        }
+        TourEvaluation::Stopped => Outcome::StoppedEmpty,
+        TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),
+    }
+}
+
+/// The legs between neighbours of a route, also between those that become neighbours because places
+/// that coincide are flown as one.
+fn legs_of(places: &Places<'_>, route: &[Place]) -> Vec<(Place, Place)> {
+    let mut legs = Vec::new();
+    for (i, from) in route.iter().enumerate() {
+        for to in &route[i + 1..] {
+            legs.push((*from, *to));
+            if !places.coincide(*from, *to) {
+                break;
+            }
+        }
+    }
+    legs
+}

@@ -1,0 +1,87 @@
+//! Orders that are given: flown as the search flies them.
+
+use slewplan_solver::plan::{LowerBoundKind, Optimality, Outcome, Plan};
+use slewplan_solver::planner::{OrderError, every_order, fly_order};
+use slewplan_solver::spec::ScenarioSpec;
+use slewplan_tests::random::Generator;
+use slewplan_tests::solving::{on_threads, plan_of, planned, scenario_of};
+use slewplan_tests::{experiment_a_spec, target};
+
+fn flown(spec: &ScenarioSpec, order: &[usize]) -> Plan {
+    let scenario = scenario_of(spec);
+    let outcome = on_threads(2, |run| fly_order(&scenario, order, run));
+    planned(outcome.expect("an order of the targets"))
+}
+
+fn order_in(plan: &Plan, spec: &ScenarioSpec) -> Vec<usize> {
+    let index = |id: &String| spec.targets.iter().position(|target| target.id == *id);
+    let passages = plan.flight.passages.iter();
+    let order = passages.map(|passage| index(&passage.target).expect("a target"));
+    order.collect()
+}
+
+#[test]
+fn the_best_order_is_flown_as_the_search_flies_it() {
+    let mut spec = experiment_a_spec();
+    // A place that coincides with another is no leg of its own.
+    spec.targets.truncate(4);
+    let mut twin = spec.targets[1].clone();
+    twin.id = "twin".into();
+    spec.targets.push(twin);
+    let best = plan_of(&spec);
+    let order = order_in(&best, &spec);
+    let given = flown(&spec, &order);
+    assert_eq!(given.flight, best.flight);
+    assert_eq!(given.legs, best.legs);
+    assert_eq!(given.optimality, Optimality::Feasible);
+    assert_eq!(given.lower_bound_kind, LowerBoundKind::PairTable);
+    assert!(given.lower_bound_s > 0.9 * given.total_time_s);
+    assert!(given.lower_bound_s < given.total_time_s);
+}
+
+#[test]
+fn any_order_takes_as_long_as_among_all_orders() {
+    let mut generator = Generator::new(21);
+    let mut spec = experiment_a_spec();
+    spec.targets = (0..3)
+        .map(|i| generator.target(format!("t{i}"), i))
+        .collect();
+    spec.targets[0].dwell_s = 12.5;
+    spec.end = None;
+    let scenario = scenario_of(&spec);
+    let orders = on_threads(2, |run| every_order(&scenario, run));
+    assert_eq!(orders.len(), 6);
+    for known in orders {
+        let plan = flown(&spec, &known.order);
+        assert_eq!(order_in(&plan, &spec), known.order);
+        let difference = plan.total_time_s - known.duration_s;
+        assert!(difference.abs() < 1e-9, "{known:?}: {difference} s more");
+        assert!(plan.lower_bound_s <= plan.total_time_s);
+    }
+}
+
+#[test]
+fn lists_that_are_no_order_of_the_targets_are_refused() {
+    let scenario = scenario_of(&experiment_a_spec());
+    let error = OrderError { targets: 6 };
+    for wrong in [
+        vec![],
+        vec![0, 1, 2, 3, 4],
+        vec![0, 1, 2, 3, 4, 4],
+        vec![0, 1, 2, 3, 4, 6],
+        vec![0, 1, 2, 3, 4, 5, 5],
+    ] {
+        let answer = on_threads(1, |run| fly_order(&scenario, &wrong, run));
+        assert_eq!(answer.err(), Some(error.clone()), "{wrong:?}");
+    }
+}
+
+#[test]
+fn an_order_through_a_rest_that_the_wheels_cannot_hold_is_infeasible() {
+    let mut spec = experiment_a_spec();
+    spec.start.wheel_speed_rad_s = Some([700.0; 3].into());
+    spec.targets = vec![target("turned", [45.0, 0.0, 45.0])];
+    let scenario = scenario_of(&spec);
+    let outcome = on_threads(1, |run| fly_order(&scenario, &[0], run));
+    assert!(matches!(outcome, Ok(Outcome::Infeasible(_))), "{outcome:?}");
+}

@@ -83,17 +83,10 @@ impl Assembly<'_> {
     }
 
     fn push(&mut self, duration: f64, torques: impl Iterator<Item = f64>) {
-        let places = self.tours.places;
-        let mut wheel_torque_nm = vec![0.0; places.scenario.spacecraft().wheels().len()];
-        for (actuator, torque) in places.dynamics.actuators.iter().zip(torques) {
-            // The quotient of two rounded numbers may leave the limits by a rounding error.
-            wheel_torque_nm[actuator.index] =
-                torque.clamp(actuator.min_torque, actuator.max_torque);
-        }
         self.controls.push(Control {
             start_s: self.clock,
             duration_s: duration,
-            wheel_torque_nm,
+            wheel_torque_nm: self.tours.places.all_torques(torques),
         });
         self.clock += duration;
     }

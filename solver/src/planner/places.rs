@@ -133,6 +133,16 @@ impl<'a> Places<'a> {
         }
     }
 
+    /// Torques of all wheels of the spacecraft, N m, from those of the enabled ones.
+    pub(super) fn all_torques(&self, enabled: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut all = vec![0.0; self.scenario.spacecraft().wheels().len()];
+        for (actuator, torque) in self.dynamics.actuators.iter().zip(enabled) {
+            // The quotient of two rounded numbers may leave the limits by a rounding error.
+            all[actuator.index] = torque.clamp(actuator.min_torque, actuator.max_torque);
+        }
+        all
+    }
+
     /// The slew between two waypoints.
     pub(super) fn slew<'s>(&'s self, from: &'s Waypoint, to: &'s Waypoint) -> SlewProblem<'s> {
         SlewProblem {

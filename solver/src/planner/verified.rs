@@ -23,7 +23,7 @@ pub(super) fn flies(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) 
             RateCondition::Free | RateCondition::Within(..) => None,
         }),
     };
-    let flight = flight(places, leg, profile);
+    let flight = flight(places, profile);
     leg_faults(places.scenario, &begin, &flight, &arrival).is_empty()
 }
 
@@ -47,21 +47,15 @@ fn begin(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> Option<S
     })
 }
 
-fn flight(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> Flight {
-    let wheels = places.scenario.spacecraft().wheels().len();
+fn flight(places: &Places<'_>, profile: &Profile) -> Flight {
     let mut clock = 0.0;
     let mut controls = Vec::with_capacity(profile.intervals());
     let shortest = SHORTEST * profile.duration();
     for (duration, torque) in torques(profile, 0..profile.intervals(), shortest) {
-        let mut wheel_torque_nm = vec![0.0; wheels];
-        for (actuator, torque) in leg.dynamics.actuators.iter().zip(torque.iter()) {
-            wheel_torque_nm[actuator.index] =
-                torque.clamp(actuator.min_torque, actuator.max_torque);
-        }
         controls.push(Control {
             start_s: clock,
             duration_s: duration,
-            wheel_torque_nm,
+            wheel_torque_nm: places.all_torques(torque.iter().copied()),
         });
         clock += duration;
     }

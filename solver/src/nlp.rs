@@ -56,6 +56,7 @@ pub(crate) use iterate::Iterate;
 #[cfg(test)]
 pub(crate) use iterate::Layout;
 pub(crate) use model::{LinkModel, LinkValues};
+pub(crate) use riccati::MAX_CONTROLS;
 #[cfg(test)]
 pub(crate) use model::{models_of, values_of};
 #[cfg(test)]

@@ -110,6 +110,8 @@ codes! {
     WheelInertiaExceedsBody = "wheel_inertia_exceeds_body",
     /// Fewer than three enabled wheels.
     TooFewWheels = "too_few_wheels",
+    /// More enabled wheels than the solver is built for.
+    TooManyWheels = "too_many_wheels",
     /// Enabled wheel axes that do not span space.
     WheelAxesCoplanar = "wheel_axes_coplanar",
     /// Torque limits that do not enclose zero.

@@ -248,6 +248,17 @@ fn impossible_wheels() {
     let disabled = with(&[("/spacecraft/wheels/2/enabled", json!(false))]);
     expect_refused(&disabled, &[(wheels, "too_few_wheels")]);
 
+    // That as many as seventeen fly is shown by the solver's tests.
+    let mut many = fixture_json("two-targets.json");
+    let list = many["spacecraft"]["wheels"]
+        .as_array_mut()
+        .expect("a list");
+    list.extend(vec![list[2].clone(); 15]);
+    many["start"]["wheel_speed_rad_s"] = json!(vec![0; 18]);
+    expect_refused(many.to_string().as_bytes(), &[(wheels, "too_many_wheels")]);
+    many["spacecraft"]["wheels"][17]["enabled"] = json!(false);
+    slewplan_fed(&["validate", "-"], many.to_string().as_bytes()).expect_code(0);
+
     let coplanar = with(&[("/spacecraft/wheels/2/axis", json!([1, 1, 0]))]);
     expect_refused(&coplanar, &[(wheels, "wheel_axes_coplanar")]);
 

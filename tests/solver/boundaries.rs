@@ -127,7 +127,8 @@ fn wheel_speeds_at_the_end_are_met() {
 #[test]
 fn any_number_of_wheels_of_any_size_flies() {
     let mut cases = Vec::new();
-    for count in 3..=8_u32 {
+    // Up to eight, and as many as can be enabled.
+    for count in (3..=8_u32).chain([17]) {
         for momentum in [false, true] {
             let mut generator = Generator::new(u64::from(count));
             let mut spec = published(false);

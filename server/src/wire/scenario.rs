@@ -59,12 +59,17 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
             .iter()
             .any(|p| contains(p, place) || contains(place, p))
     };
+    let loses_of_wheels = |member| {
+        replaced
+            .iter()
+            .any(|p| contains("/spacecraft/wheels", p) && loses(p, member))
+    };
     match found.code {
         // The substitute for a list of wheels has enough of them.
         Code::TooFewWheels => false,
-        Code::WheelAxesCoplanar => replaced
-            .iter()
-            .any(|p| contains("/spacecraft/wheels", p) && loses_the_axis(p)),
+        Code::WheelAxesCoplanar => loses_of_wheels("axis"),
+        // The substitute for a wheel that may be disabled is enabled.
+        Code::TooManyWheels => loses_of_wheels("enabled"),
         // One entry per wheel, and nobody knows how many wheels were meant.
         Code::WrongLength => {
             any_related(&found.pointer)
@@ -80,10 +85,10 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
     }
 }
 
-/// Whether a place in the list of wheels is an axis, in one, or a whole wheel.
-fn loses_the_axis(pointer: &str) -> bool {
+/// Whether a place in the list of wheels is this member of one, in it, or a whole wheel.
+fn loses(pointer: &str, member: &str) -> bool {
     let mut parts = pointer.split('/').skip(4);
-    parts.next().is_none_or(|member| member == "axis")
+    parts.next().is_none_or(|part| part == member)
 }
 
 /// Whether one place is the other or lies around it.
@@ -422,14 +427,18 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_wheel_does_not_hide_that_there_are_too_few_or_coplanar_ones() {
+    fn a_damaged_wheel_does_not_hide_what_is_wrong_with_all_of_them() {
         let shape = [Problem::new(
             "/spacecraft/wheels/0/inertia_kg_m2",
             Code::MissingField,
             "",
             "",
         )];
-        for code in [Code::TooFewWheels, Code::WheelAxesCoplanar] {
+        for code in [
+            Code::TooFewWheels,
+            Code::TooManyWheels,
+            Code::WheelAxesCoplanar,
+        ] {
             let found = Problem::new("/spacecraft/wheels", code, "", "");
             assert!(!follows_from_a_substitute(&found, &shape), "{code}");
         }

@@ -100,7 +100,7 @@ pub(super) fn system_for(layout: &Layout) -> Box<dyn NewtonSystem> {
     }
 }
 
-/// Most controls of an interval.
+/// Most controls of an interval; the states are two more.
 pub(crate) const MAX_CONTROLS: usize = 18;
 
 /// The factorised Newton system of `N` states and `M` controls.

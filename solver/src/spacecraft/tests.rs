@@ -131,6 +131,11 @@ fn faults_of_wheels_and_boresights_have_their_code_and_place() {
         ),
         (|s| s.wheels.clear(), Code::TooFewWheels, "/wheels"),
         (
+            |s| s.wheels.extend(vec![s.wheels[0].clone(); 15]),
+            Code::TooManyWheels,
+            "/wheels",
+        ),
+        (
             |s| s.wheels[2].axis = [5.0, -3.0, 1e-8],
             Code::WheelAxesCoplanar,
             "/wheels",

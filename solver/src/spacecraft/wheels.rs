@@ -3,12 +3,16 @@
 use super::Wheel;
 use super::inertia::positive_definite_inverse;
 use crate::findings::{Findings, unit};
+use crate::nlp::MAX_CONTROLS;
 use crate::problem::Code;
 use crate::spec::WheelSpec;
 use nalgebra::{DMatrix, Matrix3};
 
 /// Smallest over largest singular value of the unit axes below which they lie in a plane.
 const COPLANARITY_THRESHOLD: f64 = 1e-6;
+/// Most enabled wheels: the controls of an interval are a change of momentum for each of them and
+/// the interval's length.
+const MOST_ENABLED: usize = MAX_CONTROLS - 1;
 
 /// Reads the wheels and checks that the enabled ones span space.
 pub(super) fn read(
@@ -32,6 +36,15 @@ pub(super) fn read(
                 specs.len()
             ),
             "enable or add wheels until their axes span space",
+        );
+        return None;
+    }
+    if enabled > MOST_ENABLED {
+        findings.refuse(
+            pointer,
+            Code::TooManyWheels,
+            format!("{enabled} wheels are enabled, at most {MOST_ENABLED} can be"),
+            "set \"enabled\": false for wheels to spare; each keeps its start speed",
         );
         return None;
     }

@@ -91,6 +91,60 @@ fn a_long_turn_about_one_axis_is_bang_coast_bang() {
     assert!((eigenaxis.trapezoid.duration / bang_coast_bang - 1.0).abs() < 1e-9);
 }
 
+/// Two axes that must hardly move leave a program next to no interior: it ends 2.5e-6 slower than
+/// the turn about the third, which can be flown as it is.
+#[test]
+fn no_slew_takes_longer_than_the_one_about_the_eigenaxis() {
+    for (angle, rate) in [(0.05, None), (1.0, Some(0.005)), (3.0, None)] {
+        let dynamics = held_to_z(rate);
+        let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, angle));
+        let duration = rest_to_rest(&dynamics, Attitude::identity(), to);
+        let null = DVector::zeros(0);
+        let eigenaxis = EigenaxisSlew::fastest(&dynamics, &Attitude::identity(), &to, &null);
+        let excess = duration / eigenaxis.trapezoid.duration - 1.0;
+        assert!(excess <= EIGENAXIS_TOLERANCE, "{angle} rad: {excess:.1e}");
+    }
+}
+
+#[test]
+fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
+    let turn = Vector3::new(0.3, -0.5, 0.7);
+    let (from, to) = (
+        at_rest(Attitude::identity()),
+        at_rest(Attitude::from_rotation_vector(turn)),
+    );
+    let dynamics = dynamics(|_| {});
+    let slew = SlewProblem {
+        dynamics: &dynamics,
+        from: &from,
+        to: &to,
+        arrival: Arrival::Rotation,
+        null: &DVector::zeros(0),
+        resolution: Resolution::of(Accuracy::Standard, &dynamics),
+    };
+    let eigenaxis = slew.eigenaxis();
+    let failed = Flown {
+        status: NlpStatus::IterationLimit,
+        profile: eigenaxis.exact(&dynamics, slew.resolution.intervals),
+        iterations: 0,
+        infeasibility: 1.0,
+    };
+    let instead = slew.eigenaxis_at_worst(&failed, &|| None);
+    let duration = instead.and_then(|flown| flown.duration());
+    let allowed = eigenaxis.trapezoid.duration * (1.0 + EIGENAXIS_TOLERANCE);
+    assert!(duration.is_some_and(|time| time <= allowed), "{duration:?}");
+    // Ends that ask for motion are not met by it.
+    let moving = Waypoint {
+        rate: [RateCondition::Fixed(0.01); 3],
+        ..to.clone()
+    };
+    let slew = SlewProblem {
+        to: &moving,
+        ..slew
+    };
+    assert!(slew.eigenaxis_at_worst(&failed, &|| None).is_none());
+}
+
 #[test]
 fn the_published_leg_and_the_roll_that_traps_local_solvers() {
     let dynamics = dynamics(|_| {});

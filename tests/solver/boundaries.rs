@@ -1,9 +1,10 @@
 //! Every kind of condition at the ends of a slew and every set of limits, one case each: a plan is
 //! found and passes its verification.
 
+use slewplan_solver::legs::LegKind;
 use slewplan_solver::plan::{Outcome, Plan};
-use slewplan_solver::planner;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
+use slewplan_solver::planner::{self, Shard};
+use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, on_threads, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, pyramid_spec, target, wheel};
@@ -71,6 +72,36 @@ fn every_condition_of_every_rate_component_is_met() {
     assert_all_fly(&cases);
 }
 
+/// Legs whose ends leave or demand what their own conditions say: with four targets that permute
+/// the kinds every component has each kind at either end.
+#[test]
+fn legs_between_every_two_kinds_of_conditions_converge() {
+    let kinds = [ZERO, BOUNDED, PRESCRIBED, FREE];
+    for momentum in [false, true] {
+        let mut spec = published(momentum);
+        spec.targets = (0..kinds.len())
+            .map(|i| {
+                let [x, y, z] = [0, 1, 3].map(|shift| kinds[(i + shift) % kinds.len()]);
+                let turned = 35.0 * i as f64;
+                TargetSpec {
+                    rate_min_rad_s: Some([x.0, y.0, z.0]),
+                    rate_max_rad_s: Some([x.1, y.1, z.1]),
+                    ..target(&format!("kind {i}"), [20.0 - turned, 10.0, turned])
+                }
+            })
+            .collect();
+        let scenario = scenario_of(&spec);
+        let whole = Shard { index: 0, of: 1 };
+        let (rows, complete) = on_threads(2, |run| {
+            planner::leg_table(&scenario, LegKind::LowerBound, whole, run)
+        });
+        assert!(complete && rows.len() == 20, "{rows:?}");
+        for row in rows {
+            assert_eq!(row.status, "converged", "momentum {momentum}: {row:?}");
+        }
+    }
+}
+
 #[test]
 fn rates_at_start_and_end_are_met() {
     let rates = [[0.0; 3], [0.002, -0.003, 0.004], [-0.004, 0.0, 0.005]];
@@ -121,6 +152,26 @@ fn wheel_speeds_at_the_end_are_met() {
         let plan = plan_of(&spec);
         let speeds = last_wheel_speeds(&plan);
         assert!((speeds[0] - share * 314.0).abs() <= 1e-4, "{speeds:?}");
+    }
+    // Four wheels with stored momentum: the spare momentum is shifted from where it would end.
+    let mut spec = pyramid_spec();
+    spec.start.wheel_speed_rad_s = Some(vec![60.0, 20.0, -30.0, 10.0]);
+    let attitude = spec.targets[0].attitude.clone();
+    spec.targets.clear();
+    spec.end = Some(StateSpec {
+        attitude,
+        ..StateSpec::default()
+    });
+    let free = last_wheel_speeds(&plan_of(&spec));
+    let shifted: Vec<f64> = free
+        .iter()
+        .zip([25.0, -25.0, 25.0, -25.0])
+        .map(|(speed, shift)| speed + shift)
+        .collect();
+    spec.end.as_mut().expect("an end").wheel_speed_rad_s = Some(shifted.clone());
+    let held = last_wheel_speeds(&plan_of(&spec));
+    for (held, wanted) in held.iter().zip(&shifted) {
+        assert!((held - wanted).abs() <= 1e-4, "{held} of {wanted} rad/s");
     }
 }
 

@@ -56,9 +56,9 @@ pub(crate) use iterate::Iterate;
 #[cfg(test)]
 pub(crate) use iterate::Layout;
 pub(crate) use model::{LinkModel, LinkValues};
-pub(crate) use riccati::MAX_CONTROLS;
 #[cfg(test)]
 pub(crate) use model::{models_of, values_of};
+pub(crate) use riccati::MAX_CONTROLS;
 #[cfg(test)]
 pub(crate) use settings::NlpReport;
 pub(crate) use settings::{Breakdown, Interruption, NlpStatus, Quantity, Settings};

@@ -250,9 +250,7 @@ fn impossible_wheels() {
 
     // That as many as seventeen fly is shown by the solver's tests.
     let mut many = fixture_json("two-targets.json");
-    let list = many["spacecraft"]["wheels"]
-        .as_array_mut()
-        .expect("a list");
+    let list = many["spacecraft"]["wheels"].as_array_mut().expect("a list");
     list.extend(vec![list[2].clone(); 15]);
     many["start"]["wheel_speed_rad_s"] = json!(vec![0; 18]);
     expect_refused(many.to_string().as_bytes(), &[(wheels, "too_many_wheels")]);

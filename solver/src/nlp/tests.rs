@@ -5,6 +5,7 @@ mod control;
 mod generality;
 
 use super::*;
+use carts::{Least, Metered};
 
 /// To the last digits, for comparisons with closed forms and with another engine.
 pub(crate) const TIGHT: Settings = Settings {
@@ -13,21 +14,12 @@ pub(crate) const TIGHT: Settings = Settings {
     ..Settings::COLD
 };
 
-/// What a cart on a line is to do.
-#[derive(Clone, Copy)]
-enum Task {
-    /// Reach a place as soon as possible, `|a| <= 1`, interval lengths free.
-    MinimumTime,
-    /// Reach it at time one with the least integral of `a^2`, equal intervals.
-    MinimumEffort,
-}
-
 /// Weight that settles how a constant arc is divided into intervals, which nothing else does.
 const EVEN: f64 = 1e-3;
 
-/// Position and speed of a cart under piecewise constant acceleration: controls `(a, tau)`.
+/// A cart on a line, to reach a place as soon as possible with `|a| <= 1` in intervals of free
+/// length: states are position and speed, controls `(a, tau)`.
 struct Cart {
-    task: Task,
     intervals: usize,
     goal: f64,
     /// Speed limit, when there is one.
@@ -99,25 +91,10 @@ impl Chain for Cart {
         let mut rows = Vec::new();
         out.cost = 0.0;
         if let [a, tau] = *link.control {
-            out.cost = match self.task {
-                Task::MinimumTime => tau + 0.5 * EVEN * (tau - 0.5).powi(2),
-                Task::MinimumEffort => a * a * self.length(),
-            };
+            out.cost = tau + 0.5 * EVEN * (tau - 0.5).powi(2);
             out.gap[0] = p + v * tau + 0.5 * a * tau * tau - link.next[0];
             out.gap[1] = v + a * tau - link.next[1];
-            match self.task {
-                Task::MinimumTime => rows.extend([1.0 - a, 1.0 + a, tau, 10.0 - tau]),
-                // A narrow band stands for a fixed length.
-                Task::MinimumEffort => {
-                    let low = tau - self.length() * (1.0 - 1e-6);
-                    rows.extend([
-                        100.0 - a,
-                        100.0 + a,
-                        low,
-                        self.length() * (1.0 + 1e-6) - tau,
-                    ]);
-                }
-            }
+            rows.extend([1.0 - a, 1.0 + a, tau, 10.0 - tau]);
         }
         rows.extend(self.limit.map(|limit| limit - v));
         out.inequality.copy_from_slice(&rows);
@@ -131,11 +108,7 @@ impl Chain for Cart {
         let vars = out.vars;
         if let [a, tau] = *link.control {
             let v = link.point[1];
-            let by_control = match self.task {
-                Task::MinimumTime => [0.0, 1.0 + EVEN * (tau - 0.5)],
-                Task::MinimumEffort => [2.0 * a * self.length(), 0.0],
-            };
-            out.gradient[2..].copy_from_slice(&by_control);
+            out.gradient[3] = 1.0 + EVEN * (tau - 0.5);
             let rows = [1.0, tau, 0.5 * tau * tau, v + a * tau, 0.0, 1.0, tau, a];
             out.link_jacobian.copy_from_slice(&rows);
             for (row, (column, sign)) in [(2, -1.0), (2, 1.0), (3, 1.0), (3, -1.0)]
@@ -147,11 +120,7 @@ impl Chain for Cart {
             let (lp, lv) = (duals.gap[0], duals.gap[1]);
             out.hessian[3 * vars + 1] = lp;
             out.hessian[3 * vars + 2] = lp * tau + lv;
-            out.hessian[3 * vars + 3] = lp * a;
-            match self.task {
-                Task::MinimumTime => out.hessian[3 * vars + 3] += EVEN,
-                Task::MinimumEffort => out.hessian[2 * vars + 2] = 2.0 * self.length(),
-            }
+            out.hessian[3 * vars + 3] = lp * a + EVEN;
         }
         if self.limit.is_some() {
             let last = out.inequality_jacobian.len() - vars;
@@ -171,7 +140,6 @@ fn total_time(iterate: &Iterate) -> f64 {
 #[test]
 fn minimum_time_is_bang_bang() {
     let cart = Cart {
-        task: Task::MinimumTime,
         intervals: 4,
         goal: 1.0,
         limit: None,
@@ -188,7 +156,6 @@ fn minimum_time_is_bang_bang() {
 #[test]
 fn minimum_time_coasts_at_a_speed_limit() {
     let cart = Cart {
-        task: Task::MinimumTime,
         intervals: 5,
         goal: 1.0,
         limit: Some(0.5),
@@ -204,34 +171,9 @@ fn minimum_time_coasts_at_a_speed_limit() {
 }
 
 #[test]
-fn least_effort_is_linear_in_time() {
-    let intervals = 20;
-    let cart = Cart {
-        task: Task::MinimumEffort,
-        intervals,
-        goal: 1.0,
-        limit: None,
-    };
-    let (status, iterate) = cart.solve();
-    assert_eq!(status, NlpStatus::Converged);
-    for (k, control) in iterate.controls.chunks_exact(2).enumerate() {
-        // The sampled optimum: 6 (1 - 2 t) at the middles, scaled up for the steps.
-        let middle = (k as f64 + 0.5) / intervals as f64;
-        let scale = 1.0 / (1.0 - (intervals as f64).powi(-2));
-        let expected = 6.0 * (1.0 - 2.0 * middle) * scale;
-        assert!(
-            (control[0] - expected).abs() < 1e-3,
-            "{k}: {} against {expected}",
-            control[0]
-        );
-    }
-}
-
-#[test]
 fn a_goal_out_of_reach_is_said_to_be_suspect() {
     // Ten seconds per interval at a tenth of the speed: one metre and no more.
     let cart = Cart {
-        task: Task::MinimumTime,
         intervals: 1,
         goal: 50.0,
         limit: Some(0.1),
@@ -243,22 +185,9 @@ fn a_goal_out_of_reach_is_said_to_be_suspect() {
 fn more_intervals_cost_in_proportion() {
     // Not a timing: the iteration count must not grow with the chain, each being one sweep.
     let count = |intervals| {
-        let cart = Cart {
-            task: Task::MinimumEffort,
-            intervals,
-            goal: 1.0,
-            limit: None,
-        };
-        let mut iterate = Iterate::cold(
-            (0..=intervals)
-                .flat_map(|k| [k as f64 / intervals as f64, 0.0])
-                .collect(),
-            (0..intervals)
-                .flat_map(|_| [0.0, 1.0 / intervals as f64])
-                .collect(),
-        );
-        let mut engine = InteriorPoint::new(&cart, TIGHT);
-        engine.solve(&cart, &mut iterate, &|| None).iterations
+        let least = Least::EffortWithin(1.0);
+        let problem = Metered { least, intervals };
+        carts::solve(&problem, problem.guess()).0.iterations
     };
     assert!(count(160) <= 2 * count(10));
 }

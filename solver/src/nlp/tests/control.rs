@@ -117,7 +117,6 @@ fn the_stop_signal_is_polled_between_evaluations() {
     assert!(most <= 2, "{most} evaluations without a poll");
     // Out of reach, so that it ends in restoration.
     let cart = Cart {
-        task: Task::MinimumTime,
         intervals: 1,
         goal: 50.0,
         limit: Some(0.1),

@@ -81,60 +81,39 @@ fn assert_search_finds_the_best_order(case: &Case) {
     );
 }
 
-#[test]
-fn the_best_order_is_found_when_every_target_is_a_rest() {
-    for (seed, targets, end) in [(1, 5, true), (2, 4, false)] {
-        let rate_kind = Some(0);
+/// The same for scenarios with one kind of rate condition at every target: seed, targets, stored
+/// momentum, end.
+fn assert_found_with(rate_kind: usize, cases: [(u64, usize, bool, bool); 2]) {
+    for (seed, targets, momentum, end) in cases {
         assert_search_finds_the_best_order(&Case {
             seed,
             targets,
-            rate_kind,
+            rate_kind: Some(rate_kind),
+            momentum,
             end,
             ..PLAIN
         });
     }
+}
+
+#[test]
+fn the_best_order_is_found_when_every_target_is_a_rest() {
+    assert_found_with(0, [(1, 5, false, true), (2, 4, false, false)]);
 }
 
 #[test]
 fn the_best_order_is_found_when_only_the_z_rate_vanishes() {
-    for (seed, targets, momentum) in [(3, 4, false), (4, 3, true)] {
-        let rate_kind = Some(1);
-        assert_search_finds_the_best_order(&Case {
-            seed,
-            targets,
-            rate_kind,
-            momentum,
-            ..PLAIN
-        });
-    }
+    assert_found_with(1, [(3, 4, false, true), (4, 3, true, true)]);
 }
 
 #[test]
 fn the_best_order_is_found_when_the_rate_is_free() {
-    for (seed, targets, end) in [(5, 4, true), (6, 3, false)] {
-        let rate_kind = Some(2);
-        assert_search_finds_the_best_order(&Case {
-            seed,
-            targets,
-            rate_kind,
-            end,
-            ..PLAIN
-        });
-    }
+    assert_found_with(2, [(5, 4, false, true), (6, 3, false, false)]);
 }
 
 #[test]
 fn the_best_order_is_found_when_the_rate_is_bounded() {
-    for (seed, targets, momentum) in [(7, 3, false), (8, 2, true)] {
-        let rate_kind = Some(3);
-        assert_search_finds_the_best_order(&Case {
-            seed,
-            targets,
-            rate_kind,
-            momentum,
-            ..PLAIN
-        });
-    }
+    assert_found_with(3, [(7, 3, false, true), (8, 2, true, true)]);
 }
 
 #[test]

@@ -143,6 +143,7 @@ impl<'a, C: Chain> SequentialQuadratic<'a, C> {
             model.clear();
             let duals = iterate.multipliers(&self.layout, node);
             let link = iterate.link(&self.layout, node);
+            self.chain.values(&link, &mut model.values);
             self.chain.derivatives(&link, &duals, model);
         }
     }

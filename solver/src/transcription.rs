@@ -36,7 +36,7 @@ use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product
 use crate::nlp::{Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues};
 use nalgebra::Vector3;
 use nodes::Node;
-use rows::{LimitRow, StateView};
+use rows::{LimitRow, Row, StateView};
 
 /// The quaternion of no turn.
 const NO_TURN: Quat = [0.0, 0.0, 0.0, 1.0];
@@ -62,6 +62,8 @@ pub(crate) struct Transcription {
     length_penalty: f64,
     /// Limits that hold at every node whose state is not fixed.
     limits: Vec<LimitRow>,
+    /// The components of the body rate, rad/s.
+    rates: [Row; 3],
     /// Reserve kept from every limit at every node.
     reserves: Reserves,
     nodes: Vec<Node>,
@@ -101,10 +103,13 @@ impl Transcription {
             reference_lengths: vec![1.0; intervals.iter().sum()],
             length_penalty: 0.0,
             limits: Vec::new(),
+            rates: Default::default(),
             reserves: Reserves::none(dynamics, intervals.iter().sum()),
             nodes: Vec::new(),
             dynamics: dynamics.clone(),
         };
+        transcription.rates =
+            std::array::from_fn(|axis| transcription.row(0.0, Vector3::ith(axis, 1.0), &[]));
         transcription.limits = transcription.limit_rows();
         transcription.nodes = transcription.lay_out(waypoints, intervals);
         transcription
@@ -165,15 +170,8 @@ impl Transcription {
 
     fn view<'a>(&self, point: &'a [f64]) -> StateView<'a> {
         let wheels = &point[4..];
-        let q = quaternion_of(point);
-        let momentum = rotate_back(&q, &self.dynamics.momentum);
-        let scaled =
-            self.dynamics.inertia_inverse * momentum - self.wheel_rate(wheels) / self.scales.time;
-        StateView {
-            rate: scaled,
-            momentum,
-            wheels,
-        }
+        let momentum = rotate_back(&quaternion_of(point), &self.dynamics.momentum);
+        StateView { momentum, wheels }
     }
 
     /// `offset + gain h`: minus the scaled rate that the wheels make.
@@ -213,7 +211,7 @@ impl Transcription {
             count += 1;
         }
         for (value, limit) in out.inequality.iter_mut().zip(self.limits_of(node)) {
-            *value -= reserves[limit.share] * limit.row.constant;
+            *value -= reserves[limit.share] * limit.limit;
         }
         if self.has_norm_row(node) {
             let norm = self.wheels() + 3;
@@ -241,24 +239,22 @@ impl Transcription {
         for (i, row) in node.equalities.iter().enumerate() {
             let at = (offset + i) * states;
             self.write_row(row, &state, &mut out.equality_jacobian[at..at + states]);
-            curvature += row.rate * duals.equality[offset + i];
+            curvature += row.momentum * duals.equality[offset + i];
         }
         let mut count = 0;
         for row in self.inequality_rows(node) {
             let at = count * out.vars;
             self.write_row(row, &state, &mut out.inequality_jacobian[at..at + states]);
-            curvature -= row.rate * duals.inequality[count];
+            curvature -= row.momentum * duals.inequality[count];
             count += 1;
         }
         if self.has_norm_row(node) {
             let (stride, z) = (out.vars, duals.inequality[count]);
             let row = &mut out.inequality_jacobian[count * stride..(count + 1) * stride];
-            self.write_norm_row(&state, z, row, &mut out.hessian, stride);
-            let scale = self.dynamics.max_rate_norm.powi(2).recip();
-            curvature += state.rate * (2.0 * scale * z);
+            curvature += self.write_norm_row(&state, z, row, &mut out.hessian, stride);
             count += 1;
         }
-        self.add_rate_curvature(&curvature, &state, out);
+        self.add_momentum_curvature(&curvature, &state, out);
         count
     }
 }
@@ -326,7 +322,6 @@ impl Chain for Transcription {
     }
 
     fn derivatives(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
-        self.values(link, &mut out.values);
         let count = self.write_state_derivatives(&self.nodes[link.node], link, duals, out);
         if !link.has_interval() {
             return;

@@ -20,9 +20,9 @@ pub(crate) trait Chain {
     fn retract(&self, point: &[f64], step: &[f64], moved: &mut [f64]);
     /// Evaluates cost, gap, equalities and inequalities.
     fn values(&self, link: &Link<'_>, out: &mut LinkValues);
-    /// Evaluates the same with first derivatives and the Hessian of the Lagrangian.
+    /// Evaluates first derivatives and the Hessian of the Lagrangian.
     ///
-    /// `out` arrives with zeroed matrices and vectors.
+    /// `out` arrives with the values and with zeroed matrices and vectors.
     fn derivatives(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel);
 }
 

@@ -170,8 +170,12 @@ impl InteriorPoint {
         }
     }
 
+    /// Evaluates derivatives. The values at an iterate are always known by now: those of the trial
+    /// that it was until it was taken.
     pub(super) fn evaluate<C: Chain>(&mut self, chain: &C, iterate: &Iterate) {
-        for (node, model) in self.models.iter_mut().enumerate() {
+        let known = self.models.iter_mut().zip(&mut self.trial_values);
+        for (node, (model, values)) in known.enumerate() {
+            std::mem::swap(&mut model.values, values);
             model.clear();
             let duals = iterate.multipliers(&self.layout, node);
             chain.derivatives(&iterate.link(&self.layout, node), &duals, model);

@@ -23,7 +23,7 @@ mod stage;
 
 use super::iterate::Layout;
 use super::model::LinkModel;
-use stage::{Matrix, Stage, dot, solve_lower, solve_upper};
+use stage::{Matrix, Stage, dot, padded, solve_lower, solve_upper};
 
 /// Proximal weight of node equalities. Smaller converges in fewer sweeps, larger loses fewer
 /// digits in the sums `M + C^T C / rho`.
@@ -245,11 +245,4 @@ impl<const N: usize, const M: usize> NewtonSystem for Riccati<N, M> {
             }
         }
     }
-}
-
-/// A vector with zeros to spare.
-fn padded<const N: usize>(values: &[f64]) -> [f64; N] {
-    let mut all = [0.0; N];
-    all[..values.len()].copy_from_slice(values);
-    all
 }

@@ -108,11 +108,9 @@ impl Transcription {
         match &waypoint.wheels {
             WheelCondition::Fixed(momenta) => {
                 for (i, h) in momenta.iter().enumerate() {
-                    node.equalities.push(Row {
-                        constant: -h / self.scales.momentum,
-                        rate: Vector3::zeros(),
-                        wheels: vec![(i, 1.0)],
-                    });
+                    let constant = -h / self.scales.momentum;
+                    node.equalities
+                        .push(self.row(constant, Vector3::zeros(), &[(i, 1.0)]));
                 }
                 // Attitude and all wheel momenta determine the rates.
                 return node;
@@ -124,11 +122,10 @@ impl Transcription {
                     .column_iter()
                     .zip(components.iter())
                 {
-                    node.equalities.push(Row {
-                        constant: -value / self.scales.momentum,
-                        rate: Vector3::zeros(),
-                        wheels: column.iter().copied().enumerate().collect(),
-                    });
+                    let constant = -value / self.scales.momentum;
+                    let wheels: Vec<_> = column.iter().copied().enumerate().collect();
+                    node.equalities
+                        .push(self.row(constant, Vector3::zeros(), &wheels));
                 }
             }
             WheelCondition::Free => {}
@@ -141,10 +138,8 @@ impl Transcription {
 
     fn add_rate_rows(&self, axis: usize, condition: RateCondition, node: &mut Node) {
         let unit = self.scales.rate.recip();
-        let row = |sign: f64, value: f64| Row {
-            constant: -sign * value * unit,
-            rate: Vector3::ith(axis, sign * unit),
-            wheels: Vec::new(),
+        let row = |sign: f64, value: f64| {
+            self.row(-sign * value * unit, Vector3::ith(axis, sign * unit), &[])
         };
         match condition {
             RateCondition::Free => {}
@@ -170,12 +165,12 @@ impl Transcription {
             }
             for sign in [1.0, -1.0] {
                 let per_momentum = self.scales.momentum / (wheel.inertia * wheel.max_speed);
-                let row = Row {
-                    constant: 1.0,
-                    rate: wheel.axis * (sign / wheel.max_speed),
-                    wheels: vec![(i, -sign * per_momentum)],
-                };
-                rows.push(LimitRow { row, share: i });
+                let by_rate = wheel.axis * (sign / wheel.max_speed);
+                rows.push(LimitRow {
+                    row: self.row(1.0, by_rate, &[(i, -sign * per_momentum)]),
+                    limit: 1.0,
+                    share: i,
+                });
             }
         }
         let reachable = self.dynamics.reachable_rates();
@@ -185,13 +180,12 @@ impl Transcription {
                 // In units of the limit, but for an axis that is hardly allowed to turn at all.
                 let unit = limit.max(LEAST_RATE_UNIT * self.scales.rate);
                 for sign in [1.0, -1.0] {
-                    let row = Row {
-                        constant: limit / unit,
-                        rate: Vector3::ith(axis, -sign / unit),
-                        wheels: Vec::new(),
-                    };
-                    let share = self.wheels() + axis;
-                    rows.push(LimitRow { row, share });
+                    let limit = limit / unit;
+                    rows.push(LimitRow {
+                        row: self.row(limit, Vector3::ith(axis, -sign / unit), &[]),
+                        limit,
+                        share: self.wheels() + axis,
+                    });
                 }
             }
         }

@@ -1,40 +1,42 @@
 //! Constraints on a state: rows that are affine in body rate and wheel momenta.
 //!
-//! A row is `c + y . w + g . h`, `w` in rad/s, `h` scaled. Through the momentum `R(q)^T H` the
-//! rate depends on the attitude; with `eta = R(q)^T H` and an attitude step `d`, to second order
+//! A row is posed as `c + y . w + g . h`, `w` in rad/s, `h` scaled. The rate depends on the attitude
+//! through the momentum `eta = R(q)^T H`, `w = Ji (eta - h_locked - hs A h)`, so the row is kept as
+//! `c' + p . eta + g' . h` with `p = Ji^T y`: without momentum its derivatives are constants. With an
+//! attitude step `d`, to second order,
 //!
 //! ```text
-//!   w(d) = w + Ji (eta x d + 1/2 d x (d x eta)),      w(h + dh) = w - Ji A dh
+//!   eta(d) = eta + eta x d + 1/2 d x (d x eta)
 //! ```
 
 use super::Transcription;
 use crate::nlp::LinkModel;
 use nalgebra::{Matrix3, Vector3};
 
-/// `c + y . w + g . h`.
-#[derive(Debug, Clone, PartialEq)]
+/// `c' + p . eta + g' . h`.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Row {
-    /// `c`.
-    pub(super) constant: f64,
-    /// `y`, per rad/s.
-    pub(super) rate: Vector3<f64>,
-    /// `g`: index of the wheel and coefficient.
-    pub(super) wheels: Vec<(usize, f64)>,
+    /// `c'`.
+    constant: f64,
+    /// `p`, per N m s.
+    pub(super) momentum: Vector3<f64>,
+    /// `g'`, one per wheel.
+    wheels: Vec<f64>,
 }
 
-/// One side of a speed or rate limit, `1 -+ share >= reserve`.
+/// One side of a speed or rate limit, `limit -+ value >= reserve limit`.
 #[derive(Debug, Clone)]
 pub(super) struct LimitRow {
     /// The margin without a reserve.
     pub(super) row: Row,
+    /// The limit in the row's unit.
+    pub(super) limit: f64,
     /// Index among the shares of [`crate::dynamics::Dynamics::limit_shares`].
     pub(super) share: usize,
 }
 
-/// A state seen through the dynamics.
+/// A state as rows see it.
 pub(super) struct StateView<'a> {
-    /// Body rate, rad/s.
-    pub(super) rate: Vector3<f64>,
     /// `R(q)^T H`, N m s.
     pub(super) momentum: Vector3<f64>,
     /// Scaled wheel momenta.
@@ -43,47 +45,61 @@ pub(super) struct StateView<'a> {
 
 impl Row {
     pub(super) fn value(&self, state: &StateView<'_>) -> f64 {
-        let wheels: f64 = self.wheels.iter().map(|(i, g)| g * state.wheels[*i]).sum();
-        self.constant + self.rate.dot(&state.rate) + wheels
+        let wheels = self.wheels.iter().zip(state.wheels);
+        let by_wheels: f64 = wheels.map(|(g, h)| g * h).sum();
+        self.constant + self.momentum.dot(&state.momentum) + by_wheels
     }
 }
 
 impl Transcription {
+    /// The row `c + y . w + g . h`; `g` by wheels, of which those that are not named have none.
+    pub(super) fn row(&self, constant: f64, rate: Vector3<f64>, wheels: &[(usize, f64)]) -> Row {
+        let momentum = self.dynamics.inertia_inverse.tr_mul(&rate);
+        let of_rate = |axis: &Vector3<f64>| -self.scales.momentum * momentum.dot(axis);
+        let actuators = self.dynamics.actuators.iter();
+        let mut row = Row {
+            constant: constant - momentum.dot(&self.dynamics.locked_momentum),
+            wheels: actuators.map(|wheel| of_rate(&wheel.axis)).collect(),
+            momentum,
+        };
+        for (i, g) in wheels {
+            row.wheels[*i] += g;
+        }
+        row
+    }
+
     /// Writes a row's derivative with respect to the state.
     pub(super) fn write_row(&self, row: &Row, state: &StateView<'_>, out: &mut [f64]) {
-        let pulled = self.dynamics.inertia_inverse.tr_mul(&row.rate);
         if self.dynamics.has_momentum() {
-            let by_attitude = pulled.cross(&state.momentum) * self.scales.angle;
+            let by_attitude = row.momentum.cross(&state.momentum) * self.scales.angle;
             out[..3].copy_from_slice(by_attitude.as_slice());
         }
-        for (i, wheel) in self.dynamics.actuators.iter().enumerate() {
-            out[3 + i] = -self.scales.momentum * pulled.dot(&wheel.axis);
-        }
-        for (i, g) in &row.wheels {
-            out[3 + i] += g;
+        for (out, g) in out[3..].iter_mut().zip(&row.wheels) {
+            *out = *g;
         }
     }
 
-    /// Adds the curvature of `y . w(d)` in the attitude to a Hessian.
-    pub(super) fn add_rate_curvature(
+    /// Adds the curvature of `p . eta(d)` in the attitude to a Hessian.
+    pub(super) fn add_momentum_curvature(
         &self,
-        y: &Vector3<f64>,
+        p: &Vector3<f64>,
         state: &StateView<'_>,
         out: &mut LinkModel,
     ) {
         if self.dynamics.has_momentum() {
-            let pulled = self.dynamics.inertia_inverse.tr_mul(y);
-            let curvature = double_cross_curvature(&pulled, &state.momentum);
+            let curvature = double_cross_curvature(p, &state.momentum);
             add_attitude_block(out, &(curvature * self.scales.angle.powi(2)));
         }
     }
 
     /// Value of the norm limit `(1 - reserve)^2 - |w|^2 / limit^2`.
     pub(super) fn norm_margin(&self, state: &StateView<'_>, reserve: f64) -> f64 {
-        (1.0 - reserve).powi(2) - state.rate.norm_squared() / self.dynamics.max_rate_norm.powi(2)
+        let squares: f64 = self.rates.iter().map(|w| w.value(state).powi(2)).sum();
+        (1.0 - reserve).powi(2) - squares / self.dynamics.max_rate_norm.powi(2)
     }
 
-    /// Writes the norm limit's derivative and adds its curvature times `-z`.
+    /// Writes the norm limit's derivative and adds its curvature times `-z`, but for that of the
+    /// rates, which is returned as a covector on the momentum.
     pub(super) fn write_norm_row(
         &self,
         state: &StateView<'_>,
@@ -91,28 +107,30 @@ impl Transcription {
         row: &mut [f64],
         hessian: &mut [f64],
         stride: usize,
-    ) {
+    ) -> Vector3<f64> {
         let scale = self.dynamics.max_rate_norm.powi(2).recip();
-        let unit = |i: usize| Row {
-            constant: 0.0,
-            rate: Vector3::ith(i, 1.0),
-            wheels: Vec::new(),
-        };
         let states = 3 + self.dynamics.wheel_count();
-        let mut gradients = [[0.0; 32]; 3];
-        for (i, gradient) in gradients.iter_mut().enumerate() {
-            self.write_row(&unit(i), state, &mut gradient[..states]);
+        let mut pull = Vector3::zeros();
+        let mut gradient = [0.0; MOST_STATES];
+        for component in &self.rates {
+            let rate = component.value(state);
+            self.write_row(component, state, &mut gradient[..states]);
             for j in 0..states {
-                row[j] -= 2.0 * scale * state.rate[i] * gradient[j];
+                row[j] -= 2.0 * scale * rate * gradient[j];
             }
             for a in 0..states {
                 for b in 0..=a {
                     hessian[a * stride + b] += 2.0 * z * scale * gradient[a] * gradient[b];
                 }
             }
+            pull += component.momentum * (2.0 * scale * z * rate);
         }
+        pull
     }
 }
+
+/// Room for the derivatives of one row.
+const MOST_STATES: usize = 32;
 
 /// Second derivative of `y . 1/2 d x (d x eta)` with respect to `d`.
 pub(super) fn double_cross_curvature(y: &Vector3<f64>, eta: &Vector3<f64>) -> Matrix3<f64> {

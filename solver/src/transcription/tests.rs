@@ -138,6 +138,7 @@ impl Fixture {
             inequality: &self.inequality,
         };
         let mut model = crate::nlp::models_of(&self.chain).swap_remove(self.node);
+        self.chain.values(&link, &mut model.values);
         self.chain.derivatives(&link, &duals, &mut model);
         model
     }

@@ -47,8 +47,8 @@ impl<const N: usize, const M: usize> Stage<N, M> {
     pub(super) fn read_links(&mut self, model: &LinkModel, n: usize) {
         for (i, row) in model.link_jacobian.chunks_exact(model.vars).enumerate() {
             let (states, controls) = row.split_at(n);
-            self.by_state[i][..n].copy_from_slice(states);
-            self.by_control[i][..controls.len()].copy_from_slice(controls);
+            self.by_state[i] = padded(states);
+            self.by_control[i] = padded(controls);
         }
     }
 
@@ -116,11 +116,13 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
         };
         if hessian {
             for (i, row) in model.hessian.chunks_exact(vars).enumerate() {
+                // Of what is above the diagonal nothing is read.
+                let (states, controls) = row.split_at(n);
                 if i < n {
-                    blocks.states[i][..=i].copy_from_slice(&row[..=i]);
+                    blocks.states[i] = padded(states);
                 } else {
-                    blocks.mixed[i - n][..n].copy_from_slice(&row[..n]);
-                    blocks.controls[i - n][..=i - n].copy_from_slice(&row[n..=i]);
+                    blocks.mixed[i - n] = padded(states);
+                    blocks.controls[i - n] = padded(controls);
                 }
             }
         }
@@ -141,9 +143,7 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
 
     /// Adds a weighted outer product, skipping the zeros of a sparse row.
     fn add_row(&mut self, weight: f64, states: &[f64], controls: &[f64]) {
-        let (mut x, mut v) = ([0.0; N], [0.0; M]);
-        x[..states.len()].copy_from_slice(states);
-        v[..controls.len()].copy_from_slice(controls);
+        let (x, v): ([f64; N], [f64; M]) = (padded(states), padded(controls));
         for i in 0..N {
             if x[i] != 0.0 {
                 axpy(weight * x[i], &x, &mut self.states[i]);
@@ -209,6 +209,16 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
         }
         matrix
     }
+}
+
+/// A vector with zeros to spare.
+pub(super) fn padded<const L: usize>(values: &[f64]) -> [f64; L] {
+    // The exact size is the usual one, and a copy of known length.
+    values.first_chunk().copied().unwrap_or_else(|| {
+        let mut all = [0.0; L];
+        all[..values.len()].copy_from_slice(values);
+        all
+    })
 }
 
 /// Scalar product.

@@ -9,8 +9,9 @@ use super::regularisation::Regularisation;
 use super::riccati::{NewtonSystem, RightHandSide, Step, system_for};
 use super::settings::{Interruption, NlpReport, NlpStatus, Settings};
 
-/// Barrier problems are solved to this multiple of the barrier parameter.
-const BARRIER_ACCURACY: f64 = 10.0;
+/// Barrier problems are solved to this multiple of the barrier parameter: roughly, since only the last
+/// one counts. With 10 instead legs take a tenth more iterations and are no better; with 60 hard programs fail.
+const BARRIER_ACCURACY: f64 = 30.0;
 /// Linear and superlinear decrease of the barrier parameter.
 const BARRIER_FACTOR: f64 = 0.2;
 const BARRIER_POWER: f64 = 1.5;
@@ -173,9 +174,9 @@ impl InteriorPoint {
     /// Evaluates derivatives. The values at an iterate are always known by now: those of the trial
     /// that it was until it was taken.
     pub(super) fn evaluate<C: Chain>(&mut self, chain: &C, iterate: &Iterate) {
-        let known = self.models.iter_mut().zip(&mut self.trial_values);
+        let known = self.models.iter_mut().zip(&self.trial_values);
         for (node, (model, values)) in known.enumerate() {
-            std::mem::swap(&mut model.values, values);
+            model.values.copy_from(values);
             model.clear();
             let duals = iterate.multipliers(&self.layout, node);
             chain.derivatives(&iterate.link(&self.layout, node), &duals, model);

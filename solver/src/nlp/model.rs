@@ -50,6 +50,14 @@ impl LinkValues {
         }
     }
 
+    /// Takes over the values of the same node; nothing is allocated.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.cost = other.cost;
+        self.gap.copy_from_slice(&other.gap);
+        self.equality.copy_from_slice(&other.equality);
+        self.inequality.copy_from_slice(&other.inequality);
+    }
+
     /// Sum of absolute gaps and equalities, without inequalities.
     pub(crate) fn defect_norm(&self) -> f64 {
         self.gap.iter().chain(&self.equality).map(|v| v.abs()).sum()

@@ -44,8 +44,7 @@ impl InteriorPoint {
             if !self.feasibility_step(chain, iterate, stop) {
                 return Err(stop().map_or(NlpStatus::InfeasibleSuspected, NlpStatus::from));
             }
-            self.evaluate(chain, iterate);
-            let now = self.merit_of_models(&iterate.slack);
+            let now = self.merit_of_values(&iterate.slack);
             if now.theta <= ENOUGH * begin.theta && self.filter.admits(now) {
                 iterate.lambda.fill(0.0);
                 iterate.nu.fill(0.0);
@@ -54,6 +53,7 @@ impl InteriorPoint {
                 }
                 return Ok(());
             }
+            self.evaluate(chain, iterate);
         }
         Err(NlpStatus::InfeasibleSuspected)
     }

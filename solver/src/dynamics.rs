@@ -119,39 +119,52 @@ impl Dynamics {
         self.momentum != Vector3::zeros()
     }
 
-    /// Greatest rate about each body axis, rad/s, that wheel speeds within their limits allow at
-    /// any attitude: `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`.
-    pub(crate) fn reachable_rates(&self) -> Vector3<f64> {
-        let locked = self
+    /// Greatest component of the body rate along a direction in body axes, rad/s times its length,
+    /// that wheel speeds within their limits allow at any attitude, to either side:
+    /// `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`, so
+    /// `d . w` is largest with every wheel at the limit of the sign that suits it.
+    pub(crate) fn reachable_rate(&self, direction: &Vector3<f64>) -> f64 {
+        let spin = self
             .actuators
             .iter()
             .map(|wheel| wheel.axis * wheel.inertia * wheel.axis.transpose())
             .sum::<Matrix3<f64>>();
-        let Some(inverse) = (self.inertia + locked).try_inverse() else {
-            return Vector3::repeat(f64::INFINITY);
+        let Some(inverse) = (self.inertia + spin).try_inverse() else {
+            return f64::INFINITY;
         };
-        let held = (inverse * self.locked_momentum).abs();
-        let turned = inverse.map(|c| c * c).column_sum().map(f64::sqrt) * self.momentum.norm();
+        let lever = inverse.tr_mul(direction);
+        let held = lever.dot(&self.locked_momentum).abs();
+        let turned = lever.norm() * self.momentum.norm();
         self.actuators.iter().fold(held + turned, |sum, wheel| {
-            let share = (inverse * wheel.axis).abs() * wheel.inertia;
+            let share = lever.dot(&wheel.axis).abs() * wheel.inertia;
             // A wheel without a limit that does not turn an axis leaves it alone.
-            sum + share.map(|share| {
-                if share > 0.0 {
-                    share * wheel.max_speed
-                } else {
-                    0.0
-                }
-            })
+            sum + if share > 0.0 {
+                share * wheel.max_speed
+            } else {
+                0.0
+            }
         })
     }
 
-    /// Greatest acceleration about each body axis, rad/s², that wheel torques within their limits
-    /// make without momentum: `J_eff w' = -A u`.
-    pub(crate) fn reachable_accelerations(&self) -> Vector3<f64> {
-        self.actuators.iter().fold(Vector3::zeros(), |sum, wheel| {
-            let torque = wheel.max_torque.max(-wheel.min_torque);
-            sum + (self.inertia_inverse * wheel.axis).abs() * torque
-        })
+    /// Greatest rate about each body axis, rad/s, see [`Self::reachable_rate`].
+    pub(crate) fn reachable_rates(&self) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| self.reachable_rate(&Vector3::ith(axis, 1.0)))
+    }
+
+    /// Greatest component of the acceleration along a direction in body axes, rad/s² times its
+    /// length, that wheel torques within their limits make without momentum, to either side:
+    /// `J_eff w' = -A u`, so every torque is at the limit that suits it.
+    pub(crate) fn reachable_acceleration(&self, direction: &Vector3<f64>) -> f64 {
+        let lever = self.inertia_inverse.tr_mul(direction);
+        let (back, forth) = self
+            .actuators
+            .iter()
+            .fold((0.0, 0.0), |(back, forth), wheel| {
+                let share = lever.dot(&wheel.axis);
+                let ends = [share * wheel.min_torque, share * wheel.max_torque];
+                (back - ends[0].min(ends[1]), forth + ends[0].max(ends[1]))
+            });
+        f64::max(back, forth)
     }
 
     /// Orthonormal axes, as columns, along which rates are limited most independently: the body

@@ -72,6 +72,7 @@
 //! ```
 
 pub mod attitude;
+mod certified;
 pub mod checker;
 mod convex;
 mod dynamics;

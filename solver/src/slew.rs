@@ -1,7 +1,6 @@
 //! One slew between two waypoints: guesses, solves, the best of them.
 
 pub(crate) mod eigenaxis;
-pub(crate) mod evidence;
 pub(crate) mod kinematic;
 #[cfg(test)]
 mod tests;
@@ -14,7 +13,6 @@ use crate::scenario::RateCondition;
 use crate::spec::Accuracy;
 use crate::transcription::{Waypoint, WheelCondition};
 use eigenaxis::{EigenaxisSlew, Side};
-use evidence::Evidence;
 use kinematic::Arrival;
 use nalgebra::{DVector, Vector3};
 
@@ -61,6 +59,10 @@ const WITH_MOMENTUM: usize = 6;
 /// Kinematic extremals that are tried as guesses beside the eigenaxis slew.
 const EXTREMALS: usize = 2;
 
+/// Excess over a bound from below up to which a duration is not doubted. On the 171 legs of
+/// experiment C the certified bound is 0 to 2.1 % below the best known durations, in the median 0.2 %;
+/// the local minimum that traps solvers there is 2.4 % above the best.
+const UNDOUBTED: f64 = 0.005;
 /// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
 const EIGENAXIS_TOLERANCE: f64 = 1e-6;
 /// Relative difference below which wheel momenta are the same.
@@ -92,10 +94,11 @@ pub(crate) struct Slew {
     pub(crate) solves: u64,
 }
 
-/// Solves a slew from one guess after the other, until the evidence says that it is the best.
+/// Solves a slew from one guess after the other, until its duration is so close to a bound from
+/// below, s, that no other is worth its time.
 pub(crate) fn solve(
     slew: &SlewProblem<'_>,
-    evidence: Option<&Evidence>,
+    bound: Option<f64>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Slew {
     let eigenaxis = slew.eigenaxis();
@@ -114,9 +117,9 @@ pub(crate) fn solve(
         if best.as_ref().is_none_or(|best| flown.improves(best)) {
             best = Some(flown);
         }
-        let settled = evidence
+        let settled = bound
             .zip(duration)
-            .is_some_and(|(evidence, duration)| evidence.settles(slew, duration));
+            .is_some_and(|(bound, duration)| duration <= (1.0 + UNDOUBTED) * bound);
         if settled || stop().is_some() {
             break;
         }

@@ -100,6 +100,22 @@ fn the_kinematic_bound_knows_rotations_only() {
 }
 
 #[test]
+fn certified_bounds_use_nothing_of_the_optimiser() {
+    let given = [
+        "attitude",
+        "certified",
+        "dynamics",
+        "kinematic_bound",
+        "scenario",
+        // Waypoints: attitude and conditions of an end.
+        "transcription",
+    ];
+    for (file, target) in used_by("certified") {
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+}
+
+#[test]
 fn one_file_names_clarabel() {
     let naming: Vec<_> = sources()
         .into_iter()

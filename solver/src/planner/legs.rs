@@ -190,7 +190,11 @@ fn solve(places: &Places<'_>, leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLe
     let begin = Instant::now();
     let problem = leg.problem();
     let mut solved = standstill(&problem).map_or_else(
-        || slew::solve(&problem, places.evidence.as_ref(), &|| interruption(stop)),
+        || {
+            slew::solve(&problem, places.certified.leg(&leg.from, &leg.to), &|| {
+                interruption(stop)
+            })
+        },
         |flown| slew::Slew { flown, solves: 0 },
     );
     let converged = solved.flown.status == NlpStatus::Converged;

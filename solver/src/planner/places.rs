@@ -1,9 +1,9 @@
 //! Start, targets and end as waypoints.
 
+use crate::certified::CertifiedBounds;
 use crate::dynamics::Dynamics;
 use crate::scenario::{RateCondition, Scenario};
 use crate::sequence::Place;
-use crate::slew::evidence::Evidence;
 use crate::slew::kinematic::Arrival;
 use crate::slew::{Resolution, SlewProblem};
 use crate::spec::AttitudeEquivalence;
@@ -25,8 +25,8 @@ pub(super) struct Places<'a> {
     pub(super) null: DVector<f64>,
     /// How finely slews are solved.
     pub(super) resolution: Resolution,
-    /// What tells that a slew needs no further start.
-    pub(super) evidence: Option<Evidence>,
+    /// What no slew undercuts.
+    pub(super) certified: CertifiedBounds,
 }
 
 impl<'a> Places<'a> {
@@ -36,7 +36,7 @@ impl<'a> Places<'a> {
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         Self {
             null: dynamics.null_component(&wheels),
-            evidence: Evidence::of(&dynamics),
+            certified: CertifiedBounds::of(&dynamics),
             resolution: Resolution::of(scenario.options().accuracy, &dynamics),
             arrival: match scenario.options().attitude_equivalence {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,

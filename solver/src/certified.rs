@@ -1,0 +1,171 @@
+//! Certified bounds: durations that no slew of a spacecraft undercuts, proved.
+//!
+//! [`crate::kinematic_bound`] bounds slews whose rates and accelerations stay in boxes. Here a
+//! spacecraft gets boxes that contain all that its wheels can do, and a leg gets what is known of
+//! the rates at its ends.
+//!
+//! # The boxes
+//!
+//! Without momentum `J w = -h_locked - sum a_i I_i W_i` and `J_eff w' = -A u` at every attitude: rates
+//! and accelerations are linear images of boxes of wheel speeds and torques. The greatest component
+//! along any direction is a linear program over a box, solved by taking every wheel at the limit
+//! that suits it ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), whatever the
+//! inertia and the axes. Limits of the rate's components and norm cut the rates further. So for every
+//! orthonormal frame fixed in the body there are boxes in its axes that nothing leaves. The rotation
+//! vector of a turn seen from the frame is the turn to make there. Body axes, and where rates have no
+//! limits of their own also the natural axes of the wheels, are tried: each is a proof, the larger
+//! bound counts.
+//!
+//! # The ends
+//!
+//! A rate component that is stopped or prescribed is known at the end of a leg; one within bounds is
+//! at most as large as the larger of these; of one that is free nothing is known. Nothing else is
+//! used, so **the bound holds for the leg as part of any tour with the same conditions at its two
+//! ends**, and bounds of the legs of a tour add up. In a tour through targets with free components
+//! only its first and last legs begin or end at rest, so the ramps of these components are counted
+//! there and nowhere else.
+//!
+//! # What is not bounded
+//!
+//! With stored momentum the box of rates turns with the attitude and the acceleration has a gyroscopic
+//! part; without limits of speed there is no box of rates. Then there is no bound. A turn whose
+//! quaternion has to arrive with a given sign is bounded as the rotation that it also is, which may
+//! be the shorter way round.
+
+use crate::attitude::Attitude;
+use crate::dynamics::Dynamics;
+use crate::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
+use crate::scenario::RateCondition;
+use crate::transcription::Waypoint;
+use nalgebra::{Matrix3, Vector3};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Relative accuracy of the least times: a tenth of what the ramps leave open.
+const TOLERANCE: f64 = 1e-4;
+
+/// Lower bounds on the slews of one spacecraft. What two ends of a kind have in common is prepared
+/// when it is first needed, and shared between threads.
+#[derive(Debug)]
+pub(crate) struct CertifiedBounds {
+    frames: Vec<Frame>,
+    prepared: Mutex<HashMap<Ends, Arc<[Option<SlewBound>]>>>,
+}
+
+/// What no motion exceeds, seen from axes fixed in the body.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    /// Its axes as columns, in body axes.
+    axes: Matrix3<f64>,
+    limits: SlewLimits,
+}
+
+/// Bit patterns of what the rates do not exceed at begin and end, per body axis.
+type Ends = [[u64; 3]; 2];
+
+impl CertifiedBounds {
+    /// The bounds of a spacecraft with its momentum.
+    pub(crate) fn of(dynamics: &Dynamics) -> Self {
+        let mut frames = Vec::new();
+        if !dynamics.has_momentum() {
+            let natural = dynamics.natural_axes();
+            frames.push(Frame::of(dynamics, Matrix3::identity()));
+            if natural != Matrix3::identity() {
+                frames.push(Frame::of(dynamics, natural));
+            }
+        }
+        Self {
+            frames,
+            prepared: Mutex::default(),
+        }
+    }
+
+    /// A duration, s, that no slew between two waypoints undercuts, whatever happens before and
+    /// after it; `None` when nothing is proved. Conditions of the wheels are not used.
+    pub(crate) fn leg(&self, from: &Waypoint, to: &Waypoint) -> Option<f64> {
+        let turn = from.attitude.relative_to(&to.attitude);
+        let ends = [most(from), most(to)];
+        let prepared = self.prepared(&ends);
+        self.frames
+            .iter()
+            .zip(prepared.iter())
+            .filter_map(|(frame, bound)| {
+                let turn = frame.turn(&turn)?;
+                Some(bound.as_ref()?.lower_bound_s(&[turn], TOLERANCE))
+            })
+            .reduce(f64::max)
+    }
+
+    fn prepared(&self, ends: &[Vector3<f64>; 2]) -> Arc<[Option<SlewBound>]> {
+        let kind: Ends = ends.map(|end| end.map(f64::to_bits).into());
+        let lock = || self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = lock().get(&kind) {
+            return Arc::clone(known);
+        }
+        // Not under the lock: two threads may prepare the same, with the same result.
+        let fresh: Arc<[_]> = self.frames.iter().map(|frame| frame.bound(ends)).collect();
+        Arc::clone(lock().entry(kind).or_insert(fresh))
+    }
+}
+
+impl Frame {
+    fn of(dynamics: &Dynamics, axes: Matrix3<f64>) -> Self {
+        let along = |of: &dyn Fn(&Vector3<f64>) -> f64| {
+            Vector3::from_fn(|i, _| of(&axes.column(i).into_owned()))
+        };
+        let rate = |axis: &Vector3<f64>| {
+            dynamics
+                .reachable_rate(axis)
+                .min(component(axis, &dynamics.max_rate))
+                .min(dynamics.max_rate_norm * axis.norm())
+        };
+        Self {
+            axes,
+            limits: SlewLimits {
+                rates_rad_s: along(&rate),
+                accelerations_rad_s2: along(&|axis| dynamics.reachable_acceleration(axis)),
+            },
+        }
+    }
+
+    /// Bounds on slews whose rates do not exceed these at begin and end, body axes.
+    fn bound(&self, ends: &[Vector3<f64>; 2]) -> Option<SlewBound> {
+        let seen = |end: &Vector3<f64>| {
+            Vector3::from_fn(|i, _| component(&self.axes.column(i).into_owned(), end))
+        };
+        let ends = EndRates {
+            begin_rad_s: seen(&ends[0]),
+            end_rad_s: seen(&ends[1]),
+        };
+        SlewBound::new(self.limits, ends)
+    }
+
+    /// A turn in body axes as it is seen from the frame.
+    fn turn(&self, turn: &Attitude) -> Option<Attitude> {
+        let [x, y, z, w] = turn.xyzw();
+        let [x, y, z] = self.axes.tr_mul(&Vector3::new(x, y, z)).into();
+        Attitude::from_xyzw([x, y, z, w])
+    }
+}
+
+/// What the components of the rate do not exceed at a waypoint, rad/s; infinite where they are free.
+fn most(waypoint: &Waypoint) -> Vector3<f64> {
+    Vector3::from(waypoint.rate.map(|condition| match condition {
+        RateCondition::Fixed(rate) => rate.abs(),
+        RateCondition::Within(low, high) => f64::max(low.abs(), high.abs()),
+        RateCondition::Free => f64::INFINITY,
+    }))
+}
+
+/// Greatest component along a direction of vectors whose components have these greatest sizes.
+fn component(direction: &Vector3<f64>, most: &Vector3<f64>) -> f64 {
+    let parts = direction.iter().zip(most);
+    // A component across the direction does not count, infinite or not.
+    parts.fold(0.0, |sum, (share, most)| {
+        sum + if *share == 0.0 {
+            0.0
+        } else {
+            share.abs() * most
+        }
+    })
+}

@@ -88,6 +88,7 @@ impl LegStore for LegCache {
             body_momentum_nms: row.momentum(),
             reversible: row.reversible,
             duration_s: row.duration_s,
+            certified_lower_bound_s: row.certified_lower_bound_s,
             status: row.status,
             solve_time_s: row.solve_time_s,
             attitudes_xyzw: trajectory.attitudes_xyzw,
@@ -126,6 +127,7 @@ fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
         momentum: leg.body_momentum_nms,
         reversible: leg.reversible,
         duration_s: leg.duration_s,
+        certified_lower_bound_s: leg.certified_lower_bound_s,
         solve_time_s: leg.solve_time_s,
         status: leg.status.clone(),
         trajectory: LegTrajectory {

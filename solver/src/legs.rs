@@ -15,6 +15,8 @@ pub enum LegKind {
     RestToRest,
     /// Each end with only its own conditions, everything else free: a lower bound of the leg.
     LowerBound,
+    /// All rates zero at both ends: no slew is solved, and the answer is a proved bound on its time.
+    Certified,
 }
 
 impl LegKind {
@@ -24,6 +26,7 @@ impl LegKind {
         match self {
             Self::RestToRest => "rest_to_rest",
             Self::LowerBound => "lower_bound",
+            Self::Certified => "certified",
         }
     }
 }
@@ -43,6 +46,8 @@ pub struct StoredLeg {
     pub reversible: bool,
     /// Minimum time, s.
     pub duration_s: f64,
+    /// No slew with the conditions at the two ends takes less, s, proved; `None` where nothing is.
+    pub certified_lower_bound_s: Option<f64>,
     /// How the solve ended; only `converged` legs are stored.
     pub status: String,
     /// Wall-clock time of the solve with all its starts, s.

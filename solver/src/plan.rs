@@ -63,6 +63,10 @@ pub struct Plan {
     pub relative_gap: f64,
     /// What the bound rests on.
     pub lower_bound_kind: LowerBoundKind,
+    /// No plan is shorter than this, s, in any order of the targets (of a plan whose order was given:
+    /// in that order), proved: the shortest sum of the certified bounds of its legs with settle and
+    /// dwell. `None` where no slew is bounded.
+    pub certified_lower_bound_s: Option<f64>,
     /// The next best orders.
     pub alternatives: Vec<Alternative>,
     /// One entry per slew.
@@ -134,7 +138,9 @@ pub struct Leg {
     pub start_s: f64,
     /// Length without settle and dwell, s.
     pub duration_s: f64,
-    /// A proved bound on the rest-to-rest time, s, when there is one.
+    /// No slew takes less, s, between these two places under the conditions that the scenario sets
+    /// there, proved, as part of whatever tour: rates that the plan chose are not used. `None` where
+    /// nothing is proved.
     pub certified_lower_bound_s: Option<f64>,
     /// Time of the rest-to-rest slew about the eigenaxis, s, when that slew can be flown.
     pub eigenaxis_duration_s: Option<f64>,

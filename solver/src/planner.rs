@@ -2,10 +2,12 @@
 
 mod assemble;
 mod canonical;
+mod certified;
 mod conclude;
 mod fixed_order;
 mod legs;
 mod places;
+mod tables;
 mod torques;
 mod tours;
 mod verified;
@@ -19,6 +21,7 @@ use crate::progress::Observer;
 use crate::scenario::Scenario;
 use crate::sequence::{FlownOrder, Place, SearchSettings, exhaustive, search};
 use crate::stop::{StopReason, StopSignal};
+use certified::tour_bound;
 use conclude::Conclusions;
 use legs::LegSolver;
 use places::Places;
@@ -49,11 +52,14 @@ pub struct LegRow {
     pub to: String,
     /// The boundary conditions.
     pub kind: LegKind,
-    /// Minimum time, s, when solved.
+    /// Minimum time, s, when solved; never of [`LegKind::Certified`].
     pub duration_s: Option<f64>,
+    /// No slew under the conditions takes less, s, proved; `None` where nothing is.
+    pub certified_lower_bound_s: Option<f64>,
     /// Wall-clock time of the solve with all starts, refinement and verification, s.
     pub solve_time_s: f64,
-    /// How the solve ended (`converged`, ...).
+    /// How the solve ended (`converged`, ...); of [`LegKind::Certified`] whether there is a bound
+    /// (`proved`, `none`).
     pub status: String,
 }
 
@@ -76,16 +82,20 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
+    let pairs = tour_pairs(&places);
     let mut solver = LegSolver::new(&places, run, &stop);
-    let (rest, free) = solver.tour_tables(&tour_pairs(&places));
-    let tours = Tours::new(&places, &rest, &free, &stop);
+    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
+    let certified = tour_bound(&places, &bounds, run.pool, &stop);
+    solver.tell_bound(certified);
+    let (rest, free) = solver.tour_tables(&pairs);
+    let tours = Tours::new(&places, &rest, &free, &bounds, &stop);
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,
         relative_gap: scenario.options().relative_gap,
         node_limit: scenario.options().node_limit,
         ..SearchSettings::default()
     };
-    let conclusions = Conclusions::new(&tours, &solver, run, begin);
+    let conclusions = Conclusions::new(&tours, &solver, certified, run, begin);
     let found = search(&tours, &settings, run.pool, &stop, &conclusions);
     match &found.best {
         Some(best) => conclusions.outcome(best, &found),
@@ -103,9 +113,11 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
 pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
+    let pairs = tour_pairs(&places);
     let mut solver = LegSolver::new(&places, run, &stop);
-    let (rest, free) = solver.tour_tables(&tour_pairs(&places));
-    let tours = Tours::new(&places, &rest, &free, &stop);
+    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
+    let (rest, free) = solver.tour_tables(&pairs);
+    let tours = Tours::new(&places, &rest, &free, &bounds, &stop);
     let orders = (1..=scenario.targets().len()).product();
     exhaustive(&tours, orders, run.pool)
 }
@@ -131,23 +143,48 @@ pub fn leg_table(
         .filter(|(i, _)| i % shard.of.max(1) == shard.index)
         .map(|(_, pair)| pair)
         .collect();
-    let table = LegSolver::new(&places, run, &stop).table(kind, &pairs);
-    let rows: Vec<_> = pairs
-        .iter()
-        .filter_map(|(from, to)| {
+    let mut solver = LegSolver::new(&places, run, &stop);
+    let rows: Vec<_> = if kind == LegKind::Certified {
+        certified_rows(&mut solver, &pairs)
+    } else {
+        let table = solver.table(kind, &pairs);
+        let row = |(from, to): &(Place, Place)| {
             let leg = table.get(*from, *to)?;
             Some(LegRow {
                 from: places.name(*from),
                 to: places.name(*to),
                 kind,
                 duration_s: leg.flown.duration(),
+                certified_lower_bound_s: leg.certified,
                 solve_time_s: leg.solve_time,
                 status: leg.flown.status.as_str().into(),
             })
-        })
-        .collect();
+        };
+        pairs.iter().filter_map(row).collect()
+    };
     let complete = rows.len() == pairs.len();
     (rows, complete)
+}
+
+/// The rows of a table without any program.
+fn certified_rows(solver: &mut LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<LegRow> {
+    let kind = LegKind::Certified;
+    let table = solver.certified_table(kind, pairs);
+    let places = solver.places();
+    let row = |(from, to): &(Place, Place)| {
+        let leg = table.get(*from, *to)?;
+        let proved = leg.lower_bound.is_some();
+        Some(LegRow {
+            from: places.name(*from),
+            to: places.name(*to),
+            kind,
+            duration_s: None,
+            certified_lower_bound_s: leg.lower_bound,
+            solve_time_s: leg.solve_time,
+            status: if proved { "proved" } else { "none" }.into(),
+        })
+    };
+    pairs.iter().filter_map(row).collect()
 }
 
 /// What can be said against a valid scenario before it is solved: rests that the wheels cannot

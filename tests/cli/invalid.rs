@@ -355,7 +355,7 @@ fn arguments_that_do_not_exist() {
         &["solve", &scenario, "--threads", "0"],
         &["solve", &scenario, "--time-limit", "-1"],
         &["solve", &scenario, "--progress", "loud"],
-        &["legs", &scenario, "--kind", "certified"],
+        &["legs", &scenario, "--kind", "proved"],
         &["legs", &scenario, "--shard", "3/2"],
         &["solve"],
         &["fly", &scenario],

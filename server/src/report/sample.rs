@@ -15,6 +15,7 @@ pub(crate) fn plan() -> Plan {
         lower_bound_s: 30.0,
         relative_gap: 0.0,
         lower_bound_kind: LowerBoundKind::NlpRelaxation,
+        certified_lower_bound_s: Some(29.5),
         alternatives: vec![Alternative {
             sequence: vec!["b".into(), "a".into()],
             total_time_s: 31.0,
@@ -66,7 +67,7 @@ fn leg(from: &str, to: &str, start_s: f64, duration_s: f64) -> Leg {
         to: to.into(),
         start_s,
         duration_s,
-        certified_lower_bound_s: None,
+        certified_lower_bound_s: Some(duration_s),
         eigenaxis_duration_s: Some(12.0),
         solver_status: "converged".into(),
     }

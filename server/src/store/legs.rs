@@ -27,6 +27,8 @@ pub(crate) struct NewLeg {
     pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
+    /// No slew with its conditions takes less, s, proved.
+    pub(crate) certified_lower_bound_s: Option<f64>,
     /// Wall-clock time of the solve, s.
     pub(crate) solve_time_s: f64,
     /// How the solve ended.
@@ -68,6 +70,8 @@ pub(crate) struct LegRow {
     pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
+    /// No slew with its conditions takes less, s, proved.
+    pub(crate) certified_lower_bound_s: Option<f64>,
     /// Wall-clock time of the solve, s.
     pub(crate) solve_time_s: f64,
     /// How the solve ended.
@@ -93,8 +97,8 @@ impl LegRow {
 macro_rules! leg_columns {
     () => {
         "sequence, key, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, momentum_x, \
-         momentum_y, momentum_z, reversible, duration_s, solve_time_s, status, solver_version, \
-         created_us"
+         momentum_y, momentum_z, reversible, duration_s, certified_lower_bound_s, solve_time_s, \
+         status, solver_version, created_us"
     };
 }
 
@@ -237,10 +241,11 @@ async fn put_leg(
         .await?;
     let mut query = sqlx::query(
         "INSERT INTO legs (key, identity, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, \
-         momentum_x, momentum_y, momentum_z, reversible, duration_s, solve_time_s, status, \
-         solver_version, trajectory, created_us) \
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
+         momentum_x, momentum_y, momentum_z, reversible, duration_s, certified_lower_bound_s, \
+         solve_time_s, status, solver_version, trajectory, created_us) \
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
          ON CONFLICT (key) DO UPDATE SET reversible = excluded.reversible, duration_s = excluded.duration_s, \
+         certified_lower_bound_s = excluded.certified_lower_bound_s, \
          solve_time_s = excluded.solve_time_s, status = excluded.status, \
          solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
          created_us = excluded.created_us WHERE solver_version <> excluded.solver_version",
@@ -255,6 +260,7 @@ async fn put_leg(
     query
         .bind(leg.reversible)
         .bind(leg.duration_s)
+        .bind(leg.certified_lower_bound_s)
         .bind(leg.solve_time_s)
         .bind(&leg.status)
         .bind(SOLVER_VERSION)

@@ -128,7 +128,8 @@ fn read_base(fields: &Fields<'_>) -> ScenarioSpec {
 }
 
 fn kind_and_mode(fields: &Fields<'_>) -> (LegKind, bool) {
-    let kinds = [LegKind::RestToRest, LegKind::LowerBound].map(|kind| (kind.as_str(), kind));
+    let kinds = [LegKind::RestToRest, LegKind::LowerBound, LegKind::Certified]
+        .map(|kind| (kind.as_str(), kind));
     let kind = fields.optional("kind").and_then(|text| text.choice(&kinds));
     let modes = [("cached_only", false), ("compute", true)];
     let compute = fields.optional("mode").and_then(|text| text.choice(&modes));
@@ -263,7 +264,7 @@ fn moved(problem: Problem, pointers: &[String]) -> Problem {
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = LegAnswers)]
 pub(crate) struct LegAnswersDocument {
-    /// `rest_to_rest` or `lower_bound`.
+    /// `rest_to_rest`, `lower_bound` or `certified`.
     pub(crate) kind: &'static str,
     /// SHA-256 of the canonical text of the spacecraft; `null` when no leg is known.
     pub(crate) spacecraft_key: Option<String>,
@@ -279,9 +280,13 @@ pub(crate) struct LegAnswerDocument {
     pub(crate) from: usize,
     /// Position in `attitudes` of the end, or position of the pair.
     pub(crate) to: usize,
-    /// Minimum time, s; `null` when it is not known.
+    /// Minimum time, s; `null` when it is not known, and for `certified`, which solves nothing.
     pub(crate) duration_s: Option<Number>,
-    /// How the solve ended; `null` when it was not tried.
+    /// No slew between these attitudes under the conditions of the kind takes less, s, proved, for
+    /// `certified` those of `rest_to_rest`; `null` where nothing is proved or nothing is known.
+    pub(crate) certified_lower_bound_s: Option<Number>,
+    /// How the solve ended (for `certified`: `proved`, or `none` without a bound); `null` when it was
+    /// not tried.
     pub(crate) status: Option<String>,
     /// Where the time comes from.
     pub(crate) source: Source,

@@ -28,6 +28,7 @@ struct LegDocument<'a> {
     to: &'a str,
     kind: &'static str,
     duration_s: Option<Number>,
+    certified_lower_bound_s: Option<Number>,
     solve_time_s: Number,
     status: &'a str,
 }
@@ -54,6 +55,7 @@ impl<'a> From<&'a LegRow> for LegDocument<'a> {
             to: &row.to,
             kind: row.kind.as_str(),
             duration_s: row.duration_s.map(Number),
+            certified_lower_bound_s: row.certified_lower_bound_s.map(Number),
             solve_time_s: Number(row.solve_time_s),
             status: &row.status,
         }

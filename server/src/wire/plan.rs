@@ -23,6 +23,10 @@ pub(crate) struct PlanDocument<'a> {
     lower_bound_s: Option<Number>,
     relative_gap: Option<Number>,
     lower_bound_kind: Option<&'static str>,
+    /// No plan takes less, s, in any order of the targets, proved: the shortest sum of the
+    /// `certified_lower_bound_s` of legs through all targets, with settle and dwell. `null` where no
+    /// leg has such a bound.
+    certified_lower_bound_s: Option<Number>,
     sequence: Vec<&'a str>,
     alternatives: Vec<AlternativeDocument<'a>>,
     legs: Vec<LegDocument<'a>>,
@@ -102,6 +106,7 @@ fn planned(plan: &Plan) -> PlanDocument<'_> {
         lower_bound_s: Some(Number(plan.lower_bound_s)),
         relative_gap: Some(Number(plan.relative_gap)),
         lower_bound_kind: Some(plan.lower_bound_kind.as_str()),
+        certified_lower_bound_s: plan.certified_lower_bound_s.map(Number),
         sequence: flight
             .passages
             .iter()

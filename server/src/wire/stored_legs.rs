@@ -25,6 +25,9 @@ pub(crate) struct StoredLegDocument {
     reversible: bool,
     /// Minimum time, s.
     duration_s: Number,
+    /// No slew with these conditions takes less, s, proved; `null` where nothing is, and for legs that
+    /// were stored by a version before bounds were.
+    certified_lower_bound_s: Option<Number>,
     /// Wall-clock time of the solve with all its starts, s.
     solve_time_s: Number,
     /// How the solve ended.
@@ -87,6 +90,7 @@ impl From<&LegRow> for StoredLegDocument {
             body_momentum_nms: row.momentum().map(Number),
             reversible: row.reversible,
             duration_s: Number(row.duration_s),
+            certified_lower_bound_s: row.certified_lower_bound_s.map(Number),
             solve_time_s: Number(row.solve_time_s),
             status: row.status.clone(),
             solver_version: row.solver_version.clone(),

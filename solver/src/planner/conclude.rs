@@ -12,9 +12,14 @@ use crate::sequence::{FlownOrder, Incumbent, SearchObserver, SearchResult, Searc
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+/// Certified bounds are rounded down to six digits at least.
+const ROUNDING: f64 = 1e-6;
+
 /// Makes plans of orders, while a search goes on and at its end.
 pub(super) struct Conclusions<'a> {
     tours: &'a Tours<'a>,
+    /// No tour takes less, s, proved.
+    certified: Option<f64>,
     run: Run<'a>,
     begin: Instant,
     /// The work that was done before the search.
@@ -26,11 +31,13 @@ impl<'a> Conclusions<'a> {
     pub(super) fn new(
         tours: &'a Tours<'a>,
         tables: &LegSolver<'_>,
+        certified: Option<f64>,
         run: Run<'a>,
         begin: Instant,
     ) -> Self {
         Self {
             tours,
+            certified,
             run,
             begin,
             tables: Statistics {
@@ -51,10 +58,12 @@ impl<'a> Conclusions<'a> {
             done: 0,
             total: None,
             incumbent_s: Some(best.duration_s),
-            lower_bound_s: Some(found.lower_bound_s),
+            lower_bound_s: Some(self.raised(found.lower_bound_s)),
         });
         let gap = self.tours.places.scenario.options().relative_gap;
-        let optimality = if found.best_is_proven(gap) {
+        let asked_for = best.duration_s * (1.0 - gap);
+        let certified = self.certified.is_some_and(|bound| bound >= asked_for);
+        let optimality = if certified || found.best_is_proven(gap) {
             Optimality::Optimal
         } else {
             Optimality::Feasible
@@ -84,7 +93,7 @@ impl<'a> Conclusions<'a> {
         &self,
         order: &Incumbent<'_>,
         optimality: Optimality,
-        lower_bound_kind: LowerBoundKind,
+        kind: LowerBoundKind,
     ) -> Result<Plan, Problem> {
         let scenario = self.tours.places.scenario;
         let route = self.tours.places.route(&order.best.order, true);
@@ -97,7 +106,7 @@ impl<'a> Conclusions<'a> {
             return Err(Problem::new("", Code::VerificationFailed, message, hint));
         }
         let total = flight.total_time_s;
-        let bound = order.lower_bound_s.min(total);
+        let (bound, lower_bound_kind) = self.bound(order.lower_bound_s, kind, total);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
         Ok(Plan {
             optimality,
@@ -109,6 +118,7 @@ impl<'a> Conclusions<'a> {
                 0.0
             },
             lower_bound_kind,
+            certified_lower_bound_s: self.certified,
             alternatives: order
                 .alternatives
                 .iter()
@@ -133,9 +143,33 @@ impl<'a> Conclusions<'a> {
     }
 }
 
+impl Conclusions<'_> {
+    /// A bound, s, or the certified one where that is larger.
+    fn raised(&self, bound: f64) -> f64 {
+        self.certified
+            .map_or(bound, |certified| certified.max(bound))
+    }
+
+    /// The bound of a plan of this duration, s, and its kind. A certified bound that equals another
+    /// one up to rounding, or proves alone that the plan is within the gap asked for, is worth more.
+    fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
+        let gap = self.tours.places.scenario.options().relative_gap;
+        let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
+        match self.certified {
+            Some(certified) if certified >= enough => {
+                (certified.min(total), LowerBoundKind::Certified)
+            }
+            _ => (other.min(total), kind),
+        }
+    }
+}
+
 impl SearchObserver for Conclusions<'_> {
     fn progress(&self, progress: Progress) {
-        self.run.observer.progress(progress);
+        self.run.observer.progress(Progress {
+            lower_bound_s: progress.lower_bound_s.map(|bound| self.raised(bound)),
+            ..progress
+        });
     }
 
     fn improved(&self, incumbent: &Incumbent<'_>) {

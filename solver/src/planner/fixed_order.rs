@@ -1,10 +1,12 @@
 //! The targets in an order that is given.
 
+use super::certified::route_bound;
 use super::conclude::Conclusions;
 use super::legs::LegSolver;
 use super::places::Places;
 use super::tours::Tours;
 use super::{Run, feasibility_problems, limited, unsolved};
+use crate::legs::LegKind;
 use crate::plan::Outcome;
 use crate::scenario::Scenario;
 use crate::sequence::{FlownOrder, Place, TourEvaluation, TourModel};
@@ -53,8 +55,12 @@ fn fly(scenario: &Scenario, order: &[usize], run: Run<'_>) -> Outcome {
     let places = Places::of(scenario);
     let route = places.route(order, true);
     let mut solver = LegSolver::new(&places, run, &stop);
-    let (rest, free) = solver.tour_tables(&legs_of(&places, &route));
-    let tours = Tours::new(&places, &rest, &free, &stop);
+    let pairs = legs_of(&places, &route);
+    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
+    let certified = route_bound(&places, &bounds, &route);
+    solver.tell_bound(certified);
+    let (rest, free) = solver.tour_tables(&pairs);
+    let tours = Tours::new(&places, &rest, &free, &bounds, &stop);
     match tours.tour(order) {
         TourEvaluation::Flown(duration_s) => {
             let order = order.to_vec();
@@ -62,7 +68,7 @@ fn fly(scenario: &Scenario, order: &[usize], run: Run<'_>) -> Outcome {
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
             // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            Conclusions::new(&tours, &solver, run, begin).given(&flown, lower_bound_s)
+            Conclusions::new(&tours, &solver, certified, run, begin).given(&flown, lower_bound_s)
         }
         TourEvaluation::Stopped => Outcome::StoppedEmpty,
         TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),

@@ -5,6 +5,7 @@
 
 use super::canonical::CanonicalLeg;
 use super::places::{Places, SAME_ATTITUDE};
+use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table};
 use super::verified::flies;
 use super::{Run, interruption};
 use crate::attitude::Attitude;
@@ -24,45 +25,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// A solved leg.
-#[derive(Debug, Clone)]
-pub(super) struct SolvedLeg {
-    /// The motion and how it ended.
-    pub(super) flown: Flown,
-    /// NLPs solved for it.
-    pub(super) solves: u64,
-    /// Wall-clock time of all starts, s.
-    pub(super) solve_time: f64,
-}
-
-/// Legs of one kind between pairs of places.
-pub(super) struct LegTable {
-    places: usize,
-    legs: Vec<Option<SolvedLeg>>,
-}
-
-impl LegTable {
-    /// The leg between two places, when it has been solved.
-    pub(super) fn get(&self, from: Place, to: Place) -> Option<&SolvedLeg> {
-        let (from, to) = (index(from, self.places), index(to, self.places));
-        self.legs[from * self.places + to].as_ref()
-    }
-}
-
-fn index(place: Place, places: usize) -> usize {
-    match place {
-        Place::Start => 0,
-        Place::Target(i) => 1 + i,
-        Place::End => places - 1,
-    }
-}
-
 /// Solves canonical legs and remembers them for the tables of one solve.
 pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
     known: HashMap<String, Arc<SolvedLeg>>,
+    certified: HashMap<String, CertifiedLeg>,
+    /// No tour takes less, s, when that is known: told with the progress.
+    lower_bound_s: Option<f64>,
     /// Legs solved.
     pub(super) solved: u64,
     /// Legs taken from the store.
@@ -78,47 +49,93 @@ impl<'a> LegSolver<'a> {
             run,
             stop,
             known: HashMap::new(),
+            certified: HashMap::new(),
+            lower_bound_s: None,
             solved: 0,
             from_store: 0,
             nlp_solves: 0,
         }
     }
 
+    /// The places between which the legs are.
+    pub(super) fn places(&self) -> &'a Places<'a> {
+        self.places
+    }
+
+    /// Tells a bound on all tours, s, now and with the progress of the legs from now on.
+    pub(super) fn tell_bound(&mut self, lower_bound_s: Option<f64>) {
+        self.lower_bound_s = lower_bound_s;
+        if lower_bound_s.is_some() {
+            self.tell(0, None);
+        }
+    }
+
+    fn tell(&self, done: u64, total: Option<u64>) {
+        self.run.observer.progress(Progress {
+            stage: Stage::Legs,
+            done,
+            total,
+            incumbent_s: None,
+            lower_bound_s: self.lower_bound_s,
+        });
+    }
+
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
     /// out of the table.
     pub(super) fn table(&mut self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
-        let places = self.places;
-        let ends =
-            |(from, to): &(Place, Place)| (end_of(places, kind, *from), end_of(places, kind, *to));
-        let canonical: Vec<_> = pairs
+        let canonical = self.canonical(kind, pairs);
+        self.solve_missing(kind, &canonical);
+        let placed = |pair: &(Place, Place), canonical: &CanonicalLeg| {
+            let leg = self.known.get(&canonical.identity)?;
+            let begin = self.places.waypoint(pair.0).attitude;
+            let flown = Flown {
+                profile: canonical.placed(&leg.flown.profile, &begin),
+                ..leg.flown.clone()
+            };
+            Some(SolvedLeg {
+                flown,
+                ..SolvedLeg::clone(leg)
+            })
+        };
+        let legs = pairs.iter().zip(&canonical);
+        let entries = legs.map(|(pair, leg)| (*pair, placed(pair, leg)));
+        Table::new(self.places, entries)
+    }
+
+    /// What is proved of the legs of a kind between pairs of places, without any program; what the
+    /// stop signal prevents is left out of the table.
+    pub(super) fn certified_table(
+        &mut self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> CertifiedTable {
+        let canonical = self.canonical(kind, pairs);
+        let mut listed = HashSet::new();
+        let missing: Vec<&CanonicalLeg> = canonical
             .iter()
-            .map(|pair| {
-                let (from, to) = ends(pair);
-                CanonicalLeg::of(places, &from, &to)
+            .filter(|leg| {
+                !self.certified.contains_key(&leg.identity) && listed.insert(&leg.identity)
             })
             .collect();
-        self.solve_missing(kind, &canonical);
-        let count = 2 + places.scenario.targets().len();
-        let mut legs = vec![None; count * count];
-        for (pair, canonical) in pairs.iter().zip(&canonical) {
-            let begin = ends(pair).0.attitude;
-            legs[index(pair.0, count) * count + index(pair.1, count)] =
-                self.known.get(&canonical.identity).map(|leg| {
-                    let profile = canonical.placed(&leg.flown.profile, &begin);
-                    let flown = Flown {
-                        profile,
-                        ..leg.flown.clone()
-                    };
-                    SolvedLeg {
-                        flown,
-                        ..SolvedLeg::clone(leg)
-                    }
-                });
+        let bounds = self.run.pool.map(&missing, |leg| {
+            (!self.stop.is_set()).then(|| certify(self.places, leg))
+        });
+        for (leg, bound) in missing.into_iter().zip(bounds) {
+            if let Some(bound) = bound {
+                self.certified.insert(leg.identity.clone(), bound);
+            }
         }
-        LegTable {
-            places: count,
-            legs,
-        }
+        let legs = pairs.iter().zip(&canonical);
+        let entries = legs.map(|(pair, leg)| (*pair, self.certified.get(&leg.identity).copied()));
+        Table::new(self.places, entries)
+    }
+
+    fn canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<CanonicalLeg> {
+        let end = |place: &Place| end_of(self.places, kind, *place);
+        pairs
+            .iter()
+            .map(|(from, to)| CanonicalLeg::of(self.places, &end(from), &end(to)))
+            .collect()
     }
 
     /// The tables of a tour: rest-to-rest legs to start from, legs with free ends for bounds.
@@ -144,8 +161,10 @@ impl<'a> LegSolver<'a> {
                 .get(&leg.identity)
                 .and_then(|stored| recall(&stored, leg.resolution.intervals));
             let from_store = found.is_some();
-            let solved =
-                found.or_else(|| (!self.stop.is_set()).then(|| solve(self.places, leg, self.stop)));
+            let solved = found.or_else(|| {
+                let bound = self.certified.get(&leg.identity).copied();
+                (!self.stop.is_set()).then(|| solve(self.places, leg, bound, self.stop))
+            });
             if let (Some(fresh), false) = (&solved, from_store)
                 && fresh.flown.status == NlpStatus::Converged
                 && !self.stop.is_set()
@@ -154,13 +173,7 @@ impl<'a> LegSolver<'a> {
                 // stopped, since then perhaps not all starts have been tried.
                 self.run.legs.put(&leg.identity, &stored(leg, kind, fresh));
             }
-            self.run.observer.progress(Progress {
-                stage: Stage::Legs,
-                done: done.fetch_add(1, Ordering::Relaxed) + 1,
-                total: Some(total),
-                incumbent_s: None,
-                lower_bound_s: None,
-            });
+            self.tell(done.fetch_add(1, Ordering::Relaxed) + 1, Some(total));
             (solved, from_store)
         });
         for (leg, (solved, from_store)) in missing.into_iter().zip(solved) {
@@ -180,14 +193,31 @@ impl<'a> LegSolver<'a> {
 
 fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
     match kind {
-        LegKind::RestToRest => places.at_rest(place),
+        LegKind::RestToRest | LegKind::Certified => places.at_rest(place),
         LegKind::LowerBound => places.waypoint(place),
     }
 }
 
-/// Solves a leg, refines it until it can be flown, and has it flown by the checker.
-fn solve(places: &Places<'_>, leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLeg {
+fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     let begin = Instant::now();
+    CertifiedLeg {
+        lower_bound: places.certified.leg(&leg.from, &leg.to),
+        solve_time: begin.elapsed().as_secs_f64(),
+    }
+}
+
+/// Solves a leg, refines it until it can be flown, and has it flown by the checker. What has been
+/// certified of it before is not computed again.
+fn solve(
+    places: &Places<'_>,
+    leg: &CanonicalLeg,
+    certified: Option<CertifiedLeg>,
+    stop: &StopSignal,
+) -> SolvedLeg {
+    let begin = Instant::now();
+    let certified = certified
+        .unwrap_or_else(|| certify(places, leg))
+        .lower_bound;
     let problem = leg.problem();
     let mut solved = standstill(&problem).map_or_else(
         || {
@@ -206,6 +236,7 @@ fn solve(places: &Places<'_>, leg: &CanonicalLeg, stop: &StopSignal) -> SolvedLe
     }
     SolvedLeg {
         flown: solved.flown,
+        certified,
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
     }
@@ -242,6 +273,7 @@ fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
         body_momentum_nms: leg.dynamics.momentum.into(),
         reversible: leg.reversible,
         duration_s: profile.duration(),
+        certified_lower_bound_s: solved.certified,
         status: solved.flown.status.as_str().into(),
         solve_time_s: solved.solve_time,
         attitudes_xyzw: profile.attitudes.iter().map(Attitude::xyzw).collect(),
@@ -282,6 +314,7 @@ fn recall(stored: &StoredLeg, intervals: usize) -> Option<SolvedLeg> {
             iterations: 0,
             infeasibility: 0.0,
         },
+        certified: stored.certified_lower_bound_s,
         solves: 0,
         solve_time: stored.solve_time_s,
     })

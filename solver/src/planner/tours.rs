@@ -5,8 +5,8 @@
 //! many orders and are remembered.
 
 use super::interruption;
-use super::legs::LegTable;
 use super::places::Places;
+use super::tables::{CertifiedTable, LegTable};
 use crate::multiphase::{Flown, fly, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
@@ -29,6 +29,8 @@ pub(super) struct Tours<'a> {
     pub(super) rest: &'a LegTable,
     /// Legs with free ends: bounds.
     pub(super) free: &'a LegTable,
+    /// Certified bounds of legs with free ends, s.
+    pub(super) certified: &'a CertifiedTable,
     pub(super) stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
     segments: Mutex<HashMap<Vec<Place>, Arc<Flown>>>,
@@ -39,12 +41,14 @@ impl<'a> Tours<'a> {
         places: &'a Places<'a>,
         rest: &'a LegTable,
         free: &'a LegTable,
+        certified: &'a CertifiedTable,
         stop: &'a StopSignal,
     ) -> Self {
         Self {
             places,
             rest,
             free,
+            certified,
             stop,
             solves: AtomicU64::new(0),
             segments: Mutex::default(),
@@ -218,8 +222,10 @@ impl TourModel for Tours<'_> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let leg = self.free.get(from, to).and_then(|leg| leg.flown.duration());
-        leg.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
+        let solved = self.free.get(from, to).and_then(|leg| leg.flown.duration());
+        let certified = self.certified.bound(from, to);
+        let known = solved.into_iter().chain(certified).reduce(f64::max);
+        known.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {

@@ -324,7 +324,9 @@ pub(in crate::http) struct LegQueryBody {
     /// The legs of these pairs.
     #[schema(required = false, min_items = 1)]
     pairs: Option<Vec<PairBody>>,
-    /// The conditions at the two ends; `rest_to_rest` without it.
+    /// The conditions at the two ends; `rest_to_rest` without it. `certified` asks for proved bounds
+    /// of the rest-to-rest times only: they are computed, in `compute`, without solving any slew, and
+    /// not stored.
     #[schema(required = false)]
     kind: Option<Kind>,
     /// Whether unknown legs are solved; `cached_only` without it.
@@ -354,6 +356,7 @@ struct PairBody {
 enum Kind {
     RestToRest,
     LowerBound,
+    Certified,
 }
 
 #[derive(Serialize, ToSchema)]

@@ -31,7 +31,8 @@ const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 /// Ask for leg times
 ///
 /// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with what
-/// is known; `compute` solves what is not, for at most a minute.
+/// is known; `compute` solves what is not, for at most a minute. Legs of the kind `certified`
+/// are only computed, without solving any slew, and not stored.
 #[utoipa::path(
     post, path = "/v1/legs/query", tag = "legs", operation_id = "query_legs",
     request_body(content = LegQueryBody, examples(
@@ -153,13 +154,19 @@ fn answer(
     let row = rows.into_iter().next();
     let source = match (&row, &seen) {
         (Some(_), Some(seen)) if seen.found => Source::Cached,
-        (Some(row), _) if row.duration_s.is_some() => Source::Computed,
+        (Some(row), _) if row.duration_s.is_some() || kind == LegKind::Certified => {
+            Source::Computed
+        }
         _ => Source::Missing,
     };
     let document = LegAnswerDocument {
         from: pair.from,
         to: pair.to,
         duration_s: row.as_ref().and_then(|row| row.duration_s).map(Number),
+        certified_lower_bound_s: row
+            .as_ref()
+            .and_then(|row| row.certified_lower_bound_s)
+            .map(Number),
         status: row.map(|row| row.status),
         source,
         key: seen.as_ref().map(|seen| seen.key.clone()),

@@ -36,6 +36,9 @@ pub(super) struct LegDocument<'a> {
     to: &'a str,
     start_s: Number,
     duration_s: Number,
+    /// No slew takes less, s, between these two places under the conditions that the scenario sets
+    /// there, proved, as part of whatever tour: rates that the plan chose where they are free are not
+    /// used. `null` where nothing is proved: with stored momentum, or without limits of speed.
     certified_lower_bound_s: Option<Number>,
     eigenaxis_duration_s: Option<Number>,
     solver_status: &'a str,

@@ -12,9 +12,8 @@
 //! that suits it ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), whatever the
 //! inertia and the axes. Limits of the rate's components and norm cut the rates further. So for every
 //! orthonormal frame fixed in the body there are boxes in its axes that nothing leaves. The rotation
-//! vector of a turn seen from the frame is the turn to make there. Body axes, and where rates have no
-//! limits of their own also the natural axes of the wheels, are tried: each is a proof, the larger
-//! bound counts.
+//! vector of a turn seen from the frame is the turn to make there. Body axes and the axes nearest to
+//! those of the wheels are tried: each is a proof, the larger bound counts.
 //!
 //! # The ends
 //!
@@ -44,6 +43,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Relative accuracy of the least times: a tenth of what the ramps leave open.
 const TOLERANCE: f64 = 1e-4;
 
+/// Frames nearer to each other than this give one bound.
+const SAME_AXES: f64 = 1e-6;
+
 /// Lower bounds on the slews of one spacecraft. What two ends of a kind have in common is prepared
 /// when it is first needed, and shared between threads.
 #[derive(Debug)]
@@ -68,10 +70,10 @@ impl CertifiedBounds {
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
         let mut frames = Vec::new();
         if !dynamics.has_momentum() {
-            let natural = dynamics.natural_axes();
-            frames.push(Frame::of(dynamics, Matrix3::identity()));
-            if natural != Matrix3::identity() {
-                frames.push(Frame::of(dynamics, natural));
+            let (body, wheels) = (Matrix3::identity(), dynamics.wheel_axes());
+            frames.push(Frame::of(dynamics, body));
+            if (wheels - body).amax() > SAME_AXES {
+                frames.push(Frame::of(dynamics, wheels));
             }
         }
         Self {

@@ -168,12 +168,18 @@ impl Dynamics {
     }
 
     /// Orthonormal axes, as columns, along which rates are limited most independently: the body
-    /// axes when their rates have limits, else those nearest to the axes of the three wheels that
-    /// span the largest volume, which turn with the spacecraft and not with its description.
+    /// axes when their rates have limits, else those of [`Self::wheel_axes`].
     pub(crate) fn natural_axes(&self) -> Matrix3<f64> {
         if self.max_rate.iter().any(|limit| limit.is_finite()) {
-            return Matrix3::identity();
+            Matrix3::identity()
+        } else {
+            self.wheel_axes()
         }
+    }
+
+    /// Orthonormal axes, as columns, nearest to the axes of the three wheels that span the largest
+    /// volume: they turn with the spacecraft and not with its description.
+    pub(crate) fn wheel_axes(&self) -> Matrix3<f64> {
         let (mut widest, mut largest) = (Matrix3::identity(), 0.0);
         for (i, first) in self.actuators.iter().enumerate() {
             for (j, second) in self.actuators.iter().enumerate().skip(i + 1) {

@@ -75,6 +75,36 @@ fn lower_bounds_are_below_the_rest_to_rest_times() {
 }
 
 #[test]
+fn certified_bounds_need_no_solve_and_are_below_the_times() {
+    let path = fixture("two-targets.json");
+    let rest = slewplan(&["legs", &path]).expect_code(0).json();
+    let table = slewplan(&["legs", &path, "--kind", "certified"])
+        .expect_code(0)
+        .json();
+    assert_eq!(table["kind"], "certified");
+    assert_eq!(rows(&table), rows(&rest));
+    for row in table["legs"].as_array().expect("a list") {
+        assert_eq!(row["status"], "proved", "{row}");
+        assert!(row["duration_s"].is_null(), "{row}");
+        let bound = row["certified_lower_bound_s"].as_f64().expect("a bound");
+        let end = |name: &str| row[name].as_str().expect("a text");
+        assert!(bound <= duration(&rest, end("from"), end("to")) * (1.0 + 1e-6));
+    }
+    let bounds = |table: &Value| -> Vec<Value> {
+        let legs = table["legs"].as_array().expect("a list").iter();
+        legs.map(|row| row["certified_lower_bound_s"].clone())
+            .collect()
+    };
+    assert_eq!(bounds(&rest), bounds(&table));
+    let biased = fixture("pyramid-momentum-bias.json");
+    let none = slewplan(&["legs", &biased, "--kind", "certified"])
+        .expect_code(0)
+        .json();
+    assert_eq!(none["legs"][0]["status"], "none");
+    assert!(none["legs"][0]["certified_lower_bound_s"].is_null());
+}
+
+#[test]
 fn shards_together_are_the_table() {
     let path = fixture("two-targets.json");
     let whole = rows(&slewplan(&["legs", &path]).expect_code(0).json());

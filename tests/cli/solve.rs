@@ -35,6 +35,16 @@ fn two_targets_are_solved_to_optimality_with_a_complete_document() {
     assert_verified(&plan);
     let total = plan["total_time_s"].as_f64().expect("a number");
     assert!(plan["lower_bound_s"].as_f64().expect("a number") <= total + 1e-9);
+    let certified = plan["certified_lower_bound_s"].as_f64().expect("a number");
+    assert!(certified > 0.8 * total && certified <= total);
+    for leg in plan["legs"].as_array().expect("a list") {
+        let figure = |name: &str| leg[name].as_f64().expect("a number");
+        let least = figure("certified_lower_bound_s");
+        assert!(
+            least > 0.0 && least <= figure("duration_s") * (1.0 + 1e-6),
+            "{leg}"
+        );
+    }
     assert_eq!(plan["sequence"].as_array().expect("a list").len(), 2);
     assert_eq!(plan["legs"].as_array().expect("a list").len(), 3);
     assert_eq!(plan["reasons"], serde_json::json!([]));

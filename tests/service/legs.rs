@@ -79,6 +79,40 @@ fn a_plan_leaves_its_legs_for_a_query() {
     assert_eq!(none["legs"], json!([]));
 }
 
+#[test]
+fn certified_bounds_are_computed_without_legs_and_kept_with_solved_ones() {
+    let service = Service::start();
+    let mut query = json!({
+        "spacecraft": small()["spacecraft"], "mode": "cached_only", "kind": "certified",
+        "attitudes": [attitude(15.0, 10.0), attitude(25.0, 50.0)],
+    });
+    let ask = |query: &Value| service.post("/v1/legs/query", query).expect(200).json();
+    assert_eq!(sources(&ask(&query)), ["missing"; 2]);
+    query["mode"] = json!("compute");
+    let answer = ask(&query);
+    assert_eq!(answer["kind"], "certified");
+    assert_eq!(sources(&answer), ["computed"; 2]);
+    let leg = &answer["legs"][0];
+    assert!(leg["duration_s"].is_null() && leg["key"].is_null());
+    assert_eq!(leg["status"], "proved");
+    let bound = leg["certified_lower_bound_s"].as_f64().expect("a bound");
+    assert_eq!(service.get("/v1/legs").json()["legs"], json!([]));
+
+    query["kind"] = json!("rest_to_rest");
+    for source in ["computed", "cached"] {
+        let answer = ask(&query);
+        assert_eq!(sources(&answer), [source; 2]);
+        let leg = &answer["legs"][0];
+        assert_eq!(leg["certified_lower_bound_s"].as_f64(), Some(bound));
+        assert!(leg["duration_s"].as_f64().expect("a time") > bound);
+    }
+    let listed = service.get("/v1/legs").expect(200).json();
+    assert_eq!(
+        listed["legs"][0]["certified_lower_bound_s"].as_f64(),
+        Some(bound)
+    );
+}
+
 /// Keys of the legs between two attitudes, quaternions `x,y,z,w`.
 fn found_between(service: &Service, from: &str, to: &str) -> Vec<String> {
     let page = service

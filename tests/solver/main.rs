@@ -2,6 +2,7 @@
 
 mod arrays;
 mod boundaries;
+mod certified;
 mod fixed_order;
 mod infeasible;
 mod invariance;

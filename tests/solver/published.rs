@@ -114,16 +114,19 @@ fn the_leg_from_h_to_n_avoids_the_slower_eigenaxis_solution() {
 }
 
 #[test]
-fn all_pairs_of_experiment_c_are_solved_alike_both_ways() {
+fn all_pairs_of_experiment_c_are_solved_alike_both_ways_and_next_to_their_bounds() {
     let mut spec = experiment_c_spec();
     spec.end = None;
     let rows = rest_to_rest(&spec);
     assert_eq!(rows.len(), 2 * 171);
     let mut sum = 0.0;
+    let mut shares = Vec::new();
     for row in rows.iter().filter(|row| row.to != "start") {
         let time = duration(&rows, &row.from, &row.to);
         let back = duration(&rows, &row.to, &row.from);
         assert!((time - back).abs() <= 1e-9 * time, "{row:?}");
+        let bound = row.certified_lower_bound_s.expect("a proved bound");
+        shares.push(bound / time);
         // Every pair of targets is met twice, every pair with the start once.
         sum += if row.from == "start" {
             time
@@ -133,6 +136,14 @@ fn all_pairs_of_experiment_c_are_solved_alike_both_ways() {
     }
     println!("sum over the 171 pairs: {sum:.3} s");
     assert!(sum <= 18_525.0, "{sum}");
+    shares.sort_by(f64::total_cmp);
+    let (least, median, most) = (
+        shares[0],
+        shares[shares.len() / 2],
+        shares[shares.len() - 1],
+    );
+    println!("bound / duration: {least:.4} at least, median {median:.4}, {most:.6} at most");
+    assert!(least >= 0.979 && median >= 0.998 && most <= 1.0 + 1e-6);
 }
 
 #[test]

@@ -1,0 +1,187 @@
+//! Certified bounds hold for every slew that is flown, and say how good a plan is.
+
+use slewplan_solver::legs::LegKind;
+use slewplan_solver::plan::{LowerBoundKind, Optimality, Plan};
+use slewplan_solver::planner::{self, LegRow, Run, Shard, leg_table};
+use slewplan_solver::progress::{Observer, Progress, Stage};
+use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::stop::StopSignal;
+use slewplan_tests::random::Generator;
+use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
+use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec};
+use std::sync::Mutex;
+
+/// What a flight may exceed limits by, relative: so much may it be faster than a bound.
+const ROUNDING: f64 = 2e-6;
+
+fn table(spec: &ScenarioSpec, kind: LegKind) -> Vec<LegRow> {
+    let (scenario, all) = (scenario_of(spec), Shard { index: 0, of: 1 });
+    let (rows, complete) = on_threads(2, |run| leg_table(&scenario, kind, all, run));
+    assert!(complete);
+    rows
+}
+
+fn assert_legs_keep_their_bounds(plan: &Plan) {
+    let mut sum = 0.0;
+    for leg in &plan.legs {
+        let bound = leg
+            .certified_lower_bound_s
+            .expect("a bound without momentum");
+        assert!(bound <= leg.duration_s * (1.0 + ROUNDING), "{leg:?}");
+        sum += bound;
+    }
+    let tour = plan.certified_lower_bound_s.expect("a bound of the tour");
+    let service: f64 = plan
+        .flight
+        .passages
+        .iter()
+        .map(|p| p.departure_s - p.time_s)
+        .sum();
+    assert!(tour > 0.0 && tour <= sum + service, "{tour} against {sum}");
+    assert!(tour <= plan.total_time_s);
+    assert!(
+        tour <= plan.lower_bound_s * (1.0 + ROUNDING),
+        "{}",
+        plan.lower_bound_s
+    );
+}
+
+#[test]
+fn an_all_axes_plan_of_experiment_c_has_a_certified_gap_below_one_and_a_half_percent() {
+    let mut spec = experiment_c_spec();
+    for target in &mut spec.targets {
+        target.zero_rate_axes = None;
+    }
+    let plan = plan_of(&spec);
+    assert_legs_keep_their_bounds(&plan);
+    let bound = plan.certified_lower_bound_s.expect("a bound of the tour");
+    let gap = 1.0 - bound / plan.total_time_s;
+    println!("certified gap of the all-axes plan: {:.3} %", 100.0 * gap);
+    assert!((0.0..=0.015).contains(&gap), "{gap}");
+}
+
+#[test]
+fn tours_with_free_components_and_signed_quaternions_keep_their_bounds() {
+    let plan = plan_of(&experiment_a_spec());
+    assert_legs_keep_their_bounds(&plan);
+    let bound = plan.certified_lower_bound_s.expect("a bound of the tour");
+    assert!(bound > 0.85 * plan.total_time_s, "{bound}");
+    assert_eq!(plan.lower_bound_kind, LowerBoundKind::NlpRelaxation);
+    let mut signed = published_targets_spec(&["a", "e", "f"]);
+    signed.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
+    signed.targets[1].dwell_s = 30.0;
+    assert_legs_keep_their_bounds(&plan_of(&signed));
+}
+
+#[test]
+fn a_plan_whose_certified_bound_is_within_the_gap_asked_for_is_proved() {
+    let mut spec = published_targets_spec(&["a", "b"]);
+    for target in &mut spec.targets {
+        target.zero_rate_axes = None;
+    }
+    spec.options.relative_gap = 0.03;
+    let plan = plan_of(&spec);
+    assert_eq!(plan.optimality, Optimality::Optimal);
+    assert_eq!(plan.lower_bound_kind, LowerBoundKind::Certified);
+    assert!(plan.relative_gap <= 0.03);
+    assert_eq!(Some(plan.lower_bound_s), plan.certified_lower_bound_s);
+}
+
+#[test]
+fn stored_momentum_has_no_bound_and_says_so() {
+    let mut spec = published_targets_spec(&["a"]);
+    spec.start.wheel_speed_rad_s = Some(vec![60.0, -40.0, 50.0]);
+    let plan = plan_of(&spec);
+    assert_eq!(plan.certified_lower_bound_s, None);
+    assert_eq!(plan.legs[0].certified_lower_bound_s, None);
+    for row in table(&spec, LegKind::Certified) {
+        assert_eq!(
+            (row.certified_lower_bound_s, row.status.as_str()),
+            (None, "none")
+        );
+    }
+}
+
+#[test]
+fn a_certified_table_is_that_of_the_solved_legs() {
+    let spec = published_targets_spec(&["a", "b", "h"]);
+    let (solved, certified) = (
+        table(&spec, LegKind::RestToRest),
+        table(&spec, LegKind::Certified),
+    );
+    assert_eq!(solved.len(), certified.len());
+    for (solved, certified) in solved.iter().zip(&certified) {
+        assert_eq!((&solved.from, &solved.to), (&certified.from, &certified.to));
+        assert_eq!(certified.duration_s, None);
+        assert_eq!(certified.status, "proved");
+        assert!(certified.certified_lower_bound_s.is_some());
+        assert_eq!(
+            solved.certified_lower_bound_s,
+            certified.certified_lower_bound_s
+        );
+    }
+}
+
+/// Wheels on any axes, any inertia, limits of the norm, locked wheels at rest, prescribed and bounded
+/// and free rates at the target.
+#[test]
+fn no_random_leg_is_faster_than_its_bound() {
+    let mut bounded = 0;
+    for seed in 0..24 {
+        let mut generator = Generator::new(500 + seed);
+        let (spacecraft, _) = generator.spacecraft();
+        let kind = generator.below(4);
+        let spec = ScenarioSpec {
+            targets: vec![generator.target("there".to_owned(), kind)],
+            spacecraft,
+            ..ScenarioSpec::default()
+        };
+        let plan = plan_of(&spec);
+        if let Some(bound) = plan.legs[0].certified_lower_bound_s {
+            let duration = plan.legs[0].duration_s;
+            assert!(
+                bound <= duration * (1.0 + ROUNDING),
+                "seed {seed}: {bound} {duration}"
+            );
+            assert!(bound >= 0.3 * duration, "seed {seed}: {bound} {duration}");
+            bounded += 1;
+        }
+    }
+    assert!(bounded > 12, "{bounded} of 24 legs are bounded");
+}
+
+/// Keeps what is told while legs are solved.
+#[derive(Default)]
+struct Bounds(Mutex<Vec<Progress>>);
+
+impl Observer for Bounds {
+    fn progress(&self, progress: Progress) {
+        self.0.lock().expect("no panic").push(progress);
+    }
+}
+
+#[test]
+fn a_bound_is_told_before_any_leg_is_solved_and_no_thread_changes_it() {
+    let scenario = scenario_of(&published_targets_spec(&["a", "c", "g"]));
+    let told = [1, 2].map(|threads| {
+        let (pool, observer) = (pool(threads), Bounds::default());
+        let run = Run {
+            pool: &pool,
+            stop: &StopSignal::new(),
+            observer: &observer,
+            legs: &slewplan_solver::legs::NoStore,
+        };
+        let plan = planned(planner::solve(&scenario, run));
+        let told = observer.0.into_inner().expect("no panic");
+        assert_eq!((told[0].stage, told[0].done), (Stage::Legs, 0));
+        let bounds: Vec<_> = told.iter().map(|progress| progress.lower_bound_s).collect();
+        assert!(bounds.iter().all(Option::is_some), "{bounds:?}");
+        assert_eq!(bounds[0], plan.certified_lower_bound_s);
+        assert!(
+            bounds.windows(2).all(|pair| pair[0] <= pair[1]),
+            "{bounds:?}"
+        );
+        bounds[0]
+    });
+    assert_eq!(told[0], told[1]);
+}

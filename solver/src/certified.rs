@@ -18,8 +18,8 @@
 //! # The ends
 //!
 //! A rate component that is stopped or prescribed is known at the end of a leg; one within bounds is
-//! at most as large as the larger of these; of one that is free nothing is known. Nothing else is
-//! used, so **the bound holds for the leg as part of any tour with the same conditions at its two
+//! at most as large as the larger of these (both are rounded up, [`SHARES`]); of one that is free
+//! nothing is known. Nothing else is used, so **the bound holds for the leg as part of any tour with the same conditions at its two
 //! ends**, and bounds of the legs of a tour add up. In a tour through targets with free components
 //! only its first and last legs begin or end at rest, so the ramps of these components are counted
 //! there and nowhere else.
@@ -45,6 +45,12 @@ const TOLERANCE: f64 = 1e-4;
 
 /// Frames nearer to each other than this give one bound.
 const SAME_AXES: f64 = 1e-6;
+
+/// Rates at the ends that are neither stopped nor free count as these shares of the spacecraft's
+/// largest rates, rounded up: so that few kinds of ends occur.
+const SHARES: [f64; 2] = [0.25, 0.5];
+/// Most kinds of ends whose boxes are kept, some 1 MB each; others are prepared again for every leg.
+const MOST_KINDS: usize = 64;
 
 /// Lower bounds on the slews of one spacecraft. What two ends of a kind have in common is prepared
 /// when it is first needed, and shared between threads.
@@ -86,7 +92,8 @@ impl CertifiedBounds {
     /// after it; `None` when nothing is proved. Conditions of the wheels are not used.
     pub(crate) fn leg(&self, from: &Waypoint, to: &Waypoint) -> Option<f64> {
         let turn = from.attitude.relative_to(&to.attitude);
-        let ends = [most(from), most(to)];
+        let rates = self.frames.first()?.limits.rates_rad_s;
+        let ends = [from, to].map(|end| most(end).zip_map(&rates, rounded_up));
         let prepared = self.prepared(&ends);
         self.frames
             .iter()
@@ -106,7 +113,11 @@ impl CertifiedBounds {
         }
         // Not under the lock: two threads may prepare the same, with the same result.
         let fresh: Arc<[_]> = self.frames.iter().map(|frame| frame.bound(ends)).collect();
-        Arc::clone(lock().entry(kind).or_insert(fresh))
+        let mut known = lock();
+        if known.len() < MOST_KINDS {
+            known.insert(kind, Arc::clone(&fresh));
+        }
+        fresh
     }
 }
 
@@ -157,6 +168,15 @@ fn most(waypoint: &Waypoint) -> Vector3<f64> {
         RateCondition::Within(low, high) => f64::max(low.abs(), high.abs()),
         RateCondition::Free => f64::INFINITY,
     }))
+}
+
+/// A rate at an end, or what it is taken to be: never less.
+fn rounded_up(rate: f64, largest: f64) -> f64 {
+    if rate == 0.0 {
+        return 0.0;
+    }
+    let mut steps = SHARES.iter().map(|share| share * largest);
+    steps.find(|step| rate <= *step).unwrap_or(f64::INFINITY)
 }
 
 /// Greatest component along a direction of vectors whose components have these greatest sizes.

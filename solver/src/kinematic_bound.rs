@@ -69,6 +69,7 @@
 //! Pontryagin's maximum principle is standard; the enumeration is derived above. Swing and twist: the
 //! decomposition `q = q_swing q_twist` about a body axis.
 
+pub mod certificate;
 mod closing;
 mod extremal;
 mod interior;

@@ -73,6 +73,7 @@
 
 pub mod attitude;
 mod certified;
+pub mod certify;
 pub mod checker;
 mod convex;
 mod dynamics;

@@ -116,6 +116,25 @@ fn certified_bounds_use_nothing_of_the_optimiser() {
 }
 
 #[test]
+fn the_second_proof_of_bounds_knows_the_claims_only() {
+    for (file, target) in used_by("certify") {
+        let given = ["attitude", "certify", "kinematic_bound"];
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+    let own = |name: &str| name.starts_with("certify") && !name.contains("/tests");
+    for (file, text) in sources().into_iter().filter(|(name, _)| own(name)) {
+        let lines = text.lines().map(str::trim_start);
+        for line in lines.filter(|line| !line.starts_with("//")) {
+            let claims = ["certificate::", "ramps::{EndRates, SlewLimits}"];
+            assert!(
+                !line.contains("kinematic_bound::") || claims.iter().any(|of| line.contains(of)),
+                "{file}: {line}"
+            );
+        }
+    }
+}
+
+#[test]
 fn one_file_names_clarabel() {
     let naming: Vec<_> = sources()
         .into_iter()

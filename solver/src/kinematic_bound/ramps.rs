@@ -38,6 +38,7 @@
 //! `T`, from `r` (long slews) to the shape of `a` (short ones at rest). Any choice is valid.
 
 use super::RateBox;
+use super::certificate::{Certificate, ClaimedTurn, ROOM};
 use crate::attitude::Attitude;
 use nalgebra::Vector3;
 
@@ -135,14 +136,41 @@ impl SlewBound {
     /// is rounded down to seven digits, so that it does not depend on the mathematical library.
     #[must_use]
     pub fn lower_bound_s(&self, turns: &[Attitude], tolerance: f64) -> f64 {
-        let best = self.boxes.iter().fold(0.0, |best, (rates, table)| {
+        self.best(turns, tolerance).1
+    }
+
+    /// The claim of [`Self::lower_bound_s`], with all that its proof needs.
+    #[must_use]
+    pub fn certificate(&self, turns: &[Attitude], tolerance: f64) -> Certificate {
+        let (index, duration_s) = self.best(turns, tolerance);
+        let (box_rad_s, table) = &self.boxes[index];
+        let claimed = |turn: &Attitude| ClaimedTurn {
+            turn: *turn,
+            least_s: claimable(table, turn, tolerance),
+        };
+        Certificate {
+            limits: self.limits,
+            ends: self.ends,
+            box_rad_s: *box_rad_s,
+            turns: turns.iter().map(claimed).collect(),
+            duration_s,
+        }
+    }
+
+    /// The box that bounds the turns best, by its index, and the bound, s.
+    fn best(&self, turns: &[Attitude], tolerance: f64) -> (usize, f64) {
+        let mut best = (0, 0.0);
+        for (index, (rates, table)) in self.boxes.iter().enumerate() {
             let least: f64 = turns
                 .iter()
-                .map(|turn| table.lower_bound(turn, tolerance))
+                .map(|turn| claimable(table, turn, tolerance))
                 .sum();
-            f64::max(best, self.duration_of(rates, least))
-        });
-        rounded_down(best * (1.0 - DEFLATION))
+            let duration = self.duration_of(rates, least);
+            if duration > best.1 {
+                best = (index, duration);
+            }
+        }
+        (best.0, rounded_down(best.1 * (1.0 - DEFLATION)))
     }
 
     /// `m_i(t; T)`.
@@ -245,6 +273,11 @@ impl SlewBound {
         }
         low
     }
+}
+
+/// A lower bound on the least time of a turn that leaves its proof some room.
+fn claimable(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
+    table.lower_bound(turn, tolerance) * (1.0 - ROOM)
 }
 
 /// Seven digits, never more than the number.

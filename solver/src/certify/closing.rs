@@ -1,0 +1,158 @@
+//! The outer arcs of a word, known from its interior.
+//!
+//! With half durations `a`, `b` of the outer arcs and the interior `P`,
+//!
+//! ```text
+//!   <q, exp(2 a c_0) P exp(2 b c_f)> = x_1 cos S + y_1 sin S + x_2 cos U + y_2 sin U,
+//!   S = a + b,  U = a - b
+//! ```
+//!
+//! which has to be one in size. The lengths `C_1` and `C_2` of `(x_1, y_1)` and `(x_2, y_2)` add up
+//! to one at most (it is the largest value of a scalar product of unit quaternions). Where the
+//! interior is known within a turn of `eta` the sum must reach `cos(eta / 2) >= 1 - eta^2 / 8`, so
+//! `C_1 (1 - cos(S - s)) + C_2 (1 - cos(U - u)) <= eta^2 / 8 - (1 - C_1 - C_2)` with the angles `s`,
+//! `u` of the two vectors, both shifted by half a turn for the other sign of `q`.
+
+use super::interval::{Interval, twice_asin_of_root};
+use super::rates::Rates;
+use super::turn::{Turn, Vector, dot, dot4, product, rotate, times_vector};
+use super::word::{Moving, Word};
+use std::f64::consts::PI;
+
+/// Angle from half a turn, rad, within which an outer half duration is tried as none.
+const LEFT_OUT: f64 = 1e-3;
+
+/// A target as a word sees it.
+#[derive(Debug)]
+pub(super) struct View {
+    /// `q`, `-c_0 q`, `-q c_f`, `c_0 q c_f`: their scalar products with `P` make up the equation.
+    images: [Turn; 4],
+    /// `c_0` and `c_f`.
+    ends: [Vector; 2],
+    /// `c_0 . R c_f`, which `c_0 . P c_f` must equal.
+    target: Interval,
+}
+
+/// Outer half durations that may close a word, and what they are at the middle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Closing {
+    /// `S` and `U`, each modulo a full turn and both together modulo half a turn.
+    sum: Interval,
+    difference: Interval,
+    /// Lengths and angles at the middle.
+    middle: [(f64, f64); 2],
+}
+
+/// What the outer arcs must keep to, in half durations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Allowed {
+    /// Neither outer arc is longer.
+    pub(super) each: f64,
+    /// Both together are shorter.
+    pub(super) both: f64,
+}
+
+impl View {
+    pub(super) fn new(rates: &Rates, q: &Turn, word: &Word) -> Self {
+        let ends = [word.first, word.last].map(|octant| rates.corner(octant));
+        let [x, y, z] = ends[0];
+        let begun = product(&[-x, -y, -z, Interval::ZERO], q);
+        let ended = times_vector(q, &ends[1].map(|c| -c));
+        let both = times_vector(&begun, &ends[1].map(|c| -c));
+        Self {
+            images: [*q, begun, ended, both],
+            target: dot(&ends[0], &rotate(q, &ends[1])),
+            ends,
+        }
+    }
+
+    /// Whether `c_0 . P c_f` cannot have the target's value within a cell about `P`.
+    pub(super) fn misses(&self, interior: &Moving, half: Interval, bend: Interval) -> bool {
+        // P c_f P* and its derivative, twice the vector part of P' c_f P*.
+        let [x, y, z, w] = times_vector(&interior.turn, &self.ends[1]);
+        let back = [x, y, z, -w];
+        let along = |q: &Turn| {
+            let [x, y, z, _] = product(q, &back);
+            dot(&self.ends[0], &[x, y, z])
+        };
+        let value = along(&interior.turn) - self.target;
+        let slope = along(&interior.slope).twice();
+        value.abs().low > (slope.abs() * half + bend).high
+    }
+
+    /// What closes an interior that is known within a turn of `eta`: `None` when nothing can.
+    pub(super) fn close(&self, interior: &Turn, eta: Interval) -> Option<Closing> {
+        let [plain, begun, ended, both] = self.images.map(|image| dot4(&image, interior));
+        let one = [(plain - both).half(), (begun + ended).half()];
+        let two = [(plain + both).half(), (begun - ended).half()];
+        let lengths = [one, two].map(|[x, y]| x.length(y));
+        let missing = (Interval::ONE - lengths[0] - lengths[1]).low.max(0.0);
+        let excess = (eta.squared() * Interval::exactly(0.125)).high - missing;
+        if excess.next_up() < 0.0 {
+            return None;
+        }
+        let excess = Interval::exactly(excess.next_up());
+        let [(sum, first), (difference, second)] =
+            [(one, lengths[0]), (two, lengths[1])].map(|([x, y], length)| {
+                let angle = Interval::angle(y, x);
+                let spread = if length.low > 0.0 {
+                    twice_asin_of_root((excess / length.twice()).high)
+                } else {
+                    Interval::PI.high
+                };
+                let enclosure = Interval {
+                    low: (angle.low - spread).next_down(),
+                    high: (angle.high + spread).next_up(),
+                };
+                (enclosure, (length.middle(), angle.middle()))
+            });
+        Some(Closing {
+            sum,
+            difference,
+            middle: [first, second],
+        })
+    }
+}
+
+impl Closing {
+    /// Whether no outer arcs that are allowed can close the word.
+    pub(super) fn impossible(&self, allowed: Allowed) -> bool {
+        let first = (self.sum + self.difference).half();
+        let last = (self.sum - self.difference).half();
+        // Each half duration is known modulo half a turn.
+        shifts(first, allowed.each).all(|k| {
+            shifts(last, allowed.each).all(|l| {
+                let shifted = |x: Interval, turns: f64| x + Interval::PI * Interval::exactly(turns);
+                let (a, b) = (shifted(first, k), shifted(last, l));
+                let sum = shifted(self.sum, k + l);
+                let apart = shifted(self.difference, k - l).abs();
+                let by_parts =
+                    Interval::exactly(a.low.max(0.0)) + Interval::exactly(b.low.max(0.0));
+                let least = sum.low.max(by_parts.low).max(apart.low);
+                least >= allowed.both || least > sum.high
+            })
+        })
+    }
+
+    /// Outer durations that close the word nearly, and the turn that they miss the target by, at the
+    /// middle: numbers without proof.
+    pub(super) fn candidate(&self) -> (f64, f64) {
+        let [(c1, s), (c2, u)] = self.middle;
+        let within = |x: f64| {
+            let x = x.rem_euclid(PI);
+            // Next to half a turn it is better to leave the arc out.
+            if x > PI - LEFT_OUT { 0.0 } else { x }
+        };
+        let (a, b) = (within(0.5 * (s + u)), within(0.5 * (s - u)));
+        let cosine = c1 * (a + b - s).cos() + c2 * (a - b - u).cos();
+        (2.0 * (a + b), 2.0 * cosine.abs().min(1.0).acos())
+    }
+}
+
+/// Whole numbers of half turns that may bring an angle to `[0, most]`.
+fn shifts(angle: Interval, most: f64) -> impl Iterator<Item = f64> {
+    let slack = 1e-9;
+    let from = (-angle.high / Interval::PI.low - slack).ceil();
+    let to = ((most - angle.low) / Interval::PI.low + slack).floor();
+    std::iter::successors(Some(from), |k| Some(k + 1.0)).take_while(move |k| *k <= to)
+}

@@ -1,0 +1,182 @@
+//! The words that dwell, from the motion of the costate itself.
+//!
+//! On the level of the saddle `M_j = 0` let the costate leave it in an octant with signs `s`. With
+//! `n` the corner of the octant (length one), `M(t) = h n + cos t (M - h n) + sin t M x n`, and the
+//! components other than `j`, times their signs, are
+//!
+//! ```text
+//!   h c_k + (c_k c_j^2 / h) cos t +- (c_j c_l / h) sin t,   h = hypot(c_k, c_l)
+//! ```
+//!
+//! with the upper sign for the one of `k, l` that follows `j` in cyclic order if the product of the
+//! signs is positive, and for the other one if it is negative. The first zero of all is where an axis
+//! flips; from there the folded costate goes back the way that it came, so it is at the saddle again
+//! after as long a time, where `w_j` may have either sign. (A component whose rate exceeds that of
+//! `j` never reaches zero; component `j` itself touches zero only after a whole turn.)
+
+use super::interval::Interval;
+use super::rates::{Octant, Rates, flipped, octants};
+use super::turn::{IDENTITY, Turn, Vector, about, product};
+use super::word::{Interior, Word};
+
+/// A stretch of fixed arcs is no part of a shortest motion if its turn can be made in a time that is
+/// shorter at all; the share keeps clear of ties.
+const SHORTER: f64 = 1e-6;
+
+/// Arcs of known duration, in order.
+type Arcs = Vec<(Octant, Interval)>;
+
+/// Collects the words of one saddle.
+struct Saddle<'a> {
+    rates: &'a Rates,
+    /// The axis whose rate is zero during the dwell.
+    axis: usize,
+    /// Times beyond this are of no interest.
+    horizon: f64,
+    limit: usize,
+    words: Vec<Word>,
+}
+
+/// All words with a dwell whose fixed arcs last less than the horizon: `None` if there are more than
+/// the limit.
+pub(super) fn words(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<Word>> {
+    let mut words = Vec::new();
+    for axis in 0..3 {
+        let mut saddle = Saddle {
+            rates,
+            axis,
+            horizon,
+            limit,
+            words,
+        };
+        // The octant in which the costate comes to the saddle: directly in the first arc, or from
+        // a flip.
+        for octant in octants() {
+            saddle.begin(octant, None)?;
+            for (wall, time) in saddle.walls(octant, true) {
+                saddle.begin(flipped(octant, wall), Some((octant, time)))?;
+            }
+        }
+        words = saddle.words;
+    }
+    Some(words)
+}
+
+impl Saddle<'_> {
+    /// Where the costate flips first when it leaves the saddle in an octant, or where it came from:
+    /// the axis and the time. More than one if intervals do not tell which is first; none if that is
+    /// more than half a turn away, as longer arcs are no part of a shortest motion.
+    fn walls(&self, octant: Octant, backwards: bool) -> Vec<(usize, Interval)> {
+        let c = &self.rates.c;
+        let (j, k, l) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
+        let h = c[k].length(c[l]);
+        let negative = octant.iter().filter(|sign| **sign).count() % 2 == 1;
+        let mut found: Vec<(usize, Interval)> = Vec::new();
+        for (axis, other, upper) in [(k, l, true), (l, k, false)] {
+            let rises = (upper != negative) != backwards;
+            let constant = h * c[axis];
+            let cosine = c[axis] * c[j].squared() / h;
+            let sine = c[j] * c[other] / h;
+            let length = cosine.length(sine);
+            if constant.low > length.high {
+                continue;
+            }
+            let phase = Interval::angle(if rises { sine } else { -sine }, cosine);
+            found.push((axis, phase + (-(constant / length)).acos()));
+        }
+        let first = found
+            .iter()
+            .fold(Interval::PI.high, |first, (_, time)| first.min(time.high));
+        found.retain(|(_, time)| time.low <= first);
+        found
+    }
+
+    /// Words whose dwell follows an arc in an octant, fixed if there is a duration, else the first.
+    fn begin(&mut self, first: Octant, fixed: Option<(Octant, Interval)>) -> Option<()> {
+        let arrives = fixed.map_or(first, |(octant, _)| octant);
+        let before: Arcs = fixed.into_iter().collect();
+        let lasted = fixed.map_or(Interval::ZERO, |(_, time)| time);
+        for leaves in [arrives, flipped(arrives, self.axis)] {
+            self.follow(first, &before, leaves, &mut Vec::new(), lasted)?;
+        }
+        Some(())
+    }
+
+    /// Words that leave a visit in an octant.
+    fn follow(
+        &mut self,
+        first: Octant,
+        before: &Arcs,
+        leaves: Octant,
+        after: &mut Arcs,
+        lasted: Interval,
+    ) -> Option<()> {
+        self.add(first, before, after, leaves, lasted)?;
+        for (wall, time) in self.walls(leaves, false) {
+            let returns = flipped(leaves, wall);
+            after.push((leaves, time));
+            if (lasted + time).low < self.horizon && !self.replaceable(after) {
+                self.add(first, before, after, returns, lasted + time)?;
+                let lasted = lasted + time + time;
+                after.push((returns, time));
+                if lasted.low < self.horizon && !self.replaceable(after) {
+                    for next in [returns, flipped(returns, self.axis)] {
+                        self.follow(first, before, next, after, lasted)?;
+                    }
+                }
+                after.pop();
+            }
+            after.pop();
+        }
+        Some(())
+    }
+
+    fn add(
+        &mut self,
+        first: Octant,
+        before: &Arcs,
+        after: &Arcs,
+        last: Octant,
+        fixed: Interval,
+    ) -> Option<()> {
+        if self.words.len() == self.limit {
+            return None;
+        }
+        // The face is that of the octant before the dwell.
+        let face = before.last().map_or(first, |(octant, _)| *octant);
+        let mut rate = self.rates.corner(face);
+        rate[self.axis] = Interval::ZERO;
+        let (k, l) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
+        let speed = rate[k].length(rate[l]);
+        let direction: Vector = rate.map(|w| w / speed);
+        let [x, y, z] = direction;
+        let (before, after) = (self.turn(before), self.turn(after));
+        self.words.push(Word {
+            first,
+            last,
+            fixed,
+            interior: Interior::Dwelling {
+                even: product(&before, &after),
+                odd: product(&product(&before, &[x, y, z, Interval::ZERO]), &after),
+                speed,
+            },
+        });
+        Some(())
+    }
+
+    fn turn(&self, arcs: &[(Octant, Interval)]) -> Turn {
+        arcs.iter().fold(IDENTITY, |all, (octant, time)| {
+            product(&all, &about(&self.rates.corner(*octant), *time))
+        })
+    }
+
+    /// Whether a shorter turn replaces some of the last arcs.
+    fn replaceable(&self, arcs: &Arcs) -> bool {
+        (0..arcs.len()).any(|from| {
+            let lasts = arcs[from..]
+                .iter()
+                .fold(Interval::ZERO, |sum, (_, time)| sum + *time);
+            self.rates.eigenaxis(&self.turn(&arcs[from..])) < lasts.low * (1.0 - SHORTER)
+        })
+    }
+}

@@ -1,0 +1,234 @@
+//! Intervals of real numbers, rounded outwards.
+//!
+//! Sums, products, quotients and square roots are correctly rounded (IEEE 754), so the neighbours of
+//! a result enclose the true one. Sine, cosine and the arc functions are not specified: the common
+//! mathematical libraries state errors below one unit in the last place (glibc: 1 ulp for `sin` and
+//! `cos`, 1 to 2 for `atan2`); [`LIBRARY`] allows nine units of a number next to one, and of `pi`
+//! for arcs.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Absolute error allowed to sines, cosines and arcs: 2e-15 is 9 ulp of a number in `[1/2, 1]`'s
+/// upper binade (2.2e-16), and 4.5 ulp of an arc between 2 and `pi` (4.4e-16).
+const LIBRARY: f64 = 2e-15;
+
+/// All numbers from `low` to `high`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Interval {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Interval {
+    pub(super) const ZERO: Self = Self {
+        low: 0.0,
+        high: 0.0,
+    };
+    pub(super) const ONE: Self = Self {
+        low: 1.0,
+        high: 1.0,
+    };
+    /// `pi` is between the double next to it, which is less, and its successor.
+    pub(super) const PI: Self = Self {
+        low: PI,
+        high: 3.141_592_653_589_793_6,
+    };
+
+    /// One number.
+    pub(super) fn exactly(x: f64) -> Self {
+        Self { low: x, high: x }
+    }
+
+    /// All numbers within a distance of one.
+    pub(super) fn around(x: f64, radius: f64) -> Self {
+        Self {
+            low: (x - radius).next_down(),
+            high: (x + radius).next_up(),
+        }
+    }
+
+    pub(super) fn middle(self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Half the width, rounded up, about [`Self::middle`].
+    fn radius(self) -> f64 {
+        let middle = self.middle();
+        (self.high - middle).max(middle - self.low).next_up()
+    }
+
+    pub(super) fn contains_zero(self) -> bool {
+        self.low <= 0.0 && self.high >= 0.0
+    }
+
+    /// The largest size.
+    pub(super) fn size(self) -> f64 {
+        self.high.max(-self.low)
+    }
+
+    /// `|x|`.
+    pub(super) fn abs(self) -> Self {
+        Self {
+            low: self.low.max(-self.high).max(0.0),
+            high: self.size(),
+        }
+    }
+
+    /// `x^2`.
+    pub(super) fn squared(self) -> Self {
+        let size = self.abs();
+        Self {
+            low: (size.low * size.low).next_down().max(0.0),
+            high: (size.high * size.high).next_up(),
+        }
+    }
+
+    /// The square root of the part that is not negative.
+    pub(super) fn sqrt(self) -> Self {
+        Self {
+            low: self.low.max(0.0).sqrt().next_down().max(0.0),
+            high: self.high.max(0.0).sqrt().next_up(),
+        }
+    }
+
+    /// The length of a vector of two components.
+    pub(super) fn length(self, other: Self) -> Self {
+        (self.squared() + other.squared()).sqrt()
+    }
+
+    /// Sine and cosine; neither changes faster than its argument.
+    pub(super) fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.middle().sin_cos();
+        let radius = (self.radius() + LIBRARY).next_up();
+        (Self::around(sin, radius), Self::around(cos, radius))
+    }
+
+    /// The angle of the vector `(x, y)`, about `atan2` of the middles; all of the circle, at a
+    /// radius of `pi`, when the vector may be zero. It is not brought to any range.
+    pub(super) fn angle(y: Self, x: Self) -> Self {
+        let angle = f64::atan2(y.middle(), x.middle());
+        // The whole box is seen from the origin within this of the middle: the sine of the angle
+        // is at most the ratio of the box's radius to the distance of the middle.
+        let radius = Self::exactly(x.radius())
+            .length(Self::exactly(y.radius()))
+            .high;
+        let distance = Self::exactly(x.middle())
+            .length(Self::exactly(y.middle()))
+            .low;
+        let sine = (radius / distance).next_up();
+        if sine.is_nan() || sine >= 0.5 {
+            return Self::around(angle, Self::PI.high);
+        }
+        // asin s <= s / sqrt(1 - s^2) <= 1.2 s for s <= 1/2.
+        Self::around(angle, (1.2 * sine + LIBRARY).next_up())
+    }
+
+    /// The arc cosine of the part within `[-1, 1]`.
+    pub(super) fn acos(self) -> Self {
+        Self {
+            low: (self.high.clamp(-1.0, 1.0).acos() - LIBRARY).max(0.0),
+            high: (self.low.clamp(-1.0, 1.0).acos() + LIBRARY).next_up(),
+        }
+    }
+
+    /// Double.
+    pub(super) fn twice(self) -> Self {
+        Self {
+            low: 2.0 * self.low,
+            high: 2.0 * self.high,
+        }
+    }
+
+    /// Half.
+    pub(super) fn half(self) -> Self {
+        Self {
+            low: 0.5 * self.low,
+            high: 0.5 * self.high,
+        }
+    }
+}
+
+/// A number that `2 asin(sqrt(x))` does not exceed; half a turn for what is not small.
+pub(super) fn twice_asin_of_root(x: f64) -> f64 {
+    if x >= 0.5 {
+        return Interval::PI.high;
+    }
+    // asin s <= s / sqrt(1 - s^2), the tangent.
+    let x = Interval::exactly(x.max(0.0));
+    let bound = (x / (Interval::ONE - x)).sqrt().high * 2.0;
+    bound.min(2.0 * FRAC_PI_2.next_up())
+}
+
+impl Add for Interval {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            low: (self.low + other.low).next_down(),
+            high: (self.high + other.high).next_up(),
+        }
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self {
+            low: -self.high,
+            high: -self.low,
+        }
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let products = [
+            self.low * other.low,
+            self.low * other.high,
+            self.high * other.low,
+            self.high * other.high,
+        ];
+        let [a, b, c, d] = products;
+        Self {
+            low: a.min(b).min(c.min(d)).next_down(),
+            high: a.max(b).max(c.max(d)).next_up(),
+        }
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+
+    /// All numbers when the divisor may be zero.
+    fn div(self, other: Self) -> Self {
+        if other.contains_zero() {
+            return Self {
+                low: f64::NEG_INFINITY,
+                high: f64::INFINITY,
+            };
+        }
+        let quotients = [
+            self.low / other.low,
+            self.low / other.high,
+            self.high / other.low,
+            self.high / other.high,
+        ];
+        let [a, b, c, d] = quotients;
+        Self {
+            low: a.min(b).min(c.min(d)).next_down(),
+            high: a.max(b).max(c.max(d)).next_up(),
+        }
+    }
+}

@@ -1,0 +1,4 @@
+mod claims;
+mod enclosures;
+
+use super::*;

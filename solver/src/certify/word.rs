@@ -1,0 +1,150 @@
+//! Words: a first arc, an interior with one unknown, a last arc.
+
+use super::interval::Interval;
+use super::rates::{Octant, Rates, flipped};
+use super::turn::{IDENTITY, Turn, product, scaled, sum, times_vector};
+
+/// A turn and its derivative in a parameter, both as quaternions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moving {
+    pub(super) turn: Turn,
+    pub(super) slope: Turn,
+}
+
+impl Moving {
+    const NONE: Self = Self {
+        turn: IDENTITY,
+        slope: [Interval::ZERO; 4],
+    };
+
+    fn then(&self, next: &Self) -> Self {
+        Self {
+            turn: product(&self.turn, &next.turn),
+            slope: sum(
+                &product(&self.slope, &next.turn),
+                &product(&self.turn, &next.slope),
+            ),
+        }
+    }
+}
+
+/// What is between the first and the last arc.
+#[derive(Debug, Clone)]
+pub(super) enum Interior {
+    /// Nothing: two arcs, no unknown.
+    Nothing,
+    /// Arcs of one unknown duration; before each, and before the last arc of the word, the rate of
+    /// one of two axes changes its sign, in turn.
+    Alternating { axes: [usize; 2], arcs: usize },
+    /// Fixed arcs about a dwell of unknown duration at a rate of the given length, whose turn by an
+    /// angle `x` is `cos(x / 2) even + sin(x / 2) odd`.
+    Dwelling {
+        even: Turn,
+        odd: Turn,
+        speed: Interval,
+    },
+}
+
+/// A word without its outer durations.
+#[derive(Debug, Clone)]
+pub(super) struct Word {
+    pub(super) first: Octant,
+    pub(super) last: Octant,
+    /// Sum of the durations that are not unknown.
+    pub(super) fixed: Interval,
+    pub(super) interior: Interior,
+}
+
+impl Word {
+    /// The word whose axes change sign in turn, with so many arcs between the outer ones.
+    pub(super) fn alternating(first: Octant, axes: [usize; 2], arcs: usize) -> Self {
+        let last = (0..=arcs).fold(first, |octant, flip| flipped(octant, axes[flip % 2]));
+        Self {
+            first,
+            last,
+            fixed: Interval::ZERO,
+            interior: Interior::Alternating { axes, arcs },
+        }
+    }
+
+    /// How often the unknown duration occurs.
+    pub(super) fn repeats(&self) -> f64 {
+        match self.interior {
+            Interior::Nothing => 0.0,
+            Interior::Alternating { arcs, .. } => arcs as f64,
+            Interior::Dwelling { .. } => 1.0,
+        }
+    }
+
+    /// A bound on the sum of the speeds of all arcs of unknown duration.
+    pub(super) fn speed(&self) -> f64 {
+        match &self.interior {
+            Interior::Dwelling { speed, .. } => speed.high,
+            _ => self.repeats(),
+        }
+    }
+
+    /// The interior for a value of the unknown.
+    pub(super) fn at(&self, rates: &Rates, unknown: f64) -> Moving {
+        match &self.interior {
+            Interior::Nothing => Moving::NONE,
+            Interior::Alternating { axes, arcs } => {
+                let (sin, cos) = Interval::exactly(0.5 * unknown).sin_cos();
+                self.chain(rates, *axes, *arcs, sin, cos)
+            }
+            Interior::Dwelling { even, odd, speed } => {
+                let (sin, cos) = (Interval::exactly(0.5 * unknown) * *speed).sin_cos();
+                let half = speed.half();
+                Moving {
+                    turn: sum(&scaled(even, cos), &scaled(odd, sin)),
+                    slope: sum(&scaled(even, -(sin * half)), &scaled(odd, cos * half)),
+                }
+            }
+        }
+    }
+
+    /// The product of arcs that repeat with period four, by powers of that period.
+    fn chain(
+        &self,
+        rates: &Rates,
+        axes: [usize; 2],
+        arcs: usize,
+        sin: Interval,
+        cos: Interval,
+    ) -> Moving {
+        let mut octant = self.first;
+        let steps: Vec<Moving> = (0..arcs.min(4))
+            .map(|flip| {
+                octant = flipped(octant, axes[flip % 2]);
+                let c = rates.corner(octant);
+                let turn = [c[0] * sin, c[1] * sin, c[2] * sin, cos];
+                // d/dp exp(p c) = exp(p c) c / 2.
+                let slope = times_vector(&turn, &c).map(Interval::half);
+                Moving { turn, slope }
+            })
+            .collect();
+        let joined = |steps: &[Moving]| {
+            steps
+                .iter()
+                .skip(1)
+                .fold(steps[0], |all, next| all.then(next))
+        };
+        if arcs < 4 {
+            return joined(&steps);
+        }
+        let (mut all, mut power, mut block) = (Moving::NONE, arcs / 4, joined(&steps));
+        loop {
+            if power % 2 == 1 {
+                all = all.then(&block);
+            }
+            power /= 2;
+            if power == 0 {
+                break;
+            }
+            block = block.then(&block);
+        }
+        steps[..arcs % 4]
+            .iter()
+            .fold(all, |all, next| all.then(next))
+    }
+}

@@ -1,10 +1,10 @@
 //! Bounds on slews with limited accelerations.
 
 use super::super::ramps::{EndRates, SlewBound, SlewLimits};
-use super::motions::Generator;
 use super::{PAPER, rate_box, turn};
 use crate::attitude::Attitude;
 use nalgebra::Vector3;
+use slewplan_tests::random::Generator;
 
 const FREE: f64 = f64::INFINITY;
 
@@ -90,19 +90,26 @@ fn pure_turns_of_a_stopped_axis_pay_for_their_ramps() {
     assert!(bound > plain + 0.05, "{bound} is hardly more than {plain}");
 }
 
+/// Rates anywhere within limits.
+fn share_of(limits: &SlewLimits, generator: &mut Generator) -> Vector3<f64> {
+    limits
+        .rates_rad_s
+        .component_mul(&Vector3::from(generator.vector(-1.0, 1.0)))
+}
+
 /// A ramped motion: rates go linearly between values within the limits, fast enough to keep to the
 /// accelerations; with its duration, end rates and where it leads.
 fn ramped_motion(generator: &mut Generator, limits: &SlewLimits) -> (f64, EndRates, Attitude) {
-    let mut rate = limits.rates_rad_s.component_mul(&generator.vector());
-    if generator.axis() == 0 {
+    let mut rate = share_of(limits, generator);
+    if generator.below(3) == 0 {
         rate.fill(0.0);
     }
     let begin = rate;
     let (mut at, mut duration) = (Attitude::identity(), 0.0);
     for leg in 0..3 {
-        let mut next = limits.rates_rad_s.component_mul(&generator.vector());
+        let mut next = share_of(limits, generator);
         if leg == 2 {
-            next[generator.axis()] = 0.0;
+            next[generator.below(3)] = 0.0;
         }
         let ramp = (next - rate)
             .abs()

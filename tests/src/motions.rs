@@ -1,0 +1,131 @@
+//! Motions within a box of body rates, made without any knowledge of shortest ones but the costate.
+
+use crate::random::Generator;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Arcs at a constant rate: rad/s in body axes, and seconds.
+pub type Arcs = Vec<(Vector3<f64>, f64)>;
+
+/// How a motion was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Any rates, any times.
+    Any,
+    /// Rates in corners of the box, any times.
+    Corners,
+    /// A corner, a rate with a component of zero, a corner.
+    Dwell,
+    /// An extremal, from any costate.
+    Extremal,
+    /// An extremal whose costate stays near a body axis: many flips.
+    NearAxis,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Any,
+        Self::Corners,
+        Self::Dwell,
+        Self::Extremal,
+        Self::NearAxis,
+    ];
+
+    /// Whether motions obey Pontryagin's principle. Longer ones need not be shortest ones.
+    #[must_use]
+    pub fn is_extremal(self) -> bool {
+        matches!(self, Self::Extremal | Self::NearAxis)
+    }
+}
+
+/// Where arcs lead from the identity.
+#[must_use]
+pub fn end_of(arcs: &[(Vector3<f64>, f64)]) -> UnitQuaternion<f64> {
+    let all = arcs.iter().fold(
+        UnitQuaternion::identity(),
+        |at: UnitQuaternion<f64>, (rate, duration)| {
+            at * UnitQuaternion::from_scaled_axis(rate * *duration)
+        },
+    );
+    UnitQuaternion::new_normalize(all.into_inner())
+}
+
+/// A motion with `|w_i| <= rates_i` of at most so many radians at the length of `rates`, 4.5 or less
+/// for the longest that are worth while.
+pub fn motion(
+    generator: &mut Generator,
+    kind: Kind,
+    rates: Vector3<f64>,
+    longest_rad: f64,
+) -> Arcs {
+    let total = generator.between(0.01, 1.0) * longest_rad / rates.norm();
+    let corner = |generator: &mut Generator| {
+        let signs = Vector3::from(generator.vector(-1.0, 1.0)).map(f64::signum);
+        rates.component_mul(&signs)
+    };
+    match kind {
+        Kind::Any => (0..4)
+            .map(|_| {
+                let share = Vector3::from(generator.vector(-1.0, 1.0));
+                (rates.component_mul(&share), 0.25 * total)
+            })
+            .collect(),
+        Kind::Corners => (0..4)
+            .map(|_| (corner(generator), generator.between(0.0, 0.4) * total))
+            .collect(),
+        Kind::Dwell => (0..3)
+            .map(|arc| {
+                let mut rate = corner(generator);
+                if arc == 1 {
+                    rate[generator.below(3)] = 0.0;
+                }
+                (rate, generator.between(0.0, 0.6) * total)
+            })
+            .collect(),
+        Kind::Extremal => extremal(rates, generator.vector(-1.0, 1.0).into(), total),
+        Kind::NearAxis => {
+            let axis = Vector3::ith(generator.below(3), 1.0);
+            let off = Vector3::from(generator.vector(-0.1, 0.1));
+            extremal(rates, axis + off, total)
+        }
+    }
+}
+
+/// Follows a costate, `M' = M x w`, `w_i = r_i sign(M_i)`, by small steps and bisection.
+fn extremal(rates: Vector3<f64>, mut costate: Vector3<f64>, total: f64) -> Arcs {
+    let mut arcs = Arcs::new();
+    let mut left = total;
+    let mut signs = costate.map(f64::signum);
+    while left > 0.0 {
+        let rate = rates.component_mul(&signs);
+        let after = |time: f64| {
+            UnitQuaternion::from_scaled_axis(rate * time).inverse_transform_vector(&costate)
+        };
+        let inside = |time: f64| after(time).component_mul(&signs).min() >= -1e-12;
+        let step = 0.01 / rate.norm();
+        let mut high = step;
+        while high < left && inside(high) {
+            high += step;
+        }
+        let duration = if high >= left && inside(left) {
+            left
+        } else {
+            let mut low = high - step;
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if inside(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            high.min(left)
+        };
+        arcs.push((rate, duration));
+        left -= duration;
+        costate = after(duration);
+        let flipped = costate.component_mul(&signs).imin();
+        signs[flipped] = -signs[flipped];
+    }
+    arcs
+}

@@ -1,4 +1,4 @@
-//! True claims are confirmed and damaged ones rejected. (`tests/examples/certified_bounds.rs` has
+//! True claims are confirmed and damaged ones rejected. (`tests/examples/bound_trials.rs` has
 //! many more.)
 
 use super::*;

@@ -71,10 +71,12 @@
 
 pub mod certificate;
 mod closing;
+mod drift;
 mod extremal;
 mod interior;
 mod levels;
 pub mod ramps;
+mod rise;
 mod search;
 mod singular;
 #[cfg(test)]

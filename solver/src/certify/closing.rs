@@ -28,19 +28,17 @@ pub(super) struct View {
     /// `q`, `-c_0 q`, `-q c_f`, `c_0 q c_f`: their scalar products with `P` make up the equation.
     images: [Turn; 4],
     /// `c_0` and `c_f`.
-    ends: [Vector; 2],
+    pub(super) ends: [Vector; 2],
     /// `c_0 . R c_f`, which `c_0 . P c_f` must equal.
     target: Interval,
 }
 
-/// Outer half durations that may close a word, and what they are at the middle.
+/// Outer half durations that may close a word.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Closing {
     /// `S` and `U`, each modulo a full turn and both together modulo half a turn.
     sum: Interval,
     difference: Interval,
-    /// Lengths and angles at the middle.
-    middle: [(f64, f64); 2],
 }
 
 /// What the outer arcs must keep to, in half durations.
@@ -92,25 +90,19 @@ impl View {
             return None;
         }
         let excess = Interval::exactly(excess.next_up());
-        let [(sum, first), (difference, second)] =
-            [(one, lengths[0]), (two, lengths[1])].map(|([x, y], length)| {
-                let angle = Interval::angle(y, x);
-                let spread = if length.low > 0.0 {
-                    twice_asin_of_root((excess / length.twice()).high)
-                } else {
-                    Interval::PI.high
-                };
-                let enclosure = Interval {
-                    low: (angle.low - spread).next_down(),
-                    high: (angle.high + spread).next_up(),
-                };
-                (enclosure, (length.middle(), angle.middle()))
-            });
-        Some(Closing {
-            sum,
-            difference,
-            middle: [first, second],
-        })
+        let [sum, difference] = [(one, lengths[0]), (two, lengths[1])].map(|([x, y], length)| {
+            let angle = Interval::angle(y, x);
+            let spread = if length.low > 0.0 {
+                twice_asin_of_root((excess / length.twice()).high)
+            } else {
+                Interval::PI.high
+            };
+            Interval {
+                low: (angle.low - spread).next_down(),
+                high: (angle.high + spread).next_up(),
+            }
+        });
+        Some(Closing { sum, difference })
     }
 }
 
@@ -134,18 +126,14 @@ impl Closing {
         })
     }
 
-    /// Outer durations that close the word nearly, and the turn that they miss the target by, at the
-    /// middle: numbers without proof.
-    pub(super) fn candidate(&self) -> (f64, f64) {
-        let [(c1, s), (c2, u)] = self.middle;
-        let within = |x: f64| {
-            let x = x.rem_euclid(PI);
+    /// Outer durations that close the word nearly: numbers without proof.
+    pub(super) fn candidate(&self) -> [f64; 2] {
+        let (sum, difference) = (self.sum.middle(), self.difference.middle());
+        [sum + difference, sum - difference].map(|twice| {
+            let x = (0.5 * twice).rem_euclid(PI);
             // Next to half a turn it is better to leave the arc out.
-            if x > PI - LEFT_OUT { 0.0 } else { x }
-        };
-        let (a, b) = (within(0.5 * (s + u)), within(0.5 * (s - u)));
-        let cosine = c1 * (a + b - s).cos() + c2 * (a - b - u).cos();
-        (2.0 * (a + b), 2.0 * cosine.abs().min(1.0).acos())
+            if x > PI - LEFT_OUT { 0.0 } else { 2.0 * x }
+        })
     }
 }
 

@@ -6,7 +6,7 @@ use super::dwelling;
 use super::interval::Interval;
 use super::near_axis::NearAxis;
 use super::rates::{Rates, flipped, octants};
-use super::turn::{Turn, angle_of};
+use super::turn::{Turn, about, angle_of, conjugate, product};
 use super::word::{Interior, Word};
 use crate::attitude::Attitude;
 use nalgebra::Vector3;
@@ -19,8 +19,8 @@ const MOST_FLIPS: usize = 20_000;
 const MOST_CELLS: usize = 20_000_000;
 /// Cells narrower than this are given up.
 const NARROW: f64 = 1e-13;
-/// A motion counts as faster only by more than this share: its time is computed without intervals.
-const FASTER: f64 = 1e-7;
+/// A motion counts as faster only by more than this share, which covers the last few operations.
+const FASTER: f64 = 1e-12;
 
 /// A box of rates with the words that dwell.
 #[derive(Debug)]
@@ -187,9 +187,13 @@ impl Proof<'_> {
         if closing.impossible(Allowed { each, both }) {
             return Ok(true);
         }
-        let (outer, miss) = closing.candidate();
-        let inside = word.fixed.middle() + word.repeats() * middle;
-        self.refuted_by(inside + outer + miss / self.rates.least())?;
+        // The word of the middle is a motion, but for the turn that it misses the target by.
+        let [first, last] = closing.candidate().map(Interval::exactly);
+        let before = product(&about(&view.ends[0], first), &interior.turn);
+        let end = product(&before, &about(&view.ends[1], last));
+        let missing = self.rates.eigenaxis(&product(&conjugate(&end), &self.q));
+        let inside = word.fixed + repeats * Interval::exactly(middle);
+        self.refuted_by((inside + first + last).high + missing)?;
         Ok(false)
     }
 

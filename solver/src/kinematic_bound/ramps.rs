@@ -39,20 +39,16 @@
 
 use super::RateBox;
 use super::certificate::{Certificate, ClaimedTurn, ROOM};
+use super::rise::Rise;
 use crate::attitude::Attitude;
 use nalgebra::Vector3;
 
 /// Durations whose mean rates make the boxes, in units of the longest ramp.
 const DURATIONS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
-/// A box is no narrower than this share of the rates, relative to its widest axis: more extreme
-/// boxes have many extremals and gain nothing.
-const NARROWEST: f64 = 0.1;
 /// Boxes whose shapes differ by less than this are one.
 const SAME_SHAPE: f64 = 0.02;
-/// Halvings of the duration: to rounding.
-const HALVINGS: usize = 60;
 /// Share taken off for the rounding of `s`.
-const DEFLATION: f64 = 1e-9;
+pub(super) const DEFLATION: f64 = 1e-9;
 
 /// What no motion of the spacecraft exceeds, per body axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,10 +83,9 @@ impl EndRates {
 /// Lower bounds on slews of one kind: built once per spacecraft and kind of ends.
 #[derive(Debug, Clone)]
 pub struct SlewBound {
-    limits: SlewLimits,
-    ends: EndRates,
+    pub(super) rise: Rise,
     /// Boxes with their rates, that of the limits first.
-    boxes: Vec<(Vector3<f64>, RateBox)>,
+    pub(super) boxes: Vec<(Vector3<f64>, RateBox)>,
 }
 
 impl SlewBound {
@@ -108,13 +103,12 @@ impl SlewBound {
         }
         let rates = limits.rates_rad_s;
         let mut bound = Self {
-            limits,
-            ends,
+            rise: Rise { limits, ends },
             boxes: vec![(rates, RateBox::new(rates)?)],
         };
         let longest = rates.component_div(&limits.accelerations_rad_s2).max();
         for duration in DURATIONS {
-            let candidate = bound.mean_rates(duration * longest);
+            let candidate = bound.rise.mean_rates(duration * longest);
             let known = bound.boxes.iter().any(|(other, _)| {
                 let ratio = candidate.component_div(other);
                 ratio.max() < ratio.min() * (1.0 + SAME_SHAPE)
@@ -149,8 +143,8 @@ impl SlewBound {
             least_s: claimable(table, turn, tolerance),
         };
         Certificate {
-            limits: self.limits,
-            ends: self.ends,
+            limits: self.rise.limits,
+            ends: self.rise.ends,
             box_rad_s: *box_rad_s,
             turns: turns.iter().map(claimed).collect(),
             duration_s,
@@ -165,123 +159,22 @@ impl SlewBound {
                 .iter()
                 .map(|turn| claimable(table, turn, tolerance))
                 .sum();
-            let duration = self.duration_of(rates, least);
+            let duration = self.rise.duration_of(rates, least);
             if duration > best.1 {
                 best = (index, duration);
             }
         }
         (best.0, rounded_down(best.1 * (1.0 - DEFLATION)))
     }
-
-    /// `m_i(t; T)`.
-    fn available(&self, axis: usize, at: f64, duration: f64) -> f64 {
-        let acceleration = self.limits.accelerations_rad_s2[axis];
-        let begin = self.ends.begin_rad_s[axis] + acceleration * at;
-        let end = self.ends.end_rad_s[axis] + acceleration * (duration - at);
-        self.limits.rates_rad_s[axis].min(begin).min(end)
-    }
-
-    /// Times at which some `m_i` may have a kink, in order, with both ends.
-    fn kinks(&self, duration: f64) -> [f64; 11] {
-        let mut times = [0.0; 11];
-        times[1] = duration;
-        for i in 0..3 {
-            let (rate, acceleration) = (
-                self.limits.rates_rad_s[i],
-                self.limits.accelerations_rad_s2[i],
-            );
-            // A free end has no ramp: beyond the rate it bounds nothing.
-            let begin = self.ends.begin_rad_s[i].min(rate);
-            let end = self.ends.end_rad_s[i].min(rate);
-            let at = [
-                (rate - begin) / acceleration,
-                duration - (rate - end) / acceleration,
-                0.5 * (duration + (end - begin) / acceleration),
-            ];
-            for k in 0..3 {
-                times[2 + 3 * i + k] = at[k].clamp(0.0, duration);
-            }
-        }
-        times.sort_by(f64::total_cmp);
-        times
-    }
-
-    /// Means of `m_i` over a duration, none much narrower than the widest in its share of the limit.
-    fn mean_rates(&self, duration: f64) -> Vector3<f64> {
-        let kinks = self.kinks(duration);
-        let shares = Vector3::from_fn(|i, _| {
-            let area: f64 = kinks
-                .windows(2)
-                .map(|t| {
-                    let ends = [t[0], t[1]].map(|t| self.available(i, t, duration));
-                    0.5 * (ends[0] + ends[1]) * (t[1] - t[0])
-                })
-                .sum();
-            area / (duration * self.limits.rates_rad_s[i])
-        });
-        let least = NARROWEST * shares.max();
-        self.limits
-            .rates_rad_s
-            .component_mul(&shares.map(|share| share.max(least)))
-    }
-
-    /// `s(T)` for a box: the integrand is linear between kinks and crossings of the `m_i / p_i`.
-    fn effective(&self, rates: &Vector3<f64>, duration: f64) -> f64 {
-        let kinks = self.kinks(duration);
-        let mut sum = 0.0;
-        for pair in kinks.windows(2) {
-            let (from, length) = (pair[0], pair[1] - pair[0]);
-            if length <= 0.0 {
-                continue;
-            }
-            let shares =
-                |t: f64| Vector3::from_fn(|i, _| self.available(i, t, duration) / rates[i]);
-            let (first, last) = (shares(from), shares(pair[1]));
-            let mut cuts = [0.0, 1.0, 1.0, 1.0, 1.0];
-            for (cut, (i, j)) in cuts[1..4].iter_mut().zip([(0, 1), (1, 2), (2, 0)]) {
-                let (before, after) = (first[i] - first[j], last[i] - last[j]);
-                if before * after < 0.0 {
-                    *cut = before / (before - after);
-                }
-            }
-            cuts[..4].sort_by(f64::total_cmp);
-            let value = |cut: f64| (first + (last - first) * cut).max();
-            sum += cuts
-                .windows(2)
-                .map(|cut| 0.5 * (value(cut[0]) + value(cut[1])) * (cut[1] - cut[0]) * length)
-                .sum::<f64>();
-        }
-        sum
-    }
-
-    /// A duration whose `s` is at most the least time of the turns, to rounding: `s^-1` from below.
-    fn duration_of(&self, rates: &Vector3<f64>, least: f64) -> f64 {
-        // No slew is faster than the largest rates of all make it.
-        let mut high = least * rates.component_div(&self.limits.rates_rad_s).min();
-        let mut low = 0.0;
-        while self.effective(rates, high) < least {
-            low = high;
-            high *= 2.0;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if self.effective(rates, middle) < least {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        low
-    }
 }
 
 /// A lower bound on the least time of a turn that leaves its proof some room.
-fn claimable(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
+pub(super) fn claimable(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
     table.lower_bound(turn, tolerance) * (1.0 - ROOM)
 }
 
 /// Seven digits, never more than the number.
-fn rounded_down(x: f64) -> f64 {
+pub(super) fn rounded_down(x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
     }

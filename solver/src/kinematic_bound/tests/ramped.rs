@@ -189,3 +189,68 @@ fn bad_limits_are_refused() {
     assert!(SlewBound::new(good, ends([0.0; 3], [f64::NAN, 0.0, 0.0])).is_none());
     assert!(bound(good, EndRates::at_rest(), &[Attitude::identity()]).abs() < f64::MIN_POSITIVE);
 }
+
+#[test]
+fn without_drift_the_march_arrives_at_the_bound() {
+    let limits = SlewLimits {
+        rates_rad_s: Vector3::new(1.0, 0.8, 0.6),
+        accelerations_rad_s2: Vector3::new(0.4, 1.0, 2.0),
+    };
+    let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
+    for vector in [[0.2, -1.0, 0.7], [0.01, 0.02, 0.03], [2.0, 0.5, -1.0]] {
+        let turn = turn(vector);
+        let plain = bound.lower_bound_s(&[turn], 1e-6);
+        let still = Vector3::zeros();
+        let marched = bound.drifting_lower_bound_s(&turn, &still, EndRates::at_rest(), 1e-6);
+        assert_close(marched, plain);
+    }
+}
+
+#[test]
+fn no_drifting_motion_beats_the_bound() {
+    let mut generator = Generator::new(11);
+    let limits = SlewLimits {
+        rates_rad_s: Vector3::new(1.0, 0.8, 0.6),
+        accelerations_rad_s2: Vector3::new(0.7, 2.0, 3.0),
+    };
+    let any = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
+    let mut sharper = 0;
+    for _ in 0..60 {
+        let (duration, ends, relative) = ramped_motion(&mut generator, &limits);
+        let drift = Vector3::from(generator.direction()) * generator.between(0.0, 0.5);
+        // The drift adds its turn in space to that of the relative motion.
+        let target = Attitude::from_rotation_vector(drift * duration).then_in_body(&relative);
+        let least = any.drifting_lower_bound_s(&target, &drift, ends, 1e-4);
+        assert!(least <= duration, "{least} against {duration}, {ends:?}");
+        // A box that holds the drift in all directions has shorter times.
+        let wider = SlewLimits {
+            rates_rad_s: limits.rates_rad_s.add_scalar(drift.norm()),
+            ..limits
+        };
+        let free = EndRates {
+            begin_rad_s: Vector3::repeat(FREE),
+            end_rad_s: Vector3::repeat(FREE),
+        };
+        sharper += i32::from(least > bound(wider, free, &[target]));
+    }
+    assert!(sharper > 40, "{sharper} of 60 only");
+}
+
+#[test]
+fn a_slew_that_the_drift_makes_alone_takes_no_less_than_its_time() {
+    // About one axis, with the drift: rates of 1 + 0.5 rad/s make a radian in 2/3 s.
+    let limits = equal([1.0; 3], 1e-6);
+    let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
+    for (drift, expected) in [(0.5, 1.0 / 1.5), (-0.5, 1.0 / 0.5)] {
+        let least = bound.drifting_lower_bound_s(
+            &turn([1.0, 0.0, 0.0]),
+            &Vector3::new(drift, 0.0, 0.0),
+            EndRates::at_rest(),
+            1e-6,
+        );
+        assert!(
+            (least / expected - 1.0).abs() < 1e-4,
+            "{least} instead of {expected}"
+        );
+    }
+}

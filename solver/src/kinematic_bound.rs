@@ -62,7 +62,8 @@
 //! not lost to rounding. `C1 + C2 <= 1` is used instead of being recomputed, so outer arcs are as good
 //! as the interior. Nearly equal rates are raised to equality (`V` only falls). Results are deflated
 //! by 1e-9 for the last few operations. Mathematical libraries differ in the last bit between
-//! platforms: reports should round a bound down to six digits.
+//! platforms: reports should round a bound down to six digits. [`crate::certify`] proves bounds again,
+//! with its own list of extremals and in intervals.
 //!
 //! # Sources
 //!

@@ -126,8 +126,9 @@ impl SlewBound {
     /// body axes where the one before ended; one turn for a leg. Only the ends of the whole have the
     /// end rates, between the turns all are free.
     ///
-    /// The turns' least times are computed to the relative tolerance; the result is valid for any. It
-    /// is rounded down to seven digits, so that it does not depend on the mathematical library.
+    /// The turns' least times are computed to the relative tolerance and lowered by 2e-6, so that
+    /// [`crate::certify`] can prove them again; the result is valid for any tolerance. It is rounded
+    /// down to seven digits, so that it does not depend on the mathematical library.
     #[must_use]
     pub fn lower_bound_s(&self, turns: &[Attitude], tolerance: f64) -> f64 {
         self.best(turns, tolerance).1

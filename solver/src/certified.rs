@@ -26,16 +26,19 @@
 //!
 //! # What is not bounded
 //!
-//! With stored momentum the box of rates turns with the attitude and the acceleration has a gyroscopic
-//! part; without limits of speed there is no box of rates. Then there is no bound. A turn whose
+//! Without limits of speed there is no box of rates, and then there is no bound. Stored momentum has
+//! boxes of its own ([`momentum`]). A turn whose
 //! quaternion has to arrive with a given sign is bounded as the rotation that it also is, which may
 //! be the shorter way round.
+
+mod momentum;
 
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
 use crate::scenario::RateCondition;
 use crate::transcription::Waypoint;
+use momentum::MomentumBounds;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -57,6 +60,8 @@ const MOST_KINDS: usize = 64;
 #[derive(Debug)]
 pub(crate) struct CertifiedBounds {
     frames: Vec<Frame>,
+    /// With momentum, these are used instead.
+    momentum: Option<MomentumBounds>,
     prepared: Mutex<HashMap<Ends, Arc<[Option<SlewBound>]>>>,
 }
 
@@ -74,16 +79,21 @@ type Ends = [[u64; 3]; 2];
 impl CertifiedBounds {
     /// The bounds of a spacecraft with its momentum.
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
-        let mut frames = Vec::new();
-        if !dynamics.has_momentum() {
-            let (body, wheels) = (Matrix3::identity(), dynamics.wheel_axes());
-            frames.push(Frame::of(dynamics, body));
-            if (wheels - body).amax() > SAME_AXES {
-                frames.push(Frame::of(dynamics, wheels));
-            }
+        let mut axes = vec![Matrix3::identity(), dynamics.wheel_axes()];
+        if (axes[1] - axes[0]).amax() <= SAME_AXES {
+            axes.truncate(1);
         }
+        let momentum = dynamics
+            .has_momentum()
+            .then(|| MomentumBounds::of(dynamics, &axes));
+        let frames = if momentum.is_some() {
+            Vec::new()
+        } else {
+            axes.iter().map(|axes| Frame::of(dynamics, *axes)).collect()
+        };
         Self {
             frames,
+            momentum,
             prepared: Mutex::default(),
         }
     }
@@ -92,8 +102,12 @@ impl CertifiedBounds {
     /// after it; `None` when nothing is proved. Conditions of the wheels are not used.
     pub(crate) fn leg(&self, from: &Waypoint, to: &Waypoint) -> Option<f64> {
         let turn = from.attitude.relative_to(&to.attitude);
+        let ends = [most(from), most(to)];
+        if let Some(momentum) = &self.momentum {
+            return momentum.leg([&from.attitude, &to.attitude], &ends, TOLERANCE);
+        }
         let rates = self.frames.first()?.limits.rates_rad_s;
-        let ends = [from, to].map(|end| most(end).zip_map(&rates, rounded_up));
+        let ends = ends.map(|end| end.zip_map(&rates, rounded_up));
         let prepared = self.prepared(&ends);
         self.frames
             .iter()
@@ -143,14 +157,16 @@ impl Frame {
 
     /// Bounds on slews whose rates do not exceed these at begin and end, body axes.
     fn bound(&self, ends: &[Vector3<f64>; 2]) -> Option<SlewBound> {
-        let seen = |end: &Vector3<f64>| {
-            Vector3::from_fn(|i, _| component(&self.axes.column(i).into_owned(), end))
-        };
         let ends = EndRates {
-            begin_rad_s: seen(&ends[0]),
-            end_rad_s: seen(&ends[1]),
+            begin_rad_s: self.seen(&ends[0]),
+            end_rad_s: self.seen(&ends[1]),
         };
         SlewBound::new(self.limits, ends)
+    }
+
+    /// What the components along the frame's axes are at most, from those along the body axes.
+    fn seen(&self, most: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| component(&self.axes.column(i).into_owned(), most))
     }
 
     /// A turn in body axes as it is seen from the frame.

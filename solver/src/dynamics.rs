@@ -119,22 +119,41 @@ impl Dynamics {
         self.momentum != Vector3::zeros()
     }
 
-    /// Greatest component of the body rate along a direction in body axes, rad/s times its length,
-    /// that wheel speeds within their limits allow at any attitude, to either side:
-    /// `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`, so
-    /// `d . w` is largest with every wheel at the limit of the sign that suits it.
-    pub(crate) fn reachable_rate(&self, direction: &Vector3<f64>) -> f64 {
+    /// `J^-1`, wheels locked. `None` never, for a valid spacecraft.
+    fn locked_inertia_inverse(&self) -> Option<Matrix3<f64>> {
         let spin = self
             .actuators
             .iter()
             .map(|wheel| wheel.axis * wheel.inertia * wheel.axis.transpose())
             .sum::<Matrix3<f64>>();
-        let Some(inverse) = (self.inertia + spin).try_inverse() else {
+        (self.inertia + spin).try_inverse()
+    }
+
+    /// The middle of the eigenvalues of `J^-1`, 1/(kg m²): what a sphere nearest to the body has.
+    pub(crate) fn mean_inverse_inertia(&self) -> f64 {
+        self.locked_inertia_inverse().map_or(0.0, |inverse| {
+            let values = inverse.symmetric_eigenvalues();
+            0.5 * (values.min() + values.max())
+        })
+    }
+
+    /// Greatest component of the body rate along a direction in body axes, rad/s times its length,
+    /// that wheel speeds within their limits allow at any attitude, to either side:
+    /// `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`, so
+    /// `d . w` is largest with every wheel at the limit of the sign that suits it.
+    pub(crate) fn reachable_rate(&self, direction: &Vector3<f64>) -> f64 {
+        self.reachable_relative_rate(direction, 0.0)
+    }
+
+    /// The same of the rate relative to axes that turn in space with a share of the momentum, in
+    /// 1/(kg m²): of `w - share R(q)^T H`.
+    pub(crate) fn reachable_relative_rate(&self, direction: &Vector3<f64>, share: f64) -> f64 {
+        let Some(inverse) = self.locked_inertia_inverse() else {
             return f64::INFINITY;
         };
         let lever = inverse.tr_mul(direction);
         let held = lever.dot(&self.locked_momentum).abs();
-        let turned = lever.norm() * self.momentum.norm();
+        let turned = (lever - direction * share).norm() * self.momentum.norm();
         self.actuators.iter().fold(held + turned, |sum, wheel| {
             let share = lever.dot(&wheel.axis).abs() * wheel.inertia;
             // A wheel without a limit that does not turn an axis leaves it alone.
@@ -144,6 +163,34 @@ impl Dynamics {
                 0.0
             }
         })
+    }
+
+    /// Greatest component along a direction in body axes of `(J_eff^-1 - share) (w x R^T H)`, rad/s²
+    /// times its length: the acceleration that momentum makes, relative to axes that turn with a
+    /// share of it. By the rules of triple products it is at most `|H| |(J_eff^-1 d - share d) x w|`,
+    /// convex in `w`, so at most its largest value at a corner of the box of rates.
+    pub(crate) fn gyroscopic_acceleration(&self, direction: &Vector3<f64>, share: f64) -> f64 {
+        let lever = self.inertia_inverse.tr_mul(direction) - direction * share;
+        if !self.has_momentum() || lever == Vector3::zeros() {
+            return 0.0;
+        }
+        let rates = self.reachable_rates().inf(&self.max_rate);
+        let by_norm = lever.norm() * self.max_rate_norm;
+        let by_corner = if rates.iter().all(|rate| rate.is_finite()) {
+            let half = [
+                [1.0, 1.0, 1.0],
+                [1.0, 1.0, -1.0],
+                [1.0, -1.0, 1.0],
+                [-1.0, 1.0, 1.0],
+            ];
+            half.iter().fold(0.0, |most, signs| {
+                let corner = rates.component_mul(&Vector3::from(*signs));
+                f64::max(most, lever.cross(&corner).norm())
+            })
+        } else {
+            f64::INFINITY
+        };
+        by_norm.min(by_corner) * self.momentum.norm()
     }
 
     /// Greatest rate about each body axis, rad/s, see [`Self::reachable_rate`].

@@ -88,12 +88,21 @@ fn a_plan_whose_certified_bound_is_within_the_gap_asked_for_is_proved() {
 }
 
 #[test]
-fn stored_momentum_has_no_bound_and_says_so() {
-    let mut spec = published_targets_spec(&["a"]);
+fn stored_momentum_is_bounded_where_speeds_are_limited() {
+    let mut spec = published_targets_spec(&["a", "h"]);
     spec.start.wheel_speed_rad_s = Some(vec![60.0, -40.0, 50.0]);
     let plan = plan_of(&spec);
-    assert_eq!(plan.certified_lower_bound_s, None);
-    assert_eq!(plan.legs[0].certified_lower_bound_s, None);
+    assert_legs_keep_their_bounds(&plan);
+    for row in table(&spec, LegKind::RestToRest) {
+        let bound = row.certified_lower_bound_s.expect("a bound");
+        let duration = row.duration_s.expect("a slew");
+        assert!(bound <= duration * (1.0 + ROUNDING), "{row:?}");
+        assert!(bound > 0.8 * duration, "{row:?}");
+    }
+    for wheel in &mut spec.spacecraft.wheels {
+        wheel.max_speed_rad_s = None;
+    }
+    spec.spacecraft.max_body_rate_rad_s = [None; 3];
     for row in table(&spec, LegKind::Certified) {
         assert_eq!(
             (row.certified_lower_bound_s, row.status.as_str()),

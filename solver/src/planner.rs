@@ -28,7 +28,7 @@ use places::Places;
 use std::time::{Duration, Instant};
 use tours::Tours;
 
-pub use fixed_order::{OrderError, fly_order};
+pub use fixed_order::{Effort, OrderError, fly_order};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]

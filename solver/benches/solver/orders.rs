@@ -5,9 +5,9 @@ use divan::counter::ItemsCount;
 use nalgebra::Vector3;
 use slewplan_solver::attitude::Attitude;
 use slewplan_solver::legs::{LegStore, StoredLeg};
-use slewplan_solver::planner::{Run, fly_order};
+use slewplan_solver::planner::{Effort, Run, fly_order};
 use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
+use slewplan_solver::spec::{AttitudeSpec, TargetSpec};
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
@@ -30,70 +30,112 @@ impl LegStore for Memory {
     }
 }
 
-/// Flies the targets in the order in which they are listed, by one thread; the items counted are
-/// the phases.
-fn fly(bencher: Bencher<'_, '_>, scenario: &Scenario, legs_are_known: bool) {
-    let order: Vec<usize> = (0..scenario.targets().len()).collect();
-    let phases = order.len() + usize::from(scenario.end().is_some());
+/// What is there before a tour is flown.
+#[derive(Clone, Copy)]
+enum Given {
+    /// Nothing, and no leg is solved: one program from slews about the eigenaxis.
+    ColdStart,
+    /// Nothing: legs are solved first.
+    Nothing,
+    /// The legs.
+    Legs,
+}
+
+/// Flies the targets of tours in the order in which they are listed, by one thread; the items counted
+/// are the phases.
+fn fly(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
+    let effort = match given {
+        Given::ColdStart => Effort::Direct,
+        Given::Nothing | Given::Legs => Effort::FromLegs,
+    };
     let memory = Memory::default();
     on_threads(1, |run| {
         let filling = Run {
             legs: &memory,
             ..run
         };
-        let plan = planned(fly_order(scenario, &order, filling).expect("an order"));
-        assert_eq!(plan.legs.len(), phases);
-        let run = if legs_are_known { filling } else { run };
+        let fly = |tour: &Scenario, run| {
+            let order: Vec<usize> = (0..tour.targets().len()).collect();
+            planned(fly_order(tour, &order, effort, run).expect("an order"))
+        };
+        let phases: usize = tours.iter().map(|tour| fly(tour, filling).legs.len()).sum();
+        let run = match given {
+            Given::ColdStart | Given::Nothing => run,
+            Given::Legs => filling,
+        };
         bencher
             .counter(ItemsCount::new(phases))
-            .bench_local(|| fly_order(scenario, &order, run));
+            .bench_local(|| tours.iter().map(|tour| fly(tour, run)).count());
     });
 }
 
-/// Targets at which only the z rate vanishes, each turned against the one before by 40 to 80
-/// degrees about any axis: the program does not fall into pieces, no leg is like another, and a
-/// longer tour has legs of the same kind as a shorter one.
-fn walk(targets: usize) -> Scenario {
+/// Phases of [`walk`].
+const WALK: usize = 100;
+
+/// One walk cut into tours of so many phases. At its targets only the z rate vanishes, and each is
+/// turned against the one before by 40 to 80 degrees about any axis: no tour falls into pieces, no leg
+/// is like another, and tours of every length have the same legs.
+fn walk(phases: usize) -> Vec<Scenario> {
     let mut generator = Generator::new(0);
     let mut attitude = Attitude::identity();
-    let targets = (0..targets).map(|i| {
+    let mut step = || {
         let angle = generator.between(40.0, 80.0).to_radians();
         let turn = Vector3::from(generator.direction()) * angle;
         attitude = attitude.then_in_body(&Attitude::from_rotation_vector(turn));
-        TargetSpec {
-            id: format!("t{i}"),
-            attitude: AttitudeSpec::Quaternion(attitude.xyzw()),
-            zero_rate_axes: Some([false, false, true]),
-            ..TargetSpec::default()
-        }
+        AttitudeSpec::Quaternion(attitude.xyzw())
+    };
+    let mut start = AttitudeSpec::default();
+    let tours = (0..WALK / phases).map(|_| {
+        let mut spec = experiment_a_spec();
+        spec.start.attitude = start.clone();
+        spec.end = None;
+        spec.targets = (0..phases)
+            .map(|i| TargetSpec {
+                id: format!("t{i}"),
+                attitude: step(),
+                zero_rate_axes: Some([false, false, true]),
+                ..TargetSpec::default()
+            })
+            .collect();
+        start = spec.targets[phases - 1].attitude.clone();
+        scenario_of(&spec)
     });
-    scenario_of(&ScenarioSpec {
-        targets: targets.collect(),
-        end: None,
-        ..experiment_a_spec()
-    })
+    tours.collect()
 }
 
-/// The best order of experiment A when nothing is known: legs, tour and verification.
-#[divan::bench(sample_count = 10, sample_size = 1)]
+/// The best order of experiment A.
+fn best_of_a() -> [Scenario; 1] {
+    let mut spec = experiment_a_spec();
+    spec.targets.reverse();
+    [scenario_of(&spec)]
+}
+
+/// The best order of experiment A as one program from a cold start, with its verification.
+#[divan::bench(sample_count = 50, sample_size = 1)]
 fn experiment_a(bencher: Bencher) {
-    fly(bencher, &scenario_of(&experiment_a_spec()), false);
+    fly(bencher, &best_of_a(), Given::ColdStart);
 }
 
-/// The same when its legs are known: the multi-phase program and the verification alone.
+/// The same as the search flies it: legs first, then the program from two starts.
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn experiment_a_from_legs(bencher: Bencher) {
+    fly(bencher, &best_of_a(), Given::Nothing);
+}
+
+/// The same when its legs are known.
 #[divan::bench(sample_count = 20, sample_size = 1)]
 fn experiment_a_with_known_legs(bencher: Bencher) {
-    fly(bencher, &scenario_of(&experiment_a_spec()), true);
+    fly(bencher, &best_of_a(), Given::Legs);
 }
 
-/// Growth with the number of phases, everything included: the rate of items is to stay the same.
-#[divan::bench(args = [10, 20, 50, 100], sample_count = 3, sample_size = 1)]
-fn phases(bencher: Bencher, targets: usize) {
-    fly(bencher, &walk(targets), false);
+/// A hundred phases in tours of so many: the program's cost per phase is to stay the same.
+#[divan::bench(args = [10, 20, 50, 100], sample_count = 5, sample_size = 1)]
+fn phases(bencher: Bencher, in_a_tour: usize) {
+    fly(bencher, &walk(in_a_tour), Given::ColdStart);
 }
 
-/// Growth of the multi-phase program and the verification alone.
+/// The same with legs and two programs.
 #[divan::bench(args = [10, 20, 50, 100], sample_count = 3, sample_size = 1)]
-fn phases_with_known_legs(bencher: Bencher, targets: usize) {
-    fly(bencher, &walk(targets), true);
+fn phases_from_legs(bencher: Bencher, in_a_tour: usize) {
+    fly(bencher, &walk(in_a_tour), Given::Nothing);
 }

@@ -14,9 +14,11 @@ pub(super) const RANGE_SLACK: f64 = 1e-7;
 /// Rates closer than this share are made equal.
 pub(super) const EQUAL: f64 = 1e-7;
 /// Entries of the table of cones per halving of the gap.
-const CONES_PER_OCTAVE: u32 = 16;
+const CONES_PER_OCTAVE: u32 = 8;
 /// Halvings of the gap that the table spans.
 const OCTAVES: u32 = 14;
+/// Steps that find a level to this power of two of its height above the minimum.
+const BISECTIONS: usize = 6;
 
 /// What the rates fix.
 #[derive(Debug, Clone)]
@@ -54,12 +56,12 @@ impl Levels {
         };
         for i in 0..3 {
             let longest = levels.longest_gap(i);
+            let mut level = levels.last_level(i);
             levels.cones[i] = (0..=CONES_PER_OCTAVE * OCTAVES)
                 .map(|k| {
-                    levels.cone_of(
-                        i,
-                        longest * (-f64::from(k) / f64::from(CONES_PER_OCTAVE)).exp2(),
-                    )
+                    let shrunk = (-f64::from(k) / f64::from(CONES_PER_OCTAVE)).exp2();
+                    level = levels.level_of(i, longest * shrunk, level);
+                    levels.cone_on(i, level)
                 })
                 .collect();
         }
@@ -122,25 +124,37 @@ impl Levels {
         self.cones[i][entry.min(self.cones[i].len() - 1)]
     }
 
-    /// The cone of one length of the gap, rounded up.
-    fn cone_of(&self, i: usize, gap: f64) -> f64 {
-        let (mut low, mut high) = (self.c[i], self.last_level(i));
-        if self.gap(i, high) > gap {
-            for _ in 0..60 {
-                let middle = 0.5 * (low + high);
-                if self.gap(i, middle) < gap {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
+    /// The level on which the gap about axis `i` is so long, rounded up; not above a given one.
+    fn level_of(&self, i: usize, gap: f64, most: f64) -> f64 {
+        if self.gap(i, most) <= gap {
+            return most;
+        }
+        // From the minimum, where the gap vanishes; what is left of the interval only widens a cone.
+        let longer = |above: f64| self.gap(i, self.c[i] + above) >= gap;
+        let mut high = most - self.c[i];
+        while longer(0.5 * high) && high > f64::EPSILON {
+            high *= 0.5;
+        }
+        let mut low = 0.5 * high;
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if longer(middle) {
+                high = middle;
+            } else {
+                low = middle;
             }
         }
+        self.c[i] + high
+    }
+
+    /// The largest angle of the costate from axis `i` on a level.
+    fn cone_on(&self, i: usize, level: f64) -> f64 {
         // On the circle m_i is least at the walls, where one other component is zero:
         // c_i cos x + c_o sin x = h, first root.
         let (j, k) = others(i);
         let root = |o: usize| {
             let length = self.c[i].hypot(self.c[o]);
-            self.c[o].atan2(self.c[i]) - (high / length).min(1.0).acos()
+            self.c[o].atan2(self.c[i]) - (level / length).min(1.0).acos()
         };
         root(j).max(root(k)).clamp(0.0, PI) + RANGE_SLACK
     }

@@ -187,8 +187,8 @@ impl Circle<'_> {
             let duration = step.duration.unwrap_or(0.0);
             turn = product(&about(&step.rate, duration), &turn);
             lasted += duration;
-            let other = eigenaxis_time(&turn, self.c).min(best_axis_sequence(&turn, self.c).0);
-            other < lasted * (1.0 - CLEARLY_SHORTER)
+            let shorter = lasted * (1.0 - CLEARLY_SHORTER);
+            eigenaxis_time(&turn, self.c) < shorter || best_axis_sequence(&turn, self.c).0 < shorter
         })
     }
 }

@@ -146,6 +146,16 @@ impl<'a> LegSolver<'a> {
         (rest, self.table(LegKind::LowerBound, pairs))
     }
 
+    /// The same tables with nothing but the legs that are no part of a longer program.
+    pub(super) fn lone_legs(&mut self, pairs: &[(Place, Place)]) -> (LegTable, LegTable) {
+        let places = self.places;
+        let fixed = |place: Place| places.waypoint(place).is_fixed(&places.dynamics);
+        let mut lone = pairs.to_vec();
+        lone.retain(|(from, to)| fixed(*from) && fixed(*to));
+        let rest = self.table(LegKind::RestToRest, &[]);
+        (rest, self.table(LegKind::LowerBound, &lone))
+    }
+
     fn solve_missing(&mut self, kind: LegKind, canonical: &[CanonicalLeg]) {
         let mut listed = HashSet::new();
         let missing: Vec<&CanonicalLeg> = canonical

@@ -136,11 +136,13 @@ impl<'a> Tours<'a> {
             let leg = table.get(from, to)?;
             (leg.flown.status == NlpStatus::Converged).then(|| leg.flown.profile.clone())
         };
-        let starts: [&dyn Fn(Place, Place) -> Option<Profile>; 3] = [
+        let all: [&dyn Fn(Place, Place) -> Option<Profile>; 3] = [
             &|from, to| solved(self.rest, from, to),
             &|from, to| solved(self.free, from, to),
             &|_, _| None,
         ];
+        let knows_legs = self.free.get(route[0], route[1]).is_some();
+        let starts = if knows_legs { &all[..] } else { &all[2..] };
         let mut best = self.solve_from(route, starts[0]);
         for (tried, start) in starts.iter().enumerate().skip(1) {
             let settled = best.status == NlpStatus::Converged && tried >= USUAL_STARTS;

@@ -3,6 +3,7 @@
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+mod certify;
 mod failure;
 mod input;
 mod legs;
@@ -40,6 +41,8 @@ enum Command {
     Validate(validate::Arguments),
     /// Fly a plan made by anyone again and test every limit
     Verify(verify::Arguments),
+    /// Prove the certified bounds of a plan a second time
+    Certify(certify::Arguments),
     /// Run the HTTP service
     Serve(serve::Arguments),
     /// Print the description of the HTTP service
@@ -49,13 +52,13 @@ enum Command {
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// The answer is complete: optimal, valid, passed.
+    /// The answer is complete: optimal, valid, passed, confirmed.
     Complete,
     /// An error of ours or of the machine, or no answer found.
     Failed,
     /// The input is not valid.
     Invalid,
-    /// No plan can exist, or the plan did not pass.
+    /// No plan can exist, or the plan did not pass or its bounds are not confirmed.
     Negative,
     /// Stopped with the best answer so far.
     Stopped,
@@ -99,6 +102,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Legs(arguments) => legs::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
+        Command::Certify(arguments) => certify::run(arguments),
         Command::Serve(arguments) => serve::run(arguments),
         Command::Openapi => openapi::run(),
     }

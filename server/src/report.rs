@@ -1,9 +1,11 @@
 //! Answers as text for people.
 
 use slewplan_solver::plan::{Margins, Outcome, Verification};
+use slewplan_solver::planner::{CheckedClaims, PlanClaims};
 use slewplan_solver::problem::Problem;
 use slewplan_solver::scenario::Scenario;
 
+mod certification;
 mod figures;
 mod published;
 #[cfg(test)]
@@ -38,4 +40,9 @@ pub(crate) fn verification(
     warnings: &[Problem],
 ) -> String {
     figures::verification(found) + &figures::margins(margins) + &figures::warnings(warnings)
+}
+
+/// The text of a plan's claims and what became of them.
+pub(crate) fn certification(claims: &PlanClaims, checked: &CheckedClaims) -> String {
+    certification::claims(claims, checked)
 }

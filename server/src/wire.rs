@@ -5,6 +5,8 @@
 //! collects what is wrong. Writing is plain `serde` on structs whose fields carry their units.
 
 pub(crate) mod attitude;
+pub(crate) mod certification;
+pub(crate) mod claims;
 pub(crate) mod csv;
 pub(crate) mod document;
 pub(crate) mod flight;

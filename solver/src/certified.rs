@@ -19,10 +19,10 @@
 //!
 //! A rate component that is stopped or prescribed is known at the end of a leg; one within bounds is
 //! at most as large as the larger of these (both are rounded up, [`SHARES`]); of one that is free
-//! nothing is known. Nothing else is used, so **the bound holds for the leg as part of any tour with the same conditions at its two
-//! ends**, and bounds of the legs of a tour add up. In a tour through targets with free components
-//! only its first and last legs begin or end at rest, so the ramps of these components are counted
-//! there and nowhere else.
+//! nothing is known. Nothing else is used, so **the bound holds for the leg as part of any tour with
+//! the same conditions at its two ends**, and bounds of the legs of a tour add up. In a tour through
+//! targets with free components only its first and last legs begin or end at rest, so the ramps of
+//! these components are counted there and nowhere else.
 //!
 //! # What is not bounded
 //!
@@ -35,6 +35,7 @@ mod momentum;
 
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
+use crate::kinematic_bound::certificate::Certificate;
 use crate::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
 use crate::scenario::RateCondition;
 use crate::transcription::Waypoint;
@@ -106,17 +107,36 @@ impl CertifiedBounds {
         if let Some(momentum) = &self.momentum {
             return momentum.leg([&from.attitude, &to.attitude], &ends, TOLERANCE);
         }
-        let rates = self.frames.first()?.limits.rates_rad_s;
-        let ends = ends.map(|end| end.zip_map(&rates, rounded_up));
-        let prepared = self.prepared(&ends);
-        self.frames
-            .iter()
-            .zip(prepared.iter())
-            .filter_map(|(frame, bound)| {
-                let turn = frame.turn(&turn)?;
-                Some(bound.as_ref()?.lower_bound_s(&[turn], TOLERANCE))
-            })
+        let prepared = self.prepared_for(ends)?;
+        self.seen(&turn, &prepared)
+            .map(|(bound, turn)| bound.lower_bound_s(&[turn], TOLERANCE))
             .reduce(f64::max)
+    }
+
+    /// The claim of [`Self::leg`] with all that a second proof needs; `None` where nothing is
+    /// proved, and with momentum, for which there is no second proof.
+    pub(crate) fn certificate(&self, from: &Waypoint, to: &Waypoint) -> Option<Certificate> {
+        let turn = from.attitude.relative_to(&to.attitude);
+        let prepared = self.prepared_for([most(from), most(to)])?;
+        self.seen(&turn, &prepared)
+            .map(|(bound, turn)| bound.certificate(&[turn], TOLERANCE))
+            .max_by(|a, b| a.duration_s.total_cmp(&b.duration_s))
+    }
+
+    /// The bounds of the frames that have one, each with a turn as it is seen from there.
+    fn seen<'s>(
+        &'s self,
+        turn: &'s Attitude,
+        prepared: &'s [Option<SlewBound>],
+    ) -> impl Iterator<Item = (&'s SlewBound, Attitude)> {
+        let frames = self.frames.iter().zip(prepared);
+        frames.filter_map(|(frame, bound)| Some((bound.as_ref()?, frame.turn(turn)?)))
+    }
+
+    /// The bounds of all frames for ends with rates of these sizes at most, body axes.
+    fn prepared_for(&self, ends: [Vector3<f64>; 2]) -> Option<Arc<[Option<SlewBound>]>> {
+        let rates = self.frames.first()?.limits.rates_rad_s;
+        Some(self.prepared(&ends.map(|end| end.zip_map(&rates, rounded_up))))
     }
 
     fn prepared(&self, ends: &[Vector3<f64>; 2]) -> Arc<[Option<SlewBound>]> {

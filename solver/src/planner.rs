@@ -3,6 +3,7 @@
 mod assemble;
 mod canonical;
 mod certified;
+mod claims;
 mod conclude;
 mod fixed_order;
 mod legs;
@@ -28,6 +29,7 @@ use places::Places;
 use std::time::{Duration, Instant};
 use tours::Tours;
 
+pub use claims::{CheckedClaims, LegClaim, Objection, Obstacle, PlanClaims, Verdict, certify_plan};
 pub use fixed_order::{Effort, OrderError, fly_order};
 
 /// What a solve needs from its surroundings.

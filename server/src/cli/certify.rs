@@ -1,0 +1,72 @@
+//! `slewplan certify`: proves the certified bounds of a plan a second time.
+
+use super::failure::Failure;
+use super::solve::{Threads, start_pool};
+use super::{Exit, input, output};
+use crate::progress::{self, ProgressMode};
+use crate::report;
+use crate::signals;
+use crate::wire;
+use crate::wire::certification::CertificationDocument;
+use slewplan_solver::legs::NoStore;
+use slewplan_solver::planner::{self, Run};
+use slewplan_solver::stop::StopSignal;
+use std::io::{IsTerminal, stdout};
+use std::path::PathBuf;
+
+/// What `certify` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The scenario, - for standard input
+    scenario: PathBuf,
+    /// The plan in JSON, - for standard input
+    plan: PathBuf,
+    /// Print text for people, as on a terminal
+    #[arg(long)]
+    summary: bool,
+    #[command(flatten)]
+    threads: Threads,
+    /// How to show progress on standard error
+    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    progress: ProgressMode,
+}
+
+/// Prints what became of every claim on standard output.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
+        return Err(Failure::StandardInputTwice);
+    }
+    let scenario = input::scenario(&arguments.scenario, None)?.scenario;
+    let claims =
+        wire::claims::read(&input::read(&arguments.plan)?, &scenario).map_err(|problems| {
+            Failure::Invalid {
+                name: input::name(&arguments.plan),
+                problems,
+            }
+        })?;
+    let pool = start_pool(&arguments.threads)?;
+    let stop = StopSignal::new();
+    let received = signals::listen(&stop).map_err(Failure::Signals)?;
+    let observer = progress::observer(arguments.progress);
+    let run = Run {
+        pool: &pool,
+        stop: &stop,
+        observer: &*observer,
+        legs: &NoStore,
+    };
+    let checked = planner::certify_plan(&scenario, &claims, run);
+    drop(observer);
+    output::print(&if arguments.summary || stdout().is_terminal() {
+        report::certification(&claims, &checked)
+    } else {
+        output::json(&CertificationDocument::new(&claims, &checked))?
+    })?;
+    // What was not reached before a signal came is told to be not checked.
+    let signal = received.exit_code().map(Exit::Signalled);
+    let confirmed = checked.confirmed();
+    Ok(match (confirmed, signal) {
+        (true, _) => Exit::Complete,
+        (false, Some(signal)) => signal,
+        (false, None) => Exit::Negative,
+    })
+}

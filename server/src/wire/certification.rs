@@ -1,0 +1,77 @@
+//! The answer of `certify`.
+
+use super::number::Number;
+use serde::Serialize;
+use slewplan_solver::planner::{CheckedClaims, PlanClaims, Verdict};
+
+/// What became of the claims of a plan.
+#[derive(Debug, Serialize)]
+pub(crate) struct CertificationDocument<'a> {
+    /// Whether something is claimed and all of it is proved.
+    confirmed: bool,
+    legs: Vec<LegDocument<'a>>,
+    /// The claim about all tours.
+    tour: ClaimDocument,
+}
+
+#[derive(Debug, Serialize)]
+struct LegDocument<'a> {
+    from: &'a str,
+    to: &'a str,
+    #[serde(flatten)]
+    claim: ClaimDocument,
+}
+
+#[derive(Debug, Serialize)]
+struct ClaimDocument {
+    certified_lower_bound_s: Option<Number>,
+    verdict: &'static str,
+    reason: Option<String>,
+}
+
+impl<'a> CertificationDocument<'a> {
+    /// Claims with what became of them.
+    pub(crate) fn new(claims: &'a PlanClaims, checked: &CheckedClaims) -> Self {
+        let legs = claims.legs.iter().zip(&checked.legs);
+        Self {
+            confirmed: checked.confirmed(),
+            legs: legs
+                .map(|(leg, verdict)| LegDocument {
+                    from: &leg.from,
+                    to: &leg.to,
+                    claim: ClaimDocument::new(leg.lower_bound_s, verdict),
+                })
+                .collect(),
+            tour: ClaimDocument::new(claims.lower_bound_s, &checked.tour),
+        }
+    }
+}
+
+impl ClaimDocument {
+    fn new(bound: Option<f64>, verdict: &Verdict) -> Self {
+        Self {
+            certified_lower_bound_s: bound.map(Number),
+            verdict: name(verdict),
+            reason: reason(verdict),
+        }
+    }
+}
+
+/// The stable text of a verdict.
+pub(crate) const fn name(verdict: &Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoClaim => "no_claim",
+        Verdict::Confirmed => "confirmed",
+        Verdict::Rejected(_) => "rejected",
+        Verdict::NotChecked(_) => "not_checked",
+    }
+}
+
+/// Why a claim is not confirmed.
+pub(crate) fn reason(verdict: &Verdict) -> Option<String> {
+    match verdict {
+        Verdict::NoClaim | Verdict::Confirmed => None,
+        Verdict::Rejected(objection) => Some(objection.to_string()),
+        Verdict::NotChecked(obstacle) => Some(obstacle.to_string()),
+    }
+}

@@ -100,12 +100,19 @@ impl CertifiedBounds {
     }
 
     /// A duration, s, that no slew between two waypoints undercuts, whatever happens before and
-    /// after it; `None` when nothing is proved. Conditions of the wheels are not used.
-    pub(crate) fn leg(&self, from: &Waypoint, to: &Waypoint) -> Option<f64> {
+    /// after it; `None` when nothing is proved. Conditions of the wheels are not used. The momentum,
+    /// N m s, is that of the spacecraft in the frame of the two attitudes.
+    pub(crate) fn leg(
+        &self,
+        from: &Waypoint,
+        to: &Waypoint,
+        momentum: &Vector3<f64>,
+    ) -> Option<f64> {
         let turn = from.attitude.relative_to(&to.attitude);
         let ends = [most(from), most(to)];
-        if let Some(momentum) = &self.momentum {
-            return momentum.leg([&from.attitude, &to.attitude], &ends, TOLERANCE);
+        if let Some(bounds) = &self.momentum {
+            let held = [from, to].map(|end| end.attitude.to_body(*momentum));
+            return bounds.leg(&turn, &held, &ends, TOLERANCE);
         }
         let prepared = self.prepared_for(ends)?;
         self.seen(&turn, &prepared)

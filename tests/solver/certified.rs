@@ -1,10 +1,12 @@
 //! Certified bounds hold for every slew that is flown, and say how good a plan is.
 
+use nalgebra::Vector3;
+use slewplan_solver::attitude::Attitude;
 use slewplan_solver::legs::LegKind;
 use slewplan_solver::plan::{LowerBoundKind, Optimality, Plan};
 use slewplan_solver::planner::{self, LegRow, Run, Shard, leg_table};
 use slewplan_solver::progress::{Observer, Progress, Stage};
-use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
 use slewplan_solver::stop::StopSignal;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
@@ -108,6 +110,29 @@ fn stored_momentum_is_bounded_where_speeds_are_limited() {
             (row.certified_lower_bound_s, row.status.as_str()),
             (None, "none")
         );
+    }
+}
+
+#[test]
+fn bounds_with_stored_momentum_do_not_depend_on_the_reference_frame() {
+    let mut spec = published_targets_spec(&["a", "d", "h"]);
+    spec.start.wheel_speed_rad_s = Some(vec![60.0, -90.0, 40.0]);
+    let scenario = scenario_of(&spec);
+    let turn = Attitude::from_rotation_vector(Vector3::new(0.7, -1.4, 2.0));
+    let turned = |attitude: &Attitude| AttitudeSpec::Quaternion(turn.then_in_body(attitude).xyzw());
+    let mut other = spec.clone();
+    other.start.attitude = turned(&scenario.start().attitude);
+    for (target, known) in other.targets.iter_mut().zip(scenario.targets()) {
+        target.attitude = turned(&known.attitude);
+    }
+    other.end = None;
+    spec.end = None;
+    let kind = LegKind::Certified;
+    for (one, same) in table(&spec, kind).iter().zip(&table(&other, kind)) {
+        let bounds = [one, same].map(|row| row.certified_lower_bound_s.expect("a bound"));
+        // Least times are found to 1e-4.
+        let difference = (bounds[0] - bounds[1]).abs();
+        assert!(difference < 2e-4 * bounds[0], "{one:?} {same:?}");
     }
 }
 

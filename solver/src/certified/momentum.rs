@@ -32,8 +32,6 @@ use nalgebra::{Matrix3, Vector3};
 /// Bounds on the slews of a spacecraft with momentum.
 #[derive(Debug)]
 pub(super) struct MomentumBounds {
-    /// `H`, reference frame.
-    momentum: Vector3<f64>,
     frames: Vec<Drifting>,
 }
 
@@ -54,23 +52,21 @@ impl MomentumBounds {
             .iter()
             .flat_map(|axes| shares.map(|share| (*axes, share)));
         Self {
-            momentum: dynamics.momentum,
             frames: all
                 .filter_map(|(axes, share)| Drifting::of(dynamics, axes, share))
                 .collect(),
         }
     }
 
-    /// A duration, s, that no slew between two attitudes undercuts, with rates at the ends of these
-    /// sizes at most, body axes.
+    /// A duration, s, that no slew undercuts that makes a turn, with the momentum (N m s) and rates of
+    /// these sizes at most at its two ends, all in body axes there.
     pub(super) fn leg(
         &self,
-        [from, to]: [&Attitude; 2],
+        turn: &Attitude,
+        held: &[Vector3<f64>; 2],
         ends: &[Vector3<f64>; 2],
         tolerance: f64,
     ) -> Option<f64> {
-        let turn = from.relative_to(to);
-        let held = [from, to].map(|end| end.to_body(self.momentum));
         self.frames
             .iter()
             .filter_map(|drifting| {
@@ -85,7 +81,7 @@ impl MomentumBounds {
                     begin_rad_s: most[0],
                     end_rad_s: most[1],
                 };
-                let turn = frame.turn(&turn)?;
+                let turn = frame.turn(turn)?;
                 Some(bound.drifting_lower_bound_s(&turn, &drifts[0], ends, tolerance))
             })
             .reduce(f64::max)

@@ -211,7 +211,9 @@ fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
 fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     let begin = Instant::now();
     CertifiedLeg {
-        lower_bound: places.certified.leg(&leg.from, &leg.to),
+        lower_bound: places
+            .certified
+            .leg(&leg.from, &leg.to, &leg.dynamics.momentum),
         solve_time: begin.elapsed().as_secs_f64(),
     }
 }
@@ -230,11 +232,7 @@ fn solve(
         .lower_bound;
     let problem = leg.problem();
     let mut solved = standstill(&problem).map_or_else(
-        || {
-            slew::solve(&problem, places.certified.leg(&leg.from, &leg.to), &|| {
-                interruption(stop)
-            })
-        },
+        || slew::solve(&problem, certified, &|| interruption(stop)),
         |flown| slew::Slew { flown, solves: 0 },
     );
     let converged = solved.flown.status == NlpStatus::Converged;

@@ -1,5 +1,6 @@
 //! The command line as a caller sees it: exit codes, documents, messages.
 
+mod certify;
 mod files;
 mod invalid;
 mod legs;

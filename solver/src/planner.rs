@@ -27,6 +27,7 @@ use conclude::Conclusions;
 use legs::LegSolver;
 use places::Places;
 use std::time::{Duration, Instant};
+use tables::CertifiedLeg;
 use tours::Tours;
 
 pub use claims::{CheckedClaims, LegClaim, Objection, Obstacle, PlanClaims, Verdict, certify_plan};
@@ -147,7 +148,8 @@ pub fn leg_table(
         .collect();
     let mut solver = LegSolver::new(&places, run, &stop);
     let rows: Vec<_> = if kind == LegKind::Certified {
-        certified_rows(&mut solver, &pairs)
+        let rows = certified_rows(&mut solver, &pairs);
+        rows.into_iter().flatten().collect()
     } else {
         let table = solver.table(kind, &pairs);
         let row = |(from, to): &(Place, Place)| {
@@ -168,25 +170,37 @@ pub fn leg_table(
     (rows, complete)
 }
 
+/// What is proved of the legs between pairs of places at full rest, without solving any; `None` for
+/// those that the stop signal prevents.
+///
+/// The places must be those of the scenario.
+#[must_use]
+pub fn certified_legs(
+    scenario: &Scenario,
+    pairs: &[(Place, Place)],
+    run: Run<'_>,
+) -> Vec<Option<LegRow>> {
+    let stop = limited(scenario, run.stop);
+    let places = Places::of(scenario);
+    certified_rows(&mut LegSolver::new(&places, run, &stop), pairs)
+}
+
 /// The rows of a table without any program.
-fn certified_rows(solver: &mut LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<LegRow> {
+fn certified_rows(solver: &mut LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Option<LegRow>> {
     let kind = LegKind::Certified;
-    let table = solver.certified_table(kind, pairs);
+    let legs = solver.certified_legs(kind, pairs);
     let places = solver.places();
-    let row = |(from, to): &(Place, Place)| {
-        let leg = table.get(*from, *to)?;
-        let proved = leg.lower_bound.is_some();
-        Some(LegRow {
-            from: places.name(*from),
-            to: places.name(*to),
-            kind,
-            duration_s: None,
-            certified_lower_bound_s: leg.lower_bound,
-            solve_time_s: leg.solve_time,
-            status: if proved { "proved" } else { "none" }.into(),
-        })
+    let row = |((from, to), leg): (&(Place, Place), CertifiedLeg)| LegRow {
+        from: places.name(*from),
+        to: places.name(*to),
+        kind,
+        duration_s: None,
+        certified_lower_bound_s: leg.lower_bound,
+        solve_time_s: leg.solve_time,
+        status: leg.lower_bound.map_or("none", |_| "proved").into(),
     };
-    pairs.iter().filter_map(row).collect()
+    let legs = pairs.iter().zip(legs);
+    legs.map(|(pair, leg)| Some(row((pair, leg?)))).collect()
 }
 
 /// What can be said against a valid scenario before it is solved: rests that the wheels cannot

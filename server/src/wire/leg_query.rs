@@ -19,6 +19,8 @@ pub(crate) struct LegQuery {
     pub(crate) kind: LegKind,
     /// Whether unknown legs are solved.
     pub(crate) compute: bool,
+    /// All its attitudes as targets of one scenario.
+    pub(crate) scenario: Scenario,
     /// The legs that are asked for.
     pub(crate) pairs: Vec<Pair>,
 }
@@ -30,6 +32,8 @@ pub(crate) struct Pair {
     pub(crate) from: usize,
     /// Position of the end.
     pub(crate) to: usize,
+    /// The targets of the query's scenario between which the leg is.
+    pub(crate) targets: (usize, usize),
     /// A scenario of which the leg is that from the first target to the second.
     pub(crate) scenario: Scenario,
 }
@@ -75,8 +79,9 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
     if places.pairs.len() > most {
         return Err(Refusal::TooMany(places.pairs.len()));
     }
-    check(&base, &places).map_err(Refusal::Invalid)?;
+    let scenario = check(&base, &places).map_err(Refusal::Invalid)?;
     let pairs = places.pairs.iter().enumerate().map(|(index, &(from, to))| {
+        let between = (from, to);
         let targets = vec![places.targets[from].clone(), places.targets[to].clone()];
         let spec = ScenarioSpec {
             targets,
@@ -91,6 +96,7 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
         Ok(Pair {
             from,
             to,
+            targets: between,
             scenario: valid.scenario,
         })
     });
@@ -98,6 +104,7 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
         kind,
         compute,
         pairs: pairs.collect::<Result<_, _>>()?,
+        scenario,
     })
 }
 
@@ -225,19 +232,23 @@ fn read_pairs(list: &Cursor<'_>) -> Option<(Vec<AttitudeSpec>, Vec<String>)> {
     Some(items.iter().flat_map(ends).unzip())
 }
 
-/// What is wrong with spacecraft and attitudes, or keeps the wheels from holding a rest.
-fn check(base: &ScenarioSpec, places: &Places) -> Result<(), Vec<Problem>> {
+/// A scenario with all attitudes as targets, or what is wrong with spacecraft and attitudes, or keeps
+/// the wheels from holding a rest.
+fn check(base: &ScenarioSpec, places: &Places) -> Result<Scenario, Vec<Problem>> {
     let spec = ScenarioSpec {
         targets: places.targets.clone(),
         ..base.clone()
     };
     let problems = match Scenario::try_new(&spec) {
-        Ok(valid) => planner::feasibility_problems(&valid.scenario),
+        Ok(valid) => {
+            let problems = planner::feasibility_problems(&valid.scenario);
+            if problems.is_empty() {
+                return Ok(valid.scenario);
+            }
+            problems
+        }
         Err(problems) => problems,
     };
-    if problems.is_empty() {
-        return Ok(());
-    }
     Err(problems
         .into_iter()
         .map(|problem| moved(problem, &places.pointers))

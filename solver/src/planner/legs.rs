@@ -102,13 +102,23 @@ impl<'a> LegSolver<'a> {
         Table::new(self.places, entries)
     }
 
-    /// What is proved of the legs of a kind between pairs of places, without any program; what the
-    /// stop signal prevents is left out of the table.
+    /// A table of [`Self::certified_legs`].
     pub(super) fn certified_table(
         &mut self,
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> CertifiedTable {
+        let legs = self.certified_legs(kind, pairs);
+        Table::new(self.places, pairs.iter().copied().zip(legs))
+    }
+
+    /// What is proved of the legs of a kind between pairs of places, without any program; nothing
+    /// where the stop signal prevents it.
+    pub(super) fn certified_legs(
+        &mut self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> Vec<Option<CertifiedLeg>> {
         let canonical = self.canonical(kind, pairs);
         let mut listed = HashSet::new();
         let missing: Vec<&CanonicalLeg> = canonical
@@ -125,9 +135,8 @@ impl<'a> LegSolver<'a> {
                 self.certified.insert(leg.identity.clone(), bound);
             }
         }
-        let legs = pairs.iter().zip(&canonical);
-        let entries = legs.map(|(pair, leg)| (*pair, self.certified.get(&leg.identity).copied()));
-        Table::new(self.places, entries)
+        let known = |leg: &CanonicalLeg| self.certified.get(&leg.identity).copied();
+        canonical.iter().map(known).collect()
     }
 
     fn canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<CanonicalLeg> {

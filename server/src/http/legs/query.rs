@@ -11,10 +11,11 @@ use crate::wire::leg_query::{
 use crate::wire::number::Number;
 use axum::Json;
 use axum::extract::State;
-use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};
-use slewplan_solver::planner::{self, Run, Shard};
+use slewplan_solver::legs::{LegKind, LegStore, NoStore, StoredLeg};
+use slewplan_solver::planner::{self, LegRow, Run, Shard};
 use slewplan_solver::pool::SolverPool;
 use slewplan_solver::progress::Silent;
+use slewplan_solver::sequence::Place;
 use slewplan_solver::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -115,9 +116,13 @@ fn answers(
     stop: &StopSignal,
     cache: &dyn LegStore,
 ) -> LegAnswersDocument {
-    let answered = pool.map(&query.pairs, |pair| {
-        answer(pair, query.kind, pool, stop, cache)
-    });
+    let answered = if query.kind == LegKind::Certified {
+        certified(query, pool, stop)
+    } else {
+        pool.map(&query.pairs, |pair| {
+            answer(pair, query.kind, pool, stop, cache)
+        })
+    };
     let spacecraft_key = answered
         .iter()
         .find_map(|(_, spacecraft)| spacecraft.clone());
@@ -126,6 +131,31 @@ fn answers(
         spacecraft_key,
         legs: answered.into_iter().map(|(leg, _)| leg).collect(),
     }
+}
+
+/// The answers for certified legs, in one go: they share what is prepared for the spacecraft.
+fn certified(
+    query: &LegQuery,
+    pool: &SolverPool,
+    stop: &StopSignal,
+) -> Vec<(LegAnswerDocument, Option<String>)> {
+    let place = |pair: &Pair| {
+        let (from, to) = pair.targets;
+        (Place::Target(from), Place::Target(to))
+    };
+    let places: Vec<_> = query.pairs.iter().map(place).collect();
+    let run = Run {
+        pool,
+        stop,
+        observer: &Silent,
+        legs: &NoStore,
+    };
+    let rows = planner::certified_legs(&query.scenario, &places, run);
+    let answer = |(pair, row): (&Pair, Option<LegRow>)| {
+        let source = row.as_ref().map_or(Source::Missing, |_| Source::Computed);
+        (document(pair, row, source, None), None)
+    };
+    query.pairs.iter().zip(rows).map(answer).collect()
 }
 
 /// The answer for a leg and the key of its spacecraft.
@@ -154,12 +184,20 @@ fn answer(
     let row = rows.into_iter().next();
     let source = match (&row, &seen) {
         (Some(_), Some(seen)) if seen.found => Source::Cached,
-        (Some(row), _) if row.duration_s.is_some() || kind == LegKind::Certified => {
-            Source::Computed
-        }
+        (Some(row), _) if row.duration_s.is_some() => Source::Computed,
         _ => Source::Missing,
     };
-    let document = LegAnswerDocument {
+    let document = document(pair, row, source, seen.as_ref());
+    (document, seen.map(|seen| seen.spacecraft))
+}
+
+fn document(
+    pair: &Pair,
+    row: Option<LegRow>,
+    source: Source,
+    seen: Option<&Seen>,
+) -> LegAnswerDocument {
+    LegAnswerDocument {
         from: pair.from,
         to: pair.to,
         duration_s: row.as_ref().and_then(|row| row.duration_s).map(Number),
@@ -169,9 +207,8 @@ fn answer(
             .map(Number),
         status: row.map(|row| row.status),
         source,
-        key: seen.as_ref().map(|seen| seen.key.clone()),
-    };
-    (document, seen.map(|seen| seen.spacecraft))
+        key: seen.map(|seen| seen.key.clone()),
+    }
 }
 
 /// Notes which leg the solver asked for.

@@ -4,6 +4,7 @@
 //! a waypoint leaves free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
+mod rolling;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use crate::profile::Profile;
 use crate::transcription::{Reserves, Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
 use nalgebra::DVector;
+pub(crate) use rolling::fly_rolling;
 
 /// A program to solve on the way to another.
 struct Phase {
@@ -182,13 +184,8 @@ impl<'a> Flight<'a> {
 
     /// Solves one phase after the other, and the last one until its solution can be flown.
     fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> Flown {
-        for phase in phases {
-            self.chain
-                .draw_lengths_to(&self.iterate, phase.length_penalty);
-            self.engine.settings = phase.settings;
-            if !self.converges(stop) {
-                return self.flown;
-            }
+        if !self.passes(phases, stop) {
+            return self.flown;
         }
         let mut reserves = Reserves::none(self.dynamics, self.flown.profile.intervals());
         for round in 0..MAX_ROUNDS {
@@ -219,6 +216,16 @@ impl<'a> Flight<'a> {
         // Converged at the nodes, and yet not to be flown: more rounds would be needed.
         self.flown.status = NlpStatus::IterationLimit;
         self.flown
+    }
+
+    /// Solves one phase after the other; whether all converge.
+    fn passes(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> bool {
+        phases.iter().all(|phase| {
+            self.chain
+                .draw_lengths_to(&self.iterate, phase.length_penalty);
+            self.engine.settings = phase.settings;
+            self.converges(stop)
+        })
     }
 
     /// Runs the engine from where the flight is; whether it converges.

@@ -2,6 +2,7 @@
 
 use crate::attitude::Attitude;
 use nalgebra::DVector;
+use std::ops::Range;
 
 /// A piecewise motion with constant torque between nodes; also used as a starting guess, and then
 /// neither flyable nor within limits.
@@ -38,6 +39,16 @@ impl Profile {
             .extend(next.attitudes.iter().skip(skip).map(signed));
         self.wheels.extend(next.wheels.iter().skip(skip).cloned());
         self.lengths.extend_from_slice(&next.lengths);
+    }
+
+    /// The motion over some of its intervals.
+    pub(crate) fn part(&self, intervals: Range<usize>) -> Self {
+        let nodes = intervals.start..=intervals.end;
+        Self {
+            attitudes: self.attitudes[nodes.clone()].to_vec(),
+            wheels: self.wheels[nodes].to_vec(),
+            lengths: self.lengths[intervals].to_vec(),
+        }
     }
 
     /// An empty motion to append to.

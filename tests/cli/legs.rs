@@ -1,6 +1,6 @@
 //! `slewplan legs`.
 
-use crate::run::{fixture, slewplan};
+use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -96,10 +96,31 @@ fn certified_bounds_need_no_solve_and_are_below_the_times() {
             .collect()
     };
     assert_eq!(bounds(&rest), bounds(&table));
-    let biased = fixture("pyramid-momentum-bias.json");
-    let none = slewplan(&["legs", &biased, "--kind", "certified"])
-        .expect_code(0)
-        .json();
+    // With stored momentum too; not without limits of speed.
+    let biased = slewplan(&[
+        "legs",
+        &fixture("pyramid-momentum-bias.json"),
+        "--kind",
+        "certified",
+    ]);
+    for row in biased.expect_code(0).json()["legs"]
+        .as_array()
+        .expect("a list")
+    {
+        assert!(row["certified_lower_bound_s"].as_f64() > Some(0.0), "{row}");
+    }
+    let mut unlimited = fixture_json("two-targets.json");
+    let wheels = unlimited["spacecraft"]["wheels"].as_array_mut();
+    for wheel in wheels.expect("a list") {
+        wheel["max_speed_rad_s"] = Value::Null;
+    }
+    unlimited["spacecraft"]["max_body_rate_rad_s"] = Value::Null;
+    let none = slewplan_fed(
+        &["legs", "-", "--kind", "certified"],
+        unlimited.to_string().as_bytes(),
+    )
+    .expect_code(0)
+    .json();
     assert_eq!(none["legs"][0]["status"], "none");
     assert!(none["legs"][0]["certified_lower_bound_s"].is_null());
 }

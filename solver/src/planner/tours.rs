@@ -7,7 +7,7 @@
 use super::interruption;
 use super::places::Places;
 use super::tables::{CertifiedTable, LegTable};
-use crate::multiphase::{Flown, fly, polish};
+use crate::multiphase::{Flown, fly, fly_rolling, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
@@ -18,8 +18,19 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Starts of a segment when all goes well: from legs at rest and from legs with free ends; eigenaxis
-/// slews are for segments that converge from neither.
+/// What a segment starts from.
+#[derive(Debug, Clone, Copy)]
+enum Start {
+    /// Legs from rest to rest.
+    AtRest,
+    /// Legs with free ends.
+    FreeEnds,
+    /// Slews about the eigenaxis.
+    Eigenaxis,
+}
+
+/// The starts of a segment whose legs are known, and how many are tried when all goes well.
+const STARTS: [Start; 3] = [Start::AtRest, Start::FreeEnds, Start::Eigenaxis];
 const USUAL_STARTS: usize = 2;
 
 /// Tours over solved tables of legs.
@@ -132,19 +143,14 @@ impl<'a> Tours<'a> {
 
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
     fn solve_distinct(&self, route: &[Place]) -> Flown {
-        let solved = |table: &LegTable, from: Place, to: Place| {
-            let leg = table.get(from, to)?;
-            (leg.flown.status == NlpStatus::Converged).then(|| leg.flown.profile.clone())
-        };
-        let all: [&dyn Fn(Place, Place) -> Option<Profile>; 3] = [
-            &|from, to| solved(self.rest, from, to),
-            &|from, to| solved(self.free, from, to),
-            &|_, _| None,
-        ];
         let knows_legs = self.free.get(route[0], route[1]).is_some();
-        let starts = if knows_legs { &all[..] } else { &all[2..] };
+        let starts = if knows_legs {
+            &STARTS[..]
+        } else {
+            &[Start::Eigenaxis]
+        };
         let mut best = self.solve_from(route, starts[0]);
-        for (tried, start) in starts.iter().enumerate().skip(1) {
+        for (tried, &start) in starts.iter().enumerate().skip(1) {
             let settled = best.status == NlpStatus::Converged && tried >= USUAL_STARTS;
             if settled || best.status.is_interrupted() {
                 break;
@@ -166,11 +172,11 @@ impl<'a> Tours<'a> {
 
     /// Solves a segment from legs joined end to end; legs that are not there are guessed by
     /// eigenaxis slews.
-    fn solve_from(&self, route: &[Place], leg: &dyn Fn(Place, Place) -> Option<Profile>) -> Flown {
+    fn solve_from(&self, route: &[Place], start: Start) -> Flown {
         let mut guess = Profile::empty();
         for pair in route.windows(2) {
-            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-            let next = leg(pair[0], pair[1]).unwrap_or_else(|| {
+            let next = self.solved(pair, start).unwrap_or_else(|| {
+                let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
                 let slew = self.places.slew(&from, &to);
                 let intervals = self.intervals();
                 slew.eigenaxis().guess(slew.dynamics, intervals, Side::Near)
@@ -180,9 +186,24 @@ impl<'a> Tours<'a> {
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
         let (waypoints, intervals) = self.program(route, &guess);
+        let fly = match start {
+            Start::AtRest | Start::FreeEnds => fly,
+            Start::Eigenaxis => fly_rolling,
+        };
         fly(dynamics, &waypoints, &intervals, &guess, &|| {
             interruption(self.stop)
         })
+    }
+
+    /// A leg to start from, when it has been solved.
+    fn solved(&self, leg: &[Place], start: Start) -> Option<Profile> {
+        let table = match start {
+            Start::AtRest => self.rest,
+            Start::FreeEnds => self.free,
+            Start::Eigenaxis => return None,
+        };
+        let flown = &table.get(leg[0], leg[1])?.flown;
+        (flown.status == NlpStatus::Converged).then(|| flown.profile.clone())
     }
 
     /// The waypoints of a route, with the signs at which a motion passes them, and the intervals

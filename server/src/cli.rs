@@ -3,15 +3,18 @@
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+mod backup;
 mod certify;
 mod failure;
 mod input;
+mod keys;
 mod legs;
 mod openapi;
 mod output;
 
 mod panics;
 mod remembered;
+mod runtime;
 mod serve;
 mod solve;
 mod validate;
@@ -45,6 +48,10 @@ enum Command {
     Certify(certify::Arguments),
     /// Run the HTTP service
     Serve(serve::Arguments),
+    /// Copy the database while the service uses it
+    Backup(backup::Arguments),
+    /// Make, list and revoke keys for the service
+    Keys(keys::Arguments),
     /// Print the description of the HTTP service
     Openapi,
 }
@@ -104,6 +111,8 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Verify(arguments) => verify::run(arguments),
         Command::Certify(arguments) => certify::run(arguments),
         Command::Serve(arguments) => serve::run(arguments),
+        Command::Backup(arguments) => backup::run(arguments),
+        Command::Keys(arguments) => keys::run(arguments),
         Command::Openapi => openapi::run(),
     }
 }

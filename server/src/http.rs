@@ -1,5 +1,6 @@
 //! HTTP: routes, what they take and what they answer. No SQL and no solving here.
 
+mod access;
 mod describe;
 mod error;
 mod extract;
@@ -8,12 +9,14 @@ mod metrics;
 mod observe;
 mod operations;
 mod plans;
+mod protect;
 mod respond;
 mod router;
 mod spacecraft;
 mod stored;
 mod verify;
 
+pub(crate) use access::Access;
 pub(crate) use router::{openapi, router};
 
 use crate::jobs::Jobs;
@@ -23,6 +26,9 @@ use metrics::Metrics;
 use slewplan_solver::pool::SolverPool;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
+
+/// Verifications at once: there are not more cores to spare beside the solver.
+const VERIFICATIONS: usize = 2;
 
 /// What every handler can reach.
 #[derive(Clone)]
@@ -34,6 +40,8 @@ struct Parts {
     jobs: Jobs,
     /// What a request may ask for at most.
     limits: Limits,
+    /// Whether keys are asked for.
+    access: Access,
     /// When the service ends.
     shutdown: Shutdown,
     /// Where jobs and queries are solved.
@@ -42,6 +50,12 @@ struct Parts {
     lookups: Arc<SolverPool>,
     /// Queries that compute take turns.
     computing: Semaphore,
+    /// Verifications, of which few are made at once.
+    verifying: Semaphore,
+    /// Streams of events that are open: a part of all connections.
+    streams: Arc<Semaphore>,
+    /// Whether work can be taken, as found lately.
+    readiness: operations::health::Readiness,
     /// What is known about requests.
     metrics: Metrics,
 }
@@ -53,25 +67,31 @@ pub(crate) struct Limits {
     pub(crate) body_bytes: usize,
     /// Most targets of a scenario.
     pub(crate) targets: usize,
-    /// Most jobs that wait.
-    pub(crate) queue: i64,
+    /// Most streams of events at once.
+    pub(crate) streams: usize,
 }
 
 impl App {
-    /// The state of a service: its queue, limits, end, and the pools for solving and for looking up.
+    /// The state of a service: its queue, limits, doors, end, and the pools for solving and for
+    /// looking up.
     pub(crate) fn new(
         jobs: Jobs,
         limits: Limits,
+        access: Access,
         shutdown: Shutdown,
         [pool, lookups]: [Arc<SolverPool>; 2],
     ) -> Self {
         Self(Arc::new(Parts {
             jobs,
             limits,
+            access,
             shutdown,
             pool,
             lookups,
             computing: Semaphore::new(1),
+            verifying: Semaphore::new(VERIFICATIONS),
+            streams: Arc::new(Semaphore::new(limits.streams)),
+            readiness: operations::health::Readiness::default(),
             metrics: Metrics::default(),
         }))
     }

@@ -1,14 +1,17 @@
 //! The queue at work: one job at a time, in the order of submission, on the solver's own threads.
 
 mod progress;
+pub(crate) mod retention;
 mod solve;
+mod tally;
 mod worker;
 
+pub(crate) use tally::JobTally;
 pub(crate) use worker::Worker;
 
 use crate::clock::now_us;
 use crate::leg_cache::{LegCache, Tally};
-use crate::store::{JobRow, Store, StoreError, Submission, Submitted};
+use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
@@ -26,8 +29,9 @@ struct Shared {
     /// Something has been queued.
     queued: Notify,
     active: Mutex<Option<Active>>,
-    queue_limit: i64,
+    queue: QueueLimits,
     tally: Arc<Tally>,
+    job_tally: JobTally,
 }
 
 #[derive(Debug)]
@@ -38,14 +42,15 @@ struct Active {
 
 impl Jobs {
     /// Jobs of a store, of which at most so many wait.
-    pub(crate) fn new(store: Store, queue_limit: i64) -> Self {
+    pub(crate) fn new(store: Store, queue: QueueLimits) -> Self {
         Self(Arc::new(Shared {
             store,
             changes: watch::Sender::new(0),
             queued: Notify::new(),
             active: Mutex::new(None),
-            queue_limit,
+            queue,
             tally: Arc::default(),
+            job_tally: JobTally::default(),
         }))
     }
 
@@ -64,6 +69,11 @@ impl Jobs {
         &self.0.tally
     }
 
+    /// What is known about the jobs of this process.
+    pub(crate) fn job_tally(&self) -> &JobTally {
+        &self.0.job_tally
+    }
+
     /// Told of every change of any job.
     pub(crate) fn changes(&self) -> watch::Receiver<u64> {
         self.0.changes.subscribe()
@@ -75,16 +85,16 @@ impl Jobs {
             .send_modify(|count| *count = count.wrapping_add(1));
     }
 
-    /// Most jobs that may wait.
-    pub(crate) fn queue_limit(&self) -> i64 {
-        self.0.queue_limit
+    /// How many jobs may wait.
+    pub(crate) fn queue_limits(&self) -> QueueLimits {
+        self.0.queue
     }
 
     /// Queues a job.
     pub(crate) async fn submit(&self, submission: &Submission) -> Result<Submitted, StoreError> {
         let submitted = self
             .store()
-            .submit(submission, self.0.queue_limit, now_us())
+            .submit(submission, self.0.queue, now_us())
             .await?;
         if let Submitted::New(_) = submitted {
             self.0.queued.notify_one();
@@ -100,9 +110,11 @@ impl Jobs {
         Ok(job)
     }
 
-    /// Abandons a job.
+    /// Abandons a job. Its core is freed even when the request cannot be recorded.
     pub(crate) async fn cancel(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
+        self.with_active(id, StopSignal::cancel);
         let job = self.store().request_cancel(id, now_us()).await?;
+        // It may have begun in between.
         self.with_active(id, StopSignal::cancel);
         self.changed();
         Ok(job)

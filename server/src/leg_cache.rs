@@ -29,41 +29,58 @@ impl Tally {
     }
 }
 
-/// The legs of a database for one solve. What is new is written in batches; the rest of it when
-/// the value is dropped, which must not happen on a thread of the runtime.
+/// The legs of a database for one solve. What is new is written in batches, when somebody asks for
+/// that, and when the value is dropped, which must not happen on a thread of the runtime.
 #[derive(Debug)]
 pub(crate) struct LegCache {
     store: Store,
     runtime: Handle,
     tally: Arc<Tally>,
-    unwritten: Mutex<Vec<NewLeg>>,
+    unwritten: Unwritten,
+}
+
+/// Solved legs that are not in the database yet.
+#[derive(Debug, Clone)]
+pub(crate) struct Unwritten {
+    store: Store,
+    legs: Arc<Mutex<Vec<NewLeg>>>,
+}
+
+impl Unwritten {
+    fn legs(&self) -> MutexGuard<'_, Vec<NewLeg>> {
+        self.legs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes all of them.
+    pub(crate) async fn write(&self) {
+        let legs = std::mem::take(&mut *self.legs());
+        if legs.is_empty() {
+            return;
+        }
+        // A leg that is forgotten is solved again: no reason to fail.
+        if let Err(error) = self.store.put_legs(&legs, now_us()).await {
+            tracing::warn!(%error, legs = legs.len(), "solved legs are forgotten");
+        }
+    }
 }
 
 impl LegCache {
     /// The legs of a store, reached from threads outside of the runtime.
     pub(crate) fn new(store: Store, runtime: Handle, tally: Arc<Tally>) -> Self {
         Self {
+            unwritten: Unwritten {
+                store: store.clone(),
+                legs: Arc::default(),
+            },
             store,
             runtime,
             tally,
-            unwritten: Mutex::default(),
         }
     }
 
-    fn unwritten(&self) -> MutexGuard<'_, Vec<NewLeg>> {
-        self.unwritten
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn write(&self, legs: &[NewLeg]) {
-        if legs.is_empty() {
-            return;
-        }
-        // A leg that is forgotten is solved again: no reason to fail.
-        if let Err(error) = self.runtime.block_on(self.store.put_legs(legs, now_us())) {
-            tracing::warn!(%error, legs = legs.len(), "solved legs are forgotten");
-        }
+    /// What is not in the database yet.
+    pub(crate) fn unwritten(&self) -> Unwritten {
+        self.unwritten.clone()
     }
 }
 
@@ -98,23 +115,20 @@ impl LegStore for LegCache {
     }
 
     fn put(&self, identity: &str, leg: &StoredLeg) {
-        let batch = {
-            let mut unwritten = self.unwritten();
+        let waiting = {
+            let mut unwritten = self.unwritten.legs();
             unwritten.push(new_leg(identity, leg));
-            if unwritten.len() < BATCH {
-                Vec::new()
-            } else {
-                std::mem::take(&mut *unwritten)
-            }
+            unwritten.len()
         };
-        self.write(&batch);
+        if waiting >= BATCH {
+            self.runtime.block_on(self.unwritten.write());
+        }
     }
 }
 
 impl Drop for LegCache {
     fn drop(&mut self) {
-        let rest = std::mem::take(&mut *self.unwritten());
-        self.write(&rest);
+        self.runtime.block_on(self.unwritten.write());
     }
 }
 

@@ -1,8 +1,13 @@
 //! The `slewplan` binary: multi-target attitude scheduling as a command and as a service.
 
+mod access;
 mod cli;
 mod clock;
+mod connections;
 mod digest;
+#[cfg(feature = "faults")]
+mod faults;
+mod figures;
 mod http;
 mod jobs;
 mod leg_cache;

@@ -1,16 +1,18 @@
 //! The service put together: database, worker, routes, and their end.
 
 use crate::cli::{Exit, Failure};
-use crate::http::{self, App, Limits};
-use crate::jobs::{Jobs, Worker};
+use crate::connections;
+use crate::http::{self, Access, App, Limits};
+use crate::jobs::{Jobs, Worker, retention};
 use crate::lifecycle::{GRACE, Shutdown};
-use crate::store::{DatabaseLock, Store, StoreError};
+use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
 use slewplan_solver::pool::SolverPool;
 use std::io;
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::net::TcpListener;
 use uuid::Uuid;
 
@@ -27,10 +29,20 @@ pub(crate) struct Settings {
     pub(crate) max_body_bytes: usize,
     /// Most targets of a scenario.
     pub(crate) max_targets: usize,
-    /// Most jobs that wait.
-    pub(crate) queue_limit: i64,
+    /// How many jobs may wait.
+    pub(crate) queue: QueueLimits,
+    /// Whether everybody is let in, whatever the address and the keys.
+    pub(crate) no_keys: bool,
+    /// Time after their end for which jobs are kept; for ever without it.
+    pub(crate) retain: Option<Duration>,
+    /// Most connections at once.
+    pub(crate) connections: usize,
 }
 
+/// By how much the solver's threads stand back behind those for requests.
+const POLITENESS: i32 = 10;
+/// Longest wait for threads at the very end.
+const LAST: Duration = Duration::from_millis(500);
 /// Threads for requests: they only wait and move bytes.
 const REQUEST_THREADS: usize = 2;
 
@@ -40,6 +52,12 @@ pub(crate) enum ServiceError {
     /// The database.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// What was acknowledged can no longer be kept.
+    #[error(
+        "the disk did not keep what was written; start again when it works: nothing that was \
+         acknowledged is lost"
+    )]
+    Disk,
     /// The operating system.
     #[error("{what}: {source}")]
     System {
@@ -64,7 +82,7 @@ pub(crate) fn run(
 ) -> Result<Exit, Failure> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
     let pools = [
-        Arc::new(SolverPool::new(threads)?),
+        Arc::new(SolverPool::prepared(threads, step_back)?),
         Arc::new(SolverPool::new(NonZeroUsize::new(1))?),
     ];
     let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -72,8 +90,40 @@ pub(crate) fn run(
         .enable_all()
         .build()
         .map_err(system("cannot start the threads for requests"))?;
-    runtime.block_on(serve(settings, pools, tell))?;
-    Ok(Exit::Complete)
+    let served = runtime.block_on(serve(settings, pools, tell));
+    // What blocks a thread now is not worth waiting for.
+    runtime.shutdown_timeout(LAST);
+    served.map(|()| Exit::Complete)
+}
+
+/// Whether keys are asked for: always once there is one. Without keys only this machine is served.
+async fn access(settings: &Settings, store: &Store) -> Result<Access, Failure> {
+    if settings.no_keys {
+        tracing::warn!("no keys are asked for: whoever reaches the service can do everything");
+        return Ok(Access::Open);
+    }
+    let keys = store.keys().await.map_err(ServiceError::from)?;
+    if !keys.is_empty() {
+        return Ok(Access::Keys);
+    }
+    if settings.listen.ip().is_loopback() {
+        return Ok(Access::Open);
+    }
+    Err(Failure::Setting {
+        name: "--listen",
+        what: format!(
+            "{} can be reached from other machines, and there are no keys; make one with slewplan \
+             keys create, or let everybody in with --no-keys",
+            settings.listen
+        ),
+    })
+}
+
+/// Lets threads that answer requests go first. On Linux this concerns only the calling thread.
+fn step_back() {
+    if let Err(error) = rustix::process::nice(POLITENESS) {
+        tracing::debug!(%error, "the solver competes with requests");
+    }
 }
 
 async fn serve(
@@ -92,40 +142,41 @@ async fn serve(
         .await
         .map_err(ServiceError::from)?;
     tracing::info!(boot_id, ?recovered, database = %settings.database.display(), "store is open");
+    let access = access(settings, &store).await?;
     let listener = TcpListener::bind(settings.listen)
         .await
         .map_err(system(format!("cannot listen on {}", settings.listen)))?;
     let address = listener
         .local_addr()
         .map_err(system("cannot tell the own address"))?;
-    let jobs = Jobs::new(store.clone(), settings.queue_limit);
+    if let Some(time) = settings.retain {
+        tokio::spawn(retention::keep_for(store.clone(), time));
+    }
+    let jobs = Jobs::new(store.clone(), settings.queue);
     let worker = Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id)
         .map_err(system("cannot start the worker"))?;
     let limits = Limits {
         body_bytes: settings.max_body_bytes,
         targets: settings.max_targets,
-        queue: settings.queue_limit,
+        // Who only listens does not keep others from asking.
+        streams: settings.connections.div_ceil(2),
     };
-    let router = http::router(App::new(jobs, limits, shutdown.clone(), pools));
+    let router = http::router(App::new(jobs, limits, access, shutdown.clone(), pools));
     tell(address)?;
     tracing::info!(%address, "listening");
+    let serving = connections::serve(listener, router, shutdown.clone(), settings.connections);
+    let mut serving = tokio::spawn(serving);
     let mut ending = shutdown.clone();
-    let serving =
-        axum::serve(listener, router).with_graceful_shutdown(async move { ending.begun().await });
     tokio::select! {
-        served = serving => served.map_err(system("cannot serve"))?,
-        () = deadline(shutdown) => tracing::warn!("requests were cut off at the end"),
+        () = ending.begun() => {}
+        () = store.sync_failed() => return Err(ServiceError::Disk.into()),
     }
-    if tokio::time::timeout(GRACE, worker.drain()).await.is_err() {
-        tracing::warn!("the running job was cut off; it runs again after the next start");
+    // Both at once: streams tell what becomes of the job that they follow.
+    let finished = async { tokio::join!(worker.drain(), &mut serving) };
+    if tokio::time::timeout(GRACE, finished).await.is_err() {
+        tracing::warn!("requests or the running job were cut off; the job runs again");
     }
     store.close().await;
     tracing::info!("the service has ended");
     Ok(())
-}
-
-/// The moment when open requests are no longer waited for.
-async fn deadline(mut shutdown: Shutdown) {
-    shutdown.begun().await;
-    tokio::time::sleep(GRACE / 2).await;
 }

@@ -4,39 +4,50 @@
 //! finds out at its end that somebody else wrote meanwhile; no transaction is open while anything
 //! is computed or sent.
 
+mod backup;
 mod claims;
 mod error;
 mod events;
 mod jobs;
+mod keys;
 mod legs;
 mod results;
+mod retention;
 mod rows;
 mod spacecraft;
 #[cfg(test)]
 mod tests;
+mod writing;
 
+pub(crate) use backup::backup;
 pub(crate) use claims::Claim;
 pub(crate) use error::StoreError;
 pub(crate) use events::EventRow;
-pub(crate) use jobs::{Listing, Submission, Submitted};
+pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
+pub(crate) use keys::{KeyRow, NewKey};
 pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
 pub(crate) use spacecraft::SpacecraftRow;
 
+use sqlx::Connection as _;
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{Connection as _, Sqlite, Transaction};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use writing::Alarm;
 
 /// Embedded when building.
 static MIGRATOR: sqlx::migrate::Migrator = sqlx::migrate!("../migrations");
 
 /// Older versions can corrupt the write-ahead log when a writer and a checkpoint meet.
 const OLDEST_SQLITE: i32 = 3_051_003;
+const _: () = assert!(
+    libsqlite3_sys::SQLITE_VERSION_NUMBER >= OLDEST_SQLITE,
+    "the embedded SQLite can corrupt its write-ahead log"
+);
 const READERS: u32 = 4;
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -45,6 +56,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 pub(crate) struct Store {
     writer: SqlitePool,
     readers: SqlitePool,
+    alarm: Alarm,
+    path: PathBuf,
 }
 
 /// Keeps other services off the same database while it lives.
@@ -112,13 +125,29 @@ impl Store {
             .acquire_timeout(PATIENCE)
             .connect_with(options.read_only(true).create_if_missing(false))
             .await?;
-        Ok(Self { writer, readers })
+        Ok(Self {
+            writer,
+            readers,
+            alarm: Alarm::default(),
+            path: path.to_owned(),
+        })
     }
 
     /// Closes all connections, which folds the write-ahead log into the database.
     pub(crate) async fn close(&self) {
         self.readers.close().await;
         self.writer.close().await;
+    }
+
+    /// Sizes of the database and of its write-ahead log, bytes; 0 for what is not there.
+    pub(crate) fn sizes(&self) -> [(&'static str, u64); 2] {
+        let mut log = self.path.as_os_str().to_owned();
+        log.push("-wal");
+        let size = |path: &Path| path.metadata().map_or(0, |file| file.len());
+        [
+            ("database", size(&self.path)),
+            ("log", size(Path::new(&log))),
+        ]
     }
 
     /// Really writes, to find out whether that is possible.
@@ -131,11 +160,7 @@ impl Store {
         .bind(now_us)
         .execute(&mut *transaction)
         .await?;
-        Ok(transaction.commit().await?)
-    }
-
-    async fn begin(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
-        Ok(self.writer.begin_with("BEGIN IMMEDIATE").await?)
+        transaction.commit().await
     }
 }
 

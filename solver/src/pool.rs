@@ -18,6 +18,18 @@ impl SolverPool {
     ///
     /// When the threads cannot be started.
     pub fn new(threads: Option<NonZeroUsize>) -> Result<Self, PoolError> {
+        Self::prepared(threads, || {})
+    }
+
+    /// Starts the workers, each of which first prepares itself; `None` takes one per available core.
+    ///
+    /// # Errors
+    ///
+    /// When the threads cannot be started.
+    pub fn prepared(
+        threads: Option<NonZeroUsize>,
+        prepare: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self, PoolError> {
         let count = threads.map_or_else(
             || std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
             NonZeroUsize::get,
@@ -25,6 +37,7 @@ impl SolverPool {
         Ok(Self(
             rayon::ThreadPoolBuilder::new()
                 .num_threads(count)
+                .start_handler(move |_| prepare())
                 .thread_name(|index| format!("slewplan-solver-{index}"))
                 .build()?,
         ))

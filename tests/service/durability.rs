@@ -1,7 +1,9 @@
 //! What survives the end of the process, expected or not.
 
+use crate::client::Request;
 use crate::running::{Service, large, small};
 use serde_json::{Value, json};
+use std::io::Read;
 use std::time::{Duration, Instant};
 
 /// A scenario that takes seconds and ends by itself on any machine.
@@ -38,13 +40,20 @@ fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
     let mut service = Service::on(&database, &[]);
     let id = service.submit(&sizeable());
     service.wait(&id, |job| job["state"] == "running");
+    let events = Request::new("GET", &format!("/v1/plans/{id}/events"));
+    let mut stream = events.open(&service.address);
+    let mut told = String::new();
+    stream.read_exact(&mut [0; 1]).expect("an answer");
     let begin = Instant::now();
     assert!(service.terminate());
+    stream.read_to_string(&mut told).expect("the stream ends");
     assert!(
         begin.elapsed() < Duration::from_secs(5),
         "{:?}",
         begin.elapsed()
     );
+    let given_back = told.rfind("\"state\":\"queued\"").expect("the job waits");
+    assert!(told[given_back..].contains("event: closing"), "{told}");
     let service = Service::on(&database, &[]);
     let job = service.wait_end(&id);
     assert_eq!(
@@ -85,4 +94,23 @@ fn a_command_shares_legs_with_the_service() {
         .expect("the binary starts");
     let plan: Value = serde_json::from_slice(&solved.stdout).expect("a plan");
     assert_eq!(plan["statistics"]["legs_solved"], 0);
+}
+
+#[test]
+fn legs_on_which_a_search_rests_are_not_solved_again_after_a_kill() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("legs.db");
+    let mut service = Service::on(&database, &[]);
+    let id = service.submit(&large());
+    service.wait(&id, |job| job["stage"] == "search");
+    service.kill();
+    let service = Service::on(&database, &[]);
+    let searching = |job: &Value| job["attempt"] == 2 && job["stage"] == "search";
+    service.wait(&id, searching);
+    let figures = service.get("/metrics").expect(200).body;
+    for (outcome, is_zero) in [("hit", false), ("miss", true)] {
+        let name = format!("slewplan_leg_lookups_total{{outcome=\"{outcome}\"}} ");
+        let count = figures.lines().find_map(|line| line.strip_prefix(&*name));
+        assert_eq!(count == Some("0"), is_zero, "{outcome} {count:?}");
+    }
 }

@@ -2,10 +2,12 @@
 
 mod best_so_far;
 mod client;
+mod connections;
 mod durability;
 mod events;
 mod examples;
 mod idempotency;
+mod keys;
 mod legs;
 mod operations;
 mod plans;

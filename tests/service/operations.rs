@@ -32,6 +32,15 @@ fn metrics_count_jobs_legs_and_requests() {
     let posted = "slewplan_http_request_duration_seconds_count{method=\"POST\",\
                   route=\"/v1/plans\",status=\"202\"} 1";
     assert!(figures.lines().any(|found| found == posted), "{figures}");
+    for name in [
+        "slewplan_queue_wait_seconds_count",
+        "slewplan_solve_seconds_count",
+        "slewplan_gap_at_end_count",
+    ] {
+        let line = format!("{name} 1");
+        assert!(figures.lines().any(|found| found == line), "{line}");
+    }
+    assert!(figures.contains("slewplan_database_bytes{file=\"log\"} "));
     let misses = figures
         .lines()
         .find(|line| line.contains("outcome=\"miss\""))

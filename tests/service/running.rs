@@ -31,16 +31,15 @@ impl Service {
 
     /// Starts a service on a database.
     pub(crate) fn on(database: &Path, arguments: &[&str]) -> Self {
+        let listen: &[&str] = if arguments.contains(&"--listen") {
+            &[]
+        } else {
+            &["--listen", "127.0.0.1:0"]
+        };
         let mut child = Command::new(env!("CARGO_BIN_EXE_slewplan"))
-            .args([
-                "serve",
-                "--listen",
-                "127.0.0.1:0",
-                "--log",
-                "warn",
-                "--database",
-            ])
+            .args(["serve", "--log", "warn", "--database"])
             .arg(database)
+            .args(listen)
             .args(arguments)
             .stdout(Stdio::piped())
             .spawn()

@@ -1,11 +1,11 @@
 //! The legs of a database for one command.
 
 use super::failure::Failure;
+use super::runtime;
 use crate::leg_cache::LegCache;
 use crate::service::ServiceError;
 use crate::store::Store;
 use slewplan_solver::legs::LegStore;
-use std::io;
 use std::path::Path;
 use std::sync::Arc;
 use tokio::runtime::Runtime;
@@ -20,10 +20,7 @@ pub(super) struct RememberedLegs {
 impl RememberedLegs {
     /// Opens or creates a database.
     pub(super) fn open(database: &Path) -> Result<Self, Failure> {
-        let runtime = runtime().map_err(|source| ServiceError::System {
-            what: "cannot start the threads of the database".into(),
-            source,
-        })?;
+        let runtime = runtime::start()?;
         let store = runtime
             .block_on(Store::open(database))
             .map_err(ServiceError::from)?;
@@ -38,11 +35,4 @@ impl RememberedLegs {
     pub(super) fn legs(&self) -> &dyn LegStore {
         &self.legs
     }
-}
-
-fn runtime() -> io::Result<Runtime> {
-    tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(1)
-        .enable_all()
-        .build()
 }

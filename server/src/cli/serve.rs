@@ -4,10 +4,14 @@ use super::Exit;
 use super::failure::Failure;
 use super::output;
 use crate::service::{self, Settings};
+use crate::store::QueueLimits;
 use clap::ValueEnum;
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::time::Duration;
 use tracing_subscriber::EnvFilter;
+
+const DAY: Duration = Duration::from_hours(24);
 
 /// What `serve` takes.
 #[derive(Debug, clap::Args)]
@@ -43,6 +47,25 @@ pub(super) struct Arguments {
         default_value_t = 1000
     )]
     queue_limit: u32,
+    /// Most jobs of one client that wait, where keys are asked for
+    #[arg(
+        long,
+        env = "SLEWPLAN_CLIENT_QUEUE_LIMIT",
+        value_name = "N",
+        default_value_t = 100
+    )]
+    client_queue_limit: u32,
+    /// Let everybody in, at any address and whatever keys there are
+    #[arg(long, env = "SLEWPLAN_NO_KEYS")]
+    no_keys: bool,
+    /// Days for which ended jobs are kept, with their plans and idempotency keys [default: for ever]
+    #[arg(long, env = "SLEWPLAN_RETAIN", value_name = "DAYS",
+        value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    retain: Option<u32>,
+    /// Most connections at once
+    #[arg(long, env = "SLEWPLAN_MAX_CONNECTIONS", value_name = "N", default_value_t = 512,
+        value_parser = clap::value_parser!(u16).range(1..))]
+    max_connections: u16,
     /// Form of the log on standard error
     #[arg(long, env = "SLEWPLAN_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
@@ -73,7 +96,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         threads: arguments.threads.map(usize::from),
         max_body_bytes: arguments.max_body_bytes as usize,
         max_targets: arguments.max_targets as usize,
-        queue_limit: arguments.queue_limit.into(),
+        queue: QueueLimits {
+            all: arguments.queue_limit.into(),
+            client: arguments.client_queue_limit.into(),
+        },
+        retain: arguments.retain.map(|days| DAY * days),
+        no_keys: arguments.no_keys,
+        connections: arguments.max_connections.into(),
     };
     service::run(&settings, |address| {
         output::print(&format!("listening on http://{address}\n"))
@@ -87,6 +116,8 @@ fn start_log(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let log = tracing_subscriber::fmt()
         .with_env_filter(filter)
+        // A log that cannot be written, because its disk is full, must not become a panic.
+        .log_internal_errors(false)
         .with_writer(std::io::stderr);
     match arguments.log_format {
         LogFormat::Text => log.with_ansi(false).init(),

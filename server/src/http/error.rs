@@ -45,6 +45,8 @@ error_codes! {
     MalformedJson = "malformed_json", BAD_REQUEST, "The body is not valid JSON";
     BadRequest = "bad_request", BAD_REQUEST, "The request cannot be understood";
     InvalidParameter = "invalid_parameter", BAD_REQUEST, "A parameter or header is not valid";
+    Unauthorized = "unauthorized", UNAUTHORIZED, "A key is needed";
+    ScopeMissing = "scope_missing", FORBIDDEN, "The key does not open this";
     NotFound = "not_found", NOT_FOUND, "There is nothing here";
     MethodNotAllowed = "method_not_allowed", METHOD_NOT_ALLOWED, "The method does not exist here";
     NotAcceptable = "not_acceptable", NOT_ACCEPTABLE, "The answer has none of the accepted forms";
@@ -52,6 +54,7 @@ error_codes! {
     JobHasEnded = "job_has_ended", CONFLICT, "The job has ended before";
     ResultNotReady = "result_not_ready", CONFLICT, "The job has no plan yet";
     NoResult = "no_result", CONFLICT, "The job ended without such a result";
+    BodyTooSlow = "body_too_slow", REQUEST_TIMEOUT, "The body did not arrive in time";
     BodyTooLarge = "body_too_large", PAYLOAD_TOO_LARGE, "The body is too large";
     TooManyTargets = "too_many_targets", PAYLOAD_TOO_LARGE, "The scenario has too many targets";
     TooManyPairs = "too_many_pairs", PAYLOAD_TOO_LARGE, "The query asks for too many legs";
@@ -60,6 +63,7 @@ error_codes! {
     InvalidInput = "invalid_input", UNPROCESSABLE_ENTITY, "The input is not valid";
     IdempotencyKeyReused = "idempotency_key_reused", UNPROCESSABLE_ENTITY,
         "The idempotency key belongs to another request";
+    QuotaExceeded = "quota_exceeded", TOO_MANY_REQUESTS, "The client has too many jobs waiting";
     QueueFull = "queue_full", SERVICE_UNAVAILABLE, "Too many jobs wait already";
     Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy";
     NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now";
@@ -200,6 +204,12 @@ impl IntoResponse for ApiError {
         let body = serde_json::to_vec(&document).unwrap_or_default();
         let form = HeaderValue::from_static(PROBLEM_JSON);
         let mut response = (status, [(header::CONTENT_TYPE, form)], body).into_response();
+        if self.code == ErrorCode::Unauthorized {
+            let scheme = HeaderValue::from_static("Bearer");
+            response
+                .headers_mut()
+                .insert(header::WWW_AUTHENTICATE, scheme);
+        }
         if let Some(seconds) = self.retry_after_s {
             response
                 .headers_mut()

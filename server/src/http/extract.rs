@@ -2,6 +2,7 @@
 
 use super::App;
 use super::error::{ApiError, ErrorCode};
+use crate::connections::TooSlow;
 use crate::wire::document::{self, Node};
 use axum::body::Bytes;
 use axum::extract::{FromRequest, FromRequestParts, Request};
@@ -9,6 +10,7 @@ use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
 use http_body_util::{BodyExt, Limited};
 use serde::de::DeserializeOwned;
+use std::error::Error;
 
 /// A JSON body: as it came, and as a tree.
 pub(super) struct JsonBody {
@@ -68,11 +70,19 @@ async fn read(request: Request, limit: usize) -> Result<Bytes, ApiError> {
     match Limited::new(request.into_body(), limit).collect().await {
         Ok(body) => Ok(body.to_bytes()),
         Err(error) if error.is::<http_body_util::LengthLimitError>() => Err(too_large()),
+        Err(error) if is_too_slow(&*error) => {
+            Err(ApiError::new(ErrorCode::BodyTooSlow, TooSlow.to_string()))
+        }
         Err(error) => Err(ApiError::new(
             ErrorCode::BadRequest,
             format!("the body did not arrive: {error}"),
         )),
     }
+}
+
+/// Whether the body was given up, somewhere below what the framework makes of it.
+fn is_too_slow(error: &(dyn Error + 'static)) -> bool {
+    error.is::<TooSlow>() || error.source().is_some_and(is_too_slow)
 }
 
 /// Parameters of the query; unknown ones are refused.

@@ -1,6 +1,6 @@
 //! Requests, counted and timed.
 
-use super::operations::metrics::{head, sample};
+use crate::figures::{Histogram, head};
 use axum::http::{Method, StatusCode};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,7 +11,7 @@ const CLASSES: [f64; 8] = [0.001, 0.005, 0.02, 0.05, 0.2, 1.0, 5.0, 30.0];
 
 /// What is known about all requests so far. Routes, not paths, so that it stays small.
 #[derive(Debug, Default)]
-pub(super) struct Metrics(Mutex<BTreeMap<Request, Durations>>);
+pub(super) struct Metrics(Mutex<BTreeMap<Request, Histogram>>);
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Request {
@@ -20,15 +20,8 @@ struct Request {
     status: u16,
 }
 
-#[derive(Debug, Default)]
-struct Durations {
-    classes: [u64; CLASSES.len()],
-    count: u64,
-    sum_s: f64,
-}
-
 impl Metrics {
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<Request, Durations>> {
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<Request, Histogram>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -44,14 +37,10 @@ impl Metrics {
             route: route.to_owned(),
             status: status.as_u16(),
         };
-        let seconds = took.as_secs_f64();
         let mut all = self.lock();
-        let durations = all.entry(request).or_default();
-        durations.count += 1;
-        durations.sum_s += seconds;
-        for (class, end) in durations.classes.iter_mut().zip(CLASSES) {
-            *class += u64::from(seconds <= end);
-        }
+        let durations = all.entry(request);
+        let durations = durations.or_insert_with(|| Histogram::new(&CLASSES));
+        durations.count(took.as_secs_f64());
     }
 
     /// Writes them in the text form of Prometheus.
@@ -68,18 +57,7 @@ impl Metrics {
                 "method=\"{}\",route=\"{}\",status=\"{}\"",
                 request.method, request.route, request.status
             );
-            let bucket = format!("{name}_bucket");
-            for (class, end) in durations.classes.iter().zip(CLASSES) {
-                sample(text, &bucket, &format!("{labels},le=\"{end}\""), class);
-            }
-            sample(
-                text,
-                &bucket,
-                &format!("{labels},le=\"+Inf\""),
-                durations.count,
-            );
-            sample(text, &format!("{name}_sum"), &labels, durations.sum_s);
-            sample(text, &format!("{name}_count"), &labels, durations.count);
+            durations.write(text, name, &labels);
         }
     }
 }

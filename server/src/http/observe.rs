@@ -58,6 +58,13 @@ fn request_id(request: &Request) -> String {
         .map_or_else(|| Uuid::new_v4().to_string(), str::to_owned)
 }
 
+/// Fails on purpose, for tests of what that costs.
+#[cfg(feature = "faults")]
+pub(super) async fn fault(request: Request, next: Next) -> Response {
+    crate::faults::strike_request(request.headers());
+    next.run(request).await
+}
+
 /// Turns errors that the framework answered by itself into problem details.
 pub(super) async fn envelop(request: Request, next: Next) -> Response {
     let (method, path) = (request.method().clone(), request.uri().path().to_owned());

@@ -1,6 +1,6 @@
 //! The only list of routes, and what every request passes through.
 
-use super::{App, legs, observe, operations, plans, spacecraft, verify};
+use super::{App, access, legs, observe, operations, plans, protect, spacecraft, verify};
 use crate::wire::jobs::EventDocument;
 use axum::Router;
 use axum::middleware::{from_fn, from_fn_with_state};
@@ -56,11 +56,15 @@ fn routes() -> OpenApiRouter<App> {
 pub(crate) fn router(app: App) -> Router {
     let (router, _) = routes().split_for_parts();
     let page = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
+    let router = router.merge(page);
+    #[cfg(feature = "faults")]
+    let router = router.layer(from_fn(observe::fault));
     router
-        .merge(page)
+        .layer(from_fn_with_state(app.clone(), access::authorize))
         .layer(CatchPanicLayer::custom(observe::panicked))
         .layer(from_fn(observe::envelop))
         .layer(from_fn_with_state(app.clone(), observe::observe))
+        .layer(from_fn(protect::protect))
         .with_state(app)
 }
 

@@ -1,6 +1,7 @@
 //! Stored spacecraft written out where a scenario refers to them.
 
 use super::App;
+use super::access::Caller;
 use super::error::ApiError;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
@@ -11,13 +12,14 @@ use slewplan_solver::problem::{Code, Problem};
 /// Problems point below the place of the tree in the request.
 pub(super) async fn write_out(
     app: &App,
+    caller: &Caller,
     node: Node,
     place: &str,
 ) -> Result<(Node, bool), ApiError> {
     let Some((name, version)) = reference(&node, place)? else {
         return Ok((node, false));
     };
-    let found = app.store().spacecraft(&name, version).await?;
+    let found = app.store().spacecraft(&caller.own(&name), version).await?;
     let Some(row) = found else {
         let what = match version {
             Some(version) => format!("version {version} of the spacecraft {name:?}"),

@@ -1,5 +1,6 @@
 //! `POST /v1/verify`: a plan made by anyone is flown again.
 
+use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
 use super::error::{ApiError, ErrorCode};
 use super::extract::JsonBody;
@@ -13,6 +14,11 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use slewplan_solver::checker;
 use slewplan_solver::problem::Problem;
+use std::time::Duration;
+
+/// Longest wait for a turn, and time after which another try is worth it.
+const PATIENCE: Duration = Duration::from_secs(10);
+const RETRY_S: u32 = 10;
 
 /// Fly a plan again and test every limit
 #[utoipa::path(
@@ -23,9 +29,18 @@ use slewplan_solver::problem::Problem;
         BodyErrors, ServerErrors,
     ),
 )]
-pub(super) async fn handler(State(app): State<App>, body: JsonBody) -> Result<Response, ApiError> {
+pub(super) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
     let (scenario, plan) = parts(body.node)?;
-    let (scenario, _) = stored::write_out(&app, scenario, "/scenario").await?;
+    let (scenario, _) = stored::write_out(&app, &caller, scenario, "/scenario").await?;
+    let turn = tokio::time::timeout(PATIENCE, app.0.verifying.acquire()).await;
+    let Ok(Ok(_turn)) = turn else {
+        let error = ApiError::new(ErrorCode::Busy, "other plans are being verified");
+        return Err(error.retry_after(RETRY_S));
+    };
     // Integrating a long flight takes long, and the answer borrows from what it integrates.
     let work = tokio::task::spawn_blocking(move || verify(&scenario, &plan));
     let json = work.await.map_err(|error| {

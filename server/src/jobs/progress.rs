@@ -2,6 +2,7 @@
 
 use super::Jobs;
 use crate::clock::now_us;
+use crate::leg_cache::Unwritten;
 use crate::store::{JobRow, NewIncumbent, ProgressRow};
 use crate::wire;
 use slewplan_solver::plan::Plan;
@@ -69,8 +70,14 @@ impl Observer for Watch<'_> {
     }
 }
 
-/// Records reports until the reporter is dropped or the claim is lost.
-pub(super) async fn record(jobs: Jobs, claim: JobRow, mut reports: watch::Receiver<Report>) {
+/// Records reports until the reporter is dropped or the claim is lost. The legs that a report rests
+/// on are written before it: whoever takes the job over does not solve them again.
+pub(super) async fn record(
+    jobs: Jobs,
+    claim: JobRow,
+    legs: Unwritten,
+    mut reports: watch::Receiver<Report>,
+) {
     let mut recorded = None;
     let mut kept: Option<Arc<NewIncumbent>> = None;
     loop {
@@ -81,6 +88,7 @@ pub(super) async fn record(jobs: Jobs, claim: JobRow, mut reports: watch::Receiv
         } = reports.borrow_and_update().clone();
         let newest = progress.as_ref().map(row);
         if let Some(progress) = newest.filter(|row| recorded.as_ref() != Some(row)) {
+            legs.write().await;
             // Written once, and again after a failure.
             let fresh =
                 incumbent.filter(|plan| !kept.as_ref().is_some_and(|k| Arc::ptr_eq(k, plan)));

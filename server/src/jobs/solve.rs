@@ -26,20 +26,26 @@ pub(super) struct Means<'a> {
 
 /// Solves a scenario as stored. A panic costs this job and no other.
 pub(super) fn solve(scenario: &[u8], means: &Means<'_>) -> Ended {
-    catch_unwind(AssertUnwindSafe(|| attempt(scenario, means))).unwrap_or_else(|_| {
-        without_plan(
-            JobState::Failed,
-            "an internal error ended the solve; please report the scenario",
-        )
-    })
+    catch_unwind(AssertUnwindSafe(|| attempt(scenario, means))).unwrap_or_else(|_| broken())
+}
+
+/// The end of a job that met an error of ours.
+pub(super) fn broken() -> Ended {
+    without_plan(
+        JobState::Failed,
+        "internal_error",
+        "an internal error ended the solve; please report the scenario",
+    )
 }
 
 fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
     let Validated { scenario, warnings } = match wire::scenario::read(scenario, None) {
         Ok(valid) => valid,
         // It was valid when it was accepted: another version of the program reads it now.
-        Err(problems) => return without_plan(JobState::Failed, &sentence(&problems)),
+        Err(problems) => return refused(JobState::Failed, &problems),
     };
+    #[cfg(feature = "faults")]
+    crate::faults::strike(scenario.name(), means.pool);
     let observer = means.reporter.observer(&warnings);
     let run = Run {
         pool: means.pool,
@@ -49,7 +55,7 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
     };
     let outcome = planner::solve(&scenario, run);
     if run.stop.reason() == Some(StopReason::Cancelled) {
-        return without_plan(JobState::Cancelled, "abandoned on request");
+        return without_plan(JobState::Cancelled, "cancelled", "abandoned on request");
     }
     match serde_json::to_vec(&wire::plan::document(&outcome, &warnings)) {
         Ok(document) => Ended {
@@ -58,6 +64,7 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
         },
         Err(error) => without_plan(
             JobState::Failed,
+            "internal_error",
             &format!("the plan cannot be written: {error}"),
         ),
     }
@@ -66,11 +73,15 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
 fn described(outcome: &Outcome) -> Ended {
     match outcome {
         Outcome::Planned(plan) => planned(plan),
-        Outcome::Infeasible(reasons) => without_plan(JobState::Infeasible, &sentence(reasons)),
-        Outcome::Failed(reasons) => without_plan(JobState::Failed, &sentence(reasons)),
+        Outcome::Infeasible(reasons) => refused(JobState::Infeasible, reasons),
+        Outcome::Failed(reasons) => refused(JobState::Failed, reasons),
         Outcome::StoppedEmpty => Ended {
             early: true,
-            ..without_plan(JobState::Failed, "stopped before a first plan was found")
+            ..without_plan(
+                JobState::Failed,
+                "stopped_without_plan",
+                "stopped before a first plan was found",
+            )
         },
     }
 }
@@ -85,19 +96,28 @@ fn planned(plan: &Plan) -> Ended {
         incumbent_s: Some(plan.total_time_s),
         lower_bound_s: Some(plan.lower_bound_s),
         detail: None,
+        cause: "",
         early: plan.optimality == Optimality::Feasible,
     }
 }
 
-fn without_plan(state: JobState, detail: &str) -> Ended {
+fn without_plan(state: JobState, cause: &'static str, detail: &str) -> Ended {
     Ended {
         state,
         document: None,
         incumbent_s: None,
         lower_bound_s: None,
         detail: Some(detail.to_owned()),
+        cause,
         early: false,
     }
+}
+
+fn refused(state: JobState, problems: &[Problem]) -> Ended {
+    let cause = problems
+        .first()
+        .map_or("unknown", |first| first.code.as_str());
+    without_plan(state, cause, &sentence(problems))
 }
 
 fn sentence(problems: &[Problem]) -> String {

@@ -11,11 +11,13 @@ use crate::store::{Claim, Ended, JobRow, JobState, StoreError};
 use slewplan_solver::pool::SolverPool;
 use slewplan_solver::stop::StopSignal;
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
+use tokio::task::AbortHandle;
 
 /// How long a claim lasts without a beat, and how often it beats.
 const LEASE: Duration = Duration::from_secs(10);
@@ -89,7 +91,7 @@ impl Bench {
     fn run(&self) {
         while !self.draining.load(Ordering::SeqCst) {
             match self.runtime.block_on(self.next()) {
-                Ok(Some(claim)) => self.work(&claim),
+                Ok(Some(claim)) => self.contain(&claim),
                 Ok(None) => {}
                 Err(error) => {
                     tracing::error!(%error, "no job can be claimed");
@@ -114,11 +116,22 @@ impl Bench {
         Ok(claim)
     }
 
+    /// Works on a job; whatever goes wrong, the thread goes on to the next.
+    fn contain(&self, claim: &Claim) {
+        if catch_unwind(AssertUnwindSafe(|| self.work(claim))).is_err() {
+            self.conclude(&claim.job, &solve::broken());
+        }
+        self.jobs.set_active(None);
+        self.jobs.changed();
+    }
+
     fn work(&self, claim: &Claim) {
         let job = &claim.job;
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
         tracing::info!(targets = job.targets, "solve begins");
+        self.jobs.job_tally().begun(job);
+        let begin = Instant::now();
         self.jobs.changed();
         let stop = StopSignal::new();
         self.jobs.set_active(Some(Active {
@@ -127,13 +140,13 @@ impl Bench {
         }));
         self.catch_up(job, &stop);
         let (reporter, reports) = Reporter::new();
-        let recorder = self
-            .runtime
-            .spawn(record(self.jobs.clone(), job.clone(), reports));
+        let legs = self.jobs.legs(self.runtime.clone());
+        let recording = record(self.jobs.clone(), job.clone(), legs.unwritten(), reports);
+        let recorder = self.runtime.spawn(recording);
         let heart = self
             .runtime
             .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
-        let legs = self.jobs.legs(self.runtime.clone());
+        let heart = Heart(heart.abort_handle());
         let means = Means {
             pool: &self.pool,
             stop: &stop,
@@ -144,13 +157,13 @@ impl Bench {
         // Legs are written before the end is told: whoever asks then finds them.
         drop(legs);
         drop(reporter);
-        heart.abort();
+        drop(heart);
         if self.runtime.block_on(recorder).is_err() {
             tracing::error!("progress was not recorded to its end");
         }
         self.conclude(job, &ended);
-        self.jobs.set_active(None);
-        self.jobs.changed();
+        let solved_s = begin.elapsed().as_secs_f64();
+        self.jobs.job_tally().ended(&ended, solved_s);
     }
 
     /// Obeys requests that came between the claim and the moment when the signal was in place.
@@ -204,6 +217,15 @@ impl Bench {
                 }
             }
         }
+    }
+}
+
+/// Prolongs the lease while it lives.
+struct Heart(AbortHandle);
+
+impl Drop for Heart {
+    fn drop(&mut self) {
+        self.0.abort();
     }
 }
 

@@ -76,6 +76,7 @@ impl Store {
         claim: &JobRow,
         lease_until_us: i64,
     ) -> Result<bool, StoreError> {
+        let mut transaction = self.begin().await?;
         let done = sqlx::query(
             "UPDATE jobs SET lease_until_us = ? \
              WHERE sequence = ? AND fence = ? AND state = 'running'",
@@ -83,8 +84,9 @@ impl Store {
         .bind(lease_until_us)
         .bind(claim.sequence)
         .bind(claim.fence)
-        .execute(&self.writer)
+        .execute(&mut *transaction)
         .await?;
+        transaction.commit().await?;
         Ok(done.rows_affected() > 0)
     }
 

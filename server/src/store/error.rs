@@ -20,9 +20,23 @@ pub(crate) enum StoreError {
         /// What the operating system says.
         source: io::Error,
     },
+    /// A copy of the database cannot be written.
+    #[error("cannot copy the database to {}: {source}", path.display())]
+    Copy {
+        /// The copy.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
     /// An embedded SQLite that must not be used.
     #[error("SQLite {0} can corrupt its write-ahead log; at least 3.51.3 is needed")]
     OldSqlite(String),
+    /// A document that is no longer what was stored.
+    #[error("the stored {what} is not what was stored: the database file is damaged")]
+    Damaged {
+        /// The document.
+        what: &'static str,
+    },
     /// A row that this program never writes.
     #[error("inconsistent row in {table}: {what}")]
     Inconsistent {
@@ -34,8 +48,11 @@ pub(crate) enum StoreError {
 }
 
 /// Primary result codes of SQLite.
-const FULL: u32 = 13;
 const BUSY: u32 = 5;
+const FULL: u32 = 13;
+/// Extended result codes of SQLite: a file or its folder could not be brought to the disk.
+const IOERR_FSYNC: u32 = 1034;
+const IOERR_DIR_FSYNC: u32 = 1290;
 
 impl StoreError {
     /// Whether the file system has no room left.
@@ -49,11 +66,19 @@ impl StoreError {
             || self.primary_code() == Some(BUSY)
     }
 
+    /// Whether a commit may not have reached the disk.
+    pub(super) fn is_failed_sync(&self) -> bool {
+        matches!(self.extended_code(), Some(IOERR_FSYNC | IOERR_DIR_FSYNC))
+    }
+
     fn primary_code(&self) -> Option<u32> {
+        Some(self.extended_code()? & 0xff)
+    }
+
+    fn extended_code(&self) -> Option<u32> {
         let Self::Database(sqlx::Error::Database(error)) = self else {
             return None;
         };
-        let extended: u32 = error.code()?.parse().ok()?;
-        Some(extended & 0xff)
+        error.code()?.parse().ok()
     }
 }

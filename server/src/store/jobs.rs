@@ -1,8 +1,9 @@
 //! Jobs as their callers see them: submitted, read, asked to end, deleted.
 
 use super::rows::job_columns;
+use super::writing::Writing;
 use super::{Counts, JobRow, JobState, Store, StoreError, events};
-use sqlx::{FromRow, Row, Sqlite, SqliteConnection, Transaction};
+use sqlx::{FromRow, Row, SqliteConnection};
 
 /// A job to be queued.
 #[derive(Debug)]
@@ -15,8 +16,19 @@ pub(crate) struct Submission {
     pub(crate) scenario: Vec<u8>,
     /// Number of its targets.
     pub(crate) targets: i64,
+    /// The client whose job it is.
+    pub(crate) client: Option<String>,
     /// The caller's idempotency key and the fingerprint of the request.
     pub(crate) key: Option<(String, String)>,
+}
+
+/// How many jobs may wait.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct QueueLimits {
+    /// Of all clients together.
+    pub(crate) all: i64,
+    /// Of one client with a key.
+    pub(crate) client: i64,
 }
 
 /// What became of a submission.
@@ -30,11 +42,15 @@ pub(crate) enum Submitted {
     KeyReused,
     /// Too many jobs wait already.
     QueueFull,
+    /// Too many jobs of this client wait already.
+    QuotaExceeded,
 }
 
 /// Which jobs to list.
 #[derive(Debug, Default)]
 pub(crate) struct Listing {
+    /// Only jobs of this client.
+    pub(crate) client: Option<String>,
     /// Only jobs submitted before this one.
     pub(crate) before: Option<i64>,
     /// Only jobs in this state.
@@ -50,7 +66,7 @@ impl Store {
     pub(crate) async fn submit(
         &self,
         submission: &Submission,
-        queue_limit: i64,
+        limits: QueueLimits,
         now_us: i64,
     ) -> Result<Submitted, StoreError> {
         let mut transaction = self.begin().await?;
@@ -66,18 +82,30 @@ impl Store {
         let waiting: i64 = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'")
             .fetch_one(&mut *transaction)
             .await?;
-        if waiting >= queue_limit {
+        if waiting >= limits.all {
             return Ok(Submitted::QueueFull);
         }
+        if let Some(client) = &submission.client {
+            let own: i64 = sqlx::query_scalar(
+                "SELECT count(*) FROM jobs WHERE client = ? AND state = 'queued'",
+            )
+            .bind(client)
+            .fetch_one(&mut *transaction)
+            .await?;
+            if own >= limits.client {
+                return Ok(Submitted::QuotaExceeded);
+            }
+        }
         let row = sqlx::query(concat!(
-            "INSERT INTO jobs (id, state, name, scenario, targets, submitted_us) \
-             VALUES (?, 'queued', ?, ?, ?, ?) RETURNING ",
+            "INSERT INTO jobs (id, state, name, scenario, targets, client, submitted_us) \
+             VALUES (?, 'queued', ?, ?, ?, ?, ?) RETURNING ",
             job_columns!()
         ))
         .bind(&submission.id)
         .bind(&submission.name)
         .bind(&submission.scenario)
         .bind(submission.targets)
+        .bind(&submission.client)
         .bind(now_us)
         .fetch_one(&mut *transaction)
         .await?;
@@ -137,10 +165,12 @@ impl Store {
 
     /// Deletes a job with all that belongs to it; `false` when there is none.
     pub(crate) async fn delete(&self, id: &str) -> Result<bool, StoreError> {
+        let mut transaction = self.begin().await?;
         let done = sqlx::query("DELETE FROM jobs WHERE id = ?")
             .bind(id)
-            .execute(&self.writer)
+            .execute(&mut *transaction)
             .await?;
+        transaction.commit().await?;
         Ok(done.rows_affected() > 0)
     }
 
@@ -155,14 +185,22 @@ impl Store {
             "SELECT ",
             job_columns!(),
             " FROM jobs WHERE (?1 IS NULL OR sequence < ?1) AND (?2 IS NULL OR state = ?2) \
-             AND (?3 IS NULL OR name = ?3) ORDER BY sequence DESC LIMIT ?4"
+             AND (?3 IS NULL OR name = ?3) AND (?4 IS NULL OR client = ?4) \
+             ORDER BY sequence DESC LIMIT ?5"
         ))
         .bind(listing.before)
         .bind(listing.state.map(JobState::as_str))
         .bind(&listing.name)
+        .bind(&listing.client)
         .bind(listing.limit)
         .fetch_all(&self.readers)
         .await?)
+    }
+
+    /// Number of jobs that wait.
+    pub(crate) async fn waiting(&self) -> Result<i64, StoreError> {
+        let count = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'");
+        Ok(count.fetch_one(&self.readers).await?)
     }
 
     /// Number of jobs in every state.
@@ -184,7 +222,7 @@ impl Store {
 
 /// Notes a request with a running job; the job as it is then.
 async fn noted(
-    mut transaction: Transaction<'static, Sqlite>,
+    mut transaction: Writing,
     note: &'static str,
     id: &str,
     now_us: i64,

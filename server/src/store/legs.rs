@@ -156,7 +156,7 @@ impl Store {
         for leg in legs {
             put_leg(&mut transaction, leg, now_us).await?;
         }
-        Ok(transaction.commit().await?)
+        transaction.commit().await
     }
 
     /// A leg by its key, with its motion.

@@ -30,6 +30,15 @@ pub(crate) struct NewIncumbent {
     pub(crate) lower_bound_s: f64,
 }
 
+/// The plan as it was stored, not as a damaged disk tells it.
+fn intact(row: ResultRow) -> Result<ResultRow, StoreError> {
+    if crate::digest::hex(&row.document) == row.digest {
+        Ok(row)
+    } else {
+        Err(StoreError::Damaged { what: "plan" })
+    }
+}
+
 /// Keeps the plan of a running job unless one as good is kept already.
 pub(super) async fn keep(
     connection: &mut SqliteConnection,
@@ -73,6 +82,7 @@ pub(super) async fn better(
         incumbent_s: Some(total_time_s),
         lower_bound_s: Some(lower_bound_s),
         detail: None,
+        cause: "",
         early: true,
     }))
 }
@@ -120,7 +130,7 @@ impl Store {
         };
         let state = JobState::stored(row.try_get("state")?)?;
         let plan = match row.try_get::<Option<&str>, _>("digest")? {
-            Some(_) => Some(ResultRow::from_row(&row)?),
+            Some(_) => Some(intact(ResultRow::from_row(&row)?)?),
             None => None,
         };
         Ok(Some((state, plan)))

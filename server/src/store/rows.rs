@@ -161,6 +161,8 @@ pub(crate) struct Ended {
     pub(crate) lower_bound_s: Option<f64>,
     /// Why there is no plan.
     pub(crate) detail: Option<String>,
+    /// The same as a stable code; empty with a plan.
+    pub(crate) cause: &'static str,
     /// Whether it ended before it was done: a better plan of an earlier attempt still counts.
     pub(crate) early: bool,
 }

@@ -1,8 +1,9 @@
-//! What a claim that was lost must not do, and what is kept for its successor.
+//! What a claim that was lost must not do, what is kept for its successor, and what failures of
+//! the disk must not do.
 
 use super::{
-    Claim, Ended, JobRow, JobState, NewIncumbent, ProgressRow, ResultRow, Store, Submission,
-    Submitted,
+    Claim, Ended, JobRow, JobState, NewIncumbent, ProgressRow, QueueLimits, ResultRow, Store,
+    StoreError, Submission, Submitted,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -36,6 +37,7 @@ fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
         lower_bound_s: plan.as_ref().map(|plan| plan.lower_bound_s),
         document: plan.map(|plan| plan.document),
         detail: None,
+        cause: "",
         early: true,
     }
 }
@@ -46,9 +48,11 @@ async fn submitted(store: &Store) {
         name: None,
         scenario: b"{}".into(),
         targets: 1,
+        client: None,
         key: None,
     };
-    let queued = store.submit(&submission, 1, 1).await.expect("stored");
+    let limits = QueueLimits { all: 1, client: 1 };
+    let queued = store.submit(&submission, limits, 1).await.expect("stored");
     assert!(matches!(queued, Submitted::New(_)));
 }
 
@@ -131,5 +135,58 @@ fn an_abandoned_job_has_no_plan() {
         let (state, none) = result(&store).await;
         assert_eq!(state, JobState::Cancelled);
         assert!(none.is_none());
+    });
+}
+
+#[test]
+fn a_full_disk_costs_only_what_is_written_while_it_is_full() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let big = "x".repeat(1 << 20);
+        // More often than there are connections: each failure poisons the one that it meets.
+        for round in 0..3 {
+            sqlx::query("PRAGMA max_page_count = 1")
+                .execute(&store.writer)
+                .await
+                .expect("limited");
+            let full = store.put_spacecraft("big", &big, 2).await;
+            let error = full.expect_err("there is no room");
+            assert!(error.is_disk_full(), "{error}");
+            store.job(ID).await.expect("read").expect("there");
+            // A new connection knows no limit.
+            let name = format!("small-{round}");
+            let stored = store.put_spacecraft(&name, "{}", 3);
+            stored.await.expect("the writer has recovered");
+        }
+    });
+}
+
+#[test]
+fn a_damaged_plan_is_noticed_and_not_served() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let claim = claim(&store, "first").await.job;
+        let end = ended(JobState::Stopped, Some(plan(20.0)));
+        assert!(store.finish(&claim, &end, 3).await.expect("written"));
+        sqlx::query("UPDATE results SET document = x'7b7d'")
+            .execute(&store.writer)
+            .await
+            .expect("damaged");
+        let error = store.result(ID).await.expect_err("it was changed");
+        assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
+    });
+}
+
+#[test]
+fn only_what_ended_before_is_forgotten() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        assert_eq!(store.forget_ended(100, 9).await.expect("tried"), 0);
+        let claim = claim(&store, "first").await.job;
+        let end = ended(JobState::Stopped, Some(plan(20.0)));
+        assert!(store.finish(&claim, &end, 50).await.expect("written"));
+        assert_eq!(store.forget_ended(50, 9).await.expect("tried"), 0);
+        assert_eq!(store.forget_ended(51, 9).await.expect("done"), 1);
+        assert!(store.result(ID).await.expect("read").is_none());
     });
 }

@@ -41,6 +41,7 @@ outcomes! {
     BodyErrors = [
         ("400", "Malformed JSON, parameter or header"),
         ("404", "Not found"),
+        ("408", "The body did not arrive in time"),
         ("413", "Too large; the detail names the limit"),
         ("415", "The body is not JSON, or is compressed"),
         ("422", "Not valid; errors lists everything that is wrong")
@@ -51,8 +52,10 @@ outcomes! {
     NotFound = [("404", "Not found")];
     /// Whatever depends on the state of a job.
     Conflict = [("409", "The state of the job does not allow it")];
-    /// Everything that needs the database.
+    /// Everything that needs the database, which is everything that needs a key.
     ServerErrors = [
+        ("401", "A key is needed (where keys are asked for)"),
+        ("403", "The key has not the scope"),
         ("500", "An internal error; the log has its cause"),
         ("503", "Busy or full; Retry-After says when to come again"),
         ("507", "The disk is full")

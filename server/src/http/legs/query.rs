@@ -1,5 +1,6 @@
 //! `POST /v1/legs/query`: leg times between attitudes.
 
+use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
@@ -49,9 +50,10 @@ const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
+    caller: Caller,
     body: JsonBody,
 ) -> Result<Json<LegAnswersDocument>, ApiError> {
-    let (node, _) = stored::write_out(&app, body.node, "").await?;
+    let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
     let query = leg_query::read(&node, MOST_PAIRS).map_err(|refusal| match refusal {
         Refusal::Invalid(problems) => ApiError::input(problems),
         Refusal::TooMany(count) => {

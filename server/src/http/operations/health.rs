@@ -1,12 +1,20 @@
 //! `GET /health/live` and `GET /health/ready`.
 
-use super::super::App;
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::{App, describe};
 use crate::clock::now_us;
-use crate::store::JobState;
+use crate::wire;
 use axum::Json;
 use axum::extract::State;
 use serde::Serialize;
+use slewplan_solver::legs::{LegKind, NoStore};
+use slewplan_solver::planner::{self, Run, Shard};
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::progress::Silent;
+use slewplan_solver::stop::StopSignal;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tokio::sync::Mutex;
 use utoipa::ToSchema;
 
 /// The service is well.
@@ -29,7 +37,18 @@ pub(in crate::http) async fn live() -> Json<Document> {
     Json(Document { status: "ok" })
 }
 
-/// Whether the service can take work: the database can be written and the queue has room
+/// How long an answer about the database and the solver holds: however often somebody asks, they
+/// are not tried more often than that.
+const FRESH: Duration = Duration::from_secs(1);
+/// Longest time for the trial of the solver, which takes milliseconds.
+const LONGEST_SOLVE: Duration = Duration::from_secs(5);
+
+/// The newest answer of the database and the solver, and since when it holds: why they cannot be
+/// used, if they cannot. Who asks meanwhile waits for it.
+pub(in crate::http) type Readiness = Mutex<Option<(Instant, Result<(), &'static str>)>>;
+
+/// Whether the service can take work: the database can be written, a small leg is solved, and the
+/// queue has room
 #[utoipa::path(
     get, path = "/health/ready", tag = "operations", operation_id = "get_ready",
     responses(
@@ -43,15 +62,56 @@ pub(in crate::http) async fn ready(State(app): State<App>) -> Result<Json<Docume
     if app.shutdown().has_begun() {
         return Err(not_ready("the service is about to end"));
     }
+    let mut newest = app.0.readiness.lock().await;
+    let known = newest.filter(|(since, _)| since.elapsed() < FRESH);
+    let (_, answer) = match known {
+        Some(known) => known,
+        None => *newest.insert((Instant::now(), examine(&app).await)),
+    };
+    drop(newest);
+    answer.map_err(not_ready)?;
+    Ok(Json(Document { status: "ok" }))
+}
+
+async fn examine(app: &App) -> Result<(), &'static str> {
     let failed = |error| {
         tracing::warn!(%error, "not ready");
-        not_ready("the database cannot be used")
+        "the database cannot be used"
     };
     app.store().check_writable(now_us()).await.map_err(failed)?;
-    let counts = app.store().counts().await.map_err(failed)?;
-    let waiting = counts.iter().find(|count| count.state == JobState::Queued);
-    if waiting.is_some_and(|count| count.jobs >= app.limits().queue) {
-        return Err(not_ready("the queue is full"));
+    let waiting = app.store().waiting().await.map_err(failed)?;
+    if waiting >= app.jobs().queue_limits().all {
+        return Err("the queue is full");
     }
-    Ok(Json(Document { status: "ok" }))
+    let pool = Arc::clone(&app.0.lookups);
+    match tokio::task::spawn_blocking(move || solves(&pool)).await {
+        Ok(true) => Ok(()),
+        Ok(false) => Err("the solver does not solve"),
+        Err(error) => {
+            tracing::error!(%error, "the solver failed");
+            Err("the solver fails")
+        }
+    }
+}
+
+/// Solves a small leg without remembering it.
+fn solves(pool: &SolverPool) -> bool {
+    let scenario = describe::two_targets().to_string();
+    let Ok(valid) = wire::scenario::read(scenario.as_bytes(), None) else {
+        return false;
+    };
+    let stop = StopSignal::new().with_time_limit(LONGEST_SOLVE);
+    let run = Run {
+        pool,
+        stop: &stop,
+        observer: &Silent,
+        legs: &NoStore,
+    };
+    let first = Shard {
+        index: 0,
+        // Of more parts than there are legs: one leg.
+        of: usize::MAX,
+    };
+    let (rows, _) = planner::leg_table(&valid.scenario, LegKind::RestToRest, first, run);
+    rows.iter().any(|row| row.duration_s.is_some())
 }

@@ -17,6 +17,8 @@ pub(in crate::http) struct Document {
     max_targets: usize,
     /// Most jobs that wait.
     queue_limit: i64,
+    /// Most jobs of one client that wait, where keys are asked for.
+    client_queue_limit: i64,
     /// Longest `Prefer: wait`, s.
     max_wait_s: u64,
     /// Most legs of a query.
@@ -36,7 +38,8 @@ pub(in crate::http) async fn handler(State(app): State<App>) -> Json<Document> {
     Json(Document {
         max_body_bytes: app.limits().body_bytes,
         max_targets: app.limits().targets,
-        queue_limit: app.limits().queue,
+        queue_limit: app.jobs().queue_limits().all,
+        client_queue_limit: app.jobs().queue_limits().client,
         max_wait_s: create::LONGEST_WAIT_S,
         max_leg_pairs: query::MOST_PAIRS,
         max_leg_query_s: query::LONGEST_S,

@@ -3,9 +3,9 @@
 use super::super::App;
 use super::super::describe::ServerErrors;
 use super::super::error::ApiError;
+use crate::figures::{head, sample};
 use axum::extract::State;
 use axum::http::{HeaderName, header};
-use std::fmt::Write;
 
 /// Read the figures for Prometheus
 #[utoipa::path(
@@ -44,6 +44,25 @@ pub(in crate::http) async fn handler(
     );
     sample(&mut text, name, "outcome=\"hit\"", tally.hits());
     sample(&mut text, name, "outcome=\"miss\"", tally.misses());
+    let name = "slewplan_database_bytes";
+    head(
+        &mut text,
+        name,
+        "gauge",
+        "Size of the files of the database.",
+    );
+    for (file, bytes) in app.store().sizes() {
+        sample(&mut text, name, &format!("file=\"{file}\""), bytes);
+    }
+    let name = "slewplan_event_streams_free";
+    head(
+        &mut text,
+        name,
+        "gauge",
+        "Streams of events that can still be opened.",
+    );
+    sample(&mut text, name, "", app.0.streams.available_permits());
+    app.jobs().job_tally().write(&mut text);
     app.0.metrics.write(&mut text);
     Ok((
         [(
@@ -52,24 +71,4 @@ pub(in crate::http) async fn handler(
         )],
         text,
     ))
-}
-
-/// Writes what a figure is.
-pub(in crate::http) fn head(text: &mut String, name: &str, kind: &str, help: &str) {
-    // Writing into a text cannot fail.
-    let _ = writeln!(text, "# HELP {name} {help}\n# TYPE {name} {kind}");
-}
-
-/// Writes one value of a figure.
-pub(in crate::http) fn sample(
-    text: &mut String,
-    name: &str,
-    labels: &str,
-    value: impl std::fmt::Display,
-) {
-    let _ = if labels.is_empty() {
-        writeln!(text, "{name} {value}")
-    } else {
-        writeln!(text, "{name}{{{labels}}} {value}")
-    };
 }

@@ -1,6 +1,7 @@
 //! `POST /v1/plans`: a scenario becomes a job.
 
 use super::super::App;
+use super::super::access::Caller;
 use super::super::describe::{BodyErrors, Scenario, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::{JsonBody, Parameters, header_text};
@@ -8,6 +9,7 @@ use super::super::{respond, stored};
 use crate::digest;
 use crate::store::{JobRow, Submission, Submitted};
 use crate::wire;
+use crate::wire::document::Node;
 use crate::wire::jobs::JobDocument;
 use crate::wire::plan::PlanDocument;
 use crate::wire::problems::ValidationDocument;
@@ -83,20 +85,17 @@ pub(in crate::http) struct Query {
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
+    caller: Caller,
     Parameters(query): Parameters<Query>,
     headers: HeaderMap,
     body: JsonBody,
 ) -> Result<Response, ApiError> {
     let key = idempotency_key(&headers)?;
     let fingerprint = digest::hex(&body.bytes);
-    let (node, written_out) = stored::write_out(&app, body.node, "").await?;
+    check_targets(&app, &body.node)?;
+    let (node, written_out) = stored::write_out(&app, &caller, body.node, "").await?;
     let valid = wire::scenario::read_node(&node, None).map_err(ApiError::input)?;
     let targets = valid.scenario.targets().len();
-    if targets > app.limits().targets {
-        let limit = app.limits().targets;
-        let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
-        return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
-    }
     if query.validate_only {
         return validation(&valid);
     }
@@ -109,7 +108,8 @@ pub(in crate::http) async fn handler(
             body.bytes.into()
         },
         targets: i64::try_from(targets).unwrap_or(i64::MAX),
-        key: key.map(|key| (key, fingerprint)),
+        client: caller.client().map(str::to_owned),
+        key: key.map(|key| (caller.own(&key), fingerprint)),
     };
     let (job, replayed) = submit(&app, &submission).await?;
     let mut response = answer(&app, job, wait(&headers)).await?;
@@ -120,6 +120,23 @@ pub(in crate::http) async fn handler(
             .insert(name, HeaderValue::from_static("true"));
     }
     Ok(response)
+}
+
+/// Refuses what would take long to read in full, before it is read in full.
+fn check_targets(app: &App, scenario: &Node) -> Result<(), ApiError> {
+    let limit = app.limits().targets;
+    let Node::Object(members) = scenario else {
+        return Ok(());
+    };
+    let targets = members.iter().find(|(name, _)| name == "targets");
+    match targets {
+        Some((_, Node::List(targets))) if targets.len() > limit => {
+            let count = targets.len();
+            let detail = format!("{count} targets; the limit is {limit} (max_targets)");
+            Err(ApiError::new(ErrorCode::TooManyTargets, detail))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What a finished request answers.
@@ -157,9 +174,14 @@ async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), Ap
             "another body was submitted under this Idempotency-Key",
         )),
         Submitted::QueueFull => {
-            let limit = app.jobs().queue_limit();
+            let limit = app.jobs().queue_limits().all;
             let detail = format!("{limit} jobs wait already (queue_limit)");
             Err(ApiError::new(ErrorCode::QueueFull, detail).retry_after(RETRY_FULL_S))
+        }
+        Submitted::QuotaExceeded => {
+            let limit = app.jobs().queue_limits().client;
+            let detail = format!("{limit} jobs of this client wait already (client_queue_limit)");
+            Err(ApiError::new(ErrorCode::QuotaExceeded, detail).retry_after(RETRY_FULL_S))
         }
     }
 }

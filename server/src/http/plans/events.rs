@@ -2,20 +2,35 @@
 
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
-use super::super::error::ApiError;
-use crate::store::{EventRow, StoreError};
+use super::super::error::{ApiError, ErrorCode};
+use crate::lifecycle::Shutdown;
+use crate::store::{EventRow, JobState, StoreError};
 use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures_util::stream::{Stream, unfold};
 use std::collections::VecDeque;
 use std::convert::Infallible;
-use tokio::sync::watch;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{OwnedSemaphorePermit, watch};
+use tokio::time::Instant;
+
+/// Longest life of a stream.
+const LIFE: Duration = Duration::from_hours(1);
+/// Longest wait, when the service ends, for the job to be given back.
+const FAREWELL: Duration = Duration::from_secs(2);
+/// Time after which a client shall connect again.
+const AGAIN: Duration = Duration::from_secs(2);
+/// Time after which another stream may be free, s.
+const RETRY_S: u32 = 10;
 
 /// Follow a job
 ///
 /// Server-sent events with ids that count from 1. Every event carries state, incumbent and bound.
 /// A stream ends after the last event of a job; one that broke is resumed with `Last-Event-ID`.
+/// When the service ends, and after an hour, a stream ends with `closing`, which has no id: connect
+/// again.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/events", tag = "plans", operation_id = "follow_plan",
     params(
@@ -39,13 +54,21 @@ pub(in crate::http) async fn handler(
         .and_then(|id| id.to_str().ok()?.trim().parse::<u32>().ok())
         .map_or(0, i64::from);
     let job = super::find(&app, &id).await?;
+    let Ok(place) = Arc::clone(&app.0.streams).try_acquire_owned() else {
+        let error = ApiError::new(ErrorCode::Busy, "too many streams are open");
+        return Err(error.retry_after(RETRY_S));
+    };
     let tail = Tail {
         changes: app.jobs().changes(),
         known,
         sequence: job.sequence,
         id,
+        shutdown: app.shutdown().clone(),
         app,
         read: VecDeque::new(),
+        until: Instant::now() + LIFE,
+        closed: false,
+        _place: place,
     };
     Ok(Sse::new(unfold(tail, Tail::next)).keep_alive(KeepAlive::default()))
 }
@@ -54,11 +77,11 @@ pub(in crate::http) async fn handler(
 #[derive(serde::Serialize, utoipa::ToSchema)]
 #[schema(as = EventFrame)]
 struct Frame {
-    /// Counts from 1 within the job.
-    id: String,
-    /// `state` when the state has changed, `progress` otherwise.
+    /// Counts from 1 within the job; `closing` has none.
+    id: Option<String>,
+    /// `state` when the state has changed, `progress` otherwise, or `closing`.
     event: String,
-    /// An `Event` as JSON.
+    /// An `Event` as JSON; empty for `closing`.
     data: String,
 }
 
@@ -68,44 +91,66 @@ struct Tail {
     id: String,
     sequence: i64,
     changes: watch::Receiver<u64>,
+    shutdown: Shutdown,
     known: i64,
     read: VecDeque<EventRow>,
+    /// When the stream ends if the job does not.
+    until: Instant,
+    closed: bool,
+    _place: OwnedSemaphorePermit,
 }
 
 impl Tail {
     async fn next(mut self) -> Option<(Result<Event, Infallible>, Self)> {
-        let mut shutdown = self.app.shutdown().clone();
-        while self.read.is_empty() {
-            self.changes.borrow_and_update();
-            match self.fetch().await {
-                Ok(true) => {}
-                Ok(false) => return None,
-                Err(error) => {
-                    tracing::error!(job_id = self.id, %error, "events cannot be read");
-                    return None;
-                }
-            }
-            if self.read.is_empty() {
-                tokio::select! {
-                    changed = self.changes.changed() => changed.ok()?,
-                    () = shutdown.begun() => return None,
-                }
-            }
+        if self.closed {
+            return None;
         }
-        let row = self.read.pop_front()?;
-        self.known = row.id;
-        let event = Event::default()
-            .id(row.id.to_string())
-            .event(row.kind)
-            .data(row.data);
-        Some((Ok(event), self))
+        loop {
+            if let Some(row) = self.read.pop_front() {
+                self.known = row.id;
+                let event = Event::default().id(row.id.to_string());
+                return Some((Ok(event.event(row.kind).data(row.data)), self));
+            }
+            self.changes.borrow_and_update();
+            let state = self.fetch().await.unwrap_or_else(|error| {
+                tracing::error!(job_id = self.id, %error, "events cannot be read");
+                None
+            })?;
+            if !self.read.is_empty() {
+                continue;
+            }
+            if state.is_final() {
+                return None;
+            }
+            // A running job is about to be given back: that is worth telling.
+            let given_back = self.shutdown.has_begun() && state == JobState::Queued;
+            if given_back || self.until <= Instant::now() {
+                self.closed = true;
+                let event = Event::default().event("closing").retry(AGAIN).data("");
+                return Some((Ok(event), self));
+            }
+            self.wait().await;
+        }
     }
 
-    /// Reads what is new; `false` when nothing will ever be.
-    async fn fetch(&mut self) -> Result<bool, StoreError> {
+    /// Waits for a reason to look again.
+    async fn wait(&mut self) {
+        let ending = self.shutdown.has_begun();
+        if ending {
+            self.until = self.until.min(Instant::now() + FAREWELL);
+        }
+        tokio::select! {
+            _ = self.changes.changed() => {}
+            () = self.shutdown.begun(), if !ending => {}
+            () = tokio::time::sleep_until(self.until) => {}
+        }
+    }
+
+    /// Reads what is new, and where the job stood before that; `None` when it is gone.
+    async fn fetch(&mut self) -> Result<Option<JobState>, StoreError> {
         // The state first: the last event is there before anybody can see the last state.
         let Some(job) = self.app.store().job(&self.id).await? else {
-            return Ok(false);
+            return Ok(None);
         };
         self.read = self
             .app
@@ -113,6 +158,6 @@ impl Tail {
             .events_after(self.sequence, self.known)
             .await?
             .into();
-        Ok(!self.read.is_empty() || !job.state()?.is_final())
+        Ok(Some(job.state()?))
     }
 }

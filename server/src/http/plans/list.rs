@@ -1,6 +1,7 @@
 //! `GET /v1/plans`: the jobs, page by page.
 
 use super::super::App;
+use super::super::access::Caller;
 use super::super::describe::{ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::Parameters;
@@ -43,6 +44,7 @@ pub(in crate::http) struct Query {
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
+    caller: Caller,
     Parameters(query): Parameters<Query>,
 ) -> Result<Json<JobListDocument>, ApiError> {
     let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
@@ -57,6 +59,7 @@ pub(in crate::http) async fn handler(
         .map_err(wrong)?;
     let before = super::super::extract::cursor(query.cursor.as_deref())?;
     let listing = Listing {
+        client: caller.client().map(str::to_owned),
         before,
         state,
         name: query.name,

@@ -1,6 +1,7 @@
 //! `GET /v1/spacecraft/{name}`: a stored spacecraft.
 
 use super::super::App;
+use super::super::access::Caller;
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::Parameters;
@@ -35,6 +36,7 @@ pub(in crate::http) struct Query {
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
+    caller: Caller,
     Path(name): Path<String>,
     Parameters(query): Parameters<Query>,
 ) -> Result<Json<StoredSpacecraft>, ApiError> {
@@ -46,7 +48,7 @@ pub(in crate::http) async fn handler(
     }
     let found = app
         .store()
-        .spacecraft(&name, query.version.map(i64::from))
+        .spacecraft(&caller.own(&name), query.version.map(i64::from))
         .await?;
     let row = found.ok_or_else(|| ApiError::not_found("spacecraft", &name))?;
     StoredSpacecraft::new(name, row).map(Json).map_err(|error| {

@@ -1,6 +1,7 @@
 //! `PUT /v1/spacecraft/{name}`: store a spacecraft.
 
 use super::super::App;
+use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
@@ -30,6 +31,7 @@ const LONGEST_NAME: usize = 64;
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
+    caller: Caller,
     Path(name): Path<String>,
     body: JsonBody,
 ) -> Result<(StatusCode, Json<StoredSpacecraft>), ApiError> {
@@ -41,7 +43,7 @@ pub(in crate::http) async fn handler(
     let now = now_us();
     let row = app
         .store()
-        .put_spacecraft(&name, &body.node.to_json(), now)
+        .put_spacecraft(&caller.own(&name), &body.node.to_json(), now)
         .await?;
     let first = row.version == 1 && row.created_us == now;
     let stored = StoredSpacecraft::new(name, row).map_err(|error| {

@@ -1,0 +1,32 @@
+//! The database for commands that are not the service.
+
+use super::Failure;
+use crate::service::ServiceError;
+use crate::store::Store;
+use std::path::Path;
+use tokio::runtime::Runtime;
+
+/// A thread for the database.
+pub(super) fn start() -> Result<Runtime, Failure> {
+    let started = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build();
+    Ok(started.map_err(|source| ServiceError::System {
+        what: "cannot start the threads of the database".into(),
+        source,
+    })?)
+}
+
+/// Works on a database, which is opened or created for it.
+pub(super) fn with_store<T>(
+    database: &Path,
+    work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    start()?.block_on(async {
+        let store = Store::open(database).await.map_err(ServiceError::from)?;
+        let done = work(&store).await;
+        store.close().await;
+        done
+    })
+}

@@ -1,0 +1,42 @@
+//! Failures on purpose, for tests of what they cost. Only in builds with the feature `faults`,
+//! which nobody ships: a scenario with one of these names does what it says.
+
+use slewplan_solver::pool::SolverPool;
+
+/// Fails if the name of a scenario asks for it.
+///
+/// # Panics
+///
+/// For `fault:panic`, `fault:pool` and `fault:drop`, on the worker's thread, on a thread of the
+/// pool, and while a value is dropped. `fault:abort` ends the process.
+pub(crate) fn strike(name: Option<&str>, pool: &SolverPool) {
+    match name {
+        Some("fault:panic") => panic!("a fault on purpose"),
+        Some("fault:pool") => {
+            pool.map(&[0; 8], |_| panic!("a fault on purpose in the pool"));
+        }
+        Some("fault:drop") => drop(FailsToDrop),
+        Some("fault:abort") => std::process::abort(),
+        _ => {}
+    }
+}
+
+struct FailsToDrop;
+
+impl Drop for FailsToDrop {
+    fn drop(&mut self) {
+        panic!("a fault on purpose in a destructor");
+    }
+}
+
+/// Fails a request that asks for it.
+///
+/// # Panics
+///
+/// For requests with the header `X-Fault`.
+pub(crate) fn strike_request(headers: &axum::http::HeaderMap) {
+    assert!(
+        !headers.contains_key("x-fault"),
+        "a fault on purpose in a handler"
+    );
+}

@@ -1,0 +1,125 @@
+//! Keys of clients, and whose job is whose.
+
+use super::{Store, StoreError};
+use crate::access::Scopes;
+use sqlx::FromRow;
+
+/// A key without its secret.
+#[derive(Debug, Clone, FromRow)]
+pub(crate) struct KeyRow {
+    /// Names the key.
+    pub(crate) id: String,
+    /// For whom it acts.
+    pub(crate) client: String,
+    #[sqlx(rename = "scopes")]
+    scopes_text: String,
+    /// When it was made.
+    pub(crate) created_us: i64,
+    /// When it ends.
+    pub(crate) expires_us: Option<i64>,
+    /// When it was revoked.
+    pub(crate) revoked_us: Option<i64>,
+}
+
+impl KeyRow {
+    /// What it opens.
+    pub(crate) fn scopes(&self) -> Result<Scopes, StoreError> {
+        let scopes = self.scopes_text.parse();
+        scopes.map_err(|what| StoreError::Inconsistent {
+            table: "api_keys",
+            what,
+        })
+    }
+
+    /// Whether it opens anything at a time.
+    pub(crate) fn is_valid(&self, now_us: i64) -> bool {
+        self.revoked_us.is_none() && self.expires_us.is_none_or(|end| now_us < end)
+    }
+}
+
+/// A key to be stored.
+#[derive(Debug)]
+pub(crate) struct NewKey {
+    /// Names the key.
+    pub(crate) id: String,
+    /// For whom it acts.
+    pub(crate) client: String,
+    /// SHA-256 of the key, hex.
+    pub(crate) digest: String,
+    /// What it opens.
+    pub(crate) scopes: Scopes,
+    /// When it ends.
+    pub(crate) expires_us: Option<i64>,
+}
+
+macro_rules! key_columns {
+    () => {
+        "id, client, scopes, created_us, expires_us, revoked_us"
+    };
+}
+
+impl Store {
+    /// Stores a key.
+    pub(crate) async fn put_key(&self, key: &NewKey, now_us: i64) -> Result<(), StoreError> {
+        let mut transaction = self.begin().await?;
+        sqlx::query(
+            "INSERT INTO api_keys (id, client, digest, scopes, created_us, expires_us) \
+             VALUES (?, ?, ?, ?, ?, ?)",
+        )
+        .bind(&key.id)
+        .bind(&key.client)
+        .bind(&key.digest)
+        .bind(key.scopes.to_string())
+        .bind(now_us)
+        .bind(key.expires_us)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await
+    }
+
+    /// All keys, the oldest first.
+    pub(crate) async fn keys(&self) -> Result<Vec<KeyRow>, StoreError> {
+        Ok(sqlx::query_as(concat!(
+            "SELECT ",
+            key_columns!(),
+            " FROM api_keys ORDER BY created_us, id"
+        ))
+        .fetch_all(&self.readers)
+        .await?)
+    }
+
+    /// The key with a digest.
+    pub(crate) async fn key(&self, digest: &str) -> Result<Option<KeyRow>, StoreError> {
+        Ok(sqlx::query_as(concat!(
+            "SELECT ",
+            key_columns!(),
+            " FROM api_keys WHERE digest = ?"
+        ))
+        .bind(digest)
+        .fetch_optional(&self.readers)
+        .await?)
+    }
+
+    /// Ends a key from now on; `false` when there is none of this name that still opens anything.
+    pub(crate) async fn revoke_key(&self, id: &str, now_us: i64) -> Result<bool, StoreError> {
+        let mut transaction = self.begin().await?;
+        let done =
+            sqlx::query("UPDATE api_keys SET revoked_us = ? WHERE id = ? AND revoked_us IS NULL")
+                .bind(now_us)
+                .bind(id)
+                .execute(&mut *transaction)
+                .await?;
+        transaction.commit().await?;
+        Ok(done.rows_affected() > 0)
+    }
+
+    /// Whether a job is there and belongs to a client.
+    pub(crate) async fn owns(&self, client: &str, job: &str) -> Result<bool, StoreError> {
+        let owned: Option<bool> = sqlx::query_scalar("SELECT client IS ? FROM jobs WHERE id = ?")
+            .bind(client)
+            .bind(job)
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(owned.unwrap_or(false))
+    }
+}

@@ -1,0 +1,99 @@
+//! Clients that are slow, silent or many.
+
+use crate::client::Request;
+use crate::running::{Service, large};
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+/// Longer than the service waits for anything that a client sends.
+const PATIENCE: Duration = Duration::from_mins(1);
+
+fn connected(service: &Service) -> TcpStream {
+    let stream = TcpStream::connect(&service.address).expect("the service listens");
+    stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+    stream
+}
+
+/// What is left to be read; nothing from a connection that was cut off.
+fn rest(mut stream: TcpStream) -> String {
+    let mut text = Vec::new();
+    match stream.read_to_end(&mut text) {
+        Ok(_) => {}
+        Err(error) => assert_eq!(error.kind(), ErrorKind::ConnectionReset, "{error}"),
+    }
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+#[test]
+fn who_does_not_send_is_cut_off() {
+    let service = Service::start();
+    let silent = connected(&service);
+    let mut half_head = connected(&service);
+    half_head
+        .write_all(b"GET /v1/version HTTP/1.1\r\nHost:")
+        .expect("sent");
+    let mut half_body = connected(&service);
+    half_body
+        .write_all(
+            b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n\
+              Content-Length: 100\r\n\r\n{",
+        )
+        .expect("sent");
+    let answer = rest(half_body);
+    assert!(
+        answer.starts_with("HTTP/1.1 408 ") && answer.contains("body_too_slow"),
+        "{answer}"
+    );
+    assert_eq!(rest(silent), "");
+    assert_eq!(rest(half_head), "");
+}
+
+#[test]
+fn open_sockets_do_not_keep_others_out() {
+    let service = Service::start_with(&["--max-connections", "4"]);
+    let idle: Vec<TcpStream> = (0..20).map(|_| connected(&service)).collect();
+    for _ in 0..4 {
+        service.get("/health/live").expect(200);
+    }
+    drop(idle);
+}
+
+#[test]
+fn streams_leave_room_for_requests() {
+    let service = Service::start_with(&["--max-connections", "4"]);
+    let id = service.submit(&large());
+    let events = Request::new("GET", &format!("/v1/plans/{id}/events"));
+    let open: Vec<TcpStream> = (0..2)
+        .map(|_| {
+            let mut stream = events.open(&service.address);
+            // The head of the answer is there: the stream has its place.
+            stream.read_exact(&mut [0; 1]).expect("an answer");
+            stream
+        })
+        .collect();
+    let refused = service.send(&events);
+    assert!(refused.header("retry-after").is_some());
+    refused.expect_problem(503, "busy");
+    service.get("/health/live").expect(200);
+    drop(open);
+}
+
+#[test]
+fn every_answer_tells_browsers_what_not_to_do() {
+    let service = Service::start();
+    for path in [
+        "/",
+        "/v1/plans",
+        "/v1/plans/none",
+        "/docs/",
+        "/health/ready",
+    ] {
+        let answer = service.get(path);
+        assert_eq!(answer.header("x-content-type-options"), Some("nosniff"));
+        assert_eq!(answer.header("cache-control"), Some("no-store"), "{path}");
+        let policy = answer.header("content-security-policy").expect("a policy");
+        assert!(policy.contains("frame-ancestors 'none'"), "{policy}");
+        assert_eq!(answer.header("access-control-allow-origin"), None);
+    }
+}

@@ -1,0 +1,206 @@
+//! Who may use the service, and what of it.
+
+use crate::client::{Answer, Request};
+use crate::running::{Service, small};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn slewplan(arguments: &[&str], database: &Path) -> Output {
+    let ended = Command::new(env!("CARGO_BIN_EXE_slewplan"))
+        .args(arguments)
+        .arg("--database")
+        .arg(database)
+        .output();
+    ended.expect("the binary starts")
+}
+
+/// A new key.
+fn key(database: &Path, arguments: &[&str]) -> String {
+    let made = slewplan(&[&["keys", "create"], arguments].concat(), database);
+    assert!(made.status.success(), "{made:?}");
+    String::from_utf8(made.stdout)
+        .expect("ASCII")
+        .trim()
+        .to_owned()
+}
+
+fn folder() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("keys.db");
+    (folder, database)
+}
+
+fn request(method: &str, path: &str, key: &str) -> Request {
+    Request::new(method, path).header("Authorization", &format!("Bearer {key}"))
+}
+
+/// Every operation of the description, with an identifier in the place of each parameter.
+fn operations(id: &str) -> Vec<(String, String)> {
+    let description = slewplan_openapi();
+    let paths = description["paths"].as_object().expect("paths");
+    let methods = |(path, item): (&String, &Value)| {
+        let path = path
+            .replace("{id}", id)
+            .replace("{key}", &"0".repeat(64))
+            .replace("{name}", "some");
+        let item = item.as_object().expect("operations").clone();
+        item.into_iter()
+            .map(move |(method, _)| (method.to_uppercase(), path.clone()))
+    };
+    paths.iter().flat_map(methods).collect()
+}
+
+fn slewplan_openapi() -> Value {
+    let text = include_str!("../../openapi.yaml");
+    yaml_serde::from_str(text).expect("the description is YAML")
+}
+
+const PUBLIC: [&str; 6] = [
+    "/health/live",
+    "/health/ready",
+    "/openapi.yaml",
+    "/docs/errors",
+    "/v1/version",
+    "/v1/limits",
+];
+
+#[test]
+fn every_route_is_closed_to_who_has_no_valid_key() {
+    let (_folder, database) = folder();
+    let owner = key(&database, &["owner"]);
+    let revoked = key(&database, &["owner"]);
+    let list = slewplan(&["keys", "list"], &database).stdout;
+    let list = String::from_utf8(list).expect("ASCII");
+    let last = list.lines().last().expect("two keys");
+    let id = last.split(' ').next().expect("its name");
+    assert!(
+        slewplan(&["keys", "revoke", id], &database)
+            .status
+            .success()
+    );
+    assert!(
+        !slewplan(&["keys", "revoke", id], &database)
+            .status
+            .success()
+    );
+
+    let service = Service::on(&database, &[]);
+    let submission = request("POST", "/v1/plans", &owner).json(&small());
+    let job = service.send(&submission).expect(202).json();
+    let job = job["id"].as_str().expect("an identifier");
+    for (method, path) in operations(job) {
+        let without = service.send(&Request::new(&method, &path));
+        if PUBLIC.contains(&&*path) {
+            without.expect(200);
+            continue;
+        }
+        assert_eq!(without.header("www-authenticate"), Some("Bearer"));
+        without.expect_problem(401, "unauthorized");
+        for wrong in ["", "slewplan_00", &owner[1..], &revoked] {
+            let answer = service.send(&request(&method, &path, wrong));
+            answer.expect_problem(401, "unauthorized");
+        }
+    }
+    let ended = |job: &Value| !job["finished_at"].is_null();
+    let path = format!("/v1/plans/{job}");
+    while !ended(
+        &service
+            .send(&request("GET", &path, &owner))
+            .expect(200)
+            .json(),
+    ) {}
+    let stored = std::fs::read(&database).expect("the database");
+    let log = std::fs::read(database.with_extension("db-wal")).unwrap_or_default();
+    for secret in [&owner, &revoked] {
+        let secret = secret.as_bytes();
+        let found = |bytes: &[u8]| bytes.windows(secret.len()).any(|part| part == secret);
+        assert!(!found(&stored) && !found(&log));
+    }
+}
+
+#[test]
+fn what_belongs_to_one_client_is_not_there_for_another() {
+    let (_folder, database) = folder();
+    let mine = key(&database, &["mine"]);
+    let replacement = key(&database, &["mine"]);
+    let other = key(&database, &["other", "--scopes", "read,write,operate"]);
+    let service = Service::on(&database, &[]);
+    let keyed = |key: &str| request("POST", "/v1/plans", key).header("Idempotency-Key", "same");
+    let submit = |key: &str| -> Answer { service.send(&keyed(key).json(&small())).expect(202) };
+    let job = submit(&mine).json()["id"].as_str().expect("id").to_owned();
+    assert_ne!(submit(&other).json()["id"], json!(job));
+    let path = format!("/v1/plans/{job}");
+    service
+        .send(&request("GET", &path, &replacement))
+        .expect(200);
+    for (method, path) in operations(&job) {
+        if path.starts_with("/v1/plans/") {
+            let answer = service.send(&request(&method, &path, &other));
+            answer.expect_problem(404, "not_found");
+        }
+    }
+    let list = |key: &str| {
+        service
+            .send(&request("GET", "/v1/plans", key))
+            .expect(200)
+            .json()
+    };
+    assert_eq!(list(&other)["plans"].as_array().map(Vec::len), Some(1));
+    assert_eq!(list(&mine)["plans"][0]["id"], json!(job));
+
+    let spacecraft = small()["spacecraft"].clone();
+    let put = request("PUT", "/v1/spacecraft/some", &mine).json(&spacecraft);
+    service.send(&put).expect(201);
+    let get = |key: &str| service.send(&request("GET", "/v1/spacecraft/some", key));
+    get(&mine).expect(200);
+    get(&other).expect_problem(404, "not_found");
+    let mut scenario = small();
+    scenario["spacecraft"] = json!({"ref": "some"});
+    let submission = request("POST", "/v1/plans", &other).json(&scenario);
+    service
+        .send(&submission)
+        .expect_problem(422, "invalid_input");
+}
+
+#[test]
+fn a_key_opens_what_its_scopes_say() {
+    let (_folder, database) = folder();
+    let reader = key(&database, &["one", "--scopes", "read", "--expires", "1"]);
+    let operator = key(&database, &["one", "--scopes", "operate"]);
+    let service = Service::on(&database, &[]);
+    let send = |method, path, key: &str| service.send(&request(method, path, key));
+    send("GET", "/v1/plans", &reader).expect(200);
+    send("POST", "/v1/plans", &reader).expect_problem(403, "scope_missing");
+    send("GET", "/metrics", &reader).expect_problem(403, "scope_missing");
+    send("GET", "/metrics", &operator).expect(200);
+    send("GET", "/v1/plans", &operator).expect_problem(403, "scope_missing");
+}
+
+#[test]
+fn a_client_has_a_share_of_the_queue() {
+    let (_folder, database) = folder();
+    let [greedy, modest] = ["greedy", "modest"].map(|client| key(&database, &[client]));
+    let service = Service::on(&database, &["--client-queue-limit", "0"]);
+    for key in [greedy, modest] {
+        let answer = service.send(&request("POST", "/v1/plans", &key).json(&small()));
+        assert!(answer.header("retry-after").is_some());
+        answer.expect_problem(429, "quota_exceeded");
+    }
+}
+
+#[test]
+fn other_machines_are_not_served_without_keys() {
+    let (_folder, database) = folder();
+    let anywhere = ["serve", "--listen", "0.0.0.0:0"];
+    let refused = slewplan(&anywhere, &database);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(said.contains("slewplan keys create"), "{said}");
+    let open = Service::on(&database, &["--listen", "0.0.0.0:0", "--no-keys"]);
+    drop(open);
+    key(&database, &["somebody"]);
+    let closed = Service::on(&database, &["--listen", "0.0.0.0:0"]);
+    closed.get("/v1/plans").expect_problem(401, "unauthorized");
+}

@@ -1,0 +1,129 @@
+"""Promises about what panics and crashes cost, measured with a build that fails on purpose."""
+
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+from harness import ROOT, Row, exchange, fixture, gate, long_running, resident_kib, rows_of, service, variant
+
+
+def faulty(scale):
+    """The binary with the feature `faults`: SLEWPLAN_FAULTS, or one that is built for it."""
+    given = os.environ.get("SLEWPLAN_FAULTS")
+    if given:
+        return given
+    copy = scale.work / "slewplan-faults"
+    if not copy.exists():
+        # The target folder holds one binary of this name: afterwards it is the usual one again.
+        build = ["cargo", "build", "--quiet", "--locked", "--package", "slewplan-server"]
+        target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+        subprocess.run([*build, "--features", "faults"], cwd=ROOT, check=True)
+        shutil.copy(target / "debug" / "slewplan", copy)
+        subprocess.run(build, cwd=ROOT, check=True)
+    return str(copy)
+
+
+def named(name, number=0):
+    scenario = variant(number)
+    scenario["name"] = name
+    return scenario
+
+
+@gate("H5")
+def a_panic_costs_one_job_or_one_request(scale):
+    database, rounds = scale.database("h5"), scale.of(1000, 40)
+    kinds, states, statuses = ["fault:panic", "fault:pool", "fault:drop"], {}, {}
+    with service(database, "--queue-limit", "100000", environment={"SLEWPLAN": faulty(scale)}) as running:
+        process = running.process
+
+        def panics(count):
+            for number in range(count):
+                status = int(exchange(running, b"GET /v1/version HTTP/1.1\r\nHost: a\r\nX-Fault: 1\r\nConnection: close\r\n\r\n")[9:12])
+                statuses[status] = statuses.get(status, 0) + 1
+                state = running.wait_end(running.submit(named(kinds[number % 3])))["state"]
+                states[state] = states.get(state, 0) + 1
+
+        panics(scale.of(100, 10))
+        threads, memory = len(os.listdir(f"/proc/{process.pid}/task")), resident_kib(process.pid)
+        panics(rounds)
+        grown = (resident_kib(process.pid) - memory) / 1024
+        spawned = len(os.listdir(f"/proc/{process.pid}/task")) - threads
+        good = running.wait_end(running.submit(variant(0)))["state"]
+        alive = process.poll() is None
+    return [
+        Row("H5", f"answers of handlers that panicked: {statuses}", str(set(statuses)), "500", set(statuses) == {500}),
+        Row("H5", f"jobs that panicked, ended as {states}; the next one {good}", str(set(states)), "failed", set(states) == {"failed"} and good == "succeeded" and alive),
+        Row("H5", f"memory after {2 * rounds} panics", f"{grown:+.1f} MB", "+10 MB", grown <= 10.0),
+        Row("H5", "threads more than before", str(spawned), "0", spawned <= 0),
+    ]
+
+
+@gate("J4")
+def poison_ends_dead(scale):
+    """A job that ends its process: three starts, then it is given up and the rest goes on."""
+    database, environment = scale.database("j4"), {"SLEWPLAN": faulty(scale)}
+    with service(database, environment=environment) as running:
+        poison = running.submit(named("fault:abort"))
+        try:
+            innocent = running.submit(variant(0))
+        except OSError:
+            innocent = None
+        running.process.wait(20)
+    starts = 1
+    while starts < 10:
+        starts += 1
+        with service(database, environment=environment) as running:
+            try:
+                innocent = innocent or running.submit(variant(0))
+                end = running.wait_end(innocent, patience=20.0)["state"]
+                break
+            except OSError:
+                running.process.wait(20)
+    state, attempts = rows_of(database, "SELECT state, attempt FROM jobs WHERE id = ?", poison)[0]
+    return [
+        Row("J4", f"a job that aborts its process ends {state} after attempts", str(attempts), "3", state == "dead" and attempts == 3),
+        Row("J4", f"starts until the job behind it has {end}", str(starts), "4", starts == 4 and end == "succeeded"),
+    ]
+
+
+def processor_s(pid):
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@gate("J5")
+def rescued_work_is_reused(scale):
+    """Killed at half of its processor time, a job needs less for its second attempt."""
+    shares, same, rounds = [], 0, scale.of(20, 1)
+    name = "olivares-b"
+    for number in range(rounds):
+        scenario = fixture(name)
+        for target in scenario["targets"]:
+            target["attitude"]["roll_pitch_yaw_deg"][1] += 0.01 * (number + 1)
+        scenario["options"] = {"time_limit_s": None}
+
+        def finish(running, job):
+            running.wait_end(job, patience=600.0)
+            plan = running.request("GET", f"/v1/plans/{job}/result")[1]
+            plan.pop("statistics")
+            return processor_s(running.process.pid), plan
+
+        with service(scale.database(f"j5-cold-{number}")) as running:
+            cold, plan = finish(running, running.submit(scenario))
+        database = scale.database(f"j5-{number}")
+        with service(database) as running:
+            job = running.submit(scenario)
+            while processor_s(running.process.pid) < 0.5 * cold:
+                time.sleep(0.01)
+            running.kill()
+        with service(database) as running:
+            second, again = finish(running, job)
+        shares.append(second / cold)
+        same += again == plan
+    worst = max(shares)
+    return [
+        Row("J5", "processor time of the second attempt, of a cold one, most", f"{100 * worst:.0f} %", "60 %", worst <= 0.6),
+        Row("J5", f"plans equal to those never interrupted, of {rounds}", str(same), str(rounds), same == rounds),
+    ]

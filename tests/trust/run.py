@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Measures what the service promises and prints a table.
+
+    tests/trust/run.py [--short] [GATE...]      all gates without names
+
+SLEWPLAN names a built binary; without it that of the development profile is taken. --short does a
+taste of everything in about a minute. Times are judged unless LOAD_TIMES=report. Needs Python, and
+for some gates root, a C compiler or strace; what they lack makes the gate fail, not disappear.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+
+import disk  # noqa: F401
+import faults  # noqa: F401
+import jobs  # noqa: F401
+import load  # noqa: F401
+import safety  # noqa: F401
+import web  # noqa: F401
+from harness import GATES, Row, Scale
+
+
+def verdict(row):
+    if row.holds is None:
+        return "-"
+    if row.holds:
+        return "pass"
+    if row.timed and os.environ.get("LOAD_TIMES") == "report":
+        return "slow"
+    return "FAIL"
+
+
+def show(row):
+    print(f"{row.gate:<4} {row.promise:<78} {row.measured:>16} {row.goal:>14}  {verdict(row)}", flush=True)
+
+
+def measure(name, scale):
+    try:
+        return GATES[name](scale)
+    except Exception as error:  # one gate that cannot be measured does not hide the others
+        traceback.print_exc()
+        return [Row(name, "could not be measured", type(error).__name__, "-", False)]
+
+
+def order(name):
+    return "JDHNSL".index(name[0]), int(name[1:])
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--short", action="store_true")
+    parser.add_argument("gates", nargs="*")
+    arguments = parser.parse_args()
+    names = arguments.gates or sorted(GATES, key=order)
+    unknown = set(names) - set(GATES)
+    if unknown:
+        parser.error(f"no gate is called {', '.join(sorted(unknown))}")
+    show(Row("gate", "promise", "measured", "goal", None))
+    rows = []
+    for name in names:
+        with tempfile.TemporaryDirectory(prefix="trust-") as folder:
+            begin = time.monotonic()
+            for row in measure(name, Scale(arguments.short, Path(folder))):
+                show(row)
+                rows.append(row)
+            print(f"     {name} took {time.monotonic() - begin:.0f} s", file=sys.stderr)
+    failed = [row for row in rows if verdict(row) == "FAIL"]
+    print(f"{len(rows)} rows, {len(failed)} failed")
+    raise SystemExit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

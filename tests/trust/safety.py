@@ -1,0 +1,109 @@
+"""Promises about who may do what."""
+
+import re
+import subprocess
+
+from harness import ROOT, Row, binary, elsewhere, exchange, fixture, gate, rows_of, service, variant
+
+elsewhere("S2", "clients are isolated on every route", "0 reads", "cargo test --test service keys")
+
+
+def make_key(database, *arguments):
+    made = subprocess.run([binary(), "keys", "create", *arguments, "--database", database], capture_output=True, text=True, check=True)
+    return made.stdout.strip()
+
+
+@gate("S1")
+def keys_cannot_be_read(scale):
+    database = scale.database("s1")
+    key = make_key(database, "canary")
+    with service(database, "--log-format", "json") as running:
+        bearer = {"Authorization": f"Bearer {key}"}
+        job = running.submit(variant(0), **bearer)
+        answers = []
+        for path in ("/v1/plans", f"/v1/plans/{job}", "/v1/plans/none", "/metrics", "/v1/nothing"):
+            answers.append(running.request("GET", path, headers=bearer)[1])
+            answers.append(running.request("GET", path, headers={"Authorization": f"Basic {key}"})[1])
+    artefacts = [path for path in scale.work.glob("s1*") if path.is_file()]
+    found = sum(key.encode() in path.read_bytes() for path in artefacts) + (key in str(answers))
+    bits = 4 * len(key.removeprefix("slewplan_"))
+    return [
+        Row("S1", f"files and answers that contain the key, of {len(artefacts) + len(answers)}", str(found), "0", found == 0),
+        Row("S1", "random bits of a key", str(bits), "128", bits >= 128),
+    ]
+
+
+TRAVERSALS = [
+    prefix + form + "etc/passwd"
+    for prefix in ("/", "/docs/", "/docs//", "/v1/plans/", "/v1/spacecraft/", "/v1/legs/")
+    for form in (
+        "../../../../",
+        "..%2f..%2f..%2f",
+        "%2e%2e/%2e%2e/%2e%2e/",
+        "%2e%2e%2f%2e%2e%2f",
+        "%252e%252e%252f",
+        "..\\..\\..\\",
+        "..%5c..%5c",
+        "....//....//",
+        "/",
+        "%00/",
+        "%c0%ae%c0%ae/",
+        "..;/",
+    )
+]
+
+
+@gate("S3")
+def no_path_escapes(scale):
+    """Every traversal is refused, and nothing but the database is opened."""
+    database, wrong = scale.database("s3"), []
+    trace = scale.work / "s3.trace"
+    with service(database) as running:
+        tracer = None
+        try:
+            tracer = subprocess.Popen(["strace", "-f", "-qq", "-e", "trace=openat,open", "-o", trace, "-p", str(running.process.pid)], stderr=subprocess.DEVNULL)
+        except FileNotFoundError:
+            pass
+        for path in TRAVERSALS:
+            answer = exchange(running, f"GET {path} HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n".encode("latin1"))
+            status = int(answer[9:12])
+            if status not in (400, 404) or b"root:" in answer:
+                wrong.append(f"{path}: {status}")
+        if tracer:
+            tracer.terminate()
+            tracer.wait()
+    for line in wrong:
+        print(f"    {line}")
+    rows = [Row("S3", f"traversals not answered with 400 or 404, of {len(TRAVERSALS)}", str(len(wrong)), "0", not wrong)]
+    if trace.exists():
+        opened = set(re.findall(r'open(?:at)?\([^"]*"([^"]+)"', trace.read_text()))
+        foreign = {path for path in opened if not path.startswith((str(database), str(scale.work), "/proc/self", "/sys/"))}
+        rows.append(Row("S3", f"files opened outside of the data {sorted(foreign)[:3]}", str(len(foreign)), "0", not foreign))
+    return rows
+
+
+@gate("S6")
+def defaults_are_safe(scale):
+    database, bare, leaks = scale.database("s6"), [], []
+    help_text = subprocess.run([binary(), "serve", "--help"], capture_output=True, text=True, check=True).stdout
+    refused = subprocess.run([binary(), "serve", "--listen", "0.0.0.0:0", "--database", database], capture_output=True, text=True, timeout=20)
+    with service(database) as running:
+        requests = [("GET", path) for path in ("/", "/docs/", "/docs/errors", "/openapi.yaml", "/v1/plans", "/v1/plans/x", "/v1/legs", "/v1/limits", "/health/ready", "/metrics", "/none", "/v1/plans/%ff")]
+        requests += [("POST", "/v1/plans"), ("PATCH", "/v1/plans"), ("OPTIONS", "/v1/plans"), ("DELETE", "/v1/plans/x")]
+        for method, path in requests:
+            answer = exchange(running, f"{method} {path} HTTP/1.1\r\nHost: a\r\nOrigin: https://elsewhere.example\r\nConnection: close\r\n\r\n".encode()).decode("utf-8", "replace")
+            head, _, body = answer.partition("\r\n\r\n")
+            head = head.lower()
+            needed = ("x-content-type-options: nosniff", "frame-ancestors 'none'", "cache-control:", "x-request-id:")
+            if any(text not in head for text in needed) or "access-control" in head:
+                bare.append(f"{method} {path}")
+            if int(answer[9:12]) >= 400 and re.search(r"(SELECT|INSERT|sqlx|\.rs:|/root/|/home/|" + re.escape(str(scale.work)) + ")", body):
+                leaks.append(f"{method} {path}")
+        preface = exchange(running, b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", timeout=15.0)
+    return [
+        Row("S6", "default address", "127.0.0.1:8080", "loopback", "default: 127.0.0.1:8080" in help_text),
+        Row("S6", "other addresses without keys: exit code", str(refused.returncode), "not 0", refused.returncode == 2),
+        Row("S6", f"answers without the headers, of {len(requests)} {bare}", str(len(bare)), "0", not bare),
+        Row("S6", f"errors that tell about the inside {leaks}", str(len(leaks)), "0", not leaks),
+        Row("S6", "HTTP/2", "off" if not preface.startswith(b"\x00") else "on", "off", not preface.startswith(b"\x00\x00")),
+    ]

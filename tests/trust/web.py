@@ -1,0 +1,231 @@
+"""Promises about HTTP: slow clients, many clients, hostile bodies, panics."""
+
+import json
+import socket
+import threading
+import time
+import zlib
+
+from harness import (
+    Row,
+    Background,
+    connect,
+    elsewhere,
+    exchange,
+    fixture,
+    gate,
+    long_running,
+    percentile,
+    post,
+    resident_kib,
+    service,
+    timed,
+    variant,
+)
+
+
+def closed_after(service, *parts, pause=0.0, patience=45.0):
+    """Seconds until the service closes a connection on which these parts are sent slowly."""
+    begin = time.monotonic()
+    with connect(service, timeout=1.0) as connection:
+        for part in parts:
+            try:
+                connection.sendall(part)
+            except OSError:
+                return time.monotonic() - begin
+            time.sleep(pause)
+            if time.monotonic() - begin > patience:
+                return None
+        while time.monotonic() - begin < patience:
+            try:
+                if not connection.recv(65536):
+                    return time.monotonic() - begin
+            except TimeoutError:
+                continue
+            except OSError:
+                return time.monotonic() - begin
+    return None
+
+
+# Time after which a client has noticed that its connection is closed, s: it looks once a second.
+NOTICED = 1.5
+
+
+def seconds(took):
+    return "never" if took is None else f"{took:.1f} s"
+
+
+@gate("H1")
+def slow_clients_are_cut_off(scale):
+    """Silence, half heads, drip-fed bodies; then a thousand of them and one good client."""
+    head = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n"
+    rows, results = [], {}
+    with service(scale.database("h1")) as running:
+        cases = {
+            "silent connection": ([b""], 0.0, 10.0),
+            "half a head": ([b"GET / HTTP/1.1\r\nHo"], 0.0, 10.0),
+            "head of one byte per second": ([bytes([byte]) for byte in head], 1.0, 10.0),
+            "body that pauses": ([head + b"{"], 0.0, 10.0),
+            "body of one byte per second": ([head, *[b" "] * 60], 1.0, 30.0),
+        }
+        threads = [
+            threading.Thread(target=lambda name=name, parts=parts, pause=pause: results.__setitem__(name, closed_after(running, *parts, pause=pause)))
+            for name, (parts, pause, _) in cases.items()
+        ]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for name, (_, _, goal) in cases.items():
+            took = results[name]
+            rows.append(Row("H1", f"{name} is closed after", seconds(took), f"{goal:.0f} s", took is not None and took <= goal + NOTICED))
+        job = running.submit(long_running())
+        idle = resident_kib(running.process.pid)
+        count, crowd, waits = scale.of(1000, 150), [], []
+        parts = [b"", b"GET / HTTP/1.1\r\nHo", head + b"{", f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: a\r\n\r\n".encode()]
+
+        def good(patience):
+            end = time.monotonic() + patience
+            while time.monotonic() < end:
+                waits.append(timed(lambda: running.request("GET", "/health/live"))[0])
+                time.sleep(0.02)
+
+        for number in range(count):
+            try:
+                connection = connect(running)
+                connection.sendall(parts[number % len(parts)])
+                crowd.append(connection)
+            except OSError:
+                pass
+            if number % 50 == 49:
+                good(0.2)
+        good(scale.of(20.0, 2.0))
+        peak = resident_kib(running.process.pid, "VmHWM")
+        descriptors = len(list(__import__("pathlib").Path(f"/proc/{running.process.pid}/fd").iterdir()))
+        for connection in crowd:
+            connection.close()
+        time.sleep(1.0)
+        after = resident_kib(running.process.pid)
+        running.request("POST", f"/v1/plans/{job}/cancel")
+    slow = percentile(waits, 0.99)
+    rows += [
+        Row("H1", f"p99 of a good client beside {count} slow ones", f"{1e3 * slow:.0f} ms", "100 ms", slow <= 0.1, timed=True),
+        Row("H2", "files open under attack", str(descriptors), "512 + 64", descriptors <= 576),
+        Row("H2", "memory with one solve", f"{idle / 1024:.0f} MB", "60 MB", idle <= 60 * 1024),
+        Row("H2", "peak memory under attack", f"{peak / 1024:.0f} MB", "200 MB", peak <= 200 * 1024),
+        Row("H2", "memory kept after it", f"{(after - idle) / 1024:+.0f} MB", "+20 MB", after - idle <= 20 * 1024),
+    ]
+    return rows
+
+
+@gate("H4")
+def solves_do_not_starve_requests(scale):
+    duration, live, cached = scale.of(600.0, 5.0), [], []
+    with service(scale.database("h4")) as running:
+        done = running.submit(variant(0))
+        running.wait_end(done)
+        number = 0
+        jobs = [running.submit(long_running(number)) for number in range(scale.of(80, 3))]
+        end = time.monotonic() + duration
+        while time.monotonic() < end:
+            live.append(timed(lambda: running.request("GET", "/health/live"))[0])
+            cached.append(timed(lambda: running.request("GET", f"/v1/plans/{done}/result"))[0])
+            time.sleep(0.02)
+        for job in reversed(jobs):
+            running.request("DELETE", f"/v1/plans/{job}")
+    slow, worst, read = percentile(live, 0.99), max(live), percentile(cached, 0.99)
+    return [
+        Row("H4", f"liveness under a full solver for {duration:.0f} s, p99", f"{1e3 * slow:.1f} ms", "50 ms", slow <= 0.05, timed=True),
+        Row("H4", "slowest", f"{1e3 * worst:.0f} ms", "250 ms", worst <= 0.25, timed=True),
+        Row("H4", "stored plan, p99", f"{1e3 * read:.1f} ms", "50 ms", read <= 0.05, timed=True),
+    ]
+
+
+def hostile_bodies():
+    """Bodies, as raw requests, that must be refused: a name, the request, allowed statuses."""
+    good = json.dumps(fixture("two-targets")).encode()
+    cases = []
+
+    def case(name, body, *headers, statuses=(400, 413, 415, 422)):
+        cases.append((name, post(body, "/v1/plans", *headers), statuses))
+
+    megabytes = 5 << 20
+    case("oversize", b"[" + b"0," * (megabytes // 2) + b"0]", statuses=(413,))
+    chunk = b"%x\r\n" % (1 << 16) + b" " * (1 << 16) + b"\r\n"
+    head = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nConnection: close\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+    cases.append(("oversize in chunks", head + chunk * (megabytes >> 16) + b"0\r\n\r\n", (413,)))
+    bomb = zlib.compress(bytes(64 << 20))
+    for coding in ("gzip", "deflate", "zstd", "br"):
+        case(f"{coding} bomb", bomb, "Content-Type: application/json", f"Content-Encoding: {coding}", statuses=(415,))
+    for depth in (200, 10_000, 100_000):
+        case(f"depth {depth}", b"[" * depth + b"]" * depth)
+        case(f"objects of depth {depth}", b'{"a":' * depth + b"1" + b"}" * depth)
+        case(f"open to depth {depth}", b"[" * depth)
+    for digits in (400, 100_000, 4_000_000):
+        case(f"number of {digits} digits", b'{"name":' + b"9" * digits + b"}")
+    numbers = [b"1e400", b"-1e400", b"1e99999999999", b"NaN", b"Infinity", b"-Infinity", b"nan", b"+1", b"01", b".5", b"5.", b"0x10", b"1e", b"--1", b"1_000", b'"1"', b"null", b"true", b"[]", b"{}", b'""']
+    places = ["max_torque_nm", "inertia_kg_m2", "max_speed_rad_s"]
+    document = fixture("two-targets")
+    for place in places:
+        for number in numbers:
+            wheel = dict(document["spacecraft"]["wheels"][0])
+            wheel[place] = "@"
+            changed = json.loads(json.dumps(document))
+            changed["spacecraft"]["wheels"][0] = wheel
+            # A wheel without a limit on its speed is one.
+            if (place, number) != ("max_speed_rad_s", b"null"):
+                case(f"{place} of {number[:12]!r}", json.dumps(changed).encode().replace(b'"@"', number))
+    text = good.decode()
+    for key in list(document) + ["epoch"]:
+        case(f"{key} twice", (text[:-1] + f', "{key}": 1, "{key}": 2}}').encode())
+        case(f"unknown field beside {key}", (text[:-1] + f', "{key}_": 1}}').encode())
+        for junk in (b"0", b'"x"', b"[[]]", b'{"a":1}', b"false"):
+            # Both are labels.
+            if key not in ("name", "epoch") or junk != b'"x"':
+                case(f"{key} is {junk!r}", (text[:-1] + "}").replace(f'"{key}": ', f'"{key}": @', 1).encode().replace(b"@", junk + b', "_": ', 1))
+    for bad in (b"\xff", b"\xc3\x28", b"\xed\xa0\x80", b"\xf8\x88\x80\x80\x80", b"\x00", b'"\\ud800"', b'"\\u12"', b'"\\x41"', b'"a\nb"', b"'a'", b"// c\n1", b"[1,]", b"{,}", b'{"a"}', b"", b" ", b"\xef\xbb\xbf{}", b"[1] 2", b"nul"):
+        case(f"text {bad[:8]!r}", bad)
+        case(f"name {bad[:8]!r}", b'{"name":' + bad + b"}")
+        case(f"in a string {bad[:8]!r}", b'{"name":"' + bad + b'"}')
+    many = json.loads(text)
+    many["targets"] = [dict(document["targets"][0], id=f"t{number}") for number in range(5000)]
+    case("5000 targets", json.dumps(many).encode(), statuses=(413, 422))
+    wide = json.loads(text)
+    wide["spacecraft"]["wheels"] = wide["spacecraft"]["wheels"] * 3000
+    case("9000 wheels", json.dumps(wide).encode(), statuses=(413, 422))
+    for form in ("text/plain", "application/xml", "", "multipart/form-data; boundary=x", "application/json5"):
+        case(f"form {form!r}", good, f"Content-Type: {form}", statuses=(415,))
+    return cases
+
+
+@gate("H7")
+def hostile_bodies_are_cheap_to_refuse(scale):
+    cases = hostile_bodies()
+    if scale.short:
+        cases = cases[::4]
+    wrong, slow, no_pointer, worst_memory = [], [], [], 0
+    with service(scale.database("h7")) as running:
+        for _ in range(20):
+            exchange(running, post(json.dumps(fixture("olivares-c")).encode(), "/v1/plans?validate_only=true"))
+        before = resident_kib(running.process.pid)
+        for name, request, statuses in cases:
+            took, answer = timed(lambda: exchange(running, request))
+            worst_memory = max(worst_memory, resident_kib(running.process.pid, "VmHWM") - before)
+            status = int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else 0
+            if status not in statuses:
+                wrong.append(f"{name}: {status}")
+            if took > 0.05:
+                slow.append(f"{name}: {1e3 * took:.0f} ms")
+            if status == 422 and b'"pointer"' not in answer:
+                no_pointer.append(name)
+    for line in wrong + slow + no_pointer:
+        print(f"    {line}")
+    return [
+        Row("H7", f"hostile bodies not refused, of {len(cases)}", str(len(wrong)), "0", not wrong),
+        Row("H7", "without a JSON pointer", str(len(no_pointer)), "0", not no_pointer),
+        Row("H7", "slower than 50 ms", str(len(slow)), "0", not slow, timed=True),
+        Row("H7", "extra memory at most", f"{worst_memory / 1024:.1f} MB", "8 MB", worst_memory <= 8 * 1024),
+    ]
+
+
+elsewhere("H8", "no 5xx for generated requests", "100,000", "tests/schemathesis.sh 2000")

@@ -2,20 +2,33 @@
 //! which nobody ships: a scenario with one of these names does what it says.
 
 use slewplan_solver::pool::SolverPool;
+use slewplan_solver::stop::StopSignal;
+use std::time::Duration;
+
+/// Most memory that is taken on purpose, MiB.
+const MOST_BALLAST: usize = 2048;
 
 /// Fails if the name of a scenario asks for it.
 ///
 /// # Panics
 ///
 /// For `fault:panic`, `fault:pool` and `fault:drop`, on the worker's thread, on a thread of the
-/// pool, and while a value is dropped. `fault:abort` ends the process.
-pub(crate) fn strike(name: Option<&str>, pool: &SolverPool) {
+/// pool, and while a value is dropped. `fault:abort` ends the process; `fault:memory` takes more and
+/// more of it until it is stopped.
+pub(crate) fn strike(name: Option<&str>, pool: &SolverPool, stop: &StopSignal) {
     match name {
         Some("fault:panic") => panic!("a fault on purpose"),
         Some("fault:pool") => {
             pool.map(&[0; 8], |_| panic!("a fault on purpose in the pool"));
         }
         Some("fault:drop") => drop(FailsToDrop),
+        Some("fault:memory") => {
+            let mut ballast = Vec::new();
+            while !stop.is_set() && ballast.len() < MOST_BALLAST {
+                ballast.push(vec![1_u8; 1 << 20]);
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        }
         Some("fault:abort") => std::process::abort(),
         _ => {}
     }

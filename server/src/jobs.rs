@@ -1,5 +1,6 @@
 //! The queue at work: one job at a time, in the order of submission, on the solver's own threads.
 
+pub(crate) mod memory;
 mod progress;
 pub(crate) mod retention;
 mod solve;
@@ -30,6 +31,8 @@ struct Shared {
     queued: Notify,
     active: Mutex<Option<Active>>,
     queue: QueueLimits,
+    /// Memory of one job, bytes.
+    memory: u64,
     tally: Arc<Tally>,
     job_tally: JobTally,
 }
@@ -41,14 +44,15 @@ struct Active {
 }
 
 impl Jobs {
-    /// Jobs of a store, of which at most so many wait.
-    pub(crate) fn new(store: Store, queue: QueueLimits) -> Self {
+    /// Jobs of a store, of which at most so many wait, each with so much memory, bytes.
+    pub(crate) fn new(store: Store, queue: QueueLimits, memory: u64) -> Self {
         Self(Arc::new(Shared {
             store,
             changes: watch::Sender::new(0),
             queued: Notify::new(),
             active: Mutex::new(None),
             queue,
+            memory,
             tally: Arc::default(),
             job_tally: JobTally::default(),
         }))
@@ -88,6 +92,11 @@ impl Jobs {
     /// How many jobs may wait.
     pub(crate) fn queue_limits(&self) -> QueueLimits {
         self.0.queue
+    }
+
+    /// Memory of one job, bytes.
+    pub(crate) fn memory_limit(&self) -> u64 {
+        self.0.memory
     }
 
     /// Queues a job.

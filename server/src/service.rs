@@ -31,6 +31,8 @@ pub(crate) struct Settings {
     pub(crate) max_targets: usize,
     /// How many jobs may wait.
     pub(crate) queue: QueueLimits,
+    /// Memory of one job, bytes.
+    pub(crate) job_memory: u64,
     /// Whether everybody is let in, whatever the address and the keys.
     pub(crate) no_keys: bool,
     /// Time after their end for which jobs are kept; for ever without it.
@@ -152,7 +154,7 @@ async fn serve(
     if let Some(time) = settings.retain {
         tokio::spawn(retention::keep_for(store.clone(), time));
     }
-    let jobs = Jobs::new(store.clone(), settings.queue);
+    let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
     let worker = Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id)
         .map_err(system("cannot start the worker"))?;
     let limits = Limits {

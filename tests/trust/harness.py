@@ -15,7 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "load"))
 
-from service import ROOT, Service, binary, fixture, percentile  # noqa: E402, F401
+from service import FIXTURES, ROOT, Service, binary, fixture, percentile  # noqa: E402, F401
 
 
 @dataclass

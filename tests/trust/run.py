@@ -16,6 +16,7 @@ import time
 import traceback
 from pathlib import Path
 
+import answers  # noqa: F401
 import disk  # noqa: F401
 import faults  # noqa: F401
 import jobs  # noqa: F401

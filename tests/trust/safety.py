@@ -3,9 +3,12 @@
 import re
 import subprocess
 
-from harness import ROOT, Row, binary, elsewhere, exchange, fixture, gate, rows_of, service, variant
+from harness import Row, binary, elsewhere, exchange, gate, missing, service, variant
 
 elsewhere("S2", "clients are isolated on every route", "0 reads", "cargo test --test service keys")
+
+
+missing("S5", "dependencies without advisories, licences known", "0", "not measured")
 
 
 def make_key(database, *arguments):

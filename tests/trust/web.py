@@ -179,9 +179,9 @@ def hostile_bodies():
     for key in list(document) + ["epoch"]:
         case(f"{key} twice", (text[:-1] + f', "{key}": 1, "{key}": 2}}').encode())
         case(f"unknown field beside {key}", (text[:-1] + f', "{key}_": 1}}').encode())
-        for junk in (b"0", b'"x"', b"[[]]", b'{"a":1}', b"false"):
-            # Both are labels.
-            if key not in ("name", "epoch") or junk != b'"x"':
+        for junk in () if key not in document else (b"0", b'"x"', b"[[]]", b'{"a":1}', b"false"):
+            # The name is a label.
+            if key != "name" or junk != b'"x"':
                 case(f"{key} is {junk!r}", (text[:-1] + "}").replace(f'"{key}": ', f'"{key}": @', 1).encode().replace(b"@", junk + b', "_": ', 1))
     for bad in (b"\xff", b"\xc3\x28", b"\xed\xa0\x80", b"\xf8\x88\x80\x80\x80", b"\x00", b'"\\ud800"', b'"\\u12"', b'"\\x41"', b'"a\nb"', b"'a'", b"// c\n1", b"[1,]", b"{,}", b'{"a"}', b"", b" ", b"\xef\xbb\xbf{}", b"[1] 2", b"nul"):
         case(f"text {bad[:8]!r}", bad)

@@ -47,6 +47,10 @@ pub(super) struct Arguments {
         default_value_t = 1000
     )]
     queue_limit: u32,
+    /// Memory that one job may take, MiB
+    #[arg(long, env = "SLEWPLAN_JOB_MEMORY", value_name = "MIB", default_value_t = 1024,
+        value_parser = clap::value_parser!(u32).range(16..))]
+    job_memory: u32,
     /// Most jobs of one client that wait, where keys are asked for
     #[arg(
         long,
@@ -101,6 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             client: arguments.client_queue_limit.into(),
         },
         retain: arguments.retain.map(|days| DAY * days),
+        job_memory: u64::from(arguments.job_memory) << 20,
         no_keys: arguments.no_keys,
         connections: arguments.max_connections.into(),
     };

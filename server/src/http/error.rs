@@ -57,6 +57,7 @@ error_codes! {
     BodyTooSlow = "body_too_slow", REQUEST_TIMEOUT, "The body did not arrive in time";
     BodyTooLarge = "body_too_large", PAYLOAD_TOO_LARGE, "The body is too large";
     TooManyTargets = "too_many_targets", PAYLOAD_TOO_LARGE, "The scenario has too many targets";
+    TooMuchMemory = "too_much_memory", PAYLOAD_TOO_LARGE, "The job would need too much memory";
     TooManyPairs = "too_many_pairs", PAYLOAD_TOO_LARGE, "The query asks for too many legs";
     UnsupportedMediaType = "unsupported_media_type", UNSUPPORTED_MEDIA_TYPE,
         "The body has a form that is not supported";

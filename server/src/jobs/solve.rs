@@ -45,7 +45,7 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
         Err(problems) => return refused(JobState::Failed, &problems),
     };
     #[cfg(feature = "faults")]
-    crate::faults::strike(scenario.name(), means.pool);
+    crate::faults::strike(scenario.name(), means.pool, means.stop);
     let observer = means.reporter.observer(&warnings);
     let run = Run {
         pool: means.pool,

@@ -3,6 +3,7 @@
 //! One plain thread claims a job, solves it on the pool and records its end. The database is
 //! reached through the handle of the runtime; nothing is computed on the runtime's threads.
 
+use super::memory::MemoryGuard;
 use super::progress::{Reporter, record};
 use super::solve::{self, Means};
 use super::{Active, Jobs};
@@ -147,13 +148,15 @@ impl Bench {
             .runtime
             .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
         let heart = Heart(heart.abort_handle());
+        let memory = MemoryGuard::watch(&self.runtime, self.jobs.memory_limit(), stop.clone());
         let means = Means {
             pool: &self.pool,
             stop: &stop,
             reporter: &reporter,
             legs: &legs,
         };
-        let ended = solve::solve(&claim.scenario, &means);
+        let ended = memory.judge(solve::solve(&claim.scenario, &means));
+        drop(memory);
         // Legs are written before the end is told: whoever asks then finds them.
         drop(legs);
         drop(reporter);

@@ -15,6 +15,8 @@ pub(in crate::http) struct Document {
     max_body_bytes: usize,
     /// Most targets of a scenario.
     max_targets: usize,
+    /// Memory that one job may take, bytes.
+    job_memory_bytes: u64,
     /// Most jobs that wait.
     queue_limit: i64,
     /// Most jobs of one client that wait, where keys are asked for.
@@ -38,6 +40,7 @@ pub(in crate::http) async fn handler(State(app): State<App>) -> Json<Document> {
     Json(Document {
         max_body_bytes: app.limits().body_bytes,
         max_targets: app.limits().targets,
+        job_memory_bytes: app.jobs().memory_limit(),
         queue_limit: app.jobs().queue_limits().all,
         client_queue_limit: app.jobs().queue_limits().client,
         max_wait_s: create::LONGEST_WAIT_S,

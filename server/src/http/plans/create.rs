@@ -7,6 +7,7 @@ use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::{JsonBody, Parameters, header_text};
 use super::super::{respond, stored};
 use crate::digest;
+use crate::jobs::memory;
 use crate::store::{JobRow, Submission, Submitted};
 use crate::wire;
 use crate::wire::document::Node;
@@ -92,7 +93,7 @@ pub(in crate::http) async fn handler(
 ) -> Result<Response, ApiError> {
     let key = idempotency_key(&headers)?;
     let fingerprint = digest::hex(&body.bytes);
-    check_targets(&app, &body.node)?;
+    check_size(&app, &body.node)?;
     let (node, written_out) = stored::write_out(&app, &caller, body.node, "").await?;
     let valid = wire::scenario::read_node(&node, None).map_err(ApiError::input)?;
     let targets = valid.scenario.targets().len();
@@ -123,20 +124,28 @@ pub(in crate::http) async fn handler(
 }
 
 /// Refuses what would take long to read in full, before it is read in full.
-fn check_targets(app: &App, scenario: &Node) -> Result<(), ApiError> {
+fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
     let limit = app.limits().targets;
     let Node::Object(members) = scenario else {
         return Ok(());
     };
-    let targets = members.iter().find(|(name, _)| name == "targets");
-    match targets {
-        Some((_, Node::List(targets))) if targets.len() > limit => {
-            let count = targets.len();
-            let detail = format!("{count} targets; the limit is {limit} (max_targets)");
-            Err(ApiError::new(ErrorCode::TooManyTargets, detail))
-        }
-        _ => Ok(()),
+    let Some((_, Node::List(targets))) = members.iter().find(|(name, _)| name == "targets") else {
+        return Ok(());
+    };
+    let count = targets.len();
+    if count > limit {
+        let detail = format!("{count} targets; the limit is {limit} (max_targets)");
+        return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
     }
+    let (needed, given) = (memory::estimate(count), app.jobs().memory_limit());
+    if needed > given {
+        let detail = format!(
+            "{count} targets may need {needed} bytes of memory; the limit is {given} \
+             (job_memory_bytes)"
+        );
+        return Err(ApiError::new(ErrorCode::TooMuchMemory, detail));
+    }
+    Ok(())
 }
 
 /// What a finished request answers.

@@ -1,0 +1,124 @@
+//! What a job may take of the memory: judged when it is submitted, watched while it runs.
+
+use crate::store::{Ended, JobState};
+use slewplan_solver::stop::StopSignal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use tokio::runtime::Handle;
+use tokio::task::AbortHandle;
+
+/// How often the memory is looked at.
+const LOOK: Duration = Duration::from_millis(100);
+/// Memory of a job as measured: what the smallest takes, and what every pair of places adds for its
+/// legs, their motions and the tables of tours, with half as much again. Bytes.
+const LEAST: u64 = 8 << 20;
+const PAIR: u64 = 8 << 10;
+
+/// Memory that a job with so many targets may need, bytes.
+pub(crate) fn estimate(targets: usize) -> u64 {
+    let places = u64::try_from(targets).unwrap_or(u64::MAX).saturating_add(2);
+    LEAST.saturating_add(places.saturating_mul(places).saturating_mul(PAIR))
+}
+
+/// Ends a solve with the best so far when the process has grown too much since its begin. Watches
+/// as long as it lives. Where the operating system does not tell, nothing is watched.
+pub(super) struct MemoryGuard {
+    exceeded: Arc<AtomicBool>,
+    limit: u64,
+    task: Option<AbortHandle>,
+}
+
+impl MemoryGuard {
+    /// Watches from now on.
+    pub(super) fn watch(runtime: &Handle, limit: u64, stop: StopSignal) -> Self {
+        let exceeded = Arc::new(AtomicBool::new(false));
+        let task = resident().map(|before| {
+            let told = Arc::clone(&exceeded);
+            let watching = runtime.spawn(async move {
+                while resident().is_none_or(|now| now <= before.saturating_add(limit)) {
+                    tokio::time::sleep(LOOK).await;
+                }
+                told.store(true, Ordering::SeqCst);
+                stop.request();
+            });
+            watching.abort_handle()
+        });
+        Self {
+            exceeded,
+            limit,
+            task,
+        }
+    }
+
+    /// The end of the solve: without a plan, it is the memory that was missing.
+    pub(super) fn judge(&self, ended: Ended) -> Ended {
+        if ended.state != JobState::Failed || !self.exceeded.load(Ordering::SeqCst) {
+            return ended;
+        }
+        let limit_mib = self.limit >> 20;
+        Ended {
+            cause: "memory_limit",
+            detail: Some(format!(
+                "the solve needed more than {limit_mib} MiB of memory before there was a plan; ask \
+                 for fewer targets"
+            )),
+            ..ended
+        }
+    }
+}
+
+impl Drop for MemoryGuard {
+    fn drop(&mut self) {
+        if let Some(task) = &self.task {
+            task.abort();
+        }
+    }
+}
+
+/// Memory of this process that is really there, bytes.
+fn resident() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kib: u64 = line.trim().strip_suffix(" kB")?.parse().ok()?;
+    Some(kib << 10)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn larger_jobs_are_expected_to_need_more_and_nothing_overflows() {
+        assert!(estimate(1) < estimate(200));
+        assert!(estimate(200) < 1 << 30);
+        assert_eq!(estimate(usize::MAX), u64::MAX);
+    }
+
+    #[test]
+    fn a_solve_that_grows_is_stopped_and_one_that_does_not_is_left_alone() {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .expect("a runtime");
+        let (growing, calm) = (StopSignal::new(), StopSignal::new());
+        let tight = MemoryGuard::watch(runtime.handle(), 16 << 20, growing.clone());
+        let wide = MemoryGuard::watch(runtime.handle(), 1 << 40, calm.clone());
+        let ballast = vec![1_u8; 64 << 20];
+        let begin = std::time::Instant::now();
+        while !growing.is_set() && begin.elapsed() < Duration::from_mins(1) {
+            std::thread::sleep(LOOK);
+        }
+        assert!(growing.is_set() && !calm.is_set());
+        assert_eq!(
+            ballast.iter().map(|byte| usize::from(*byte)).sum::<usize>(),
+            ballast.len()
+        );
+        let failed = super::super::solve::broken;
+        assert_eq!(tight.judge(failed()).cause, "memory_limit");
+        assert_eq!(wide.judge(failed()).cause, "internal_error");
+    }
+}

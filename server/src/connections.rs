@@ -32,6 +32,7 @@ const BUFFER: usize = 64 << 10;
 const RECOVERY: Duration = Duration::from_millis(100);
 
 /// Takes connections until the service ends, then waits for the requests that are being answered.
+/// One of them is kept free, so that who comes next is not kept waiting for another to leave.
 pub(crate) async fn serve(listener: TcpListener, router: Router, shutdown: Shutdown, most: usize) {
     let roster = Roster::new(most);
     let mut ending = shutdown.clone();
@@ -46,6 +47,7 @@ pub(crate) async fn serve(listener: TcpListener, router: Router, shutdown: Shutd
         };
         match accepted {
             Ok((stream, _)) => {
+                seat.begin();
                 tokio::spawn(converse(stream, seat, router.clone(), shutdown.clone()));
             }
             Err(error) => {

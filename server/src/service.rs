@@ -60,6 +60,9 @@ pub(crate) enum ServiceError {
          acknowledged is lost"
     )]
     Disk,
+    /// No connections are taken any more.
+    #[error("internal error: the service has stopped listening; the log has the cause")]
+    Deaf,
     /// The operating system.
     #[error("{what}: {source}")]
     System {
@@ -170,8 +173,10 @@ async fn serve(
     let mut serving = tokio::spawn(serving);
     let mut ending = shutdown.clone();
     tokio::select! {
+        biased;
         () = ending.begun() => {}
         () = store.sync_failed() => return Err(ServiceError::Disk.into()),
+        _ = &mut serving => return Err(ServiceError::Deaf.into()),
     }
     // Both at once: streams tell what becomes of the job that they follow.
     let finished = async { tokio::join!(worker.drain(), &mut serving) };

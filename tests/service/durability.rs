@@ -52,8 +52,12 @@ fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
         "{:?}",
         begin.elapsed()
     );
-    let given_back = told.rfind("\"state\":\"queued\"").expect("the job waits");
-    assert!(told[given_back..].contains("event: closing"), "{told}");
+    let last = |text: &str| {
+        told.rfind(text)
+            .unwrap_or_else(|| panic!("no {text} in {told}"))
+    };
+    let (ran, given_back) = (last("\"state\":\"running\""), last("\"state\":\"queued\""));
+    assert!(ran < given_back && given_back < last("event: closing"));
     let service = Service::on(&database, &[]);
     let job = service.wait_end(&id);
     assert_eq!(

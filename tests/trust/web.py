@@ -1,10 +1,11 @@
 """Promises about HTTP: slow clients, many clients, hostile bodies, panics."""
 
 import json
-import socket
+import os
 import threading
 import time
 import zlib
+from pathlib import Path
 
 from harness import (
     Row,
@@ -60,7 +61,8 @@ def slow_clients_are_cut_off(scale):
     """Silence, half heads, drip-fed bodies; then a thousand of them and one good client."""
     head = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n"
     rows, results = [], {}
-    with service(scale.database("h1")) as running:
+    most, count = scale.of(512, 64), scale.of(1000, 150)
+    with service(scale.database("h1"), "--max-connections", str(most)) as running:
         cases = {
             "silent connection": ([b""], 0.0, 10.0),
             "half a head": ([b"GET / HTTP/1.1\r\nHo"], 0.0, 10.0),
@@ -81,7 +83,7 @@ def slow_clients_are_cut_off(scale):
             rows.append(Row("H1", f"{name} is closed after", seconds(took), f"{goal:.0f} s", took is not None and took <= goal + NOTICED))
         job = running.submit(long_running())
         idle = resident_kib(running.process.pid)
-        count, crowd, waits = scale.of(1000, 150), [], []
+        crowd, waits = [], []
         parts = [b"", b"GET / HTTP/1.1\r\nHo", head + b"{", f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: a\r\n\r\n".encode()]
 
         def good(patience):
@@ -101,7 +103,7 @@ def slow_clients_are_cut_off(scale):
                 good(0.2)
         good(scale.of(20.0, 2.0))
         peak = resident_kib(running.process.pid, "VmHWM")
-        descriptors = len(list(__import__("pathlib").Path(f"/proc/{running.process.pid}/fd").iterdir()))
+        descriptors = len(os.listdir(f"/proc/{running.process.pid}/fd"))
         for connection in crowd:
             connection.close()
         time.sleep(1.0)
@@ -110,7 +112,7 @@ def slow_clients_are_cut_off(scale):
     slow = percentile(waits, 0.99)
     rows += [
         Row("H1", f"p99 of a good client beside {count} slow ones", f"{1e3 * slow:.0f} ms", "100 ms", slow <= 0.1, timed=True),
-        Row("H2", "files open under attack", str(descriptors), "512 + 64", descriptors <= 576),
+        Row("H2", "files open under attack", str(descriptors), f"{most} + 64", descriptors <= most + 64),
         Row("H2", "memory with one solve", f"{idle / 1024:.0f} MB", "60 MB", idle <= 60 * 1024),
         Row("H2", "peak memory under attack", f"{peak / 1024:.0f} MB", "200 MB", peak <= 200 * 1024),
         Row("H2", "memory kept after it", f"{(after - idle) / 1024:+.0f} MB", "+20 MB", after - idle <= 20 * 1024),
@@ -164,7 +166,7 @@ def hostile_bodies():
     for digits in (400, 100_000, 4_000_000):
         case(f"number of {digits} digits", b'{"name":' + b"9" * digits + b"}")
     numbers = [b"1e400", b"-1e400", b"1e99999999999", b"NaN", b"Infinity", b"-Infinity", b"nan", b"+1", b"01", b".5", b"5.", b"0x10", b"1e", b"--1", b"1_000", b'"1"', b"null", b"true", b"[]", b"{}", b'""']
-    places = ["max_torque_nm", "inertia_kg_m2", "max_speed_rad_s"]
+    places = ["max_torque_nm", "inertia_kg_m2", "max_speed_rad_s", "axis"]
     document = fixture("two-targets")
     for place in places:
         for number in numbers:
@@ -207,10 +209,13 @@ def hostile_bodies_are_cheap_to_refuse(scale):
     with service(scale.database("h7")) as running:
         for _ in range(20):
             exchange(running, post(json.dumps(fixture("olivares-c")).encode(), "/v1/plans?validate_only=true"))
-        before = resident_kib(running.process.pid)
+        process = running.process.pid
         for name, request, statuses in cases:
+            before = resident_kib(process)
+            # The highest mark begins anew at what there is now.
+            Path(f"/proc/{process}/clear_refs").write_text("5")
             took, answer = timed(lambda: exchange(running, request))
-            worst_memory = max(worst_memory, resident_kib(running.process.pid, "VmHWM") - before)
+            worst_memory = max(worst_memory, resident_kib(process, "VmHWM") - before)
             status = int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else 0
             if status not in statuses:
                 wrong.append(f"{name}: {status}")
@@ -224,7 +229,7 @@ def hostile_bodies_are_cheap_to_refuse(scale):
         Row("H7", f"hostile bodies not refused, of {len(cases)}", str(len(wrong)), "0", not wrong),
         Row("H7", "without a JSON pointer", str(len(no_pointer)), "0", not no_pointer),
         Row("H7", "slower than 50 ms", str(len(slow)), "0", not slow, timed=True),
-        Row("H7", "extra memory at most", f"{worst_memory / 1024:.1f} MB", "8 MB", worst_memory <= 8 * 1024),
+        Row("H7", "extra memory for one of them, most", f"{worst_memory / 1024:.1f} MB", "8 MB", worst_memory <= 8 * 1024),
     ]
 
 

@@ -120,6 +120,11 @@ impl Roster {
 }
 
 impl Seat {
+    /// Somebody has come, and is waited for from now on.
+    pub(super) fn begin(&self) {
+        self.place.has_answer();
+    }
+
     /// What the connection is doing.
     pub(super) fn place(&self) -> Place {
         self.place.clone()
@@ -155,9 +160,8 @@ mod tests {
             seats.push(roster.seat().await);
             tokio::time::advance(Duration::from_secs(1)).await;
         }
-        // The first has the answer to its request now: it has waited least.
-        seats[0].place().has_request();
-        seats[0].place().has_answer();
+        // Whoever sits on the first came last: it has waited least.
+        seats[0].begin();
         seats[1].place().has_request();
         let leaves = async {
             seats[2].asked_to_leave().await;

@@ -8,7 +8,7 @@ use axum::body::Bytes;
 use axum::extract::{FromRequest, FromRequestParts, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
-use http_body_util::{BodyExt, Limited};
+use http_body_util::BodyExt;
 use serde::de::DeserializeOwned;
 use std::error::Error;
 
@@ -67,16 +67,28 @@ async fn read(request: Request, limit: usize) -> Result<Bytes, ApiError> {
     if announced.is_some_and(|length| length > limit) {
         return Err(too_large());
     }
-    match Limited::new(request.into_body(), limit).collect().await {
-        Ok(body) => Ok(body.to_bytes()),
-        Err(error) if error.is::<http_body_util::LengthLimitError>() => Err(too_large()),
-        Err(error) if is_too_slow(&*error) => {
-            Err(ApiError::new(ErrorCode::BodyTooSlow, TooSlow.to_string()))
+    // One buffer from the beginning: collecting pieces and joining them would take twice as much.
+    let mut bytes = Vec::with_capacity(announced.unwrap_or(0));
+    let mut body = request.into_body();
+    while let Some(frame) = body.frame().await {
+        let frame = frame.map_err(|error| broken(&error))?;
+        let Ok(data) = frame.into_data() else {
+            continue;
+        };
+        if data.len() > limit - bytes.len() {
+            return Err(too_large());
         }
-        Err(error) => Err(ApiError::new(
-            ErrorCode::BadRequest,
-            format!("the body did not arrive: {error}"),
-        )),
+        bytes.extend_from_slice(&data);
+    }
+    Ok(bytes.into())
+}
+
+fn broken(error: &axum::Error) -> ApiError {
+    if is_too_slow(error) {
+        ApiError::new(ErrorCode::BodyTooSlow, TooSlow.to_string())
+    } else {
+        let detail = format!("the body did not arrive: {error}");
+        ApiError::new(ErrorCode::BadRequest, detail)
     }
 }
 

@@ -11,6 +11,7 @@ mod events;
 mod jobs;
 mod keys;
 mod legs;
+mod recent;
 mod results;
 mod retention;
 mod rows;
@@ -30,6 +31,7 @@ pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
 pub(crate) use spacecraft::SpacecraftRow;
 
+use recent::Recent;
 use sqlx::Connection as _;
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
@@ -57,6 +59,7 @@ pub(crate) struct Store {
     writer: SqlitePool,
     readers: SqlitePool,
     alarm: Alarm,
+    recent: Recent,
     path: PathBuf,
 }
 
@@ -129,6 +132,7 @@ impl Store {
             writer,
             readers,
             alarm: Alarm::default(),
+            recent: Recent::default(),
             path: path.to_owned(),
         })
     }

@@ -138,7 +138,7 @@ def overload_is_refused_politely(scale):
         for number in range(60):
             running.request("POST", "/v1/plans", long_running(number))
         waiting = rows_of(scale.database("h3"), "SELECT count(*) FROM jobs WHERE state = 'queued'")[0][0]
-        flood = load(running, "open", 2000, seconds, "/v1/plans", body, scale)
+        flood = load(running, "open", 1500, seconds, "/v1/plans", body, scale)
         live = load(running, "open", 50, 2, "/health/live")
         cancelled = running.request("GET", "/v1/plans?state=queued&limit=100")[1]["plans"]
         for job in cancelled:

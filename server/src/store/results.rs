@@ -6,13 +6,14 @@
 //! its own, so that a plan of an attempt that was cut off cannot pass for the end of a job.
 
 use super::{Ended, JobState, Store, StoreError};
-use sqlx::{FromRow, Row, SqliteConnection};
+use bytes::Bytes;
+use sqlx::{Row, SqliteConnection};
 
 /// A plan that can be read.
-#[derive(Debug, Clone, FromRow)]
+#[derive(Debug, Clone)]
 pub(crate) struct ResultRow {
     /// The plan as JSON.
-    pub(crate) document: Vec<u8>,
+    pub(crate) document: Bytes,
     /// SHA-256 of the document, hex.
     pub(crate) digest: String,
     /// Whether the job ended with it.
@@ -30,13 +31,11 @@ pub(crate) struct NewIncumbent {
     pub(crate) lower_bound_s: f64,
 }
 
-/// The plan as it was stored, not as a damaged disk tells it.
-fn intact(row: ResultRow) -> Result<ResultRow, StoreError> {
-    if crate::digest::hex(&row.document) == row.digest {
-        Ok(row)
-    } else {
-        Err(StoreError::Damaged { what: "plan" })
-    }
+macro_rules! results_of_job {
+    () => {
+        " FROM jobs LEFT JOIN results r ON r.job = sequence \
+         LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = ?"
+    };
 }
 
 /// Keeps the plan of a running job unless one as good is kept already.
@@ -115,13 +114,42 @@ impl Store {
         &self,
         id: &str,
     ) -> Result<Option<(JobState, Option<ResultRow>)>, StoreError> {
+        let known = sqlx::query(concat!(
+            "SELECT state, coalesce(r.digest, i.digest) AS digest, r.job IS NOT NULL AS is_final",
+            results_of_job!()
+        ))
+        .bind(id)
+        .fetch_optional(&self.readers)
+        .await?;
+        let Some(row) = known else {
+            return Ok(None);
+        };
+        let digest: Option<String> = row.try_get("digest")?;
+        let Some(digest) = digest else {
+            return Ok(Some((JobState::stored(row.try_get("state")?)?, None)));
+        };
+        if let Some(document) = self.recent.get(&digest) {
+            let plan = ResultRow {
+                document,
+                digest,
+                is_final: row.try_get("is_final")?,
+            };
+            return Ok(Some((JobState::stored(row.try_get("state")?)?, Some(plan))));
+        }
+        self.read_result(id).await
+    }
+
+    /// The same with the plan from the disk, as it was stored, not as a damaged disk tells it.
+    async fn read_result(
+        &self,
+        id: &str,
+    ) -> Result<Option<(JobState, Option<ResultRow>)>, StoreError> {
         // One statement, so that state and plan are of one moment.
-        let row = sqlx::query(
+        let row = sqlx::query(concat!(
             "SELECT state, coalesce(r.document, i.document) AS document, \
-             coalesce(r.digest, i.digest) AS digest, r.job IS NOT NULL AS is_final FROM jobs \
-             LEFT JOIN results r ON r.job = sequence \
-             LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = ?",
-        )
+             coalesce(r.digest, i.digest) AS digest, r.job IS NOT NULL AS is_final",
+            results_of_job!()
+        ))
         .bind(id)
         .fetch_optional(&self.readers)
         .await?;
@@ -129,10 +157,20 @@ impl Store {
             return Ok(None);
         };
         let state = JobState::stored(row.try_get("state")?)?;
-        let plan = match row.try_get::<Option<&str>, _>("digest")? {
-            Some(_) => Some(intact(ResultRow::from_row(&row)?)?),
-            None => None,
+        let Some(digest) = row.try_get::<Option<String>, _>("digest")? else {
+            return Ok(Some((state, None)));
         };
-        Ok(Some((state, plan)))
+        let document: Vec<u8> = row.try_get("document")?;
+        if crate::digest::hex(&document) != digest {
+            return Err(StoreError::Damaged { what: "plan" });
+        }
+        let document = Bytes::from(document);
+        self.recent.keep(&digest, &document);
+        let plan = ResultRow {
+            document,
+            digest,
+            is_final: row.try_get("is_final")?,
+        };
+        Ok(Some((state, Some(plan))))
     }
 }

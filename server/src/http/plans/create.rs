@@ -94,6 +94,9 @@ pub(in crate::http) async fn handler(
     let key = idempotency_key(&headers)?;
     let fingerprint = digest::hex(&body.bytes);
     check_size(&app, &body.node)?;
+    if key.is_none() && !query.validate_only {
+        check_room(&app).await?;
+    }
     let (node, written_out) = stored::write_out(&app, &caller, body.node, "").await?;
     let valid = wire::scenario::read_node(&node, None).map_err(ApiError::input)?;
     let targets = valid.scenario.targets().len();
@@ -121,6 +124,21 @@ pub(in crate::http) async fn handler(
             .insert(name, HeaderValue::from_static("true"));
     }
     Ok(response)
+}
+
+/// Refuses cheaply while the queue is full; whoever gets past this may still come too late. A key may
+/// stand for a job that is there already.
+async fn check_room(app: &App) -> Result<(), ApiError> {
+    if app.store().waiting().await? < app.jobs().queue_limits().all {
+        return Ok(());
+    }
+    Err(queue_full(app))
+}
+
+fn queue_full(app: &App) -> ApiError {
+    let limit = app.jobs().queue_limits().all;
+    let detail = format!("{limit} jobs wait already (queue_limit)");
+    ApiError::new(ErrorCode::QueueFull, detail).retry_after(RETRY_FULL_S)
 }
 
 /// Refuses what would take long to read in full, before it is read in full.
@@ -182,11 +200,7 @@ async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), Ap
             ErrorCode::IdempotencyKeyReused,
             "another body was submitted under this Idempotency-Key",
         )),
-        Submitted::QueueFull => {
-            let limit = app.jobs().queue_limits().all;
-            let detail = format!("{limit} jobs wait already (queue_limit)");
-            Err(ApiError::new(ErrorCode::QueueFull, detail).retry_after(RETRY_FULL_S))
-        }
+        Submitted::QueueFull => Err(queue_full(app)),
         Submitted::QuotaExceeded => {
             let limit = app.jobs().queue_limits().client;
             let detail = format!("{limit} jobs of this client wait already (client_queue_limit)");

@@ -7,6 +7,7 @@ use super::super::extract::{Parameters, header_text};
 use crate::store::{JobState, ResultRow};
 use crate::wire::csv;
 use crate::wire::plan::PlanDocument;
+use axum::body::Bytes;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -141,7 +142,7 @@ fn table(result: &ResultRow) -> Result<Response, ApiError> {
     ))
 }
 
-fn tagged(form: &'static str, tag: &str, body: Vec<u8>) -> Response {
+fn tagged(form: &'static str, tag: &str, body: Bytes) -> Response {
     let mut response = ([(header::CONTENT_TYPE, form)], body).into_response();
     if let Ok(tag) = HeaderValue::from_str(&format!("\"{tag}\"")) {
         response.headers_mut().insert(header::ETAG, tag);

@@ -1,7 +1,8 @@
 //! One slew between two waypoints: guesses, solves, the best of them.
 
+pub(crate) mod arrival;
 pub(crate) mod eigenaxis;
-pub(crate) mod kinematic;
+pub(crate) mod extremal;
 #[cfg(test)]
 mod tests;
 
@@ -12,8 +13,9 @@ use crate::profile::Profile;
 use crate::scenario::RateCondition;
 use crate::spec::Accuracy;
 use crate::transcription::{Waypoint, WheelCondition};
+use arrival::Arrival;
 use eigenaxis::{EigenaxisSlew, Side};
-use kinematic::Arrival;
+use extremal::KinematicExtremals;
 use nalgebra::{DVector, Vector3};
 
 /// How finely slews are solved.
@@ -56,8 +58,8 @@ const LEAST_INTERVALS: usize = 12;
 /// and 0.24 % above the tight durations, four leave none more than 0.03 %.
 const PER_SPARE_WHEEL: usize = 4;
 const WITH_MOMENTUM: usize = 6;
-/// Kinematic extremals that are tried as guesses beside the eigenaxis slew.
-const EXTREMALS: usize = 2;
+/// Guesses that are tried: a second one where a bound does not settle the first.
+const STARTS: usize = 2;
 
 /// Excess over a bound from below up to which a duration is not doubted. On the 171 legs of
 /// experiment C the certified bound is 0 to 2.1 % below the best known durations, in the median 0.2 %;
@@ -81,6 +83,8 @@ pub(crate) struct SlewProblem<'a> {
     pub(crate) arrival: Arrival,
     /// Null-space momentum of the wheels in the guesses, N m s.
     pub(crate) null: &'a DVector<f64>,
+    /// Guesses for its spacecraft.
+    pub(crate) extremals: &'a KinematicExtremals,
     /// How finely it is solved.
     pub(crate) resolution: Resolution,
 }
@@ -101,16 +105,14 @@ pub(crate) fn solve(
     bound: Option<f64>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Slew {
-    let eigenaxis = slew.eigenaxis();
-    let intervals = slew.resolution.intervals;
-    let bowed = [Side::Near, Side::Far]
-        .into_iter()
-        .map(|side| eigenaxis.guess(slew.dynamics, intervals, side));
-    // Extremals take longer to find than a program takes to solve: only where they are needed.
-    let extremals = std::iter::once_with(|| kinematic::guesses(slew, intervals, EXTREMALS));
+    let extremal = slew.extremals.guess(slew);
+    let bowed = [Side::Far, Side::Near].into_iter().map(|side| {
+        let intervals = slew.resolution.intervals;
+        slew.eigenaxis().guess(slew.dynamics, intervals, side)
+    });
     let mut best: Option<Flown> = None;
     let mut solves = 0;
-    for guess in bowed.chain(extremals.flatten()) {
+    for guess in extremal.into_iter().chain(bowed).take(STARTS) {
         let flown = slew.fly(&guess, stop);
         solves += 1;
         let duration = flown.duration();

@@ -5,7 +5,8 @@ use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::profile::Profile;
 use crate::scenario::RateCondition;
-use crate::slew::kinematic::Arrival;
+use crate::slew::arrival::Arrival;
+use crate::slew::extremal::KinematicExtremals;
 use crate::slew::{Resolution, SlewProblem};
 use crate::transcription::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
@@ -13,7 +14,7 @@ use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it: stored legs of another are not
 /// found.
-const VERSION: &str = "leg-3";
+const VERSION: &str = "leg-4";
 /// Turns and momenta are rounded to this many units of their own scale, far below every tolerance
 /// and far above the rounding of the caller's conversions.
 const RESOLUTION: f64 = 1e13;
@@ -35,7 +36,8 @@ pub(super) struct CanonicalLeg {
     pub(super) mirrored: bool,
     /// Whether it may be flown backwards.
     pub(super) reversible: bool,
-    arrival: Arrival,
+    /// Which signs count as arrived.
+    pub(super) arrival: Arrival,
     null: DVector<f64>,
     /// How finely it is solved.
     pub(super) resolution: Resolution,
@@ -90,14 +92,15 @@ impl CanonicalLeg {
         }
     }
 
-    /// The problem to solve.
-    pub(super) fn problem(&self) -> SlewProblem<'_> {
+    /// The problem to solve, with the guesses for its spacecraft.
+    pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> SlewProblem<'a> {
         SlewProblem {
             dynamics: &self.dynamics,
             from: &self.from,
             to: &self.to,
             arrival: self.arrival,
             null: &self.null,
+            extremals,
             resolution: self.resolution,
         }
     }

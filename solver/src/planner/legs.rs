@@ -239,7 +239,7 @@ fn solve(
     let certified = certified
         .unwrap_or_else(|| certify(places, leg))
         .lower_bound;
-    let problem = leg.problem();
+    let problem = leg.problem(&places.extremals);
     let mut solved = standstill(&problem).map_or_else(
         || slew::solve(&problem, certified, &|| interruption(stop)),
         |flown| slew::Slew { flown, solves: 0 },

@@ -4,7 +4,8 @@ use crate::certified::CertifiedBounds;
 use crate::dynamics::Dynamics;
 use crate::scenario::{RateCondition, Scenario};
 use crate::sequence::Place;
-use crate::slew::kinematic::Arrival;
+use crate::slew::arrival::Arrival;
+use crate::slew::extremal::KinematicExtremals;
 use crate::slew::{Resolution, SlewProblem};
 use crate::spec::AttitudeEquivalence;
 use crate::transcription::{Waypoint, WheelCondition};
@@ -25,6 +26,8 @@ pub(super) struct Places<'a> {
     pub(super) null: DVector<f64>,
     /// How finely slews are solved.
     pub(super) resolution: Resolution,
+    /// What guesses of slews have in common.
+    pub(super) extremals: KinematicExtremals,
     /// What no slew undercuts.
     pub(super) certified: CertifiedBounds,
 }
@@ -36,6 +39,7 @@ impl<'a> Places<'a> {
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         Self {
             null: dynamics.null_component(&wheels),
+            extremals: KinematicExtremals::of(&dynamics),
             certified: CertifiedBounds::of(&dynamics),
             resolution: Resolution::of(scenario.options().accuracy, &dynamics),
             arrival: match scenario.options().attitude_equivalence {
@@ -151,6 +155,7 @@ impl<'a> Places<'a> {
             to,
             arrival: self.arrival,
             null: &self.null,
+            extremals: &self.extremals,
             resolution: self.resolution,
         }
     }

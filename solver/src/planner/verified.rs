@@ -15,7 +15,7 @@ pub(super) fn flies(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) 
     let (Some(begin), Some(last)) = (begin(places, leg, profile), profile.attitudes.last()) else {
         return false;
     };
-    let target = leg.problem().arrival.signed(&leg.to.attitude, last);
+    let target = leg.arrival.signed(&leg.to.attitude, last);
     let arrival = Arrival {
         quaternion: target.xyzw(),
         rate: leg.to.rate.map(|condition| match condition {

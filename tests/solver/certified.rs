@@ -177,7 +177,8 @@ fn no_random_leg_is_faster_than_its_bound() {
                 bound <= duration * (1.0 + ROUNDING),
                 "seed {seed}: {bound} {duration}"
             );
-            assert!(bound >= 0.3 * duration, "seed {seed}: {bound} {duration}");
+            // Weak for wheels on any axes, but not nothing.
+            assert!(bound >= 0.25 * duration, "seed {seed}: {bound} {duration}");
             bounded += 1;
         }
     }

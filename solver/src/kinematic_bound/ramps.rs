@@ -44,7 +44,7 @@ use crate::attitude::Attitude;
 use nalgebra::Vector3;
 
 /// Durations whose mean rates make the boxes, in units of the longest ramp.
-const DURATIONS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
+const DURATIONS: [f64; 4] = [0.5, 1.0, 2.0, 5.0];
 /// Boxes whose shapes differ by less than this are one.
 const SAME_SHAPE: f64 = 0.02;
 /// Share taken off for the rounding of `s`.

@@ -57,14 +57,13 @@ pub(super) fn eigenaxis_time(q: &Quat, c: &[f64; 3]) -> f64 {
 pub(super) fn best_axis_sequence(q: &Quat, c: &[f64; 3]) -> (f64, [(usize, f64); 3]) {
     let mut best = (f64::INFINITY, [(0, 0.0); 3]);
     for i in 0..3 {
-        for (j, k, sense) in [
-            (others(i).0, others(i).1, 1.0),
-            (others(i).1, others(i).0, -1.0),
-        ] {
-            // q = e_i(a) e_j(b) e_i(d): q_w = cos(b/2) cos((a+d)/2), q_i = cos(b/2) sin((a+d)/2),
-            // q_j = sin(b/2) cos((a-d)/2), q_k = sense sin(b/2) sin((a-d)/2).
-            let middle = 2.0 * q[j].hypot(q[k]).atan2(q[i].hypot(q[3]));
-            let sum = 2.0 * q[i].atan2(q[3]);
+        // q = e_i(a) e_j(b) e_i(d): q_w = cos(b/2) cos((a+d)/2), q_i = cos(b/2) sin((a+d)/2),
+        // q_j = sin(b/2) cos((a-d)/2), q_k = sense sin(b/2) sin((a-d)/2).
+        let (one, other) = others(i);
+        let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+        let middle = 2.0 * length(q[one], q[other]).atan2(length(q[i], q[3]));
+        let sum = 2.0 * q[i].atan2(q[3]);
+        for (j, k, sense) in [(one, other, 1.0), (other, one, -1.0)] {
             let difference = 2.0 * (sense * q[k]).atan2(q[j]);
             let (first, last) = (0.5 * (sum + difference), 0.5 * (sum - difference));
             // Half a turn added to both outer ones turns the middle one round.

@@ -97,6 +97,13 @@ impl Attitude {
         Self(self.0.inverse() * other.0)
     }
 
+    /// The same turn with its axis expressed in other axes, orthonormal, given as columns.
+    pub(crate) fn seen_from(&self, axes: &Matrix3<f64>) -> Option<Self> {
+        let [x, y, z, w] = self.xyzw();
+        let [x, y, z] = axes.tr_mul(&Vector3::new(x, y, z)).into();
+        Self::from_xyzw([x, y, z, w])
+    }
+
     /// The quaternion with all components negated: the same attitude.
     #[must_use]
     pub fn negated(&self) -> Self {

@@ -34,7 +34,7 @@
 mod momentum;
 
 use crate::attitude::Attitude;
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, along};
 use crate::kinematic_bound::certificate::Certificate;
 use crate::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
 use crate::scenario::RateCondition;
@@ -137,7 +137,7 @@ impl CertifiedBounds {
         prepared: &'s [Option<SlewBound>],
     ) -> impl Iterator<Item = (&'s SlewBound, Attitude)> {
         let frames = self.frames.iter().zip(prepared);
-        frames.filter_map(|(frame, bound)| Some((bound.as_ref()?, frame.turn(turn)?)))
+        frames.filter_map(|(frame, bound)| Some((bound.as_ref()?, turn.seen_from(&frame.axes)?)))
     }
 
     /// The bounds of all frames for ends with rates of these sizes at most, body axes.
@@ -164,20 +164,17 @@ impl CertifiedBounds {
 
 impl Frame {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>) -> Self {
-        let along = |of: &dyn Fn(&Vector3<f64>) -> f64| {
-            Vector3::from_fn(|i, _| of(&axes.column(i).into_owned()))
-        };
         let rate = |axis: &Vector3<f64>| {
             dynamics
                 .reachable_rate(axis)
-                .min(component(axis, &dynamics.max_rate))
-                .min(dynamics.max_rate_norm * axis.norm())
+                .min(allowed_rate(dynamics, axis))
         };
+        let acceleration = |axis: &Vector3<f64>| dynamics.reachable_acceleration(axis);
         Self {
             axes,
             limits: SlewLimits {
-                rates_rad_s: along(&rate),
-                accelerations_rad_s2: along(&|axis| dynamics.reachable_acceleration(axis)),
+                rates_rad_s: along(&axes, rate),
+                accelerations_rad_s2: along(&axes, acceleration),
             },
         }
     }
@@ -193,14 +190,7 @@ impl Frame {
 
     /// What the components along the frame's axes are at most, from those along the body axes.
     fn seen(&self, most: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::from_fn(|i, _| component(&self.axes.column(i).into_owned(), most))
-    }
-
-    /// A turn in body axes as it is seen from the frame.
-    fn turn(&self, turn: &Attitude) -> Option<Attitude> {
-        let [x, y, z, w] = turn.xyzw();
-        let [x, y, z] = self.axes.tr_mul(&Vector3::new(x, y, z)).into();
-        Attitude::from_xyzw([x, y, z, w])
+        along(&self.axes, |axis| component(axis, most))
     }
 }
 
@@ -220,6 +210,11 @@ fn rounded_up(rate: f64, largest: f64) -> f64 {
     }
     let mut steps = SHARES.iter().map(|share| share * largest);
     steps.find(|step| rate <= *step).unwrap_or(f64::INFINITY)
+}
+
+/// Greatest component of the rate along a direction that its limits allow, rad/s.
+fn allowed_rate(dynamics: &Dynamics, direction: &Vector3<f64>) -> f64 {
+    component(direction, &dynamics.max_rate).min(dynamics.max_rate_norm * direction.norm())
 }
 
 /// Greatest component along a direction of vectors whose components have these greatest sizes.

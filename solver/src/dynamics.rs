@@ -61,6 +61,11 @@ pub(crate) struct Dynamics {
 /// rounding in the caller's numbers does not cost the simpler dynamics.
 const NEGLIGIBLE_MOMENTUM: f64 = 1e-13;
 
+/// What a quantity of directions in the body is along each of three axes, given as columns.
+pub(crate) fn along(axes: &Matrix3<f64>, quantity: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| quantity(&axes.column(i).into_owned()))
+}
+
 impl Dynamics {
     /// The dynamics of a scenario.
     pub(crate) fn of(scenario: &Scenario) -> Self {

@@ -23,9 +23,9 @@
 //! narrow, and zero, the plain box that contains all rates, does better where rates have limits of
 //! their own.
 
-use super::{Frame, component};
+use super::{Frame, allowed_rate};
 use crate::attitude::Attitude;
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, along};
 use crate::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
 use nalgebra::{Matrix3, Vector3};
 
@@ -81,7 +81,7 @@ impl MomentumBounds {
                     begin_rad_s: most[0],
                     end_rad_s: most[1],
                 };
-                let turn = frame.turn(turn)?;
+                let turn = turn.seen_from(&frame.axes)?;
                 Some(bound.drifting_lower_bound_s(&turn, &drifts[0], ends, tolerance))
             })
             .reduce(f64::max)
@@ -90,23 +90,18 @@ impl MomentumBounds {
 
 impl Drifting {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>, share: f64) -> Option<Self> {
-        let along = |of: &dyn Fn(&Vector3<f64>) -> f64| {
-            Vector3::from_fn(|i, _| of(&axes.column(i).into_owned()))
-        };
         let drift = share * dynamics.momentum.norm();
         let rate = |axis: &Vector3<f64>| {
-            let limit =
-                component(axis, &dynamics.max_rate).min(dynamics.max_rate_norm * axis.norm());
             dynamics
                 .reachable_relative_rate(axis, share)
-                .min(limit + drift)
+                .min(allowed_rate(dynamics, axis) + drift)
         };
         let acceleration = |axis: &Vector3<f64>| {
             dynamics.reachable_acceleration(axis) + dynamics.gyroscopic_acceleration(axis, share)
         };
         let limits = SlewLimits {
-            rates_rad_s: along(&rate),
-            accelerations_rad_s2: along(&acceleration),
+            rates_rad_s: along(&axes, rate),
+            accelerations_rad_s2: along(&axes, acceleration),
         };
         Some(Self {
             frame: Frame { axes, limits },

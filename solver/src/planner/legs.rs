@@ -120,13 +120,7 @@ impl<'a> LegSolver<'a> {
         pairs: &[(Place, Place)],
     ) -> Vec<Option<CertifiedLeg>> {
         let canonical = self.canonical(kind, pairs);
-        let mut listed = HashSet::new();
-        let missing: Vec<&CanonicalLeg> = canonical
-            .iter()
-            .filter(|leg| {
-                !self.certified.contains_key(&leg.identity) && listed.insert(&leg.identity)
-            })
-            .collect();
+        let missing = missing_from(&self.certified, &canonical);
         let bounds = self.run.pool.map(&missing, |leg| {
             (!self.stop.is_set()).then(|| certify(self.places, leg))
         });
@@ -166,11 +160,7 @@ impl<'a> LegSolver<'a> {
     }
 
     fn solve_missing(&mut self, kind: LegKind, canonical: &[CanonicalLeg]) {
-        let mut listed = HashSet::new();
-        let missing: Vec<&CanonicalLeg> = canonical
-            .iter()
-            .filter(|leg| !self.known.contains_key(&leg.identity) && listed.insert(&leg.identity))
-            .collect();
+        let missing = missing_from(&self.known, canonical);
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
         let solved = self.run.pool.map(&missing, |leg| {
@@ -208,6 +198,17 @@ impl<'a> LegSolver<'a> {
             self.known.insert(leg.identity.clone(), Arc::new(solved));
         }
     }
+}
+
+/// The legs of which nothing is known, each of them once.
+fn missing_from<'c, T>(
+    known: &HashMap<String, T>,
+    legs: &'c [CanonicalLeg],
+) -> Vec<&'c CanonicalLeg> {
+    let mut listed = HashSet::new();
+    legs.iter()
+        .filter(|leg| !known.contains_key(&leg.identity) && listed.insert(&leg.identity))
+        .collect()
 }
 
 fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {

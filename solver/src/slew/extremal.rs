@@ -9,7 +9,7 @@
 
 use super::SlewProblem;
 use crate::attitude::Attitude;
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Dynamics, along};
 use crate::kinematic_bound::{RateArc, RateBox};
 use crate::profile::Profile;
 use nalgebra::{Matrix3, Vector3};
@@ -48,13 +48,10 @@ impl KinematicExtremals {
     /// Those of a spacecraft.
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
         let axes = dynamics.natural_axes();
-        let along = |of: &dyn Fn(&Vector3<f64>) -> f64| {
-            Vector3::from_fn(|i, _| of(&axes.column(i).into_owned()))
-        };
-        let accelerations = along(&|axis| dynamics.axis_acceleration(axis));
+        let accelerations = along(&axes, |axis| dynamics.axis_acceleration(axis));
         // No faster than a bang-bang about half a turn, where nothing limits the rates.
         let peaks = accelerations.map(|acceleration| (acceleration * PI).sqrt());
-        let rates = along(&|axis| dynamics.axis_rate(axis)).inf(&peaks);
+        let rates = along(&axes, |axis| dynamics.axis_rate(axis)).inf(&peaks);
         Self {
             axes,
             rates,
@@ -79,9 +76,7 @@ impl KinematicExtremals {
             .table
             .get_or_init(|| RateBox::new(self.rates))
             .as_ref()?;
-        let [x, y, z, w] = turn.xyzw();
-        let [x, y, z] = self.axes.tr_mul(&Vector3::new(x, y, z)).into();
-        let shortest = table.query(&Attitude::from_xyzw([x, y, z, w])?, TOLERANCE);
+        let shortest = table.query(&turn.seen_from(&self.axes)?, TOLERANCE);
         if shortest.upper_s == 0.0 {
             return None;
         }

@@ -3,8 +3,8 @@
 //! A key is 256 random bits, so that a plain SHA-256 of it can be stored and compared: there is
 //! nothing to guess that a slow hash would protect.
 
-use crate::digest;
-use std::fmt::{self, Display, Write};
+use crate::digest::{self, hexadecimal};
+use std::fmt::{self, Display};
 use std::str::FromStr;
 
 /// What every key begins with, for those who search for leaked ones.
@@ -105,7 +105,7 @@ impl FreshKey {
 
     /// What is stored of the key.
     pub(crate) fn digest(&self) -> String {
-        digest::hex(self.secret.as_bytes())
+        digest_of(&self.secret)
     }
 }
 
@@ -113,14 +113,6 @@ impl FreshKey {
 /// depends on a hash that nobody can steer, not on the key.
 pub(crate) fn digest_of(key: &str) -> String {
     digest::hex(key.as_bytes())
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        // Writing into a text cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }
 
 #[cfg(test)]

@@ -1,12 +1,17 @@
-//! Content addresses.
+//! Content addresses, and bytes as text.
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
 /// SHA-256 as lower-case hexadecimal digits.
 pub(crate) fn hex(content: &[u8]) -> String {
-    let mut text = String::with_capacity(64);
-    for byte in Sha256::digest(content) {
+    hexadecimal(&Sha256::digest(content))
+}
+
+/// Bytes as lower-case hexadecimal digits.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
         // Writing into a text cannot fail.
         let _ = write!(text, "{byte:02x}");
     }

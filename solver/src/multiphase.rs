@@ -4,6 +4,7 @@
 //! a waypoint leaves free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
+mod extended;
 mod rolling;
 #[cfg(test)]
 mod tests;
@@ -15,6 +16,7 @@ use crate::profile::Profile;
 use crate::transcription::{Reserves, Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
 use nalgebra::DVector;
+pub(crate) use extended::fly_on;
 pub(crate) use rolling::fly_rolling;
 
 /// A program to solve on the way to another.
@@ -87,6 +89,16 @@ pub(crate) struct Flown {
 }
 
 impl Flown {
+    /// A flight of which not even a guess is known.
+    pub(crate) fn nowhere() -> Self {
+        Self {
+            status: NlpStatus::IterationLimit,
+            profile: Profile::empty(),
+            iterations: 0,
+            infeasibility: f64::MAX,
+        }
+    }
+
     /// Duration, s, when the NLP converged.
     pub(crate) fn duration(&self) -> Option<f64> {
         (self.status == NlpStatus::Converged).then(|| self.profile.duration())

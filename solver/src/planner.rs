@@ -5,9 +5,11 @@ mod canonical;
 mod certified;
 mod claims;
 mod conclude;
+mod first;
 mod fixed_order;
 mod legs;
 mod places;
+mod segments;
 mod tables;
 mod torques;
 mod tours;
@@ -24,6 +26,7 @@ use crate::sequence::{FlownOrder, Place, SearchSettings, exhaustive, search};
 use crate::stop::{StopReason, StopSignal};
 use certified::tour_bound;
 use conclude::Conclusions;
+use first::first_tour;
 use legs::LegSolver;
 use places::Places;
 use std::time::{Duration, Instant};
@@ -31,7 +34,7 @@ use tables::CertifiedLeg;
 use tours::Tours;
 
 pub use claims::{CheckedClaims, LegClaim, Objection, Obstacle, PlanClaims, Verdict, certify_plan};
-pub use fixed_order::{Effort, OrderError, fly_order};
+pub use fixed_order::{BoundFrom, OrderError, fly_order};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]
@@ -90,16 +93,19 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = tour_bound(&places, &bounds, run.pool, &stop);
     solver.tell_bound(certified);
-    let (rest, free) = solver.tour_tables(&pairs);
-    let tours = Tours::new(&places, &rest, &free, &bounds, &stop);
+    let tours = Tours::new(&places, &solver, &bounds, &stop);
+    let conclusions = Conclusions::new(&tours, certified, run, begin);
+    let first = first_tour(&tours, &stop);
+    conclusions.announce(first.as_ref());
+    tours.know(solver.table(LegKind::LowerBound, &pairs));
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,
         relative_gap: scenario.options().relative_gap,
         node_limit: scenario.options().node_limit,
         ..SearchSettings::default()
     };
-    let conclusions = Conclusions::new(&tours, &solver, certified, run, begin);
-    let found = search(&tours, &settings, run.pool, &stop, &conclusions);
+    let known: Vec<_> = first.into_iter().collect();
+    let found = search(&tours, &known, &settings, run.pool, &stop, &conclusions);
     match &found.best {
         Some(best) => conclusions.outcome(best, &found),
         None if stop.is_set() => Outcome::StoppedEmpty,
@@ -117,10 +123,9 @@ pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let mut solver = LegSolver::new(&places, run, &stop);
+    let solver = LegSolver::new(&places, run, &stop);
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
-    let (rest, free) = solver.tour_tables(&pairs);
-    let tours = Tours::new(&places, &rest, &free, &bounds, &stop);
+    let tours = Tours::new(&places, &solver, &bounds, &stop);
     let orders = (1..=scenario.targets().len()).product();
     exhaustive(&tours, orders, run.pool)
 }
@@ -146,14 +151,14 @@ pub fn leg_table(
         .filter(|(i, _)| i % shard.of.max(1) == shard.index)
         .map(|(_, pair)| pair)
         .collect();
-    let mut solver = LegSolver::new(&places, run, &stop);
+    let solver = LegSolver::new(&places, run, &stop);
     let rows: Vec<_> = if kind == LegKind::Certified {
-        let rows = certified_rows(&mut solver, &pairs);
+        let rows = certified_rows(&solver, &pairs);
         rows.into_iter().flatten().collect()
     } else {
         let table = solver.table(kind, &pairs);
         let row = |(from, to): &(Place, Place)| {
-            let leg = table.get(*from, *to)?;
+            let leg = &table.get(*from, *to)?.leg;
             Some(LegRow {
                 from: places.name(*from),
                 to: places.name(*to),
@@ -182,11 +187,11 @@ pub fn certified_legs(
 ) -> Vec<Option<LegRow>> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    certified_rows(&mut LegSolver::new(&places, run, &stop), pairs)
+    certified_rows(&LegSolver::new(&places, run, &stop), pairs)
 }
 
 /// The rows of a table without any program.
-fn certified_rows(solver: &mut LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Option<LegRow>> {
+fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Option<LegRow>> {
     let kind = LegKind::Certified;
     let legs = solver.certified_legs(kind, pairs);
     let places = solver.places();
@@ -245,7 +250,7 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .iter()
         .flat_map(|from| all.iter().map(move |to| (*from, *to)))
         .filter_map(|(from, to)| {
-            let leg = tours.free.get(from, to)?;
+            let leg = &tours.free()?.get(from, to)?.leg;
             (leg.flown.status != NlpStatus::Converged).then(|| {
                 let message = format!(
                     "the slew from {} to {} ended with status {} after {} iterations, its \

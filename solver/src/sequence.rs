@@ -48,6 +48,7 @@ mod table;
 mod tests;
 
 pub use exhaustive::exhaustive;
+pub use heuristics::short_order;
 pub use search::search;
 pub use table::PairTable;
 

@@ -105,11 +105,9 @@ pub(crate) fn solve(
     bound: Option<f64>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Slew {
-    let extremal = slew.extremals.guess(slew);
-    let bowed = [Side::Far, Side::Near].into_iter().map(|side| {
-        let intervals = slew.resolution.intervals;
-        slew.eigenaxis().guess(slew.dynamics, intervals, side)
-    });
+    let extremal = slew.extremal();
+    let bowed = [Side::Far, Side::Near].into_iter();
+    let bowed = bowed.map(|side| slew.bowed(side));
     let mut best: Option<Flown> = None;
     let mut solves = 0;
     for guess in extremal.into_iter().chain(bowed).take(STARTS) {
@@ -215,6 +213,17 @@ impl SlewProblem<'_> {
             to.attitude = self.arrival.signed(&to.attitude, last);
         }
         [self.from.clone(), to]
+    }
+
+    /// A guess from the kinematic extremal, where rates are limited.
+    pub(crate) fn extremal(&self) -> Option<Profile> {
+        self.extremals.guess(self)
+    }
+
+    /// A guess from the slew about the eigenaxis, bowed to one side.
+    pub(crate) fn bowed(&self, side: Side) -> Profile {
+        let intervals = self.resolution.intervals;
+        self.eigenaxis().guess(self.dynamics, intervals, side)
     }
 
     /// The slew about the eigenaxis, the short way round unless the sign says otherwise.

@@ -1,13 +1,13 @@
 //! Orders that are given: flown as the search flies them.
 
 use slewplan_solver::plan::{LowerBoundKind, Optimality, Outcome, Plan};
-use slewplan_solver::planner::{Effort, OrderError, every_order, fly_order};
+use slewplan_solver::planner::{BoundFrom, OrderError, every_order, fly_order};
 use slewplan_solver::spec::ScenarioSpec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, on_threads, plan_of, planned, scenario_of};
 use slewplan_tests::{experiment_a_spec, target};
 
-fn flown(spec: &ScenarioSpec, order: &[usize], effort: Effort) -> Plan {
+fn flown(spec: &ScenarioSpec, order: &[usize], effort: BoundFrom) -> Plan {
     let scenario = scenario_of(spec);
     let outcome = on_threads(2, |run| fly_order(&scenario, order, effort, run));
     planned(outcome.expect("an order of the targets"))
@@ -30,7 +30,7 @@ fn the_best_order_is_flown_as_the_search_flies_it() {
     spec.targets.push(twin);
     let best = plan_of(&spec);
     let order = order_in(&best, &spec);
-    let given = flown(&spec, &order, Effort::FromLegs);
+    let given = flown(&spec, &order, BoundFrom::Legs);
     assert_eq!(given.flight, best.flight);
     assert_eq!(given.legs, best.legs);
     assert_eq!(given.optimality, Optimality::Feasible);
@@ -52,7 +52,7 @@ fn any_order_takes_as_long_as_among_all_orders() {
     let orders = on_threads(2, |run| every_order(&scenario, run));
     assert_eq!(orders.len(), 6);
     for known in orders {
-        let plan = flown(&spec, &known.order, Effort::FromLegs);
+        let plan = flown(&spec, &known.order, BoundFrom::Legs);
         assert_eq!(order_in(&plan, &spec), known.order);
         let difference = plan.total_time_s - known.duration_s;
         assert!(difference.abs() < 1e-9, "{known:?}: {difference} s more");
@@ -65,8 +65,8 @@ fn any_order_takes_as_long_as_among_all_orders() {
 fn the_direct_way_is_as_good() {
     let spec = experiment_a_spec();
     let order = order_in(&plan_of(&spec), &spec);
-    let careful = flown(&spec, &order, Effort::FromLegs);
-    let direct = flown(&spec, &order, Effort::Direct);
+    let careful = flown(&spec, &order, BoundFrom::Legs);
+    let direct = flown(&spec, &order, BoundFrom::Certificates);
     assert_eq!(order_in(&direct, &spec), order);
     assert_eq!(direct.statistics.nlp_solves, 1);
     assert!(agree(direct.total_time_s, careful.total_time_s, 5e-4));
@@ -79,8 +79,8 @@ fn the_direct_way_is_as_good() {
     for target in &mut spec.targets {
         target.zero_rate_axes = None;
     }
-    let careful = flown(&spec, &order, Effort::FromLegs);
-    assert_eq!(flown(&spec, &order, Effort::Direct).flight, careful.flight);
+    let careful = flown(&spec, &order, BoundFrom::Legs);
+    assert_eq!(flown(&spec, &order, BoundFrom::Certificates).flight, careful.flight);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn lists_that_are_no_order_of_the_targets_are_refused() {
         vec![0, 1, 2, 3, 4, 6],
         vec![0, 1, 2, 3, 4, 5, 5],
     ] {
-        let answer = on_threads(1, |run| fly_order(&scenario, &wrong, Effort::Direct, run));
+        let answer = on_threads(1, |run| fly_order(&scenario, &wrong, BoundFrom::Certificates, run));
         assert_eq!(answer.err(), Some(error.clone()), "{wrong:?}");
     }
 }
@@ -105,6 +105,6 @@ fn an_order_through_a_rest_that_the_wheels_cannot_hold_is_infeasible() {
     spec.start.wheel_speed_rad_s = Some([700.0; 3].into());
     spec.targets = vec![target("turned", [45.0, 0.0, 45.0])];
     let scenario = scenario_of(&spec);
-    let outcome = on_threads(1, |run| fly_order(&scenario, &[0], Effort::Direct, run));
+    let outcome = on_threads(1, |run| fly_order(&scenario, &[0], BoundFrom::Certificates, run));
     assert!(matches!(outcome, Ok(Outcome::Infeasible(_))), "{outcome:?}");
 }

@@ -5,7 +5,7 @@ use divan::counter::ItemsCount;
 use nalgebra::Vector3;
 use slewplan_solver::attitude::Attitude;
 use slewplan_solver::legs::{LegStore, StoredLeg};
-use slewplan_solver::planner::{Effort, Run, fly_order};
+use slewplan_solver::planner::{BoundFrom, Run, fly_order};
 use slewplan_solver::scenario::Scenario;
 use slewplan_solver::spec::{AttitudeSpec, TargetSpec};
 use slewplan_tests::experiment_a_spec;
@@ -45,8 +45,8 @@ enum Given {
 /// are the phases.
 fn fly(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
     let effort = match given {
-        Given::ColdStart => Effort::Direct,
-        Given::Nothing | Given::Legs => Effort::FromLegs,
+        Given::ColdStart => BoundFrom::Certificates,
+        Given::Nothing | Given::Legs => BoundFrom::Legs,
     };
     let memory = Memory::default();
     on_threads(1, |run| {

@@ -12,8 +12,7 @@ use super::{FROM_A_GUESS, Flight, Flown, Phase, fly};
 use crate::dynamics::Dynamics;
 use crate::nlp::{Interruption, NlpStatus, Settings};
 use crate::profile::Profile;
-use crate::scenario::RateCondition;
-use crate::transcription::{Waypoint, WheelCondition};
+use crate::transcription::Waypoint;
 
 /// Legs of a window; flights of no more are solved at once.
 const WINDOW: usize = 8;
@@ -21,7 +20,7 @@ const WINDOW: usize = 8;
 const OVERLAP: usize = 2;
 
 /// From the motions of the windows, which are solutions but for where they meet.
-const FROM_WINDOWS: [Phase; 1] = [Phase {
+pub(super) const FROM_WINDOWS: [Phase; 1] = [Phase {
     settings: Settings {
         initial_barrier: 3e-5,
         initial_slack: 3e-5,
@@ -69,8 +68,7 @@ fn roll(
         let last = (first + WINDOW).min(intervals.len());
         let mut through = waypoints[first..=last].to_vec();
         if let Some(wheels) = ahead.wheels.first() {
-            through[0].rate = [RateCondition::Free; 3];
-            through[0].wheels = WheelCondition::Fixed(wheels.clone());
+            through[0] = through[0].passed_with(wheels);
         }
         let begin = node_of(first);
         ahead.append(&guess.part(begin + ahead.intervals()..node_of(last)));

@@ -3,7 +3,6 @@
 use super::places::Places;
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
-use crate::profile::Profile;
 use crate::scenario::RateCondition;
 use crate::slew::arrival::Arrival;
 use crate::slew::extremal::KinematicExtremals;
@@ -103,22 +102,6 @@ impl CanonicalLeg {
             extremals,
             resolution: self.resolution,
         }
-    }
-
-    /// A solution of this form as the wanted leg that begins at an attitude.
-    pub(super) fn placed(&self, solution: &Profile, begin: &Attitude) -> Profile {
-        let mut profile = if self.mirrored {
-            solution.reversed()
-        } else {
-            solution.clone()
-        };
-        let Some(first) = profile.attitudes.first().copied() else {
-            return profile;
-        };
-        for attitude in &mut profile.attitudes {
-            *attitude = begin.then_in_body(&first.relative_to(attitude));
-        }
-        profile
     }
 }
 

@@ -47,7 +47,7 @@ pub(super) fn tour_bound(
         ..SearchSettings::default()
     };
     let tours = CertifiedTours { places, bounds };
-    let found = search(&tours, &settings, pool, stop, &Unobserved);
+    let found = search(&tours, &[], &settings, pool, stop, &Unobserved);
     Some(found.lower_bound_s * (1.0 - DEFLATION))
 }
 

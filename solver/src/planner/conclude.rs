@@ -2,14 +2,16 @@
 
 use super::Run;
 use super::assemble::assemble;
-use super::legs::LegSolver;
 use super::tours::Tours;
 use crate::checker;
-use crate::plan::{Alternative, LowerBoundKind, Optimality, Outcome, Plan, Statistics};
+use crate::plan::{
+    Alternative, Flight, Leg, LowerBoundKind, Optimality, Outcome, Plan, Statistics,
+};
 use crate::problem::{Code, Problem};
 use crate::progress::{Progress, Stage};
 use crate::sequence::{FlownOrder, Incumbent, SearchObserver, SearchResult, SearchStatistics};
 use std::sync::atomic::Ordering;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Certified bounds are rounded down to six digits at least.
@@ -22,15 +24,23 @@ pub(super) struct Conclusions<'a> {
     certified: Option<f64>,
     run: Run<'a>,
     begin: Instant,
-    /// The work that was done before the search.
-    tables: Statistics,
+    /// The order whose flight was verified last, with that flight: a search that is stopped has its
+    /// plan at once.
+    last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
+}
+
+/// A flight that has passed its verification.
+#[derive(Clone)]
+struct VerifiedFlight {
+    flight: Flight,
+    legs: Vec<Leg>,
+    report: checker::Report,
 }
 
 impl<'a> Conclusions<'a> {
-    /// Plans of tours over tables that have been solved.
+    /// Plans of tours.
     pub(super) fn new(
         tours: &'a Tours<'a>,
-        tables: &LegSolver<'_>,
         certified: Option<f64>,
         run: Run<'a>,
         begin: Instant,
@@ -40,14 +50,19 @@ impl<'a> Conclusions<'a> {
             certified,
             run,
             begin,
-            tables: Statistics {
-                wall_time_s: 0.0,
-                nodes_explored: 0,
-                nlp_solves: tables.nlp_solves,
-                legs_solved: tables.solved,
-                legs_from_cache: tables.from_store,
-                threads: run.pool.threads(),
-            },
+            last: Mutex::default(),
+        }
+    }
+
+    /// Tells of a first tour, before anything is known of others.
+    pub(super) fn announce(&self, first: Option<&FlownOrder>) {
+        if let Some(best) = first {
+            self.improved(&Incumbent {
+                best,
+                alternatives: &[],
+                lower_bound_s: 0.0,
+                statistics: SearchStatistics::default(),
+            });
         }
     }
 
@@ -88,7 +103,33 @@ impl<'a> Conclusions<'a> {
         outcome(self.plan(&only, Optimality::Feasible, LowerBoundKind::PairTable))
     }
 
-    /// Puts an order together and verifies it.
+    /// The flight of an order, verified.
+    fn verified(&self, order: &[usize]) -> Result<VerifiedFlight, Problem> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((known, flight)) = last.as_ref()
+            && known == order
+        {
+            return Ok(flight.clone());
+        }
+        let route = self.tours.places.route(order, true);
+        // Every segment is remembered from its evaluation: nothing is solved here.
+        let (flight, legs) = assemble(self.tours, &route, &self.tours.fly_route(&route));
+        let report = checker::verify(self.tours.places.scenario, &flight);
+        if !report.verification.passed {
+            let message = report.verification.failures.join("; ");
+            let hint = "report the scenario: a plan that does not fly is a defect of the solver";
+            return Err(Problem::new("", Code::VerificationFailed, message, hint));
+        }
+        let flight = VerifiedFlight {
+            flight,
+            legs,
+            report,
+        };
+        *last = Some((order.to_vec(), flight.clone()));
+        Ok(flight)
+    }
+
+    /// The plan of an order.
     fn plan(
         &self,
         order: &Incumbent<'_>,
@@ -96,15 +137,11 @@ impl<'a> Conclusions<'a> {
         kind: LowerBoundKind,
     ) -> Result<Plan, Problem> {
         let scenario = self.tours.places.scenario;
-        let route = self.tours.places.route(&order.best.order, true);
-        // Every segment is remembered from its evaluation: nothing is solved here.
-        let (flight, legs) = assemble(self.tours, &route, &self.tours.fly_route(&route));
-        let report = checker::verify(scenario, &flight);
-        if !report.verification.passed {
-            let message = report.verification.failures.join("; ");
-            let hint = "report the scenario: a plan that does not fly is a defect of the solver";
-            return Err(Problem::new("", Code::VerificationFailed, message, hint));
-        }
+        let VerifiedFlight {
+            flight,
+            legs,
+            report,
+        } = self.verified(&order.best.order)?;
         let total = flight.total_time_s;
         let (bound, lower_bound_kind) = self.bound(order.lower_bound_s, kind, total);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
@@ -132,18 +169,26 @@ impl<'a> Conclusions<'a> {
             states: report.states,
             margins: report.margins,
             verification: report.verification,
-            statistics: Statistics {
-                wall_time_s: self.begin.elapsed().as_secs_f64(),
-                nodes_explored: order.statistics.nodes_explored,
-                nlp_solves: self.tables.nlp_solves + self.tours.solves.load(Ordering::Relaxed),
-                ..self.tables.clone()
-            },
+            statistics: self.statistics(&order.statistics),
             warnings: doubts(order).into_iter().chain(report.keep_out).collect(),
         })
     }
 }
 
 impl Conclusions<'_> {
+    /// The work so far.
+    fn statistics(&self, search: &SearchStatistics) -> Statistics {
+        let [legs_solved, legs_from_cache, leg_solves] = self.tours.legs.work();
+        Statistics {
+            wall_time_s: self.begin.elapsed().as_secs_f64(),
+            nodes_explored: search.nodes_explored,
+            nlp_solves: leg_solves + self.tours.solves.load(Ordering::Relaxed),
+            legs_solved,
+            legs_from_cache,
+            threads: self.run.pool.threads(),
+        }
+    }
+
     /// A bound, s, or the certified one where that is larger.
     fn raised(&self, bound: f64) -> f64 {
         self.certified

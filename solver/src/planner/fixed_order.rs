@@ -12,15 +12,13 @@ use crate::scenario::Scenario;
 use crate::sequence::{FlownOrder, Place, TourEvaluation, TourModel};
 use std::time::Instant;
 
-/// Where the program of a given order starts.
+/// Where the bound on the tours along a given order comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// From slews about the eigenaxis, one after the other: no leg is solved but those that stand
-    /// alone between two waypoints which leave nothing free. The bound is the sum of certified ones.
-    Direct,
-    /// From the legs of the order, solved before, as the search flies it: twice to three times the
-    /// work. The bound is the sum of the legs with free ends.
-    FromLegs,
+pub enum BoundFrom {
+    /// The certified bounds of its legs: nothing is solved for it.
+    Certificates,
+    /// Its legs with free ends, solved one by one: tighter, for about the same work again.
+    Legs,
 }
 
 /// A list of indices is not an order of a scenario's targets.
@@ -34,9 +32,8 @@ pub struct OrderError {
 /// Visits the targets in a given order in minimum time: torques, bound and verification, without a
 /// search.
 ///
-/// `order` lists indices into [`Scenario::targets`]; the work is linear in their number. With
-/// [`Effort::FromLegs`] the plan is the one that [`super::solve`] makes of the order when it finds it
-/// best; durations with [`Effort::Direct`] differ by some 1e-4, either way. The bound holds for this
+/// `order` lists indices into [`Scenario::targets`]; the work is linear in their number. The flight is
+/// the one that [`super::solve`] makes of the order when it finds it best. The bound holds for this
 /// order only; nothing is said of other orders, so the plan is never called optimal.
 ///
 /// # Errors
@@ -45,7 +42,7 @@ pub struct OrderError {
 pub fn fly_order(
     scenario: &Scenario,
     order: &[usize],
-    effort: Effort,
+    bound: BoundFrom,
     run: Run<'_>,
 ) -> Result<Outcome, OrderError> {
     let targets = scenario.targets().len();
@@ -54,10 +51,10 @@ pub fn fly_order(
     if !named.into_iter().eq(0..targets) {
         return Err(OrderError { targets });
     }
-    Ok(fly(scenario, order, effort, run))
+    Ok(fly(scenario, order, bound, run))
 }
 
-fn fly(scenario: &Scenario, order: &[usize], effort: Effort, run: Run<'_>) -> Outcome {
+fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> Outcome {
     let begin = Instant::now();
     let problems = feasibility_problems(scenario);
     if !problems.is_empty() {
@@ -71,11 +68,10 @@ fn fly(scenario: &Scenario, order: &[usize], effort: Effort, run: Run<'_>) -> Ou
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = route_bound(&places, &bounds, &route);
     solver.tell_bound(certified);
-    let (rest, free) = match effort {
-        Effort::FromLegs => solver.tour_tables(&pairs),
-        Effort::Direct => solver.lone_legs(&pairs),
-    };
-    let tours = Tours::new(&places, &rest, &free, &bounds, &stop);
+    let tours = Tours::new(&places, &solver, &bounds, &stop);
+    if bound == BoundFrom::Legs {
+        tours.know(solver.table(LegKind::LowerBound, &pairs));
+    }
     match tours.tour(order) {
         TourEvaluation::Flown(duration_s) => {
             let order = order.to_vec();
@@ -83,7 +79,7 @@ fn fly(scenario: &Scenario, order: &[usize], effort: Effort, run: Run<'_>) -> Ou
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
             // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            Conclusions::new(&tours, &solver, certified, run, begin).given(&flown, lower_bound_s)
+            Conclusions::new(&tours, certified, run, begin).given(&flown, lower_bound_s)
         }
         TourEvaluation::Stopped => Outcome::StoppedEmpty,
         TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),

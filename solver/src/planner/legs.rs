@@ -5,7 +5,7 @@
 
 use super::canonical::CanonicalLeg;
 use super::places::{Places, SAME_ATTITUDE};
-use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table};
+use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
 use super::verified::flies;
 use super::{Run, interruption};
 use crate::attitude::Attitude;
@@ -21,26 +21,29 @@ use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
 use nalgebra::{DVector, Vector3};
 use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Solves canonical legs and remembers them for the tables of one solve.
+/// Solves canonical legs and remembers them for the tables and tours of one solve.
 pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
-    known: HashMap<String, Arc<SolvedLeg>>,
-    certified: HashMap<String, CertifiedLeg>,
+    known: Remembered<Arc<SolvedLeg>>,
+    certified: Remembered<CertifiedLeg>,
     /// No tour takes less, s, when that is known: told with the progress.
     lower_bound_s: Option<f64>,
     /// Legs solved.
-    pub(super) solved: u64,
+    solved: AtomicU64,
     /// Legs taken from the store.
-    pub(super) from_store: u64,
+    from_store: AtomicU64,
     /// NLPs solved for them.
-    pub(super) nlp_solves: u64,
+    nlp_solves: AtomicU64,
 }
+
+/// What has been found out, by the identity of the leg.
+type Remembered<T> = Mutex<HashMap<String, T>>;
 
 impl<'a> LegSolver<'a> {
     pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
@@ -48,12 +51,12 @@ impl<'a> LegSolver<'a> {
             places,
             run,
             stop,
-            known: HashMap::new(),
-            certified: HashMap::new(),
+            known: Remembered::default(),
+            certified: Remembered::default(),
             lower_bound_s: None,
-            solved: 0,
-            from_store: 0,
-            nlp_solves: 0,
+            solved: AtomicU64::new(0),
+            from_store: AtomicU64::new(0),
+            nlp_solves: AtomicU64::new(0),
         }
     }
 
@@ -80,31 +83,49 @@ impl<'a> LegSolver<'a> {
         });
     }
 
+    /// The work so far: legs solved, legs from the store, NLPs.
+    pub(super) fn work(&self) -> [u64; 3] {
+        [&self.solved, &self.from_store, &self.nlp_solves].map(|count| count.load(Relaxed))
+    }
+
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
     /// out of the table.
-    pub(super) fn table(&mut self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
         let canonical = self.canonical(kind, pairs);
         self.solve_missing(kind, &canonical);
-        let placed = |pair: &(Place, Place), canonical: &CanonicalLeg| {
-            let leg = self.known.get(&canonical.identity)?;
-            let begin = self.places.waypoint(pair.0).attitude;
-            let flown = Flown {
-                profile: canonical.placed(&leg.flown.profile, &begin),
-                ..leg.flown.clone()
-            };
-            Some(SolvedLeg {
-                flown,
-                ..SolvedLeg::clone(leg)
+        let known = lock(&self.known);
+        let entry = |canonical: &CanonicalLeg| {
+            Some(TabledLeg {
+                leg: Arc::clone(known.get(&canonical.identity)?),
+                mirrored: canonical.mirrored,
             })
         };
         let legs = pairs.iter().zip(&canonical);
-        let entries = legs.map(|(pair, leg)| (*pair, placed(pair, leg)));
+        let entries = legs.map(|(pair, leg)| (*pair, entry(leg)));
         Table::new(self.places, entries)
+    }
+
+    /// The leg with free ends between two places, solved if it was not before.
+    pub(super) fn lone(&self, from: Place, to: Place) -> Flown {
+        let kind = LegKind::LowerBound;
+        let canonical = self.canonical(kind, &[(from, to)]).remove(0);
+        let known = lock(&self.known).get(&canonical.identity).cloned();
+        let leg = known.unwrap_or_else(|| {
+            let (leg, from_store) = self.find(kind, &canonical);
+            let leg = Arc::new(leg);
+            self.remember(&canonical, &leg, from_store);
+            leg
+        });
+        let placed = TabledLeg {
+            leg,
+            mirrored: canonical.mirrored,
+        };
+        placed.from(&self.places.waypoint(from).attitude)
     }
 
     /// A table of [`Self::certified_legs`].
     pub(super) fn certified_table(
-        &mut self,
+        &self,
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> CertifiedTable {
@@ -115,89 +136,80 @@ impl<'a> LegSolver<'a> {
     /// What is proved of the legs of a kind between pairs of places, without any program; nothing
     /// where the stop signal prevents it.
     pub(super) fn certified_legs(
-        &mut self,
+        &self,
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> Vec<Option<CertifiedLeg>> {
         let canonical = self.canonical(kind, pairs);
-        let missing = missing_from(&self.certified, &canonical);
+        let missing = missing_from(&lock(&self.certified), &canonical);
         let bounds = self.run.pool.map(&missing, |leg| {
             (!self.stop.is_set()).then(|| certify(self.places, leg))
         });
+        let mut certified = lock(&self.certified);
         for (leg, bound) in missing.into_iter().zip(bounds) {
             if let Some(bound) = bound {
-                self.certified.insert(leg.identity.clone(), bound);
+                certified.insert(leg.identity.clone(), bound);
             }
         }
-        let known = |leg: &CanonicalLeg| self.certified.get(&leg.identity).copied();
+        let known = |leg: &CanonicalLeg| certified.get(&leg.identity).copied();
         canonical.iter().map(known).collect()
     }
 
     fn canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<CanonicalLeg> {
         let end = |place: &Place| end_of(self.places, kind, *place);
-        pairs
-            .iter()
-            .map(|(from, to)| CanonicalLeg::of(self.places, &end(from), &end(to)))
-            .collect()
+        self.run.pool.map(pairs, |(from, to)| {
+            CanonicalLeg::of(self.places, &end(from), &end(to))
+        })
     }
 
-    /// The tables of a tour: rest-to-rest legs to start from, legs with free ends for bounds.
-    pub(super) fn tour_tables(&mut self, pairs: &[(Place, Place)]) -> (LegTable, LegTable) {
-        // A single leg has nothing to start a longer segment from.
-        let rest_pairs = if pairs.len() > 1 { pairs } else { &[] };
-        let rest = self.table(LegKind::RestToRest, rest_pairs);
-        (rest, self.table(LegKind::LowerBound, pairs))
-    }
-
-    /// The same tables with nothing but the legs that are no part of a longer program.
-    pub(super) fn lone_legs(&mut self, pairs: &[(Place, Place)]) -> (LegTable, LegTable) {
-        let places = self.places;
-        let fixed = |place: Place| places.waypoint(place).is_fixed(&places.dynamics);
-        let mut lone = pairs.to_vec();
-        lone.retain(|(from, to)| fixed(*from) && fixed(*to));
-        let rest = self.table(LegKind::RestToRest, &[]);
-        (rest, self.table(LegKind::LowerBound, &lone))
-    }
-
-    fn solve_missing(&mut self, kind: LegKind, canonical: &[CanonicalLeg]) {
-        let missing = missing_from(&self.known, canonical);
+    fn solve_missing(&self, kind: LegKind, canonical: &[CanonicalLeg]) {
+        let missing = missing_from(&lock(&self.known), canonical);
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
-        let solved = self.run.pool.map(&missing, |leg| {
-            let found = self
-                .run
-                .legs
-                .get(&leg.identity)
-                .and_then(|stored| recall(&stored, leg.resolution.intervals));
-            let from_store = found.is_some();
-            let solved = found.or_else(|| {
-                let bound = self.certified.get(&leg.identity).copied();
-                (!self.stop.is_set()).then(|| solve(self.places, leg, bound, self.stop))
-            });
-            if let (Some(fresh), false) = (&solved, from_store)
-                && fresh.flown.status == NlpStatus::Converged
-                && !self.stop.is_set()
-            {
-                // At once, so that a solve that is killed has not worked in vain; but not when
-                // stopped, since then perhaps not all starts have been tried.
-                self.run.legs.put(&leg.identity, &stored(leg, kind, fresh));
+        self.run.pool.map(&missing, |leg| {
+            if !self.stop.is_set() {
+                let (solved, from_store) = self.find(kind, leg);
+                self.remember(leg, &Arc::new(solved), from_store);
             }
-            self.tell(done.fetch_add(1, Ordering::Relaxed) + 1, Some(total));
-            (solved, from_store)
+            self.tell(done.fetch_add(1, Relaxed) + 1, Some(total));
         });
-        for (leg, (solved, from_store)) in missing.into_iter().zip(solved) {
-            let Some(solved) = solved.filter(|s| !s.flown.status.is_interrupted()) else {
-                continue;
-            };
-            if from_store {
-                self.from_store += 1;
-            } else {
-                self.solved += 1;
-                self.nlp_solves += solved.solves;
-            }
-            self.known.insert(leg.identity.clone(), Arc::new(solved));
-        }
     }
+
+    /// A leg from the store, or solved; whether it is from the store.
+    fn find(&self, kind: LegKind, leg: &CanonicalLeg) -> (SolvedLeg, bool) {
+        let stored_leg = self.run.legs.get(&leg.identity);
+        let found = stored_leg.and_then(|stored| recall(&stored, leg.resolution.intervals));
+        if let Some(found) = found {
+            return (found, true);
+        }
+        let bound = lock(&self.certified).get(&leg.identity).copied();
+        let fresh = solve(self.places, leg, bound, self.stop);
+        if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
+            // At once, so that a solve that is killed has not worked in vain; but not when
+            // stopped, since then perhaps not all starts have been tried.
+            self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
+        }
+        (fresh, false)
+    }
+
+    /// Keeps a leg unless it was interrupted.
+    fn remember(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
+        if solved.flown.status.is_interrupted() {
+            return;
+        }
+        if from_store {
+            self.from_store.fetch_add(1, Relaxed);
+        } else {
+            self.solved.fetch_add(1, Relaxed);
+            self.nlp_solves.fetch_add(solved.solves, Relaxed);
+        }
+        lock(&self.known).insert(leg.identity.clone(), Arc::clone(solved));
+    }
+}
+
+fn lock<T>(remembered: &Remembered<T>) -> MutexGuard<'_, HashMap<String, T>> {
+    // Whoever panicked has left the map whole.
+    remembered.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The legs of which nothing is known, each of them once.

@@ -1,13 +1,15 @@
 //! Tables of legs between places.
 
 use super::places::Places;
+use crate::attitude::Attitude;
 use crate::multiphase::Flown;
 use crate::sequence::Place;
+use std::sync::Arc;
 
-/// A solved leg.
+/// A solved leg in its canonical form.
 #[derive(Debug, Clone)]
 pub(super) struct SolvedLeg {
-    /// The motion and how it ended.
+    /// The motion, from the identity attitude, and how it ended.
     pub(super) flown: Flown,
     /// No slew with its conditions takes less, s.
     pub(super) certified: Option<f64>,
@@ -26,6 +28,36 @@ pub(super) struct CertifiedLeg {
     pub(super) solve_time: f64,
 }
 
+/// A solved leg between two places.
+#[derive(Debug, Clone)]
+pub(super) struct TabledLeg {
+    /// The solution that it shares with all legs of the same canonical form.
+    pub(super) leg: Arc<SolvedLeg>,
+    /// Whether that is flown backwards.
+    pub(super) mirrored: bool,
+}
+
+impl TabledLeg {
+    /// The motion from an attitude, and how it ended.
+    pub(super) fn from(&self, begin: &Attitude) -> Flown {
+        let solution = &self.leg.flown;
+        let mut profile = if self.mirrored {
+            solution.profile.reversed()
+        } else {
+            solution.profile.clone()
+        };
+        if let Some(first) = profile.attitudes.first().copied() {
+            for attitude in &mut profile.attitudes {
+                *attitude = begin.then_in_body(&first.relative_to(attitude));
+            }
+        }
+        Flown {
+            profile,
+            ..*solution
+        }
+    }
+}
+
 /// What is known of legs of one kind between pairs of places.
 pub(super) struct Table<T> {
     places: usize,
@@ -33,9 +65,16 @@ pub(super) struct Table<T> {
 }
 
 /// Solved legs.
-pub(super) type LegTable = Table<SolvedLeg>;
+pub(super) type LegTable = Table<TabledLeg>;
 /// Certified legs.
 pub(super) type CertifiedTable = Table<CertifiedLeg>;
+
+impl LegTable {
+    /// Minimum time of the leg between two places, s, where it is solved.
+    pub(super) fn duration(&self, from: Place, to: Place) -> Option<f64> {
+        self.get(from, to).and_then(|leg| leg.leg.flown.duration())
+    }
+}
 
 impl CertifiedTable {
     /// No slew between two places takes less, s; `None` where nothing is proved.

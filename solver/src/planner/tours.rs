@@ -2,68 +2,99 @@
 //!
 //! A waypoint that leaves nothing free separates the slews before and after it, so a tour falls
 //! into segments between such waypoints, each a multi-phase problem of its own. Segments recur in
-//! many orders and are remembered.
+//! many orders and are remembered. A segment that may go on is flown on from the flight of the same
+//! segment without its last place: what it comes to follows from its places alone, whether that
+//! flight is still remembered or has to be solved again.
 
 use super::interruption;
+use super::legs::LegSolver;
 use super::places::Places;
+use super::segments::Segments;
 use super::tables::{CertifiedTable, LegTable};
-use crate::multiphase::{Flown, fly, fly_rolling, polish};
+use crate::multiphase::{Flown, fly, fly_on, fly_rolling, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 use crate::slew::eigenaxis::Side;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 /// What a segment starts from.
 #[derive(Debug, Clone, Copy)]
 enum Start {
-    /// Legs from rest to rest.
-    AtRest,
-    /// Legs with free ends.
-    FreeEnds,
+    /// The flight without the last leg.
+    Shorter,
     /// Slews about the eigenaxis.
-    Eigenaxis,
+    Eigenaxes,
+    /// Extremals of the kinematic problem.
+    Extremals,
+    /// Solved legs with free ends.
+    LoneLegs,
 }
 
-/// The starts of a segment whose legs are known, and how many are tried when all goes well.
-const STARTS: [Start; 3] = [Start::AtRest, Start::FreeEnds, Start::Eigenaxis];
-const USUAL_STARTS: usize = 2;
+/// The starts of a segment, and how many are tried when all goes well: a short segment has local
+/// minima that longer ones inherit.
+const STARTS: [Start; 3] = [Start::Eigenaxes, Start::Extremals, Start::LoneLegs];
+const STARTS_OF_LONGER: [Start; 4] = [
+    Start::Shorter,
+    Start::Eigenaxes,
+    Start::Extremals,
+    Start::LoneLegs,
+];
+const SHORT: usize = 3;
+const USUAL_STARTS_OF_SHORT: usize = 2;
 
-/// Tours over solved tables of legs.
+/// Whether a segment may go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extent {
+    /// The beginning of longer ones, free where it ends.
+    Beginning,
+    /// All of it.
+    Whole,
+}
+
+/// Tours over legs.
 pub(super) struct Tours<'a> {
     pub(super) places: &'a Places<'a>,
-    /// Rest-to-rest legs: starting guesses.
-    pub(super) rest: &'a LegTable,
-    /// Legs with free ends: bounds.
-    pub(super) free: &'a LegTable,
+    pub(super) legs: &'a LegSolver<'a>,
     /// Certified bounds of legs with free ends, s.
     pub(super) certified: &'a CertifiedTable,
-    pub(super) stop: &'a StopSignal,
+    /// Legs with free ends, once they are solved: bounds.
+    free: OnceLock<LegTable>,
+    stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
-    segments: Mutex<HashMap<Vec<Place>, Arc<Flown>>>,
+    segments: Segments,
 }
 
 impl<'a> Tours<'a> {
     pub(super) fn new(
         places: &'a Places<'a>,
-        rest: &'a LegTable,
-        free: &'a LegTable,
+        legs: &'a LegSolver<'a>,
         certified: &'a CertifiedTable,
         stop: &'a StopSignal,
     ) -> Self {
         Self {
             places,
-            rest,
-            free,
+            legs,
             certified,
+            free: OnceLock::new(),
             stop,
             solves: AtomicU64::new(0),
-            segments: Mutex::default(),
+            segments: Segments::default(),
         }
+    }
+
+    /// Takes in the legs with free ends, which bound all tours better than the certified bounds;
+    /// those of the first call count.
+    pub(super) fn know(&self, free: LegTable) {
+        self.free.get_or_init(|| free);
+    }
+
+    /// The legs with free ends, when they are known.
+    pub(super) fn free(&self) -> Option<&LegTable> {
+        self.free.get()
     }
 
     /// Intervals of every leg.
@@ -71,12 +102,19 @@ impl<'a> Tours<'a> {
         self.places.resolution.intervals
     }
 
-    /// The segments of a route, each solved; shorter than the route when one did not converge or
-    /// the solve was stopped.
+    /// The segments of a whole route, each solved; shorter than the route when one did not converge
+    /// or the solve was stopped.
     pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<Flown>> {
+        self.fly_segments(route, Extent::Whole)
+    }
+
+    fn fly_segments(&self, route: &[Place], extent: Extent) -> Vec<Arc<Flown>> {
         let mut flown = Vec::new();
-        for segment in self.split(route) {
-            let solved = self.segment(segment);
+        let segments = self.split(route);
+        let last = segments.len().saturating_sub(1);
+        for (i, segment) in segments.into_iter().enumerate() {
+            let extent = if i == last { extent } else { Extent::Whole };
+            let solved = self.segment(segment, extent);
             let status = solved.status;
             flown.push(solved);
             if status != NlpStatus::Converged {
@@ -100,23 +138,14 @@ impl<'a> Tours<'a> {
         segments
     }
 
-    fn segment(&self, route: &[Place]) -> Arc<Flown> {
-        if let [from, to] = route
-            && let Some(leg) = self.free.get(*from, *to)
-        {
-            return Arc::new(leg.flown.clone());
+    fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
+        if let [from, to] = route {
+            return Arc::new(self.legs.lone(*from, *to));
         }
-        let known = self
-            .segments
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .get(route)
-            .cloned();
-        known.unwrap_or_else(|| {
-            let flown = Arc::new(self.solve_segment(route));
+        self.segments.get(route).unwrap_or_else(|| {
+            let flown = Arc::new(self.solve_segment(route, extent));
             if !flown.status.is_interrupted() {
-                let mut segments = self.segments.lock().unwrap_or_else(PoisonError::into_inner);
-                segments.insert(route.to_vec(), Arc::clone(&flown));
+                self.segments.put(route, &flown);
             }
             flown
         })
@@ -124,7 +153,7 @@ impl<'a> Tours<'a> {
 
     /// Solves a segment; places that coincide are one waypoint of it, since a flight that meets the
     /// same conditions twice is never shorter than one that meets them once.
-    fn solve_segment(&self, route: &[Place]) -> Flown {
+    fn solve_segment(&self, route: &[Place], extent: Extent) -> Flown {
         let intervals = self.intervals();
         let repeats = |pair: &[Place]| self.places.coincide(pair[0], pair[1]);
         let fresh = route
@@ -132,8 +161,13 @@ impl<'a> Tours<'a> {
             .filter(|pair| !repeats(pair))
             .map(|pair| pair[1]);
         let distinct: Vec<Place> = std::iter::once(route[0]).chain(fresh).collect();
-        let mut flown = self.solve_distinct(&distinct);
-        for (leg, pair) in route.windows(2).enumerate() {
+        let mut flown = if let [from, to] = distinct[..] {
+            self.legs.lone(from, to)
+        } else {
+            self.solve_distinct(&distinct, extent)
+        };
+        let solved = flown.duration().is_some();
+        for (leg, pair) in route.windows(2).enumerate().filter(|_| solved) {
             if repeats(pair) {
                 flown.profile.pause_at(leg * intervals, intervals);
             }
@@ -142,16 +176,15 @@ impl<'a> Tours<'a> {
     }
 
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
-    fn solve_distinct(&self, route: &[Place]) -> Flown {
-        let knows_legs = self.free.get(route[0], route[1]).is_some();
-        let starts = if knows_legs {
-            &STARTS[..]
-        } else {
-            &[Start::Eigenaxis]
+    fn solve_distinct(&self, route: &[Place], extent: Extent) -> Flown {
+        let (starts, usual) = match (route.len() - 1 > SHORT, extent) {
+            (true, Extent::Beginning) => (&STARTS_OF_LONGER[..], 1),
+            (true, Extent::Whole) => (&STARTS[..], 1),
+            (false, _) => (&STARTS[..], USUAL_STARTS_OF_SHORT),
         };
         let mut best = self.solve_from(route, starts[0]);
         for (tried, &start) in starts.iter().enumerate().skip(1) {
-            let settled = best.status == NlpStatus::Converged && tried >= USUAL_STARTS;
+            let settled = best.status == NlpStatus::Converged && tried >= usual;
             if settled || best.status.is_interrupted() {
                 break;
             }
@@ -170,40 +203,47 @@ impl<'a> Tours<'a> {
         best
     }
 
-    /// Solves a segment from legs joined end to end; legs that are not there are guessed by
-    /// eigenaxis slews.
     fn solve_from(&self, route: &[Place], start: Start) -> Flown {
-        let mut guess = Profile::empty();
-        for pair in route.windows(2) {
-            let next = self.solved(pair, start).unwrap_or_else(|| {
-                let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-                let slew = self.places.slew(&from, &to);
-                let intervals = self.intervals();
-                slew.eigenaxis().guess(slew.dynamics, intervals, Side::Near)
-            });
-            guess.append(&next);
-        }
+        let Some(guess) = self.guess(route, start) else {
+            return Flown::nowhere();
+        };
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
         let (waypoints, intervals) = self.program(route, &guess);
         let fly = match start {
-            Start::AtRest | Start::FreeEnds => fly,
-            Start::Eigenaxis => fly_rolling,
+            Start::Shorter => fly_on,
+            Start::Eigenaxes => fly_rolling,
+            Start::Extremals | Start::LoneLegs => fly,
         };
         fly(dynamics, &waypoints, &intervals, &guess, &|| {
             interruption(self.stop)
         })
     }
 
-    /// A leg to start from, when it has been solved.
-    fn solved(&self, leg: &[Place], start: Start) -> Option<Profile> {
-        let table = match start {
-            Start::AtRest => self.rest,
-            Start::FreeEnds => self.free,
-            Start::Eigenaxis => return None,
-        };
-        let flown = &table.get(leg[0], leg[1])?.flown;
-        (flown.status == NlpStatus::Converged).then(|| flown.profile.clone())
+    /// A motion to start a segment from: legs joined end to end. `None` where there is none.
+    fn guess(&self, route: &[Place], start: Start) -> Option<Profile> {
+        if let (Start::Shorter, [before @ .., _]) = (start, route) {
+            let shorter = self.segment(before, Extent::Beginning);
+            shorter.duration()?;
+            let mut guess = shorter.profile.clone();
+            guess.append(&self.guess(&route[before.len() - 1..], Start::Eigenaxes)?);
+            return Some(guess);
+        }
+        let mut guess = Profile::empty();
+        for pair in route.windows(2) {
+            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
+            let slew = self.places.slew(&from, &to);
+            let bowed = || slew.bowed(Side::Near);
+            guess.append(&match start {
+                Start::Shorter | Start::Eigenaxes => bowed(),
+                Start::Extremals => slew.extremal().unwrap_or_else(|| slew.bowed(Side::Far)),
+                Start::LoneLegs => {
+                    let leg = self.legs.lone(pair[0], pair[1]);
+                    leg.duration().map_or_else(bowed, |_| leg.profile)
+                }
+            });
+        }
+        Some(guess)
     }
 
     /// The waypoints of a route, with the signs at which a motion passes them, and the intervals
@@ -223,12 +263,12 @@ impl<'a> Tours<'a> {
     }
 
     /// Duration of a route with settle and dwell, or how its solve failed.
-    fn duration(&self, route: &[Place]) -> Result<f64, NlpStatus> {
+    fn duration(&self, route: &[Place], extent: Extent) -> Result<f64, NlpStatus> {
         let mut total: f64 = route
             .iter()
             .map(|place| self.places.service_time(*place))
             .sum();
-        for flown in self.fly_route(route) {
+        for flown in self.fly_segments(route, extent) {
             total += flown.duration().ok_or(flown.status)?;
         }
         Ok(total)
@@ -245,14 +285,14 @@ impl TourModel for Tours<'_> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let solved = self.free.get(from, to).and_then(|leg| leg.flown.duration());
+        let solved = self.free().and_then(|free| free.duration(from, to));
         let certified = self.certified.bound(from, to);
         let known = solved.into_iter().chain(certified).reduce(f64::max);
         known.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
-        match self.duration(&self.places.route(prefix, false)) {
+        match self.duration(&self.places.route(prefix, false), Extent::Beginning) {
             Ok(duration) => Evaluation::Value(duration),
             Err(status) if status.is_interrupted() => Evaluation::Stopped,
             Err(_) => Evaluation::Unresolved,
@@ -260,7 +300,7 @@ impl TourModel for Tours<'_> {
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
-        match self.duration(&self.places.route(order, true)) {
+        match self.duration(&self.places.route(order, true), Extent::Whole) {
             Ok(duration) => TourEvaluation::Flown(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,

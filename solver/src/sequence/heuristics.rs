@@ -2,7 +2,7 @@
 
 mod local_search;
 
-use super::PairTable;
+use super::{PairTable, TourModel};
 use super::remainder::Remainder;
 use crate::stop::StopSignal;
 use local_search::improve;
@@ -10,6 +10,15 @@ use local_search::improve;
 /// When the shortest order of the table is out of reach: so many different first targets, the ones
 /// nearest to the start, give so many candidates.
 const CONSTRUCTIONS: usize = 4;
+
+/// An order that is short in the table of a model's pair bounds, without flying any; `None` where
+/// there are no targets.
+#[must_use]
+pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
+    let table = PairTable::new(model);
+    let remainder = Remainder::new(&table);
+    candidates(&table, &remainder, stop).into_iter().next()
+}
 
 /// A few different orders that are short in the pair table, best guess first.
 pub(super) fn candidates(

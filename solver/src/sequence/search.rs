@@ -5,7 +5,7 @@ mod tree;
 
 use super::node::Node;
 use super::{
-    Evaluation, SearchEnd, SearchObserver, SearchResult, SearchSettings, TourEvaluation, TourModel,
+    Evaluation, FlownOrder, SearchEnd, SearchObserver, SearchResult, SearchSettings, TourEvaluation, TourModel,
 };
 use crate::pool::SolverPool;
 use crate::stop::{StopReason, StopSignal};
@@ -60,10 +60,11 @@ struct Search<'a> {
     account: Account<'a>,
 }
 
-/// Searches the best orders.
+/// Searches the best orders; some may have been flown before.
 #[must_use]
 pub fn search(
     model: &dyn TourModel,
+    known: &[FlownOrder],
     settings: &SearchSettings,
     pool: &SolverPool,
     stop: &StopSignal,
@@ -78,6 +79,10 @@ pub fn search(
         tree: Tree::new(model, settings),
         account: Account::new(observer),
     };
+    for flown in known {
+        let answer = TourEvaluation::Flown(flown.duration_s);
+        search.tree.record_candidate(flown.order.clone(), answer);
+    }
     let mut end = search.fly_candidates();
     while end.is_none() {
         search.account.hand_over(&search.tree);

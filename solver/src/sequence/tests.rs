@@ -31,5 +31,5 @@ fn alternatives(count: usize) -> SearchSettings {
 
 /// Searches on two threads without limits or observers.
 fn run(model: &dyn TourModel, settings: &SearchSettings) -> SearchResult {
-    search(model, settings, &pool(2), &StopSignal::new(), &Silent)
+    search(model, &[], settings, &pool(2), &StopSignal::new(), &Silent)
 }

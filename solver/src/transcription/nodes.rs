@@ -43,6 +43,15 @@ impl Waypoint {
             WheelCondition::Free => rates_fixed && dynamics.wheel_count() == 3,
         }
     }
+
+    /// The same place, passed with these wheel momenta, N m s, and so with the rates that they mean.
+    pub(crate) fn passed_with(&self, wheels: &DVector<f64>) -> Self {
+        Self {
+            attitude: self.attitude,
+            rate: [RateCondition::Free; 3],
+            wheels: WheelCondition::Fixed(wheels.clone()),
+        }
+    }
 }
 
 /// Least unit of a rate limit's row, in units of a typical rate: in that of a limit near zero the

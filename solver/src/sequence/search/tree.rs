@@ -49,9 +49,11 @@ impl Tree {
         }
     }
 
-    /// Orders worth flying first.
+    /// Orders worth flying first, but those that were flown.
     pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
-        heuristics::candidates(&self.table, &self.remainder, stop)
+        let mut orders = heuristics::candidates(&self.table, &self.remainder, stop);
+        orders.retain(|order| !self.candidates.contains_key(order));
+        orders
     }
 
     /// Takes in an order flown before the search reached it.

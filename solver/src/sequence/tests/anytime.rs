@@ -123,7 +123,7 @@ fn stopped_between_rounds_the_best_so_far_is_returned() {
     let model = RandomModel::new(7, false, 12);
     let recorder = Recorder::new(4);
     let stop = recorder.stop.clone();
-    let result = search(&model, &alternatives(1), &pool(2), &stop, &recorder);
+    let result = search(&model, &[], &alternatives(1), &pool(2), &stop, &recorder);
     assert_eq!(result.end, SearchEnd::Stopped(StopReason::Requested));
     assert!(!result.complete);
     let optimum = optimum(&model);
@@ -141,7 +141,7 @@ fn stopped_inside_an_evaluation_the_bound_of_the_node_in_flight_is_kept() {
             evaluations: AtomicUsize::new(0),
             stop_at,
         };
-        let result = search(&model, &alternatives(0), &pool(2), &stop, &Silent);
+        let result = search(&model, &[], &alternatives(0), &pool(2), &stop, &Silent);
         let optimum = optimum(&model.inner);
         assert_eq!(result.end, SearchEnd::Stopped(StopReason::Cancelled));
         assert!(!result.complete && result.lower_bound_s <= optimum + 1e-9);
@@ -154,7 +154,7 @@ fn stopped_before_it_began_the_search_has_no_order_and_a_bound() {
     let stop = StopSignal::new();
     stop.cancel();
     let model = RandomModel::new(5, true, 14);
-    let result = search(&model, &alternatives(0), &pool(1), &stop, &Silent);
+    let result = search(&model, &[], &alternatives(0), &pool(1), &stop, &Silent);
     assert_eq!(result.end, SearchEnd::Stopped(StopReason::Cancelled));
     assert_eq!(result.best, None);
     assert!(result.lower_bound_s > 0.0 && result.lower_bound_s <= optimum(&model));
@@ -237,7 +237,7 @@ fn progress_never_goes_back() {
         let model = RandomModel::new(7, seed % 2 == 0, seed);
         let result = search(
             &model,
-            &alternatives(2),
+            &[], &alternatives(2),
             &pool(2),
             &StopSignal::new(),
             &recorder,
@@ -284,7 +284,7 @@ fn every_better_order_is_handed_over_once_before_it_is_told() {
         let recorder = Recorder::new(usize::MAX);
         let model = RandomModel::new(7, seed % 2 == 0, seed);
         let stop = StopSignal::new();
-        let result = search(&model, &alternatives(1), &pool(2), &stop, &recorder);
+        let result = search(&model, &[], &alternatives(1), &pool(2), &stop, &recorder);
         assert!(result.complete);
         let improved = recorder
             .improved

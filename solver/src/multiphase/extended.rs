@@ -1,0 +1,47 @@
+//! A flight that goes on to one more waypoint.
+//!
+//! What is best on the legs of a flight changes little when it goes on: the last legs before the
+//! former end adapt, and less the farther they are from it. So a tail of a few legs is solved first,
+//! with the motion before it held, and then the whole from there. On the beginnings of random orders
+//! of twelve targets this takes a third to a half of the work from scratch, and ends in
+//! minima that are as good: those of the former flight's, which were the best of several starts.
+
+use super::rolling::FROM_WINDOWS;
+use super::{FROM_A_GUESS, Flight, Flown, fly};
+use crate::dynamics::Dynamics;
+use crate::nlp::{Interruption, NlpStatus};
+use crate::profile::Profile;
+use crate::transcription::Waypoint;
+
+/// Legs of the tail, the new one among them: with two the minima are a little worse, with four they
+/// are not better.
+const TAIL: usize = 3;
+
+/// Flies through waypoints, of which all but the last have been flown through: from that motion and a
+/// guess of the last leg, joined.
+pub(crate) fn fly_on(
+    dynamics: &Dynamics,
+    waypoints: &[Waypoint],
+    intervals: &[usize],
+    motion: &Profile,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Flown {
+    let held = intervals.len().saturating_sub(TAIL);
+    let begin: usize = intervals[..held].iter().sum();
+    let tail = motion.part(begin..motion.intervals());
+    let mut through = waypoints[held..].to_vec();
+    if held > 0 {
+        through[0] = through[0].passed_with(&tail.wheels[0]);
+    }
+    let mut flight = Flight::new(dynamics, &through, &intervals[held..], &tail);
+    if flight.passes(&FROM_A_GUESS, stop) {
+        let mut joined = motion.part(0..begin);
+        joined.append(&flight.flown.profile);
+        let whole = Flight::new(dynamics, waypoints, intervals, &joined);
+        let flown = whole.solve(&FROM_WINDOWS, stop);
+        if flown.status == NlpStatus::Converged || flown.status.is_interrupted() {
+            return flown;
+        }
+    }
+    fly(dynamics, waypoints, intervals, motion, stop)
+}

@@ -14,6 +14,7 @@ mod integrator;
 mod keep_out;
 mod leg;
 mod limits;
+mod order;
 mod samples;
 mod series;
 mod timeline;

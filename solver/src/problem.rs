@@ -128,6 +128,12 @@ codes! {
     UnknownReference = "unknown_reference",
     /// Fields that exclude each other.
     ConflictingFields = "conflicting_fields",
+    /// A place in the order that another target has already.
+    PositionTaken = "position_taken",
+    /// Targets that come after each other in a circle.
+    OrderCycle = "order_cycle",
+    /// Positions and precedences of targets that no order keeps together.
+    OrderInfeasible = "order_infeasible",
     /// Wheel speeds at the end that contradict the conserved angular momentum.
     EndMomentumInconsistent = "end_momentum_inconsistent",
     /// The wheels cannot hold the stored momentum at a required rest.

@@ -7,12 +7,14 @@
 mod keep_out;
 mod limits;
 mod options;
+mod order;
 mod state;
 mod target;
 
 use crate::attitude::Attitude;
 use crate::findings::Findings;
 use crate::problem::Problem;
+use crate::sequence::OrderRules;
 use crate::spacecraft::Spacecraft;
 use crate::spec::{OptionsSpec, ScenarioSpec};
 use limits::Limits;
@@ -90,6 +92,7 @@ pub struct Scenario {
     start: Start,
     end: Option<End>,
     targets: Vec<Target>,
+    order_rules: OrderRules,
     keep_out: Vec<KeepOut>,
     options: OptionsSpec,
 }
@@ -128,6 +131,7 @@ impl Scenario {
                 .then_some(end)
         });
         let targets = target::read_all(spec, &limits, findings);
+        let order_rules = order::read(spec, findings);
         let keep_out = keep_out::read_all(spec, findings);
         let options_valid = options::check(&spec.options, findings);
         Some(Self {
@@ -142,6 +146,7 @@ impl Scenario {
                 None => None,
             },
             targets: targets?,
+            order_rules: order_rules?,
             keep_out: keep_out?,
             options: options_valid.then(|| spec.options.clone())?,
         })
@@ -193,6 +198,12 @@ impl Scenario {
     #[must_use]
     pub fn targets(&self) -> &[Target] {
         &self.targets
+    }
+
+    /// Which orders of the targets, by their indices, may be flown: at least one.
+    #[must_use]
+    pub fn order_rules(&self) -> &OrderRules {
+        &self.order_rules
     }
 
     /// The keep-out cones.

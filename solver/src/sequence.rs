@@ -5,7 +5,8 @@
 //! A tour leaves the start, visits each of n targets once and, where one is prescribed, goes on to
 //! an end. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left
 //! free at a target couple the slews before and after it, so `T` is no sum over pairs. Wanted are
-//! the order of least duration, the next best `k` orders, and a bound on what was not looked at.
+//! the order of least duration among those that [`OrderRules`] admit, the next best `k` orders, and
+//! a bound on what was not looked at.
 //!
 //! # Bounds
 //!
@@ -21,7 +22,10 @@
 //!
 //! Hence `head(p) + rest(l, R)` is a lower bound of every completion of `p`. So is the parent's
 //! bound, whose completions include those of `p`; the node takes the greater, and bounds never
-//! fall on the way down. A node enters the frontier with the bound that costs nothing (the
+//! fall on the way down. Where [`OrderRules`] restrict the orders, only prefixes that an admitted
+//! order begins with are opened. What may follow depends on the set of the visited alone, not on
+//! their order, so that the dynamic program takes the rules in and remains exact; the spanning tree
+//! ignores them, and the least over more paths is a bound all the same. A node enters the frontier with the bound that costs nothing (the
 //! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
 //!
 //! # Honesty
@@ -42,6 +46,7 @@ mod heuristics;
 mod incumbents;
 mod node;
 pub mod remainder;
+mod rules;
 mod search;
 mod table;
 #[cfg(test)]
@@ -49,6 +54,8 @@ mod tests;
 
 pub use exhaustive::exhaustive;
 pub use heuristics::short_order;
+pub(crate) use rules::DeadEnd;
+pub use rules::OrderRules;
 pub use search::search;
 pub use table::PairTable;
 
@@ -98,6 +105,9 @@ pub trait TourModel: Sync {
 
     /// Whether the tour goes on to a prescribed end after the last target.
     fn has_end(&self) -> bool;
+
+    /// Which orders may be flown: at least one. The model is asked for no other.
+    fn rules(&self) -> &OrderRules;
 
     /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
     /// dwelling at `to` are included. Cheap: the search asks once for every pair. A value that is

@@ -21,7 +21,7 @@ pub struct ScenarioSpec {
     pub start: StateSpec,
     /// State at the end of the tour; `None` finishes at the last target.
     pub end: Option<StateSpec>,
-    /// The unordered targets.
+    /// The targets, in any order but for their own demands.
     pub targets: Vec<TargetSpec>,
     /// Cones in which a boresight must not point.
     pub keep_out: Vec<KeepOutSpec>,
@@ -126,6 +126,10 @@ pub struct TargetSpec {
     pub dwell_s: f64,
     /// Time to settle at rest after arrival, s.
     pub settle_s: f64,
+    /// Place among the targets in the order of visits, counted from 1; any when absent.
+    pub position: Option<usize>,
+    /// Identifiers of targets that must have been visited before.
+    pub after: Vec<String>,
 }
 
 /// A cone around a reference direction that a boresight must avoid.

@@ -315,6 +315,59 @@ fn names_that_clash_or_refer_to_nothing() {
 }
 
 #[test]
+fn positions_and_precedences_that_make_no_sense() {
+    for place in [json!(0), json!(3), json!(u64::MAX)] {
+        let place = ("/targets/1/position", place);
+        expect_refused(&with(&[place]), &[("/targets/1/position", "out_of_range")]);
+    }
+    for place in [json!(1.5), json!(-1), json!("first")] {
+        let place = ("/targets/1/position", place);
+        expect_refused(&with(&[place]), &[("/targets/1/position", "wrong_type")]);
+    }
+    expect_refused(
+        &with(&[
+            ("/targets/0/position", json!(2)),
+            ("/targets/1/position", json!(2)),
+        ]),
+        &[("/targets/1/position", "position_taken")],
+    );
+    expect_refused(
+        &with(&[
+            ("/targets/0/after", json!(["z", "a", "b", "b"])),
+            ("/targets/1/after", json!([3])),
+        ]),
+        &[
+            ("/targets/0/after/0", "unknown_reference"),
+            ("/targets/0/after/1", "order_cycle"),
+            ("/targets/0/after/3", "duplicate_id"),
+            ("/targets/1/after/0", "wrong_type"),
+        ],
+    );
+    expect_refused(
+        &with(&[
+            ("/targets/0/after", json!(["b"])),
+            ("/targets/1/after", json!(["a"])),
+        ]),
+        &[("/targets/0/after", "order_cycle")],
+    );
+    expect_refused(
+        &with(&[
+            ("/targets/0/after", json!(["b"])),
+            ("/targets/1/position", json!(2)),
+        ]),
+        &[("/targets/1/position", "order_infeasible")],
+    );
+    // Nobody knows whether the target that cannot be read is the one that is meant.
+    expect_refused(
+        &with(&[
+            ("/targets/0/id", json!(7)),
+            ("/targets/1/after", json!(["a"])),
+        ]),
+        &[("/targets/0/id", "wrong_type")],
+    );
+}
+
+#[test]
 fn everything_that_is_wrong_is_said_at_once() {
     let scenario = with(&[
         ("/colour", json!("red")),

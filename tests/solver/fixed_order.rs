@@ -86,7 +86,7 @@ fn the_direct_way_is_as_good() {
 #[test]
 fn lists_that_are_no_order_of_the_targets_are_refused() {
     let scenario = scenario_of(&experiment_a_spec());
-    let error = OrderError { targets: 6 };
+    let error = OrderError::NotAnOrder { targets: 6 };
     for wrong in [
         vec![],
         vec![0, 1, 2, 3, 4],

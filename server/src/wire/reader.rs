@@ -209,6 +209,12 @@ impl<'a> Cursor<'a> {
         collect_all(self.list()?.iter().map(Cursor::number))
     }
 
+    /// A list of texts of any length.
+    pub(crate) fn texts(&self) -> Option<Vec<String>> {
+        let text = |entry: &Cursor<'a>| entry.text().map(str::to_owned);
+        collect_all(self.list()?.iter().map(text))
+    }
+
     fn array<T, const N: usize>(&self, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<[T; N]> {
         let items = self.list_of_length(N)?;
         collect_all(items.iter().map(read))?.try_into().ok()

@@ -75,6 +75,9 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
             any_related(&found.pointer)
                 || replaced.iter().any(|p| contains(p, "/spacecraft/wheels"))
         }
+        Code::UnknownReference if found.pointer.starts_with("/targets/") => {
+            any_related(&found.pointer) || replaced.iter().any(|p| loses_name_of_target(p))
+        }
         Code::UnknownReference => {
             any_related(&found.pointer) || any_related("/spacecraft/boresights")
         }
@@ -89,6 +92,12 @@ fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
 fn loses(pointer: &str, member: &str) -> bool {
     let mut parts = pointer.split('/').skip(4);
     parts.next().is_none_or(|part| part == member)
+}
+
+/// Whether a place is the name of a target, or one around it.
+fn loses_name_of_target(pointer: &str) -> bool {
+    let mut parts = pointer.split('/').skip(1);
+    parts.next() == Some("targets") && parts.nth(1).is_none_or(|part| part == "id")
 }
 
 /// Whether one place is the other or lies around it.
@@ -190,6 +199,8 @@ fn target(cursor: &Cursor<'_>) -> TargetSpec {
         "rate_max_rad_s",
         "dwell_s",
         "settle_s",
+        "position",
+        "after",
     ];
     let Some(fields) = cursor.object(known) else {
         return TargetSpec {
@@ -224,6 +235,14 @@ fn target(cursor: &Cursor<'_>) -> TargetSpec {
         rate_max_rad_s: bounds("rate_max_rad_s"),
         dwell_s: time("dwell_s"),
         settle_s: time("settle_s"),
+        position: fields
+            .optional("position")
+            .and_then(|place| place.integer())
+            .map(|place| usize::try_from(place).unwrap_or(usize::MAX)),
+        after: fields
+            .optional("after")
+            .and_then(|names| names.texts())
+            .unwrap_or_default(),
     }
 }
 
@@ -333,7 +352,8 @@ mod tests {
         "start": {"attitude": {"mrp": [0, 0, 0]}, "wheel_speed_rad_s": [1, 2]},
         "end": null,
         "targets": [{"id": "t", "attitude": {"mrp": [0.1, 0, 0]}, "zero_rate_axes": ["z", "x"],
-            "rate_min_rad_s": [null, -0.1, null], "dwell_s": 1, "settle_s": 2.5}],
+            "rate_min_rad_s": [null, -0.1, null], "dwell_s": 1, "settle_s": 2.5, "position": 1,
+            "after": ["u", "v"]}],
         "keep_out": [{"boresight": "camera", "direction": [1, 0, 0], "half_angle_deg": 30}],
         "options": {"accuracy": "tight", "attitude_equivalence": "quaternion", "time_limit_s": null, "node_limit": 7,
             "relative_gap": 0.01, "alternatives": 3, "torque_authority": 0.9,
@@ -369,6 +389,8 @@ mod tests {
         assert_eq!(target.zero_rate_axes, Some([true, false, true]));
         assert_eq!(target.rate_min_rad_s, Some([None, Some(-0.1), None]));
         assert_eq!((target.dwell_s, target.settle_s), (1.0, 2.5));
+        assert_eq!(target.position, Some(1));
+        assert_eq!(target.after, ["u", "v"]);
         assert_eq!(
             spec.keep_out[0].half_angle_deg.to_bits(),
             30.0_f64.to_bits()
@@ -441,6 +463,26 @@ mod tests {
         ] {
             let found = Problem::new("/spacecraft/wheels", code, "", "");
             assert!(!follows_from_a_substitute(&found, &shape), "{code}");
+        }
+    }
+
+    #[test]
+    fn a_nameless_target_may_be_the_one_that_another_comes_after() {
+        let found = Problem::new("/targets/0/after/0", Code::UnknownReference, "", "");
+        let follows = |pointer: &str| {
+            let shape = [Problem::new(pointer, Code::WrongType, "", "")];
+            follows_from_a_substitute(&found, &shape)
+        };
+        for pointer in [
+            "/targets",
+            "/targets/1",
+            "/targets/1/id",
+            "/targets/0/after",
+        ] {
+            assert!(follows(pointer), "{pointer}");
+        }
+        for pointer in ["/targets/1/attitude", "/targets/1/after/0", "/start"] {
+            assert!(!follows(pointer), "{pointer}");
         }
     }
 

@@ -1,7 +1,8 @@
-//! Whether every target is visited once, as required, and the end reached.
+//! Whether every target is visited once, as and when required, and the end reached.
 
 use super::dynamics::{Quaternion, Snapshot, conjugate, norm, product};
 use super::integrator::Interval;
+use super::order::misplaced;
 use super::wording::figure;
 use super::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, RATE_TOLERANCE, REST_TORQUE_TOLERANCE, SNAP,
@@ -72,6 +73,7 @@ pub(super) fn book<'a>(
             n => failures.push(format!("target '{}' is visited {n} times", target.id)),
         }
     }
+    failures.extend(misplaced(scenario, flight));
     failures.extend(loose_end(scenario, flight));
     (visits, failures)
 }

@@ -3,7 +3,7 @@
 //! Cut a tour where it arrives at a target or the end, and leave out settling and dwelling: each
 //! slew lasts at least its certified bound, which holds whatever comes before and after it. So the
 //! shortest way through all targets in the table of these bounds, service times added, is a bound
-//! on all tours in all orders. The search finds that way; up to
+//! on all tours in all orders that the scenario admits. The search finds that way; up to
 //! [`crate::sequence::remainder::EXACT_TARGETS`] targets its first step is exact, beyond it stops
 //! after some work with the bound that it has by then.
 
@@ -12,7 +12,8 @@ use super::tables::CertifiedTable;
 use crate::pool::SolverPool;
 use crate::progress::Progress;
 use crate::sequence::{
-    Evaluation, Incumbent, Place, SearchObserver, SearchSettings, TourEvaluation, TourModel, search,
+    Evaluation, Incumbent, OrderRules, Place, SearchObserver, SearchSettings, TourEvaluation,
+    TourModel, search,
 };
 use crate::stop::StopSignal;
 
@@ -29,7 +30,7 @@ struct CertifiedTours<'a> {
     bounds: &'a CertifiedTable,
 }
 
-/// A duration, s, that no tour undercuts, in whatever order; legs of which nothing is proved count
+/// A duration, s, that no tour undercuts, in whatever order the scenario admits; legs of which nothing is proved count
 /// nothing. `None` when that is all of them.
 pub(super) fn tour_bound(
     places: &Places<'_>,
@@ -75,6 +76,10 @@ impl TourModel for CertifiedTours<'_> {
 
     fn has_end(&self) -> bool {
         self.places.scenario.end().is_some()
+    }
+
+    fn rules(&self) -> &OrderRules {
+        self.places.scenario.order_rules()
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

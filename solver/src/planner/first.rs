@@ -2,7 +2,7 @@
 
 use super::places::Places;
 use super::tours::Tours;
-use crate::sequence::{Evaluation, FlownOrder, Place, TourEvaluation, TourModel, short_order};
+use crate::sequence::{Evaluation, FlownOrder, OrderRules, Place, TourEvaluation, TourModel, short_order};
 use crate::stop::StopSignal;
 
 /// Slews about the eigenaxis from rest to rest.
@@ -24,6 +24,10 @@ impl TourModel for EigenaxisTours<'_> {
 
     fn has_end(&self) -> bool {
         self.0.scenario.end().is_some()
+    }
+
+    fn rules(&self) -> &OrderRules {
+        self.0.scenario.order_rules()
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

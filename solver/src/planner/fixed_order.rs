@@ -21,12 +21,18 @@ pub enum BoundFrom {
     Legs,
 }
 
-/// A list of indices is not an order of a scenario's targets.
+/// Why a list of indices cannot be flown as an order of a scenario's targets.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("an order lists the indices of all {targets} targets, each of them once")]
-pub struct OrderError {
-    /// Number of targets.
-    pub targets: usize,
+pub enum OrderError {
+    /// It is none.
+    #[error("an order lists the indices of all {targets} targets, each of them once")]
+    NotAnOrder {
+        /// Number of targets.
+        targets: usize,
+    },
+    /// The scenario's positions and precedences do not admit it.
+    #[error("the order breaks a position or precedence that the scenario demands")]
+    NotAdmitted,
 }
 
 /// Visits the targets in a given order in minimum time: torques, bound and verification, without a
@@ -38,7 +44,8 @@ pub struct OrderError {
 ///
 /// # Errors
 ///
-/// When `order` does not name every target exactly once.
+/// When `order` does not name every target exactly once, or breaks
+/// [`Scenario::order_rules`].
 pub fn fly_order(
     scenario: &Scenario,
     order: &[usize],
@@ -49,7 +56,10 @@ pub fn fly_order(
     let mut named = order.to_vec();
     named.sort_unstable();
     if !named.into_iter().eq(0..targets) {
-        return Err(OrderError { targets });
+        return Err(OrderError::NotAnOrder { targets });
+    }
+    if !scenario.order_rules().admits(order) {
+        return Err(OrderError::NotAdmitted);
     }
     Ok(fly(scenario, order, bound, run))
 }

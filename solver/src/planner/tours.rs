@@ -14,7 +14,7 @@ use super::tables::{CertifiedTable, LegTable};
 use crate::multiphase::{Flown, fly, fly_on, fly_rolling, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
-use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
+use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
 use crate::slew::eigenaxis::Side;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
@@ -282,6 +282,10 @@ impl TourModel for Tours<'_> {
 
     fn has_end(&self) -> bool {
         self.places.scenario.end().is_some()
+    }
+
+    fn rules(&self) -> &OrderRules {
+        self.places.scenario.order_rules()
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

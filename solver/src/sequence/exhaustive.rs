@@ -4,7 +4,7 @@ use super::incumbents::Incumbents;
 use super::{FlownOrder, TourEvaluation, TourModel};
 use crate::pool::SolverPool;
 
-/// Flies all n! orders and lists the best and so many alternatives, best first. Orders that do not
+/// Flies all orders that the rules admit, n! at most, and lists the best and so many alternatives, best first. Orders that do not
 /// resolve are left out. For a handful of targets only.
 #[must_use]
 pub fn exhaustive(
@@ -12,7 +12,8 @@ pub fn exhaustive(
     alternatives: usize,
     pool: &SolverPool,
 ) -> Vec<FlownOrder> {
-    let orders = permutations(model.target_count());
+    let mut orders = permutations(model.target_count());
+    orders.retain(|order| model.rules().admits(order));
     let answers = pool.map(&orders, |order| model.tour(order));
     let mut best = Incumbents::new(alternatives, 0.0);
     for (order, answer) in orders.into_iter().zip(answers) {
@@ -24,7 +25,7 @@ pub fn exhaustive(
 }
 
 /// All permutations of `0..count`.
-fn permutations(count: usize) -> Vec<Vec<usize>> {
+pub(super) fn permutations(count: usize) -> Vec<Vec<usize>> {
     let mut orders = vec![Vec::new()];
     for target in 0..count {
         orders = orders

@@ -35,7 +35,9 @@ pub(super) fn candidates(
     // Slews are nearly symmetric in time, and legs that are free at the targets are not: the
     // shortest order of the table is often best flown backwards.
     let reverse: Vec<usize> = orders[0].iter().rev().copied().collect();
-    orders.insert(1, reverse);
+    if table.rules().admits(&reverse) {
+        orders.insert(1, reverse);
+    }
     let mut distinct: Vec<Vec<usize>> = Vec::with_capacity(orders.len());
     for order in orders {
         if !distinct.contains(&order) {
@@ -45,7 +47,7 @@ pub(super) fn candidates(
     distinct
 }
 
-/// A short completion of a prefix.
+/// A short completion of a prefix that an admitted order begins with.
 pub(super) fn complete(
     table: &PairTable,
     remainder: &Remainder,
@@ -53,13 +55,14 @@ pub(super) fn complete(
     remaining: &[usize],
     stop: &StopSignal,
 ) -> Vec<usize> {
-    let from = table.last_place(prefix);
     let completion = match remainder {
-        Remainder::Exact(subsets) => subsets.shortest_order(table, from, remaining),
+        Remainder::Exact(subsets) => {
+            subsets.shortest_order(table, table.last_place(prefix), remaining)
+        }
         Remainder::Relaxed(_) => improve(
             table,
-            from,
-            nearest_neighbours(table, from, remaining),
+            prefix,
+            nearest_neighbours(table, prefix, remaining),
             stop,
         ),
     };
@@ -69,7 +72,8 @@ pub(super) fn complete(
 /// Nearest-neighbour orders after local search, shortest first.
 fn improved_constructions(table: &PairTable, all: &[usize], stop: &StopSignal) -> Vec<Vec<usize>> {
     let start = table.start();
-    let mut firsts = all.to_vec();
+    let admitted = |target: &usize| table.rules().completable(&[*target]);
+    let mut firsts: Vec<usize> = all.iter().copied().filter(admitted).collect();
     firsts.sort_by(|&a, &b| {
         let far = |target| table.bound(start, target);
         far(a).total_cmp(&far(b)).then(a.cmp(&b))
@@ -79,9 +83,9 @@ fn improved_constructions(table: &PairTable, all: &[usize], stop: &StopSignal) -
         .into_iter()
         .map(|first| {
             let others: Vec<usize> = all.iter().copied().filter(|&t| t != first).collect();
-            let mut order = nearest_neighbours(table, first, &others);
+            let mut order = nearest_neighbours(table, &[first], &others);
             order.insert(0, first);
-            improve(table, start, order, stop)
+            improve(table, &[], order, stop)
         })
         .collect();
     orders.sort_by(|a, b| {
@@ -92,21 +96,30 @@ fn improved_constructions(table: &PairTable, all: &[usize], stop: &StopSignal) -
     orders
 }
 
-/// From a place always on to the nearest of the targets, the smallest index among equals.
-fn nearest_neighbours(table: &PairTable, from: usize, targets: &[usize]) -> Vec<usize> {
-    let mut from = from;
+/// From the end of a prefix always on to the nearest of the targets, the smallest index among
+/// equals, of those that leave an admitted order.
+fn nearest_neighbours(table: &PairTable, prefix: &[usize], targets: &[usize]) -> Vec<usize> {
+    let mut path = prefix.to_vec();
     let mut left = targets.to_vec();
-    let mut order = Vec::with_capacity(left.len());
-    while let Some((place, &to)) = left
-        .iter()
-        .enumerate()
-        .min_by(|a, b| table.bound(from, *a.1).total_cmp(&table.bound(from, *b.1)))
-    {
-        left.remove(place);
-        order.push(to);
-        from = to;
+    while !left.is_empty() {
+        let from = table.last_place(&path);
+        // Sorted, since whether an order is left is the dearer question.
+        left.sort_by(|&a, &b| {
+            let far = |target| table.bound(from, target);
+            far(a).total_cmp(&far(b)).then(a.cmp(&b))
+        });
+        let admitted = |target: &usize| {
+            path.push(*target);
+            let admitted = table.rules().completable(&path);
+            path.pop();
+            admitted
+        };
+        let Some(nearest) = left.iter().position(admitted) else {
+            break;
+        };
+        path.push(left.remove(nearest));
     }
-    order
+    path.split_off(prefix.len())
 }
 
 /// Length of an order in the table, from the start to the end, s.
@@ -130,8 +143,8 @@ mod tests {
         for seed in 0..5 {
             let table = PairTable::new(&RandomModel::new(30, seed % 2 == 0, seed));
             let all: Vec<usize> = (0..30).collect();
-            let built = nearest_neighbours(&table, table.start(), &all);
-            let improved = improve(&table, table.start(), built.clone(), &StopSignal::new());
+            let built = nearest_neighbours(&table, &[], &all);
+            let improved = improve(&table, &[], built.clone(), &StopSignal::new());
             assert!(length(&table, &improved) < length(&table, &built));
             let mut targets = improved;
             targets.sort_unstable();

@@ -1,6 +1,6 @@
-//! The table of pair bounds.
+//! The table of pair bounds, and which orders it is for.
 
-use super::{Place, TourModel};
+use super::{OrderRules, Place, TourModel};
 
 /// Lower bounds of all legs, s, between places numbered: targets `0..n`, then start, then end.
 ///
@@ -10,6 +10,7 @@ use super::{Place, TourModel};
 pub struct PairTable {
     targets: usize,
     bounds: Vec<f64>,
+    rules: OrderRules,
 }
 
 impl PairTable {
@@ -20,6 +21,7 @@ impl PairTable {
         let mut table = Self {
             targets,
             bounds: vec![0.0; (targets + 2) * (targets + 2)],
+            rules: model.rules().clone(),
         };
         for to in 0..targets {
             table.set(
@@ -62,6 +64,12 @@ impl PairTable {
     #[must_use]
     pub fn targets(&self) -> usize {
         self.targets
+    }
+
+    /// Which orders of the targets may be flown.
+    #[must_use]
+    pub fn rules(&self) -> &OrderRules {
+        &self.rules
     }
 
     /// Number of the start.

@@ -3,6 +3,7 @@
 mod anytime;
 mod exactness;
 mod models;
+mod rules;
 
 pub(super) use models::RandomModel;
 

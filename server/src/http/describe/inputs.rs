@@ -26,7 +26,7 @@ pub(in crate::http) struct Scenario {
     /// Finish at the last target without it.
     #[schema(required = false)]
     end: Option<State>,
-    /// Visited in any order, each once.
+    /// Visited each once, in any order that keeps their `position` and `after`.
     targets: Vec<Target>,
     #[schema(required = false)]
     keep_out: Option<Vec<KeepOut>>,
@@ -148,6 +148,13 @@ struct Target {
     /// Time to settle at rest after arrival.
     #[schema(required = false, minimum = 0, default = 0.0)]
     settle_s: Option<f64>,
+    /// Place in the order of visits, counted from 1; any without it. No two targets have the same.
+    #[schema(required = false, minimum = 1)]
+    position: Option<u64>,
+    /// Identifiers of targets that must have been visited before. Some order has to keep all
+    /// positions and precedences.
+    #[schema(required = false)]
+    after: Option<Vec<String>>,
 }
 
 /// A component of the body rate.

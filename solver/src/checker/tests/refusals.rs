@@ -190,3 +190,17 @@ fn figures_stay_finite_for_absurd_limits() {
     );
     assert!(figures[0] > 1e300 && figures[3] < -1e300);
 }
+
+#[test]
+fn visits_out_of_order_are_refused() {
+    let mut spec = scenario(vec![target("a", angle(HALF)), target("b", angle(HALF))]);
+    let mut flight = bang_bang();
+    flight.passages.push(passage("b", 2.0 * HALF, 2.0 * HALF));
+    accepted(&spec, &flight);
+    spec.targets[0].position = Some(1);
+    spec.targets[1].after = vec!["a".into()];
+    accepted(&spec, &flight);
+    flight.passages.reverse();
+    refused(&spec, &flight, "'a' is visited at position 2 instead of 1");
+    refused(&spec, &flight, "'b' is visited before 'a'");
+}

@@ -10,10 +10,12 @@ const LONGEST_SEGMENT: usize = 3;
 /// Improving moves per target at most; local search needs a few, and must not run for ever.
 const MOVES_PER_TARGET: usize = 50;
 
-/// An order with start and end attached and the lengths of all its beginnings both ways, so that
+/// The way through the targets of an order with start and end attached and the lengths of all its beginnings both ways, so that
 /// any segment is measured in constant time.
 struct Path<'a> {
     table: &'a PairTable,
+    /// What was visited before the first place.
+    visited: &'a [usize],
     places: Vec<usize>,
     /// Length from the first place to each, s.
     forth: Vec<f64>,
@@ -29,16 +31,16 @@ enum Move {
     Shift(usize, usize, usize, bool),
 }
 
-/// Shortens the way from a place through some targets to the end until no move helps or the solve
-/// is stopped.
+/// Shortens the way from the end of a prefix through the remaining targets to the end until no move
+/// helps or the solve is stopped. Moves that break the rules are refused.
 pub(super) fn improve(
     table: &PairTable,
-    from: usize,
+    prefix: &[usize],
     order: Vec<usize>,
     stop: &StopSignal,
 ) -> Vec<usize> {
     let limit = MOVES_PER_TARGET * order.len();
-    let mut path = Path::new(table, from, order);
+    let mut path = Path::new(table, prefix, order);
     for _ in 0..limit {
         if stop.is_set() {
             break;
@@ -52,12 +54,13 @@ pub(super) fn improve(
 }
 
 impl<'a> Path<'a> {
-    fn new(table: &'a PairTable, from: usize, order: Vec<usize>) -> Self {
+    fn new(table: &'a PairTable, prefix: &'a [usize], order: Vec<usize>) -> Self {
         let mut places = order;
-        places.insert(0, from);
+        places.insert(0, table.last_place(prefix));
         places.push(table.end());
         let mut path = Self {
             table,
+            visited: prefix,
             places,
             forth: Vec::new(),
             back: Vec::new(),
@@ -107,8 +110,9 @@ impl<'a> Path<'a> {
                     - self.leg(first - 1, first)
                     - self.leg(last, last + 1)
                     + self.turning(first, last);
-                if self.helps(change) {
-                    return Some(Move::Reverse(first, last));
+                let step = Move::Reverse(first, last);
+                if self.helps(change) && self.admits(&step) {
+                    return Some(step);
                 }
             }
         }
@@ -126,12 +130,15 @@ impl<'a> Path<'a> {
                 for after in (0..first - 1).chain(last + 1..end) {
                     let opening = closing - self.leg(after, after + 1);
                     let kept = self.leg(after, first) + self.leg(last, after + 1);
-                    if self.helps(opening + kept) {
-                        return Some(Move::Shift(first, last, after, false));
+                    let step = Move::Shift(first, last, after, false);
+                    if self.helps(opening + kept) && self.admits(&step) {
+                        return Some(step);
                     }
                     let turned = self.leg(after, last) + self.leg(first, after + 1);
-                    if self.helps(opening + turned + self.turning(first, last)) {
-                        return Some(Move::Shift(first, last, after, true));
+                    let step = Move::Shift(first, last, after, true);
+                    let change = opening + turned + self.turning(first, last);
+                    if self.helps(change) && self.admits(&step) {
+                        return Some(step);
                     }
                 }
             }
@@ -139,11 +146,29 @@ impl<'a> Path<'a> {
         None
     }
 
+    /// Whether the order keeps the rules after a move.
+    fn admits(&self, step: &Move) -> bool {
+        let rules = self.table.rules();
+        let moved = || {
+            let mut places = self.places.clone();
+            step.apply(&mut places);
+            [self.visited, &places[1..places.len() - 1]].concat()
+        };
+        rules.is_free() || rules.admits(&moved())
+    }
+
     fn apply(&mut self, step: &Move) {
-        match *step {
-            Move::Reverse(first, last) => self.places[first..=last].reverse(),
-            Move::Shift(first, last, after, turned) => {
-                let mut segment: Vec<usize> = self.places.drain(first..=last).collect();
+        step.apply(&mut self.places);
+        self.measure();
+    }
+}
+
+impl Move {
+    fn apply(&self, places: &mut Vec<usize>) {
+        match *self {
+            Self::Reverse(first, last) => places[first..=last].reverse(),
+            Self::Shift(first, last, after, turned) => {
+                let mut segment: Vec<usize> = places.drain(first..=last).collect();
                 if turned {
                     segment.reverse();
                 }
@@ -152,9 +177,8 @@ impl<'a> Path<'a> {
                 } else {
                     after + 1 - segment.len()
                 };
-                self.places.splice(gap..gap, segment);
+                places.splice(gap..gap, segment);
             }
         }
-        self.measure();
     }
 }

@@ -1,8 +1,10 @@
 //! Dynamic programming over subsets (Held and Karp 1962, Bellman 1962), backwards from the end.
 //!
-//! `rest(i, {}) = d(i, end)` and `rest(i, R) = min over j in R of d(i, j) + rest(j, R - j)`.
+//! `rest(i, {}) = d(i, end)` and `rest(i, R) = min over j in R of d(i, j) + rest(j, R - j)`, where
+//! `j` is any target that the rules admit once all but `R` have been visited; infinite where there
+//! is none.
 
-use crate::sequence::PairTable;
+use crate::sequence::{OrderRules, PairTable};
 
 /// `rest(i, R)` for every target and every set of others, s.
 #[derive(Debug)]
@@ -10,6 +12,33 @@ pub struct SubsetTable {
     targets: usize,
     /// Entry `set * targets + from`, sets as bit masks; unused where the set holds `from`.
     rest: Vec<f64>,
+    admitted: Admitted,
+}
+
+/// The rules on sets as bit masks.
+#[derive(Debug)]
+struct Admitted {
+    /// The targets that may take each place, whatever has been visited before.
+    at: Vec<usize>,
+    /// The targets that come before each.
+    before: Vec<usize>,
+}
+
+impl Admitted {
+    fn of(rules: &OrderRules, targets: usize) -> Self {
+        let at = |place| mask((0..targets).filter(|&target| rules.admits_at(place, target)));
+        let before = |target| mask(rules.predecessors(target).iter().copied());
+        Self {
+            at: (0..targets).map(at).collect(),
+            before: (0..targets).map(before).collect(),
+        }
+    }
+
+    /// Whether a target of a set may come next when exactly the others have been visited.
+    fn next(&self, target: usize, set: usize) -> bool {
+        let place = self.at.len() - set.count_ones() as usize;
+        self.at[place] & (1 << target) != 0 && self.before[target] & set == 0
+    }
 }
 
 impl SubsetTable {
@@ -20,6 +49,7 @@ impl SubsetTable {
         let mut filled = Self {
             targets,
             rest: vec![f64::INFINITY; targets << targets],
+            admitted: Admitted::of(table.rules(), targets),
         };
         // A set is greater, as a number, than its subsets.
         for set in 0..1_usize << targets {
@@ -32,14 +62,17 @@ impl SubsetTable {
 
     /// `rest(from, set)` out of the entries of smaller sets.
     fn shortest(&self, table: &PairTable, from: usize, set: usize) -> f64 {
+        if set == 0 {
+            return table.bound(from, table.end());
+        }
         self.next(table, from, set)
-            .map_or_else(|| table.bound(from, table.end()), |(_, rest)| rest)
+            .map_or(f64::INFINITY, |(_, rest)| rest)
     }
 
     /// The best next target, the smallest index among equals, and the time it leads to.
     fn next(&self, table: &PairTable, from: usize, set: usize) -> Option<(usize, f64)> {
         (0..self.targets)
-            .filter(|to| set & (1 << to) != 0)
+            .filter(|to| set & (1 << to) != 0 && self.admitted.next(*to, set))
             .map(|to| {
                 let after = self.rest[(set & !(1 << to)) * self.targets + to];
                 (to, table.bound(from, to) + after)
@@ -47,10 +80,11 @@ impl SubsetTable {
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Shortest path from a place through the remaining targets and to the end, s.
+    /// Shortest path from a place through the remaining targets and to the end, s; infinite when the
+    /// rules admit none.
     #[must_use]
     pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
-        let set = mask(remaining);
+        let set = mask(remaining.iter().copied());
         if from < self.targets {
             self.rest[set * self.targets + from]
         } else {
@@ -58,7 +92,8 @@ impl SubsetTable {
         }
     }
 
-    /// A shortest order of the remaining targets in the table, seen from a place.
+    /// A shortest order of the remaining targets in the table, seen from a place, of which there
+    /// is at least one.
     #[must_use]
     pub fn shortest_order(
         &self,
@@ -67,7 +102,7 @@ impl SubsetTable {
         remaining: &[usize],
     ) -> Vec<usize> {
         let mut from = from;
-        let mut set = mask(remaining);
+        let mut set = mask(remaining.iter().copied());
         let mut order = Vec::with_capacity(remaining.len());
         while let Some((to, _)) = self.next(table, from, set) {
             order.push(to);
@@ -79,6 +114,6 @@ impl SubsetTable {
 }
 
 /// The set of some targets.
-fn mask(targets: &[usize]) -> usize {
-    targets.iter().fold(0, |set, target| set | 1 << target)
+fn mask(targets: impl Iterator<Item = usize>) -> usize {
+    targets.fold(0, |set, target| set | 1 << target)
 }

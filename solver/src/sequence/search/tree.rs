@@ -122,7 +122,12 @@ impl Tree {
     /// Opens the children of a node.
     fn expand(&mut self, parent: &Node, pool: &SolverPool) {
         let remaining = parent.remaining(self.table.targets());
-        for child in pool.map(&remaining, |&next| self.child(parent, next, &remaining)) {
+        let children = pool.map(&remaining, |&next| {
+            let prefix = [&*parent.prefix, &[next]].concat();
+            let admitted = self.table.rules().completable(&prefix);
+            admitted.then(|| self.child(parent, next, &remaining))
+        });
+        for child in children.into_iter().flatten() {
             self.admit(child);
         }
         self.drop_excess();

@@ -3,8 +3,8 @@
 use super::{RandomModel, alternatives, pool, run};
 use crate::progress::{Progress, Silent, Stage};
 use crate::sequence::{
-    Evaluation, FlownOrder, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings,
-    TourEvaluation, TourModel, exhaustive, search,
+    Evaluation, FlownOrder, Incumbent, OrderRules, Place, SearchEnd, SearchObserver,
+    SearchSettings, TourEvaluation, TourModel, exhaustive, search,
 };
 use crate::stop::{StopReason, StopSignal};
 use std::sync::Mutex;
@@ -73,6 +73,10 @@ impl TourModel for StopsInside<'_> {
 
     fn has_end(&self) -> bool {
         self.inner.has_end()
+    }
+
+    fn rules(&self) -> &OrderRules {
+        self.inner.rules()
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

@@ -3,8 +3,8 @@
 use super::{RandomModel, alternatives, pool, run};
 use crate::progress::Silent;
 use crate::sequence::{
-    Evaluation, FlownOrder, Place, SearchEnd, SearchResult, SearchSettings, TourEvaluation,
-    TourModel, exhaustive, search,
+    Evaluation, FlownOrder, OrderRules, Place, SearchEnd, SearchResult, SearchSettings,
+    TourEvaluation, TourModel, exhaustive, search,
 };
 use crate::stop::StopSignal;
 use std::collections::BTreeMap;
@@ -155,6 +155,10 @@ impl TourModel for Counted {
 
     fn has_end(&self) -> bool {
         self.inner.has_end()
+    }
+
+    fn rules(&self) -> &OrderRules {
+        self.inner.rules()
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

@@ -1,9 +1,9 @@
 //! Cost models in place of slews.
 
-use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
+use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
 
 /// A small generator of reproducible numbers (Steele, Lea and Flood 2014).
-struct SplitMix(u64);
+pub(super) struct SplitMix(pub(super) u64);
 
 impl SplitMix {
     fn unit(&mut self) -> f64 {
@@ -12,6 +12,11 @@ impl SplitMix {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A whole number below another.
+    pub(super) fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
     }
 }
 
@@ -24,6 +29,8 @@ pub(in crate::sequence) struct RandomModel {
     has_end: bool,
     legs: Vec<f64>,
     penalties: Vec<f64>,
+    /// Which orders may be flown.
+    pub(in crate::sequence) rules: OrderRules,
     /// Share of the penalties that the bound of a prefix knows.
     pub(in crate::sequence) known_share: f64,
     /// Orders and prefixes for which this holds do not resolve.
@@ -41,6 +48,7 @@ impl RandomModel {
                 .map(|_| 10.0 + 40.0 * random.unit())
                 .collect(),
             penalties: (0..places.pow(3)).map(|_| 15.0 * random.unit()).collect(),
+            rules: OrderRules::none(targets),
             known_share: 0.7,
             fails: |_| false,
         }
@@ -85,6 +93,10 @@ impl TourModel for RandomModel {
         self.has_end
     }
 
+    fn rules(&self) -> &OrderRules {
+        &self.rules
+    }
+
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
         let number = |place| match place {
             Place::Start => self.targets,
@@ -96,6 +108,7 @@ impl TourModel for RandomModel {
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
         assert!(prefix.len() >= 2 && prefix.len() + 2 <= self.targets);
+        assert!(self.rules.some_order(prefix).is_some());
         if (self.fails)(prefix) {
             return Evaluation::Unresolved;
         }
@@ -104,6 +117,7 @@ impl TourModel for RandomModel {
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         assert_eq!(order.len(), self.targets);
+        assert!(self.rules.admits(order));
         if (self.fails)(order) {
             return TourEvaluation::Unresolved;
         }

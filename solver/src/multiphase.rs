@@ -15,8 +15,8 @@ use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
 use crate::profile::Profile;
 use crate::transcription::{Reserves, Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
-use nalgebra::DVector;
 pub(crate) use extended::fly_on;
+use nalgebra::DVector;
 pub(crate) use rolling::fly_rolling;
 
 /// A program to solve on the way to another.

@@ -28,6 +28,13 @@
 //! ignores them, and the least over more paths is a bound all the same. A node enters the frontier with the bound that costs nothing (the
 //! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
 //!
+//! # Symmetry
+//!
+//! Where every order takes as long backwards, the orders that visit one target in the first half are
+//! half of all, and one of every order and its reverse is among them. The search then keeps to these,
+//! in its dynamic program too, and lists both of each pair. The target is the one nearest to the
+//! start: good orders visit it early or late, and the late ones are given up at the root.
+//!
 //! # Honesty
 //!
 //! Every order is at every moment in exactly one of these: flown, below a node of the frontier, in
@@ -108,6 +115,11 @@ pub trait TourModel: Sync {
 
     /// Which orders may be flown: at least one. The model is asked for no other.
     fn rules(&self) -> &OrderRules;
+
+    /// Whether every order is admitted and takes as long backwards, so that one of the two will do.
+    fn is_symmetric(&self) -> bool {
+        false
+    }
 
     /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
     /// dwelling at `to` are included. Cheap: the search asks once for every pair. A value that is

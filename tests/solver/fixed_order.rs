@@ -80,7 +80,10 @@ fn the_direct_way_is_as_good() {
         target.zero_rate_axes = None;
     }
     let careful = flown(&spec, &order, BoundFrom::Legs);
-    assert_eq!(flown(&spec, &order, BoundFrom::Certificates).flight, careful.flight);
+    assert_eq!(
+        flown(&spec, &order, BoundFrom::Certificates).flight,
+        careful.flight
+    );
 }
 
 #[test]
@@ -94,7 +97,9 @@ fn lists_that_are_no_order_of_the_targets_are_refused() {
         vec![0, 1, 2, 3, 4, 6],
         vec![0, 1, 2, 3, 4, 5, 5],
     ] {
-        let answer = on_threads(1, |run| fly_order(&scenario, &wrong, BoundFrom::Certificates, run));
+        let answer = on_threads(1, |run| {
+            fly_order(&scenario, &wrong, BoundFrom::Certificates, run)
+        });
         assert_eq!(answer.err(), Some(error.clone()), "{wrong:?}");
     }
 }
@@ -105,6 +110,8 @@ fn an_order_through_a_rest_that_the_wheels_cannot_hold_is_infeasible() {
     spec.start.wheel_speed_rad_s = Some([700.0; 3].into());
     spec.targets = vec![target("turned", [45.0, 0.0, 45.0])];
     let scenario = scenario_of(&spec);
-    let outcome = on_threads(1, |run| fly_order(&scenario, &[0], BoundFrom::Certificates, run));
+    let outcome = on_threads(1, |run| {
+        fly_order(&scenario, &[0], BoundFrom::Certificates, run)
+    });
     assert!(matches!(outcome, Ok(Outcome::Infeasible(_))), "{outcome:?}");
 }

@@ -40,7 +40,10 @@ pub fn schedule(region: Region, rates: Rates, targets: usize, seed: u64) -> Scen
     spec.targets = (0..targets)
         .map(|number| {
             if number % CLUSTER == 0 {
-                middle = [generator.between(-25.0, 25.0), generator.between(-50.0, 50.0)];
+                middle = [
+                    generator.between(-25.0, 25.0),
+                    generator.between(-50.0, 50.0),
+                ];
             }
             TargetSpec {
                 id: format!("t{number:03}"),

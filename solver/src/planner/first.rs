@@ -2,7 +2,9 @@
 
 use super::places::Places;
 use super::tours::Tours;
-use crate::sequence::{Evaluation, FlownOrder, OrderRules, Place, TourEvaluation, TourModel, short_order};
+use crate::sequence::{
+    Evaluation, FlownOrder, OrderRules, Place, TourEvaluation, TourModel, short_order,
+};
 use crate::stop::StopSignal;
 
 /// Slews about the eigenaxis from rest to rest.

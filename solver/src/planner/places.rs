@@ -167,6 +167,26 @@ impl<'a> Places<'a> {
         turn <= SAME_ATTITUDE && one.rate == other.rate && one.wheels == other.wheels
     }
 
+    /// Whether every tour may be flown backwards as a tour of the same targets: it begins and ends in
+    /// the same state, each leg is reversible, and no target has its place in the order.
+    pub(super) fn are_symmetric(&self) -> bool {
+        if self.scenario.end().is_none() || !self.scenario.order_rules().is_free() {
+            return false;
+        }
+        let (start, end) = (self.waypoint(Place::Start), self.waypoint(Place::End));
+        let turn = self.arrival.turn(&start.attitude, &end.attitude);
+        // Three wheels have no momentum of their own choice.
+        let same_wheels = start.wheels == end.wheels || self.dynamics.wheel_count() == 3;
+        let targets = (0..self.scenario.targets().len()).map(Place::Target);
+        turn <= SAME_ATTITUDE
+            && start.rate == end.rate
+            && same_wheels
+            && self.reversible([&start, &end])
+            && targets
+                .map(|target| self.waypoint(target))
+                .all(|target| self.reversible([&target, &end]))
+    }
+
     /// Whether a flown leg may be flown backwards as the leg between the same places exchanged.
     ///
     /// With zero momentum and no locked wheel turning, `(q, h, u)(t)` and `(q, -h, u)(T - t)` obey

@@ -63,6 +63,8 @@ pub(super) struct Tours<'a> {
     pub(super) certified: &'a CertifiedTable,
     /// Legs with free ends, once they are solved: bounds.
     free: OnceLock<LegTable>,
+    /// Whether orders are as good backwards.
+    symmetric: bool,
     stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
     segments: Segments,
@@ -80,6 +82,7 @@ impl<'a> Tours<'a> {
             legs,
             certified,
             free: OnceLock::new(),
+            symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
             segments: Segments::default(),
@@ -104,8 +107,40 @@ impl<'a> Tours<'a> {
 
     /// The segments of a whole route, each solved; shorter than the route when one did not converge
     /// or the solve was stopped.
+    ///
+    /// Of an order and its reverse, where they are equally good, one is flown, and the other is that
+    /// flight backwards.
     pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<Flown>> {
-        self.fly_segments(route, Extent::Whole)
+        let Some(reverse) = self.better_backwards(route) else {
+            return self.fly_segments(route, Extent::Whole);
+        };
+        let mut flown = self.fly_segments(&reverse, Extent::Whole);
+        if flown.iter().all(|segment| segment.duration().is_some()) {
+            flown.reverse();
+            for segment in &mut flown {
+                *segment = Arc::new(Flown {
+                    profile: segment.profile.reversed(),
+                    ..**segment
+                });
+            }
+        }
+        flown
+    }
+
+    /// The reverse of a route, when that is the one of the two to be flown.
+    fn better_backwards(&self, route: &[Place]) -> Option<Vec<Place>> {
+        if !self.symmetric {
+            return None;
+        }
+        let mut reverse = route.to_vec();
+        let last = reverse.len().saturating_sub(1);
+        reverse.get_mut(1..last)?.reverse();
+        let index = |place: &Place| match place {
+            Place::Target(index) => *index,
+            Place::Start | Place::End => usize::MAX,
+        };
+        let smaller = reverse.iter().map(index).lt(route.iter().map(index));
+        smaller.then_some(reverse)
     }
 
     fn fly_segments(&self, route: &[Place], extent: Extent) -> Vec<Arc<Flown>> {
@@ -268,7 +303,11 @@ impl<'a> Tours<'a> {
             .iter()
             .map(|place| self.places.service_time(*place))
             .sum();
-        for flown in self.fly_segments(route, extent) {
+        let segments = match extent {
+            Extent::Whole => self.fly_route(route),
+            Extent::Beginning => self.fly_segments(route, extent),
+        };
+        for flown in segments {
             total += flown.duration().ok_or(flown.status)?;
         }
         Ok(total)
@@ -286,6 +325,10 @@ impl TourModel for Tours<'_> {
 
     fn rules(&self) -> &OrderRules {
         self.places.scenario.order_rules()
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.symmetric
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

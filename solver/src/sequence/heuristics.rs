@@ -2,8 +2,8 @@
 
 mod local_search;
 
-use super::{PairTable, TourModel};
 use super::remainder::Remainder;
+use super::{PairTable, TourModel};
 use crate::stop::StopSignal;
 use local_search::improve;
 
@@ -16,7 +16,7 @@ const CONSTRUCTIONS: usize = 4;
 #[must_use]
 pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
     let table = PairTable::new(model);
-    let remainder = Remainder::new(&table);
+    let remainder = Remainder::new(&table, table.rules());
     candidates(&table, &remainder, stop).into_iter().next()
 }
 
@@ -156,7 +156,7 @@ mod tests {
     fn a_completion_keeps_the_prefix_and_visits_the_rest() {
         for targets in [6, 20] {
             let table = PairTable::new(&RandomModel::new(targets, true, 9));
-            let remainder = Remainder::new(&table);
+            let remainder = Remainder::new(&table, table.rules());
             let prefix = [3, 1];
             let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
             let mut order = complete(&table, &remainder, &prefix, &remaining, &StopSignal::new());
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn few_targets_start_from_the_shortest_order_of_the_table() {
         let table = PairTable::new(&RandomModel::new(5, true, 3));
-        let remainder = Remainder::new(&table);
+        let remainder = Remainder::new(&table, table.rules());
         let orders = candidates(&table, &remainder, &StopSignal::new());
         let least = remainder.bound(&table, table.start(), &[0, 1, 2, 3, 4]);
         assert!((length(&table, &orders[0]) - least).abs() < 1e-9);

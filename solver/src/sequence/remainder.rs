@@ -6,7 +6,7 @@ mod subsets;
 pub use spanning_tree::SpanningTrees;
 pub use subsets::SubsetTable;
 
-use super::PairTable;
+use super::{OrderRules, PairTable};
 
 /// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 4 MiB here.
 pub const EXACT_TARGETS: usize = 15;
@@ -21,11 +21,11 @@ pub enum Remainder {
 }
 
 impl Remainder {
-    /// Prepares the bounds over a pair table.
+    /// Prepares the bounds over a pair table, for the orders that some rules admit.
     #[must_use]
-    pub fn new(table: &PairTable) -> Self {
+    pub fn new(table: &PairTable, rules: &OrderRules) -> Self {
         if table.targets() <= EXACT_TARGETS {
-            Self::Exact(SubsetTable::new(table))
+            Self::Exact(SubsetTable::new(table, rules))
         } else {
             Self::Relaxed(SpanningTrees::new(table))
         }
@@ -84,7 +84,7 @@ mod tests {
     fn subsets_give_the_shortest_path() {
         for seed in 0..10 {
             let table = PairTable::new(&RandomModel::new(6, seed % 2 == 0, seed));
-            let exact = SubsetTable::new(&table);
+            let exact = SubsetTable::new(&table, table.rules());
             for (from, remaining) in cases(&table) {
                 let expected = shortest(&table, from, &remaining);
                 assert!((exact.bound(&table, from, &remaining) - expected).abs() < 1e-9);
@@ -101,7 +101,7 @@ mod tests {
                 RandomModel::with_ties
             };
             let table = PairTable::new(&model(7, seed % 2 == 0, seed));
-            let exact = SubsetTable::new(&table);
+            let exact = SubsetTable::new(&table, table.rules());
             let trees = SpanningTrees::new(&table);
             for (from, remaining) in cases(&table) {
                 let expected = exact.bound(&table, from, &remaining);

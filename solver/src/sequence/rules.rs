@@ -82,6 +82,14 @@ impl OrderRules {
         rules
     }
 
+    /// The same rules for the orders that visit a target in the first half, its middle included.
+    #[must_use]
+    pub fn in_first_half(mut self, target: usize) -> Self {
+        self.due[target] = self.due[target].min(self.due.len().div_ceil(2));
+        self.draw_due_dates_forward();
+        self
+    }
+
     /// Successors first; targets on a cycle, which are never admitted anyway, are left out.
     fn draw_due_dates_forward(&mut self) {
         let mut open: Vec<usize> = self.successors.iter().map(Vec::len).collect();
@@ -103,7 +111,8 @@ impl OrderRules {
     /// Whether every order is admitted.
     #[must_use]
     pub fn is_free(&self) -> bool {
-        self.positions.iter().all(Option::is_none) && self.predecessors.iter().all(Vec::is_empty)
+        let targets = self.due.len();
+        self.due.iter().all(|due| *due == targets) && self.predecessors.iter().all(Vec::is_empty)
     }
 
     /// Whether a target may come next after those that have been visited, of which it is none;
@@ -117,10 +126,11 @@ impl OrderRules {
                 .all(|&before| visited[before])
     }
 
-    /// Whether the fixed places let a target take this one.
+    /// Whether the fixed places and the due dates let a target take this place.
     pub(super) fn admits_at(&self, place: usize, target: usize) -> bool {
         let free = self.positions[target].is_none() && self.holders[place].is_none();
-        free || self.positions[target] == Some(place)
+        let fixed_here = self.positions[target] == Some(place);
+        fixed_here || free && place < self.due[target]
     }
 
     /// Whether an order, or the beginning of one, keeps the rules. It names no target twice.

@@ -5,7 +5,8 @@ mod tree;
 
 use super::node::Node;
 use super::{
-    Evaluation, FlownOrder, SearchEnd, SearchObserver, SearchResult, SearchSettings, TourEvaluation, TourModel,
+    Evaluation, FlownOrder, SearchEnd, SearchObserver, SearchResult, SearchSettings,
+    TourEvaluation, TourModel,
 };
 use crate::pool::SolverPool;
 use crate::stop::{StopReason, StopSignal};

@@ -7,7 +7,7 @@ use crate::sequence::incumbents::Incumbents;
 use crate::sequence::node::Node;
 use crate::sequence::remainder::Remainder;
 use crate::sequence::{
-    FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
+    FlownOrder, OrderRules, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
 };
 use crate::stop::StopSignal;
 use std::collections::BTreeMap;
@@ -18,6 +18,10 @@ const CONTRADICTION_RELATIVE: f64 = 1e-6;
 /// All orders, each in exactly one place.
 pub(super) struct Tree {
     table: PairTable,
+    /// Whether orders are as good backwards.
+    symmetric: bool,
+    /// The orders that are searched: with symmetry half of those that are admitted.
+    rules: OrderRules,
     remainder: Remainder,
     frontier: Frontier,
     incumbents: Incumbents,
@@ -36,8 +40,15 @@ impl Tree {
     /// A tree in which nothing is open yet.
     pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings) -> Self {
         let table = PairTable::new(model);
+        let symmetric = model.is_symmetric();
+        let mut rules = table.rules().clone();
+        if let (true, Some(nearest)) = (symmetric, nearest_to_start(&table)) {
+            rules = rules.in_first_half(nearest);
+        }
         Self {
-            remainder: Remainder::new(&table),
+            symmetric,
+            remainder: Remainder::new(&table, &rules),
+            rules,
             frontier: Frontier::new(table.targets(), settings.frontier_bytes),
             incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
             candidates: BTreeMap::new(),
@@ -52,7 +63,7 @@ impl Tree {
     /// Orders worth flying first, but those that were flown.
     pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
         let mut orders = heuristics::candidates(&self.table, &self.remainder, stop);
-        orders.retain(|order| !self.candidates.contains_key(order));
+        orders.retain(|order| !self.candidates.contains_key(&self.either_way(order)));
         orders
     }
 
@@ -65,9 +76,10 @@ impl Tree {
         };
         self.statistics.tours += 1;
         match duration {
-            Some(duration_s) => self.offer(order.clone(), duration_s),
+            Some(duration_s) => self.offer(&order, duration_s),
             None => self.statistics.tours_unresolved += 1,
         }
+        let order = self.either_way(&order);
         self.candidates.insert(order, duration);
     }
 
@@ -116,7 +128,7 @@ impl Tree {
         let remaining = node.remaining(self.table.targets());
         let order =
             heuristics::complete(&self.table, &self.remainder, &node.prefix, &remaining, stop);
-        (!self.candidates.contains_key(&order)).then_some(order)
+        (!self.candidates.contains_key(&self.either_way(&order))).then_some(order)
     }
 
     /// Opens the children of a node.
@@ -124,7 +136,7 @@ impl Tree {
         let remaining = parent.remaining(self.table.targets());
         let children = pool.map(&remaining, |&next| {
             let prefix = [&*parent.prefix, &[next]].concat();
-            let admitted = self.table.rules().completable(&prefix);
+            let admitted = self.rules.admits(&prefix) && self.rules.completable(&prefix);
             admitted.then(|| self.child(parent, next, &remaining))
         });
         for child in children.into_iter().flatten() {
@@ -160,7 +172,7 @@ impl Tree {
     /// Opens a node unless it is decided already.
     fn admit(&mut self, node: Node) {
         if self.is_leaf(&node) {
-            match self.candidates.get(&node.prefix) {
+            match self.candidates.get(&self.either_way(&node.prefix)) {
                 Some(Some(duration_s)) => return self.check(&node, *duration_s),
                 Some(None) => return self.lose(node.bound),
                 None => {}
@@ -199,7 +211,7 @@ impl Tree {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
         self.check(node, duration_s);
-        self.offer(node.prefix.clone(), duration_s);
+        self.offer(&node.prefix, duration_s);
     }
 
     /// Takes in that a leaf did not resolve.
@@ -238,8 +250,25 @@ impl Tree {
         }
     }
 
-    fn offer(&mut self, order: Vec<usize>, duration_s: f64) {
-        self.improved |= self.incumbents.offer(FlownOrder { order, duration_s });
+    fn offer(&mut self, order: &[usize], duration_s: f64) {
+        let mut take_in = |order| {
+            self.improved |= self.incumbents.offer(FlownOrder { order, duration_s });
+        };
+        take_in(order.to_vec());
+        if self.symmetric {
+            take_in(order.iter().rev().copied().collect());
+        }
+    }
+
+    /// What an order and its reverse have in common: where they are equally good, the
+    /// lexicographically first of the two.
+    fn either_way(&self, order: &[usize]) -> Vec<usize> {
+        let reverse = order.iter().rev().copied().collect();
+        if self.symmetric {
+            order.to_vec().min(reverse)
+        } else {
+            order.to_vec()
+        }
     }
 
     /// Notes when an order is flown faster than its bound allows, beyond what a solver resolves.
@@ -293,4 +322,10 @@ impl Tree {
     pub(super) fn into_orders(self) -> Vec<FlownOrder> {
         self.incumbents.into_orders()
     }
+}
+
+/// The target of the least bound from the start, the first of equal ones.
+fn nearest_to_start(table: &PairTable) -> Option<usize> {
+    let far = |target: usize| table.bound(table.start(), target);
+    (0..table.targets()).min_by(|&a, &b| far(a).total_cmp(&far(b)))
 }

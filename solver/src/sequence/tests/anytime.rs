@@ -241,7 +241,8 @@ fn progress_never_goes_back() {
         let model = RandomModel::new(7, seed % 2 == 0, seed);
         let result = search(
             &model,
-            &[], &alternatives(2),
+            &[],
+            &alternatives(2),
             &pool(2),
             &StopSignal::new(),
             &recorder,

@@ -83,11 +83,19 @@ fn results_and_counts_do_not_depend_on_threads() {
             node_limit: (seed >= 4).then_some(50),
             ..alternatives(2)
         };
-        let reference = search(&model, &[], &settings, &pool(1), &StopSignal::new(), &Silent);
+        let reference = search(
+            &model,
+            &[],
+            &settings,
+            &pool(1),
+            &StopSignal::new(),
+            &Silent,
+        );
         for threads in [2, 3, 8] {
             let result = search(
                 &model,
-                &[], &settings,
+                &[],
+                &settings,
                 &pool(threads),
                 &StopSignal::new(),
                 &Silent,

@@ -39,5 +39,15 @@ def works(python):
     return python.exists() and subprocess.run(command, stderr=subprocess.DEVNULL).returncode == 0
 
 
+def enter():
+    """Goes on in the environment: the running script begins again there, once.
+
+    What needs the packages can be imported only after this.
+    """
+    python = interpreter()
+    if Path(sys.prefix).resolve() != folder().resolve():
+        os.execv(python, [python, *sys.argv])
+
+
 if __name__ == "__main__":
     print(interpreter())

@@ -29,9 +29,8 @@ import time
 from pathlib import Path
 
 import environment
+from slewplan import ROOT, binary, fixture
 
-ROOT = Path(__file__).resolve().parents[2]
-FIXTURE = ROOT / "tests" / "fixtures" / "olivares-c.json"
 ALL_TARGETS = 18
 PEERS = ["fatrop", "ipopt"]
 # The demands: fatrop's times by slewplan's, the sum of all 171 durations, s, and memory, MB.
@@ -41,15 +40,6 @@ MOST_SUM = 18_525.0
 MOST_MEMORY = 64
 # Durations of legs of one class agree to this share.
 SAME_DURATION = 1e-5
-
-
-def binary():
-    named = os.environ.get("SLEWPLAN")
-    if named:
-        return named
-    build = ["cargo", "build", "--release", "--locked", "--package", "slewplan-server"]
-    subprocess.run(build, cwd=ROOT, check=True)
-    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"), "release", "slewplan")
 
 
 class Slewplan:
@@ -215,7 +205,7 @@ def main():
     arguments = parser.parse_args()
     if arguments.judge and arguments.targets != ALL_TARGETS:
         parser.error("the demands are on all targets")
-    scenario = json.loads(FIXTURE.read_text(encoding="utf-8"))
+    scenario = fixture("olivares-c")
     scenario["targets"] = scenario["targets"][: arguments.targets]
     # The end of the experiment is its start once more.
     del scenario["end"]

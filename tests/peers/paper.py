@@ -83,9 +83,9 @@ def fly_readings():
     print(
         f"Fifth-degree Gauss-Lobatto collocation, two intervals a leg, best of {STARTS} starts:\n"
         f"published are {LEG[2]} s for {LEG[0]} to {LEG[1]} and {published} s for {' '.join(order)}.\n"
-        "Torques joined over the tour, a leg or an interval; those at inner points free or on a parabola;\n"
-        "quaternions of unit norm imposed or not. Flown with the torques of the solution, of which the\n"
-        "largest and the largest wheel speed by their limits; last by wheels that obey their limits.\n"
+        "Torques joined over the tour, a leg or an interval, at inner points free or on a parabola;\n"
+        "unit norm of quaternions imposed or free. Flown with the torques of the solution: largest\n"
+        "torque and wheel speed by their limits; last by wheels that obey these.\n"
         "joined   inner    norm   leg, s  tour, s  miss, deg  torque   speed  limited, deg"
     )
     solutions = []
@@ -104,7 +104,7 @@ def fly_readings():
             )
     _, reading, free, limited = min(solutions, key=lambda one: one[0])
     print(
-        f"\nThe nearest to both published figures ({' '.join(str(reading).split())}), target by target:\n"
+        f"\nNearest to both published figures ({' '.join(str(reading).split())}), by target:\n"
         "            s  miss, deg  rate z, rad/s   limited: miss, deg  rate z, rad/s"
     )
     for name, one, other in zip([*order, "end"], free[0], limited[0]):

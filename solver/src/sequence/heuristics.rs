@@ -16,8 +16,10 @@ const CONSTRUCTIONS: usize = 4;
 #[must_use]
 pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
     let table = PairTable::new(model);
-    let remainder = Remainder::new(&table, table.rules());
-    candidates(&table, &remainder, stop).into_iter().next()
+    let all: Vec<usize> = (0..table.targets()).collect();
+    improved_constructions(&table, &all, stop)
+        .into_iter()
+        .next()
 }
 
 /// A few different orders that are short in the pair table, best guess first.

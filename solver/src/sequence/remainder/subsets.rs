@@ -4,6 +4,7 @@
 //! `j` is any target that the rules admit once all but `R` have been visited; infinite where there
 //! is none.
 
+use super::EXACT_TARGETS;
 use crate::sequence::{OrderRules, PairTable};
 
 /// `rest(i, R)` for every target and every set of others, s.
@@ -46,18 +47,32 @@ impl SubsetTable {
     #[must_use]
     pub fn new(table: &PairTable, rules: &OrderRules) -> Self {
         let targets = table.targets();
-        let mut filled = Self {
-            targets,
-            rest: vec![f64::INFINITY; targets << targets],
-            admitted: Admitted::of(rules, targets),
-        };
+        let admitted = Admitted::of(rules, targets);
+        let mut rest = vec![f64::INFINITY; targets << targets];
+        let legs: Vec<[f64; EXACT_TARGETS]> = (0..targets)
+            .map(|from| row(targets, |to| table.bound(from, to)))
+            .collect();
+        for from in 0..targets {
+            rest[from] = table.bound(from, table.end());
+        }
         // A set is greater, as a number, than its subsets.
-        for set in 0..1_usize << targets {
+        for set in 1..1_usize << targets {
+            let after = row(targets, |to| {
+                if set & (1 << to) != 0 && admitted.next(to, set) {
+                    rest[(set & !(1 << to)) * targets + to]
+                } else {
+                    f64::INFINITY
+                }
+            });
             for from in (0..targets).filter(|from| set & (1 << from) == 0) {
-                filled.rest[set * targets + from] = filled.shortest(table, from, set);
+                rest[set * targets + from] = least_sum(&legs[from], &after);
             }
         }
-        filled
+        Self {
+            targets,
+            rest,
+            admitted,
+        }
     }
 
     /// `rest(from, set)` out of the entries of smaller sets.
@@ -111,6 +126,30 @@ impl SubsetTable {
         }
         order
     }
+}
+
+/// A number for every target, and infinity beyond the last.
+fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; EXACT_TARGETS] {
+    let mut row = [f64::INFINITY; EXACT_TARGETS];
+    for (to, slot) in row.iter_mut().enumerate().take(targets) {
+        *slot = entry(to);
+    }
+    row
+}
+
+/// The least sum of two entries at the same place; four at a time, which halves the time that the
+/// whole table takes.
+fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
+    let mut least = [f64::INFINITY; 4];
+    for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
+        for lane in 0..4 {
+            let sum = a[lane] + b[lane];
+            if sum < least[lane] {
+                least[lane] = sum;
+            }
+        }
+    }
+    least.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// The set of some targets.

@@ -1,0 +1,160 @@
+//! What the search of the order costs: random schedules of all sizes, solved and drawn.
+//!
+//! ```text
+//! order_costs exact [SECONDS]                 4 to 20 targets, until proved or so long (default 120)
+//! order_costs anytime [SECONDS ...]           25 to 200 targets, stopped after each of these times
+//! order_costs one REGION RATES TARGETS SEED SECONDS THREADS
+//! order_costs draw DIRECTORY                  what the two have printed, from standard input
+//! ```
+//!
+//! Measurements are one line of comma-separated values each, so that a run can be interrupted,
+//! joined with another, and drawn later.
+
+mod drawing;
+
+use slewplan_solver::legs::NoStore;
+use slewplan_solver::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::planner::{self, Run};
+use slewplan_solver::progress::{Observer, Progress};
+use slewplan_solver::scenario::Scenario;
+use slewplan_solver::stop::StopSignal;
+use slewplan_tests::schedules::{Rates, Region, schedule};
+use slewplan_tests::solving::pool;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+/// Seeds of the schedules that are proved; of those that are not, the first alone.
+const SEEDS: std::ops::Range<u64> = 1..4;
+const EXACT_SIZES: [usize; 9] = [4, 6, 8, 10, 12, 14, 16, 18, 20];
+const ANYTIME_SIZES: [usize; 4] = [25, 50, 100, 200];
+const FAMILIES: [(Region, Rates); 4] = [
+    (Region::Sphere, Rates::AllZero),
+    (Region::Strip, Rates::AllZero),
+    (Region::Sphere, Rates::ZeroAboutZ),
+    (Region::Strip, Rates::ZeroAboutZ),
+];
+
+/// Columns of the measurements.
+const HEADER: &str = "mode,region,rates,targets,seed,limit_s,wall_s,first_s,total_s,bound_s,gap,\
+                      status,kind,nodes,nlps";
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["draw", directory] => drawing::draw(directory),
+        ["exact", limit @ ..] => {
+            let limit = limit.first().map_or(120.0, |text| number(text));
+            println!("{HEADER}");
+            for (region, rates) in FAMILIES {
+                for targets in EXACT_SIZES {
+                    for seed in SEEDS {
+                        measure("exact", region, rates, targets, seed, limit, 2);
+                    }
+                }
+            }
+        }
+        ["anytime", limits @ ..] => {
+            println!("{HEADER}");
+            for (region, rates) in FAMILIES {
+                for targets in ANYTIME_SIZES {
+                    for limit in limits {
+                        measure("anytime", region, rates, targets, 1, number(limit), 2);
+                    }
+                }
+            }
+        }
+        ["one", region, rates, targets, seed, limit, threads] => {
+            let region = match *region {
+                "sphere" => Region::Sphere,
+                _ => Region::Strip,
+            };
+            let rates = match *rates {
+                "all" => Rates::AllZero,
+                _ => Rates::ZeroAboutZ,
+            };
+            let (targets, threads) = (number(targets) as usize, number(threads) as usize);
+            println!("{HEADER}");
+            measure(
+                "one",
+                region,
+                rates,
+                targets,
+                number(seed) as u64,
+                number(limit),
+                threads,
+            );
+        }
+        _ => eprintln!("exact [SECONDS], anytime [SECONDS ...], one ..., or draw DIRECTORY"),
+    }
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().expect("a number")
+}
+
+/// Solves a schedule and prints what it took.
+fn measure(
+    mode: &str,
+    region: Region,
+    rates: Rates,
+    targets: usize,
+    seed: u64,
+    limit: f64,
+    threads: usize,
+) {
+    let mut spec = schedule(region, rates, targets, seed);
+    spec.options.time_limit_s = Some(limit);
+    spec.options.alternatives = 0;
+    let scenario = Scenario::try_new(&spec).expect("valid").scenario;
+    let first = FirstPlan {
+        begin: Instant::now(),
+        after_s: OnceLock::new(),
+    };
+    let run = Run {
+        pool: &pool(threads),
+        stop: &StopSignal::new(),
+        observer: &first,
+        legs: &NoStore,
+    };
+    let outcome = planner::solve(&scenario, run);
+    let wall = first.begin.elapsed().as_secs_f64();
+    let row = format!("{mode},{region:?},{rates:?},{targets},{seed},{limit},{wall:.3}");
+    let Outcome::Planned(plan) = outcome else {
+        return println!("{row},,,,,none,,,");
+    };
+    let first = first.after_s.get().unwrap_or(&wall);
+    println!("{row},{first:.3},{}", described(&plan));
+}
+
+/// The columns that tell of a plan.
+fn described(plan: &Plan) -> String {
+    let status = match plan.optimality {
+        Optimality::Optimal => "optimal",
+        Optimality::Feasible => "feasible",
+    };
+    format!(
+        "{:.3},{:.3},{:.5},{status},{},{},{}",
+        plan.total_time_s,
+        plan.lower_bound_s,
+        plan.relative_gap,
+        plan.lower_bound_kind.as_str(),
+        plan.statistics.nodes_explored,
+        plan.statistics.nlp_solves
+    )
+}
+
+/// Notes when the first plan comes.
+struct FirstPlan {
+    begin: Instant,
+    after_s: OnceLock<f64>,
+}
+
+impl Observer for FirstPlan {
+    fn progress(&self, _: Progress) {}
+
+    fn incumbent(&self, _: &Plan) {
+        self.after_s
+            .get_or_init(|| self.begin.elapsed().as_secs_f64());
+    }
+}

@@ -14,6 +14,8 @@ use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+/// What the order of additions does to a duration.
+const ROUNDING_OF_SUMS: f64 = 1e-13;
 /// Certified bounds are rounded down to six digits at least.
 const ROUNDING: f64 = 1e-6;
 
@@ -204,7 +206,8 @@ impl Conclusions<'_> {
             Some(certified) if certified >= enough => {
                 (certified.min(total), LowerBoundKind::Certified)
             }
-            _ => (other.min(total), kind),
+            _ if other >= total * (1.0 - ROUNDING_OF_SUMS) => (total, kind),
+            _ => (other, kind),
         }
     }
 }

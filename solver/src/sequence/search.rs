@@ -82,7 +82,7 @@ pub fn search(
     };
     for flown in known {
         let answer = TourEvaluation::Flown(flown.duration_s);
-        search.tree.record_candidate(flown.order.clone(), answer);
+        search.tree.record_candidate(&flown.order, answer);
     }
     let mut end = search.fly_candidates();
     while end.is_none() {
@@ -104,7 +104,7 @@ impl Search<'_> {
         let mut interrupted = false;
         for (order, answer) in candidates.into_iter().zip(answers) {
             interrupted |= answer == TourEvaluation::Stopped;
-            self.tree.record_candidate(order, answer);
+            self.tree.record_candidate(&order, answer);
         }
         self.tree.plant();
         interrupted.then(|| self.stopped())
@@ -131,7 +131,7 @@ impl Search<'_> {
             interrupted |= answer.is_stopped();
             match task {
                 Task::Node(node) => self.merge(node, answer),
-                Task::Probe(order) => self.merge_probe(order, answer),
+                Task::Probe(order) => self.merge_probe(&order, answer),
             }
         }
         self.tree.tidy();
@@ -194,7 +194,7 @@ impl Search<'_> {
     }
 
     /// Puts the answer to a probe into the tree.
-    fn merge_probe(&mut self, order: Vec<usize>, answer: Answer) {
+    fn merge_probe(&mut self, order: &[usize], answer: Answer) {
         if let Answer::Tour(answer) = answer {
             self.tree.record_candidate(order, answer);
         }

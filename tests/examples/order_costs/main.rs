@@ -3,7 +3,7 @@
 //! ```text
 //! order_costs exact [SECONDS]                 4 to 20 targets, until proved or so long (default 120)
 //! order_costs anytime [SECONDS ...]           25 to 200 targets, stopped after each of these times
-//! order_costs one REGION RATES TARGETS SEED SECONDS THREADS
+//! order_costs one FAMILY TARGETS SEED SECONDS THREADS        FAMILY 0 to 3, see below
 //! order_costs draw DIRECTORY                  what the two have printed, from standard input
 //! ```
 //!
@@ -20,6 +20,7 @@ use slewplan_solver::scenario::Scenario;
 use slewplan_solver::stop::StopSignal;
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::pool;
+use std::str::FromStr;
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -44,67 +45,74 @@ fn main() {
     match words.as_slice() {
         ["draw", directory] => drawing::draw(directory),
         ["exact", limit @ ..] => {
-            let limit = limit.first().map_or(120.0, |text| number(text));
+            let limit_s = limit.first().map_or(120.0, |text| number(text));
             println!("{HEADER}");
-            for (region, rates) in FAMILIES {
+            for family in FAMILIES {
                 for targets in EXACT_SIZES {
                     for seed in SEEDS {
-                        measure("exact", region, rates, targets, seed, limit, 2);
+                        measure(&Case {
+                            mode: "exact",
+                            family,
+                            targets,
+                            seed,
+                            limit_s,
+                            threads: 2,
+                        });
                     }
                 }
             }
         }
         ["anytime", limits @ ..] => {
             println!("{HEADER}");
-            for (region, rates) in FAMILIES {
+            for family in FAMILIES {
                 for targets in ANYTIME_SIZES {
                     for limit in limits {
-                        measure("anytime", region, rates, targets, 1, number(limit), 2);
+                        measure(&Case {
+                            mode: "anytime",
+                            family,
+                            targets,
+                            seed: SEEDS.start,
+                            limit_s: number(limit),
+                            threads: 2,
+                        });
                     }
                 }
             }
         }
-        ["one", region, rates, targets, seed, limit, threads] => {
-            let region = match *region {
-                "sphere" => Region::Sphere,
-                _ => Region::Strip,
-            };
-            let rates = match *rates {
-                "all" => Rates::AllZero,
-                _ => Rates::ZeroAboutZ,
-            };
-            let (targets, threads) = (number(targets) as usize, number(threads) as usize);
+        ["one", family, targets, seed, limit, threads] => {
             println!("{HEADER}");
-            measure(
-                "one",
-                region,
-                rates,
-                targets,
-                number(seed) as u64,
-                number(limit),
-                threads,
-            );
+            measure(&Case {
+                mode: "one",
+                family: FAMILIES[number::<usize>(family) % FAMILIES.len()],
+                targets: number(targets),
+                seed: number(seed),
+                limit_s: number(limit),
+                threads: number(threads),
+            });
         }
         _ => eprintln!("exact [SECONDS], anytime [SECONDS ...], one ..., or draw DIRECTORY"),
     }
 }
 
-fn number(text: &str) -> f64 {
-    text.parse().expect("a number")
+fn number<T: FromStr>(text: &str) -> T {
+    text.parse().ok().expect("a number")
+}
+
+/// What is measured.
+struct Case<'a> {
+    mode: &'a str,
+    family: (Region, Rates),
+    targets: usize,
+    seed: u64,
+    limit_s: f64,
+    threads: usize,
 }
 
 /// Solves a schedule and prints what it took.
-fn measure(
-    mode: &str,
-    region: Region,
-    rates: Rates,
-    targets: usize,
-    seed: u64,
-    limit: f64,
-    threads: usize,
-) {
-    let mut spec = schedule(region, rates, targets, seed);
-    spec.options.time_limit_s = Some(limit);
+fn measure(case: &Case<'_>) {
+    let (region, rates) = case.family;
+    let mut spec = schedule(region, rates, case.targets, case.seed);
+    spec.options.time_limit_s = Some(case.limit_s);
     spec.options.alternatives = 0;
     let scenario = Scenario::try_new(&spec).expect("valid").scenario;
     let first = FirstPlan {
@@ -112,14 +120,21 @@ fn measure(
         after_s: OnceLock::new(),
     };
     let run = Run {
-        pool: &pool(threads),
+        pool: &pool(case.threads),
         stop: &StopSignal::new(),
         observer: &first,
         legs: &NoStore,
     };
     let outcome = planner::solve(&scenario, run);
     let wall = first.begin.elapsed().as_secs_f64();
-    let row = format!("{mode},{region:?},{rates:?},{targets},{seed},{limit},{wall:.3}");
+    let Case {
+        mode,
+        targets,
+        seed,
+        limit_s,
+        ..
+    } = case;
+    let row = format!("{mode},{region:?},{rates:?},{targets},{seed},{limit_s},{wall:.3}");
     let Outcome::Planned(plan) = outcome else {
         return println!("{row},,,,,none,,,");
     };

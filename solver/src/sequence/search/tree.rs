@@ -68,7 +68,7 @@ impl Tree {
     }
 
     /// Takes in an order flown before the search reached it.
-    pub(super) fn record_candidate(&mut self, order: Vec<usize>, answer: TourEvaluation) {
+    pub(super) fn record_candidate(&mut self, order: &[usize], answer: TourEvaluation) {
         let duration = match answer {
             TourEvaluation::Stopped => return,
             TourEvaluation::Unresolved => None,
@@ -76,10 +76,10 @@ impl Tree {
         };
         self.statistics.tours += 1;
         match duration {
-            Some(duration_s) => self.offer(&order, duration_s),
+            Some(duration_s) => self.offer(order, duration_s),
             None => self.statistics.tours_unresolved += 1,
         }
-        let order = self.either_way(&order);
+        let order = self.either_way(order);
         self.candidates.insert(order, duration);
     }
 

@@ -63,7 +63,7 @@ pub struct Plan {
     pub relative_gap: f64,
     /// What the bound rests on.
     pub lower_bound_kind: LowerBoundKind,
-    /// No plan is shorter than this, s, in any order of the targets (of a plan whose order was given:
+    /// No plan is shorter than this, s, in any order that the scenario admits (of a plan whose order was given:
     /// in that order), proved: the shortest sum of the certified bounds of its legs with settle and
     /// dwell. `None` where no slew is bounded.
     pub certified_lower_bound_s: Option<f64>,

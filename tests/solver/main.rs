@@ -7,6 +7,7 @@ mod fixed_order;
 mod infeasible;
 mod invariance;
 mod oracle;
+mod order_rules;
 mod published;
 mod random_suite;
 mod stopping;

@@ -23,7 +23,7 @@ pub(crate) struct PlanDocument<'a> {
     lower_bound_s: Option<Number>,
     relative_gap: Option<Number>,
     lower_bound_kind: Option<&'static str>,
-    /// No plan takes less, s, in any order of the targets, proved: the shortest sum of the
+    /// No plan takes less, s, in any order that the targets' demands admit, proved: the shortest sum of the
     /// `certified_lower_bound_s` of legs through all targets, with settle and dwell. `null` where no
     /// leg has such a bound.
     certified_lower_bound_s: Option<Number>,

@@ -28,7 +28,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct PlanClaims {
     /// Its legs.
     pub legs: Vec<LegClaim>,
-    /// No tour takes less, s, in any order; `None` where nothing is claimed.
+    /// No tour takes less, s, in any order that the scenario admits; `None` where nothing is claimed.
     pub lower_bound_s: Option<f64>,
     /// How long the plan takes, s, when it says so.
     pub total_time_s: Option<f64>,

@@ -144,6 +144,10 @@ pub struct Leg {
     pub certified_lower_bound_s: Option<f64>,
     /// Time of the rest-to-rest slew about the eigenaxis, s, when that slew can be flown.
     pub eigenaxis_duration_s: Option<f64>,
+    /// Least time of the slew from rest to rest between the same attitudes, s: what the slew would
+    /// take if it stood alone. `None` when it was not solved, as in plans of searches that were
+    /// stopped or go on.
+    pub rest_to_rest_duration_s: Option<f64>,
     /// How the NLP that shaped this leg ended.
     pub solver_status: String,
 }
@@ -197,7 +201,7 @@ pub struct Verification {
     pub failures: Vec<String>,
 }
 
-/// How much work a solve was; never part of a comparison between plans.
+/// How much work a solve was, and how it went; never part of a comparison between plans.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics {
     /// Wall-clock time, s.
@@ -206,10 +210,57 @@ pub struct Statistics {
     pub nodes_explored: u64,
     /// NLPs solved, all starts counted.
     pub nlp_solves: u64,
+    /// The same by kind.
+    pub nlp_solves_by_kind: NlpSolves,
+    /// What became of the nodes of the search.
+    pub search: SearchWork,
+    /// Every plan that was better than those before, and last the one that was returned.
+    pub history: Vec<Milestone>,
     /// Legs solved.
     pub legs_solved: u64,
     /// Legs taken from a cache.
     pub legs_from_cache: u64,
     /// Worker threads.
     pub threads: usize,
+}
+
+/// NLPs solved, all starts counted, by what they were solved for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NlpSolves {
+    /// Single slews.
+    pub legs: u64,
+    /// Several slews at once, coupled where rates are free: beginnings of orders and whole ones.
+    pub segments: u64,
+}
+
+/// What became of the nodes of the search.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SearchWork {
+    /// Beginnings of orders evaluated.
+    pub prefixes: u64,
+    /// Beginnings whose evaluation did not converge.
+    pub prefixes_unresolved: u64,
+    /// Whole orders evaluated.
+    pub tours: u64,
+    /// Whole orders whose evaluation did not converge.
+    pub tours_unresolved: u64,
+    /// Nodes pruned by the table of legs alone.
+    pub pruned_by_table: u64,
+    /// Nodes pruned by their own evaluation.
+    pub pruned_by_prefix: u64,
+    /// Nodes pruned when a better order was found.
+    pub pruned_by_incumbent: u64,
+    /// Nodes dropped for want of memory.
+    pub dropped_for_memory: u64,
+}
+
+/// A moment at which a better plan was known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Milestone {
+    /// Wall-clock time since the beginning, s.
+    pub time_s: f64,
+    /// Duration of the best plan then, s.
+    pub total_time_s: f64,
+    /// Its lower bound then, s.
+    pub lower_bound_s: f64,
 }

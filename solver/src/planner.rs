@@ -14,6 +14,7 @@ mod tables;
 mod torques;
 mod tours;
 mod verified;
+mod work;
 
 use crate::legs::{LegKind, LegStore};
 use crate::nlp::{Interruption, NlpStatus};
@@ -94,7 +95,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let certified = tour_bound(&places, &bounds, run.pool, &stop);
     solver.tell_bound(certified);
     let tours = Tours::new(&places, &solver, &bounds, &stop);
-    let conclusions = Conclusions::new(&tours, certified, run, begin);
+    let mut conclusions = Conclusions::new(&tours, certified, run, begin);
     let first = first_tour(&tours, &stop);
     conclusions.announce(first.as_ref());
     tours.know(solver.table(LegKind::LowerBound, &pairs));
@@ -107,7 +108,10 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let known: Vec<_> = first.into_iter().collect();
     let found = search(&tours, &known, &settings, run.pool, &stop, &conclusions);
     match &found.best {
-        Some(best) => conclusions.outcome(best, &found),
+        Some(best) => {
+            conclusions.compare_with_rest(best);
+            conclusions.outcome(best, &found)
+        }
         None if stop.is_set() => Outcome::StoppedEmpty,
         None => Outcome::Failed(unsolved(&tours)),
     }

@@ -40,11 +40,27 @@ fn two_targets_are_solved_to_optimality_with_a_complete_document() {
     for leg in plan["legs"].as_array().expect("a list") {
         let figure = |name: &str| leg[name].as_f64().expect("a number");
         let least = figure("certified_lower_bound_s");
+        let rest = figure("rest_to_rest_duration_s");
+        assert!(
+            rest > 0.0 && rest <= figure("eigenaxis_duration_s") * (1.0 + 1e-6),
+            "{leg}"
+        );
         assert!(
             least > 0.0 && least <= figure("duration_s") * (1.0 + 1e-6),
             "{leg}"
         );
     }
+    let work = &plan["statistics"];
+    let by_kind = &work["nlp_solves_by_kind"];
+    let count = |value: &Value| value.as_u64().expect("a count");
+    assert_eq!(
+        count(&work["nlp_solves"]),
+        count(&by_kind["legs"]) + count(&by_kind["segments"])
+    );
+    let history = work["history"].as_array().expect("a list");
+    let last = history.last().expect("the plan itself");
+    assert_eq!(last["total_time_s"], plan["total_time_s"]);
+    assert_eq!(last["lower_bound_s"], plan["lower_bound_s"]);
     assert_eq!(plan["sequence"].as_array().expect("a list").len(), 2);
     assert_eq!(plan["legs"].as_array().expect("a list").len(), 3);
     assert_eq!(plan["reasons"], serde_json::json!([]));

@@ -4,7 +4,7 @@
 //! the figures here are those of the same problems solved on fine grids.
 
 use slewplan_solver::legs::LegKind;
-use slewplan_solver::plan::{Optimality, Plan};
+use slewplan_solver::plan::{Optimality, Plan, Statistics};
 use slewplan_solver::planner::{LegRow, Shard, leg_table};
 use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
 use slewplan_tests::solving::{on_threads, order_of, plan_of, scenario_of};
@@ -47,6 +47,40 @@ fn experiment_a_is_solved_proven_and_flown() {
     assert_eq!(plan.optimality, Optimality::Optimal);
     assert!(plan.relative_gap.abs() <= f64::EPSILON);
     assert_flown_within_tolerances(&plan);
+    assert_saves_against_rest(&plan);
+    assert_work_adds_up(&plan.statistics);
+    let last = plan.statistics.history.last().expect("a last entry");
+    assert!((last.total_time_s - plan.total_time_s).abs() <= 0.0);
+    assert!((last.lower_bound_s - plan.lower_bound_s).abs() <= 0.0);
+}
+
+/// Each slew is fastest alone from rest to rest, and the tour is faster still.
+fn assert_saves_against_rest(plan: &Plan) {
+    let mut all_at_rest = 0.0;
+    for leg in &plan.legs {
+        let rest = leg.rest_to_rest_duration_s.expect("a solved slew");
+        let turn = leg.eigenaxis_duration_s.expect("a flyable turn");
+        assert!(rest <= turn * (1.0 + 1e-6), "{leg:?}");
+        all_at_rest += rest;
+    }
+    let saved = 1.0 - plan.total_time_s / all_at_rest;
+    assert!((0.01..0.03).contains(&saved), "{all_at_rest} s at rest");
+}
+
+fn assert_work_adds_up(work: &Statistics) {
+    let by_kind = work.nlp_solves_by_kind;
+    assert_eq!(work.nlp_solves, by_kind.legs + by_kind.segments);
+    assert!(by_kind.legs > 0 && by_kind.segments > 0);
+    let search = work.search;
+    assert!(search.tours > 0 && search.pruned_by_table + search.pruned_by_incumbent > 0);
+    assert_eq!(search.dropped_for_memory, 0);
+    let times: Vec<_> = work.history.iter().map(|then| then.time_s).collect();
+    assert!(times.is_sorted() && times.last() <= Some(&work.wall_time_s));
+    let pairs = work.history.windows(2);
+    for then in pairs {
+        assert!(then[1].total_time_s <= then[0].total_time_s);
+        assert!(then[1].lower_bound_s >= then[0].lower_bound_s);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Stop requests and limits: what is known so far is returned, and soon.
 
-use slewplan_solver::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::plan::{Leg, Optimality, Outcome, Plan};
 use slewplan_solver::planner::{self, Run};
 use slewplan_solver::progress::{Observer, Progress, Stage};
 use slewplan_solver::scenario::Scenario;
@@ -76,7 +76,11 @@ fn a_stop_in_the_search_ends_soon_with_the_best_plan_and_its_bound() {
         progress.stage == Stage::Search && progress.incumbent_s.is_some()
     });
     assert!(took < SOON, "{took:?}");
-    assert_honest(&planned(outcome));
+    let plan = planned(outcome);
+    assert_honest(&plan);
+    // Nothing more is solved, only to be compared with.
+    let compared = |leg: &Leg| leg.rest_to_rest_duration_s.is_some();
+    assert!(!plan.legs.iter().any(compared));
 }
 
 #[test]
@@ -88,6 +92,12 @@ fn a_node_limit_stops_at_the_same_plan_for_any_number_of_threads() {
         [1, 2].map(|count| planned(on_threads(count, |run| planner::solve(&scenario, run))));
     assert_honest(&one);
     assert_eq!(one.flight, two.flight);
+    assert_eq!(one.legs, two.legs);
+    assert!(
+        one.legs
+            .iter()
+            .all(|leg| leg.rest_to_rest_duration_s.is_some())
+    );
     assert!((one.lower_bound_s - two.lower_bound_s).abs() <= 0.0);
     assert_eq!(one.statistics.nodes_explored, 5);
 }

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use slewplan_solver::attitude::Attitude;
 use slewplan_solver::plan::{
-    Alternative, Control, Flight, Leg, LowerBoundKind, Margins, Optimality, Passage, Plan, State,
-    Statistics, Verification,
+    Alternative, Control, Flight, Leg, LowerBoundKind, Margins, Milestone, NlpSolves, Optimality,
+    Passage, Plan, SearchWork, State, Statistics, Verification,
 };
 
 /// Two targets, 30 s, three wheels; `b` has 5 s of dwell.
@@ -37,9 +37,28 @@ pub(crate) fn plan() -> Plan {
         verification: verification(),
         statistics: Statistics {
             threads: 2,
+            nlp_solves: 7,
+            nlp_solves_by_kind: NlpSolves {
+                legs: 4,
+                segments: 3,
+            },
+            search: SearchWork {
+                pruned_by_table: 5,
+                dropped_for_memory: 1,
+                ..SearchWork::default()
+            },
+            history: vec![milestone(0.5, 31.0, 28.0), milestone(2.0, 30.0, 30.0)],
             ..Statistics::default()
         },
         warnings: Vec::new(),
+    }
+}
+
+fn milestone(time_s: f64, total_time_s: f64, lower_bound_s: f64) -> Milestone {
+    Milestone {
+        time_s,
+        total_time_s,
+        lower_bound_s,
     }
 }
 
@@ -69,6 +88,7 @@ fn leg(from: &str, to: &str, start_s: f64, duration_s: f64) -> Leg {
         duration_s,
         certified_lower_bound_s: Some(duration_s),
         eigenaxis_duration_s: Some(12.0),
+        rest_to_rest_duration_s: Some(11.0),
         solver_status: "converged".into(),
     }
 }

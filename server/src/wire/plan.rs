@@ -8,11 +8,13 @@ use slewplan_solver::problem::Problem;
 use utoipa::ToSchema;
 
 mod parts;
+mod statistics;
 
 pub(crate) use parts::{
     ControlDocument, MarginsDocument, QuaternionDocument, VerificationDocument,
 };
-use parts::{LegDocument, PassageDocument, StateDocument, StatisticsDocument};
+use parts::{LegDocument, PassageDocument, StateDocument};
+use statistics::StatisticsDocument;
 
 /// The answer of `solve`. All times are `null` and all lists empty when there is no plan.
 #[derive(Debug, Default, Serialize, ToSchema)]
@@ -171,6 +173,22 @@ mod tests {
         assert_eq!(value["trajectory"]["states"][1]["quaternion"]["x"], 0.0);
         assert_eq!(value["statistics"]["version"], env!("CARGO_PKG_VERSION"));
         assert_eq!(value["verification"]["passed"], true);
+        assert_eq!(value["legs"][2]["rest_to_rest_duration_s"], 11.0);
+        let work = &value["statistics"];
+        let by_kind = serde_json::json!({"legs": 4, "segments": 3});
+        assert_eq!(work["nlp_solves_by_kind"], by_kind);
+        assert_eq!(
+            (&work["pruned_by_table"], &work["dropped_for_memory"]),
+            (&5.into(), &1.into())
+        );
+        let last = serde_json::json!({"time_s": 2.0, "total_time_s": 30.0, "lower_bound_s": 30.0});
+        assert_eq!(
+            (
+                work["history"].as_array().map(Vec::len),
+                &work["history"][1]
+            ),
+            (Some(2), &last)
+        );
         assert_eq!(value["margins"]["wheel_speed"], Value::Null);
     }
 

@@ -61,6 +61,7 @@ impl Assembly<'_> {
             duration_s: duration,
             certified_lower_bound_s: self.tours.certified.bound(from, to),
             eigenaxis_duration_s: self.eigenaxis_duration(from, to),
+            rest_to_rest_duration_s: None,
             solver_status: flown.status.as_str().into(),
         });
     }

@@ -2,14 +2,19 @@
 
 use super::Run;
 use super::assemble::assemble;
+use super::tables::LegTable;
 use super::tours::Tours;
+use super::work::{History, search_work};
 use crate::checker;
+use crate::legs::LegKind;
 use crate::plan::{
-    Alternative, Flight, Leg, LowerBoundKind, Optimality, Outcome, Plan, Statistics,
+    Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Statistics,
 };
 use crate::problem::{Code, Problem};
 use crate::progress::{Progress, Stage};
-use crate::sequence::{FlownOrder, Incumbent, SearchObserver, SearchResult, SearchStatistics};
+use crate::sequence::{
+    FlownOrder, Incumbent, Place, SearchObserver, SearchResult, SearchStatistics,
+};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -29,6 +34,9 @@ pub(super) struct Conclusions<'a> {
     /// The order whose flight was verified last, with that flight: a search that is stopped has its
     /// plan at once.
     last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
+    /// The legs of the final order from rest to rest.
+    rest: Option<LegTable>,
+    history: History,
 }
 
 /// A flight that has passed its verification.
@@ -53,6 +61,8 @@ impl<'a> Conclusions<'a> {
             run,
             begin,
             last: Mutex::default(),
+            rest: None,
+            history: History::since(begin),
         }
     }
 
@@ -66,6 +76,17 @@ impl<'a> Conclusions<'a> {
                 statistics: SearchStatistics::default(),
             });
         }
+    }
+
+    /// Solves the legs of the final order from rest to rest, to be compared with in its plan; not
+    /// when the solve is to stop.
+    pub(super) fn compare_with_rest(&mut self, order: &FlownOrder) {
+        if self.tours.stop.is_set() {
+            return;
+        }
+        let route = self.tours.places.route(&order.order, true);
+        let pairs: Vec<_> = route.windows(2).map(|leg| (leg[0], leg[1])).collect();
+        self.rest = Some(self.tours.legs.late_table(LegKind::RestToRest, &pairs));
     }
 
     /// The plan of the best order of a search that has ended.
@@ -141,11 +162,13 @@ impl<'a> Conclusions<'a> {
         let scenario = self.tours.places.scenario;
         let VerifiedFlight {
             flight,
-            legs,
+            mut legs,
             report,
         } = self.verified(&order.best.order)?;
         let total = flight.total_time_s;
         let (bound, lower_bound_kind) = self.bound(order.lower_bound_s, kind, total);
+        let route = self.tours.places.route(&order.best.order, true);
+        self.add_rest(&mut legs, &route);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
         Ok(Plan {
             optimality,
@@ -171,23 +194,38 @@ impl<'a> Conclusions<'a> {
             states: report.states,
             margins: report.margins,
             verification: report.verification,
-            statistics: self.statistics(&order.statistics),
+            statistics: Statistics {
+                history: self.history.with(total, bound),
+                ..self.statistics(&order.statistics)
+            },
             warnings: doubts(order).into_iter().chain(report.keep_out).collect(),
         })
     }
 }
 
 impl Conclusions<'_> {
-    /// The work so far.
+    /// The work so far, without its history.
     fn statistics(&self, search: &SearchStatistics) -> Statistics {
-        let [legs_solved, legs_from_cache, leg_solves] = self.tours.legs.work();
+        let [legs_solved, legs_from_cache, legs] = self.tours.legs.work();
+        let segments = self.tours.solves.load(Ordering::Relaxed);
         Statistics {
             wall_time_s: self.begin.elapsed().as_secs_f64(),
             nodes_explored: search.nodes_explored,
-            nlp_solves: leg_solves + self.tours.solves.load(Ordering::Relaxed),
+            nlp_solves: legs + segments,
+            nlp_solves_by_kind: NlpSolves { legs, segments },
+            search: search_work(search),
+            history: Vec::new(),
             legs_solved,
             legs_from_cache,
             threads: self.run.pool.threads(),
+        }
+    }
+
+    /// Puts the legs from rest to rest beside those of a route.
+    fn add_rest(&self, legs: &mut [Leg], route: &[Place]) {
+        let Some(table) = &self.rest else { return };
+        for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
+            leg.rest_to_rest_duration_s = table.duration(pair[0], pair[1]);
         }
     }
 
@@ -224,6 +262,7 @@ impl SearchObserver for Conclusions<'_> {
         // One that does not fly is kept back; the end of the search tells if it stays the best.
         let kind = LowerBoundKind::NlpRelaxation;
         if let Ok(plan) = self.plan(incumbent, Optimality::Feasible, kind) {
+            self.history.note(&plan.statistics.history);
             self.run.observer.incumbent(&plan);
         }
     }

@@ -15,7 +15,8 @@ use std::time::Instant;
 /// Where the bound on the tours along a given order comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoundFrom {
-    /// The certified bounds of its legs: nothing is solved for it.
+    /// The certified bounds of its legs: nothing is solved for it, and the plan has no legs from rest
+    /// to rest to compare with.
     Certificates,
     /// Its legs with free ends, solved one by one: tighter, for about the same work again.
     Legs,
@@ -89,7 +90,11 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
             // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            Conclusions::new(&tours, certified, run, begin).given(&flown, lower_bound_s)
+            let mut conclusions = Conclusions::new(&tours, certified, run, begin);
+            if bound == BoundFrom::Legs {
+                conclusions.compare_with_rest(&flown);
+            }
+            conclusions.given(&flown, lower_bound_s)
         }
         TourEvaluation::Stopped => Outcome::StoppedEmpty,
         TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),

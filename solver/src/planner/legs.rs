@@ -91,8 +91,22 @@ impl<'a> LegSolver<'a> {
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
     /// out of the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+        self.fill(kind, pairs, |done, total| self.tell(done, Some(total)))
+    }
+
+    /// The same, without telling of a stage that is over.
+    pub(super) fn late_table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+        self.fill(kind, pairs, |_, _| {})
+    }
+
+    fn fill(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+        tell: impl Fn(u64, u64) + Sync,
+    ) -> LegTable {
         let canonical = self.canonical(kind, pairs);
-        self.solve_missing(kind, &canonical);
+        self.solve_missing(kind, &canonical, tell);
         let known = lock(&self.known);
         let entry = |canonical: &CanonicalLeg| {
             Some(TabledLeg {
@@ -162,7 +176,12 @@ impl<'a> LegSolver<'a> {
         })
     }
 
-    fn solve_missing(&self, kind: LegKind, canonical: &[CanonicalLeg]) {
+    fn solve_missing(
+        &self,
+        kind: LegKind,
+        canonical: &[CanonicalLeg],
+        tell: impl Fn(u64, u64) + Sync,
+    ) {
         let missing = missing_from(&lock(&self.known), canonical);
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
@@ -171,7 +190,7 @@ impl<'a> LegSolver<'a> {
                 let (solved, from_store) = self.find(kind, leg);
                 self.remember(leg, &Arc::new(solved), from_store);
             }
-            self.tell(done.fetch_add(1, Relaxed) + 1, Some(total));
+            tell(done.fetch_add(1, Relaxed) + 1, total);
         });
     }
 

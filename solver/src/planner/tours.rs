@@ -65,7 +65,7 @@ pub(super) struct Tours<'a> {
     free: OnceLock<LegTable>,
     /// Whether orders are as good backwards.
     symmetric: bool,
-    stop: &'a StopSignal,
+    pub(super) stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
     segments: Segments,
 }

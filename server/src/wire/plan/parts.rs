@@ -3,7 +3,7 @@
 use crate::wire::number::Number;
 use serde::Serialize;
 use slewplan_solver::attitude::Attitude;
-use slewplan_solver::plan::{Control, Leg, Margins, Passage, State, Statistics, Verification};
+use slewplan_solver::plan::{Control, Leg, Margins, Passage, State, Verification};
 use utoipa::ToSchema;
 
 /// A unit quaternion, scalar part `w`.
@@ -40,7 +40,12 @@ pub(super) struct LegDocument<'a> {
     /// there, proved, as part of whatever tour: rates that the plan chose where they are free are not
     /// used. `null` where nothing is proved: with stored momentum, or without limits of speed.
     certified_lower_bound_s: Option<Number>,
+    /// The slew about the eigenaxis, rest to rest; `null` where that cannot be flown.
     eigenaxis_duration_s: Option<Number>,
+    /// The fastest slew from rest to rest between the same attitudes; `null` where it was not solved,
+    /// as in plans of searches that were stopped or go on. What `duration_s` saves against it comes
+    /// of rates that the conditions leave free.
+    rest_to_rest_duration_s: Option<Number>,
     solver_status: &'a str,
 }
 
@@ -53,6 +58,7 @@ impl<'a> From<&'a Leg> for LegDocument<'a> {
             duration_s: Number(leg.duration_s),
             certified_lower_bound_s: leg.certified_lower_bound_s.map(Number),
             eigenaxis_duration_s: leg.eigenaxis_duration_s.map(Number),
+            rest_to_rest_duration_s: leg.rest_to_rest_duration_s.map(Number),
             solver_status: &leg.solver_status,
         }
     }
@@ -190,32 +196,6 @@ impl<'a> From<&'a Verification> for VerificationDocument<'a> {
             max_rate_excess: Number(found.max_rate_excess),
             integrator: &found.integrator,
             failures: &found.failures,
-        }
-    }
-}
-
-#[derive(Debug, Serialize, ToSchema)]
-#[schema(as = Statistics)]
-pub(super) struct StatisticsDocument {
-    wall_time_s: Number,
-    nodes_explored: u64,
-    nlp_solves: u64,
-    legs_solved: u64,
-    legs_from_cache: u64,
-    threads: usize,
-    version: &'static str,
-}
-
-impl From<&Statistics> for StatisticsDocument {
-    fn from(work: &Statistics) -> Self {
-        Self {
-            wall_time_s: Number(work.wall_time_s),
-            nodes_explored: work.nodes_explored,
-            nlp_solves: work.nlp_solves,
-            legs_solved: work.legs_solved,
-            legs_from_cache: work.legs_from_cache,
-            threads: work.threads,
-            version: env!("CARGO_PKG_VERSION"),
         }
     }
 }

@@ -5,7 +5,7 @@ mod exactness;
 mod models;
 mod rules;
 
-pub(super) use models::RandomModel;
+pub(super) use models::{RandomModel, unit};
 
 use super::{Incumbent, SearchObserver, SearchResult, SearchSettings, TourModel, search};
 use crate::pool::SolverPool;

@@ -1,183 +1,308 @@
-//! 2-opt and Or-opt over the pair table, first improvement, for tables that need not be symmetric.
+//! 2-opt, Or-opt and exchanges of segments (Croes 1958, Or 1976, Kanellakis and Papadimitriou 1980)
+//! with lists of neighbours and don't-look bits (Bentley 1992).
+//!
+//! A move removes some joints between places and makes as many others. If it helps, then at one of
+//! the removed joints a place gets a joint that costs less than the one it loses. So the move is
+//! found from that place although only the nearest others are tried there, and only those nearer
+//! than what is removed costs. A place where nothing helped is not looked at again until one of its
+//! joints changes: till then it is not `waiting`.
 
-use crate::sequence::PairTable;
+use super::cost::OrderCost;
+use super::neighbours::Neighbours;
+use super::path::{Move, Path};
 use crate::stop::StopSignal;
+use std::collections::VecDeque;
 
 /// A move must shorten the order by this share of its length, lest rounding makes it go in circles.
 const LEAST_GAIN: f64 = 1e-9;
 /// Longest segment that Or-opt moves, the length that the literature settled on.
 const LONGEST_SEGMENT: usize = 3;
-/// Improving moves per target at most; local search needs a few, and must not run for ever.
-const MOVES_PER_TARGET: usize = 50;
 
-/// The way through the targets of an order with start and end attached and the lengths of all its beginnings both ways, so that
-/// any segment is measured in constant time.
-struct Path<'a> {
-    table: &'a PairTable,
-    /// What was visited before the first place.
-    visited: &'a [usize],
-    places: Vec<usize>,
-    /// Length from the first place to each, s.
-    forth: Vec<f64>,
-    /// Length of the way back from each to the first, s.
-    back: Vec<f64>,
+/// Says whether the rules allow an order.
+pub(in crate::sequence) type Admits<'a> = &'a (dyn Fn(&[usize]) -> bool + Sync);
+
+/// Which order is sought.
+pub(in crate::sequence) struct OrderTask<'a, C> {
+    /// What orders cost.
+    pub(in crate::sequence) cost: &'a C,
+    /// The place before the order.
+    pub(in crate::sequence) from: usize,
+    /// The rules, if there are any.
+    pub(in crate::sequence) admits: Option<Admits<'a>>,
 }
 
-/// What a move does to the places.
-enum Move {
-    /// Reverse the places from the first to the last of these positions.
-    Reverse(usize, usize),
-    /// Move the segment between the two positions to just after the third, reversed or not.
-    Shift(usize, usize, usize, bool),
+/// A path on its way to a local minimum.
+pub(super) struct LocalSearch<'a, C> {
+    pub(super) path: Path<'a, C>,
+    neighbours: Neighbours,
+    admits: Option<Admits<'a>>,
+    waiting: VecDeque<usize>,
+    is_waiting: Vec<bool>,
+    least_gain: f64,
 }
 
-/// Shortens the way from the end of a prefix through the remaining targets to the end until no move
-/// helps or the solve is stopped. Moves that break the rules are refused.
-pub(super) fn improve(
-    table: &PairTable,
-    prefix: &[usize],
-    order: Vec<usize>,
-    stop: &StopSignal,
-) -> Vec<usize> {
-    let limit = MOVES_PER_TARGET * order.len();
-    let mut path = Path::new(table, prefix, order);
-    for _ in 0..limit {
-        if stop.is_set() {
-            break;
-        }
-        let Some(step) = path.reversal().or_else(|| path.shift()) else {
-            break;
-        };
-        path.apply(&step);
-    }
-    path.into_order()
+/// The best move so far and what it adds, s.
+struct Choice {
+    step: Option<Move>,
+    change: f64,
 }
 
-impl<'a> Path<'a> {
-    fn new(table: &'a PairTable, prefix: &'a [usize], order: Vec<usize>) -> Self {
-        let mut places = order;
-        places.insert(0, table.last_place(prefix));
-        places.push(table.end());
-        let mut path = Self {
-            table,
-            visited: prefix,
-            places,
-            forth: Vec::new(),
-            back: Vec::new(),
-        };
-        path.measure();
-        path
-    }
-
-    fn into_order(mut self) -> Vec<usize> {
-        self.places.pop();
-        self.places.remove(0);
-        self.places
-    }
-
-    fn measure(&mut self) {
-        let (mut forth, mut back) = (0.0, 0.0);
-        self.forth = vec![0.0];
-        self.back = vec![0.0];
-        for leg in self.places.windows(2) {
-            forth += self.table.bound(leg[0], leg[1]);
-            back += self.table.bound(leg[1], leg[0]);
-            self.forth.push(forth);
-            self.back.push(back);
+impl<'a, C: OrderCost> LocalSearch<'a, C> {
+    /// Begins at an order that the rules, where there are any, allow.
+    pub(super) fn new(task: &OrderTask<'a, C>, order: &[usize]) -> Self {
+        let path = Path::new(task.cost, task.from, order);
+        Self {
+            neighbours: Neighbours::new(path.legs(), path.places()),
+            admits: task.admits,
+            waiting: path.places().iter().copied().collect(),
+            is_waiting: vec![true; task.cost.targets() + 2],
+            least_gain: LEAST_GAIN * path.length(),
+            path,
         }
     }
 
-    /// Leg between the places at two positions, s.
-    fn leg(&self, from: usize, to: usize) -> f64 {
-        self.table.bound(self.places[from], self.places[to])
-    }
-
-    /// What turning a segment round adds to its inside, s.
-    fn turning(&self, first: usize, last: usize) -> f64 {
-        (self.back[last] - self.back[first]) - (self.forth[last] - self.forth[first])
-    }
-
-    fn helps(&self, change: f64) -> bool {
-        change < -LEAST_GAIN * self.forth[self.forth.len() - 1]
-    }
-
-    /// The first reversal that helps.
-    fn reversal(&self) -> Option<Move> {
-        let end = self.places.len() - 1;
-        for first in 1..end {
-            for last in first + 1..end {
-                let change = self.leg(first - 1, last) + self.leg(first, last + 1)
-                    - self.leg(first - 1, first)
-                    - self.leg(last, last + 1)
-                    + self.turning(first, last);
-                let step = Move::Reverse(first, last);
-                if self.helps(change) && self.admits(&step) {
-                    return Some(step);
+    /// Makes moves that help until there is none or the solve is stopped; says what they add to the
+    /// cost, s, and tells of each.
+    pub(super) fn settle(&mut self, stop: &StopSignal, mut moved: impl FnMut(Move)) -> f64 {
+        let mut sum = 0.0;
+        while let Some(place) = self.waiting.pop_front() {
+            self.is_waiting[place] = false;
+            while let Some((step, change)) = self.best_move_at(place) {
+                if stop.is_set() {
+                    return sum;
                 }
+                self.make(step);
+                moved(step);
+                sum += change;
             }
         }
+        sum
+    }
+
+    /// Makes `c b a` of three adjacent segments `a b c` of these lengths, the first of which begins
+    /// at a position, and says what it adds to the cost, s; unless the rules refuse it.
+    ///
+    /// Four joints change: the double bridge (Martin, Otto and Felten 1991).
+    pub(super) fn bridge(&mut self, first: usize, lengths: [usize; 3]) -> Option<f64> {
+        let [a, b, c] = lengths;
+        let change = self.swap(first, a, b + c) + self.swap(first, b, c);
+        if self.admits.is_none_or(|admits| admits(self.path.order())) {
+            return Some(change);
+        }
+        self.swap(first, c, b);
+        self.swap(first, b + c, a);
         None
     }
 
-    /// The first shift of a short segment that helps.
-    fn shift(&self) -> Option<Move> {
-        let end = self.places.len() - 1;
-        for first in 1..end {
-            for last in first..(first + LONGEST_SEGMENT).min(end) {
-                let closing = self.leg(first - 1, last + 1)
-                    - self.leg(first - 1, first)
-                    - self.leg(last, last + 1);
-                for after in (0..first - 1).chain(last + 1..end) {
-                    let opening = closing - self.leg(after, after + 1);
-                    let kept = self.leg(after, first) + self.leg(last, after + 1);
-                    let step = Move::Shift(first, last, after, false);
-                    if self.helps(opening + kept) && self.admits(&step) {
-                        return Some(step);
-                    }
-                    let turned = self.leg(after, last) + self.leg(first, after + 1);
-                    let step = Move::Shift(first, last, after, true);
-                    let change = opening + turned + self.turning(first, last);
-                    if self.helps(change) && self.admits(&step) {
-                        return Some(step);
-                    }
-                }
-            }
-        }
-        None
-    }
-
-    /// Whether the order keeps the rules after a move.
-    fn admits(&self, step: &Move) -> bool {
-        let rules = self.table.rules();
-        let moved = || {
-            let mut places = self.places.clone();
-            step.apply(&mut places);
-            [self.visited, &places[1..places.len() - 1]].concat()
+    /// Exchanges two adjacent segments of these lengths, the first of which begins at a position,
+    /// and says what it adds to the cost, s.
+    fn swap(&mut self, first: usize, length: usize, other: usize) -> f64 {
+        let step = Move::Exchange {
+            first,
+            middle: first + length - 1,
+            last: first + length + other - 1,
+            turn_first: false,
+            turn_second: false,
         };
-        rules.is_free() || rules.admits(&moved())
+        let change = self.path.change(step);
+        self.make(step);
+        change
     }
 
-    fn apply(&mut self, step: &Move) {
-        step.apply(&mut self.places);
-        self.measure();
+    /// Makes a move; the places at its joints are looked at again.
+    fn make(&mut self, step: Move) {
+        self.path.apply(step);
+        let (first, last) = step.range().into_inner();
+        self.wait(first - 1);
+        self.wait(first);
+        if let Move::Exchange { middle, .. } = step {
+            // Where the two segments meet now.
+            let meet = first + (last - middle);
+            self.wait(meet - 1);
+            self.wait(meet);
+        }
+        self.wait(last);
+        self.wait(last + 1);
     }
-}
 
-impl Move {
-    fn apply(&self, places: &mut Vec<usize>) {
-        match *self {
-            Self::Reverse(first, last) => places[first..=last].reverse(),
-            Self::Shift(first, last, after, turned) => {
-                let mut segment: Vec<usize> = places.drain(first..=last).collect();
-                if turned {
-                    segment.reverse();
+    fn wait(&mut self, position: usize) {
+        let place = self.path.places()[position];
+        if !self.is_waiting[place] {
+            self.is_waiting[place] = true;
+            self.waiting.push_back(place);
+        }
+    }
+
+    /// The move at a place that helps most.
+    fn best_move_at(&mut self, place: usize) -> Option<(Move, f64)> {
+        let mut choice = Choice {
+            step: None,
+            change: -self.least_gain,
+        };
+        self.reversals(place, &mut choice);
+        self.shifts(place, &mut choice);
+        self.exchanges(place, &mut choice);
+        choice.step.map(|step| (step, choice.change))
+    }
+
+    fn consider(&mut self, step: Move, choice: &mut Choice) {
+        let change = self.path.change(step);
+        let admits = self.admits;
+        if change < choice.change
+            && admits.is_none_or(|admits| self.path.preview(step, |order| admits(order)))
+        {
+            choice.change = change;
+            choice.step = Some(step);
+        }
+    }
+
+    /// Replaces the joint after or before a place by one to a near place, and turns round what lies
+    /// between.
+    fn reversals(&mut self, place: usize, choice: &mut Choice) {
+        let here = self.path.position(place);
+        let end = self.path.places().len() - 1;
+        for after in [true, false] {
+            if here == if after { end } else { 0 } {
+                continue;
+            }
+            let removed = self.path.joint(if after { here } else { here - 1 });
+            for nth in 0..self.neighbours.of(place).len() {
+                let near = self.neighbours.of(place)[nth];
+                if self.path.legs().edge(place, near) >= removed {
+                    break;
                 }
-                let gap = if after < first {
-                    after + 1
+                let there = self.path.position(near);
+                let (low, high) = (here.min(there), here.max(there));
+                let (first, last) = if after {
+                    (low + 1, high)
                 } else {
-                    after + 1 - segment.len()
+                    (low, high - 1)
                 };
-                places.splice(gap..gap, segment);
+                if first < last && first > 0 && last < end {
+                    self.consider(Move::Reverse(first, last), choice);
+                }
+            }
+        }
+    }
+
+    /// Moves a short segment that begins or ends at a place to a near place.
+    fn shifts(&mut self, place: usize, choice: &mut Choice) {
+        let here = self.path.position(place);
+        let end = self.path.places().len() - 1;
+        for length in 1..=LONGEST_SEGMENT {
+            for begins in [true, false] {
+                // A single place is a segment that begins and ends there.
+                if here == 0 || here == end || (length == 1 && !begins) {
+                    continue;
+                }
+                let first = if begins {
+                    here
+                } else {
+                    (here + 1).saturating_sub(length)
+                };
+                let last = first + length - 1;
+                if first > 0 && last < end {
+                    self.shifts_of(first, last, place, choice);
+                }
+            }
+        }
+    }
+
+    fn shifts_of(&mut self, first: usize, last: usize, place: usize, choice: &mut Choice) {
+        let end = self.path.places().len() - 1;
+        let removed = self.path.joint(first - 1) + self.path.joint(last)
+            - self
+                .path
+                .legs()
+                .leg(self.path.places()[first - 1], self.path.places()[last + 1]);
+        for nth in 0..self.neighbours.of(place).len() {
+            let near = self.neighbours.of(place)[nth];
+            if self.path.legs().edge(place, near) >= removed {
+                break;
+            }
+            let there = self.path.position(near);
+            if (first..=last).contains(&there) {
+                continue;
+            }
+            // Into the gap before or after the near place, such that the two come together.
+            for before in [true, false] {
+                if there == if before { 0 } else { end } {
+                    continue;
+                }
+                let gap = if before { there } else { there + 1 };
+                let turn = (self.path.position(place) == first) == before && first != last;
+                if gap < first {
+                    self.consider(
+                        Move::Exchange {
+                            first: gap,
+                            middle: first - 1,
+                            last,
+                            turn_first: false,
+                            turn_second: turn,
+                        },
+                        choice,
+                    );
+                } else if gap > last + 1 {
+                    self.consider(
+                        Move::Exchange {
+                            first,
+                            middle: last,
+                            last: gap - 1,
+                            turn_first: turn,
+                            turn_second: false,
+                        },
+                        choice,
+                    );
+                }
+            }
+        }
+    }
+
+    /// Goes on from a place to a near one and exchanges two segments of any length without turning
+    /// them (Kanellakis and Papadimitriou 1980).
+    ///
+    /// With the joints after the positions `i`, `j` and `k` removed, the places there are followed
+    /// by the ones that followed those at `j`, `k` and `i`. That is one path again when the three
+    /// ascend, cyclically.
+    fn exchanges(&mut self, place: usize, choice: &mut Choice) {
+        let i = self.path.position(place);
+        let end = self.path.places().len() - 1;
+        if i == end {
+            return;
+        }
+        let next = self.path.places()[i + 1];
+        let removed = self.path.joint(i);
+        for nth in 0..self.neighbours.of(place).len() {
+            let near = self.neighbours.of(place)[nth];
+            let gain = removed - self.path.legs().edge(place, near);
+            if gain <= 0.0 {
+                break;
+            }
+            let there = self.path.position(near);
+            if there == 0 || there == i + 1 {
+                continue;
+            }
+            let j = there - 1;
+            let gain = gain + self.path.joint(j);
+            for nth in 0..self.neighbours.of(next).len() {
+                let tail = self.neighbours.of(next)[nth];
+                if self.path.legs().edge(tail, next) >= gain {
+                    break;
+                }
+                let k = self.path.position(tail);
+                let ascending = [(i, j, k), (j, k, i), (k, i, j)]
+                    .into_iter()
+                    .find(|(a, b, c)| a < b && b < c);
+                if let Some((a, b, c)) = ascending.filter(|&(_, _, c)| c < end) {
+                    let step = Move::Exchange {
+                        first: a + 1,
+                        middle: b,
+                        last: c,
+                        turn_first: false,
+                        turn_second: false,
+                    };
+                    self.consider(step, choice);
+                }
             }
         }
     }

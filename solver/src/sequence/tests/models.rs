@@ -1,23 +1,11 @@
 //! Cost models in place of slews.
 
+pub(super) use crate::sequence::heuristics::SplitMix;
 use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
 
-/// A small generator of reproducible numbers (Steele, Lea and Flood 2014).
-pub(super) struct SplitMix(pub(super) u64);
-
-impl SplitMix {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// A whole number below another.
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        (self.unit() * count as f64) as usize
-    }
+/// A number in `[0, 1)`.
+pub(in crate::sequence) fn unit(random: &mut SplitMix) -> f64 {
+    (random.draw() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// Legs with random costs, and a random penalty on every two consecutive legs.
@@ -40,14 +28,16 @@ pub(in crate::sequence) struct RandomModel {
 impl RandomModel {
     pub(in crate::sequence) fn new(targets: usize, has_end: bool, seed: u64) -> Self {
         let places = targets + 2;
-        let mut random = SplitMix(seed);
+        let mut random = SplitMix::new(seed);
         Self {
             targets,
             has_end,
             legs: (0..places * places)
-                .map(|_| 10.0 + 40.0 * random.unit())
+                .map(|_| 10.0 + 40.0 * unit(&mut random))
                 .collect(),
-            penalties: (0..places.pow(3)).map(|_| 15.0 * random.unit()).collect(),
+            penalties: (0..places.pow(3))
+                .map(|_| 15.0 * unit(&mut random))
+                .collect(),
             rules: OrderRules::none(targets),
             known_share: 0.7,
             fails: |_| false,

@@ -42,7 +42,7 @@ fn feasible_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
 
 #[test]
 fn a_completion_is_found_exactly_where_there_is_one() {
-    let mut random = SplitMix(5);
+    let mut random = SplitMix::new(5);
     let (mut found, mut none) = (0, 0);
     for case in 0..600 {
         let targets = 1 + case % 6;
@@ -67,7 +67,7 @@ fn a_completion_is_found_exactly_where_there_is_one() {
 
 #[test]
 fn an_order_is_admitted_when_each_of_its_steps_is() {
-    let mut random = SplitMix(6);
+    let mut random = SplitMix::new(6);
     for _ in 0..200 {
         let rules = any_rules(5, &mut random);
         for order in permutations(5) {
@@ -85,7 +85,7 @@ fn an_order_is_admitted_when_each_of_its_steps_is() {
 #[test]
 fn the_search_finds_the_best_of_the_admitted_orders() {
     let pool = pool(2);
-    let mut random = SplitMix(7);
+    let mut random = SplitMix::new(7);
     let mut restricted = 0;
     for seed in 0..300 {
         let targets = 2 + (seed % 6) as usize;
@@ -115,7 +115,7 @@ fn the_search_finds_the_best_of_the_admitted_orders() {
 
 #[test]
 fn subsets_give_the_shortest_admitted_path_and_trees_do_not_exceed_it() {
-    let mut random = SplitMix(8);
+    let mut random = SplitMix::new(8);
     for seed in 0..60 {
         let targets = 5;
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
@@ -145,7 +145,7 @@ fn subsets_give_the_shortest_admitted_path_and_trees_do_not_exceed_it() {
 
 #[test]
 fn orders_flown_early_keep_the_rules_whatever_their_number() {
-    let mut random = SplitMix(9);
+    let mut random = SplitMix::new(9);
     let stop = StopSignal::new();
     for seed in 0..12 {
         let targets = if seed % 3 == 0 { 9 } else { 30 };

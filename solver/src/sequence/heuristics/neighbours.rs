@@ -1,0 +1,36 @@
+//! The places nearest to each place.
+
+use super::cost::Legs;
+
+/// So many of them: seven are a quarter faster and as good on symmetric legs, and worse on others.
+const NEIGHBOURS: usize = 10;
+
+/// For every place the nearest others, nearest first.
+#[derive(Debug)]
+pub(super) struct Neighbours {
+    width: usize,
+    nearest: Vec<usize>,
+}
+
+impl Neighbours {
+    /// Sorts the places of a path, of which there are at least three.
+    pub(super) fn new(legs: &Legs, places: &[usize]) -> Self {
+        let count = places.iter().max().map_or(0, |greatest| greatest + 1);
+        let width = NEIGHBOURS.min(places.len() - 1);
+        let mut nearest = vec![0; count * width];
+        for &place in places {
+            let mut others: Vec<usize> = places.iter().copied().filter(|&p| p != place).collect();
+            others.sort_by(|&a, &b| {
+                let far = |other| legs.edge(place, other);
+                far(a).total_cmp(&far(b)).then(a.cmp(&b))
+            });
+            nearest[place * width..][..width].copy_from_slice(&others[..width]);
+        }
+        Self { width, nearest }
+    }
+
+    /// The nearest places.
+    pub(super) fn of(&self, place: usize) -> &[usize] {
+        &self.nearest[place * self.width..][..self.width]
+    }
+}

@@ -170,6 +170,7 @@ impl<'a> Conclusions<'a> {
         let route = self.tours.places.route(&order.best.order, true);
         self.add_rest(&mut legs, &route);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
+        let history = self.history.with(total, bound);
         Ok(Plan {
             optimality,
             total_time_s: total,
@@ -195,7 +196,7 @@ impl<'a> Conclusions<'a> {
             margins: report.margins,
             verification: report.verification,
             statistics: Statistics {
-                history: self.history.with(total, bound),
+                history,
                 ..self.statistics(&order.statistics)
             },
             warnings: doubts(order).into_iter().chain(report.keep_out).collect(),

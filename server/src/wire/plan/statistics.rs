@@ -52,6 +52,7 @@ struct NlpSolvesDocument {
 /// A moment at which a better plan was known.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Milestone)]
+#[expect(clippy::struct_field_names, reason = "the postfix is the unit")]
 struct MilestoneDocument {
     /// Wall-clock time since the beginning.
     time_s: Number,

@@ -47,6 +47,7 @@
 //! nodes explored before, evaluates them in parallel and merges the answers in that order. Unless
 //! the search is stopped from outside, nothing in the result depends on the number of threads.
 
+pub mod charges;
 mod exhaustive;
 mod frontier;
 mod heuristics;
@@ -80,12 +81,12 @@ pub enum Place {
     End,
 }
 
-/// Answer of [`TourModel::prefix_bound`].
+/// Answer of [`TourModel::prefix_bound`] and [`TourModel::triple_bound`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Evaluation {
     /// The lower bound, s.
     Value(f64),
-    /// The evaluation did not converge; nothing is known beyond the parent's bound.
+    /// The evaluation did not converge; nothing is known beyond what was known before.
     Unresolved,
     /// The evaluation was interrupted by the stop signal.
     Stopped,
@@ -131,6 +132,15 @@ pub trait TourModel: Sync {
     /// prefix has at least two targets and lacks at least two: the pair bound of the first leg is
     /// taken to be all that can be said of one target, and with one left the order is flown.
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
+
+    /// Lower bound, s, of the time from leaving `from` to leaving `to` by way of the target `via`,
+    /// in any tour; settling and dwelling at `via` and `to` are included. Expensive. The three
+    /// differ; the start only comes first and a prescribed end only last.
+    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation;
+
+    /// Whether the slews before and after a target influence each other. Where they do not, a
+    /// triple bound is the sum of two pair bounds and is not asked for.
+    fn couples(&self, via: usize) -> bool;
 
     /// Flies a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;

@@ -90,6 +90,15 @@ impl TourModel for CertifiedTours<'_> {
         Evaluation::Value(self.along(&self.places.route(prefix, false)))
     }
 
+    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
+        Evaluation::Value(self.along(&[from, Place::Target(via), to]))
+    }
+
+    /// The bound of a slew does not ask what comes before and after it.
+    fn couples(&self, _: usize) -> bool {
+        false
+    }
+
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         TourEvaluation::Flown(self.along(&self.places.route(order, true)))
     }

@@ -297,6 +297,12 @@ impl<'a> Tours<'a> {
         (waypoints, vec![self.intervals(); route.len() - 1])
     }
 
+    /// Whether a leg flown backwards is the leg between its ends exchanged.
+    fn is_reversible(&self, leg: &[Place; 2]) -> bool {
+        let ends = leg.map(|place| self.places.waypoint(place));
+        self.places.reversible(ends.each_ref())
+    }
+
     /// Duration of a route with settle and dwell, or how its solve failed.
     fn duration(&self, route: &[Place], extent: Extent) -> Result<f64, NlpStatus> {
         let mut total: f64 = route
@@ -344,6 +350,36 @@ impl TourModel for Tours<'_> {
             Err(status) if status.is_interrupted() => Evaluation::Stopped,
             Err(_) => Evaluation::Unresolved,
         }
+    }
+
+    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
+        let mut route = [from, Place::Target(via), to];
+        let legs = [[route[0], route[1]], [route[1], route[2]]];
+        // Staying is no slew that another could couple with.
+        if legs.iter().any(|leg| self.places.coincide(leg[0], leg[1])) {
+            return Evaluation::Value(
+                legs.map(|[from, to]| self.pair_bound(from, to))
+                    .iter()
+                    .sum(),
+            );
+        }
+        // Backwards it is the same flight: it is remembered under one route.
+        if let (Place::Target(i), Place::Target(k)) = (from, to)
+            && k < i
+            && legs.iter().all(|leg| self.is_reversible(leg))
+        {
+            route.reverse();
+        }
+        match self.duration(&route) {
+            Ok(duration) => Evaluation::Value(duration - self.places.service_time(from)),
+            Err(status) if status.is_interrupted() => Evaluation::Stopped,
+            Err(_) => Evaluation::Unresolved,
+        }
+    }
+
+    fn couples(&self, via: usize) -> bool {
+        let waypoint = self.places.waypoint(Place::Target(via));
+        !waypoint.is_fixed(&self.places.dynamics)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {

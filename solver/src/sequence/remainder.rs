@@ -1,5 +1,6 @@
 //! The least time from a place through all remaining targets, bounded from below by the pair table.
 
+pub(super) mod least_tree;
 mod spanning_tree;
 mod subsets;
 
@@ -11,6 +12,30 @@ use super::{OrderRules, PairTable};
 /// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 160 MiB and a quarter
 /// of a second for twenty targets, half of the one and of the other for every target less.
 pub const EXACT_TARGETS: usize = 20;
+
+/// Costs of legs between places numbered as in [`PairTable`], s.
+pub trait LegCosts {
+    /// Number of targets.
+    fn targets(&self) -> usize;
+
+    /// Cost of a leg.
+    fn cost(&self, from: usize, to: usize) -> f64;
+
+    /// Number of the end.
+    fn end(&self) -> usize {
+        self.targets() + 1
+    }
+}
+
+impl LegCosts for PairTable {
+    fn targets(&self) -> usize {
+        Self::targets(self)
+    }
+
+    fn cost(&self, from: usize, to: usize) -> f64 {
+        self.bound(from, to)
+    }
+}
 
 /// Bounds what comes after a prefix.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! The search against exhaustive enumeration, on cost models that couple neighbouring legs.
 
 mod anytime;
+mod charges;
 mod exactness;
 mod models;
 mod rules;

@@ -12,6 +12,7 @@
 //!    leg at `j` and `2 p_j` be taken off. Any prices are valid; good ones, found once for the whole
 //!    set by subgradient ascent, push the tree towards a path.
 
+use super::least_tree::{cheapest, least_tree};
 use crate::sequence::PairTable;
 
 /// Steps of the ascent; at 0.97 per step the last is a tenth of a percent of the first.
@@ -50,7 +51,7 @@ impl SpanningTrees {
             prices: vec![0.0; targets],
         };
         let all: Vec<usize> = (0..targets).collect();
-        let tree = trees.least_tree(table, table.start(), &all);
+        let tree = trees.outer_tree(table, table.start(), &all);
         let mut best = (tree.bound, trees.prices.clone());
         let mut step = FIRST_STEP * tree.bound.abs() / (targets + 1) as f64;
         let mut degrees = tree.degrees;
@@ -58,7 +59,7 @@ impl SpanningTrees {
             for (price, &degree) in trees.prices.iter_mut().zip(&degrees) {
                 *price += step * (f64::from(degree) - 2.0);
             }
-            let tree = trees.least_tree(table, table.start(), &all);
+            let tree = trees.outer_tree(table, table.start(), &all);
             if tree.bound > best.0 {
                 best = (tree.bound, trees.prices.clone());
             }
@@ -69,17 +70,27 @@ impl SpanningTrees {
         trees
     }
 
+    /// What every leg into a target is relieved of, s.
+    pub(in crate::sequence) fn charges(&self) -> &[f64] {
+        &self.charges
+    }
+
+    /// What every leg at a target is raised by, s.
+    pub(in crate::sequence) fn prices(&self) -> &[f64] {
+        &self.prices
+    }
+
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.
     #[must_use]
     pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
         if remaining.is_empty() {
             return table.bound(from, table.end());
         }
-        self.least_tree(table, from, remaining).bound.max(0.0)
+        self.outer_tree(table, from, remaining).bound.max(0.0)
     }
 
-    /// Prim's algorithm over the remaining targets, of which there is at least one.
-    fn least_tree(&self, table: &PairTable, from: usize, remaining: &[usize]) -> Tree {
+    /// The least tree over the remaining targets, of which there is at least one.
+    fn outer_tree(&self, table: &PairTable, from: usize, remaining: &[usize]) -> Tree {
         let count = remaining.len();
         let mut degrees = vec![0; count];
         let mut bound: f64 = remaining
@@ -97,26 +108,11 @@ impl SpanningTrees {
             degrees[outer.0] += 1;
             bound += outer.1;
         }
-        // For each target outside the tree: the lightest edge into the tree and where it ends.
-        let mut link = vec![(f64::INFINITY, 0); count];
-        let mut outside: Vec<usize> = (1..count).collect();
-        let mut joined = 0;
-        while !outside.is_empty() {
-            let mut nearest = 0;
-            for (place, &other) in outside.iter().enumerate() {
-                let weight = self.edge(remaining[joined], remaining[other]);
-                if weight < link[other].0 {
-                    link[other] = (weight, joined);
-                }
-                if link[other].0 < link[outside[nearest]].0 {
-                    nearest = place;
-                }
-            }
-            joined = outside.swap_remove(nearest);
-            let (weight, inside) = link[joined];
-            bound += weight;
-            degrees[joined] += 1;
-            degrees[inside] += 1;
+        let edge = |a: usize, b: usize| self.edge(remaining[a], remaining[b]);
+        for edge in least_tree(count, edge) {
+            bound += edge.weight;
+            degrees[edge.ends[0]] += 1;
+            degrees[edge.ends[1]] += 1;
         }
         Tree { bound, degrees }
     }
@@ -148,16 +144,4 @@ fn entry_charges(table: &PairTable) -> Vec<f64> {
             skew / targets as f64
         })
         .collect()
-}
-
-/// Place in the list and weight of the lightest target; the first among equals.
-fn cheapest(remaining: &[usize], weight: impl Fn(usize) -> f64) -> (usize, f64) {
-    let mut best = (0, f64::INFINITY);
-    for (place, &target) in remaining.iter().enumerate() {
-        let weight = weight(target);
-        if weight < best.1 {
-            best = (place, weight);
-        }
-    }
-    best
 }

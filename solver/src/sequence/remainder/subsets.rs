@@ -4,8 +4,8 @@
 //! `j` is any target that the rules admit once all but `R` have been visited; infinite where there
 //! is none.
 
-use super::EXACT_TARGETS;
-use crate::sequence::{OrderRules, PairTable};
+use super::{EXACT_TARGETS, LegCosts};
+use crate::sequence::OrderRules;
 
 /// `rest(i, R)` for every target and every set of others, s.
 #[derive(Debug)]
@@ -45,15 +45,15 @@ impl Admitted {
 impl SubsetTable {
     /// Fills the table for the orders that some rules admit: `n^2 2^n` steps.
     #[must_use]
-    pub fn new(table: &PairTable, rules: &OrderRules) -> Self {
-        let targets = table.targets();
+    pub fn new(costs: &impl LegCosts, rules: &OrderRules) -> Self {
+        let targets = costs.targets();
         let admitted = Admitted::of(rules, targets);
         let mut rest = vec![f64::INFINITY; targets << targets];
         let legs: Vec<[f64; EXACT_TARGETS]> = (0..targets)
-            .map(|from| row(targets, |to| table.bound(from, to)))
+            .map(|from| row(targets, |to| costs.cost(from, to)))
             .collect();
         for from in 0..targets {
-            rest[from] = table.bound(from, table.end());
+            rest[from] = costs.cost(from, costs.end());
         }
         // A set is greater, as a number, than its subsets.
         for set in 1..1_usize << targets {
@@ -76,21 +76,21 @@ impl SubsetTable {
     }
 
     /// `rest(from, set)` out of the entries of smaller sets.
-    fn shortest(&self, table: &PairTable, from: usize, set: usize) -> f64 {
+    fn shortest(&self, costs: &impl LegCosts, from: usize, set: usize) -> f64 {
         if set == 0 {
-            return table.bound(from, table.end());
+            return costs.cost(from, costs.end());
         }
-        self.next(table, from, set)
+        self.next(set, |to| costs.cost(from, to))
             .map_or(f64::INFINITY, |(_, rest)| rest)
     }
 
     /// The best next target, the smallest index among equals, and the time it leads to.
-    fn next(&self, table: &PairTable, from: usize, set: usize) -> Option<(usize, f64)> {
+    fn next(&self, set: usize, leg: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
         (0..self.targets)
             .filter(|to| set & (1 << to) != 0 && self.admitted.next(*to, set))
             .map(|to| {
                 let after = self.rest[(set & !(1 << to)) * self.targets + to];
-                (to, table.bound(from, to) + after)
+                (to, leg(to) + after)
             })
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -98,13 +98,21 @@ impl SubsetTable {
     /// Shortest path from a place through the remaining targets and to the end, s; infinite when the
     /// rules admit none.
     #[must_use]
-    pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
+    pub fn bound(&self, costs: &impl LegCosts, from: usize, remaining: &[usize]) -> f64 {
         let set = mask(remaining.iter().copied());
         if from < self.targets {
             self.rest[set * self.targets + from]
         } else {
-            self.shortest(table, from, set)
+            self.shortest(costs, from, set)
         }
+    }
+
+    /// Shortest path through the remaining targets, of which there is at least one, and to the end,
+    /// s, when entering the first of them has a cost of its own.
+    #[must_use]
+    pub fn entered(&self, remaining: &[usize], first: impl Fn(usize) -> f64) -> Option<f64> {
+        let set = mask(remaining.iter().copied());
+        self.next(set, first).map(|(_, rest)| rest)
     }
 
     /// A shortest order of the remaining targets in the table, seen from a place, of which there
@@ -112,14 +120,14 @@ impl SubsetTable {
     #[must_use]
     pub fn shortest_order(
         &self,
-        table: &PairTable,
+        costs: &impl LegCosts,
         from: usize,
         remaining: &[usize],
     ) -> Vec<usize> {
         let mut from = from;
         let mut set = mask(remaining.iter().copied());
         let mut order = Vec::with_capacity(remaining.len());
-        while let Some((to, _)) = self.next(table, from, set) {
+        while let Some((to, _)) = self.next(set, |to| costs.cost(from, to)) {
             order.push(to);
             set &= !(1 << to);
             from = to;

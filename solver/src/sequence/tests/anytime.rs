@@ -50,11 +50,11 @@ impl SearchObserver for Recorder {
 }
 
 /// Gives the stop signal inside an evaluation.
-struct StopsInside<'a> {
-    inner: RandomModel,
-    stop: &'a StopSignal,
-    evaluations: AtomicUsize,
-    stop_at: usize,
+pub(super) struct StopsInside<'a> {
+    pub(super) inner: RandomModel,
+    pub(super) stop: &'a StopSignal,
+    pub(super) evaluations: AtomicUsize,
+    pub(super) stop_at: usize,
 }
 
 impl StopsInside<'_> {
@@ -89,6 +89,18 @@ impl TourModel for StopsInside<'_> {
         } else {
             self.inner.prefix_bound(prefix)
         }
+    }
+
+    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
+        if self.stopped() {
+            Evaluation::Stopped
+        } else {
+            self.inner.triple_bound(from, via, to)
+        }
+    }
+
+    fn couples(&self, via: usize) -> bool {
+        self.inner.couples(via)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {

@@ -178,6 +178,14 @@ impl TourModel for Counted {
         self.inner.prefix_bound(prefix)
     }
 
+    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
+        self.inner.triple_bound(from, via, to)
+    }
+
+    fn couples(&self, via: usize) -> bool {
+        self.inner.couples(via)
+    }
+
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         self.count(order);
         self.inner.tour(order)

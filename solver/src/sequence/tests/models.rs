@@ -23,9 +23,12 @@ pub(in crate::sequence) struct RandomModel {
     pub(in crate::sequence) known_share: f64,
     /// Orders and prefixes for which this holds do not resolve.
     pub(in crate::sequence) fails: fn(&[usize]) -> bool,
+    /// The other targets have no penalties.
+    pub(in crate::sequence) couples: fn(usize) -> bool,
 }
 
 impl RandomModel {
+    /// Legs of 10 to 50 s that depend on the direction, and penalties up to 15 s.
     pub(in crate::sequence) fn new(targets: usize, has_end: bool, seed: u64) -> Self {
         let places = targets + 2;
         let mut random = SplitMix::new(seed);
@@ -41,6 +44,7 @@ impl RandomModel {
             rules: OrderRules::none(targets),
             known_share: 0.7,
             fails: |_| false,
+            couples: |_| true,
         }
     }
 
@@ -54,12 +58,46 @@ impl RandomModel {
         model
     }
 
+    /// The same forth and back but for the start, and for a service time at every target.
+    pub(in crate::sequence) fn reversible(targets: usize, has_end: bool, seed: u64) -> Self {
+        let mut model = Self::new(targets, has_end, seed);
+        let places = targets + 2;
+        for a in 0..targets {
+            for b in 0..a {
+                model.legs[a * places + b] = model.legs[b * places + a];
+            }
+            for (from, to) in (0..targets).flat_map(|i| (0..i).map(move |k| (i, k))) {
+                let back = model.penalties[(to * places + a) * places + from];
+                model.penalties[(from * places + a) * places + to] = back;
+            }
+        }
+        for (leg, to) in model.legs.iter_mut().zip((0..places).cycle()) {
+            *leg += (to % 3) as f64;
+        }
+        model
+    }
+
     fn leg(&self, from: usize, to: usize) -> f64 {
         self.legs[from * (self.targets + 2) + to]
     }
 
-    fn cost(&self, order: &[usize], to_end: bool, share: f64) -> f64 {
+    fn number(&self, place: Place) -> usize {
+        match place {
+            Place::Start => self.targets,
+            Place::Target(target) => target,
+            Place::End => self.targets + 1,
+        }
+    }
+
+    fn penalty(&self, from: usize, via: usize, to: usize) -> f64 {
+        if !(self.couples)(via) {
+            return 0.0;
+        }
         let places = self.targets + 2;
+        self.penalties[(from * places + via) * places + to]
+    }
+
+    fn cost(&self, order: &[usize], to_end: bool, share: f64) -> f64 {
         let mut path = vec![self.targets];
         path.extend(order);
         if to_end {
@@ -68,7 +106,7 @@ impl RandomModel {
         let legs: f64 = path.windows(2).map(|leg| self.leg(leg[0], leg[1])).sum();
         let penalties: f64 = path
             .windows(3)
-            .map(|p| self.penalties[(p[0] * places + p[1]) * places + p[2]])
+            .map(|p| self.penalty(p[0], p[1], p[2]))
             .sum();
         legs + share * penalties
     }
@@ -88,12 +126,7 @@ impl TourModel for RandomModel {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let number = |place| match place {
-            Place::Start => self.targets,
-            Place::Target(target) => target,
-            Place::End => self.targets + 1,
-        };
-        self.leg(number(from), number(to))
+        self.leg(self.number(from), self.number(to))
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
@@ -103,6 +136,20 @@ impl TourModel for RandomModel {
             return Evaluation::Unresolved;
         }
         Evaluation::Value(self.cost(prefix, false, self.known_share))
+    }
+
+    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
+        let (from, to) = (self.number(from), self.number(to));
+        assert!(from != via && via != to && from != to && self.couples(via));
+        if (self.fails)(&[from, via, to]) {
+            return Evaluation::Unresolved;
+        }
+        let legs = self.leg(from, via) + self.leg(via, to);
+        Evaluation::Value(legs + self.known_share * self.penalty(from, via, to))
+    }
+
+    fn couples(&self, via: usize) -> bool {
+        (self.couples)(via)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {

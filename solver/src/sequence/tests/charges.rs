@@ -1,0 +1,219 @@
+//! Bounds from triples, against all orders.
+
+use super::anytime::StopsInside;
+use super::{RandomModel, pool};
+use crate::sequence::charges::{ChargedSubsets, Charges, Effort};
+use crate::sequence::remainder::SpanningTrees;
+use crate::sequence::{Evaluation, PairTable, Place, TourEvaluation, TourModel};
+use crate::stop::StopSignal;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const EFFORT: Effort = Effort {
+    triples: 1000,
+    steps: 200,
+};
+
+/// Triples that do not resolve; orders are longer in the cases that use it.
+fn some_triples(places: &[usize]) -> bool {
+    places.len() == 3 && places.iter().sum::<usize>() % 3 == 0
+}
+
+/// A model of each kind, whose triples know all penalties.
+fn models() -> impl Iterator<Item = RandomModel> {
+    (0..63).map(|seed| {
+        let kinds = [
+            RandomModel::new,
+            RandomModel::reversible,
+            RandomModel::with_ties,
+        ];
+        let targets = 1 + (seed % 7) as usize;
+        let mut model = kinds[(seed % 3) as usize](targets, seed % 2 == 0, seed);
+        model.known_share = 1.0;
+        if seed % 5 == 0 {
+            model.couples = |via| via % 2 == 0;
+        }
+        model
+    })
+}
+
+fn prepared(model: &dyn TourModel) -> (PairTable, SpanningTrees, Charges) {
+    let table = PairTable::new(model);
+    let trees = SpanningTrees::new(&table);
+    let charges = Charges::new(model, &table, &trees).expect("legs are coupled");
+    (table, trees, charges)
+}
+
+/// What the cheapest way through the remaining targets to the end costs, by trying all, s. Penalties
+/// count half: that is what the bound relaxes, and no more than the whole.
+fn cheapest(model: &RandomModel, before: Option<Place>, at: Place, remaining: &[usize]) -> f64 {
+    let leg = |to: Place| {
+        let pair = model.pair_bound(at, to);
+        let penalty = match (before, at) {
+            (Some(before), Place::Target(via)) if model.couples(via) => {
+                let Evaluation::Value(triple) = model.triple_bound(before, via, to) else {
+                    panic!("the model resolves");
+                };
+                triple - model.pair_bound(before, at) - pair
+            }
+            _ => 0.0,
+        };
+        pair + 0.5 * penalty
+    };
+    if remaining.is_empty() {
+        return if model.has_end() {
+            leg(Place::End)
+        } else {
+            0.0
+        };
+    }
+    let onward = |&to: &usize| {
+        let rest: Vec<usize> = remaining.iter().copied().filter(|&t| t != to).collect();
+        leg(Place::Target(to)) + cheapest(model, Some(at), Place::Target(to), &rest)
+    };
+    remaining.iter().map(onward).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn no_bound_exceeds_the_cheapest_way() {
+    let pool = pool(2);
+    for (case, mut model) in models().enumerate() {
+        if case % 4 == 0 {
+            model.fails = some_triples;
+        }
+        let (table, _, mut charges) = prepared(&model);
+        let before = charges.root_bound();
+        charges.raise(&model, &EFFORT, &pool, &StopSignal::new());
+        assert!(charges.root_bound() >= before, "case {case}");
+        model.fails = |_| false;
+        let subsets = ChargedSubsets::new(&charges);
+        let all: Vec<usize> = (0..table.targets()).collect();
+        let mut parts = vec![(table.start(), Place::Start, all.clone())];
+        for &from in &all {
+            for size in 0..all.len() {
+                let others = all.iter().copied().filter(|&t| t != from);
+                parts.push((from, Place::Target(from), others.take(size).collect()));
+            }
+        }
+        for (from, place, remaining) in parts {
+            let least = cheapest(&model, None, place, &remaining);
+            let tree = charges.bound(from, &remaining);
+            let path = subsets.bound(from, &remaining);
+            assert!(tree <= path + 1e-9, "case {case}");
+            assert!(path <= least + 1e-9, "case {case}: {path} above {least}");
+        }
+        // The shares kept are those of the best bound.
+        let root = charges.bound(table.start(), &all);
+        assert!((charges.root_bound() - root).abs() <= 1e-9, "case {case}");
+    }
+}
+
+#[test]
+fn triples_raise_the_bound_of_held_and_karp() {
+    let pool = pool(2);
+    for seed in 0..12 {
+        let kinds = [RandomModel::new, RandomModel::reversible];
+        let mut model = kinds[seed % 2](8, seed % 4 < 2, seed as u64);
+        model.known_share = 1.0;
+        let (table, trees, mut charges) = prepared(&model);
+        let all: Vec<usize> = (0..8).collect();
+        let held_karp = trees.bound(&table, table.start(), &all);
+        assert!(charges.root_bound() >= held_karp - 1e-9, "seed {seed}");
+        charges.raise(&model, &EFFORT, &pool, &StopSignal::new());
+        assert!(charges.root_bound() > held_karp * 1.01, "seed {seed}");
+    }
+}
+
+#[test]
+fn nothing_depends_on_the_number_of_threads() {
+    for seed in 0..4 {
+        let model = RandomModel::new(20, seed % 2 == 0, seed);
+        let results = [1, 2, 3].map(|threads| {
+            let (_, _, mut charges) = prepared(&model);
+            let raised = charges.raise(&model, &EFFORT, &pool(threads), &StopSignal::new());
+            (raised, format!("{charges:?}"))
+        });
+        assert!(results.iter().all(|result| *result == results[0]));
+    }
+}
+
+/// A model that counts what it is asked and gives the signal at the so manieth question.
+fn counting(stop: &StopSignal, stop_at: usize) -> StopsInside<'_> {
+    StopsInside {
+        inner: RandomModel::new(12, true, 5),
+        stop,
+        evaluations: AtomicUsize::new(0),
+        stop_at,
+    }
+}
+
+#[test]
+fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
+    let stop = StopSignal::new();
+    let model = counting(&stop, 10);
+    let (_, _, mut charges) = prepared(&model);
+    let before = charges.root_bound();
+    let raised = charges.raise(&model, &EFFORT, &pool(2), &stop);
+    assert!(!raised.settled && raised.steps < EFFORT.steps);
+    // The other worker may be past its look at the signal.
+    assert!(model.evaluations.load(Ordering::Relaxed) <= 11);
+    assert!(charges.root_bound() >= before);
+    let again = charges.raise(&model, &EFFORT, &pool(2), &stop);
+    assert_eq!((again.steps, again.triples), (0, 0));
+}
+
+#[test]
+fn no_more_triples_are_asked_for_than_allowed_and_none_twice() {
+    let stop = StopSignal::new();
+    let model = counting(&stop, usize::MAX);
+    let (_, _, mut charges) = prepared(&model);
+    let mut triples = 0;
+    let mut bound = charges.root_bound();
+    for allowed in [0, 1, 10, 100_000, 100_000, 100_000] {
+        let effort = Effort {
+            triples: allowed,
+            ..EFFORT
+        };
+        let raised = charges.raise(&model, &effort, &pool(2), &stop);
+        assert!(raised.triples <= allowed);
+        triples += raised.triples;
+        // One direction for triples of start or end, two for all others.
+        let asked = model.evaluations.load(Ordering::Relaxed);
+        assert!((triples..=2 * triples).contains(&asked));
+        assert!(charges.root_bound() >= bound);
+        bound = charges.root_bound();
+    }
+    // There are 12 targets, each with 11 others, start and end around it.
+    assert!(triples <= 12 * (13 * 12 / 2 - 1));
+}
+
+#[test]
+fn estimates_lie_between_the_pairs_and_the_flight() {
+    let mut model = RandomModel::new(6, true, 2);
+    model.known_share = 1.0;
+    let (table, _, mut charges) = prepared(&model);
+    charges.raise(&model, &EFFORT, &pool(2), &StopSignal::new());
+    let mut raised = 0;
+    let mut order: Vec<usize> = (0..6).collect();
+    for turn in 0..6 {
+        order.swap(turn, 5 - turn / 2);
+        let estimate = charges.estimate(&order);
+        let mut path = vec![table.start()];
+        path.extend(&order);
+        path.push(table.end());
+        let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
+        let TourEvaluation::Flown(duration) = model.tour(&order) else {
+            panic!("the model resolves");
+        };
+        assert!(pairs <= estimate && estimate <= duration + 1e-9);
+        raised += usize::from(estimate > pairs);
+    }
+    assert!(raised > 0);
+}
+
+#[test]
+fn where_nothing_couples_there_are_no_charges() {
+    let mut model = RandomModel::new(5, true, 1);
+    model.couples = |_| false;
+    let table = PairTable::new(&model);
+    assert!(Charges::new(&model, &table, &SpanningTrees::new(&table)).is_none());
+}

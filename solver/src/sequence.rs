@@ -81,7 +81,7 @@ pub enum Place {
     End,
 }
 
-/// Answer of [`TourModel::prefix_bound`] and [`TourModel::triple_bound`].
+/// Answer of [`TourModel::prefix_bound`] and [`TourModel::path_bound`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Evaluation {
     /// The lower bound, s.
@@ -133,13 +133,14 @@ pub trait TourModel: Sync {
     /// taken to be all that can be said of one target, and with one left the order is flown.
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
 
-    /// Lower bound, s, of the time from leaving `from` to leaving `to` by way of the target `via`,
-    /// in any tour; settling and dwelling at `via` and `to` are included. Expensive. The three
-    /// differ; the start only comes first and a prescribed end only last.
-    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation;
+    /// Lower bound, s, of the time from leaving the first place of a path to leaving its last, in
+    /// any tour that contains it; settling and dwelling are included but for the first place.
+    /// Expensive. The path has three or five places, all different, targets but for its ends: the
+    /// start only comes first and a prescribed end only last.
+    fn path_bound(&self, path: &[Place]) -> Evaluation;
 
-    /// Whether the slews before and after a target influence each other. Where they do not, a
-    /// triple bound is the sum of two pair bounds and is not asked for.
+    /// Whether the slews before and after a target influence each other. Where they do not,
+    /// the bound of a path is the sum of those of its parts and is not asked for.
     fn couples(&self, via: usize) -> bool;
 
     /// Flies a whole order, to the end where there is one. Expensive.

@@ -90,8 +90,8 @@ impl TourModel for CertifiedTours<'_> {
         Evaluation::Value(self.along(&self.places.route(prefix, false)))
     }
 
-    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
-        Evaluation::Value(self.along(&[from, Place::Target(via), to]))
+    fn path_bound(&self, path: &[Place]) -> Evaluation {
+        Evaluation::Value(self.along(path))
     }
 
     /// The bound of a slew does not ask what comes before and after it.

@@ -42,6 +42,14 @@ impl TourModel for EigenaxisTours<'_> {
         Evaluation::Unresolved
     }
 
+    fn path_bound(&self, _: &[Place]) -> Evaluation {
+        Evaluation::Unresolved
+    }
+
+    fn couples(&self, _: usize) -> bool {
+        false
+    }
+
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         let route = self.0.route(order, true);
         let legs = route.windows(2);

@@ -298,25 +298,30 @@ impl<'a> Tours<'a> {
     }
 
     /// Whether a leg flown backwards is the leg between its ends exchanged.
-    fn is_reversible(&self, leg: &[Place; 2]) -> bool {
-        let ends = leg.map(|place| self.places.waypoint(place));
+    fn is_reversible(&self, leg: &[Place]) -> bool {
+        let ends = [leg[0], leg[1]].map(|place| self.places.waypoint(place));
         self.places.reversible(ends.each_ref())
     }
 
-    /// Duration of a route with settle and dwell, or how its solve failed.
-    fn duration(&self, route: &[Place], extent: Extent) -> Result<f64, NlpStatus> {
+    /// Duration of the flown segments of a route with settle and dwell, or how a solve failed.
+    fn duration(&self, route: &[Place], segments: &[Arc<Flown>]) -> Result<f64, NlpStatus> {
         let mut total: f64 = route
             .iter()
             .map(|place| self.places.service_time(*place))
             .sum();
-        let segments = match extent {
-            Extent::Whole => self.fly_route(route),
-            Extent::Beginning => self.fly_segments(route, extent),
-        };
         for flown in segments {
             total += flown.duration().ok_or(flown.status)?;
         }
         Ok(total)
+    }
+
+    /// The duration as a bound.
+    fn evaluation(&self, route: &[Place], segments: &[Arc<Flown>]) -> Evaluation {
+        match self.duration(route, segments) {
+            Ok(duration) => Evaluation::Value(duration),
+            Err(status) if status.is_interrupted() => Evaluation::Stopped,
+            Err(_) => Evaluation::Unresolved,
+        }
     }
 }
 
@@ -345,35 +350,29 @@ impl TourModel for Tours<'_> {
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
-        match self.duration(&self.places.route(prefix, false), Extent::Beginning) {
-            Ok(duration) => Evaluation::Value(duration),
-            Err(status) if status.is_interrupted() => Evaluation::Stopped,
-            Err(_) => Evaluation::Unresolved,
-        }
+        let route = self.places.route(prefix, false);
+        self.evaluation(&route, &self.fly_segments(&route, Extent::Beginning))
     }
 
-    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
-        let mut route = [from, Place::Target(via), to];
-        let legs = [[route[0], route[1]], [route[1], route[2]]];
+    fn path_bound(&self, path: &[Place]) -> Evaluation {
+        let legs = || path.windows(2);
         // Staying is no slew that another could couple with.
-        if legs.iter().any(|leg| self.places.coincide(leg[0], leg[1])) {
-            return Evaluation::Value(
-                legs.map(|[from, to]| self.pair_bound(from, to))
-                    .iter()
-                    .sum(),
-            );
+        if legs().any(|leg| self.places.coincide(leg[0], leg[1])) {
+            return Evaluation::Value(legs().map(|leg| self.pair_bound(leg[0], leg[1])).sum());
         }
         // Backwards it is the same flight: it is remembered under one route.
-        if let (Place::Target(i), Place::Target(k)) = (from, to)
-            && k < i
-            && legs.iter().all(|leg| self.is_reversible(leg))
+        let mut route = path.to_vec();
+        if let [Place::Target(first), .., Place::Target(last)] = path
+            && last < first
+            && legs().all(|leg| self.is_reversible(leg))
         {
             route.reverse();
         }
-        match self.duration(&route) {
-            Ok(duration) => Evaluation::Value(duration - self.places.service_time(from)),
-            Err(status) if status.is_interrupted() => Evaluation::Stopped,
-            Err(_) => Evaluation::Unresolved,
+        match self.evaluation(&route, &self.fly_segments(&route, Extent::Whole)) {
+            Evaluation::Value(duration) => {
+                Evaluation::Value(duration - self.places.service_time(path[0]))
+            }
+            unknown => unknown,
         }
     }
 
@@ -383,7 +382,8 @@ impl TourModel for Tours<'_> {
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
-        match self.duration(&self.places.route(order, true), Extent::Whole) {
+        let route = self.places.route(order, true);
+        match self.duration(&route, &self.fly_route(&route)) {
             Ok(duration) => TourEvaluation::Flown(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,

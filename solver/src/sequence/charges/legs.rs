@@ -1,6 +1,6 @@
 //! Legs and pairs of legs with the directions forgotten.
 
-use super::triples::Triples;
+use super::excesses::Excesses;
 use crate::sequence::PairTable;
 
 /// Legs with the entry charges of [`crate::sequence::remainder::SpanningTrees`] taken off, s.
@@ -64,26 +64,37 @@ impl Legs {
     /// What passing a target between two places costs beyond half of either edge, s, on a path that
     /// comes from `entry`: from there every leg is taken as it is, and nothing leads there. The
     /// lesser of the directions that are possible, and infinite when none is.
-    pub(super) fn passing(
-        &self,
-        triples: &Triples,
-        entry: usize,
-        via: usize,
-        ends: [usize; 2],
-    ) -> f64 {
-        let end = self.table.end();
-        let places = self.charges.len() + 2;
-        let directed = |from: usize, to: usize| {
-            if to == entry || from == end {
+    pub(super) fn passing(&self, excesses: &Excesses, entry: usize, path: [usize; 3]) -> f64 {
+        let [a, via, b] = path;
+        let forth = self.directed(excesses, entry, [a, via, b]);
+        forth.min(self.directed(excesses, entry, [b, via, a]))
+    }
+
+    /// The same of a target with two places before and after it; what five places in a row exceed
+    /// their halves by counts a quarter.
+    pub(super) fn passing_five(&self, excesses: &Excesses, entry: usize, path: [usize; 5]) -> f64 {
+        let directed = |path: [usize; 5]| {
+            let [first, from, via, to, last] = path;
+            if first == self.table.end() || last == entry {
                 return f64::INFINITY;
             }
-            let first = if from == entry {
-                0.0
-            } else {
-                self.slack[from * places + via]
-            };
-            first + self.slack[via * places + to] + triples.excess(from, via, to)
+            self.directed(excesses, entry, [from, via, to]) + 0.25 * excesses.five(path)
         };
-        0.5 * directed(ends[0], ends[1]).min(directed(ends[1], ends[0]))
+        let [a, b, c, d, e] = path;
+        directed(path).min(directed([e, d, c, b, a]))
+    }
+
+    fn directed(&self, excesses: &Excesses, entry: usize, path: [usize; 3]) -> f64 {
+        let [from, via, to] = path;
+        if to == entry || from == self.table.end() {
+            return f64::INFINITY;
+        }
+        let places = self.charges.len() + 2;
+        let first = if from == entry {
+            0.0
+        } else {
+            self.slack[from * places + via]
+        };
+        0.5 * (first + self.slack[via * places + to] + excesses.triple(from, via, to))
     }
 }

@@ -1,7 +1,9 @@
 //! Shortest paths in place of least trees, for few targets.
 
 use super::Charges;
-use crate::sequence::remainder::SubsetTable;
+use super::choice::Part;
+use crate::sequence::OrderRules;
+use crate::sequence::remainder::{LegCosts, SubsetTable};
 
 /// The bound of [`Charges`] with the edges chosen as a path: tighter than a tree, and a table of
 /// `n 2^n` entries. Of the shares as they were when it was filled.
@@ -12,11 +14,11 @@ pub struct ChargedSubsets<'a> {
 }
 
 impl<'a> ChargedSubsets<'a> {
-    /// Fills the table: `n^2 2^n` steps.
+    /// Fills the table for the orders that some rules admit: `n^2 2^n` steps.
     #[must_use]
-    pub fn new(charges: &'a Charges) -> Self {
+    pub fn new(charges: &'a Charges, rules: &OrderRules) -> Self {
         Self {
-            subsets: SubsetTable::new(charges),
+            subsets: SubsetTable::new(charges, rules),
             charges,
         }
     }
@@ -30,7 +32,7 @@ impl<'a> ChargedSubsets<'a> {
             .entered(remaining, |to| charges.first(from, to));
         path.map_or_else(
             || charges.bound(from, remaining),
-            |path| (charges.passing(&charges.part(from, remaining)) + path).max(0.0),
+            |path| (charges.passing(&Part::new(from, charges.end(), remaining)) + path).max(0.0),
         )
     }
 }

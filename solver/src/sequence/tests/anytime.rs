@@ -91,11 +91,11 @@ impl TourModel for StopsInside<'_> {
         }
     }
 
-    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
+    fn path_bound(&self, path: &[Place]) -> Evaluation {
         if self.stopped() {
             Evaluation::Stopped
         } else {
-            self.inner.triple_bound(from, via, to)
+            self.inner.path_bound(path)
         }
     }
 

@@ -178,8 +178,8 @@ impl TourModel for Counted {
         self.inner.prefix_bound(prefix)
     }
 
-    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
-        self.inner.triple_bound(from, via, to)
+    fn path_bound(&self, path: &[Place]) -> Evaluation {
+        self.inner.path_bound(path)
     }
 
     fn couples(&self, via: usize) -> bool {

@@ -103,6 +103,10 @@ impl RandomModel {
         if to_end {
             path.push(self.targets + 1);
         }
+        self.along(&path, share)
+    }
+
+    fn along(&self, path: &[usize], share: f64) -> f64 {
         let legs: f64 = path.windows(2).map(|leg| self.leg(leg[0], leg[1])).sum();
         let penalties: f64 = path
             .windows(3)
@@ -138,14 +142,14 @@ impl TourModel for RandomModel {
         Evaluation::Value(self.cost(prefix, false, self.known_share))
     }
 
-    fn triple_bound(&self, from: Place, via: usize, to: Place) -> Evaluation {
-        let (from, to) = (self.number(from), self.number(to));
-        assert!(from != via && via != to && from != to && self.couples(via));
-        if (self.fails)(&[from, via, to]) {
+    fn path_bound(&self, path: &[Place]) -> Evaluation {
+        let path: Vec<usize> = path.iter().map(|&place| self.number(place)).collect();
+        let middle = path[path.len() / 2];
+        assert!((self.couples)(middle) && [3, 5].contains(&path.len()));
+        if (self.fails)(&path) {
             return Evaluation::Unresolved;
         }
-        let legs = self.leg(from, via) + self.leg(via, to);
-        Evaluation::Value(legs + self.known_share * self.penalty(from, via, to))
+        Evaluation::Value(self.along(&path, self.known_share))
     }
 
     fn couples(&self, via: usize) -> bool {

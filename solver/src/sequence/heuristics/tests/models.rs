@@ -160,6 +160,14 @@ impl TourModel for RandomCost {
         Evaluation::Unresolved
     }
 
+    fn path_bound(&self, _: &[Place]) -> Evaluation {
+        Evaluation::Unresolved
+    }
+
+    fn couples(&self, _: usize) -> bool {
+        false
+    }
+
     fn tour(&self, _: &[usize]) -> TourEvaluation {
         TourEvaluation::Unresolved
     }

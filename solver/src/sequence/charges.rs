@@ -61,11 +61,14 @@ pub use subsets::ChargedSubsets;
 use super::remainder::least_tree::{cheapest, least_tree};
 use super::remainder::{LegCosts, SpanningTrees};
 use super::{PairTable, TourModel};
+use crate::pool::SolverPool;
+use crate::stop::StopSignal;
 use choice::Part;
-use excesses::Excesses;
+use excesses::{Excesses, Passage};
 use legs::Legs;
 use ranking::Ranking;
 use shares::Shares;
+use std::collections::BTreeSet;
 
 /// Bounds from triples, for places numbered as in [`PairTable`].
 #[derive(Debug)]
@@ -78,6 +81,7 @@ pub struct Charges {
     /// Places around each target by the outer shares of the edges to them.
     far: Ranking,
     root_s: f64,
+    symmetric: bool,
 }
 
 impl Charges {
@@ -96,6 +100,7 @@ impl Charges {
             near: Ranking::new(targets),
             far: Ranking::new(targets),
             root_s: 0.0,
+            symmetric: model.is_symmetric(),
         };
         charges.settle();
         Some(charges)
@@ -137,6 +142,42 @@ impl Charges {
             .windows(3)
             .map(|triple| self.excesses.triple(triple[0], triple[1], triple[2]));
         legs.chain(excesses).sum()
+    }
+
+    /// Asks the model for the triples of some orders that are not known.
+    pub fn ask_along(
+        &mut self,
+        orders: &[Vec<usize>],
+        model: &dyn TourModel,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) {
+        let table = self.legs.table();
+        let mut unknown = BTreeSet::new();
+        for order in orders {
+            let mut path = vec![table.start()];
+            path.extend(order);
+            path.push(table.end());
+            let triples = path.windows(3).map(Passage::new);
+            unknown.extend(triples.filter(|triple| self.excesses.is_open(triple)));
+        }
+        let unknown: Vec<Passage> = unknown.into_iter().collect();
+        self.excesses.ask(&unknown, table, model, pool, stop);
+    }
+
+    /// What passing a target between two others adds to the two legs, s, as far as it is known.
+    pub(super) fn excess(&self, from: usize, via: usize, to: usize) -> f64 {
+        self.excesses.triple(from, via, to)
+    }
+
+    /// Whether every triple takes as long backwards.
+    pub(super) fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// The pair bounds.
+    pub(super) fn table(&self) -> &PairTable {
+        self.legs.table()
     }
 
     /// Bounds all tours by the shares as they are.

@@ -12,8 +12,9 @@ mod tests;
 #[cfg(test)]
 pub(super) use split_mix::SplitMix;
 
+use super::charges::Charges;
 use super::remainder::Remainder;
-use super::{PairTable, TourModel};
+use super::{OrderRules, PairTable, TourModel};
 use crate::stop::StopSignal;
 use iterated::IteratedSearch;
 use local_search::OrderTask;
@@ -61,6 +62,28 @@ pub(super) fn candidates(
         }
     }
     distinct
+}
+
+/// Orders that are shorter than one in what is known of legs and their couplings, best first.
+pub(super) fn shorter_orders(
+    costs: &Charges,
+    rules: &OrderRules,
+    order: &[usize],
+    kicks: usize,
+    count: usize,
+    seed: u64,
+    stop: &StopSignal,
+) -> Vec<Vec<usize>> {
+    let admits = |order: &[usize]| rules.admits(order);
+    let task = OrderTask {
+        cost: costs,
+        from: costs.table().start(),
+        admits: (!rules.is_free()).then_some(&admits),
+    };
+    let mut search = IteratedSearch::new(&task, order, count - 1, seed);
+    search.run(kicks * order.len(), stop);
+    let best = search.best().iter();
+    best.map(|best| best.order.clone()).collect()
 }
 
 /// Orders by iterated search from the nearest neighbours, best first.

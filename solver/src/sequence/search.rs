@@ -1,6 +1,7 @@
 //! The loop: best-first in rounds.
 
 mod account;
+mod coupled;
 mod tree;
 
 use super::node::Node;
@@ -26,6 +27,9 @@ const EXPLORED_PER_NODE: u64 = 8;
 /// Best-first search alone reaches whole orders late, and a stopped search should have a good one;
 /// an order costs as much as a few prefixes, so this may not happen often.
 const PROBE_NODES: u64 = 24;
+
+/// After so many nodes a search over few targets that goes on asks for the bounds of longer paths.
+const TIGHTEN_NODES: u64 = 160;
 
 /// What is evaluated in a round.
 enum Task {
@@ -57,6 +61,8 @@ struct Search<'a> {
     node_limit: u64,
     /// Number of explored nodes at which an order is probed next.
     next_probe: u64,
+    /// Whether the bounds of longer paths have been asked for.
+    tightened: bool,
     tree: Tree,
     account: Account<'a>,
 }
@@ -77,14 +83,19 @@ pub fn search(
         stop,
         node_limit: settings.node_limit.unwrap_or(u64::MAX),
         next_probe: PROBE_NODES,
+        tightened: false,
         tree: Tree::new(model, settings),
         account: Account::new(observer),
     };
     for flown in known {
         let answer = TourEvaluation::Flown(flown.duration_s);
         search.tree.record_candidate(&flown.order, answer);
+        search.account.is_told(flown.duration_s);
     }
-    let mut end = search.fly_candidates();
+    let mut end = search
+        .fly_candidates()
+        .or_else(|| search.work_on_couplings());
+    search.tree.plant();
     while end.is_none() {
         search.account.hand_over(&search.tree);
         search.account.report(&search.tree);
@@ -106,7 +117,6 @@ impl Search<'_> {
             interrupted |= answer == TourEvaluation::Stopped;
             self.tree.record_candidate(&order, answer);
         }
-        self.tree.plant();
         interrupted.then(|| self.stopped())
     }
 
@@ -119,6 +129,10 @@ impl Search<'_> {
             return Some(self.stopped());
         }
         let explored = self.tree.statistics().nodes_explored;
+        if explored >= TIGHTEN_NODES && !self.tightened {
+            self.tightened = true;
+            self.tighten();
+        }
         let budget = self.node_limit.saturating_sub(explored);
         if budget == 0 {
             return Some(SearchEnd::NodeLimit);

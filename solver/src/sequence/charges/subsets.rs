@@ -8,17 +8,17 @@ use crate::sequence::remainder::{LegCosts, SubsetTable};
 /// The bound of [`Charges`] with the edges chosen as a path: tighter than a tree, and a table of
 /// `n 2^n` entries. Of the shares as they were when it was filled.
 #[derive(Debug)]
-pub struct ChargedSubsets<'a> {
-    charges: &'a Charges,
+pub struct ChargedSubsets {
+    charges: Charges,
     subsets: SubsetTable,
 }
 
-impl<'a> ChargedSubsets<'a> {
+impl ChargedSubsets {
     /// Fills the table for the orders that some rules admit: `n^2 2^n` steps.
     #[must_use]
-    pub fn new(charges: &'a Charges, rules: &OrderRules) -> Self {
+    pub fn new(charges: Charges, rules: &OrderRules) -> Self {
         Self {
-            subsets: SubsetTable::new(charges, rules),
+            subsets: SubsetTable::new(&charges, rules),
             charges,
         }
     }
@@ -26,7 +26,7 @@ impl<'a> ChargedSubsets<'a> {
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.
     #[must_use]
     pub fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
-        let charges = self.charges;
+        let charges = &self.charges;
         let path = self
             .subsets
             .entered(remaining, |to| charges.first(from, to));

@@ -1,6 +1,7 @@
 //! What an order costs: its legs, and what consecutive legs cost each other.
 
 use crate::sequence::PairTable;
+use crate::sequence::charges::Charges;
 
 /// Relative difference of the two ways of a leg that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -24,6 +25,25 @@ pub(in crate::sequence) trait OrderCost: Sync {
     /// Whether every bend between targets costs the same both ways.
     fn bends_alike_both_ways(&self) -> bool {
         true
+    }
+}
+
+/// The pair bounds with what is known of triples: near to what an order takes.
+impl OrderCost for Charges {
+    fn targets(&self) -> usize {
+        self.table().targets()
+    }
+
+    fn leg(&self, from: usize, to: usize) -> f64 {
+        self.table().bound(from, to)
+    }
+
+    fn bend(&self, from: usize, via: usize, to: usize) -> f64 {
+        self.excess(from, via, to)
+    }
+
+    fn bends_alike_both_ways(&self) -> bool {
+        self.is_symmetric()
     }
 }
 

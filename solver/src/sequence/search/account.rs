@@ -25,6 +25,11 @@ impl<'a> Account<'a> {
         }
     }
 
+    /// Notes that an order of this duration, s, need not be handed over.
+    pub(super) fn is_told(&mut self, duration_s: f64) {
+        self.handed_over_s = self.handed_over_s.min(duration_s);
+    }
+
     /// Hands over the best order when it is better than the last one and more is to come.
     pub(super) fn hand_over(&mut self, tree: &Tree) {
         let Some((best, alternatives)) = tree.orders().split_first() else {

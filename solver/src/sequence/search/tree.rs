@@ -1,6 +1,8 @@
 //! The search tree: what is open, what is flown, what was given up and why.
 
+use super::coupled::Couplings;
 use crate::pool::SolverPool;
+use crate::sequence::charges::Charges;
 use crate::sequence::frontier::Frontier;
 use crate::sequence::heuristics;
 use crate::sequence::incumbents::Incumbents;
@@ -23,6 +25,12 @@ pub(super) struct Tree {
     /// The orders that are searched: with symmetry half of those that are admitted.
     rules: OrderRules,
     remainder: Remainder,
+    /// Bounds from several places in a row, once they have been asked for.
+    couplings: Option<Couplings>,
+    /// No order lasts less, s, by what is known before the root is opened.
+    root_s: f64,
+    /// Whether the root has been opened.
+    planted: bool,
     frontier: Frontier,
     incumbents: Incumbents,
     /// Orders flown before the search reached them: the duration, s, if they resolved.
@@ -49,6 +57,9 @@ impl Tree {
             symmetric,
             remainder: Remainder::new(&table, &rules),
             rules,
+            couplings: None,
+            root_s: 0.0,
+            planted: false,
             frontier: Frontier::new(table.targets(), settings.frontier_bytes),
             incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
             candidates: BTreeMap::new(),
@@ -63,7 +74,7 @@ impl Tree {
     /// Orders worth flying first, but those that were flown.
     pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
         let mut orders = heuristics::candidates(&self.table, &self.remainder, stop);
-        orders.retain(|order| !self.candidates.contains_key(&self.either_way(order)));
+        orders.retain(|order| self.is_new(order));
         orders
     }
 
@@ -83,13 +94,77 @@ impl Tree {
         self.candidates.insert(order, duration);
     }
 
+    /// The pair bounds.
+    pub(super) fn table(&self) -> &PairTable {
+        &self.table
+    }
+
+    /// Which orders are searched.
+    pub(super) fn rules(&self) -> &OrderRules {
+        &self.rules
+    }
+
+    /// Takes in a lower bound of all orders, s, before the root is opened.
+    pub(super) fn bound_root(&mut self, bound_s: f64) {
+        self.root_s = self.root_s.max(bound_s);
+    }
+
+    /// Takes in better bounds, of what is open already too.
+    pub(super) fn couple(&mut self, couplings: Couplings) {
+        self.couplings = Some(couplings);
+        for mut node in self.frontier.take_if(|_| true) {
+            let remaining = node.remaining(self.table.targets());
+            let last = self.table.last_place(&node.prefix);
+            node.raise_head(node.head, self.rest(last, &remaining));
+            self.admit(node);
+        }
+    }
+
+    /// Orders that are short by some costs, from the best one flown so far; the best first.
+    pub(super) fn short_orders(
+        &self,
+        costs: &Charges,
+        kicks: usize,
+        count: usize,
+        seed: u64,
+        stop: &StopSignal,
+    ) -> Vec<Vec<usize>> {
+        let Some(best) = self.incumbents.orders().first() else {
+            return Vec::new();
+        };
+        heuristics::shorter_orders(
+            costs,
+            self.table.rules(),
+            &best.order,
+            kicks,
+            count,
+            seed,
+            stop,
+        )
+    }
+
+    /// Whether an order has not been flown.
+    pub(super) fn is_new(&self, order: &[usize]) -> bool {
+        !self.candidates.contains_key(&self.either_way(order))
+    }
+
+    /// Lower bound, s, of the path from a place through the remaining targets and to the end.
+    fn rest(&self, from: usize, remaining: &[usize]) -> f64 {
+        let pairs = self.remainder.bound(&self.table, from, remaining);
+        let couplings = self.couplings.as_ref();
+        couplings.map_or(pairs, |known| pairs.max(known.bound(from, remaining)))
+    }
+
+    /// Lower bound of all orders, s.
+    fn root_bound(&self) -> f64 {
+        let all: Vec<usize> = (0..self.table.targets()).collect();
+        self.rest(self.table.start(), &all).max(self.root_s)
+    }
+
     /// Opens the root.
     pub(super) fn plant(&mut self) {
-        let remaining: Vec<usize> = (0..self.table.targets()).collect();
-        let bound = self
-            .remainder
-            .bound(&self.table, self.table.start(), &remaining);
-        self.admit(Node::root(bound));
+        self.planted = true;
+        self.admit(Node::root(self.root_bound()));
         self.tidy();
     }
 
@@ -128,7 +203,7 @@ impl Tree {
         let remaining = node.remaining(self.table.targets());
         let order =
             heuristics::complete(&self.table, &self.remainder, &node.prefix, &remaining, stop);
-        (!self.candidates.contains_key(&self.either_way(&order))).then_some(order)
+        self.is_new(&order).then_some(order)
     }
 
     /// Opens the children of a node.
@@ -157,7 +232,7 @@ impl Tree {
         // Of one leg from the given start the pair table knows all.
         child.evaluated = child.prefix.len() == 1;
         let last = self.table.last_place(&child.prefix);
-        let rest = self.remainder.bound(&self.table, last, &left);
+        let rest = self.rest(last, &left);
         child.raise_head(child.head, rest);
         child
     }
@@ -194,7 +269,7 @@ impl Tree {
         if let Some(head) = head.filter(|head| head.is_finite()) {
             let remaining = node.remaining(self.table.targets());
             let last = self.table.last_place(&node.prefix);
-            node.raise_head(head, self.remainder.bound(&self.table, last, &remaining));
+            node.raise_head(head, self.rest(last, &remaining));
         } else {
             self.statistics.prefixes_unresolved += 1;
         }
@@ -288,7 +363,7 @@ impl Tree {
 
     /// Whether nothing is open.
     pub(super) fn is_exhausted(&self) -> bool {
-        self.frontier.is_empty()
+        self.planted && self.frontier.is_empty()
     }
 
     /// Whether the list of the best is proven up to the gap: nothing is open, and nothing that was
@@ -300,7 +375,11 @@ impl Tree {
 
     /// Lower bound of every order that has not been flown, s.
     pub(super) fn open_bound(&self) -> f64 {
-        self.frontier.bound().min(self.ruled_out_s).min(self.lost_s)
+        if self.planted {
+            self.frontier.bound().min(self.ruled_out_s).min(self.lost_s)
+        } else {
+            self.root_bound()
+        }
     }
 
     /// Duration of the best order flown, s.

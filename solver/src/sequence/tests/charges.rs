@@ -93,8 +93,10 @@ fn no_bound_exceeds_the_cheapest_way() {
         charges.raise(&model, &EFFORT, &pool, &StopSignal::new());
         assert!(charges.root_bound() >= before, "case {case}");
         model.fails = |_| false;
-        let subsets = ChargedSubsets::new(&charges, table.rules());
         let all: Vec<usize> = (0..table.targets()).collect();
+        // The shares kept are those of the best bound.
+        let root = charges.bound(table.start(), &all);
+        assert!((charges.root_bound() - root).abs() <= 1e-9, "case {case}");
         let mut parts = vec![(table.start(), Place::Start, all.clone())];
         for &from in &all {
             for size in 0..all.len() {
@@ -102,16 +104,16 @@ fn no_bound_exceeds_the_cheapest_way() {
                 parts.push((from, Place::Target(from), others.take(size).collect()));
             }
         }
-        for (from, place, remaining) in parts {
+        let bound =
+            |(from, _, remaining): &(usize, Place, Vec<usize>)| charges.bound(*from, remaining);
+        let trees: Vec<f64> = parts.iter().map(bound).collect();
+        let subsets = ChargedSubsets::new(charges, table.rules());
+        for ((from, place, remaining), tree) in parts.into_iter().zip(trees) {
             let least = cheapest(&model, &[place], &remaining);
-            let tree = charges.bound(from, &remaining);
             let path = subsets.bound(from, &remaining);
             assert!(tree <= path + 1e-9, "case {case}");
             assert!(path <= least + 1e-9, "case {case}: {path} above {least}");
         }
-        // The shares kept are those of the best bound.
-        let root = charges.bound(table.start(), &all);
-        assert!((charges.root_bound() - root).abs() <= 1e-9, "case {case}");
     }
 }
 

@@ -1,0 +1,136 @@
+//! What a search knows beyond the pair table when legs couple: bounds from several places in a row,
+//! and orders that are short in what is known so far.
+//!
+//! A few targets are searched with pairs alone at first, since most searches end before the bounds
+//! of longer paths would pay. Many targets need them from the beginning: they are the bound that is
+//! told, and they tell which orders are worth flying.
+
+use super::Search;
+use crate::pool::SolverPool;
+use crate::sequence::charges::{ChargedSubsets, Charges, Effort};
+use crate::sequence::remainder::{EXACT_TARGETS, SpanningTrees};
+use crate::sequence::{OrderRules, PairTable, SearchEnd, TourModel};
+use crate::stop::StopSignal;
+
+/// Steps of an ascent at most.
+const STEPS: usize = 400;
+/// Paths asked for per target when few targets turn out to be hard: some seconds of work.
+const TRIPLES_OF_FEW: usize = 30;
+const FIVES_OF_FEW: usize = 20;
+/// Rounds of raising the bound and improving orders of many targets, what is asked for per target in
+/// a round, and the orders searched after it.
+const ROUNDS: u64 = 6;
+const TRIPLES_OF_MANY: usize = 12;
+const FIVES_OF_MANY: usize = 8;
+const ORDERS_PER_ROUND: u64 = 4;
+/// Kicks per target of a search for an order, and how many of its best orders are flown.
+const KICKS: usize = 60;
+const FLOWN: usize = 2;
+
+/// Bounds from several places in a row.
+pub(super) enum Couplings {
+    /// With the rest of an order relaxed to a tree.
+    Trees(Box<Charges>),
+    /// With a shortest path in its place.
+    Paths(Box<ChargedSubsets>),
+}
+
+impl Couplings {
+    /// What a first ascent finds for a few targets; nothing where no target couples its legs.
+    pub(super) fn of_few(
+        model: &dyn TourModel,
+        table: &PairTable,
+        rules: &OrderRules,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) -> Option<Self> {
+        let mut charges = Charges::new(model, table, &SpanningTrees::new(table))?;
+        let targets = table.targets();
+        let effort = Effort {
+            triples: TRIPLES_OF_FEW * targets,
+            fives: FIVES_OF_FEW * targets,
+            steps: STEPS,
+        };
+        charges.raise(model, &effort, pool, stop);
+        Some(Self::Paths(Box::new(ChargedSubsets::new(charges, rules))))
+    }
+
+    /// Nothing asked yet, for many targets.
+    pub(super) fn of_many(model: &dyn TourModel, table: &PairTable) -> Option<Self> {
+        let charges = Charges::new(model, table, &SpanningTrees::new(table))?;
+        Some(Self::Trees(Box::new(charges)))
+    }
+
+    /// Lower bound, s, of the path from a place through the remaining targets and to the end.
+    pub(super) fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
+        match self {
+            Self::Trees(charges) => charges.bound(from, remaining),
+            Self::Paths(subsets) => subsets.bound(from, remaining),
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Bounds and improves orders of many targets in turn, before the tree is opened.
+    pub(super) fn work_on_couplings(&mut self) -> Option<SearchEnd> {
+        if self.tree.table().targets() <= EXACT_TARGETS {
+            return None;
+        }
+        let Some(Couplings::Trees(mut charges)) = Couplings::of_many(self.model, self.tree.table())
+        else {
+            return None;
+        };
+        let targets = self.tree.table().targets();
+        for round in 0..ROUNDS {
+            let effort = Effort {
+                triples: TRIPLES_OF_MANY * targets,
+                fives: FIVES_OF_MANY * targets,
+                steps: STEPS,
+            };
+            charges.raise(self.model, &effort, self.pool, self.stop);
+            self.tree.bound_root(charges.root_bound());
+            self.account.report(&self.tree);
+            for order in 0..ORDERS_PER_ROUND {
+                self.improve_orders(&mut charges, round * ORDERS_PER_ROUND + order);
+                if self.stop.is_set() {
+                    break;
+                }
+            }
+            if self.stop.is_set() {
+                break;
+            }
+        }
+        self.tree.couple(Couplings::Trees(charges));
+        self.stop.is_set().then(|| self.stopped())
+    }
+
+    /// Searches for orders that are short in all that is known of couplings, flies them, and learns
+    /// what was unknown of their triples.
+    fn improve_orders(&mut self, charges: &mut Charges, seed: u64) {
+        let mut orders = self
+            .tree
+            .short_orders(charges, KICKS, FLOWN, seed, self.stop);
+        charges.ask_along(&orders, self.model, self.pool, self.stop);
+        orders.retain(|order| self.tree.is_new(order));
+        let answers = self.pool.map(&orders, |order| self.fly(order));
+        for (order, answer) in orders.iter().zip(answers) {
+            self.tree.record_candidate(order, answer);
+        }
+        self.account.hand_over(&self.tree);
+        self.account.report(&self.tree);
+    }
+
+    /// Tightens the bounds of a search over few targets that is not about to end.
+    pub(super) fn tighten(&mut self) {
+        let couplings = Couplings::of_few(
+            self.model,
+            self.tree.table(),
+            self.tree.rules(),
+            self.pool,
+            self.stop,
+        );
+        if let Some(couplings) = couplings {
+            self.tree.couple(couplings);
+        }
+    }
+}

@@ -90,14 +90,19 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let mut solver = LegSolver::new(&places, run, &stop);
+    let solver = LegSolver::new(&places, run, &stop);
+    let tours = Tours::new(&places, &solver, &stop);
+    let mut conclusions = Conclusions::new(&tours, run, begin);
+    let first = first_tour(&tours, &stop);
+    if let Some(first) = &first {
+        conclusions.announce(first);
+        solver.tell_incumbent(first.duration_s);
+    }
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = tour_bound(&places, &bounds, run.pool, &stop);
+    tours.prove(bounds);
+    conclusions.prove(certified);
     solver.tell_bound(certified);
-    let tours = Tours::new(&places, &solver, &bounds, &stop);
-    let mut conclusions = Conclusions::new(&tours, certified, run, begin);
-    let first = first_tour(&tours, &stop);
-    conclusions.announce(first.as_ref());
     tours.know(solver.table(LegKind::LowerBound, &pairs));
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,
@@ -126,10 +131,8 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
 pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    let pairs = tour_pairs(&places);
     let solver = LegSolver::new(&places, run, &stop);
-    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
-    let tours = Tours::new(&places, &solver, &bounds, &stop);
+    let tours = Tours::new(&places, &solver, &stop);
     let orders = (1..=scenario.targets().len()).product();
     exhaustive(&tours, orders, run.pool)
 }

@@ -59,7 +59,7 @@ impl Assembly<'_> {
             to: self.tours.places.name(to),
             start_s: begin,
             duration_s: duration,
-            certified_lower_bound_s: self.tours.certified.bound(from, to),
+            certified_lower_bound_s: None,
             eigenaxis_duration_s: self.eigenaxis_duration(from, to),
             rest_to_rest_duration_s: None,
             solver_status: flown.status.as_str().into(),

@@ -49,15 +49,10 @@ struct VerifiedFlight {
 
 impl<'a> Conclusions<'a> {
     /// Plans of tours.
-    pub(super) fn new(
-        tours: &'a Tours<'a>,
-        certified: Option<f64>,
-        run: Run<'a>,
-        begin: Instant,
-    ) -> Self {
+    pub(super) fn new(tours: &'a Tours<'a>, run: Run<'a>, begin: Instant) -> Self {
         Self {
             tours,
-            certified,
+            certified: None,
             run,
             begin,
             last: Mutex::default(),
@@ -66,16 +61,19 @@ impl<'a> Conclusions<'a> {
         }
     }
 
+    /// Takes in a proved bound on all tours, s.
+    pub(super) fn prove(&mut self, certified: Option<f64>) {
+        self.certified = certified;
+    }
+
     /// Tells of a first tour, before anything is known of others.
-    pub(super) fn announce(&self, first: Option<&FlownOrder>) {
-        if let Some(best) = first {
-            self.improved(&Incumbent {
-                best,
-                alternatives: &[],
-                lower_bound_s: 0.0,
-                statistics: SearchStatistics::default(),
-            });
-        }
+    pub(super) fn announce(&self, first: &FlownOrder) {
+        self.improved(&Incumbent {
+            best: first,
+            alternatives: &[],
+            lower_bound_s: 0.0,
+            statistics: SearchStatistics::default(),
+        });
     }
 
     /// Solves the legs of the final order from rest to rest, to be compared with in its plan; not
@@ -168,7 +166,7 @@ impl<'a> Conclusions<'a> {
         let total = flight.total_time_s;
         let (bound, lower_bound_kind) = self.bound(order.lower_bound_s, kind, total);
         let route = self.tours.places.route(&order.best.order, true);
-        self.add_rest(&mut legs, &route);
+        self.compare(&mut legs, &route);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
         let history = self.history.with(total, bound);
         Ok(Plan {
@@ -222,11 +220,12 @@ impl Conclusions<'_> {
         }
     }
 
-    /// Puts the legs from rest to rest beside those of a route.
-    fn add_rest(&self, legs: &mut [Leg], route: &[Place]) {
-        let Some(table) = &self.rest else { return };
+    /// Puts beside the legs of a route what is proved of them, and the legs from rest to rest.
+    fn compare(&self, legs: &mut [Leg], route: &[Place]) {
         for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
-            leg.rest_to_rest_duration_s = table.duration(pair[0], pair[1]);
+            let rest = self.rest.as_ref();
+            leg.certified_lower_bound_s = self.tours.proved(pair[0], pair[1]);
+            leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
         }
     }
 

@@ -74,12 +74,13 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let route = places.route(order, true);
-    let mut solver = LegSolver::new(&places, run, &stop);
+    let solver = LegSolver::new(&places, run, &stop);
     let pairs = legs_of(&places, &route);
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = route_bound(&places, &bounds, &route);
     solver.tell_bound(certified);
-    let tours = Tours::new(&places, &solver, &bounds, &stop);
+    let tours = Tours::new(&places, &solver, &stop);
+    tours.prove(bounds);
     if bound == BoundFrom::Legs {
         tours.know(solver.table(LegKind::LowerBound, &pairs));
     }
@@ -90,7 +91,8 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
             // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            let mut conclusions = Conclusions::new(&tours, certified, run, begin);
+            let mut conclusions = Conclusions::new(&tours, run, begin);
+            conclusions.prove(certified);
             if bound == BoundFrom::Legs {
                 conclusions.compare_with_rest(&flown);
             }

@@ -22,7 +22,7 @@ use crate::transcription::Waypoint;
 use nalgebra::{DVector, Vector3};
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// Solves canonical legs and remembers them for the tables and tours of one solve.
@@ -32,8 +32,10 @@ pub(super) struct LegSolver<'a> {
     stop: &'a StopSignal,
     known: Remembered<Arc<SolvedLeg>>,
     certified: Remembered<CertifiedLeg>,
-    /// No tour takes less, s, when that is known: told with the progress.
-    lower_bound_s: Option<f64>,
+    /// A first tour takes this long, s, and none takes less than this, s, when that is known: told
+    /// with the progress.
+    incumbent_s: OnceLock<f64>,
+    lower_bound_s: OnceLock<f64>,
     /// Legs solved.
     solved: AtomicU64,
     /// Legs taken from the store.
@@ -53,7 +55,8 @@ impl<'a> LegSolver<'a> {
             stop,
             known: Remembered::default(),
             certified: Remembered::default(),
-            lower_bound_s: None,
+            incumbent_s: OnceLock::new(),
+            lower_bound_s: OnceLock::new(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
@@ -66,11 +69,17 @@ impl<'a> LegSolver<'a> {
     }
 
     /// Tells a bound on all tours, s, now and with the progress of the legs from now on.
-    pub(super) fn tell_bound(&mut self, lower_bound_s: Option<f64>) {
-        self.lower_bound_s = lower_bound_s;
-        if lower_bound_s.is_some() {
+    pub(super) fn tell_bound(&self, lower_bound_s: Option<f64>) {
+        if let Some(bound) = lower_bound_s {
+            self.lower_bound_s.get_or_init(|| bound);
             self.tell(0, None);
         }
+    }
+
+    /// Tells of a first tour of this duration, s, in the same way.
+    pub(super) fn tell_incumbent(&self, duration_s: f64) {
+        self.incumbent_s.get_or_init(|| duration_s);
+        self.tell(0, None);
     }
 
     fn tell(&self, done: u64, total: Option<u64>) {
@@ -78,8 +87,8 @@ impl<'a> LegSolver<'a> {
             stage: Stage::Legs,
             done,
             total,
-            incumbent_s: None,
-            lower_bound_s: self.lower_bound_s,
+            incumbent_s: self.incumbent_s.get().copied(),
+            lower_bound_s: self.lower_bound_s.get().copied(),
         });
     }
 

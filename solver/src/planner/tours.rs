@@ -59,8 +59,8 @@ enum Extent {
 pub(super) struct Tours<'a> {
     pub(super) places: &'a Places<'a>,
     pub(super) legs: &'a LegSolver<'a>,
-    /// Certified bounds of legs with free ends, s.
-    pub(super) certified: &'a CertifiedTable,
+    /// Certified bounds of legs with free ends, s, once they are known.
+    certified: OnceLock<CertifiedTable>,
     /// Legs with free ends, once they are solved: bounds.
     free: OnceLock<LegTable>,
     /// Whether orders are as good backwards.
@@ -74,19 +74,28 @@ impl<'a> Tours<'a> {
     pub(super) fn new(
         places: &'a Places<'a>,
         legs: &'a LegSolver<'a>,
-        certified: &'a CertifiedTable,
         stop: &'a StopSignal,
     ) -> Self {
         Self {
             places,
             legs,
-            certified,
+            certified: OnceLock::new(),
             free: OnceLock::new(),
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
             segments: Segments::default(),
         }
+    }
+
+    /// Takes in the certified bounds of the legs; those of the first call count.
+    pub(super) fn prove(&self, certified: CertifiedTable) {
+        self.certified.get_or_init(|| certified);
+    }
+
+    /// No slew between two places takes less, s; `None` where nothing is proved.
+    pub(super) fn proved(&self, from: Place, to: Place) -> Option<f64> {
+        self.certified.get().and_then(|legs| legs.bound(from, to))
     }
 
     /// Takes in the legs with free ends, which bound all tours better than the certified bounds;
@@ -344,8 +353,8 @@ impl TourModel for Tours<'_> {
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
         let solved = self.free().and_then(|free| free.duration(from, to));
-        let certified = self.certified.bound(from, to);
-        let known = solved.into_iter().chain(certified).reduce(f64::max);
+        let proved = self.proved(from, to);
+        let known = solved.into_iter().chain(proved).reduce(f64::max);
         known.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
     }
 

@@ -122,6 +122,9 @@ impl Search<'_> {
 
     /// Tightens the bounds of a search over few targets that is not about to end.
     pub(super) fn tighten(&mut self) {
+        if self.tree.table().targets() > EXACT_TARGETS {
+            return;
+        }
         let couplings = Couplings::of_few(
             self.model,
             self.tree.table(),

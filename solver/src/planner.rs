@@ -93,16 +93,16 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
     let mut conclusions = Conclusions::new(&tours, run, begin);
+    solver.tell_begin();
     let first = first_tour(&tours, &stop);
-    if let Some(first) = &first {
-        conclusions.announce(first);
-        solver.tell_incumbent(first.duration_s);
-    }
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = tour_bound(&places, &bounds, run.pool, &stop);
     tours.prove(bounds);
     conclusions.prove(certified);
-    solver.tell_bound(certified);
+    if let Some(first) = &first {
+        conclusions.announce(first);
+    }
+    solver.tell(first.as_ref().map(|first| first.duration_s), certified);
     tours.know(solver.table(LegKind::LowerBound, &pairs));
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,

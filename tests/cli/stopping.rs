@@ -14,16 +14,27 @@ fn send(child: &Child, signal: i32) {
     assert!(sent.success());
 }
 
-/// Solves the largest experiment and sends a signal at the first line of progress that fits.
-fn signalled(signal: i32, output: &Path, when: impl Fn(&str) -> bool) -> Ended {
+/// Experiment C with so many more targets that a first plan takes a while.
+fn crowded(folder: &Path) -> String {
+    let mut scenario = fixture_json("olivares-c.json");
+    let targets = (0..240).map(|i| {
+        let (roll, yaw) = (f64::from(i % 16) * 7.5, f64::from(i / 16) * 23.0);
+        serde_json::json!({
+            "id": format!("t{i}"),
+            "attitude": {"roll_pitch_yaw_deg": [roll, 0, yaw]},
+            "zero_rate_axes": ["z"],
+        })
+    });
+    scenario["targets"] = targets.collect();
+    let path = folder.join("crowded.json");
+    std::fs::write(&path, scenario.to_string()).expect("a file");
+    path.to_str().expect("UTF-8").to_owned()
+}
+
+/// Solves a scenario and sends a signal at the first line of progress that fits.
+fn signalled(scenario: &str, signal: i32, output: &Path, when: impl Fn(&str) -> bool) -> Ended {
     let mut child = binary()
-        .args([
-            "solve",
-            &fixture("olivares-c.json"),
-            "--progress",
-            "json",
-            "-o",
-        ])
+        .args(["solve", scenario, "--progress", "json", "-o"])
         .arg(output)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -55,8 +66,10 @@ fn a_signal_before_the_first_plan_ends_without_one() {
     for (signal, code) in [(SIGTERM, 143), (SIGINT, 130)] {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("plan.json");
-        signalled(signal, &path, |line| line.contains("\"incumbent_s\":null")).expect_code(code);
-        assert!(names_in(folder.path()).is_empty());
+        let scenario = crowded(folder.path());
+        let first = |line: &str| line.contains("\"incumbent_s\":null");
+        signalled(&scenario, signal, &path, first).expect_code(code);
+        assert_eq!(names_in(folder.path()), ["crowded.json"]);
     }
 }
 
@@ -66,7 +79,8 @@ fn a_signal_after_the_first_plan_ends_with_the_best_so_far() {
     let path = folder.path().join("plan.json");
     let known =
         |line: &str| line.contains("\"incumbent_s\":") && !line.contains("\"incumbent_s\":null");
-    signalled(SIGTERM, &path, known).expect_code(4);
+    let scenario = crowded(folder.path());
+    signalled(&scenario, SIGTERM, &path, known).expect_code(4);
     let text = std::fs::read_to_string(&path).expect("the plan is there");
     let plan: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(plan["status"], "feasible");

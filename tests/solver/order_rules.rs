@@ -1,7 +1,7 @@
 //! Fixed places and precedences of targets.
 
 use slewplan_solver::plan::{Optimality, Plan};
-use slewplan_solver::planner::{Effort, OrderError, every_order, fly_order};
+use slewplan_solver::planner::{BoundFrom, OrderError, every_order, fly_order};
 use slewplan_solver::spec::ScenarioSpec;
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, scenario_of};
@@ -52,7 +52,9 @@ fn a_given_order_has_to_keep_the_rules() {
     let scenario = scenario_of(&ruled_spec());
     let fly = |order: &str| {
         let order = indices(order);
-        on_threads(2, |run| fly_order(&scenario, &order, Effort::Direct, run))
+        on_threads(2, |run| {
+            fly_order(&scenario, &order, BoundFrom::Certificates, run)
+        })
     };
     for wrong in ["cabfde", "acdbfe", "acfdbe"] {
         assert_eq!(fly(wrong).err(), Some(OrderError::NotAdmitted), "{wrong}");

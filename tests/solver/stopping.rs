@@ -62,12 +62,19 @@ fn assert_honest(plan: &Plan) {
 }
 
 #[test]
-fn a_stop_among_the_first_legs_ends_soon_and_empty() {
+fn a_stop_at_the_very_beginning_ends_soon_and_empty() {
+    let (outcome, took) = stopped_when(&scenario_of(&long_spec()), |_| true);
+    assert!(matches!(outcome, Outcome::StoppedEmpty));
+    assert!(took < SOON, "{took:?}");
+}
+
+#[test]
+fn a_stop_among_the_first_legs_ends_soon_with_a_first_plan_and_what_is_proved() {
     let (outcome, took) = stopped_when(&scenario_of(&long_spec()), |progress| {
         progress.stage == Stage::Legs && progress.done >= 3
     });
-    assert!(matches!(outcome, Outcome::StoppedEmpty), "{outcome:?}");
     assert!(took < SOON, "{took:?}");
+    assert_honest(&planned(outcome));
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
     let pairs = legs_of(&places, &route);
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = route_bound(&places, &bounds, &route);
-    solver.tell_bound(certified);
+    solver.tell(None, certified);
     let tours = Tours::new(&places, &solver, &stop);
     tours.prove(bounds);
     if bound == BoundFrom::Legs {

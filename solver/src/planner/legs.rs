@@ -32,10 +32,9 @@ pub(super) struct LegSolver<'a> {
     stop: &'a StopSignal,
     known: Remembered<Arc<SolvedLeg>>,
     certified: Remembered<CertifiedLeg>,
-    /// A first tour takes this long, s, and none takes less than this, s, when that is known: told
-    /// with the progress.
-    incumbent_s: OnceLock<f64>,
-    lower_bound_s: OnceLock<f64>,
+    /// What a first tour takes and what none undercuts, s, as far as it is known: told with the
+    /// progress.
+    told: OnceLock<(Option<f64>, Option<f64>)>,
     /// Legs solved.
     solved: AtomicU64,
     /// Legs taken from the store.
@@ -55,8 +54,7 @@ impl<'a> LegSolver<'a> {
             stop,
             known: Remembered::default(),
             certified: Remembered::default(),
-            incumbent_s: OnceLock::new(),
-            lower_bound_s: OnceLock::new(),
+            told: OnceLock::new(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
@@ -68,27 +66,26 @@ impl<'a> LegSolver<'a> {
         self.places
     }
 
-    /// Tells a bound on all tours, s, now and with the progress of the legs from now on.
-    pub(super) fn tell_bound(&self, lower_bound_s: Option<f64>) {
-        if let Some(bound) = lower_bound_s {
-            self.lower_bound_s.get_or_init(|| bound);
-            self.tell(0, None);
-        }
+    /// Tells that work has begun.
+    pub(super) fn tell_begin(&self) {
+        self.tell_done(0, None);
     }
 
-    /// Tells of a first tour of this duration, s, in the same way.
-    pub(super) fn tell_incumbent(&self, duration_s: f64) {
-        self.incumbent_s.get_or_init(|| duration_s);
-        self.tell(0, None);
+    /// Tells the duration of a first tour and a bound on all tours, s, now and with the progress of
+    /// the legs from now on.
+    pub(super) fn tell(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
+        self.told.get_or_init(|| (incumbent_s, lower_bound_s));
+        self.tell_done(0, None);
     }
 
-    fn tell(&self, done: u64, total: Option<u64>) {
+    fn tell_done(&self, done: u64, total: Option<u64>) {
+        let (incumbent_s, lower_bound_s) = self.told.get().copied().unwrap_or_default();
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done,
             total,
-            incumbent_s: self.incumbent_s.get().copied(),
-            lower_bound_s: self.lower_bound_s.get().copied(),
+            incumbent_s,
+            lower_bound_s,
         });
     }
 
@@ -100,7 +97,7 @@ impl<'a> LegSolver<'a> {
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
     /// out of the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
-        self.fill(kind, pairs, |done, total| self.tell(done, Some(total)))
+        self.fill(kind, pairs, |done, total| self.tell_done(done, Some(total)))
     }
 
     /// The same, without telling of a stage that is over.
@@ -134,8 +131,9 @@ impl<'a> LegSolver<'a> {
         let canonical = self.canonical(kind, &[(from, to)]).remove(0);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
-            let (leg, from_store) = self.find(kind, &canonical);
-            let leg = Arc::new(leg);
+            let stored = self.recall(&canonical);
+            let from_store = stored.is_some();
+            let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
             self.remember(&canonical, &leg, from_store);
             leg
         });
@@ -195,21 +193,23 @@ impl<'a> LegSolver<'a> {
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
         self.run.pool.map(&missing, |leg| {
-            if !self.stop.is_set() {
-                let (solved, from_store) = self.find(kind, leg);
-                self.remember(leg, &Arc::new(solved), from_store);
+            if let Some(stored) = self.recall(leg) {
+                self.remember(leg, &Arc::new(stored), true);
+            } else if !self.stop.is_set() {
+                self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
             }
             tell(done.fetch_add(1, Relaxed) + 1, total);
         });
     }
 
-    /// A leg from the store, or solved; whether it is from the store.
-    fn find(&self, kind: LegKind, leg: &CanonicalLeg) -> (SolvedLeg, bool) {
-        let stored_leg = self.run.legs.get(&leg.identity);
-        let found = stored_leg.and_then(|stored| recall(&stored, leg.resolution.intervals));
-        if let Some(found) = found {
-            return (found, true);
-        }
+    /// A leg from the store.
+    fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
+        let stored = self.run.legs.get(&leg.identity)?;
+        recall(&stored, leg.resolution.intervals)
+    }
+
+    /// Solves a leg, and stores it.
+    fn solve(&self, kind: LegKind, leg: &CanonicalLeg) -> SolvedLeg {
         let bound = lock(&self.certified).get(&leg.identity).copied();
         let fresh = solve(self.places, leg, bound, self.stop);
         if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
@@ -217,7 +217,7 @@ impl<'a> LegSolver<'a> {
             // stopped, since then perhaps not all starts have been tried.
             self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
         }
-        (fresh, false)
+        fresh
     }
 
     /// Keeps a leg unless it was interrupted.

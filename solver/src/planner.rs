@@ -79,6 +79,9 @@ pub struct Shard {
     pub of: usize,
 }
 
+/// Up to so many targets the certified bounds of all legs take less time than a first tour.
+const FEW: usize = 40;
+
 /// Solves a scenario: order, torques, bound, verification.
 #[must_use]
 pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
@@ -94,15 +97,26 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let tours = Tours::new(&places, &solver, &stop);
     let mut conclusions = Conclusions::new(&tours, run, begin);
     solver.tell_begin();
+    let prove = || {
+        let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
+        let certified = tour_bound(&places, &bounds, run.pool, &stop);
+        tours.prove(bounds);
+        certified
+    };
+    // Whichever is sooner done.
+    let few = scenario.targets().len() <= FEW;
+    if few {
+        conclusions.prove(prove());
+    }
     let first = first_tour(&tours, &stop);
-    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
-    let certified = tour_bound(&places, &bounds, run.pool, &stop);
-    tours.prove(bounds);
-    conclusions.prove(certified);
     if let Some(first) = &first {
         conclusions.announce(first);
+        solver.tell(Some(first.duration_s), conclusions.proved());
     }
-    solver.tell(first.as_ref().map(|first| first.duration_s), certified);
+    if !few {
+        conclusions.prove(prove());
+    }
+    solver.tell(None, conclusions.proved());
     tours.know(solver.table(LegKind::LowerBound, &pairs));
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,

@@ -185,7 +185,7 @@ impl SlewProblem<'_> {
     }
 
     /// Whether the conditions of both ends admit rest with the null-space momentum of the guesses.
-    fn begins_and_ends_at_rest(&self) -> bool {
+    pub(crate) fn begins_and_ends_at_rest(&self) -> bool {
         [self.from, self.to].iter().all(|end| {
             let still = end.rate.iter().all(|rate| match rate {
                 RateCondition::Free => true,

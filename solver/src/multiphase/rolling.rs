@@ -14,8 +14,9 @@ use crate::nlp::{Interruption, NlpStatus, Settings};
 use crate::profile::Profile;
 use crate::transcription::Waypoint;
 
-/// Legs of a window; flights of no more are solved at once.
+/// Legs of a window, and of a flight that is better solved at once.
 const WINDOW: usize = 8;
+const SHORT: usize = 14;
 /// Legs at the end of a window that the next one solves again.
 const OVERLAP: usize = 2;
 
@@ -37,7 +38,7 @@ pub(crate) fn fly_rolling(
     guess: &Profile,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Flown {
-    if intervals.len() > WINDOW {
+    if intervals.len() > SHORT {
         let motion = roll(dynamics, waypoints, intervals, guess, stop);
         let whole = motion.and_then(|motion| {
             let flight = Flight::new(dynamics, waypoints, intervals, &motion);

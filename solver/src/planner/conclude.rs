@@ -66,6 +66,11 @@ impl<'a> Conclusions<'a> {
         self.certified = certified;
     }
 
+    /// That bound, when there is one.
+    pub(super) fn proved(&self) -> Option<f64> {
+        self.certified
+    }
+
     /// Tells of a first tour, before anything is known of others.
     pub(super) fn announce(&self, first: &FlownOrder) {
         self.improved(&Incumbent {

@@ -22,7 +22,7 @@ use crate::transcription::Waypoint;
 use nalgebra::{DVector, Vector3};
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 /// Solves canonical legs and remembers them for the tables and tours of one solve.
@@ -34,7 +34,7 @@ pub(super) struct LegSolver<'a> {
     certified: Remembered<CertifiedLeg>,
     /// What a first tour takes and what none undercuts, s, as far as it is known: told with the
     /// progress.
-    told: OnceLock<(Option<f64>, Option<f64>)>,
+    told: Mutex<(Option<f64>, Option<f64>)>,
     /// Legs solved.
     solved: AtomicU64,
     /// Legs taken from the store.
@@ -54,7 +54,7 @@ impl<'a> LegSolver<'a> {
             stop,
             known: Remembered::default(),
             certified: Remembered::default(),
-            told: OnceLock::new(),
+            told: Mutex::default(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
@@ -74,12 +74,16 @@ impl<'a> LegSolver<'a> {
     /// Tells the duration of a first tour and a bound on all tours, s, now and with the progress of
     /// the legs from now on.
     pub(super) fn tell(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
-        self.told.get_or_init(|| (incumbent_s, lower_bound_s));
+        {
+            let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+            *told = (incumbent_s.or(told.0), lower_bound_s.or(told.1));
+        }
         self.tell_done(0, None);
     }
 
     fn tell_done(&self, done: u64, total: Option<u64>) {
-        let (incumbent_s, lower_bound_s) = self.told.get().copied().unwrap_or_default();
+        let told = self.told.lock();
+        let (incumbent_s, lower_bound_s) = *told.unwrap_or_else(PoisonError::into_inner);
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done,
@@ -125,9 +129,8 @@ impl<'a> LegSolver<'a> {
         Table::new(self.places, entries)
     }
 
-    /// The leg with free ends between two places, solved if it was not before.
-    pub(super) fn lone(&self, from: Place, to: Place) -> Flown {
-        let kind = LegKind::LowerBound;
+    /// The leg of a kind between two places, solved if it was not before.
+    pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> Flown {
         let canonical = self.canonical(kind, &[(from, to)]).remove(0);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {

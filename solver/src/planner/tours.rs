@@ -11,6 +11,7 @@ use super::legs::LegSolver;
 use super::places::Places;
 use super::segments::Segments;
 use super::tables::{CertifiedTable, LegTable};
+use crate::legs::LegKind;
 use crate::multiphase::{Flown, fly, fly_on, fly_rolling, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
@@ -22,7 +23,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 /// What a segment starts from.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Start {
     /// The flight without the last leg.
     Shorter,
@@ -30,29 +31,31 @@ enum Start {
     Eigenaxes,
     /// Extremals of the kinematic problem.
     Extremals,
-    /// Solved legs with free ends.
-    LoneLegs,
+    /// Legs from rest to rest: where all of it admits rest, that is a flight already.
+    AtRest,
 }
 
 /// The starts of a segment, and how many are tried when all goes well: a short segment has local
 /// minima that longer ones inherit.
-const STARTS: [Start; 3] = [Start::Eigenaxes, Start::Extremals, Start::LoneLegs];
+const STARTS: [Start; 3] = [Start::Eigenaxes, Start::Extremals, Start::AtRest];
 const STARTS_OF_LONGER: [Start; 4] = [
     Start::Shorter,
     Start::Eigenaxes,
     Start::Extremals,
-    Start::LoneLegs,
+    Start::AtRest,
 ];
 const SHORT: usize = 3;
 const USUAL_STARTS_OF_SHORT: usize = 2;
 
-/// Whether a segment may go on.
+/// What a segment is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Extent {
-    /// The beginning of longer ones, free where it ends.
+    /// The beginning of longer ones, free where it ends: its duration is a bound.
     Beginning,
-    /// All of it.
-    Whole,
+    /// A piece of a tour: its duration is a bound.
+    Piece,
+    /// A tour: any flight is better than none.
+    Tour,
 }
 
 /// Tours over legs.
@@ -121,9 +124,9 @@ impl<'a> Tours<'a> {
     /// flight backwards.
     pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<Flown>> {
         let Some(reverse) = self.better_backwards(route) else {
-            return self.fly_segments(route, Extent::Whole);
+            return self.fly_segments(route, Extent::Tour);
         };
-        let mut flown = self.fly_segments(&reverse, Extent::Whole);
+        let mut flown = self.fly_segments(&reverse, Extent::Tour);
         if flown.iter().all(|segment| segment.duration().is_some()) {
             flown.reverse();
             for segment in &mut flown {
@@ -157,7 +160,10 @@ impl<'a> Tours<'a> {
         let segments = self.split(route);
         let last = segments.len().saturating_sub(1);
         for (i, segment) in segments.into_iter().enumerate() {
-            let extent = if i == last { extent } else { Extent::Whole };
+            let extent = match extent {
+                Extent::Beginning if i < last => Extent::Piece,
+                _ => extent,
+            };
             let solved = self.segment(segment, extent);
             let status = solved.status;
             flown.push(solved);
@@ -184,11 +190,11 @@ impl<'a> Tours<'a> {
 
     fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
         if let [from, to] = route {
-            return Arc::new(self.legs.lone(*from, *to));
+            return Arc::new(self.legs.lone(LegKind::LowerBound, *from, *to));
         }
         self.segments.get(route).unwrap_or_else(|| {
             let flown = Arc::new(self.solve_segment(route, extent));
-            if !flown.status.is_interrupted() {
+            if flown.duration().is_some() {
                 self.segments.put(route, &flown);
             }
             flown
@@ -206,7 +212,7 @@ impl<'a> Tours<'a> {
             .map(|pair| pair[1]);
         let distinct: Vec<Place> = std::iter::once(route[0]).chain(fresh).collect();
         let mut flown = if let [from, to] = distinct[..] {
-            self.legs.lone(from, to)
+            self.legs.lone(LegKind::LowerBound, from, to)
         } else {
             self.solve_distinct(&distinct, extent)
         };
@@ -223,10 +229,14 @@ impl<'a> Tours<'a> {
     fn solve_distinct(&self, route: &[Place], extent: Extent) -> Flown {
         let (starts, usual) = match (route.len() - 1 > SHORT, extent) {
             (true, Extent::Beginning) => (&STARTS_OF_LONGER[..], 1),
-            (true, Extent::Whole) => (&STARTS[..], 1),
+            (true, Extent::Piece | Extent::Tour) => (&STARTS[..], 1),
             (false, _) => (&STARTS[..], USUAL_STARTS_OF_SHORT),
         };
         let mut best = self.solve_from(route, starts[0]);
+        let starts = match extent {
+            Extent::Tour => starts,
+            Extent::Beginning | Extent::Piece => &starts[..starts.len() - 1],
+        };
         for (tried, &start) in starts.iter().enumerate().skip(1) {
             let settled = best.status == NlpStatus::Converged && tried >= usual;
             if settled || best.status.is_interrupted() {
@@ -257,10 +267,27 @@ impl<'a> Tours<'a> {
         let fly = match start {
             Start::Shorter => fly_on,
             Start::Eigenaxes => fly_rolling,
-            Start::Extremals | Start::LoneLegs => fly,
+            Start::Extremals | Start::AtRest => fly,
         };
-        fly(dynamics, &waypoints, &intervals, &guess, &|| {
+        let flown = fly(dynamics, &waypoints, &intervals, &guess, &|| {
             interruption(self.stop)
+        });
+        let failed = flown.duration().is_none() && !flown.status.is_interrupted();
+        if start == Start::AtRest && failed && self.admits_rest(route) {
+            return Flown {
+                status: NlpStatus::Converged,
+                profile: guess,
+                ..flown
+            };
+        }
+        flown
+    }
+
+    /// Whether a route may be flown from rest to rest at all of its places.
+    fn admits_rest(&self, route: &[Place]) -> bool {
+        route.windows(2).all(|pair| {
+            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
+            self.places.slew(&from, &to).begins_and_ends_at_rest()
         })
     }
 
@@ -281,9 +308,10 @@ impl<'a> Tours<'a> {
             guess.append(&match start {
                 Start::Shorter | Start::Eigenaxes => bowed(),
                 Start::Extremals => slew.extremal().unwrap_or_else(|| slew.bowed(Side::Far)),
-                Start::LoneLegs => {
-                    let leg = self.legs.lone(pair[0], pair[1]);
-                    leg.duration().map_or_else(bowed, |_| leg.profile)
+                Start::AtRest => {
+                    let leg = self.legs.lone(LegKind::RestToRest, pair[0], pair[1]);
+                    leg.duration()?;
+                    leg.profile
                 }
             });
         }
@@ -377,7 +405,7 @@ impl TourModel for Tours<'_> {
         {
             route.reverse();
         }
-        match self.evaluation(&route, &self.fly_segments(&route, Extent::Whole)) {
+        match self.evaluation(&route, &self.fly_segments(&route, Extent::Piece)) {
             Evaluation::Value(duration) => {
                 Evaluation::Value(duration - self.places.service_time(path[0]))
             }

@@ -5,6 +5,7 @@
 //! target); the pyramid is that of the published envelope of a square array of four wheels.
 
 pub mod motions;
+pub mod orders;
 pub mod random;
 pub mod schedules;
 pub mod solving;

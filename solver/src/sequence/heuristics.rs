@@ -64,14 +64,23 @@ pub(super) fn candidates(
     distinct
 }
 
+/// How long to search among orders.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SearchEffort {
+    /// Kicks, by the number of targets.
+    pub(super) kicks_per_target: usize,
+    /// How many orders to list besides the best.
+    pub(super) alternatives: usize,
+    /// What other kicks follow from.
+    pub(super) seed: u64,
+}
+
 /// Orders that are shorter than one in what is known of legs and their couplings, best first.
 pub(super) fn shorter_orders(
     costs: &Charges,
     rules: &OrderRules,
     order: &[usize],
-    kicks: usize,
-    count: usize,
-    seed: u64,
+    effort: &SearchEffort,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
     let admits = |order: &[usize]| rules.admits(order);
@@ -80,8 +89,8 @@ pub(super) fn shorter_orders(
         from: costs.table().start(),
         admits: (!rules.is_free()).then_some(&admits),
     };
-    let mut search = IteratedSearch::new(&task, order, count - 1, seed);
-    search.run(kicks * order.len(), stop);
+    let mut search = IteratedSearch::new(&task, order, effort.alternatives, effort.seed);
+    search.run(effort.kicks_per_target * order.len(), stop);
     let best = search.best().iter();
     best.map(|best| best.order.clone()).collect()
 }

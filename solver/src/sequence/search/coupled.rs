@@ -8,6 +8,7 @@
 use super::Search;
 use crate::pool::SolverPool;
 use crate::sequence::charges::{ChargedSubsets, Charges, Effort};
+use crate::sequence::heuristics::SearchEffort;
 use crate::sequence::remainder::{EXACT_TARGETS, SpanningTrees};
 use crate::sequence::{OrderRules, PairTable, SearchEnd, TourModel};
 use crate::stop::StopSignal;
@@ -107,9 +108,12 @@ impl Search<'_> {
     /// Searches for orders that are short in all that is known of couplings, flies them, and learns
     /// what was unknown of their triples.
     fn improve_orders(&mut self, charges: &mut Charges, seed: u64) {
-        let mut orders = self
-            .tree
-            .short_orders(charges, KICKS, FLOWN, seed, self.stop);
+        let effort = SearchEffort {
+            kicks_per_target: KICKS,
+            alternatives: FLOWN - 1,
+            seed,
+        };
+        let mut orders = self.tree.short_orders(charges, &effort, self.stop);
         charges.ask_along(&orders, self.model, self.pool, self.stop);
         orders.retain(|order| self.tree.is_new(order));
         let answers = self.pool.map(&orders, |order| self.fly(order));

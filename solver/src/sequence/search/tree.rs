@@ -4,7 +4,7 @@ use super::coupled::Couplings;
 use crate::pool::SolverPool;
 use crate::sequence::charges::Charges;
 use crate::sequence::frontier::Frontier;
-use crate::sequence::heuristics;
+use crate::sequence::heuristics::{self, SearchEffort};
 use crate::sequence::incumbents::Incumbents;
 use crate::sequence::node::Node;
 use crate::sequence::remainder::Remainder;
@@ -124,23 +124,13 @@ impl Tree {
     pub(super) fn short_orders(
         &self,
         costs: &Charges,
-        kicks: usize,
-        count: usize,
-        seed: u64,
+        effort: &SearchEffort,
         stop: &StopSignal,
     ) -> Vec<Vec<usize>> {
         let Some(best) = self.incumbents.orders().first() else {
             return Vec::new();
         };
-        heuristics::shorter_orders(
-            costs,
-            self.table.rules(),
-            &best.order,
-            kicks,
-            count,
-            seed,
-            stop,
-        )
+        heuristics::shorter_orders(costs, self.table.rules(), &best.order, effort, stop)
     }
 
     /// Whether an order has not been flown.

@@ -128,22 +128,6 @@ impl Charges {
         (self.passing(&part) + first + edges + last).max(0.0)
     }
 
-    /// Duration, s, that an order may have by what is known of its pairs and triples: unlike in a
-    /// bound, all triples count in full, as they do where a leg is delayed by the one before and
-    /// the one after it independently.
-    #[must_use]
-    pub fn estimate(&self, order: &[usize]) -> f64 {
-        let table = self.legs.table();
-        let mut path = vec![table.start()];
-        path.extend(order);
-        path.push(table.end());
-        let legs = path.windows(2).map(|leg| table.bound(leg[0], leg[1]));
-        let excesses = path
-            .windows(3)
-            .map(|triple| self.excesses.triple(triple[0], triple[1], triple[2]));
-        legs.chain(excesses).sum()
-    }
-
     /// Asks the model for the triples of some orders that are not known.
     pub fn ask_along(
         &mut self,
@@ -166,6 +150,8 @@ impl Charges {
     }
 
     /// What passing a target between two others adds to the two legs, s, as far as it is known.
+    /// Summed over an order, unlike in a bound, all of it counts: a leg may be delayed by the one before
+    /// and the one after it independently.
     pub(super) fn excess(&self, from: usize, via: usize, to: usize) -> f64 {
         self.excesses.triple(from, via, to)
     }

@@ -49,6 +49,27 @@ fn finds_the_best_orders_of_coupled_models() {
 }
 
 #[test]
+fn half_of_the_orders_are_enough_where_all_are_as_good_backwards() {
+    let pool = pool(2);
+    let mut explored = [0, 0];
+    for seed in 0..120 {
+        let targets = 1 + (seed % 6) as usize;
+        let model = RandomModel::symmetric(targets, seed);
+        // An order and its reverse are listed together.
+        let wanted = 1 + 2 * (seed / 6 % 3) as usize;
+        let expected = exhaustive(&model, wanted, &pool);
+        let result = run(&model, &alternatives(wanted));
+        assert_same_orders(&orders_of(&result), &expected, &format!("seed {seed}"));
+        assert!(result.complete && result.best_is_proven(0.0));
+        explored[0] += result.statistics.nodes_explored;
+        let all = run(&model.searched_whole(), &alternatives(wanted));
+        assert_same_orders(&orders_of(&all), &expected, &format!("seed {seed}"));
+        explored[1] += all.statistics.nodes_explored;
+    }
+    assert!(4 * explored[0] < 3 * explored[1], "{explored:?}");
+}
+
+#[test]
 fn equal_orders_are_listed_lexicographically() {
     let pool = pool(2);
     for seed in 0..60 {

@@ -25,6 +25,7 @@ pub(in crate::sequence) struct RandomModel {
     pub(in crate::sequence) fails: fn(&[usize]) -> bool,
     /// The other targets have no penalties.
     pub(in crate::sequence) couples: fn(usize) -> bool,
+    symmetric: bool,
 }
 
 impl RandomModel {
@@ -45,7 +46,30 @@ impl RandomModel {
             known_share: 0.7,
             fails: |_| false,
             couples: |_| true,
+            symmetric: false,
         }
+    }
+
+    /// Every order costs the same backwards: the start is the end.
+    pub(in crate::sequence) fn symmetric(targets: usize, seed: u64) -> Self {
+        let mut model = Self::new(targets, true, seed);
+        let places = targets + 2;
+        let (start, end) = (targets, targets + 1);
+        // Costs by places in which start and end are one, whatever the direction.
+        let one = |place: usize| if place == end { start } else { place };
+        let (legs, penalties) = (model.legs.clone(), model.penalties.clone());
+        for from in 0..places {
+            for to in 0..places {
+                let (low, high) = (one(from).min(one(to)), one(from).max(one(to)));
+                model.legs[from * places + to] = legs[low * places + high];
+                for via in 0..targets {
+                    let known = penalties[(low * places + via) * places + high];
+                    model.penalties[(from * places + via) * places + to] = known;
+                }
+            }
+        }
+        model.symmetric = true;
+        model
     }
 
     /// Costs of 0, 1 or 2 only and no penalties: ties everywhere.
@@ -75,6 +99,12 @@ impl RandomModel {
             *leg += (to % 3) as f64;
         }
         model
+    }
+
+    /// The same without telling that orders are as good backwards.
+    pub(in crate::sequence) fn searched_whole(mut self) -> Self {
+        self.symmetric = false;
+        self
     }
 
     fn leg(&self, from: usize, to: usize) -> f64 {
@@ -127,6 +157,10 @@ impl TourModel for RandomModel {
 
     fn rules(&self) -> &OrderRules {
         &self.rules
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.symmetric
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {

@@ -11,7 +11,8 @@ use crate::sequence::OrderRules;
 #[derive(Debug)]
 pub struct SubsetTable {
     targets: usize,
-    /// Entry `set * targets + from`, sets as bit masks; unused where the set holds `from`.
+    /// Entry `from * 2^targets + set`, sets as bit masks; unused where the set holds `from`. In this
+    /// order the table is filled along a few lines of memory at once.
     rest: Vec<f64>,
     admitted: Admitted,
 }
@@ -21,24 +22,29 @@ pub struct SubsetTable {
 struct Admitted {
     /// The targets that may take each place, whatever has been visited before.
     at: Vec<usize>,
-    /// The targets that come before each.
-    before: Vec<usize>,
+    /// Every target that comes after others, with the set of these.
+    before: Vec<(usize, usize)>,
 }
 
 impl Admitted {
     fn of(rules: &OrderRules, targets: usize) -> Self {
         let at = |place| mask((0..targets).filter(|&target| rules.admits_at(place, target)));
-        let before = |target| mask(rules.predecessors(target).iter().copied());
+        let before = |target| (target, mask(rules.predecessors(target).iter().copied()));
         Self {
             at: (0..targets).map(at).collect(),
-            before: (0..targets).map(before).collect(),
+            before: (0..targets)
+                .map(before)
+                .filter(|(_, before)| *before != 0)
+                .collect(),
         }
     }
 
-    /// Whether a target of a set may come next when exactly the others have been visited.
-    fn next(&self, target: usize, set: usize) -> bool {
+    /// The targets of a set that may come next when exactly the others have been visited.
+    fn next(&self, set: usize) -> usize {
         let place = self.at.len() - set.count_ones() as usize;
-        self.at[place] & (1 << target) != 0 && self.before[target] & set == 0
+        let here = self.at.get(place).map_or(0, |targets| targets & set);
+        let waiting = self.before.iter().filter(|(_, before)| before & set != 0);
+        waiting.fold(here, |open, (target, _)| open & !(1 << target))
     }
 }
 
@@ -52,20 +58,18 @@ impl SubsetTable {
         let legs: Vec<[f64; EXACT_TARGETS]> = (0..targets)
             .map(|from| row(targets, |to| costs.cost(from, to)))
             .collect();
+        let place = |from: usize, set: usize| (from << targets) + set;
         for from in 0..targets {
-            rest[from] = costs.cost(from, costs.end());
+            rest[place(from, 0)] = costs.cost(from, costs.end());
         }
         // A set is greater, as a number, than its subsets.
         for set in 1..1_usize << targets {
-            let after = row(targets, |to| {
-                if set & (1 << to) != 0 && admitted.next(to, set) {
-                    rest[(set & !(1 << to)) * targets + to]
-                } else {
-                    f64::INFINITY
-                }
-            });
+            let mut after = [f64::INFINITY; EXACT_TARGETS];
+            for to in members(admitted.next(set)) {
+                after[to] = rest[place(to, set & !(1 << to))];
+            }
             for from in (0..targets).filter(|from| set & (1 << from) == 0) {
-                rest[set * targets + from] = least_sum(&legs[from], &after);
+                rest[place(from, set)] = least_sum(&legs[from], &after);
             }
         }
         Self {
@@ -73,6 +77,10 @@ impl SubsetTable {
             rest,
             admitted,
         }
+    }
+
+    fn after(&self, from: usize, set: usize) -> f64 {
+        self.rest[(from << self.targets) + set]
     }
 
     /// `rest(from, set)` out of the entries of smaller sets.
@@ -86,12 +94,8 @@ impl SubsetTable {
 
     /// The best next target, the smallest index among equals, and the time it leads to.
     fn next(&self, set: usize, leg: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
-        (0..self.targets)
-            .filter(|to| set & (1 << to) != 0 && self.admitted.next(*to, set))
-            .map(|to| {
-                let after = self.rest[(set & !(1 << to)) * self.targets + to];
-                (to, leg(to) + after)
-            })
+        members(self.admitted.next(set))
+            .map(|to| (to, leg(to) + self.after(to, set & !(1 << to))))
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -101,7 +105,7 @@ impl SubsetTable {
     pub fn bound(&self, costs: &impl LegCosts, from: usize, remaining: &[usize]) -> f64 {
         let set = mask(remaining.iter().copied());
         if from < self.targets {
-            self.rest[set * self.targets + from]
+            self.after(from, set)
         } else {
             self.shortest(costs, from, set)
         }
@@ -158,6 +162,16 @@ fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
         }
     }
     least.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// The targets of a set, in increasing order.
+fn members(set: usize) -> impl Iterator<Item = usize> {
+    let mut left = set;
+    std::iter::from_fn(move || {
+        let first = (left != 0).then(|| left.trailing_zeros() as usize)?;
+        left &= left - 1;
+        Some(first)
+    })
 }
 
 /// The set of some targets.

@@ -80,6 +80,15 @@ def long_running(number=0):
     """A scenario that goes on until it is stopped."""
     scenario = fixture("olivares-c")
     scenario["options"] = {"time_limit_s": None}
+    # Many targets near each other: good orders abound, and short legs couple most.
+    scenario["targets"] = [
+        {
+            "id": f"t{i}",
+            "attitude": {"roll_pitch_yaw_deg": [7.3 * (i % 8) - 25, 11.9 * (i // 8) - 30, 3.7 * (i % 5)]},
+            "zero_rate_axes": ["z"],
+        }
+        for i in range(48)
+    ]
     for target in scenario["targets"]:
         target["attitude"]["roll_pitch_yaw_deg"][1] += 0.01 * (number + 1)
     return scenario

@@ -10,6 +10,7 @@ mod fixed_order;
 mod legs;
 mod places;
 mod segments;
+mod summed;
 mod tables;
 mod torques;
 mod tours;

@@ -6,10 +6,10 @@
 //! of twelve targets this takes a third to a half of the work from scratch, and ends in
 //! minima that are as good: those of the former flight's, which were the best of several starts.
 
-use super::rolling::FROM_WINDOWS;
+use super::rolling::fly_from_windows;
 use super::{FROM_A_GUESS, Flight, Flown, fly};
 use crate::dynamics::Dynamics;
-use crate::nlp::{Interruption, NlpStatus};
+use crate::nlp::Interruption;
 use crate::profile::Profile;
 use crate::transcription::Waypoint;
 
@@ -37,9 +37,7 @@ pub(crate) fn fly_on(
     if flight.passes(&FROM_A_GUESS, stop) {
         let mut joined = motion.part(0..begin);
         joined.append(&flight.flown.profile);
-        let whole = Flight::new(dynamics, waypoints, intervals, &joined);
-        let flown = whole.solve(&FROM_WINDOWS, stop);
-        if flown.status == NlpStatus::Converged || flown.status.is_interrupted() {
+        if let Some(flown) = fly_from_windows(dynamics, waypoints, intervals, &joined, stop) {
             return flown;
         }
     }

@@ -21,7 +21,7 @@ const SHORT: usize = 14;
 const OVERLAP: usize = 2;
 
 /// From the motions of the windows, which are solutions but for where they meet.
-pub(super) const FROM_WINDOWS: [Phase; 1] = [Phase {
+const FROM_WINDOWS: [Phase; 1] = [Phase {
     settings: Settings {
         initial_barrier: 3e-5,
         initial_slack: 3e-5,
@@ -40,16 +40,27 @@ pub(crate) fn fly_rolling(
 ) -> Flown {
     if intervals.len() > SHORT {
         let motion = roll(dynamics, waypoints, intervals, guess, stop);
-        let whole = motion.and_then(|motion| {
-            let flight = Flight::new(dynamics, waypoints, intervals, &motion);
-            let flown = flight.solve(&FROM_WINDOWS, stop);
-            (flown.status == NlpStatus::Converged).then_some(flown)
-        });
+        let whole = motion
+            .and_then(|motion| fly_from_windows(dynamics, waypoints, intervals, &motion, stop));
         if let Some(flown) = whole {
             return flown;
         }
     }
     fly(dynamics, waypoints, intervals, guess, stop)
+}
+
+/// Flies through waypoints from motions that are solutions but for where they meet; none when that
+/// does not converge, unless it is stopped.
+pub(super) fn fly_from_windows(
+    dynamics: &Dynamics,
+    waypoints: &[Waypoint],
+    intervals: &[usize],
+    motion: &Profile,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Option<Flown> {
+    let flight = Flight::new(dynamics, waypoints, intervals, motion);
+    let flown = flight.solve(&FROM_WINDOWS, stop);
+    (flown.status == NlpStatus::Converged || flown.status.is_interrupted()).then_some(flown)
 }
 
 /// The motions of the windows, joined; none when a window finds no motion, or when stopped.

@@ -8,13 +8,11 @@
 //! after some work with the bound that it has by then.
 
 use super::places::Places;
+use super::summed::SummedTours;
 use super::tables::CertifiedTable;
 use crate::pool::SolverPool;
 use crate::progress::Progress;
-use crate::sequence::{
-    Evaluation, Incumbent, OrderRules, Place, SearchObserver, SearchSettings, TourEvaluation,
-    TourModel, search,
-};
+use crate::sequence::{Incumbent, Place, SearchObserver, SearchSettings, search};
 use crate::stop::StopSignal;
 
 /// Nodes of the search times the third power of the number of targets: a fraction of a second.
@@ -24,10 +22,12 @@ const GAP: f64 = 2e-4;
 /// Share taken off for orders that the search takes to be equal, and for rounding.
 const DEFLATION: f64 = 3e-9;
 
-/// Tours whose slews take as long as their certified bounds.
-struct CertifiedTours<'a> {
+/// Tours whose slews take as long as their certified bounds; those of which nothing is proved, no time.
+fn certified_tours<'a>(
     places: &'a Places<'a>,
     bounds: &'a CertifiedTable,
+) -> SummedTours<'a, impl Fn(Place, Place) -> f64 + Sync> {
+    SummedTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
 }
 
 /// A duration, s, that no tour undercuts, in whatever order the scenario admits; legs of which nothing is proved count
@@ -47,7 +47,7 @@ pub(super) fn tour_bound(
         relative_gap: GAP,
         ..SearchSettings::default()
     };
-    let tours = CertifiedTours { places, bounds };
+    let tours = certified_tours(places, bounds);
     let found = search(&tours, &[], &settings, pool, stop, &Unobserved);
     Some(found.lower_bound_s * (1.0 - DEFLATION))
 }
@@ -58,50 +58,8 @@ pub(super) fn route_bound(
     bounds: &CertifiedTable,
     route: &[Place],
 ) -> Option<f64> {
-    let sum = || CertifiedTours { places, bounds }.along(route);
+    let sum = || certified_tours(places, bounds).along(route);
     bounds.says_anything().then(|| sum() * (1.0 - DEFLATION))
-}
-
-impl CertifiedTours<'_> {
-    fn along(&self, route: &[Place]) -> f64 {
-        let legs = route.windows(2);
-        legs.map(|leg| self.pair_bound(leg[0], leg[1])).sum()
-    }
-}
-
-impl TourModel for CertifiedTours<'_> {
-    fn target_count(&self) -> usize {
-        self.places.scenario.targets().len()
-    }
-
-    fn has_end(&self) -> bool {
-        self.places.scenario.end().is_some()
-    }
-
-    fn rules(&self) -> &OrderRules {
-        self.places.scenario.order_rules()
-    }
-
-    fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        self.bounds.bound(from, to).unwrap_or(0.0) + self.places.service_time(to)
-    }
-
-    fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
-        Evaluation::Value(self.along(&self.places.route(prefix, false)))
-    }
-
-    fn path_bound(&self, path: &[Place]) -> Evaluation {
-        Evaluation::Value(self.along(path))
-    }
-
-    /// The bound of a slew does not ask what comes before and after it.
-    fn couples(&self, _: usize) -> bool {
-        false
-    }
-
-    fn tour(&self, order: &[usize]) -> TourEvaluation {
-        TourEvaluation::Flown(self.along(&self.places.route(order, true)))
-    }
 }
 
 /// Nobody is told how this search goes.

@@ -115,7 +115,7 @@ impl<'a> LegSolver<'a> {
         pairs: &[(Place, Place)],
         tell: impl Fn(u64, u64) + Sync,
     ) -> LegTable {
-        let canonical = self.canonical(kind, pairs);
+        let canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
         let known = lock(&self.known);
         let entry = |canonical: &CanonicalLeg| {
@@ -131,7 +131,7 @@ impl<'a> LegSolver<'a> {
 
     /// The leg of a kind between two places, solved if it was not before.
     pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> Flown {
-        let canonical = self.canonical(kind, &[(from, to)]).remove(0);
+        let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
             let stored = self.recall(&canonical);
@@ -164,7 +164,7 @@ impl<'a> LegSolver<'a> {
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> Vec<Option<CertifiedLeg>> {
-        let canonical = self.canonical(kind, pairs);
+        let canonical = self.all_canonical(kind, pairs);
         let missing = missing_from(&lock(&self.certified), &canonical);
         let bounds = self.run.pool.map(&missing, |leg| {
             (!self.stop.is_set()).then(|| certify(self.places, leg))
@@ -179,11 +179,14 @@ impl<'a> LegSolver<'a> {
         canonical.iter().map(known).collect()
     }
 
-    fn canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<CanonicalLeg> {
-        let end = |place: &Place| end_of(self.places, kind, *place);
-        self.run.pool.map(pairs, |(from, to)| {
-            CanonicalLeg::of(self.places, &end(from), &end(to))
-        })
+    fn canonical(&self, kind: LegKind, from: Place, to: Place) -> CanonicalLeg {
+        let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
+        CanonicalLeg::of(self.places, &from, &to)
+    }
+
+    fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<CanonicalLeg> {
+        let pool = self.run.pool;
+        pool.map(pairs, |(from, to)| self.canonical(kind, *from, *to))
     }
 
     fn solve_missing(

@@ -37,13 +37,9 @@ enum Start {
 
 /// The starts of a segment, and how many are tried when all goes well: a short segment has local
 /// minima that longer ones inherit.
-const STARTS: [Start; 3] = [Start::Eigenaxes, Start::Extremals, Start::AtRest];
-const STARTS_OF_LONGER: [Start; 4] = [
-    Start::Shorter,
-    Start::Eigenaxes,
-    Start::Extremals,
-    Start::AtRest,
-];
+const STARTS: [Start; 2] = [Start::Eigenaxes, Start::Extremals];
+const STARTS_OF_LONGER: [Start; 3] = [Start::Shorter, Start::Eigenaxes, Start::Extremals];
+const STARTS_OF_TOURS: [Start; 3] = [Start::Eigenaxes, Start::Extremals, Start::AtRest];
 const SHORT: usize = 3;
 const USUAL_STARTS_OF_SHORT: usize = 2;
 
@@ -190,7 +186,7 @@ impl<'a> Tours<'a> {
 
     fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
         if let [from, to] = route {
-            return Arc::new(self.legs.lone(LegKind::LowerBound, *from, *to));
+            return Arc::new(self.free_leg(*from, *to));
         }
         self.segments.get(route).unwrap_or_else(|| {
             let flown = Arc::new(self.solve_segment(route, extent));
@@ -199,6 +195,15 @@ impl<'a> Tours<'a> {
             }
             flown
         })
+    }
+
+    /// The leg with free ends between two places: of the table, where there is one already.
+    fn free_leg(&self, from: Place, to: Place) -> Flown {
+        let known = self.free().and_then(|free| free.get(from, to));
+        known.map_or_else(
+            || self.legs.lone(LegKind::LowerBound, from, to),
+            |leg| leg.from(&self.places.waypoint(from).attitude),
+        )
     }
 
     /// Solves a segment; places that coincide are one waypoint of it, since a flight that meets the
@@ -212,7 +217,7 @@ impl<'a> Tours<'a> {
             .map(|pair| pair[1]);
         let distinct: Vec<Place> = std::iter::once(route[0]).chain(fresh).collect();
         let mut flown = if let [from, to] = distinct[..] {
-            self.legs.lone(LegKind::LowerBound, from, to)
+            self.free_leg(from, to)
         } else {
             self.solve_distinct(&distinct, extent)
         };
@@ -227,16 +232,14 @@ impl<'a> Tours<'a> {
 
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
     fn solve_distinct(&self, route: &[Place], extent: Extent) -> Flown {
-        let (starts, usual) = match (route.len() - 1 > SHORT, extent) {
-            (true, Extent::Beginning) => (&STARTS_OF_LONGER[..], 1),
-            (true, Extent::Piece | Extent::Tour) => (&STARTS[..], 1),
-            (false, _) => (&STARTS[..], USUAL_STARTS_OF_SHORT),
+        let short = route.len() - 1 <= SHORT;
+        let usual = if short { USUAL_STARTS_OF_SHORT } else { 1 };
+        let starts = match extent {
+            Extent::Beginning if !short => &STARTS_OF_LONGER[..],
+            Extent::Beginning | Extent::Piece => &STARTS,
+            Extent::Tour => &STARTS_OF_TOURS,
         };
         let mut best = self.solve_from(route, starts[0]);
-        let starts = match extent {
-            Extent::Tour => starts,
-            Extent::Beginning | Extent::Piece => &starts[..starts.len() - 1],
-        };
         for (tried, &start) in starts.iter().enumerate().skip(1) {
             let settled = best.status == NlpStatus::Converged && tried >= usual;
             if settled || best.status.is_interrupted() {

@@ -20,12 +20,13 @@ use slewplan_solver::scenario::Scenario;
 use slewplan_solver::stop::StopSignal;
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::pool;
+use std::ops::Range;
 use std::str::FromStr;
 use std::sync::OnceLock;
 use std::time::Instant;
 
 /// Seeds of the schedules that are proved; of those that are not, the first alone.
-const SEEDS: std::ops::Range<u64> = 1..4;
+const SEEDS: Range<u64> = 1..4;
 const EXACT_SIZES: [usize; 9] = [4, 6, 8, 10, 12, 14, 16, 18, 20];
 const ANYTIME_SIZES: [usize; 4] = [25, 50, 100, 200];
 const FAMILIES: [(Region, Rates); 4] = [
@@ -46,38 +47,16 @@ fn main() {
         ["draw", directory] => drawing::draw(directory),
         ["exact", limit @ ..] => {
             let limit_s = limit.first().map_or(120.0, |text| number(text));
-            println!("{HEADER}");
-            for family in FAMILIES {
-                for targets in EXACT_SIZES {
-                    for seed in SEEDS {
-                        measure(&Case {
-                            mode: "exact",
-                            family,
-                            targets,
-                            seed,
-                            limit_s,
-                            threads: 2,
-                        });
-                    }
-                }
-            }
+            measure_all("exact", &EXACT_SIZES, &SEEDS, &[limit_s]);
         }
         ["anytime", limits @ ..] => {
-            println!("{HEADER}");
-            for family in FAMILIES {
-                for targets in ANYTIME_SIZES {
-                    for limit in limits {
-                        measure(&Case {
-                            mode: "anytime",
-                            family,
-                            targets,
-                            seed: SEEDS.start,
-                            limit_s: number(limit),
-                            threads: 2,
-                        });
-                    }
-                }
-            }
+            let limits: Vec<f64> = limits.iter().map(|text| number(text)).collect();
+            measure_all(
+                "anytime",
+                &ANYTIME_SIZES,
+                &(SEEDS.start..SEEDS.start + 1),
+                &limits,
+            );
         }
         ["one", family, targets, seed, limit, threads] => {
             println!("{HEADER}");
@@ -106,6 +85,27 @@ struct Case<'a> {
     seed: u64,
     limit_s: f64,
     threads: usize,
+}
+
+/// Measures schedules of all families, of these sizes and seeds, with each of the limits, s.
+fn measure_all(mode: &str, sizes: &[usize], seeds: &Range<u64>, limits: &[f64]) {
+    println!("{HEADER}");
+    for family in FAMILIES {
+        for &targets in sizes {
+            for seed in seeds.clone() {
+                for &limit_s in limits {
+                    measure(&Case {
+                        mode,
+                        family,
+                        targets,
+                        seed,
+                        limit_s,
+                        threads: 2,
+                    });
+                }
+            }
+        }
+    }
 }
 
 /// Solves a schedule and prints what it took.

@@ -56,12 +56,6 @@ impl Couplings {
         Some(Self::Paths(Box::new(ChargedSubsets::new(charges, rules))))
     }
 
-    /// Nothing asked yet, for many targets.
-    pub(super) fn of_many(model: &dyn TourModel, table: &PairTable) -> Option<Self> {
-        let charges = Charges::new(model, table, &SpanningTrees::new(table))?;
-        Some(Self::Trees(Box::new(charges)))
-    }
-
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.
     pub(super) fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
         match self {
@@ -77,11 +71,9 @@ impl Search<'_> {
         if self.tree.table().targets() <= EXACT_TARGETS {
             return None;
         }
-        let Some(Couplings::Trees(mut charges)) = Couplings::of_many(self.model, self.tree.table())
-        else {
-            return None;
-        };
-        let targets = self.tree.table().targets();
+        let table = self.tree.table();
+        let targets = table.targets();
+        let mut charges = Charges::new(self.model, table, &SpanningTrees::new(table))?;
         for round in 0..ROUNDS {
             let effort = Effort {
                 triples: TRIPLES_OF_MANY * targets,
@@ -101,7 +93,7 @@ impl Search<'_> {
                 break;
             }
         }
-        self.tree.couple(Couplings::Trees(charges));
+        self.tree.couple(Couplings::Trees(Box::new(charges)));
         self.stop.is_set().then(|| self.stopped())
     }
 

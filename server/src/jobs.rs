@@ -3,6 +3,7 @@
 pub(crate) mod memory;
 mod progress;
 pub(crate) mod retention;
+pub(crate) mod segments;
 mod solve;
 mod tally;
 mod worker;

@@ -3,7 +3,7 @@
 use crate::cli::{Exit, Failure};
 use crate::connections;
 use crate::http::{self, Access, App, Limits};
-use crate::jobs::{Jobs, Worker, retention};
+use crate::jobs::{Jobs, Worker, retention, segments};
 use crate::lifecycle::{GRACE, Shutdown};
 use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
 use slewplan_solver::pool::SolverPool;
@@ -157,6 +157,7 @@ async fn serve(
     if let Some(time) = settings.retain {
         tokio::spawn(retention::keep_for(store.clone(), time));
     }
+    tokio::spawn(segments::forget(store.clone()));
     let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
     let worker = Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id)
         .map_err(system("cannot start the worker"))?;

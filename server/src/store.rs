@@ -15,6 +15,7 @@ mod recent;
 mod results;
 mod retention;
 mod rows;
+mod segments;
 mod spacecraft;
 #[cfg(test)]
 mod tests;
@@ -29,6 +30,7 @@ pub(crate) use keys::{KeyRow, NewKey};
 pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
+pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
 use recent::Recent;

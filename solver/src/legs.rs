@@ -6,6 +6,8 @@
 //! attitudes share legs, and a leg flown backwards is the same leg where that is valid. Legs are
 //! always solved in the frame in which they begin at the identity attitude; a stored leg therefore
 //! gives bit for bit what solving it again would give.
+//!
+//! Beside them, the segments of one scenario's tours, which mean nothing to others.
 
 /// Which boundary conditions a tabulated leg has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,9 +73,42 @@ pub trait LegStore: Sync {
     fn put(&self, identity: &str, leg: &StoredLeg);
 }
 
+/// The flight through several places in a row, solved as one program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredSegment {
+    /// Attitude at every node, scalar-last quaternions.
+    pub attitudes_xyzw: Vec<[f64; 4]>,
+    /// Momentum of every enabled wheel about its axis at every node, N m s.
+    pub wheel_momenta_nms: Vec<Vec<f64>>,
+    /// Time between nodes, s.
+    pub lengths_s: Vec<f64>,
+}
+
+/// Remembers the segments of the tours of one scenario, so that a search that begins again, because
+/// its process was killed, does not solve again what it has solved already.
+///
+/// A segment is named by a text that has a meaning within its scenario only. Given back, it is bit
+/// for bit what solving it again would give. Called from the solver's workers; must not fail a
+/// solve: a store in trouble forgets.
+pub trait SegmentStore: Sync {
+    /// The segment of a name, when it is known.
+    fn get(&self, name: &str) -> Option<StoredSegment>;
+
+    /// Remembers a segment.
+    fn put(&self, name: &str, segment: StoredSegment);
+}
+
 /// A store that remembers nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoStore;
+
+impl SegmentStore for NoStore {
+    fn get(&self, _: &str) -> Option<StoredSegment> {
+        None
+    }
+
+    fn put(&self, _: &str, _: StoredSegment) {}
+}
 
 impl LegStore for NoStore {
     fn get(&self, _: &str) -> Option<StoredLeg> {

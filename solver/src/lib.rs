@@ -63,7 +63,8 @@
 //! };
 //! let scenario = Scenario::try_new(&spec).expect("a valid description").scenario;
 //! let (pool, stop) = (SolverPool::new(None)?, StopSignal::new());
-//! let run = Run { pool: &pool, stop: &stop, observer: &Silent, legs: &NoStore };
+//! let run = Run { pool: &pool, stop: &stop, observer: &Silent, legs: &NoStore,
+//!     segments: &NoStore };
 //! let Outcome::Planned(plan) = solve(&scenario, run) else { panic!("a quarter turn is possible") };
 //! assert!(plan.verification.passed);
 //! // About the eigenaxis it would take 138 s.

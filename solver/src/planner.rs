@@ -9,6 +9,7 @@ mod first;
 mod fixed_order;
 mod legs;
 mod places;
+mod recall;
 mod segments;
 mod summed;
 mod tables;
@@ -17,7 +18,7 @@ mod tours;
 mod verified;
 mod work;
 
-use crate::legs::{LegKind, LegStore};
+use crate::legs::{LegKind, LegStore, SegmentStore};
 use crate::nlp::{Interruption, NlpStatus};
 use crate::plan::Outcome;
 use crate::pool::SolverPool;
@@ -49,6 +50,9 @@ pub struct Run<'a> {
     pub observer: &'a dyn Observer,
     /// Asked for legs before they are solved, and told about solved ones.
     pub legs: &'a dyn LegStore,
+    /// Asked for segments of this scenario's tours before they are solved, and told about solved
+    /// ones.
+    pub segments: &'a dyn SegmentStore,
 }
 
 /// One entry of the table of leg times.

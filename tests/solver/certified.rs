@@ -205,6 +205,7 @@ fn a_bound_is_told_before_any_leg_is_solved_and_no_thread_changes_it() {
             stop: &StopSignal::new(),
             observer: &observer,
             legs: &slewplan_solver::legs::NoStore,
+            segments: &slewplan_solver::legs::NoStore,
         };
         let plan = planned(planner::solve(&scenario, run));
         let told = observer.0.into_inner().expect("no panic");

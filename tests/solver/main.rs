@@ -10,6 +10,7 @@ mod oracle;
 mod order_rules;
 mod published;
 mod random_suite;
+mod resumed;
 mod stopping;
 mod structure;
 mod tight;

@@ -48,6 +48,7 @@ fn stopped_when(scenario: &Scenario, met: fn(&Progress) -> bool) -> (Outcome, Du
         stop: &stop,
         observer: &observer,
         legs: &slewplan_solver::legs::NoStore,
+        segments: &slewplan_solver::legs::NoStore,
     };
     let outcome = planner::solve(scenario, run);
     let requested = observer.requested.get().expect("a stop was requested");

@@ -44,6 +44,7 @@ pub fn on_threads<R>(threads: usize, work: impl FnOnce(Run<'_>) -> R) -> R {
         stop: &StopSignal::new(),
         observer: &Silent,
         legs: &slewplan_solver::legs::NoStore,
+        segments: &slewplan_solver::legs::NoStore,
     })
 }
 

@@ -53,6 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         stop: &stop,
         observer: &*observer,
         legs: &NoStore,
+        segments: &NoStore,
     };
     let checked = planner::certify_plan(&scenario, &claims, run);
     drop(observer);

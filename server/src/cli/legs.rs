@@ -103,6 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         stop: &stop,
         observer: &*observer,
         legs: &NoStore,
+        segments: &NoStore,
     };
     let (rows, complete) = planner::leg_table(&scenario, kind, shard, run);
     drop(observer);

@@ -111,6 +111,7 @@ fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Receive
         legs: remembered
             .as_ref()
             .map_or(&NoStore as &dyn LegStore, RememberedLegs::legs),
+        segments: &NoStore,
     };
     Ok((planner::solve(scenario, run), received))
 }

@@ -3,7 +3,7 @@
 use super::progress::Reporter;
 use crate::store::{Ended, JobState};
 use crate::wire;
-use slewplan_solver::legs::LegStore;
+use slewplan_solver::legs::{LegStore, SegmentStore};
 use slewplan_solver::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::planner::{self, Run};
 use slewplan_solver::pool::SolverPool;
@@ -22,6 +22,8 @@ pub(super) struct Means<'a> {
     pub(super) reporter: &'a Reporter,
     /// The remembered legs.
     pub(super) legs: &'a dyn LegStore,
+    /// What an earlier attempt has solved.
+    pub(super) segments: &'a dyn SegmentStore,
 }
 
 /// Solves a scenario as stored. A panic costs this job and no other.
@@ -52,6 +54,7 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
         stop: means.stop,
         observer: &observer,
         legs: means.legs,
+        segments: means.segments,
     };
     let outcome = planner::solve(&scenario, run);
     if run.stop.reason() == Some(StopReason::Cancelled) {

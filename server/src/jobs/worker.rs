@@ -5,6 +5,7 @@
 
 use super::memory::MemoryGuard;
 use super::progress::{Reporter, record};
+use super::segments::{self, SegmentCache};
 use super::solve::{self, Means};
 use super::{Active, Jobs};
 use crate::clock::now_us;
@@ -147,24 +148,33 @@ impl Bench {
         let heart = self
             .runtime
             .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
-        let heart = Heart(heart.abort_handle());
+        let heart = Attendant(heart.abort_handle());
+        let segments =
+            SegmentCache::new(self.jobs.store().clone(), self.runtime.clone(), job.clone());
+        let writing = self.runtime.spawn(segments.writing());
+        let writing = Attendant(writing.abort_handle());
         let memory = MemoryGuard::watch(&self.runtime, self.jobs.memory_limit(), stop.clone());
         let means = Means {
             pool: &self.pool,
             stop: &stop,
             reporter: &reporter,
             legs: &legs,
+            segments: &segments,
         };
         let ended = memory.judge(solve::solve(&claim.scenario, &means));
         drop(memory);
         // Legs are written before the end is told: whoever asks then finds them.
         drop(legs);
         drop(reporter);
-        drop(heart);
+        drop((heart, writing));
         if self.runtime.block_on(recorder).is_err() {
             tracing::error!("progress was not recorded to its end");
         }
         self.conclude(job, &ended);
+        if segments.leaves_something() {
+            self.runtime
+                .spawn(segments::forget(self.jobs.store().clone()));
+        }
         let solved_s = begin.elapsed().as_secs_f64();
         self.jobs.job_tally().ended(&ended, solved_s);
     }
@@ -223,10 +233,10 @@ impl Bench {
     }
 }
 
-/// Prolongs the lease while it lives.
-struct Heart(AbortHandle);
+/// A task that attends to a job while this lives.
+struct Attendant(AbortHandle);
 
-impl Drop for Heart {
+impl Drop for Attendant {
     fn drop(&mut self) {
         self.0.abort();
     }

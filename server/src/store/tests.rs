@@ -1,9 +1,11 @@
 //! What a claim that was lost must not do, what is kept for its successor, and what failures of
 //! the disk must not do.
 
+mod races;
+
 use super::{
-    Claim, Ended, JobRow, JobState, NewIncumbent, ProgressRow, QueueLimits, ResultRow, Store,
-    StoreError, Submission, Submitted,
+    Claim, Ended, JobRow, JobState, NewIncumbent, ProgressRow, QueueLimits, ResultRow, SegmentRow,
+    Store, StoreError, Submission, Submitted,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -135,6 +137,37 @@ fn an_abandoned_job_has_no_plan() {
         let (state, none) = result(&store).await;
         assert_eq!(state, JobState::Cancelled);
         assert!(none.is_none());
+    });
+}
+
+#[test]
+fn what_was_solved_is_there_for_the_next_attempt_and_gone_after_the_last() {
+    let segment = SegmentRow {
+        name: "piece 1 2 3".into(),
+        intervals: 2,
+        motion: vec![7; 24],
+    };
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let lost = claim(&store, "first").await.job;
+        let kept = [segment.clone()];
+        assert!(store.put_segments(&lost, &kept).await.expect("written"));
+        store.recover("second", 3).await.expect("recovered");
+        let second = claim(&store, "second").await.job;
+        let late = [SegmentRow {
+            motion: vec![8; 24],
+            ..segment.clone()
+        }];
+        assert!(!store.put_segments(&lost, &late).await.expect("tried"));
+        let found = store.segment(second.sequence, &segment.name).await;
+        assert_eq!(found.expect("read"), Some(segment.clone()));
+        let other = store.segment(second.sequence + 1, &segment.name).await;
+        assert_eq!(other.expect("read"), None);
+        assert_eq!(store.forget_segments(9).await.expect("tried"), 0);
+        let end = ended(JobState::Stopped, Some(plan(20.0)));
+        assert!(store.finish(&second, &end, 4).await.expect("written"));
+        assert_eq!(store.forget_segments(9).await.expect("done"), 1);
+        assert_eq!(store.segment_bytes(second.sequence).await.expect("read"), 0);
     });
 }
 

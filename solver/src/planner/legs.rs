@@ -5,11 +5,11 @@
 
 use super::canonical::CanonicalLeg;
 use super::places::{Places, SAME_ATTITUDE};
+use super::recall::{attitudes_of, momenta_of, recalled};
 use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
 use super::verified::flies;
 use super::{Run, interruption};
-use crate::attitude::Attitude;
-use crate::legs::{LegKind, StoredLeg};
+use crate::legs::{LegKind, SegmentStore, StoredLeg};
 use crate::multiphase::Flown;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
 use crate::profile::Profile;
@@ -19,7 +19,7 @@ use crate::sequence::Place;
 use crate::slew;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
-use nalgebra::{DVector, Vector3};
+use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -64,6 +64,11 @@ impl<'a> LegSolver<'a> {
     /// The places between which the legs are.
     pub(super) fn places(&self) -> &'a Places<'a> {
         self.places
+    }
+
+    /// Where the segments of tours are remembered beyond this solve.
+    pub(super) fn segments(&self) -> &'a dyn SegmentStore {
+        self.run.segments
     }
 
     /// Tells that work has begun.
@@ -118,7 +123,8 @@ impl<'a> LegSolver<'a> {
         let canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
         let known = lock(&self.known);
-        let entry = |canonical: &CanonicalLeg| {
+        let entry = |canonical: &Option<CanonicalLeg>| {
+            let canonical = canonical.as_ref()?;
             Some(TabledLeg {
                 leg: Arc::clone(known.get(&canonical.identity)?),
                 mirrored: canonical.mirrored,
@@ -175,7 +181,7 @@ impl<'a> LegSolver<'a> {
                 certified.insert(leg.identity.clone(), bound);
             }
         }
-        let known = |leg: &CanonicalLeg| certified.get(&leg.identity).copied();
+        let known = |leg: &Option<CanonicalLeg>| certified.get(&leg.as_ref()?.identity).copied();
         canonical.iter().map(known).collect()
     }
 
@@ -184,24 +190,30 @@ impl<'a> LegSolver<'a> {
         CanonicalLeg::of(self.places, &from, &to)
     }
 
-    fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<CanonicalLeg> {
-        let pool = self.run.pool;
-        pool.map(pairs, |(from, to)| self.canonical(kind, *from, *to))
+    /// The legs of many pairs; those that the stop signal prevents are left out.
+    fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<Option<CanonicalLeg>> {
+        self.run.pool.map(pairs, |(from, to)| {
+            (!self.stop.is_set()).then(|| self.canonical(kind, *from, *to))
+        })
     }
 
     fn solve_missing(
         &self,
         kind: LegKind,
-        canonical: &[CanonicalLeg],
+        canonical: &[Option<CanonicalLeg>],
         tell: impl Fn(u64, u64) + Sync,
     ) {
         let missing = missing_from(&lock(&self.known), canonical);
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
         self.run.pool.map(&missing, |leg| {
+            // Asking the store takes time too, for thousands of legs too much of it.
+            if self.stop.is_set() {
+                return;
+            }
             if let Some(stored) = self.recall(leg) {
                 self.remember(leg, &Arc::new(stored), true);
-            } else if !self.stop.is_set() {
+            } else {
                 self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
             }
             tell(done.fetch_add(1, Relaxed) + 1, total);
@@ -211,7 +223,7 @@ impl<'a> LegSolver<'a> {
     /// A leg from the store.
     fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let stored = self.run.legs.get(&leg.identity)?;
-        recall(&stored, leg.resolution.intervals)
+        recall(stored, leg.resolution.intervals)
     }
 
     /// Solves a leg, and stores it.
@@ -249,10 +261,11 @@ fn lock<T>(remembered: &Remembered<T>) -> MutexGuard<'_, HashMap<String, T>> {
 /// The legs of which nothing is known, each of them once.
 fn missing_from<'c, T>(
     known: &HashMap<String, T>,
-    legs: &'c [CanonicalLeg],
+    legs: &'c [Option<CanonicalLeg>],
 ) -> Vec<&'c CanonicalLeg> {
     let mut listed = HashSet::new();
     legs.iter()
+        .flatten()
         .filter(|leg| !known.contains_key(&leg.identity) && listed.insert(&leg.identity))
         .collect()
 }
@@ -340,44 +353,22 @@ fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
         certified_lower_bound_s: solved.certified,
         status: solved.flown.status.as_str().into(),
         solve_time_s: solved.solve_time,
-        attitudes_xyzw: profile.attitudes.iter().map(Attitude::xyzw).collect(),
-        wheel_momenta_nms: profile
-            .wheels
-            .iter()
-            .map(|h| h.as_slice().to_vec())
-            .collect(),
+        attitudes_xyzw: attitudes_of(profile),
+        wheel_momenta_nms: momenta_of(profile),
         lengths_s: profile.lengths.clone(),
     }
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
-fn recall(stored: &StoredLeg, intervals: usize) -> Option<SolvedLeg> {
-    let attitudes: Option<Vec<_>> = stored
-        .attitudes_xyzw
-        .iter()
-        .map(|xyzw| Attitude::from_unit_xyzw(*xyzw))
-        .collect();
-    let profile = Profile {
-        attitudes: attitudes?,
-        wheels: stored
-            .wheel_momenta_nms
-            .iter()
-            .cloned()
-            .map(DVector::from_vec)
-            .collect(),
-        lengths: stored.lengths_s.clone(),
-    };
-    let nodes = intervals + 1;
-    let fits = profile.attitudes.len() == nodes
-        && profile.wheels.len() == nodes
-        && profile.intervals() == intervals;
-    fits.then_some(SolvedLeg {
-        flown: Flown {
-            status: NlpStatus::Converged,
-            profile,
-            iterations: 0,
-            infeasibility: 0.0,
-        },
+fn recall(stored: StoredLeg, intervals: usize) -> Option<SolvedLeg> {
+    let flown = recalled(
+        &stored.attitudes_xyzw,
+        stored.wheel_momenta_nms,
+        stored.lengths_s,
+        intervals,
+    )?;
+    Some(SolvedLeg {
+        flown,
         certified: stored.certified_lower_bound_s,
         solves: 0,
         solve_time: stored.solve_time_s,

@@ -9,6 +9,7 @@
 use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
+use super::recall::{recalled, stored_segment};
 use super::segments::Segments;
 use super::tables::{CertifiedTable, LegTable};
 use crate::legs::LegKind;
@@ -52,6 +53,22 @@ enum Extent {
     Piece,
     /// A tour: any flight is better than none.
     Tour,
+}
+
+/// The name of a segment in a store: what it is part of, and its places.
+fn name_of(route: &[Place], extent: Extent) -> String {
+    let kind = match extent {
+        Extent::Beginning => "beginning",
+        Extent::Piece => "piece",
+        Extent::Tour => "tour",
+    };
+    let places = route.iter().map(|place| match place {
+        Place::Start => "start".to_owned(),
+        Place::Target(index) => index.to_string(),
+        Place::End => "end".to_owned(),
+    });
+    let words: Vec<_> = std::iter::once(kind.to_owned()).chain(places).collect();
+    words.join(" ")
 }
 
 /// Tours over legs.
@@ -189,11 +206,32 @@ impl<'a> Tours<'a> {
             return Arc::new(self.free_leg(*from, *to));
         }
         self.segments.get(route).unwrap_or_else(|| {
-            let flown = Arc::new(self.solve_segment(route, extent));
+            let flown = Arc::new(self.recall_or_solve(route, extent));
             if flown.duration().is_some() {
                 self.segments.put(route, &flown);
             }
             flown
+        })
+    }
+
+    /// A segment that an earlier attempt at the same scenario has solved, or else solved now.
+    ///
+    /// The same route is another problem as a part of something else, and has another name then: a
+    /// search that goes on finds what it would have found alone.
+    fn recall_or_solve(&self, route: &[Place], extent: Extent) -> Flown {
+        let (store, name) = (self.legs.segments(), name_of(route, extent));
+        let intervals = self.intervals() * (route.len() - 1);
+        let known = store.get(&name).and_then(|known| {
+            let (wheels, lengths) = (known.wheel_momenta_nms, known.lengths_s);
+            recalled(&known.attitudes_xyzw, wheels, lengths, intervals)
+        });
+        known.unwrap_or_else(|| {
+            let fresh = self.solve_segment(route, extent);
+            // When stopped perhaps not all starts have been tried.
+            if fresh.duration().is_some() && !self.stop.is_set() {
+                store.put(&name, stored_segment(&fresh.profile));
+            }
+            fresh
         })
     }
 

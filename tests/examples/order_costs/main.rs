@@ -124,6 +124,7 @@ fn measure(case: &Case<'_>) {
         stop: &StopSignal::new(),
         observer: &first,
         legs: &NoStore,
+        segments: &NoStore,
     };
     let outcome = planner::solve(&scenario, run);
     let wall = first.begin.elapsed().as_secs_f64();

@@ -151,6 +151,7 @@ fn certified(
         stop,
         observer: &Silent,
         legs: &NoStore,
+        segments: &NoStore,
     };
     let rows = planner::certified_legs(&query.scenario, &places, run);
     let answer = |(pair, row): (&Pair, Option<LegRow>)| {
@@ -177,6 +178,7 @@ fn answer(
         stop,
         observer: &Silent,
         legs: &witness,
+        segments: &NoStore,
     };
     let (rows, _) = planner::leg_table(&pair.scenario, kind, BETWEEN_TARGETS, run);
     let seen = witness

@@ -106,6 +106,7 @@ fn solves(pool: &SolverPool) -> bool {
         stop: &stop,
         observer: &Silent,
         legs: &NoStore,
+        segments: &NoStore,
     };
     let first = Shard {
         index: 0,

@@ -1,0 +1,226 @@
+//! What the search of a job has solved, kept for another attempt at it.
+//!
+//! A job whose process is killed begins again. Its legs are known then, and so are the segments of
+//! tours that its search has solved: the same questions in the same order, answered at once. They
+//! are written a few times a second, some at a time so that others can write in between, and
+//! forgotten after the end of the job.
+
+use crate::store::{JobRow, SegmentRow, Store, StoreError};
+use slewplan_solver::legs::{SegmentStore, StoredSegment};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use tokio::runtime::Handle;
+
+/// Time between two writes. A search that is over before the first one writes nothing.
+const ROUND: Duration = Duration::from_millis(250);
+/// Segments that are written or forgotten together, and the pause for other writers after that.
+const BATCH: usize = 32;
+const FORGOTTEN: i64 = 256;
+const PAUSE: Duration = Duration::from_millis(20);
+/// Most bytes that are kept of a job: some minutes of processor time. What comes after that is
+/// solved again.
+const MOST_BYTES: usize = 128 << 20;
+
+/// The segments of a claim, as the solver's threads see them.
+#[derive(Debug)]
+pub(super) struct SegmentCache {
+    runtime: Handle,
+    shared: Arc<Shared>,
+    /// Whether an earlier attempt has left something.
+    resumes: bool,
+}
+
+#[derive(Debug)]
+struct Shared {
+    store: Store,
+    claim: JobRow,
+    unwritten: Mutex<Vec<SegmentRow>>,
+    /// Bytes that were kept or shall be.
+    bytes: AtomicUsize,
+    wrote: AtomicBool,
+}
+
+impl Shared {
+    fn unwritten(&self) -> MutexGuard<'_, Vec<SegmentRow>> {
+        self.unwritten
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes what there is; `false` when the claim has been lost.
+    async fn write(&self) -> Result<bool, StoreError> {
+        let segments = std::mem::take(&mut *self.unwritten());
+        for batch in segments.chunks(BATCH) {
+            self.wrote.store(true, Ordering::Relaxed);
+            if !self.store.put_segments(&self.claim, batch).await? {
+                return Ok(false);
+            }
+            tokio::time::sleep(PAUSE).await;
+        }
+        Ok(true)
+    }
+}
+
+impl SegmentCache {
+    /// The segments of a claim, reached from threads outside of the runtime.
+    pub(super) fn new(store: Store, runtime: Handle, claim: JobRow) -> Self {
+        let known = runtime.block_on(store.segment_bytes(claim.sequence));
+        let known = known.unwrap_or_else(|error| {
+            tracing::warn!(%error, "what an earlier attempt has solved cannot be looked up");
+            0
+        });
+        Self {
+            runtime,
+            shared: Arc::new(Shared {
+                store,
+                claim,
+                unwritten: Mutex::default(),
+                bytes: AtomicUsize::new(usize::try_from(known).unwrap_or(0)),
+                wrote: AtomicBool::new(false),
+            }),
+            resumes: known > 0,
+        }
+    }
+
+    /// Writes from time to time, until it is aborted or the claim is lost.
+    pub(super) fn writing(&self) -> impl Future<Output = ()> + use<> {
+        let shared = Arc::clone(&self.shared);
+        async move {
+            loop {
+                tokio::time::sleep(ROUND).await;
+                match shared.write().await {
+                    Ok(true) => {}
+                    Ok(false) => return,
+                    // What is forgotten is solved again: no reason to fail.
+                    Err(error) => tracing::warn!(%error, "solved segments are forgotten"),
+                }
+            }
+        }
+    }
+
+    /// Whether there may be something in the database that the end of the job leaves behind.
+    pub(super) fn leaves_something(&self) -> bool {
+        self.resumes || self.shared.wrote.load(Ordering::Relaxed)
+    }
+}
+
+impl SegmentStore for SegmentCache {
+    fn get(&self, name: &str) -> Option<StoredSegment> {
+        if !self.resumes {
+            return None;
+        }
+        let job = self.shared.claim.sequence;
+        let found = self.runtime.block_on(self.shared.store.segment(job, name));
+        let row = found.unwrap_or_else(|error| {
+            tracing::warn!(%error, "a segment cannot be looked up and is solved again");
+            None
+        });
+        unpacked(&row?)
+    }
+
+    fn put(&self, name: &str, segment: StoredSegment) {
+        let row = packed(name, &segment);
+        let before = self
+            .shared
+            .bytes
+            .fetch_add(row.motion.len(), Ordering::Relaxed);
+        if before < MOST_BYTES {
+            self.shared.unwritten().push(row);
+        }
+    }
+}
+
+/// Forgets what jobs that have ended leave behind.
+pub(crate) async fn forget(store: Store) {
+    loop {
+        match store.forget_segments(FORGOTTEN).await {
+            Ok(0) => return,
+            Ok(_) => tokio::time::sleep(PAUSE).await,
+            Err(error) => {
+                tracing::warn!(%error, "segments of ended jobs cannot be forgotten yet");
+                return;
+            }
+        }
+    }
+}
+
+/// Attitudes, momenta and lengths one after the other.
+fn packed(name: &str, segment: &StoredSegment) -> SegmentRow {
+    let attitudes = segment.attitudes_xyzw.iter().flatten();
+    let momenta = segment.wheel_momenta_nms.iter().flatten();
+    let numbers = attitudes.chain(momenta).chain(&segment.lengths_s);
+    SegmentRow {
+        name: name.to_owned(),
+        intervals: i64::try_from(segment.lengths_s.len()).unwrap_or(i64::MAX),
+        motion: numbers.flat_map(|number| number.to_le_bytes()).collect(),
+    }
+}
+
+/// The segment of packed numbers; `None` when they are not as many as there must be.
+fn unpacked(row: &SegmentRow) -> Option<StoredSegment> {
+    let (words, []) = row.motion.as_chunks::<8>() else {
+        return None;
+    };
+    let numbers: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
+    let intervals = usize::try_from(row.intervals).ok()?;
+    let nodes = intervals.checked_add(1)?;
+    let momenta = numbers
+        .len()
+        .checked_sub(nodes.checked_mul(4)?.checked_add(intervals)?)?;
+    if intervals == 0 || momenta == 0 || momenta % nodes != 0 {
+        return None;
+    }
+    let (attitudes, rest) = numbers.split_at(4 * nodes);
+    let (wheels, lengths) = rest.split_at(momenta);
+    Some(StoredSegment {
+        attitudes_xyzw: attitudes.as_chunks().0.to_vec(),
+        wheel_momenta_nms: wheels
+            .chunks(momenta / nodes)
+            .map(<[f64]>::to_vec)
+            .collect(),
+        lengths_s: lengths.to_vec(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn segment() -> StoredSegment {
+        StoredSegment {
+            attitudes_xyzw: vec![[0.1, 0.2, -0.3, 1.0 / 3.0]; 3],
+            wheel_momenta_nms: vec![
+                vec![1e-300, -2.5],
+                vec![0.1, 7.0],
+                vec![-0.0, f64::MIN_POSITIVE],
+            ],
+            lengths_s: vec![1.5, 0.1 + 0.2],
+        }
+    }
+
+    #[test]
+    fn a_motion_comes_back_bit_for_bit() {
+        assert_eq!(unpacked(&packed("piece 1 2", &segment())), Some(segment()));
+    }
+
+    #[test]
+    fn numbers_that_do_not_fit_together_are_no_motion() {
+        let good = packed("piece 1 2", &segment());
+        for intervals in [-1, 0, 1, 3, i64::MAX] {
+            let row = SegmentRow {
+                intervals,
+                ..good.clone()
+            };
+            assert_eq!(unpacked(&row), None, "{intervals}");
+        }
+        for length in [0, 7, 8, good.motion.len() - 8] {
+            let motion = good.motion[..length].to_vec();
+            let row = SegmentRow {
+                motion,
+                ..good.clone()
+            };
+            assert_eq!(unpacked(&row), None, "{length}");
+        }
+    }
+}

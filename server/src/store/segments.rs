@@ -1,0 +1,96 @@
+//! What the search of a running job has solved of its tours.
+
+use super::{JobRow, Store, StoreError};
+use sqlx::FromRow;
+
+/// Segments of other versions of the solver are not found.
+const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// A segment to be remembered, or remembered.
+#[derive(Debug, Clone, PartialEq, FromRow)]
+pub(crate) struct SegmentRow {
+    /// What the solver calls it within the job.
+    pub(crate) name: String,
+    /// Its intervals.
+    pub(crate) intervals: i64,
+    /// Its numbers, packed.
+    pub(crate) motion: Vec<u8>,
+}
+
+impl Store {
+    /// Bytes of the motions that are remembered of a job.
+    pub(crate) async fn segment_bytes(&self, job: i64) -> Result<i64, StoreError> {
+        let sum = "SELECT coalesce(sum(length(motion)), 0) FROM segments WHERE job = ?";
+        Ok(sqlx::query_scalar(sum)
+            .bind(job)
+            .fetch_one(&self.readers)
+            .await?)
+    }
+
+    /// A segment that this version of the solver would solve the same.
+    pub(crate) async fn segment(
+        &self,
+        job: i64,
+        name: &str,
+    ) -> Result<Option<SegmentRow>, StoreError> {
+        Ok(sqlx::query_as(
+            "SELECT name, intervals, motion FROM segments \
+             WHERE job = ? AND name = ? AND solver_version = ?",
+        )
+        .bind(job)
+        .bind(name)
+        .bind(SOLVER_VERSION)
+        .fetch_optional(&self.readers)
+        .await?)
+    }
+
+    /// Remembers segments of a claim, all of them or none; `false` when the claim has been lost.
+    pub(crate) async fn put_segments(
+        &self,
+        claim: &JobRow,
+        segments: &[SegmentRow],
+    ) -> Result<bool, StoreError> {
+        let mut transaction = self.begin().await?;
+        let held: Option<i64> = sqlx::query_scalar(
+            "SELECT sequence FROM jobs WHERE sequence = ? AND fence = ? AND state = 'running'",
+        )
+        .bind(claim.sequence)
+        .bind(claim.fence)
+        .fetch_optional(&mut *transaction)
+        .await?;
+        if held.is_none() {
+            return Ok(false);
+        }
+        for segment in segments {
+            sqlx::query(
+                "INSERT OR REPLACE INTO segments (job, name, solver_version, intervals, motion) \
+                 VALUES (?, ?, ?, ?, ?)",
+            )
+            .bind(claim.sequence)
+            .bind(&segment.name)
+            .bind(SOLVER_VERSION)
+            .bind(segment.intervals)
+            .bind(&segment.motion)
+            .execute(&mut *transaction)
+            .await?;
+        }
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Forgets segments of jobs that have ended, at most so many, so that others can write in
+    /// between; how many they were.
+    pub(crate) async fn forget_segments(&self, at_most: i64) -> Result<u64, StoreError> {
+        let mut transaction = self.begin().await?;
+        let done = sqlx::query(
+            "DELETE FROM segments WHERE sequence IN \
+             (SELECT segments.sequence FROM segments JOIN jobs ON jobs.sequence = job \
+             WHERE finished_us IS NOT NULL LIMIT ?)",
+        )
+        .bind(at_most)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(done.rows_affected())
+    }
+}

@@ -1,0 +1,81 @@
+//! Two processes that both take themselves for the owner of a job: one result, whoever is faster.
+//!
+//! `SLEWPLAN_RACES` says how many races there are.
+
+use super::{ID, claim, ended, plan, result, submitted};
+use crate::store::{JobState, Store};
+use std::time::Duration;
+
+const USUAL: u64 = 40;
+/// Longest head start that one of the two has, µs: about what the other needs.
+const HEAD_START_US: u64 = 3_000;
+
+/// How long a racer waits in a round, so that over the rounds each of them comes first.
+fn wait(round: u64, step: u64) -> Duration {
+    Duration::from_micros(round * step % HEAD_START_US)
+}
+
+/// A worker that was taken for dead ends the job while another process rescues it; whether the
+/// stale one did, and whether the rescuer did.
+async fn race(stale: &Store, rescuer: &Store, round: u64) -> (bool, bool) {
+    submitted(stale).await;
+    let lost = claim(stale, "stale").await.job;
+    let late = async {
+        tokio::time::sleep(wait(round, 769)).await;
+        let end = ended(JobState::Stopped, Some(plan(20.0)));
+        stale.finish(&lost, &end, 5).await.expect("tried")
+    };
+    let rescue = async {
+        tokio::time::sleep(wait(round, 1_013)).await;
+        rescuer.recover("rescuer", 4).await.expect("recovered");
+        let found = rescuer.claim("rescuer", 1_000, 6).await.expect("tried");
+        let Some(found) = found else { return false };
+        let end = ended(JobState::Succeeded, Some(plan(30.0)));
+        rescuer.finish(&found.job, &end, 7).await.expect("tried")
+    };
+    tokio::join!(late, rescue)
+}
+
+/// How often the end of the job was told.
+async fn ends_told(store: &Store) -> i64 {
+    let count = "SELECT count(*) FROM events WHERE kind = 'state' AND \
+         json_extract(data, '$.state') NOT IN ('queued', 'running')";
+    let count = sqlx::query_scalar(count).fetch_one(&store.readers).await;
+    count.expect("counted")
+}
+
+#[test]
+fn a_job_that_two_workers_end_has_one_end() {
+    let rounds =
+        std::env::var("SLEWPLAN_RACES").map_or(USUAL, |text| text.parse().expect("a number"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    runtime.block_on(async {
+        let path = folder.path().join("races.db");
+        let stale = Store::open(&path).await.expect("opened");
+        let rescuer = Store::open(&path).await.expect("opened by another");
+        let mut rescued = 0;
+        for round in 0..rounds {
+            let (by_stale, by_rescuer) = race(&stale, &rescuer, round).await;
+            assert!(
+                by_stale ^ by_rescuer,
+                "{by_stale} {by_rescuer} in round {round}"
+            );
+            rescued += u64::from(by_rescuer);
+            let (state, kept) = result(&rescuer).await;
+            let kept = kept.expect("a plan");
+            let expected = if by_rescuer {
+                (JobState::Succeeded, 30.0)
+            } else {
+                (JobState::Stopped, 20.0)
+            };
+            assert_eq!(
+                (state, kept.document),
+                (expected.0, plan(expected.1).document.into())
+            );
+            assert_eq!(ends_told(&rescuer).await, 1);
+            assert!(rescuer.delete(ID).await.expect("deleted"));
+        }
+        println!("{rounds} races, {rescued} won by the rescuer");
+    });
+}

@@ -1,0 +1,57 @@
+//! Motions as plain data, and back.
+
+use crate::attitude::Attitude;
+use crate::legs::StoredSegment;
+use crate::multiphase::Flown;
+use crate::nlp::NlpStatus;
+use crate::profile::Profile;
+use nalgebra::DVector;
+
+/// Attitudes at the nodes, scalar-last quaternions.
+pub(super) fn attitudes_of(profile: &Profile) -> Vec<[f64; 4]> {
+    profile.attitudes.iter().map(Attitude::xyzw).collect()
+}
+
+/// Momenta of the wheels at the nodes, N m s.
+pub(super) fn momenta_of(profile: &Profile) -> Vec<Vec<f64>> {
+    let nodes = profile.wheels.iter();
+    nodes.map(|h| h.as_slice().to_vec()).collect()
+}
+
+/// A segment to be stored.
+pub(super) fn stored_segment(profile: &Profile) -> StoredSegment {
+    StoredSegment {
+        attitudes_xyzw: attitudes_of(profile),
+        wheel_momenta_nms: momenta_of(profile),
+        lengths_s: profile.lengths.clone(),
+    }
+}
+
+/// The flight of stored numbers, as it was solved; `None` when they do not fit together.
+pub(super) fn recalled(
+    attitudes_xyzw: &[[f64; 4]],
+    wheel_momenta_nms: Vec<Vec<f64>>,
+    lengths_s: Vec<f64>,
+    intervals: usize,
+) -> Option<Flown> {
+    let attitudes: Option<Vec<_>> = attitudes_xyzw
+        .iter()
+        .map(|xyzw| Attitude::from_unit_xyzw(*xyzw))
+        .collect();
+    let wheels = wheel_momenta_nms.into_iter().map(DVector::from_vec);
+    let profile = Profile {
+        attitudes: attitudes?,
+        wheels: wheels.collect(),
+        lengths: lengths_s,
+    };
+    let nodes = intervals + 1;
+    let fits = profile.attitudes.len() == nodes
+        && profile.wheels.len() == nodes
+        && profile.intervals() == intervals;
+    fits.then_some(Flown {
+        status: NlpStatus::Converged,
+        profile,
+        iterations: 0,
+        infeasibility: 0.0,
+    })
+}

@@ -1,6 +1,6 @@
 //! The queue at work: one job at a time, in the order of submission, on the solver's own threads.
 
-pub(crate) mod memory;
+mod memory;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;

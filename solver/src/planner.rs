@@ -8,6 +8,7 @@ mod conclude;
 mod first;
 mod fixed_order;
 mod legs;
+mod memory;
 mod places;
 mod recall;
 mod segments;
@@ -38,6 +39,7 @@ use tours::Tours;
 
 pub use claims::{CheckedClaims, LegClaim, Objection, Obstacle, PlanClaims, Verdict, certify_plan};
 pub use fixed_order::{BoundFrom, OrderError, fly_order};
+pub use memory::memory_estimate;
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! What a job may take of the memory: judged when it is submitted, watched while it runs.
+//! What a job may take of the memory, watched while it runs.
 
 use crate::store::{Ended, JobState};
 use slewplan_solver::stop::StopSignal;
@@ -10,16 +10,6 @@ use tokio::task::AbortHandle;
 
 /// How often the memory is looked at.
 const LOOK: Duration = Duration::from_millis(100);
-/// Memory of a job as measured: what the smallest takes, and what every pair of places adds for its
-/// legs, their motions and the tables of tours, with half as much again. Bytes.
-const LEAST: u64 = 8 << 20;
-const PAIR: u64 = 8 << 10;
-
-/// Memory that a job with so many targets may need, bytes.
-pub(crate) fn estimate(targets: usize) -> u64 {
-    let places = u64::try_from(targets).unwrap_or(u64::MAX).saturating_add(2);
-    LEAST.saturating_add(places.saturating_mul(places).saturating_mul(PAIR))
-}
 
 /// Ends a solve with the best so far when the process has grown too much since its begin. Watches
 /// as long as it lives. Where the operating system does not tell, nothing is watched.
@@ -89,13 +79,6 @@ fn resident() -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn larger_jobs_are_expected_to_need_more_and_nothing_overflows() {
-        assert!(estimate(1) < estimate(200));
-        assert!(estimate(200) < 1 << 30);
-        assert_eq!(estimate(usize::MAX), u64::MAX);
-    }
 
     #[test]
     fn a_solve_that_grows_is_stopped_and_one_that_does_not_is_left_alone() {

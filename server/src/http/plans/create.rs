@@ -7,7 +7,6 @@ use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::{JsonBody, Parameters, header_text};
 use super::super::{respond, stored};
 use crate::digest;
-use crate::jobs::memory;
 use crate::store::{JobRow, Submission, Submitted};
 use crate::wire;
 use crate::wire::document::Node;
@@ -20,7 +19,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use slewplan_solver::planner;
-use slewplan_solver::scenario::Validated;
+use slewplan_solver::scenario::{Scenario as ValidScenario, Validated};
 use std::time::Duration;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -103,6 +102,7 @@ pub(in crate::http) async fn handler(
     if query.validate_only {
         return validation(&valid);
     }
+    check_memory(&app, &valid.scenario)?;
     let submission = Submission {
         id: Uuid::now_v7().to_string(),
         name: valid.scenario.name().map(str::to_owned),
@@ -155,15 +155,23 @@ fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
         let detail = format!("{count} targets; the limit is {limit} (max_targets)");
         return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
     }
-    let (needed, given) = (memory::estimate(count), app.jobs().memory_limit());
-    if needed > given {
-        let detail = format!(
-            "{count} targets may need {needed} bytes of memory; the limit is {given} \
-             (job_memory_bytes)"
-        );
-        return Err(ApiError::new(ErrorCode::TooMuchMemory, detail));
-    }
     Ok(())
+}
+
+/// Refuses what may need more memory than a job has.
+fn check_memory(app: &App, scenario: &ValidScenario) -> Result<(), ApiError> {
+    let (needed, given) = (
+        planner::memory_estimate(scenario),
+        app.jobs().memory_limit(),
+    );
+    if needed <= given {
+        return Ok(());
+    }
+    let count = scenario.targets().len();
+    let detail = format!(
+        "{count} targets may need {needed} bytes of memory; the limit is {given} (job_memory_bytes)"
+    );
+    Err(ApiError::new(ErrorCode::TooMuchMemory, detail))
 }
 
 /// What a finished request answers.

@@ -1,0 +1,47 @@
+//! What a solve may take of the memory, before it begins.
+//!
+//! Three things grow: the table of pairs with its motions, the table of subsets of the targets while
+//! there are few, and, where rates at targets are left free, the segments and nodes that a search
+//! goes on remembering until their bounds are reached.
+
+use crate::scenario::{RateCondition, Scenario, Target};
+use crate::sequence::remainder::EXACT_TARGETS;
+
+/// What the smallest solve takes with its plan, what each pair of places adds, and what a search
+/// remembers for each target at most within a minute on two cores. Measured as growth of the
+/// resident memory, with a quarter as much again, bytes.
+const LEAST: u64 = 2 << 20;
+const PAIR: u64 = 5 << 10;
+const SEARCHED: u64 = 1 << 20;
+/// Segments and nodes are bounded, bytes.
+const MOST_SEARCHED: u64 = 144 << 20;
+
+/// Memory that solving a scenario may need, bytes: as a rule too much, by less than four times
+/// where it is worth counting.
+#[must_use]
+pub fn memory_estimate(scenario: &Scenario) -> u64 {
+    let count = scenario.targets().len();
+    let targets = count as u64;
+    let places = targets + 2;
+    let subsets = if count <= EXACT_TARGETS {
+        // One duration for every subset and its first target.
+        (targets << targets) * 8
+    } else {
+        0
+    };
+    // With more than three wheels the null space is free too.
+    let turns = |target: &Target| {
+        target
+            .rate
+            .iter()
+            .any(|rate| !matches!(rate, RateCondition::Fixed(_)))
+    };
+    let couples =
+        scenario.targets().iter().any(turns) || scenario.spacecraft().enabled_wheels().count() > 3;
+    let searched = if couples {
+        (targets * SEARCHED).min(MOST_SEARCHED)
+    } else {
+        0
+    };
+    LEAST + places * places * PAIR + subsets + searched
+}

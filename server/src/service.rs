@@ -45,6 +45,8 @@ pub(crate) struct Settings {
 const POLITENESS: i32 = 10;
 /// Longest wait for threads at the very end.
 const LAST: Duration = Duration::from_millis(500);
+/// How soon a first key closes a service that was open without one.
+const KEY_WATCH: Duration = Duration::from_millis(500);
 /// Threads for requests: they only wait and move bytes.
 const REQUEST_THREADS: usize = 2;
 
@@ -105,14 +107,16 @@ pub(crate) fn run(
 async fn access(settings: &Settings, store: &Store) -> Result<Access, Failure> {
     if settings.no_keys {
         tracing::warn!("no keys are asked for: whoever reaches the service can do everything");
-        return Ok(Access::Open);
+        return Ok(Access::new(false));
     }
     let keys = store.keys().await.map_err(ServiceError::from)?;
     if !keys.is_empty() {
-        return Ok(Access::Keys);
+        return Ok(Access::new(true));
     }
     if settings.listen.ip().is_loopback() {
-        return Ok(Access::Open);
+        let open = Access::new(false);
+        tokio::spawn(await_first_key(store.clone(), open.clone()));
+        return Ok(open);
     }
     Err(Failure::Setting {
         name: "--listen",
@@ -122,6 +126,21 @@ async fn access(settings: &Settings, store: &Store) -> Result<Access, Failure> {
             settings.listen
         ),
     })
+}
+
+/// Asks for keys as soon as there is one.
+async fn await_first_key(store: Store, access: Access) {
+    while !access.asks_for_keys() {
+        tokio::time::sleep(KEY_WATCH).await;
+        match store.keys().await {
+            Ok(keys) if keys.is_empty() => {}
+            Ok(_) => {
+                access.ask_for_keys();
+                tracing::info!("there is a key now: from now on keys are asked for");
+            }
+            Err(error) => tracing::warn!(%error, "keys cannot be looked for"),
+        }
+    }
 }
 
 /// Lets threads that answer requests go first. On Linux this concerns only the calling thread.

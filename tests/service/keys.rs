@@ -5,6 +5,7 @@ use crate::running::{Service, small};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 fn slewplan(arguments: &[&str], database: &Path) -> Output {
@@ -203,4 +204,20 @@ fn other_machines_are_not_served_without_keys() {
     key(&database, &["somebody"]);
     let closed = Service::on(&database, &["--listen", "0.0.0.0:0"]);
     closed.get("/v1/plans").expect_problem(401, "unauthorized");
+}
+
+#[test]
+fn the_first_key_closes_a_service_that_runs() {
+    let (_folder, database) = folder();
+    let service = Service::on(&database, &[]);
+    service.get("/v1/plans").expect(200);
+    let secret = key(&database, &["someone"]);
+    let begin = Instant::now();
+    while service.get("/v1/plans").status != 401 {
+        assert!(begin.elapsed() < Duration::from_secs(30), "still open");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    service
+        .send(&request("GET", "/v1/plans", &secret))
+        .expect(200);
 }

@@ -30,7 +30,7 @@ pub(super) struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Make a key and print it, once; a service asks for keys from its next start on
+    /// Make a key and print it, once; a running service asks for keys within a second
     Create {
         /// For whom the key acts: keys of the same client see the same jobs
         client: String,

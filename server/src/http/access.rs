@@ -12,14 +12,31 @@ use axum::http::{HeaderMap, Method, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::convert::Infallible;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether keys are asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Access {
-    /// Everybody may do everything.
-    Open,
-    /// Only who has a key, and only with what is the client's own.
-    Keys,
+/// Whether keys are asked for: of everybody alike, and once they are, for good.
+///
+/// Without keys everybody may do everything; with them only who has one, and only with what is the
+/// client's own.
+#[derive(Debug, Clone)]
+pub(crate) struct Access(Arc<AtomicBool>);
+
+impl Access {
+    /// With keys or without.
+    pub(crate) fn new(asks_for_keys: bool) -> Self {
+        Self(Arc::new(AtomicBool::new(asks_for_keys)))
+    }
+
+    /// Whether keys are asked for.
+    pub(crate) fn asks_for_keys(&self) -> bool {
+        self.0.load(Ordering::SeqCst)
+    }
+
+    /// Lets nobody in without a key from now on.
+    pub(crate) fn ask_for_keys(&self) {
+        self.0.store(true, Ordering::SeqCst);
+    }
 }
 
 /// What a route asks for.
@@ -86,7 +103,7 @@ pub(super) async fn authorize(
     request: Request,
     next: Next,
 ) -> Response {
-    if app.0.access == Access::Keys {
+    if app.0.access.asks_for_keys() {
         let route = route.as_ref().map_or("", MatchedPath::as_str);
         let (mut parts, body) = request.into_parts();
         match examine(&app, route, &parts).await {

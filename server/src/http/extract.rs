@@ -97,6 +97,20 @@ fn is_too_slow(error: &(dyn Error + 'static)) -> bool {
     error.is::<TooSlow>() || error.source().is_some_and(is_too_slow)
 }
 
+/// The name in the path. What cannot be a name, because it is no text, names nothing.
+pub(super) struct Named(pub(super) String);
+
+impl FromRequestParts<App> for Named {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, ApiError> {
+        axum::extract::Path::from_request_parts(parts, app)
+            .await
+            .map(|axum::extract::Path(name)| Self(name))
+            .map_err(|error| ApiError::new(ErrorCode::NotFound, error.body_text()))
+    }
+}
+
 /// Parameters of the query; unknown ones are refused.
 pub(super) struct Parameters<T>(pub(super) T);
 

@@ -3,9 +3,10 @@
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
 use super::super::error::ApiError;
+use super::super::extract::Named;
 use crate::wire::stored_legs::FlownLegDocument;
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::State;
 
 /// Read a cached leg with its trajectory
 #[utoipa::path(
@@ -18,7 +19,7 @@ use axum::extract::{Path, State};
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(key): Path<String>,
+    Named(key): Named,
 ) -> Result<Json<FlownLegDocument>, ApiError> {
     let found = app.store().leg(&key).await?;
     let (row, trajectory) = found.ok_or_else(|| ApiError::not_found("leg", &key))?;

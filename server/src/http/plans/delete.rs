@@ -3,7 +3,8 @@
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
 use super::super::error::ApiError;
-use axum::extract::{Path, State};
+use super::super::extract::Named;
+use axum::extract::State;
 use axum::http::StatusCode;
 
 /// Delete a job with its result and events; a running one is cancelled
@@ -14,7 +15,7 @@ use axum::http::StatusCode;
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Named(id): Named,
 ) -> Result<StatusCode, ApiError> {
     if app.jobs().delete(&id).await? {
         Ok(StatusCode::NO_CONTENT)

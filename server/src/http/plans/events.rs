@@ -3,9 +3,10 @@
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::Named;
 use crate::lifecycle::Shutdown;
 use crate::store::{EventRow, JobState, StoreError};
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures_util::stream::{Stream, unfold};
@@ -45,7 +46,7 @@ const RETRY_S: u32 = 10;
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Named(id): Named,
     headers: HeaderMap,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, ApiError> {
     // An id that is none of ours is taken for none: the caller then sees everything.

@@ -3,9 +3,10 @@
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
 use super::super::error::ApiError;
+use super::super::extract::Named;
 use super::super::respond;
 use crate::wire::jobs::JobDocument;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 
@@ -17,7 +18,7 @@ use axum::response::Response;
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Named(id): Named,
 ) -> Result<Response, ApiError> {
     respond::job(StatusCode::OK, &super::find(&app, &id).await?)
 }

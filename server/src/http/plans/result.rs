@@ -3,12 +3,12 @@
 use super::super::App;
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
-use super::super::extract::{Parameters, header_text};
+use super::super::extract::{Named, Parameters, header_text};
 use crate::store::{JobState, ResultRow};
 use crate::wire::csv;
 use crate::wire::plan::PlanDocument;
 use axum::body::Bytes;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
@@ -71,7 +71,7 @@ pub(in crate::http) enum Format {
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Named(id): Named,
     Parameters(query): Parameters<Query>,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {

@@ -3,10 +3,11 @@
 use super::super::App;
 use super::super::describe::{Conflict, NotFound, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::Named;
 use super::super::respond;
 use crate::store::JobState;
 use crate::wire::jobs::JobDocument;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 
@@ -24,7 +25,7 @@ use axum::response::Response;
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Named(id): Named,
 ) -> Result<Response, ApiError> {
     let job = super::present(app.jobs().stop(&id).await?, &id)?;
     match job.state()? {

@@ -4,10 +4,10 @@ use super::super::App;
 use super::super::access::Caller;
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
-use super::super::extract::Parameters;
+use super::super::extract::{Named, Parameters};
 use super::StoredSpacecraft;
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -37,7 +37,7 @@ pub(in crate::http) struct Query {
 pub(in crate::http) async fn handler(
     State(app): State<App>,
     caller: Caller,
-    Path(name): Path<String>,
+    Named(name): Named,
     Parameters(query): Parameters<Query>,
 ) -> Result<Json<StoredSpacecraft>, ApiError> {
     if query.version == Some(0) {

@@ -4,12 +4,12 @@ use super::super::App;
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
-use super::super::extract::JsonBody;
+use super::super::extract::{JsonBody, Named};
 use super::StoredSpacecraft;
 use crate::clock::now_us;
 use crate::wire;
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 
 const LONGEST_NAME: usize = 64;
@@ -32,7 +32,7 @@ const LONGEST_NAME: usize = 64;
 pub(in crate::http) async fn handler(
     State(app): State<App>,
     caller: Caller,
-    Path(name): Path<String>,
+    Named(name): Named,
     body: JsonBody,
 ) -> Result<(StatusCode, Json<StoredSpacecraft>), ApiError> {
     check_name(&name)?;

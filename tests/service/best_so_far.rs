@@ -32,7 +32,7 @@ fn a_running_job_gives_a_verified_plan_with_its_bound() {
     let plan = running.json();
     assert_eq!(plan["status"], "feasible");
     assert_eq!(plan["verification"]["passed"], true);
-    assert_eq!(plan["sequence"].as_array().map(Vec::len), Some(18));
+    assert_eq!(plan["sequence"].as_array().map(Vec::len), Some(48));
     let bound = plan["lower_bound_s"].as_f64().expect("a bound");
     assert!(0.0 < bound && bound <= total(&plan), "{bound}");
     let job = service.job(id);

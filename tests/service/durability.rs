@@ -1,14 +1,14 @@
 //! What survives the end of the process, expected or not.
 
 use crate::client::Request;
-use crate::running::{Service, large, small};
+use crate::running::{Service, fixture, large, small};
 use serde_json::{Value, json};
 use std::io::Read;
 use std::time::{Duration, Instant};
 
 /// A scenario that takes seconds and ends by itself on any machine.
 fn sizeable() -> Value {
-    let mut scenario = large();
+    let mut scenario = fixture("olivares-c.json");
     scenario["options"] = json!({"relative_gap": 0.05, "time_limit_s": null});
     scenario
 }

@@ -1,7 +1,7 @@
 //! The service as a child process with a database of its own.
 
 use crate::client::{Answer, Request};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -143,7 +143,19 @@ pub(crate) fn small() -> Value {
     fixture("two-targets.json")
 }
 
-/// A scenario that takes seconds.
+/// A scenario that goes on until it is stopped: many targets near each other, of which good orders
+/// abound, and short legs, which couple most.
 pub(crate) fn large() -> Value {
-    fixture("olivares-c.json")
+    let mut scenario = fixture("olivares-c.json");
+    let targets = (0..48_u8).map(|number| {
+        let [row, column, turn] = [number / 8, number % 8, number % 5].map(f64::from);
+        json!({
+            "id": format!("t{number}"),
+            "attitude": {"roll_pitch_yaw_deg": [7.3 * column - 25.0, 11.9 * row - 30.0, 3.7 * turn]},
+            "zero_rate_axes": ["z"],
+        })
+    });
+    scenario["targets"] = targets.collect();
+    scenario["options"] = json!({"time_limit_s": null});
+    scenario
 }

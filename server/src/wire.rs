@@ -13,6 +13,8 @@ pub(crate) mod flight;
 pub(crate) mod jobs;
 pub(crate) mod leg_query;
 pub(crate) mod legs;
+#[cfg(test)]
+mod mutations;
 pub(crate) mod number;
 pub(crate) mod plan;
 pub(crate) mod problems;

@@ -17,7 +17,6 @@ from harness import (
     elsewhere,
     fixture,
     gate,
-    missing,
     percentile,
     rows_of,
     service,

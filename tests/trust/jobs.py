@@ -1,6 +1,8 @@
 """Promises about jobs."""
 
+import math
 import random
+import re
 import signal
 import subprocess
 import threading
@@ -10,16 +12,15 @@ from harness import (
     Row,
     Service,
     binary,
-    elsewhere,
     fixture,
     gate,
     long_running,
-    missing,
     percentile,
     rows_of,
     service,
     sound,
     timed,
+    unit_test,
     variant,
 )
 
@@ -249,4 +250,26 @@ def a_one_shot_job_writes_everything_or_nothing(scale):
     return [Row("J11", f"torn or missing outputs (exit codes {text})", str(torn), "0", torn == 0 and allowed)]
 
 
-elsewhere("J3", "a stale worker writes nothing", "0 rows", "cargo test store::tests")
+@gate("J3")
+def one_end_per_job(scale):
+    """Two processes that both take themselves for the owner of a job end it at the same time."""
+    count = scale.of(1000, 40)
+    told = unit_test("a_job_that_two_workers_end_has_one_end", SLEWPLAN_RACES=count)
+    won = re.search(r"(\d+) races, (\d+) won by the rescuer", told)
+    measured = f"{won[2]} rescued" if won else "failed"
+    holds = bool(won) and int(won[1]) == count and 0 < int(won[2]) < count
+    return [Row("J3", f"races with other than one end, of {count} ({measured})", "0" if won else "some", "0", holds)]
+
+
+@gate("H9")
+def nothing_that_is_read_panics(scale):
+    """Documents that are almost right, through decoder, validator and verifier."""
+    rows = []
+    for name, test in (("scenarios", "scenarios_that_are_almost_right"), ("plans", "plans_that_are_almost_right")):
+        count = scale.of(20_000, 300)
+        told = unit_test(test, SLEWPLAN_MUTATIONS=count)
+        found = re.search(name + r": (\d+) documents, (\d+) taken, slowest ([\d.]+) ms", told)
+        rows.append(Row("H9", f"{name} that caused a panic, of {count}", "0" if found else "some", "0", bool(found)))
+        slowest = float(found[3]) if found else math.inf
+        rows.append(Row("H9", f"slowest of them ({found[2] if found else 0} taken)", f"{slowest:.0f} ms", "1000 ms", slowest <= 1000.0, timed=True))
+    return rows

@@ -19,6 +19,7 @@ from pathlib import Path
 import answers  # noqa: F401
 import disk  # noqa: F401
 import faults  # noqa: F401
+import generated  # noqa: F401
 import jobs  # noqa: F401
 import load  # noqa: F401
 import safety  # noqa: F401

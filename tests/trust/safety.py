@@ -1,14 +1,48 @@
 """Promises about who may do what."""
 
+import json
 import re
 import subprocess
+from pathlib import Path
 
-from harness import Row, binary, elsewhere, exchange, gate, missing, service, variant
+from harness import ROOT, Row, binary, elsewhere, exchange, gate, service, variant
 
 elsewhere("S2", "clients are isolated on every route", "0 reads", "cargo test --test service keys")
 
 
-missing("S5", "dependencies without advisories, licences known", "0", "not measured")
+# Licences under which everybody may use, change and pass on.
+LICENCES = {"MIT", "Apache-2.0", "BSD-3-Clause", "Zlib", "BSL-1.0", "Unlicense", "Unicode-3.0", "ISC", "CC0-1.0"}
+
+
+def is_free(expression):
+    """Whether one of the alternatives of a licence is made of known ones only."""
+    alternatives = re.split(r" OR | ?/ ?", expression.replace("(", "").replace(")", ""))
+    terms = lambda alternative: {term.split(" WITH ")[0].strip() for term in alternative.split(" AND ")}
+    return any(terms(alternative) <= LICENCES for alternative in alternatives)
+
+
+@gate("S5")
+def dependencies_are_clean(_):
+    """Licences and sources of what is linked, and the advisories where cargo-deny is there."""
+    told = subprocess.run(["cargo", "metadata", "--locked", "--format-version", "1"], cwd=ROOT, capture_output=True, text=True, check=True)
+    packages = json.loads(told.stdout)["packages"]
+    foreign = [package["name"] for package in packages if package["source"] not in (None, "registry+https://github.com/rust-lang/crates.io-index")]
+    unfree = [f"{package['name']}: {package['license']}" for package in packages if not is_free(package["license"] or "")]
+    locked = (ROOT / "Cargo.lock").read_text()
+    unsummed = locked.count("\nsource = ") - locked.count("\nchecksum = ")
+    lints = "unsafe_code = \"forbid\"" in (ROOT / "Cargo.toml").read_text()
+    own = [package["name"] for package in packages if package["source"] is None]
+    unguarded = [name for name in own if "[lints]\nworkspace = true" not in next(Path(p["manifest_path"]).read_text() for p in packages if p["name"] == name)]
+    for line in foreign + unfree + unguarded:
+        print(f"    {line}")
+    deny = subprocess.run(["cargo", "deny", "check", "advisories"], cwd=ROOT, capture_output=True, text=True)
+    advisories = "none" if deny.returncode == 0 else "cargo-deny or its database is not here" if "no such command" in deny.stderr or "fetch" in deny.stderr else "some"
+    return [
+        Row("S5", f"packages of unknown licences, of {len(packages)}", str(len(unfree)), "0", not unfree),
+        Row("S5", "packages from elsewhere than crates.io, or without a checksum", str(len(foreign) + unsummed), "0", not foreign and unsummed == 0),
+        Row("S5", f"own packages that do not forbid unsafe code, of {len(own)}", str(len(unguarded)), "0", lints and not unguarded),
+        Row("S5", "advisories", advisories, "none", advisories == "none"),
+    ]
 
 
 def make_key(database, *arguments):

@@ -11,7 +11,6 @@ from harness import (
     Row,
     Background,
     connect,
-    elsewhere,
     exchange,
     fixture,
     gate,
@@ -232,5 +231,3 @@ def hostile_bodies_are_cheap_to_refuse(scale):
         Row("H7", "extra memory for one of them, most", f"{worst_memory / 1024:.1f} MB", "8 MB", worst_memory <= 8 * 1024),
     ]
 
-
-elsewhere("H8", "no 5xx for generated requests", "100,000", "tests/schemathesis.sh 2000")

@@ -133,3 +133,26 @@ fn a_tiny_turn_takes_its_analytic_time() {
     // Turns about three axes at once buy nothing for so small an angle.
     assert!(agree(time, turn_about_z(angle), 1e-3), "{time} s");
 }
+
+#[test]
+fn a_slew_that_no_motion_was_found_for_is_named_with_its_place() {
+    // All wheels at their limits in one direction: there is no room to turn.
+    let mut spec = visits([
+        passing("near", [15.0, 0.0, 10.0]),
+        passing("far", [25.0, 0.0, 50.0]),
+    ]);
+    for target in &mut spec.targets {
+        target.zero_rate_axes = Some([true, false, false]);
+    }
+    spec.start.wheel_speed_rad_s = Some(vec![709.9; 3]);
+    let outcome = outcome_of(&spec);
+    let Outcome::Failed(problems) = outcome else {
+        panic!("{outcome:?}");
+    };
+    assert!(!problems.is_empty());
+    for problem in problems {
+        assert_eq!(problem.code, Code::SlewNotSolved);
+        assert!(problem.pointer.starts_with("/targets"), "{problem:?}");
+        assert!(problem.message.contains("iterations"), "{problem:?}");
+    }
+}

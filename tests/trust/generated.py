@@ -56,7 +56,7 @@ def spoilt(document, state):
             parent = parent[key]
         key, action = way[-1], state.randrange(6)
         if action < 2:
-            parent[key] = state.choice(STRANGE)
+            parent[key] = copy.deepcopy(state.choice(STRANGE))
         elif action == 2 and isinstance(parent[key], (int, float)):
             parent[key] = parent[key] * state.choice([-1, 0, 1e-9, 1.0001, 1e9])
         elif action == 3:

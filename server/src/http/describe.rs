@@ -12,4 +12,6 @@ pub(super) use examples::{
     experiment_a, leg_matrix, leg_pair, spacecraft, two_targets, verify_request,
 };
 pub(super) use inputs::{LegQueryBody, Scenario, Spacecraft, VerifyBody};
-pub(super) use outcomes::{BodyErrors, Conflict, NotFound, ParameterErrors, ServerErrors};
+pub(super) use outcomes::{
+    BodyErrors, Conflict, NotFound, ParameterErrors, QuotaErrors, ServerErrors,
+};

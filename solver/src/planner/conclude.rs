@@ -289,3 +289,29 @@ fn doubts(order: &Incumbent<'_>) -> Option<Problem> {
         Problem::new("", Code::BoundContradicted, message, hint)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_that_were_faster_than_their_bounds_cast_doubt() {
+        let best = FlownOrder {
+            order: vec![0],
+            duration_s: 1.0,
+        };
+        let with = |bounds_contradicted| Incumbent {
+            best: &best,
+            alternatives: &[],
+            lower_bound_s: 1.0,
+            statistics: SearchStatistics {
+                bounds_contradicted,
+                ..SearchStatistics::default()
+            },
+        };
+        assert_eq!(doubts(&with(0)), None);
+        let doubt = doubts(&with(2)).expect("a doubt");
+        assert_eq!(doubt.code, Code::BoundContradicted);
+        assert!(doubt.message.starts_with("2 orders"), "{doubt:?}");
+    }
+}

@@ -50,6 +50,8 @@ outcomes! {
     ParameterErrors = [("400", "A parameter or header is not valid")];
     /// Whatever names one thing.
     NotFound = [("404", "Not found")];
+    /// Whatever makes a job.
+    QuotaErrors = [("429", "Too many jobs of this client wait; Retry-After says when to come again")];
     /// Whatever depends on the state of a job.
     Conflict = [("409", "The state of the job does not allow it")];
     /// Everything that needs the database, which is everything that needs a key.

@@ -2,7 +2,7 @@
 
 use super::super::App;
 use super::super::access::Caller;
-use super::super::describe::{BodyErrors, Scenario, ServerErrors};
+use super::super::describe::{BodyErrors, QuotaErrors, Scenario, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::{JsonBody, Parameters, header_text};
 use super::super::{respond, stored};
@@ -80,7 +80,7 @@ pub(in crate::http) struct Query {
                 ("delete_plan" = (operation_id = "delete_plan",
                     parameters(("id" = "$response.body#/id")))),
             )),
-        BodyErrors, ServerErrors,
+        BodyErrors, QuotaErrors, ServerErrors,
     ),
 )]
 pub(in crate::http) async fn handler(

@@ -2,24 +2,19 @@
 
 import json
 import math
-import os
 import random
 import re
 import subprocess
 import time
-from pathlib import Path
 
-from harness import FIXTURES, ROOT, Row, binary, elsewhere, gate, service
+from harness import FIXTURES, ROOT, Row, binary, elsewhere, example, gate, service
 
 elsewhere("N5", "inertias and attitudes that cannot be are refused", "100 %", "cargo test -p slewplan-solver")
 
 
 def random_legs(count):
     """Scenarios of the random suite, so many of each spacecraft."""
-    build = ["cargo", "build", "--quiet", "--locked", "--package", "slewplan-tests", "--example", "random_legs"]
-    subprocess.run(build, cwd=ROOT, check=True)
-    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-    lines = subprocess.run([target / "debug" / "examples" / "random_legs", str(count)], capture_output=True, text=True, check=True)
+    lines = subprocess.run([example("random_legs"), str(count)], capture_output=True, text=True, check=True)
     return [json.loads(line) for line in lines.stdout.splitlines()]
 
 

@@ -63,6 +63,16 @@ def elsewhere(name, promise, goal, where):
     GATES[name] = lambda _: [Row(name, promise, f"see {where}", goal, None)]
 
 
+def example(name):
+    """A program of tests/examples: built now, or of the folder SLEWPLAN_EXAMPLES."""
+    given = os.environ.get("SLEWPLAN_EXAMPLES")
+    if given:
+        return Path(given) / name
+    build = ["cargo", "build", "--quiet", "--locked", "--package", "slewplan-tests", "--example", name]
+    subprocess.run(build, cwd=ROOT, check=True)
+    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug" / "examples" / name
+
+
 def unit_test(name, **settings):
     """What a test of the server's own says while it passes; of one that fails, nothing."""
     command = ["cargo", "test", "--quiet", "--locked", "--package", "slewplan-server", "--bin", "slewplan", name, "--", "--nocapture"]

@@ -1,29 +1,16 @@
 """Promises about throughput, start-up and overload."""
 
 import json
-import os
 import sqlite3
 import statistics
 import subprocess
 import time
-from pathlib import Path
 
-from harness import ROOT, Row, Service, fixture, gate, long_running, rows_of, service, timed, variant
-
-
-def generator():
-    """The built generator of load."""
-    subprocess.run(
-        ["cargo", "build", "--quiet", "--locked", "--package", "slewplan-tests", "--example", "load"],
-        cwd=ROOT,
-        check=True,
-    )
-    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-    return target / "debug" / "examples" / "load"
+from harness import Row, Service, example, fixture, gate, long_running, rows_of, service, timed, variant
 
 
 def load(running, mode, amount, seconds, path, body=None, scale=None):
-    command = [generator(), f"{running.host}:{running.port}", mode, str(amount), str(seconds), path]
+    command = [example("load"), f"{running.host}:{running.port}", mode, str(amount), str(seconds), path]
     if body is not None:
         file = scale.work / "body.json"
         file.write_text(json.dumps(body))
@@ -135,8 +122,10 @@ def overload_is_refused_politely(scale):
     seconds, body = scale.of(20, 3), fixture("two-targets")
     with service(scale.database("h3"), "--queue-limit", "50") as running:
         calm = load(running, "open", 20, seconds / 2, "/v1/plans", body, scale)
+        first = running.submit(long_running())
+        running.wait(first, lambda job: job["state"] == "running")
         for number in range(60):
-            running.request("POST", "/v1/plans", long_running(number))
+            running.request("POST", "/v1/plans", long_running(number + 1))
         waiting = rows_of(scale.database("h3"), "SELECT count(*) FROM jobs WHERE state = 'queued'")[0][0]
         flood = load(running, "open", 1500, seconds, "/v1/plans", body, scale)
         live = load(running, "open", 50, 2, "/health/live")

@@ -10,9 +10,9 @@ use crate::sequence::remainder::EXACT_TARGETS;
 /// What the smallest solve takes with its plan, what each pair of places adds, and what a search
 /// remembers for each target at most within a minute on two cores. Measured as growth of the
 /// resident memory, with a quarter as much again, bytes.
-const LEAST: u64 = 2 << 20;
+const LEAST: u64 = 3 << 20;
 const PAIR: u64 = 5 << 10;
-const SEARCHED: u64 = 1 << 20;
+const SEARCHED: u64 = 768 << 10;
 /// Segments and nodes are bounded, bytes.
 const MOST_SEARCHED: u64 = 144 << 20;
 

@@ -34,7 +34,8 @@ fn a_running_job_gives_a_verified_plan_with_its_bound() {
     assert_eq!(plan["verification"]["passed"], true);
     assert_eq!(plan["sequence"].as_array().map(Vec::len), Some(48));
     let bound = plan["lower_bound_s"].as_f64().expect("a bound");
-    assert!(0.0 < bound && bound <= total(&plan), "{bound}");
+    // Of many targets the first plan comes before anything is proved.
+    assert!(0.0 <= bound && bound <= total(&plan), "{bound}");
     let job = service.job(id);
     let told = job["incumbent_s"].as_f64().expect("an incumbent");
     // What the job tells may be newer than what was read before, never older.

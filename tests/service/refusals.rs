@@ -10,7 +10,7 @@ fn what_is_no_request_is_refused_in_one_form() {
     let cases = [
         (Request::new("GET", "/nothing"), 404, "not_found"),
         (Request::new("GET", "/v1/plans/none"), 404, "not_found"),
-        (Request::new("GET", "/v1/plans/%ff"), 400, "bad_request"),
+        (Request::new("GET", "/v1/plans/%ff"), 404, "not_found"),
         (
             Request::new("PATCH", "/v1/plans"),
             405,

@@ -17,7 +17,7 @@ use crate::progress::{Progress, Stage};
 use crate::scenario::RateCondition;
 use crate::sequence::Place;
 use crate::slew;
-use crate::stop::StopSignal;
+use crate::stop::{StopReason, StopSignal};
 use crate::transcription::Waypoint;
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
@@ -193,8 +193,15 @@ impl<'a> LegSolver<'a> {
     /// The legs of many pairs; those that the stop signal prevents are left out.
     fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<Option<CanonicalLeg>> {
         self.run.pool.map(pairs, |(from, to)| {
-            (!self.stop.is_set()).then(|| self.canonical(kind, *from, *to))
+            (!self.is_abandoned()).then(|| self.canonical(kind, *from, *to))
         })
+    }
+
+    /// Whether not even known legs are wanted any more: whoever asks for the best so far still
+    /// takes what the store has.
+    fn is_abandoned(&self) -> bool {
+        let reason = self.stop.reason();
+        reason.is_some_and(|reason| reason != StopReason::Requested)
     }
 
     fn solve_missing(
@@ -208,12 +215,12 @@ impl<'a> LegSolver<'a> {
         let total = missing.len() as u64;
         self.run.pool.map(&missing, |leg| {
             // Asking the store takes time too, for thousands of legs too much of it.
-            if self.stop.is_set() {
+            if self.is_abandoned() {
                 return;
             }
             if let Some(stored) = self.recall(leg) {
                 self.remember(leg, &Arc::new(stored), true);
-            } else {
+            } else if !self.stop.is_set() {
                 self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
             }
             tell(done.fetch_add(1, Relaxed) + 1, total);

@@ -86,6 +86,9 @@ pub(crate) struct Flown {
     pub(crate) iterations: usize,
     /// Largest violation of any condition at the end, scaled.
     pub(crate) infeasibility: f64,
+    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: what the legs
+    /// before it save per momentum with which it is passed, and what the legs after it lose.
+    pub(crate) passing_prices: Vec<DVector<f64>>,
 }
 
 impl Flown {
@@ -96,6 +99,17 @@ impl Flown {
             profile: Profile::empty(),
             iterations: 0,
             infeasibility: f64::MAX,
+            passing_prices: Vec::new(),
+        }
+    }
+
+    /// The flight backwards, which is one where momenta and torques admit it.
+    pub(crate) fn reversed(&self) -> Self {
+        Self {
+            profile: self.profile.reversed(),
+            // What was saved is lost, but the momenta have changed their sign too.
+            passing_prices: self.passing_prices.iter().rev().cloned().collect(),
+            ..*self
         }
     }
 
@@ -166,6 +180,8 @@ struct Flight<'a> {
     chain: Transcription,
     engine: InteriorPoint,
     iterate: Iterate,
+    /// Interval that ends at each waypoint between two legs.
+    arrivals: Vec<usize>,
     flown: Flown,
 }
 
@@ -185,11 +201,13 @@ impl<'a> Flight<'a> {
             engine: InteriorPoint::new(&chain, Settings::COLD),
             chain,
             iterate: scaled(guess, &scales),
+            arrivals: arrivals(intervals),
             flown: Flown {
                 status: NlpStatus::IterationLimit,
                 profile: guess.clone(),
                 iterations: 0,
                 infeasibility: f64::MAX,
+                passing_prices: Vec::new(),
             },
         }
     }
@@ -240,6 +258,18 @@ impl<'a> Flight<'a> {
         })
     }
 
+    /// Multipliers of the links that end between two legs: were each of the two to have its own copy
+    /// of the state, these would be what makes the copies equal.
+    fn passing_prices(&self) -> Vec<DVector<f64>> {
+        let states = 3 + self.dynamics.wheel_count();
+        let unit = self.scales.time / self.scales.momentum;
+        let of_momenta = |&interval: &usize| {
+            let multipliers = &self.iterate.lambda[interval * states..(interval + 1) * states];
+            DVector::from_column_slice(&multipliers[3..]) * unit
+        };
+        self.arrivals.iter().map(of_momenta).collect()
+    }
+
     /// Runs the engine from where the flight is; whether it converges.
     fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
@@ -248,9 +278,23 @@ impl<'a> Flight<'a> {
             profile: physical(&self.iterate, &self.scales, self.dynamics.wheel_count()),
             iterations: self.flown.iterations + report.iterations,
             infeasibility: report.infeasibility,
+            passing_prices: self.passing_prices(),
         };
         report.status == NlpStatus::Converged
     }
+}
+
+/// The intervals that end between two legs.
+fn arrivals(intervals: &[usize]) -> Vec<usize> {
+    let mut nodes: Vec<usize> = intervals
+        .iter()
+        .scan(0, |node, count| {
+            *node += count;
+            Some(*node)
+        })
+        .collect();
+    nodes.pop();
+    nodes.into_iter().map(|node| node - 1).collect()
 }
 
 /// The middle one of the legs' turns, rad.

@@ -10,6 +10,7 @@ mod fixed_order;
 mod legs;
 mod memory;
 mod places;
+mod priced;
 mod recall;
 mod segments;
 mod summed;

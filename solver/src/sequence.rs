@@ -28,6 +28,9 @@
 //! ignores them, and the least over more paths is a bound all the same. A node enters the frontier with the bound that costs nothing (the
 //! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
 //!
+//! Where legs couple and a search goes on, better bounds of what comes after are asked for, and where
+//! that is not enough, bounds of whole orders that begin with a prefix ([`charges`], [`priced`]).
+//!
 //! # Symmetry
 //!
 //! Where every order takes as long backwards, the orders that visit one target in the first half are
@@ -53,6 +56,7 @@ mod frontier;
 mod heuristics;
 mod incumbents;
 mod node;
+pub mod priced;
 pub mod remainder;
 mod rules;
 mod search;
@@ -103,6 +107,9 @@ pub enum TourEvaluation {
     Stopped,
 }
 
+/// What a unit more of each quantity of the state in which a target is passed is worth, s.
+pub type Price = Vec<f64>;
+
 /// All that the search knows of slews.
 ///
 /// Durations are in seconds, finite and not negative. Equal questions must get equal answers,
@@ -145,6 +152,23 @@ pub trait TourModel: Sync {
 
     /// Flies a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
+
+    /// Costates of the flight of a whole order at each of its targets with a leg after it: what the state there saves the
+    /// slews before it, at the margin, and costs those after it. `None` where the order does not
+    /// resolve or the model knows no states. In a symmetric model those backwards are the same.
+    fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
+        let _ = order;
+        None
+    }
+
+    /// Lower bound, s, of the time from leaving one place to leaving the other, plus what the state
+    /// in which it is reached costs by the second price, less what that in which the first is left
+    /// costs by the first; where there is no price, no more than the time. In any tour with this leg.
+    /// Expensive.
+    fn priced_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+        let _ = prices;
+        Evaluation::Value(self.pair_bound(leg[0], leg[1]))
+    }
 }
 
 /// Told how a search goes, between its rounds.

@@ -181,6 +181,7 @@ impl SlewProblem<'_> {
             profile: exact,
             iterations: solved.iterations,
             infeasibility: 0.0,
+            passing_prices: Vec::new(),
         })
     }
 

@@ -191,6 +191,15 @@ impl Transcription {
             .flat_map(move |((max, min), m)| [tau - m / max, tau - m / min])
     }
 
+    /// What the wheel momenta at a node cost, scaled.
+    fn price_of(&self, link: &Link<'_>) -> f64 {
+        let prices = self.nodes[link.node].prices.iter();
+        prices
+            .zip(&link.point[4..])
+            .map(|(price, h)| price * h)
+            .sum()
+    }
+
     fn write_state_values(&self, at: usize, point: &[f64], out: &mut LinkValues) -> usize {
         let (node, reserves) = (&self.nodes[at], self.reserves.at(at));
         let state = self.view(point);
@@ -306,11 +315,11 @@ impl Chain for Transcription {
 
     fn values(&self, link: &Link<'_>, out: &mut LinkValues) {
         let count = self.write_state_values(link.node, link.point, out);
-        out.cost = 0.0;
+        out.cost = self.price_of(link);
         if link.has_interval() {
             let tau = link.control[self.wheels()];
             let away = tau - self.reference_lengths[link.node];
-            out.cost = tau + 0.5 * self.length_penalty * away.powi(2);
+            out.cost += tau + 0.5 * self.length_penalty * away.powi(2);
             self.write_gap(link, &mut out.gap);
             for (out, margin) in out.inequality[count..]
                 .iter_mut()
@@ -322,7 +331,9 @@ impl Chain for Transcription {
     }
 
     fn derivatives(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
-        let count = self.write_state_derivatives(&self.nodes[link.node], link, duals, out);
+        let node = &self.nodes[link.node];
+        let count = self.write_state_derivatives(node, link, duals, out);
+        out.gradient[3..][..node.prices.len()].copy_from_slice(&node.prices);
         if !link.has_interval() {
             return;
         }

@@ -145,15 +145,19 @@ pub(crate) async fn forget(store: Store) {
     }
 }
 
-/// Attitudes, momenta and lengths one after the other.
+/// The number of wheels, attitudes, momenta, lengths and prices one after the other.
 fn packed(name: &str, segment: &StoredSegment) -> SegmentRow {
     let attitudes = segment.attitudes_xyzw.iter().flatten();
     let momenta = segment.wheel_momenta_nms.iter().flatten();
+    let prices = segment.passing_prices_s_per_nms.iter().flatten();
     let numbers = attitudes.chain(momenta).chain(&segment.lengths_s);
+    let wheels = segment.wheel_momenta_nms.first().map_or(0, Vec::len) as u64;
+    let words = numbers.chain(prices).map(|number| number.to_bits());
+    let words = std::iter::once(wheels).chain(words);
     SegmentRow {
         name: name.to_owned(),
         intervals: i64::try_from(segment.lengths_s.len()).unwrap_or(i64::MAX),
-        motion: numbers.flat_map(|number| number.to_le_bytes()).collect(),
+        motion: words.flat_map(u64::to_le_bytes).collect(),
     }
 }
 
@@ -162,24 +166,23 @@ fn unpacked(row: &SegmentRow) -> Option<StoredSegment> {
     let (words, []) = row.motion.as_chunks::<8>() else {
         return None;
     };
+    let (wheels, words) = words.split_first()?;
+    let wheels = usize::try_from(u64::from_le_bytes(*wheels)).ok()?;
     let numbers: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
     let intervals = usize::try_from(row.intervals).ok()?;
     let nodes = intervals.checked_add(1)?;
-    let momenta = numbers
-        .len()
-        .checked_sub(nodes.checked_mul(4)?.checked_add(intervals)?)?;
-    if intervals == 0 || momenta == 0 || momenta % nodes != 0 {
+    let (attitudes, rest) = numbers.split_at_checked(nodes.checked_mul(4)?)?;
+    let (momenta, rest) = rest.split_at_checked(nodes.checked_mul(wheels)?)?;
+    let (lengths, prices) = rest.split_at_checked(intervals)?;
+    if intervals == 0 || wheels == 0 || prices.len() % wheels != 0 {
         return None;
     }
-    let (attitudes, rest) = numbers.split_at(4 * nodes);
-    let (wheels, lengths) = rest.split_at(momenta);
+    let by_wheels = |numbers: &[f64]| numbers.chunks(wheels).map(<[f64]>::to_vec).collect();
     Some(StoredSegment {
         attitudes_xyzw: attitudes.as_chunks().0.to_vec(),
-        wheel_momenta_nms: wheels
-            .chunks(momenta / nodes)
-            .map(<[f64]>::to_vec)
-            .collect(),
+        wheel_momenta_nms: by_wheels(momenta),
         lengths_s: lengths.to_vec(),
+        passing_prices_s_per_nms: by_wheels(prices),
     })
 }
 
@@ -196,6 +199,7 @@ mod tests {
                 vec![-0.0, f64::MIN_POSITIVE],
             ],
             lengths_s: vec![1.5, 0.1 + 0.2],
+            passing_prices_s_per_nms: vec![vec![-90.0, 1.0 / 7.0]],
         }
     }
 

@@ -49,6 +49,7 @@ impl Leg {
             attitude,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(null.clone()),
+            price: None,
         });
         Self {
             name,
@@ -258,4 +259,66 @@ fn the_inner_loop_of_a_leg_allocates_nothing() {
         });
         assert_eq!(counts[0], counts[1], "ten iterations more");
     }
+}
+
+/// Legs that pay each other the costates of a flight for the state in which they meet take together
+/// what the flight takes: strong duality, where each is convex in that state.
+#[test]
+fn legs_priced_by_a_flight_add_up_to_it() {
+    let spec = crate::scenario::reference::experiment_a();
+    let dynamics = Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario);
+    let turned = |x: f64, z: f64| {
+        Attitude::from_rotation_vector(Vector3::z() * z)
+            .then_in_body(&Attitude::from_rotation_vector(Vector3::x() * x))
+    };
+    let (rest, free) = (RateCondition::Fixed(0.0), RateCondition::Free);
+    let place = |attitude, rate| Waypoint {
+        attitude,
+        rate,
+        wheels: WheelCondition::Free,
+        price: None,
+    };
+    let route = [
+        place(Attitude::identity(), [rest; 3]),
+        place(turned(0.3, 0.4), [free, free, rest]),
+        place(turned(0.9, 0.1), [free, free, rest]),
+        place(turned(1.2, 0.9), [rest; 3]),
+    ];
+    let bowed = |legs: &[Waypoint]| {
+        let mut guess = Profile::empty();
+        for pair in legs.windows(2) {
+            let null = DVector::zeros(0);
+            let (from, to) = (&pair[0].attitude, &pair[1].attitude);
+            let slew = EigenaxisSlew::fastest(&dynamics, from, to, &null);
+            guess.append(&slew.guess(&dynamics, 12, Side::Near));
+        }
+        guess
+    };
+    let flown = fly(&dynamics, &route, &[12; 3], &bowed(&route), &|| None);
+    let whole_s = flown.duration().expect("converges");
+    let mut alone_s = 0.0;
+    let mut priced_s = 0.0;
+    for leg in 0..3 {
+        let mut ends = [route[leg].clone(), route[leg + 1].clone()];
+        let alone = fly(&dynamics, &ends, &[12], &bowed(&ends), &|| None);
+        alone_s += alone.duration().expect("converges");
+        ends[0].price = leg
+            .checked_sub(1)
+            .map(|joint| -&flown.passing_prices[joint]);
+        ends[1].price = flown.passing_prices.get(leg).cloned();
+        let priced = fly(&dynamics, &ends, &[12], &alone.profile, &|| None);
+        priced_s += priced.duration().expect("converges");
+        let wheels = [&priced.profile.wheels[0], &priced.profile.wheels[12]];
+        for (end, wheels) in ends.iter().zip(wheels) {
+            priced_s += end.price.as_ref().map_or(0.0, |price| price.dot(wheels));
+        }
+    }
+    assert!(
+        alone_s < 0.98 * whole_s,
+        "the legs are coupled: {alone_s} {whole_s}"
+    );
+    assert!(
+        (priced_s / whole_s - 1.0).abs() < 5e-4,
+        "{priced_s} {whole_s}"
+    );
 }

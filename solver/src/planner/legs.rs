@@ -103,6 +103,11 @@ impl<'a> LegSolver<'a> {
         [&self.solved, &self.from_store, &self.nlp_solves].map(|count| count.load(Relaxed))
     }
 
+    /// Counts a program of one slew that is no leg to keep.
+    pub(super) fn count_solve(&self) {
+        self.nlp_solves.fetch_add(1, Relaxed);
+    }
+
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
     /// out of the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
@@ -344,6 +349,7 @@ fn standstill(leg: &slew::SlewProblem<'_>) -> Option<Flown> {
             profile: Profile::standstill(from.attitude, wheels, leg.resolution.intervals),
             iterations: 0,
             infeasibility: 0.0,
+            passing_prices: Vec::new(),
         }
     })
 }

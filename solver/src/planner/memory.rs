@@ -1,10 +1,11 @@
 //! What a solve may take of the memory, before it begins.
 //!
-//! Three things grow: the table of pairs with its motions, the table of subsets of the targets while
+//! Three things grow: the table of pairs with its motions, the tables of subsets of the targets while
 //! there are few, and, where rates at targets are left free, the segments and nodes that a search
 //! goes on remembering until their bounds are reached.
 
 use crate::scenario::{RateCondition, Scenario, Target};
+use crate::sequence::priced::{PRICED_TARGETS, PricedPaths};
 use crate::sequence::remainder::EXACT_TARGETS;
 
 /// What the smallest solve takes with its plan, what each pair of places adds, and what a search
@@ -43,5 +44,11 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     } else {
         0
     };
-    LEAST + places * places * PAIR + subsets + searched
+    // Of a hard search over few targets, the states of priced legs.
+    let priced = if couples && count <= PRICED_TARGETS {
+        PricedPaths::bytes(count)
+    } else {
+        0
+    };
+    LEAST + places * places * PAIR + subsets + searched + priced
 }

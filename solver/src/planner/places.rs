@@ -103,6 +103,7 @@ impl<'a> Places<'a> {
                     attitude: start.attitude,
                     rate: fixed(&start.rate),
                     wheels: wheels(&start.rate, &start.wheel_speed),
+                    price: None,
                 }
             }
             Place::Target(i) => {
@@ -111,6 +112,7 @@ impl<'a> Places<'a> {
                     attitude: target.attitude,
                     rate: target.rate,
                     wheels: WheelCondition::Free,
+                    price: None,
                 }
             }
             Place::End => {
@@ -123,6 +125,7 @@ impl<'a> Places<'a> {
                     attitude: end.attitude,
                     rate: fixed(&end.rate),
                     wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
+                    price: None,
                 }
             }
         }
@@ -134,6 +137,7 @@ impl<'a> Places<'a> {
             attitude: self.waypoint(place).attitude,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
+            price: None,
         }
     }
 

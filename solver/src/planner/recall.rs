@@ -19,11 +19,14 @@ pub(super) fn momenta_of(profile: &Profile) -> Vec<Vec<f64>> {
 }
 
 /// A segment to be stored.
-pub(super) fn stored_segment(profile: &Profile) -> StoredSegment {
+pub(super) fn stored_segment(flown: &Flown) -> StoredSegment {
+    let profile = &flown.profile;
+    let prices = flown.passing_prices.iter();
     StoredSegment {
         attitudes_xyzw: attitudes_of(profile),
         wheel_momenta_nms: momenta_of(profile),
         lengths_s: profile.lengths.clone(),
+        passing_prices_s_per_nms: prices.map(|price| price.as_slice().to_vec()).collect(),
     }
 }
 
@@ -53,5 +56,6 @@ pub(super) fn recalled(
         profile,
         iterations: 0,
         infeasibility: 0.0,
+        passing_prices: Vec::new(),
     })
 }

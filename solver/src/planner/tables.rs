@@ -53,6 +53,7 @@ impl TabledLeg {
         }
         Flown {
             profile,
+            passing_prices: Vec::new(),
             ..*solution
         }
     }

@@ -16,10 +16,11 @@ use crate::legs::LegKind;
 use crate::multiphase::{Flown, fly, fly_on, fly_rolling, polish};
 use crate::nlp::NlpStatus;
 use crate::profile::Profile;
-use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
+use crate::sequence::{Evaluation, OrderRules, Place, Price, TourEvaluation, TourModel};
 use crate::slew::eigenaxis::Side;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
+use nalgebra::DVector;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -143,10 +144,7 @@ impl<'a> Tours<'a> {
         if flown.iter().all(|segment| segment.duration().is_some()) {
             flown.reverse();
             for segment in &mut flown {
-                *segment = Arc::new(Flown {
-                    profile: segment.profile.reversed(),
-                    ..**segment
-                });
+                *segment = Arc::new(segment.reversed());
             }
         }
         flown
@@ -223,20 +221,24 @@ impl<'a> Tours<'a> {
         let intervals = self.intervals() * (route.len() - 1);
         let known = store.get(&name).and_then(|known| {
             let (wheels, lengths) = (known.wheel_momenta_nms, known.lengths_s);
-            recalled(&known.attitudes_xyzw, wheels, lengths, intervals)
+            let prices = known.passing_prices_s_per_nms.into_iter();
+            Some(Flown {
+                passing_prices: prices.map(DVector::from_vec).collect(),
+                ..recalled(&known.attitudes_xyzw, wheels, lengths, intervals)?
+            })
         });
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(route, extent);
             // When stopped perhaps not all starts have been tried.
             if fresh.duration().is_some() && !self.stop.is_set() {
-                store.put(&name, stored_segment(&fresh.profile));
+                store.put(&name, stored_segment(&fresh));
             }
             fresh
         })
     }
 
     /// The leg with free ends between two places: of the table, where there is one already.
-    fn free_leg(&self, from: Place, to: Place) -> Flown {
+    pub(super) fn free_leg(&self, from: Place, to: Place) -> Flown {
         let known = self.free().and_then(|free| free.get(from, to));
         known.map_or_else(
             || self.legs.lone(LegKind::LowerBound, from, to),
@@ -318,6 +320,7 @@ impl<'a> Tours<'a> {
             return Flown {
                 status: NlpStatus::Converged,
                 profile: guess,
+                passing_prices: Vec::new(),
                 ..flown
             };
         }
@@ -361,7 +364,7 @@ impl<'a> Tours<'a> {
 
     /// The waypoints of a route, with the signs at which a motion passes them, and the intervals
     /// between them.
-    fn program(&self, route: &[Place], motion: &Profile) -> (Vec<Waypoint>, Vec<usize>) {
+    pub(super) fn program(&self, route: &[Place], motion: &Profile) -> (Vec<Waypoint>, Vec<usize>) {
         let signed = |(i, place): (usize, &Place)| {
             let mut waypoint = self.places.waypoint(*place);
             if i > 0
@@ -457,6 +460,14 @@ impl TourModel for Tours<'_> {
     fn couples(&self, via: usize) -> bool {
         let waypoint = self.places.waypoint(Place::Target(via));
         !waypoint.is_fixed(&self.places.dynamics)
+    }
+
+    fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
+        self.prices_of(order)
+    }
+
+    fn priced_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+        self.price_leg(leg, prices)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {

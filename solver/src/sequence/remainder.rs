@@ -2,7 +2,7 @@
 
 pub(super) mod least_tree;
 mod spanning_tree;
-mod subsets;
+pub(super) mod subsets;
 
 pub use spanning_tree::SpanningTrees;
 pub use subsets::SubsetTable;

@@ -2,6 +2,7 @@
 
 mod account;
 mod coupled;
+mod pricing;
 mod tree;
 
 use super::node::Node;
@@ -30,6 +31,9 @@ const PROBE_NODES: u64 = 24;
 
 /// After so many nodes a search over few targets that goes on asks for the bounds of longer paths.
 const TIGHTEN_NODES: u64 = 160;
+
+/// After so many nodes it prices the legs.
+const PRICE_NODES: u64 = 480;
 
 /// What is evaluated in a round.
 enum Task {
@@ -63,6 +67,8 @@ struct Search<'a> {
     next_probe: u64,
     /// Whether the bounds of longer paths have been asked for.
     tightened: bool,
+    /// Whether legs have been priced.
+    priced: bool,
     tree: Tree,
     account: Account<'a>,
 }
@@ -84,6 +90,7 @@ pub fn search(
         node_limit: settings.node_limit.unwrap_or(u64::MAX),
         next_probe: PROBE_NODES,
         tightened: false,
+        priced: false,
         tree: Tree::new(model, settings),
         account: Account::new(observer),
     };
@@ -132,6 +139,10 @@ impl Search<'_> {
         if explored >= TIGHTEN_NODES && !self.tightened {
             self.tightened = true;
             self.tighten();
+        }
+        if explored >= PRICE_NODES && !self.priced {
+            self.priced = true;
+            self.price();
         }
         let budget = self.node_limit.saturating_sub(explored);
         if budget == 0 {

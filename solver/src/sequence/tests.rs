@@ -4,8 +4,10 @@ mod anytime;
 mod charges;
 mod exactness;
 mod models;
+mod priced;
 mod rules;
 
+use models::SplitMix;
 pub(super) use models::{RandomModel, unit};
 
 use super::{Incumbent, SearchObserver, SearchResult, SearchSettings, TourModel, search};

@@ -21,6 +21,7 @@ fn at_rest(attitude: Attitude) -> Waypoint {
         attitude,
         rate: [RateCondition::Fixed(0.0); 3],
         wheels: WheelCondition::Free,
+        price: None,
     }
 }
 
@@ -130,6 +131,7 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
         profile: eigenaxis.exact(&dynamics, slew.resolution.intervals),
         iterations: 0,
         infeasibility: 1.0,
+        passing_prices: Vec::new(),
     };
     let instead = slew.eigenaxis_at_worst(&failed, &|| None);
     let duration = instead.and_then(|flown| flown.duration());

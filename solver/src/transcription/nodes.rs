@@ -28,6 +28,8 @@ pub(crate) struct Waypoint {
     pub(crate) rate: [RateCondition; 3],
     /// Condition of the wheels.
     pub(crate) wheels: WheelCondition,
+    /// What the wheel momenta cost here, s per N m s of each enabled wheel; nothing without.
+    pub(crate) price: Option<DVector<f64>>,
 }
 
 impl Waypoint {
@@ -50,6 +52,7 @@ impl Waypoint {
             attitude: self.attitude,
             rate: [RateCondition::Free; 3],
             wheels: WheelCondition::Fixed(wheels.clone()),
+            price: None,
         }
     }
 }
@@ -70,6 +73,8 @@ pub(super) struct Node {
     /// Whether speed and rate limits are imposed: not where the state is fixed, since a fixed
     /// state on a limit would leave no interior.
     pub(super) limited: bool,
+    /// Cost of the wheel momenta, scaled; empty where there is none.
+    pub(super) prices: Vec<f64>,
 }
 
 impl Transcription {
@@ -112,6 +117,7 @@ impl Transcription {
         let mut node = Node {
             attitude: Some(waypoint.attitude.xyzw()),
             limited: !waypoint.is_fixed(&self.dynamics),
+            prices: self.scaled_prices(waypoint),
             ..Node::default()
         };
         match &waypoint.wheels {
@@ -143,6 +149,13 @@ impl Transcription {
             self.add_rate_rows(axis, *condition, &mut node);
         }
         node
+    }
+
+    /// In units of time per unit of momentum.
+    fn scaled_prices(&self, waypoint: &Waypoint) -> Vec<f64> {
+        let unit = self.scales.momentum / self.scales.time;
+        let prices = waypoint.price.iter().flatten();
+        prices.map(|price| price * unit).collect()
     }
 
     fn add_rate_rows(&self, axis: usize, condition: RateCondition, node: &mut Node) {

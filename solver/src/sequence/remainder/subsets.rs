@@ -19,7 +19,7 @@ pub struct SubsetTable {
 
 /// The rules on sets as bit masks.
 #[derive(Debug)]
-struct Admitted {
+pub(in crate::sequence) struct Admitted {
     /// The targets that may take each place, whatever has been visited before.
     at: Vec<usize>,
     /// Every target that comes after others, with the set of these.
@@ -27,7 +27,7 @@ struct Admitted {
 }
 
 impl Admitted {
-    fn of(rules: &OrderRules, targets: usize) -> Self {
+    pub(in crate::sequence) fn of(rules: &OrderRules, targets: usize) -> Self {
         let at = |place| mask((0..targets).filter(|&target| rules.admits_at(place, target)));
         let before = |target| (target, mask(rules.predecessors(target).iter().copied()));
         Self {
@@ -40,7 +40,7 @@ impl Admitted {
     }
 
     /// The targets of a set that may come next when exactly the others have been visited.
-    fn next(&self, set: usize) -> usize {
+    pub(in crate::sequence) fn next(&self, set: usize) -> usize {
         let place = self.at.len() - set.count_ones() as usize;
         let here = self.at.get(place).map_or(0, |targets| targets & set);
         let waiting = self.before.iter().filter(|(_, before)| before & set != 0);
@@ -151,7 +151,7 @@ fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; EXACT_TARGETS] {
 
 /// The least sum of two entries at the same place; four at a time, which halves the time that the
 /// whole table takes.
-fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
+pub(in crate::sequence) fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
     let mut least = [f64::INFINITY; 4];
     for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
         for lane in 0..4 {
@@ -165,7 +165,7 @@ fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
 }
 
 /// The targets of a set, in increasing order.
-fn members(set: usize) -> impl Iterator<Item = usize> {
+pub(in crate::sequence) fn members(set: usize) -> impl Iterator<Item = usize> {
     let mut left = set;
     std::iter::from_fn(move || {
         let first = (left != 0).then(|| left.trailing_zeros() as usize)?;
@@ -175,6 +175,6 @@ fn members(set: usize) -> impl Iterator<Item = usize> {
 }
 
 /// The set of some targets.
-fn mask(targets: impl Iterator<Item = usize>) -> usize {
+pub(in crate::sequence) fn mask(targets: impl Iterator<Item = usize>) -> usize {
     targets.fold(0, |set, target| set | 1 << target)
 }

@@ -9,6 +9,7 @@ use super::Search;
 use crate::pool::SolverPool;
 use crate::sequence::charges::{ChargedSubsets, Charges, Effort};
 use crate::sequence::heuristics::SearchEffort;
+use crate::sequence::priced::PricedPaths;
 use crate::sequence::remainder::{EXACT_TARGETS, SpanningTrees};
 use crate::sequence::{OrderRules, PairTable, SearchEnd, TourModel};
 use crate::stop::StopSignal;
@@ -34,6 +35,8 @@ pub(super) enum Couplings {
     Trees(Box<Charges>),
     /// With a shortest path in its place.
     Paths(Box<ChargedSubsets>),
+    /// With that and with legs that pay each other for the states they meet in.
+    Priced(Box<ChargedSubsets>, Box<PricedPaths>),
 }
 
 impl Couplings {
@@ -61,6 +64,18 @@ impl Couplings {
         match self {
             Self::Trees(charges) => charges.bound(from, remaining),
             Self::Paths(subsets) => subsets.bound(from, remaining),
+            Self::Priced(subsets, priced) => {
+                let charged = subsets.bound(from, remaining);
+                charged.max(priced.bound(from, remaining))
+            }
+        }
+    }
+
+    /// Lower bound, s, of all orders that begin with a prefix, whatever is known of the prefix.
+    pub(super) fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
+        match self {
+            Self::Trees(_) | Self::Paths(_) => 0.0,
+            Self::Priced(_, priced) => priced.whole(prefix, remaining),
         }
     }
 }

@@ -109,13 +109,18 @@ impl Tree {
         self.root_s = self.root_s.max(bound_s);
     }
 
+    /// Gives up the bounds from several places in a row, for better ones to be made of them.
+    pub(super) fn decouple(&mut self) -> Option<Couplings> {
+        self.couplings.take()
+    }
+
     /// Takes in better bounds, of what is open already too.
     pub(super) fn couple(&mut self, couplings: Couplings) {
         self.couplings = Some(couplings);
         for mut node in self.frontier.take_if(|_| true) {
             let remaining = node.remaining(self.table.targets());
-            let last = self.table.last_place(&node.prefix);
-            node.raise_head(node.head, self.rest(last, &remaining));
+            let head = node.head;
+            self.raise(&mut node, head, &remaining);
             self.admit(node);
         }
     }
@@ -143,6 +148,18 @@ impl Tree {
         let pairs = self.remainder.bound(&self.table, from, remaining);
         let couplings = self.couplings.as_ref();
         couplings.map_or(pairs, |known| pairs.max(known.bound(from, remaining)))
+    }
+
+    /// Takes in a bound of the time until the last fixed target is left, s, with what is known of the
+    /// rest and of whole orders that begin so.
+    fn raise(&self, node: &mut Node, head: f64, remaining: &[usize]) {
+        node.raise_head(
+            head,
+            self.rest(self.table.last_place(&node.prefix), remaining),
+        );
+        if let Some(known) = &self.couplings {
+            node.bound = node.bound.max(known.whole(&node.prefix, remaining));
+        }
     }
 
     /// Lower bound of all orders, s.
@@ -221,9 +238,8 @@ impl Tree {
         }
         // Of one leg from the given start the pair table knows all.
         child.evaluated = child.prefix.len() == 1;
-        let last = self.table.last_place(&child.prefix);
-        let rest = self.rest(last, &left);
-        child.raise_head(child.head, rest);
+        let head = child.head;
+        self.raise(&mut child, head, &left);
         child
     }
 
@@ -258,8 +274,7 @@ impl Tree {
         node.evaluated = true;
         if let Some(head) = head.filter(|head| head.is_finite()) {
             let remaining = node.remaining(self.table.targets());
-            let last = self.table.last_place(&node.prefix);
-            node.raise_head(head, self.rest(last, &remaining));
+            self.raise(&mut node, head, &remaining);
         } else {
             self.statistics.prefixes_unresolved += 1;
         }

@@ -13,5 +13,6 @@ mod operations;
 mod plans;
 mod refusals;
 mod running;
+mod scenario;
 mod spacecraft;
 mod verify;

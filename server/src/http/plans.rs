@@ -7,6 +7,7 @@ pub(super) mod events;
 pub(super) mod get;
 pub(super) mod list;
 pub(super) mod result;
+pub(super) mod scenario;
 pub(super) mod stop;
 
 use super::error::{ApiError, ErrorCode};

@@ -5,6 +5,7 @@ use super::error::ApiError;
 use crate::store::{JobRow, StoreError};
 use crate::wire::jobs::JobDocument;
 use axum::Json;
+use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use std::time::Duration;
@@ -46,4 +47,36 @@ pub(super) async fn await_end(
             () = shutdown.begun() => return Ok(job),
         }
     }
+}
+
+/// A content of a media type with the tag that belongs to it.
+pub(super) fn tagged(form: &'static str, tag: &str, body: Bytes) -> Response {
+    let mut response = ([(header::CONTENT_TYPE, form)], body).into_response();
+    if let Ok(tag) = HeaderValue::from_str(&format!("\"{tag}\"")) {
+        response.headers_mut().insert(header::ETAG, tag);
+    }
+    response
+}
+
+/// The response, or only its tag when that is one of those that `If-None-Match` lists.
+pub(super) fn unless_known(known: &str, response: Response) -> Response {
+    match response.headers().get(header::ETAG) {
+        Some(tag) if is_known(known, tag) => {
+            (StatusCode::NOT_MODIFIED, [(header::ETAG, tag.clone())]).into_response()
+        }
+        _ => response,
+    }
+}
+
+fn is_known(known: &str, tag: &HeaderValue) -> bool {
+    let tag = tag.to_str().map(bare);
+    known.trim() == "*"
+        || known
+            .split(',')
+            .any(|one| tag.as_ref().is_ok_and(|tag| bare(one) == *tag))
+}
+
+/// A tag for the weak comparison that `If-None-Match` asks for.
+fn bare(tag: &str) -> &str {
+    tag.trim().trim_start_matches("W/")
 }

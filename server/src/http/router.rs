@@ -34,6 +34,7 @@ fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::with_openapi(Description::openapi())
         .routes(routes!(plans::create::handler, plans::list::handler))
         .routes(routes!(plans::get::handler, plans::delete::handler))
+        .routes(routes!(plans::scenario::handler))
         .routes(routes!(plans::result::handler))
         .routes(routes!(plans::events::handler))
         .routes(routes!(plans::stop::handler))

@@ -69,6 +69,8 @@ pub(in crate::http) struct Query {
             links(
                 ("get_plan" = (operation_id = "get_plan",
                     parameters(("id" = "$response.body#/id")))),
+                ("get_scenario" = (operation_id = "get_scenario",
+                    parameters(("id" = "$response.body#/id")))),
                 ("get_result" = (operation_id = "get_result",
                     parameters(("id" = "$response.body#/id")))),
                 ("follow_plan" = (operation_id = "follow_plan",

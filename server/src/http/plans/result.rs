@@ -4,13 +4,13 @@ use super::super::App;
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::extract::{Named, Parameters, header_text};
+use super::super::respond;
 use crate::store::{JobState, ResultRow};
 use crate::wire::csv;
 use crate::wire::plan::PlanDocument;
-use axum::body::Bytes;
 use axum::extract::State;
-use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
-use axum::response::{IntoResponse, Response};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
+use axum::response::Response;
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
@@ -97,31 +97,15 @@ pub(in crate::http) async fn handler(
         Format::Csv => table(&result)?,
     };
     let known = header_text(&headers, "if-none-match")?.unwrap_or("");
-    let tag = response.headers().get(header::ETAG).cloned();
-    if let Some(tag) = tag.filter(|tag| is_known(known, tag)) {
-        response = (StatusCode::NOT_MODIFIED, [(header::ETAG, tag)]).into_response();
-    }
+    response = respond::unless_known(known, response);
     let state = HeaderValue::from_static(state.as_str());
     response.headers_mut().insert(JOB_STATE, state);
     Ok(response)
 }
 
-fn is_known(known: &str, tag: &HeaderValue) -> bool {
-    let tag = tag.to_str().map(bare);
-    known.trim() == "*"
-        || known
-            .split(',')
-            .any(|one| tag.as_ref().is_ok_and(|tag| bare(one) == *tag))
-}
-
-/// A tag for the weak comparison that `If-None-Match` asks for.
-fn bare(tag: &str) -> &str {
-    tag.trim().trim_start_matches("W/")
-}
-
 /// The plan as it was stored.
 pub(super) fn json(result: &ResultRow) -> Response {
-    tagged("application/json", &result.digest, result.document.clone())
+    respond::tagged("application/json", &result.digest, result.document.clone())
 }
 
 fn table(result: &ResultRow) -> Result<Response, ApiError> {
@@ -135,19 +119,11 @@ fn table(result: &ResultRow) -> Result<Response, ApiError> {
             "there is no plan and so no trajectory; see the JSON",
         )
     })?;
-    Ok(tagged(
+    Ok(respond::tagged(
         "text/csv; charset=utf-8",
         &format!("{}-csv", result.digest),
         text.into(),
     ))
-}
-
-fn tagged(form: &'static str, tag: &str, body: Bytes) -> Response {
-    let mut response = ([(header::CONTENT_TYPE, form)], body).into_response();
-    if let Ok(tag) = HeaderValue::from_str(&format!("\"{tag}\"")) {
-        response.headers_mut().insert(header::ETAG, tag);
-    }
-    response
 }
 
 /// The form that `Accept` likes best, JSON among equals; `None` when it likes neither.

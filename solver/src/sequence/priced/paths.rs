@@ -26,7 +26,7 @@ impl PricedPaths {
     pub fn bytes(targets: usize) -> u64 {
         let targets = targets as u64;
         // Three others of every set; the mean of their cube over all sets.
-        let states = targets * targets * (targets + 3) << targets;
+        let states = (targets * targets * (targets + 3)) << targets;
         states / 8 * 4
     }
 

@@ -8,6 +8,7 @@ mod legs;
 mod metrics;
 mod observe;
 mod operations;
+mod page;
 mod plans;
 mod protect;
 mod respond;

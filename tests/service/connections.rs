@@ -83,7 +83,7 @@ fn streams_leave_room_for_requests() {
 fn every_answer_tells_browsers_what_not_to_do() {
     let service = Service::start();
     for path in [
-        "/",
+        "/none",
         "/v1/plans",
         "/v1/plans/none",
         "/docs/",

@@ -58,7 +58,8 @@ fn slewplan_openapi() -> Value {
     yaml_serde::from_str(text).expect("the description is YAML")
 }
 
-const PUBLIC: [&str; 6] = [
+const PUBLIC: [&str; 7] = [
+    "/",
     "/health/live",
     "/health/ready",
     "/openapi.yaml",
@@ -119,6 +120,17 @@ fn every_route_is_closed_to_who_has_no_valid_key() {
         let found = |bytes: &[u8]| bytes.windows(secret.len()).any(|part| part == secret);
         assert!(!found(&stored) && !found(&log));
     }
+}
+
+#[test]
+fn the_page_opens_without_a_key_and_then_asks_for_one() {
+    let (_folder, database) = folder();
+    key(&database, &["owner"]);
+    let service = Service::on(&database, &[]);
+    let page = service.get("/").expect(200).body;
+    let file = page.split('"').find(|text| text.ends_with("main.js"));
+    service.get(file.expect("its script")).expect(200);
+    service.get("/v1/plans").expect_problem(401, "unauthorized");
 }
 
 #[test]

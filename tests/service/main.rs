@@ -10,6 +10,7 @@ mod idempotency;
 mod keys;
 mod legs;
 mod operations;
+mod page;
 mod plans;
 mod refusals;
 mod running;

@@ -72,7 +72,7 @@ def keys_cannot_be_read(scale):
 
 TRAVERSALS = [
     prefix + form + "etc/passwd"
-    for prefix in ("/", "/docs/", "/docs//", "/v1/plans/", "/v1/spacecraft/", "/v1/legs/")
+    for prefix in ("/", "/page/", "/docs/", "/docs//", "/v1/plans/", "/v1/spacecraft/", "/v1/legs/")
     for form in (
         "../../../../",
         "..%2f..%2f..%2f",

@@ -2,8 +2,8 @@
 //!
 //! A route without a rule is open to nobody where keys are asked for.
 
-use super::App;
 use super::error::{ApiError, ErrorCode};
+use super::{App, page};
 use crate::access::{Scope, digest_of};
 use crate::clock::now_us;
 use axum::extract::{FromRequestParts, MatchedPath, Request, State};
@@ -52,6 +52,7 @@ enum Rule {
 fn rule(method: &Method, route: &str) -> Option<Rule> {
     let reads = matches!(*method, Method::GET | Method::HEAD);
     match route {
+        "/" | page::FILES => Some(Rule::Public),
         "/health/live" | "/health/ready" | "/openapi.yaml" | "/v1/version" | "/v1/limits" => {
             Some(Rule::Public)
         }

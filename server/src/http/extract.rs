@@ -97,10 +97,10 @@ fn is_too_slow(error: &(dyn Error + 'static)) -> bool {
     error.is::<TooSlow>() || error.source().is_some_and(is_too_slow)
 }
 
-/// The name in the path. What cannot be a name, because it is no text, names nothing.
-pub(super) struct Named(pub(super) String);
+/// The name in the path, or the names. What cannot be a name, because it is no text, names nothing.
+pub(super) struct Named<T = String>(pub(super) T);
 
-impl FromRequestParts<App> for Named {
+impl<T: DeserializeOwned + Send> FromRequestParts<App> for Named<T> {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, ApiError> {

@@ -18,19 +18,23 @@ const HEADERS: [(HeaderName, &str); 4] = [
     (header::X_FRAME_OPTIONS, "DENY"),
 ];
 
-/// Adds the headers. What has an entity tag may be kept if it is asked for again; the rest is of
-/// the moment.
+/// Adds the headers where a handler has not set its own. What has an entity tag may be kept if it is
+/// asked for again; the rest is of the moment.
 pub(super) async fn protect(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     for (name, value) in HEADERS {
-        headers.insert(name, HeaderValue::from_static(value));
+        headers
+            .entry(name)
+            .or_insert(HeaderValue::from_static(value));
     }
     let kept = if headers.contains_key(header::ETAG) {
         "private, no-cache"
     } else {
         "no-store"
     };
-    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static(kept));
+    headers
+        .entry(header::CACHE_CONTROL)
+        .or_insert(HeaderValue::from_static(kept));
     response
 }

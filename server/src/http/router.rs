@@ -1,9 +1,10 @@
 //! The only list of routes, and what every request passes through.
 
-use super::{App, access, legs, observe, operations, plans, protect, spacecraft, verify};
+use super::{App, access, legs, observe, operations, page, plans, protect, spacecraft, verify};
 use crate::wire::jobs::EventDocument;
 use axum::Router;
 use axum::middleware::{from_fn, from_fn_with_state};
+use axum::routing::get;
 use tower_http::catch_panic::CatchPanicLayer;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
@@ -44,6 +45,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(legs::get::handler))
         .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
         .routes(routes!(verify::handler))
+        .routes(routes!(page::handler))
         .routes(routes!(operations::limits::handler))
         .routes(routes!(operations::version::handler))
         .routes(routes!(operations::docs::openapi))
@@ -56,8 +58,8 @@ fn routes() -> OpenApiRouter<App> {
 /// The whole service.
 pub(crate) fn router(app: App) -> Router {
     let (router, _) = routes().split_for_parts();
-    let page = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
-    let router = router.merge(page);
+    let docs = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
+    let router = router.merge(docs).route(page::FILES, get(page::file));
     #[cfg(feature = "faults")]
     let router = router.layer(from_fn(observe::fault));
     router

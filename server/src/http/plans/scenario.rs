@@ -3,10 +3,10 @@
 use super::super::App;
 use super::super::describe::{NotFound, Scenario, ServerErrors};
 use super::super::error::ApiError;
-use super::super::extract::header_text;
+use super::super::extract::{Named, header_text};
 use super::super::respond;
 use crate::digest;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 
@@ -29,7 +29,7 @@ use axum::response::Response;
 )]
 pub(in crate::http) async fn handler(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Named(id): Named,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
     let found = app.store().scenario(&id).await?;

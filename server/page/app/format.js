@@ -1,0 +1,47 @@
+// Numbers as people read them. What does not exist is a dash.
+
+const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+const DASH = "–";
+const known = (value) => typeof value === "number" && Number.isFinite(value);
+
+/** A number with so many digits after the point. */
+export function fixed(value, digits = 2) {
+  if (!known(value)) return DASH;
+  const text = value.toFixed(digits);
+  // A zero has no sign, whatever was rounded to it.
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+}
+
+/** Seconds with their unit. */
+export function seconds(value, digits = 2) {
+  return known(value) ? `${fixed(value, digits)} s` : DASH;
+}
+
+/** A ratio in percent. */
+export function percent(value, digits = 2) {
+  return known(value) ? `${fixed(100 * value, digits)} %` : DASH;
+}
+
+/** A small number in scientific form, zero as such. */
+export function small(value) {
+  if (!known(value)) return DASH;
+  if (value === 0) return "0";
+  const [digits, exponent] = value.toExponential(1).split("e");
+  const raised = [...exponent.replace("+", "")].map((sign) => RAISED[sign]).join("");
+  return `${digits}·10${raised}`;
+}
+
+/** A moment in the time of the reader, the date only when it is not today. */
+export function moment(text) {
+  if (!text) return DASH;
+  const at = new Date(text);
+  const today = at.toDateString() === new Date().toDateString();
+  const time = { hour: "2-digit", minute: "2-digit", second: "2-digit", hour12: false };
+  const date = { year: "numeric", month: "short", day: "numeric" };
+  return at.toLocaleString("en-GB", today ? time : { ...date, ...time });
+}
+
+/** A count with its noun. */
+export function count(number, noun) {
+  return `${number} ${noun}${number === 1 ? "" : "s"}`;
+}

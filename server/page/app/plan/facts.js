@@ -1,0 +1,59 @@
+// The figures of a job or plan that are read first.
+
+import { el } from "../dom.js";
+import { fixed, percent, seconds } from "../format.js";
+
+const KINDS = {
+  nlp_relaxation: "relaxed problems, each taken to be solved globally",
+  pair_table: "table of slews, each taken to be solved globally",
+  certified: "proved",
+};
+
+function strip(items) {
+  return el("dl", { class: "facts" }, items.filter(Boolean).map(([name, value, note]) =>
+    el("div", {}, el("dt", {}, name), el("dd", {}, el("span", { class: "figure" }, value),
+      note ? el("span", { class: "note" }, note) : null))));
+}
+
+/** How a job stands. */
+export function standing(job, elapsed) {
+  const steps = job.total ? `${job.done ?? 0} of ${job.total}` : null;
+  return strip([
+    ["Best plan", seconds(job.incumbent_s)],
+    ["Lower bound", seconds(job.lower_bound_s)],
+    ["Gap", percent(job.relative_gap)],
+    ["Stage", job.stage ?? "waiting", steps],
+    ["Elapsed", seconds(elapsed, 1)],
+  ]);
+}
+
+/** What is saved against slews about the eigenaxis in the same order, s; null where one is unknown. */
+export function saving(plan) {
+  const eigenaxis = plan.legs.map((leg) => leg.eigenaxis_duration_s);
+  if (!plan.legs.length || eigenaxis.some((duration) => duration === null)) return null;
+  return plan.legs.reduce((total, leg, index) => total + eigenaxis[index] - leg.duration_s, 0);
+}
+
+/** The figures of a plan. */
+export function facts(plan) {
+  const saved = saving(plan);
+  const gap = plan.relative_gap;
+  return strip([
+    ["Total time", seconds(plan.total_time_s)],
+    ["Lower bound", seconds(plan.lower_bound_s), KINDS[plan.lower_bound_kind]],
+    ["Gap", percent(gap), gap === 0 ? "no order is better, given this bound" : null],
+    saved === null ? null : ["Saved", seconds(saved, 1),
+      `${fixed((100 * saved) / (plan.total_time_s + saved), 1)} % against eigenaxis slews`],
+    plan.certified_lower_bound_s === null ? null
+      : ["Proved bound", seconds(plan.certified_lower_bound_s), "over all admissible orders"],
+    ["Solved in", seconds(plan.statistics.wall_time_s), `${plan.statistics.nlp_solves} programs, ${plan.statistics.threads} threads`],
+  ]);
+}
+
+/** The visiting order; a target leads to the moment of its arrival. */
+export function order(plan, cursor) {
+  return el("ol", { class: "order", "aria-label": "Visiting order" }, plan.passages.map((passage) =>
+    el("li", {}, el("button", { type: "button", onclick: () => cursor.set(passage.time_s) },
+      el("span", { class: "stop-name" }, passage.target), " ",
+      el("span", { class: "stop-time" }, seconds(passage.time_s, 1))))));
+}

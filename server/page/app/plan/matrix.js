@@ -1,0 +1,76 @@
+// Times from rest to rest between all places of a scenario, as far as they are known.
+
+import { post } from "../api.js";
+import { el, section } from "../dom.js";
+import { failure } from "../failure.js";
+import { count, fixed } from "../format.js";
+
+/** So many places have all of their legs in one query. */
+const MOST_PLACES = 32;
+/** More columns have no room for decimals. */
+const FEW = 8;
+
+/** The section with the matrix. */
+export function matrix(plan, scenario, signal) {
+  const places = placesOf(plan, scenario);
+  const body = el("div", {}, el("p", { class: "quiet" }, "Looking up …"));
+  const compute = el("button", { type: "button", class: "small", hidden: true, onclick: () => load("compute") }, "Compute missing");
+  const node = section("Leg times, rest to rest", { head: compute, class: "wide" }, body);
+  if (places.length > MOST_PLACES) {
+    body.replaceChildren(el("p", { class: "quiet" }, `${places.length} places; a matrix is shown for at most ${MOST_PLACES}.`));
+    return node;
+  }
+  const { spacecraft, start, options } = scenario;
+  const query = { spacecraft, start, options, attitudes: places.map((place) => place.attitude), kind: "rest_to_rest" };
+
+  async function load(mode) {
+    compute.disabled = true;
+    try {
+      const answer = await post("/v1/legs/query", { ...query, mode }, signal);
+      const missing = answer.legs.filter((leg) => leg.duration_s === null).length;
+      compute.hidden = missing === 0 || mode === "compute";
+      body.replaceChildren(grid(places, answer.legs), el("p", { class: "quiet" },
+        "From the row to the column, in seconds. Legs of the plan are framed; those flown with free rates can be shorter. ",
+        missing ? `${count(missing, "leg")} not known.` : ""));
+    } catch (error) {
+      if (!signal.aborted) body.replaceChildren(failure(error));
+    }
+    compute.disabled = false;
+  }
+  load("cached_only");
+  return node;
+}
+
+/** Start, targets in visiting order, and the end where it is somewhere else. */
+function placesOf(plan, scenario) {
+  const targets = new Map(scenario.targets.map((target) => [target.id, target]));
+  const places = [{ name: "start", attitude: scenario.start.attitude },
+    ...plan.sequence.map((id) => ({ name: id, attitude: targets.get(id).attitude }))];
+  const { end } = scenario;
+  if (!end) return places;
+  if (JSON.stringify(end.attitude) === JSON.stringify(scenario.start.attitude)) places[0].name = "start, end";
+  else places.push({ name: "end", attitude: end.attitude });
+  return places;
+}
+
+function grid(places, legs) {
+  const size = places.length;
+  const times = Array.from({ length: size }, () => Array(size).fill(null));
+  for (const leg of legs) times[leg.from][leg.to] = leg.duration_s;
+  const known = times.flat().filter((time) => time !== null);
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  const digits = size <= FEW ? 2 : 1;
+  const cell = (time, from, to) => {
+    if (from === to) return el("td", { class: "self" });
+    const flown = to === (from + 1) % size && (to !== 0 || places[0].name !== "start");
+    const node = el("td", { class: `number ${time === null ? "missing" : ""} ${flown ? "flown" : ""}` }, fixed(time, digits));
+    if (time !== null) node.style.setProperty("--heat", String(high > low ? (time - low) / (high - low) : 0));
+    return node;
+  };
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Matrix of leg times" },
+    el("table", { class: "matrix" },
+      el("caption", { class: "unseen" }, "Leg times from rest to rest, s; rows are where a leg begins"),
+      el("thead", {}, el("tr", {}, el("td", {}), places.map(({ name }) => el("th", { scope: "col" }, name)))),
+      el("tbody", {}, times.map((row, from) => el("tr", {}, el("th", { scope: "row" }, places[from].name),
+        row.map((time, to) => cell(time, from, to)))))));
+}

@@ -1,0 +1,41 @@
+// A plan in all its views.
+
+import { el, section } from "../dom.js";
+import { item } from "../failure.js";
+import { Cursor } from "../cursor.js";
+import { flightOf } from "../flight.js";
+import { seconds } from "../format.js";
+import { isFinal } from "../state.js";
+import { sphere } from "../sphere/sphere.js";
+import { timelines } from "../plots/timelines.js";
+import { downloads } from "./downloads.js";
+import { facts, order } from "./facts.js";
+import { legs } from "./legs.js";
+import { matrix } from "./matrix.js";
+import { verification } from "./verification.js";
+
+/** The views of a plan; `beside` stands next to its verification. */
+export function result(job, plan, scenario, beside, signal) {
+  const flight = flightOf(plan, scenario);
+  if (!flight) {
+    return el("div", { class: "result" }, reasons(plan), beside, downloads(job.id, job.name));
+  }
+  const cursor = new Cursor();
+  return el(
+    "div",
+    { class: "result" },
+    isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
+    order(plan, cursor),
+    el("div", { class: "flight" }, sphere(flight, cursor, signal), timelines(flight, cursor, signal)),
+    legs(plan),
+    el("div", { class: "cards" }, verification(plan, scenario), beside),
+    matrix(plan, scenario, signal),
+    downloads(job.id, job.name),
+  );
+}
+
+function reasons(plan) {
+  const list = plan.reasons ?? [];
+  return section("Why there is no plan", { class: "card" },
+    list.length ? el("ul", { class: "problems" }, list.map((reason) => item(reason))) : el("p", {}, plan.status));
+}

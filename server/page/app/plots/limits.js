@@ -1,0 +1,69 @@
+// What stands behind the curves of a timeline: limits, arrivals, and times at rest.
+
+import { colour } from "./palette.js";
+
+const ROOM = 0.08;
+
+/** Lowest and highest value of a plot: those of the curves and of their limits, with some room. */
+export function reach({ curves, limits }) {
+  const all = [...curves.flat(), ...limits.flatMap((limit) => limit ?? []), 0];
+  const [low, high] = all.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [0, 0]);
+  const room = ROOM * (high - low || 1);
+  return [low - room, high + room];
+}
+
+/** The hooks of uPlot that draw it. */
+export function decorate(flight, group) {
+  const values = [...new Set(group.limits.flatMap((limit) => limit ?? []))];
+  return {
+    drawClear: [(drawn) => within(drawn, () => {
+      shade(drawn, flight.phases);
+      arrivals(drawn, flight.stops);
+    })],
+    draw: [(drawn) => within(drawn, () => values.forEach((value) => limit(drawn, value)))],
+  };
+}
+
+function within(drawn, paint) {
+  const { ctx, bbox } = drawn;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  paint();
+  ctx.restore();
+}
+
+function shade(drawn, phases) {
+  const { ctx, bbox } = drawn;
+  for (const phase of phases) {
+    if (phase.kind === "slew") continue;
+    ctx.fillStyle = colour(`${phase.kind}-shade`);
+    const [begin, end] = [phase.begin, phase.end].map((time) => drawn.valToPos(time, "x", true));
+    ctx.fillRect(begin, bbox.top, Math.max(end - begin, 1), bbox.height);
+  }
+}
+
+function arrivals(drawn, stops) {
+  for (const stop of stops) {
+    const x = Math.round(drawn.valToPos(stop.time, "x", true)) + 0.5;
+    line(drawn, [x, drawn.bbox.top], [x, drawn.bbox.top + drawn.bbox.height], colour("mark"), []);
+  }
+}
+
+function limit(drawn, value) {
+  const y = Math.round(drawn.valToPos(value, "y", true)) + 0.5;
+  const { left, width } = drawn.bbox;
+  line(drawn, [left, y], [left + width, y], colour("limit"), [6, 4]);
+}
+
+function line({ ctx }, from, to, stroke, dash) {
+  const ratio = devicePixelRatio;
+  ctx.beginPath();
+  ctx.setLineDash(dash.map((part) => part * ratio));
+  ctx.lineWidth = ratio;
+  ctx.strokeStyle = stroke;
+  ctx.moveTo(...from);
+  ctx.lineTo(...to);
+  ctx.stroke();
+}

@@ -1,0 +1,69 @@
+// Where a JSON pointer (RFC 6901) leads to in a text.
+
+/** Begin and end of the value at a pointer, of the deepest one that exists; null without JSON. */
+export function locate(text, pointer) {
+  const path = pointer.split("/").slice(1).map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
+  const scanner = new Scanner(text);
+  try {
+    return scanner.find(path);
+  } catch {
+    return null;
+  }
+}
+
+class Scanner {
+  constructor(text) {
+    this.text = text;
+    this.at = 0;
+  }
+
+  space() {
+    while (/[\s\ufeff]/.test(this.text[this.at] ?? "")) this.at += 1;
+    if (this.at >= this.text.length) throw new Error("the text ends");
+  }
+
+  /** The range of the value that begins here, or of what the path leads to inside. */
+  find(path) {
+    this.space();
+    const begin = this.at;
+    const opening = this.text[begin];
+    let found = null;
+    if (opening === "{" || opening === "[") {
+      this.at += 1;
+      for (let index = 0; ; index += 1) {
+        this.space();
+        if (this.text[this.at] === (opening === "{" ? "}" : "]")) break;
+        const name = opening === "{" ? this.name() : String(index);
+        const wanted = found === null && path.length > 0 && name === path[0];
+        const range = this.find(wanted ? path.slice(1) : []);
+        if (wanted) found = range;
+        this.space();
+        if (this.text[this.at] === ",") this.at += 1;
+      }
+      this.at += 1;
+    } else if (opening === '"') {
+      this.string();
+    } else {
+      const scalar = /[^\s,\]}]+/y;
+      scalar.lastIndex = this.at;
+      this.at += scalar.exec(this.text)[0].length;
+    }
+    return found ?? [begin, this.at];
+  }
+
+  name() {
+    const name = this.string();
+    this.space();
+    if (this.text[this.at] !== ":") throw new Error("a colon is missing");
+    this.at += 1;
+    return name;
+  }
+
+  string() {
+    const string = /"(?:[^"\\]|\\.)*"/y;
+    string.lastIndex = this.at;
+    const [found] = string.exec(this.text);
+    this.at += found.length;
+    return JSON.parse(found);
+  }
+}

@@ -1,0 +1,28 @@
+// States of a job, for people.
+
+import { el } from "./dom.js";
+
+const STATES = {
+  queued: ["waits", "Queued"],
+  running: ["goes", "Running"],
+  succeeded: ["good", "Optimal"],
+  stopped: ["good", "Best so far"],
+  infeasible: ["bad", "Infeasible"],
+  failed: ["bad", "Failed"],
+  cancelled: ["ended", "Cancelled"],
+  dead: ["bad", "Dead"],
+};
+
+/** The states that a list can be narrowed to, as [value, text]. */
+export const states = Object.entries(STATES).map(([state, [, text]]) => [state, text]);
+
+/** Whether a job in this state has ended. */
+export function isFinal(state) {
+  return state !== "queued" && state !== "running";
+}
+
+/** A state as a coloured word. */
+export function chip(state) {
+  const [kind, text] = STATES[state] ?? ["ended", state];
+  return el("span", { class: `chip ${kind}` }, text);
+}

@@ -1,0 +1,111 @@
+// The list of plans, page by page, renewed while it is looked at.
+
+import { read } from "../api.js";
+import { el, table } from "../dom.js";
+import { failure } from "../failure.js";
+import { moment, percent, seconds } from "../format.js";
+import { chip, isFinal, states } from "../state.js";
+
+const PAGE = 25;
+const RENEW_MS = 2000;
+const RENEW_IDLE_MS = 10000;
+
+const COLUMNS = [
+  { title: "Plan", head: true },
+  { title: "State" },
+  { title: "Targets", number: true },
+  { title: "Time", number: true },
+  { title: "Gap", number: true },
+  { title: "Submitted", number: true },
+];
+
+/** The view at "#/". */
+export function list({ signal }) {
+  const place = el("div", { "aria-live": "off" });
+  const trail = [null];
+  let next = null;
+
+  const name = el("input", { id: "filter-name", type: "search", placeholder: "exact name", autocomplete: "off" });
+  const state = el(
+    "select",
+    { id: "filter-state" },
+    el("option", { value: "" }, "any"),
+    states.map(([value, text]) => el("option", { value }, text)),
+  );
+  const newer = el("button", { type: "button", onclick: () => { trail.pop(); renew(); } }, "Newer");
+  const older = el("button", { type: "button", onclick: () => { trail.push(next); renew(); } }, "Older");
+  const narrow = () => { trail.length = 1; renew(); };
+  name.addEventListener("change", narrow);
+  state.addEventListener("change", narrow);
+
+  let timer;
+  async function renew() {
+    clearTimeout(timer);
+    const query = new URLSearchParams({ limit: PAGE });
+    if (trail.at(-1)) query.set("cursor", trail.at(-1));
+    if (name.value.trim()) query.set("name", name.value.trim());
+    if (state.value) query.set("state", state.value);
+    let pause = RENEW_IDLE_MS;
+    try {
+      const page = await read(`/v1/plans?${query}`, signal);
+      next = page.next_cursor;
+      const focused = place.contains(document.activeElement) ? document.activeElement.getAttribute("href") : null;
+      place.replaceChildren(page.plans.length ? rows(page.plans) : empty(name.value || state.value));
+      if (focused) place.querySelector(`a[href="${CSS.escape(focused)}"]`)?.focus();
+      if (page.plans.some((job) => !isFinal(job.state))) pause = RENEW_MS;
+    } catch (error) {
+      if (signal.aborted) return;
+      place.replaceChildren(failure(error));
+      // Without a key the service would ask for one again and again.
+      if (error.status === 401) return;
+    }
+    newer.disabled = trail.length === 1;
+    older.disabled = next === null;
+    pager.hidden = newer.disabled && older.disabled;
+    timer = setTimeout(renew, pause);
+  }
+  const pager = el("div", { class: "actions pager", hidden: true }, newer, older);
+  signal.addEventListener("abort", () => clearTimeout(timer));
+  renew();
+
+  return el(
+    "div",
+    { class: "view" },
+    el(
+      "div",
+      { class: "title" },
+      el("h1", {}, "Plans"),
+      el("a", { class: "button primary", href: "#/new" }, "New plan"),
+    ),
+    el(
+      "div",
+      { class: "filters" },
+      el("label", { for: "filter-name" }, "Name"),
+      name,
+      el("label", { for: "filter-state" }, "State"),
+      state,
+    ),
+    place,
+    pager,
+  );
+}
+
+function rows(plans) {
+  return table("Plans, the newest first", COLUMNS, plans.map((job) => [
+    el("a", { href: `#/plans/${job.id}` }, job.name ?? "unnamed"),
+    chip(job.state),
+    String(job.targets),
+    seconds(job.incumbent_s),
+    percent(job.relative_gap),
+    el("time", { datetime: job.submitted_at }, moment(job.submitted_at)),
+  ]));
+}
+
+function empty(narrowed) {
+  return el(
+    "div",
+    { class: "empty" },
+    el("p", {}, narrowed ? "No plan is like this." : "There is no plan yet."),
+    narrowed ? null : el("p", {}, el("a", { href: "#/new?example=olivares-a" }, "Start with an example")),
+  );
+}

@@ -1,0 +1,166 @@
+// One job: its search as it goes on, and its plan.
+
+import { post, read, remove } from "../api.js";
+import { el, section } from "../dom.js";
+import { failure } from "../failure.js";
+import { count, moment } from "../format.js";
+import { standing } from "../plan/facts.js";
+import { result } from "../plan/result.js";
+import { convergence } from "../plots/convergence.js";
+import { chip, isFinal } from "../state.js";
+import { follow } from "../stream.js";
+
+const TICK_MS = 200;
+/** What is not sooner by this is the same plan. */
+const LEAST_GAIN_S = 1e-4;
+
+/** The view at "#/plans/{id}". */
+export function plan({ id, signal }) {
+  const page = new PlanPage(id, signal);
+  page.run().catch((error) => signal.aborted || page.fail(error));
+  return page.node;
+}
+
+class PlanPage {
+  #id;
+  #signal;
+  #job = null;
+  #scenario = null;
+  #begun = 0;
+  #shown = { incumbent: null, final: false };
+  #drawing = new AbortController();
+
+  #title = el("h1", {}, "Plan");
+  #state = el("span", { role: "status" });
+  #about = el("p", { class: "quiet" });
+  #stop = el("button", { type: "button", onclick: () => this.#ask("stop") }, "Stop with best so far");
+  #cancel = el("button", { type: "button", onclick: () => this.#ask("cancel") }, "Cancel");
+  #again = el("a", { class: "button" }, "Edit and plan again");
+  #delete = el("button", { type: "button", onclick: () => this.#remove() }, "Delete");
+  #standing = el("div", {});
+  #news = el("div", { class: "news", "aria-live": "polite" });
+  #search;
+  #progress;
+  #result = el("div", {});
+
+  constructor(id, signal) {
+    this.#id = id;
+    this.#signal = signal;
+    this.#progress = convergence(signal);
+    this.#search = section("Search", { class: "card search" }, this.#progress.node);
+    this.#again.href = `#/new?from=${id}`;
+    signal.addEventListener("abort", () => this.#drawing.abort());
+    this.node = el("div", { class: "view" },
+      el("div", { class: "title" },
+        el("div", {}, el("div", { class: "named" }, this.#title, this.#state), this.#about),
+        el("div", { class: "actions" }, this.#stop, this.#cancel, this.#again, this.#delete)),
+      this.#standing, this.#news, this.#search, this.#result);
+  }
+
+  async run() {
+    [this.#job, this.#scenario] = await Promise.all([
+      read(`/v1/plans/${this.#id}`, this.#signal),
+      read(`/v1/plans/${this.#id}/scenario`, this.#signal),
+    ]);
+    this.#title.textContent = this.#job.name ?? "unnamed";
+    document.title = `${this.#title.textContent} – slewplan`;
+    this.#about.textContent = `${count(this.#job.targets, "target")}, submitted ${moment(this.#job.submitted_at)}`;
+    this.#begun = Date.now();
+    this.#renew();
+    const clock = setInterval(() => this.#tick(), TICK_MS);
+    this.#signal.addEventListener("abort", () => clearInterval(clock));
+    if (isFinal(this.#job.state)) await this.#draw();
+    await follow(this.#id, (event) => this.#take(event), this.#signal);
+    clearInterval(clock);
+    if (!this.#signal.aborted) this.#job = await read(`/v1/plans/${this.#id}`, this.#signal);
+    this.#renew();
+    await this.#draw();
+  }
+
+  fail(error) {
+    this.#result.replaceChildren(failure(error));
+  }
+
+  #take(event) {
+    this.#progress.add(event);
+    // A job that had ended tells again how it came to that.
+    if (this.#shown.final) return;
+    this.#job = { ...this.#job, ...event };
+    if (event.elapsed_s !== null) this.#begun = Date.now() - 1000 * event.elapsed_s;
+    this.#renew();
+    if (isFinal(event.state) || event.incumbent_s === null) return;
+    if (event.incumbent_s > (this.#shown.incumbent ?? Infinity) - LEAST_GAIN_S) return;
+    if (this.#shown.incumbent === null) this.#draw();
+    else this.#announce();
+  }
+
+  #announce() {
+    if (this.#news.childElementCount) return;
+    this.#news.append(el("button", { type: "button", onclick: () => this.#draw() }, "A better plan was found: show it"));
+  }
+
+  #tick() {
+    if (this.#job.state === "running") this.#renew();
+  }
+
+  #renew() {
+    const { state } = this.#job;
+    const ended = isFinal(state);
+    if (this.#state.dataset.state !== state) this.#state.replaceChildren(chip(state));
+    this.#state.dataset.state = state;
+    this.#stop.hidden = state !== "running";
+    this.#cancel.hidden = ended;
+    this.#again.hidden = this.#delete.hidden = !ended;
+    const elapsed = state === "running" ? (Date.now() - this.#begun) / 1000 : null;
+    this.#standing.replaceChildren(ended && this.#shown.final ? "" : standing(this.#job, elapsed ?? this.#job.solved_s));
+  }
+
+  /** Fetches the plan and draws it; each drawing replaces the one before. */
+  async #draw() {
+    if (this.#shown.final) return;
+    const final = isFinal(this.#job.state);
+    if (!final) this.#shown.incumbent = this.#job.incumbent_s;
+    let found = null;
+    try {
+      found = await read(`/v1/plans/${this.#id}/result`, this.#signal);
+    } catch (error) {
+      if (this.#signal.aborted || (error.status === 409 && !final)) return;
+      this.#news.replaceChildren();
+      this.#result.replaceChildren(failure(error.status === 409
+        ? { title: "There is no plan", message: this.#job.detail ?? error.message } : error));
+      return;
+    }
+    // An earlier plan that arrives late does not replace the last one.
+    if (this.#shown.final) return;
+    this.#shown = { incumbent: found.total_time_s ?? null, final };
+    this.#news.replaceChildren();
+    this.#drawing.abort();
+    this.#drawing = new AbortController();
+    const drawn = result(this.#job, found, this.#scenario, final ? this.#search : null, this.#drawing.signal);
+    this.#result.replaceChildren(drawn);
+    this.#renew();
+  }
+
+  async #ask(what) {
+    try {
+      await post(`/v1/plans/${this.#id}/${what}`, undefined, this.#signal);
+    } catch (error) {
+      if (!this.#signal.aborted) this.#news.replaceChildren(failure(error));
+    }
+  }
+
+  async #remove() {
+    const sure = el("dialog", { "aria-labelledby": "sure" }, el("form", { method: "dialog" },
+      el("h2", { id: "sure" }, "Delete this plan?"),
+      el("p", {}, "The job, its plan and its events are gone then."),
+      el("div", { class: "actions" }, el("button", { value: "yes", class: "danger" }, "Delete"),
+        el("button", { value: "" }, "Keep"))));
+    document.body.append(sure);
+    sure.addEventListener("close", async () => {
+      sure.remove();
+      if (sure.returnValue !== "yes") return;
+      await remove(`/v1/plans/${this.#id}`).then(() => (location.hash = "#/"), (error) => this.fail(error));
+    });
+    sure.showModal();
+  }
+}

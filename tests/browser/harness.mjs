@@ -1,0 +1,86 @@
+// A service of its own, a browser, and pages that note whatever goes wrong in them.
+
+import { execFileSync, spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+
+const tools = createRequire(join(process.env.BROWSER_TOOLS, "package.json"));
+const { chromium } = tools("playwright-core");
+const AXE = readFileSync(tools.resolve("axe-core/axe.min.js"), "utf8");
+const ROOT = fileURLToPath(new URL("../../", import.meta.url));
+
+export function fixture(name) {
+  return JSON.parse(readFileSync(join(ROOT, "tests/fixtures", `${name}.json`), "utf8"));
+}
+
+/** Throws with a message unless something holds. */
+export function check(holds, message) {
+  if (!holds) throw new Error(message);
+}
+
+/** `slewplan serve` on a free port and a fresh database; with a key if asked for. */
+export async function startService({ withKey = false } = {}) {
+  const folder = mkdtempSync(join(tmpdir(), "slewplan-browser-"));
+  const database = join(folder, "page.db");
+  const program = process.env.SLEWPLAN;
+  const key = withKey
+    ? execFileSync(program, ["keys", "create", "planner", "--database", database], { encoding: "utf8" }).trim()
+    : null;
+  const child = spawn(program, ["serve", "--listen", "127.0.0.1:0", "--database", database, "--log", "warn"],
+    { stdio: ["ignore", "pipe", "inherit"] });
+  const lines = createInterface({ input: child.stdout });
+  const address = await new Promise((resolve, reject) => {
+    lines.once("line", (line) => resolve(line.replace("listening on ", "").trim()));
+    child.once("exit", (code) => reject(new Error(`the service ended with ${code}`)));
+  });
+  const stop = async () => {
+    child.kill("SIGTERM");
+    await new Promise((resolve) => child.once("exit", resolve));
+    rmSync(folder, { recursive: true });
+  };
+  return { address, key, stop };
+}
+
+/** Submits a scenario and waits for its plan; the identifier of the job. */
+export async function planned(service, scenario) {
+  const answer = await fetch(`${service.address}/v1/plans`, {
+    method: "POST", headers: { "Content-Type": "application/json", Prefer: "wait=60" }, body: JSON.stringify(scenario),
+  });
+  check(answer.status === 200, `a plan answered ${answer.status}`);
+  return answer.headers.get("location").split("/").at(-1);
+}
+
+export function openBrowser() {
+  const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+  // Containers have neither a sandbox of their own for it nor much shared memory.
+  return chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-dev-shm-usage"] });
+}
+
+/** A page of a browser; `complaints` collects errors of the console and requests elsewhere. */
+export async function openPage(browser, service, options = {}) {
+  const { expected = [], ...context } = options;
+  const opened = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...context });
+  const page = await opened.newPage();
+  page.setDefaultTimeout(60_000);
+  const complaints = [];
+  const note = (text) => expected.some((pattern) => pattern.test(text)) || complaints.push(text);
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && note(`console: ${message.text()}`));
+  page.on("pageerror", (error) => note(`script: ${error.stack}`));
+  page.on("request", (request) => {
+    const { protocol, origin } = new URL(request.url());
+    if (!["blob:", "data:"].includes(protocol) && origin !== service.address) note(`elsewhere: ${request.url()}`);
+  });
+  return { page, complaints, close: () => opened.close() };
+}
+
+/** What axe-core finds, one line each. */
+export async function findings(page) {
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
+  const places = (one) => one.nodes.slice(0, 3).map((node) => node.target.join(" ")).join("; ");
+  return violations.map((one) => `${one.impact} ${one.id}: ${one.help} (${places(one)})`);
+}

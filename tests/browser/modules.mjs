@@ -1,0 +1,90 @@
+// The page's own geometry and text scanner, in the browser that they are for.
+
+import { check, openPage } from "./harness.mjs";
+
+export async function modules({ browser, service, must }) {
+  const { page, close } = await openPage(browser, service);
+  await page.goto(service.address);
+  const folder = (await page.locator("script[type=module]").getAttribute("src")).replace("/app/main.js", "");
+  const inPage = (act) => page.evaluate(act, folder);
+
+  await must("a cap is drawn where it is", async () => {
+    const wrong = await inPage(capsThatDiffer);
+    check(wrong.count > 50_000, `only ${wrong.count} points were compared`);
+    check(wrong.list.length === 0, JSON.stringify(wrong.list.slice(0, 3)));
+    return `${wrong.count} points`;
+  });
+  await must("a curve is in front where it faces the viewer", async () => {
+    const share = await inPage(async (folder) => {
+      const { paths, viewOn } = await import(`${folder}/app/sphere/projection.js`);
+      const circle = Array.from({ length: 721 }, (_, index) => viewOn(index / 2, 0).ahead);
+      const length = (path) => path.split("M").slice(1).map((part) => part.split("L").map((pair) => pair.split(" ").map(Number)))
+        .reduce((total, points) => total + points.slice(1).reduce((sum, point, index) =>
+          sum + Math.hypot(point[0] - points[index][0], point[1] - points[index][1]), 0), 0);
+      const { front, back } = paths(viewOn(30, 0), circle, ([x, y]) => `${x} ${y}`);
+      return [length(front), length(back)];
+    });
+    check(share.every((length) => Math.abs(length - 2) < 1e-3), String(share));
+  });
+  await must("attitudes between samples are on the way", async () => {
+    const errors = await inPage(async (folder) => {
+      const { rotate, slerp } = await import(`${folder}/app/rotation.js`);
+      const about = (angle) => [0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];
+      return [1, -1].map((sign) => {
+        const found = rotate(slerp(about(0.2), about(1.2).map((value) => sign * value), 0.25), [1, 0, 0]);
+        return Math.hypot(found[0] - Math.cos(0.45), found[1] - Math.sin(0.45), found[2]);
+      });
+    });
+    check(errors.every((error) => error < 1e-12), String(errors));
+  });
+  await must("pointers lead to their place in a text", async () => {
+    const found = await inPage(async (folder) => {
+      const { locate } = await import(`${folder}/app/pointer.js`);
+      const text = '{"a": [1, {"b/c": "x\\"}", "d": [ ]}], "e": null}';
+      const at = (pointer) => { const range = locate(text, pointer); return range && text.slice(...range); };
+      return [at("/a/0"), at("/a/1/b~1c"), at("/a/1/d"), at("/e"), at("/a/1/missing"), locate("{oops", "/a")];
+    });
+    const expected = ["1", '"x\\"}"', "[ ]", "null", '{"b/c": "x\\"}", "d": [ ]}', null];
+    check(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
+  });
+  await close();
+}
+
+/** Points of the disc that are in the outline of a cap but not in the cap, or the reverse. */
+async function capsThatDiffer(folder) {
+  const { front } = await import(`${folder}/app/sphere/cap.js`);
+  const { seen, viewOn } = await import(`${folder}/app/sphere/projection.js`);
+  const inside = (outline, [x, y]) => {
+    let odd = false;
+    outline.forEach((a, index) => {
+      const b = outline.at(index - 1);
+      if (a[1] > y !== b[1] > y && x < a[0] + ((y - a[1]) * (b[0] - a[0])) / (b[1] - a[1])) odd = !odd;
+    });
+    return odd;
+  };
+  const list = [];
+  let count = 0;
+  for (let longitude = 0; longitude < 360; longitude += 40) {
+    for (let latitude = -80; latitude <= 80; latitude += 40) {
+      for (const degrees of [5, 30, 60, 89, 110, 150]) {
+        const view = viewOn(20, 15);
+        const direction = viewOn(longitude, latitude).ahead;
+        const half = (degrees * Math.PI) / 180;
+        const centre = seen(view, direction);
+        const outline = front(view, direction, half);
+        for (let x = -0.95; x < 1; x += 0.1) {
+          for (let y = -0.95; y < 1; y += 0.1) {
+            if (x * x + y * y > 0.96) continue;
+            const ahead = Math.sqrt(1 - x * x - y * y);
+            const away = Math.acos(Math.max(-1, Math.min(1, centre[0] * x + centre[1] * y + centre[2] * ahead))) - half;
+            // The outline is a polygon: its edges leave out a little.
+            if (Math.abs(away) < 0.04) continue;
+            count += 1;
+            if (inside(outline, [x, y]) !== away < 0) list.push({ longitude, latitude, degrees, x, y });
+          }
+        }
+      }
+    }
+  }
+  return { list, count };
+}

@@ -1,0 +1,38 @@
+// Runs the parts and prints what held.
+
+import { openBrowser, startService } from "./harness.mjs";
+import { journeys } from "./journeys.mjs";
+import { looks } from "./looks.mjs";
+import { modules } from "./modules.mjs";
+
+const PARTS = { modules, journeys, looks };
+
+const asked = process.argv.slice(2);
+const unknown = asked.filter((name) => !(name in PARTS));
+if (unknown.length) throw new Error(`no such part: ${unknown.join(", ")}; there are ${Object.keys(PARTS).join(", ")}`);
+
+const service = await startService();
+const browser = await openBrowser();
+let failed = 0;
+
+/** One thing that must hold; what it returns is printed. */
+async function must(name, act) {
+  try {
+    const result = await act();
+    console.log(`ok      ${name}${result ? `: ${result}` : ""}`);
+  } catch (error) {
+    failed += 1;
+    console.log(`FAILED  ${name}: ${error.message}`);
+  }
+}
+
+try {
+  for (const [name, part] of Object.entries(PARTS)) {
+    if (!asked.length || asked.includes(name)) await part({ browser, service, must });
+  }
+} finally {
+  await browser.close();
+  await service.stop();
+}
+console.log(failed ? `${failed} failed` : "all held");
+process.exitCode = failed ? 1 : 0;

@@ -14,6 +14,7 @@ mod integrator;
 mod keep_out;
 mod leg;
 mod limits;
+mod motion;
 mod order;
 mod samples;
 mod series;
@@ -23,6 +24,7 @@ mod wording;
 
 pub use keep_out::Intrusion;
 pub(crate) use leg::{Arrival, leg_faults};
+pub use motion::Motion;
 
 use crate::attitude::Attitude;
 use crate::plan::{Flight, Margins, State, Verification};

@@ -2,6 +2,7 @@
 
 mod build;
 mod cones;
+mod dense;
 mod flights;
 mod limits;
 mod motion;

@@ -1,0 +1,89 @@
+//! A flight as a function of time, for whoever wants states between those of a plan.
+
+use super::dynamics::{Body, Snapshot};
+use super::integrator::{STEP_TOLERANCE, fly};
+use super::series::Expansion;
+use super::{state, timeline};
+use crate::plan::{Flight, State};
+use crate::scenario::Scenario;
+use nalgebra::Vector3;
+
+/// The integrated motion of a flight: the steps of the verification, kept as the polynomials that
+/// they are, so that a state between two steps is as accurate as one at a step.
+#[derive(Debug)]
+pub struct Motion {
+    steps: Vec<KeptStep>,
+}
+
+#[derive(Debug)]
+struct KeptStep {
+    begin_s: f64,
+    end_s: f64,
+    expansion: Expansion,
+}
+
+impl Motion {
+    /// Integrates a flight from the scenario's start. Limits and targets are not looked at.
+    ///
+    /// # Errors
+    ///
+    /// Sentences about what keeps the flight from being flown: controls that do not fit the wheels
+    /// or leave gaps, numbers that are not finite, a motion too fast to follow.
+    pub fn of(scenario: &Scenario, flight: &Flight) -> Result<Self, Vec<String>> {
+        let spacecraft = scenario.spacecraft();
+        let intervals = timeline::intervals(flight, spacecraft.wheels())?;
+        let Some(body) = Body::new(spacecraft.inertia(), spacecraft.wheels()) else {
+            return Err(vec![
+                "the inertia without the wheels' spin has no inverse".to_owned(),
+            ]);
+        };
+        let begin = scenario.start();
+        let start = Snapshot {
+            time_s: 0.0,
+            quaternion: begin.attitude.xyzw(),
+            rate: begin.rate,
+            wheel_speed: begin.wheel_speed.clone(),
+        };
+        let mut steps = Vec::new();
+        fly(&body, start, &intervals, STEP_TOLERANCE, |step| {
+            steps.push(KeptStep {
+                begin_s: step.begin_s,
+                end_s: step.end_s,
+                expansion: step.motion.clone(),
+            });
+        })
+        .map_err(|sentence| vec![sentence])?;
+        if steps.is_empty() {
+            return Err(vec!["the flight takes no time".to_owned()]);
+        }
+        Ok(Self { steps })
+    }
+
+    /// The state at a time, s; before the start that of the start, after the end that of the end.
+    /// The sign of the quaternion is continuous from the start's. `None` when it is no attitude,
+    /// which no flight ends in that [`Motion::of`] accepts.
+    #[must_use]
+    pub fn state(&self, time_s: f64) -> Option<State> {
+        let (step, since) = self.step_at(time_s)?;
+        let snapshot = Snapshot {
+            time_s,
+            ..step.expansion.state(since)
+        };
+        state(&snapshot)
+    }
+
+    /// The angular acceleration in body axes, rad/s², at a time, s: where the torques switch, the
+    /// one from then on.
+    #[must_use]
+    pub fn acceleration(&self, time_s: f64) -> Option<Vector3<f64>> {
+        let (step, since) = self.step_at(time_s)?;
+        Some(step.expansion.rate_slope(since))
+    }
+
+    fn step_at(&self, time_s: f64) -> Option<(&KeptStep, f64)> {
+        let begun = self.steps.partition_point(|step| step.begin_s <= time_s);
+        let step = self.steps.get(begun.saturating_sub(1))?;
+        let since = (time_s.min(step.end_s) - step.begin_s).max(0.0);
+        Some((step, since))
+    }
+}

@@ -5,7 +5,9 @@ use std::process::ExitCode;
 
 mod backup;
 mod certify;
+mod export;
 mod failure;
+mod form;
 mod input;
 mod keys;
 mod legs;
@@ -13,6 +15,7 @@ mod openapi;
 mod output;
 
 mod panics;
+mod plot;
 mod remembered;
 mod runtime;
 mod serve;
@@ -46,6 +49,10 @@ enum Command {
     Verify(verify::Arguments),
     /// Prove the certified bounds of a plan a second time
     Certify(certify::Arguments),
+    /// Write a plan in the format of another tool
+    Export(export::Arguments),
+    /// Draw a plan
+    Plot(plot::Arguments),
     /// Run the HTTP service
     Serve(serve::Arguments),
     /// Copy the database while the service uses it
@@ -110,6 +117,8 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Validate(arguments) => validate::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Certify(arguments) => certify::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
+        Command::Plot(arguments) => plot::run(arguments),
         Command::Serve(arguments) => serve::run(arguments),
         Command::Backup(arguments) => backup::run(arguments),
         Command::Keys(arguments) => keys::run(arguments),

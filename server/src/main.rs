@@ -5,6 +5,7 @@ mod cli;
 mod clock;
 mod connections;
 mod digest;
+mod export;
 #[cfg(feature = "faults")]
 mod faults;
 mod figures;
@@ -12,6 +13,7 @@ mod http;
 mod jobs;
 mod leg_cache;
 mod lifecycle;
+mod plot;
 mod progress;
 mod report;
 mod service;

@@ -1,4 +1,4 @@
-//! JSON and CSV at the border of the program: documents in, documents out, no decisions.
+//! JSON at the border of the program: documents in, documents out, no decisions.
 //!
 //! Reading goes in two steps, so that every problem is found at once: [`document`] turns text
 //! into a tree that loses nothing, and a [`reader`] walks the tree, knows where it is and
@@ -7,7 +7,6 @@
 pub(crate) mod attitude;
 pub(crate) mod certification;
 pub(crate) mod claims;
-pub(crate) mod csv;
 pub(crate) mod document;
 pub(crate) mod flight;
 pub(crate) mod jobs;

@@ -404,7 +404,7 @@ fn everything_that_is_wrong_is_said_at_once() {
 fn arguments_that_do_not_exist() {
     let scenario = crate::run::fixture("two-targets.json");
     for arguments in [
-        &["solve", &scenario, "--format", "aem-kvn"][..],
+        &["solve", &scenario, "--format", "aem"][..],
         &["solve", &scenario, "--threads", "0"],
         &["solve", &scenario, "--time-limit", "-1"],
         &["solve", &scenario, "--progress", "loud"],

@@ -1,12 +1,15 @@
 //! The command line as a caller sees it: exit codes, documents, messages.
 
 mod certify;
+mod export;
 mod files;
 mod invalid;
 mod legs;
+mod plot;
 mod refusals;
 mod run;
 mod solve;
 mod stopping;
+mod structure;
 mod validate;
 mod verify;

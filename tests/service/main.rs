@@ -6,6 +6,7 @@ mod connections;
 mod durability;
 mod events;
 mod examples;
+mod export;
 mod idempotency;
 mod keys;
 mod legs;

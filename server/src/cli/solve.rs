@@ -1,6 +1,7 @@
 //! `slewplan solve`: one scenario in, one plan out.
 
 use super::failure::Failure;
+use super::form::{Choices, PlanForm};
 use super::output::{self, Destination};
 use super::remembered::RememberedLegs;
 use super::{Exit, input};
@@ -8,7 +9,6 @@ use crate::progress::{self, ProgressMode};
 use crate::report;
 use crate::signals::{self, Received};
 use crate::wire;
-use clap::ValueEnum;
 use slewplan_solver::legs::{LegStore, NoStore};
 use slewplan_solver::plan::{Optimality, Outcome};
 use slewplan_solver::planner::{self, Run};
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     output: Option<PathBuf>,
     /// Form of the plan [default: json]
     #[arg(long, value_enum)]
-    format: Option<Format>,
+    format: Option<PlanForm>,
     /// Print a summary for people, as on a terminal
     #[arg(long)]
     summary: bool,
@@ -45,15 +45,8 @@ pub(super) struct Arguments {
     /// How to show progress on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     progress: ProgressMode,
-}
-
-/// The form of a written plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// The whole plan
-    Json,
-    /// The sampled trajectory, one row per state
-    Csv,
+    #[command(flatten)]
+    choices: Choices,
 }
 
 /// How many workers solve.
@@ -90,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         output::complain("stopped before a first plan was found");
         return Ok(Exit::Signalled(code));
     }
-    outlets.write(&outcome, &warnings, &scenario)?;
+    outlets.write(arguments, (&outcome, &warnings), &scenario)?;
     Ok(exit(&outcome))
 }
 
@@ -129,7 +122,7 @@ fn exit(outcome: &Outcome) -> Exit {
 
 /// Where plan and summary go.
 struct Outlets {
-    plan: Option<(Destination, Format)>,
+    plan: Option<(Destination, PlanForm)>,
     summary: Summary,
 }
 
@@ -146,7 +139,13 @@ impl Outlets {
     /// was asked for; the summary goes where a person reads.
     fn open(arguments: &Arguments) -> Result<Self, Failure> {
         let person = stdout().is_terminal();
-        let format = arguments.format.unwrap_or(Format::Json);
+        let format = arguments.format.unwrap_or(PlanForm::Json);
+        if format == PlanForm::Json && !arguments.choices.are_default() {
+            return Err(Failure::Setting {
+                name: "--format",
+                what: "json leaves no choice of samples, rates, wheel or object".into(),
+            });
+        }
         let destination = match &arguments.output {
             Some(path) => Some(Destination::open(path)?),
             None if arguments.format.is_some() => Some(Destination::Stream),
@@ -168,22 +167,21 @@ impl Outlets {
 
     fn write(
         &self,
-        outcome: &Outcome,
-        doubts: &[Problem],
+        arguments: &Arguments,
+        (outcome, doubts): (&Outcome, &[Problem]),
         scenario: &Scenario,
     ) -> Result<(), Failure> {
-        if let Some((destination, format)) = &self.plan {
-            match (format, outcome) {
-                (Format::Json, _) => {
+        if let Some((destination, form)) = &self.plan {
+            match (form, outcome) {
+                (PlanForm::Json, _) => {
                     destination.write(&output::json(&wire::plan::document(outcome, doubts))?)?;
                 }
-                (Format::Csv, Outcome::Planned(plan)) => {
-                    let table = wire::csv::table(plan)
-                        .map_err(|_| Failure::Unspeakable("a state is not finite".into()))?;
-                    destination.write(&table)?;
+                (PlanForm::Export(format), Outcome::Planned(plan)) => {
+                    let flight = (scenario, &plan.flight);
+                    destination.write(&arguments.choices.write(*format, flight)?)?;
                 }
-                // There is no trajectory to tabulate; the reasons go to standard error below.
-                (Format::Csv, _) => {}
+                // There is nothing to export; the reasons go to standard error below.
+                (PlanForm::Export(_), _) => {}
             }
         }
         let text = report::outcome(outcome, doubts, scenario);

@@ -50,8 +50,8 @@ pub(super) async fn await_end(
 }
 
 /// A content of a media type with the tag that belongs to it.
-pub(super) fn tagged(form: &'static str, tag: &str, body: Bytes) -> Response {
-    let mut response = ([(header::CONTENT_TYPE, form)], body).into_response();
+pub(super) fn tagged(form: &str, tag: &str, body: Bytes) -> Response {
+    let mut response = ([(header::CONTENT_TYPE, form.to_owned())], body).into_response();
     if let Ok(tag) = HeaderValue::from_str(&format!("\"{tag}\"")) {
         response.headers_mut().insert(header::ETAG, tag);
     }

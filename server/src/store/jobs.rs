@@ -179,14 +179,6 @@ impl Store {
         find(&mut *self.readers.acquire().await?, id).await
     }
 
-    /// The scenario of a job as JSON; `None` when there is no such job.
-    pub(crate) async fn scenario(&self, id: &str) -> Result<Option<Vec<u8>>, StoreError> {
-        Ok(sqlx::query_scalar("SELECT scenario FROM jobs WHERE id = ?")
-            .bind(id)
-            .fetch_optional(&self.readers)
-            .await?)
-    }
-
     /// Jobs, the newest first.
     pub(crate) async fn jobs(&self, listing: &Listing) -> Result<Vec<JobRow>, StoreError> {
         Ok(sqlx::query_as(concat!(

@@ -108,6 +108,15 @@ pub(super) async fn conclude(
 }
 
 impl Store {
+    /// The scenario of a job as JSON, and when it was submitted; `None` when there is no such job.
+    pub(crate) async fn scenario(&self, id: &str) -> Result<Option<(Vec<u8>, i64)>, StoreError> {
+        let found = sqlx::query_as("SELECT scenario, submitted_us FROM jobs WHERE id = ?")
+            .bind(id)
+            .fetch_optional(&self.readers)
+            .await?;
+        Ok(found)
+    }
+
     /// Where a job stands and its plan: the one that it ended with, or the best so far unless it
     /// is abandoned; `None` when there is no such job.
     pub(crate) async fn result(

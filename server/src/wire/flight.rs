@@ -21,6 +21,25 @@ pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<Flight, Vec<Prob
     )
 }
 
+/// Reads the flight of a document that this program wrote; `None` when it tells why there is none.
+///
+/// # Errors
+///
+/// Everything that keeps it from being flown, with pointers into the plan.
+pub(crate) fn read_written(
+    bytes: &[u8],
+    scenario: &Scenario,
+) -> Result<Option<Flight>, Vec<Problem>> {
+    let node = document::parse(bytes).map_err(|problem| vec![problem])?;
+    let sink = Sink::default();
+    let fields = Cursor::root(&node, &sink).open_object();
+    // `null` counts as missing.
+    if fields.is_some_and(|fields| fields.optional("total_time_s").is_none()) {
+        return Ok(None);
+    }
+    read_node(&node, scenario).map(Some)
+}
+
 /// Reads the flight of a plan that has been parsed.
 ///
 /// # Errors

@@ -5,18 +5,27 @@ use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::extract::{Named, Parameters, header_text};
 use super::super::respond;
+use super::forms::{self, Form, accepted};
+use crate::digest;
+use crate::export::{self, ExportError, Format, Options, Spacing};
 use crate::store::{JobState, ResultRow};
-use crate::wire::csv;
+use crate::wire;
 use crate::wire::plan::PlanDocument;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 use axum::response::Response;
 use serde::Deserialize;
-use utoipa::{IntoParams, ToSchema};
+use std::time::Duration;
+use utoipa::IntoParams;
 
 const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
 /// Time after which a first plan is worth asking for again, s.
 const RETRY_S: u32 = 1;
+/// Longest wait for a turn to integrate a flight, and time after which another try is worth it.
+const PATIENCE: Duration = Duration::from_secs(10);
+const RETRY_BUSY_S: u32 = 10;
+/// Most samples of an answer: some 80 MB of XML.
+const MOST_SAMPLES: usize = 200_000;
 
 /// Parameters of a result.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -24,18 +33,65 @@ const RETRY_S: u32 = 1;
 #[into_params(parameter_in = Query)]
 pub(in crate::http) struct Query {
     /// Form of the result; without it `Accept` decides.
-    #[param(inline)]
-    format: Option<Format>,
+    #[param(schema_with = forms::described)]
+    format: Option<Form>,
+    /// Not for `json` or `open-mct`: sample at multiples of this time, s, and at every switch; the
+    /// period of `wheel-rpm` (0.1 by default).
+    #[param(minimum = 0.001, maximum = 1e6)]
+    step_s: Option<f64>,
+    /// Not for `json`, `open-mct` or `wheel-rpm`: sample so that linear interpolation is within
+    /// this angle, rad, and rates within the same, rad/s (1e-5 by default).
+    #[param(minimum = 1e-9, maximum = 1)]
+    tolerance: Option<f64>,
+    /// `false` leaves body rates out of `aem-kvn`, `aem-xml` and `stk`.
+    rates: Option<bool>,
+    /// For `wheel-rpm`: commands of this wheel only, counted from 0.
+    wheel: Option<u32>,
+    /// For `aem-kvn` and `aem-xml`: name of the spacecraft.
+    object_name: Option<String>,
+    /// For `aem-kvn` and `aem-xml`: international designator of the spacecraft.
+    object_id: Option<String>,
 }
 
-/// The form of a plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub(in crate::http) enum Format {
-    /// The whole plan.
-    Json,
-    /// The sampled trajectory, one row per state.
-    Csv,
+impl Query {
+    fn options(&self) -> Result<Options, ApiError> {
+        let wrong = |name: &str, what: &str| {
+            ApiError::new(ErrorCode::InvalidParameter, format!("{name}: {what}"))
+        };
+        let spacing = match (self.step_s, self.tolerance) {
+            (Some(_), Some(_)) => {
+                let detail = "step_s and tolerance exclude each other";
+                return Err(ApiError::new(ErrorCode::NotAcceptable, detail));
+            }
+            (Some(step), None) => {
+                let step = Spacing::checked_step(step).map_err(|what| wrong("step_s", what))?;
+                Some(Spacing::Step(step))
+            }
+            (None, Some(tolerance)) => {
+                let tolerance = Spacing::checked_tolerance(tolerance)
+                    .map_err(|what| wrong("tolerance", what))?;
+                Some(Spacing::Tolerance(tolerance))
+            }
+            (None, None) => None,
+        };
+        Ok(Options {
+            spacing,
+            rates: self.rates.unwrap_or(true),
+            wheel: self.wheel.map(|wheel| wheel as usize),
+            object_name: self.object_name.clone(),
+            object_id: self.object_id.clone(),
+            ..Options::new(MOST_SAMPLES)
+        })
+    }
+
+    fn chooses(&self) -> bool {
+        self.step_s.is_some()
+            || self.tolerance.is_some()
+            || self.rates.is_some()
+            || self.wheel.is_some()
+            || self.object_name.is_some()
+            || self.object_id.is_some()
+    }
 }
 
 /// Read the plan of a job: the final one, or the best so far
@@ -44,6 +100,8 @@ pub(in crate::http) enum Format {
 /// with the bound of the moment when it was found (the job has the newest). Every better plan has
 /// another `ETag`, and so has the one that the job ends with. `Job-State` tells whether it has
 /// ended. After a restart of the service the best plan so far stays until there is a better one.
+///
+/// In the formats of other tools the flight is sampled; all choices but `format` are for these.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/result", tag = "plans", operation_id = "get_result",
     params(
@@ -54,14 +112,26 @@ pub(in crate::http) enum Format {
     ),
     responses(
         (status = 200, description = "The plan, or why there is none",
-            content((PlanDocument<'static> = "application/json"), (String = "text/csv")),
+            content(
+                (PlanDocument<'static> = "application/json"),
+                (String = "text/csv"),
+                (String = "text/x.ccsds.aem.kvn"),
+                (String = "application/x.ccsds.aem+xml"),
+                (String = "text/x.basilisk.waypoints"),
+                (Object = "application/x.open-mct.plan+json"),
+                (String = "text/x.stk.attitude"),
+                (String = "text/tab-separated-values"),
+            ),
             headers(
                 ("ETag" = String, description = "Hash of the content"),
                 ("Job-State" = inline(JobState),
                     description = "`queued` or `running`: not final, a better plan may follow"),
+                ("Content-Disposition" = Option<String>,
+                    description = "A name for the file, in the formats of other tools"),
             )),
         (status = 304, description = "Not changed"),
-        (status = 406, description = "No accepted form", body = ErrorDocument<'static>,
+        (status = 406, description = "No accepted form, none with these choices, or one that \
+            cannot say what the scenario's epoch, time system or frame is", body = ErrorDocument<'static>,
             content_type = "application/problem+json"),
         (status = 409, description = "No plan yet (`result_not_ready`), or none at all (`no_result`)",
             body = ErrorDocument<'static>, content_type = "application/problem+json",
@@ -77,12 +147,16 @@ pub(in crate::http) async fn handler(
 ) -> Result<Response, ApiError> {
     let found = app.store().result(&id).await?;
     let (state, result) = found.ok_or_else(|| ApiError::not_found("plan", &id))?;
-    let format = query.format.or_else(|| accepted(&headers)).ok_or_else(|| {
-        ApiError::new(
-            ErrorCode::NotAcceptable,
-            "there is application/json and text/csv",
-        )
+    let form = query.format.or_else(|| accepted(&headers)).ok_or_else(|| {
+        let types: Vec<&str> = Form::all().map(Form::media_type).collect();
+        let detail = format!("there is {}", types.join(", "));
+        ApiError::new(ErrorCode::NotAcceptable, detail)
     })?;
+    let options = query.options()?;
+    if form == Form::Json && query.chooses() {
+        let detail = "json leaves no choice of samples, rates, wheel or object";
+        return Err(ApiError::new(ErrorCode::NotAcceptable, detail));
+    }
     let Some(result) = result else {
         return Err(if state.is_final() {
             let detail = format!("the job ended {}", state.as_str());
@@ -92,9 +166,9 @@ pub(in crate::http) async fn handler(
             ApiError::new(ErrorCode::ResultNotReady, detail).retry_after(RETRY_S)
         });
     };
-    let mut response = match format {
-        Format::Json => json(&result),
-        Format::Csv => table(&result)?,
+    let mut response = match form {
+        Form::Json => json(&result),
+        Form::Export(format) => exported(&app, &id, &result, (format, options)).await?,
     };
     let known = header_text(&headers, "if-none-match")?.unwrap_or("");
     response = respond::unless_known(known, response);
@@ -108,82 +182,82 @@ pub(super) fn json(result: &ResultRow) -> Response {
     respond::tagged("application/json", &result.digest, result.document.clone())
 }
 
-fn table(result: &ResultRow) -> Result<Response, ApiError> {
-    let table = csv::table_of_document(&result.document).map_err(|error| {
-        tracing::error!(%error, "a stored plan cannot be read");
-        ApiError::new(ErrorCode::Internal, "the stored plan cannot be read")
-    })?;
-    let text = table.ok_or_else(|| {
-        ApiError::new(
-            ErrorCode::NoResult,
-            "there is no plan and so no trajectory; see the JSON",
-        )
-    })?;
-    Ok(respond::tagged(
-        "text/csv; charset=utf-8",
-        &format!("{}-csv", result.digest),
-        text.into(),
-    ))
-}
-
-/// The form that `Accept` likes best, JSON among equals; `None` when it likes neither.
-fn accepted(headers: &HeaderMap) -> Option<Format> {
-    let mut ranges = headers
-        .get_all(header::ACCEPT)
-        .iter()
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','))
-        .map(range)
-        .peekable();
-    if ranges.peek().is_none() {
-        return Some(Format::Json);
-    }
-    let ranges: Vec<(String, f64)> = ranges.collect();
-    let liking = |form: &str, group: &str| {
-        // The most specific range that matches decides.
-        [form, group, "*/*"]
-            .iter()
-            .find_map(|name| ranges.iter().find(|(range, _)| range == name))
-            .map_or(0.0, |(_, weight)| *weight)
+/// The plan in the format of another tool.
+async fn exported(
+    app: &App,
+    id: &str,
+    result: &ResultRow,
+    (format, options): (Format, Options),
+) -> Result<Response, ApiError> {
+    let found = app.store().scenario(id).await?;
+    let (scenario, created_us) = found.ok_or_else(|| ApiError::not_found("plan", id))?;
+    let tag = format!("{}-{}", result.digest, choices(format, &options));
+    // Not when this is asked for: the same plan has the same bytes, as its tag says.
+    let options = Options {
+        created_us,
+        ..options
     };
-    let (json, csv) = (
-        liking("application/json", "application/*"),
-        liking("text/csv", "text/*"),
+    let turn = tokio::time::timeout(PATIENCE, app.0.verifying.acquire()).await;
+    let Ok(Ok(_turn)) = turn else {
+        let error = ApiError::new(ErrorCode::Busy, "other flights are being integrated");
+        return Err(error.retry_after(RETRY_BUSY_S));
+    };
+    let document = result.document.clone();
+    // Integrating a long flight takes long.
+    let work = tokio::task::spawn_blocking(move || write(format, (&scenario, &document), &options));
+    let text = work.await.map_err(|error| unreadable(&error))??;
+    let kind = format.media_type();
+    // What is XML or JSON says so itself.
+    let kind = match format {
+        Format::AemXml | Format::OpenMct => kind.to_owned(),
+        _ => format!("{kind}; charset=utf-8"),
+    };
+    let mut response = respond::tagged(&kind, &tag, text.into());
+    let name = format!("attachment; filename=\"{id}.{}\"", format.extension());
+    if let Ok(name) = HeaderValue::from_str(&name) {
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_DISPOSITION, name);
+    }
+    Ok(response)
+}
+
+/// All that an export depends on besides the plan, for its tag.
+fn choices(format: Format, options: &Options) -> String {
+    let said = format!(
+        "{:?}",
+        (
+            options.spacing,
+            options.rates,
+            options.wheel,
+            &options.object_name,
+            &options.object_id
+        )
     );
-    match (json > 0.0 || csv > 0.0, csv > json) {
-        (false, _) => None,
-        (true, false) => Some(Format::Json),
-        (true, true) => Some(Format::Csv),
-    }
+    format!("{}-{}", format.name(), &digest::hex(said.as_bytes())[..8])
 }
 
-fn range(text: &str) -> (String, f64) {
-    let mut parts = text.split(';').map(str::trim);
-    let name = parts.next().unwrap_or("").to_ascii_lowercase();
-    let weight = parts
-        .find_map(|part| part.strip_prefix("q="))
-        .map_or(1.0, |weight| weight.parse().unwrap_or(0.0));
-    (name, weight)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_form_that_is_liked_best_is_chosen() {
-        let cases = [
-            ("*/*", Some(Format::Json)),
-            ("text/csv", Some(Format::Csv)),
-            ("text/*;q=0.5, application/json;q=0.4", Some(Format::Csv)),
-            ("text/csv;q=0, */*", Some(Format::Json)),
-            ("image/png", None),
-        ];
-        for (accept, expected) in cases {
-            let mut headers = HeaderMap::new();
-            headers.insert(header::ACCEPT, HeaderValue::from_static(accept));
-            assert_eq!(accepted(&headers), expected, "{accept}");
+fn write(
+    format: Format,
+    (scenario, plan): (&[u8], &[u8]),
+    options: &Options,
+) -> Result<String, ApiError> {
+    let valid = wire::scenario::read(scenario, None).map_err(|error| unreadable(&error))?;
+    let scenario = &valid.scenario;
+    let Some(flight) =
+        wire::flight::read_written(plan, scenario).map_err(|why| unreadable(&why))?
+    else {
+        let detail = "there is no plan and so no trajectory; see the JSON";
+        return Err(ApiError::new(ErrorCode::NoResult, detail));
+    };
+    export::write(format, (scenario, &flight), options).map_err(|error| match error {
+        ExportError::Choice(_) | ExportError::Label { .. } => {
+            ApiError::new(ErrorCode::NotAcceptable, error.to_string())
         }
-        assert_eq!(accepted(&HeaderMap::new()), Some(Format::Json));
-    }
+        ExportError::NotFlown(_) | ExportError::NotFinite => unreadable(&error),
+    })
+}
+
+fn unreadable(error: &impl std::fmt::Debug) -> ApiError {
+    tracing::error!(?error, "a stored plan cannot be exported");
+    ApiError::new(ErrorCode::Internal, "the stored plan cannot be exported")
 }

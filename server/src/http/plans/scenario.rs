@@ -33,7 +33,7 @@ pub(in crate::http) async fn handler(
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
     let found = app.store().scenario(&id).await?;
-    let scenario = found.ok_or_else(|| ApiError::not_found("plan", &id))?;
+    let (scenario, _) = found.ok_or_else(|| ApiError::not_found("plan", &id))?;
     let known = header_text(&headers, "if-none-match")?.unwrap_or("");
     let tag = digest::hex(&scenario);
     let response = respond::tagged("application/json", &tag, scenario.into());

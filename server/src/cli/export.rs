@@ -1,0 +1,55 @@
+//! `slewplan export`: a plan that there is already, in the format of another tool.
+
+use super::failure::Failure;
+use super::form::Choices;
+use super::output::{self, Destination};
+use super::{Exit, input};
+use crate::export::Format;
+use crate::wire;
+use slewplan_solver::checker;
+use std::path::PathBuf;
+
+/// What `export` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The scenario, - for standard input
+    scenario: PathBuf,
+    /// The plan in JSON, - for standard input
+    plan: PathBuf,
+    /// What to write
+    #[arg(long, value_enum)]
+    format: Format,
+    /// Write to this file
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    #[command(flatten)]
+    choices: Choices,
+}
+
+/// Flies the plan and writes it, if it passes.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
+        return Err(Failure::StandardInputTwice);
+    }
+    let destination = Destination::open(&arguments.output)?;
+    let scenario = input::scenario(&arguments.scenario, None)?.scenario;
+    let plan = input::read(&arguments.plan)?;
+    let flight = wire::flight::read(&plan, &scenario).map_err(|problems| Failure::Invalid {
+        name: input::name(&arguments.plan),
+        problems,
+    })?;
+    // A plan beside the wrong scenario makes files that look well and point elsewhere.
+    let found = checker::verify(&scenario, &flight).verification;
+    if !found.passed {
+        output::complain("not exported, because the plan does not pass its verification:");
+        for failure in &found.failures {
+            output::complain(failure);
+        }
+        return Ok(Exit::Negative);
+    }
+    let text = arguments
+        .choices
+        .write(arguments.format, (&scenario, &flight))?;
+    destination.write(&text)?;
+    Ok(Exit::Complete)
+}

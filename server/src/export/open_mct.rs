@@ -1,0 +1,59 @@
+//! The schedule as a plan of Open MCT: groups of activities, times in milliseconds since 1970.
+
+use super::trajectory::{Kind, pieces};
+use super::{ExportError, calendar};
+use serde::Serialize;
+use slewplan_solver::plan::Flight;
+use slewplan_solver::scenario::Scenario;
+
+/// Two groups; an activity's `type` is the name of its group.
+#[derive(Debug, Serialize)]
+struct Plan {
+    #[serde(rename = "Slews")]
+    slews: Vec<Activity>,
+    #[serde(rename = "Targets")]
+    targets: Vec<Activity>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Activity {
+    name: String,
+    start: i64,
+    end: i64,
+    r#type: &'static str,
+    color: &'static str,
+    text_color: &'static str,
+}
+
+/// The plan; targets that are passed without a rest begin and end at one moment.
+pub(super) fn plan(scenario: &Scenario, flight: &Flight) -> Result<String, ExportError> {
+    let epoch = calendar::utc_epoch(scenario, "Open MCT")?;
+    let activity = |name, (begin, end): (f64, f64), group, color| -> Result<_, ExportError> {
+        Ok(Activity {
+            name,
+            start: epoch.plus(begin)?.unix_ms(),
+            end: epoch.plus(end)?.unix_ms(),
+            r#type: group,
+            color,
+            text_color: "white",
+        })
+    };
+    let slews = pieces(flight).into_iter().filter_map(|(kind, begin, end)| {
+        let Kind::Slew(from, to) = kind else {
+            return None;
+        };
+        let name = format!("{from} \u{2192} {to}");
+        Some(activity(name, (begin, end), "Slews", "#0b6e99"))
+    });
+    let targets = flight.passages.iter().map(|passage| {
+        let stay = (passage.time_s, passage.departure_s);
+        activity(passage.target.clone(), stay, "Targets", "#a8480f")
+    });
+    let plan = Plan {
+        slews: slews.collect::<Result<_, _>>()?,
+        targets: targets.collect::<Result<_, _>>()?,
+    };
+    let text = serde_json::to_string_pretty(&plan).map_err(|_| ExportError::NotFinite)?;
+    Ok(text + "\n")
+}

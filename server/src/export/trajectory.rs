@@ -1,0 +1,133 @@
+//! The flight cut into slews and rests, each with samples at its ends and at every switch.
+
+use super::ExportError;
+use super::sampling::{self, Sampling};
+use nalgebra::Vector3;
+use slewplan_solver::checker::Motion;
+use slewplan_solver::plan::{Flight, State};
+
+/// Times closer than this, s, are one: formats write nanoseconds, and times must be seen to grow.
+pub(super) const CLOSEST_S: f64 = 1e-6;
+
+/// A sampled flight.
+#[derive(Debug)]
+pub(super) struct Trajectory<'a> {
+    /// In order of time; the last sample of one is the first of the next.
+    pub(super) segments: Vec<Segment<'a>>,
+    /// Number of wheels.
+    pub(super) wheels: usize,
+}
+
+/// One slew, or one stay at a target.
+#[derive(Debug)]
+pub(super) struct Segment<'a> {
+    pub(super) kind: Kind<'a>,
+    /// At least two, strictly increasing in time.
+    pub(super) samples: Vec<Sample>,
+}
+
+/// What a segment is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind<'a> {
+    /// From one place to another.
+    Slew(&'a str, &'a str),
+    /// Settle and dwell at a target.
+    Rest(&'a str),
+}
+
+/// A moment of the flight.
+#[derive(Debug, Clone)]
+pub(super) struct Sample {
+    pub(super) state: State,
+    /// Angular acceleration in body axes from then on, rad/s².
+    pub(super) acceleration: Vector3<f64>,
+    /// Motor torques from then on, N m; at the end those of the last interval.
+    pub(super) torque: Vec<f64>,
+}
+
+impl<'a> Trajectory<'a> {
+    /// Samples a motion.
+    pub(super) fn of(
+        flight: &'a Flight,
+        motion: &Motion,
+        sampling: Sampling,
+    ) -> Result<Self, ExportError> {
+        let mut segments = Vec::new();
+        let mut left = sampling.most;
+        for (kind, begin, end) in pieces(flight) {
+            let knots = knots(flight, begin, end);
+            let times = sampling::times(
+                motion,
+                &knots,
+                Sampling {
+                    most: left,
+                    ..sampling
+                },
+            )?;
+            left = left.saturating_sub(times.len());
+            let samples = times.iter().map(|time| sample(flight, motion, *time));
+            segments.push(Segment {
+                kind,
+                samples: samples.collect::<Result<_, _>>()?,
+            });
+        }
+        let wheels = flight.controls.first();
+        Ok(Self {
+            segments,
+            wheels: wheels.map_or(0, |control| control.wheel_torque_nm.len()),
+        })
+    }
+
+    /// All samples in order of time, each once.
+    pub(super) fn samples(&self) -> impl Iterator<Item = &Sample> {
+        let segments = self.segments.iter().enumerate();
+        segments.flat_map(|(index, segment)| segment.samples.iter().skip(usize::from(index > 0)))
+    }
+}
+
+/// Slews and rests with begin and end, s; those that take no time are left out.
+pub(super) fn pieces(flight: &Flight) -> Vec<(Kind<'_>, f64, f64)> {
+    let mut pieces = Vec::new();
+    let (mut from, mut since) = ("start", 0.0);
+    for passage in &flight.passages {
+        let target = passage.target.as_str();
+        pieces.push((Kind::Slew(from, target), since, passage.time_s));
+        pieces.push((Kind::Rest(target), passage.time_s, passage.departure_s));
+        (from, since) = (target, passage.departure_s);
+    }
+    pieces.push((Kind::Slew(from, "end"), since, flight.total_time_s));
+    pieces.retain(|(_, begin, end)| end - begin > CLOSEST_S);
+    pieces
+}
+
+/// Begin, switch times and end of a piece.
+fn knots(flight: &Flight, begin: f64, end: f64) -> Vec<f64> {
+    let switches = flight.controls.iter().map(|control| control.start_s);
+    let mut knots = vec![begin];
+    knots.extend(switches.filter(|time| *time > begin + CLOSEST_S && *time < end - CLOSEST_S));
+    knots.push(end);
+    knots.dedup_by(|later, earlier| *later - *earlier < CLOSEST_S);
+    knots
+}
+
+fn sample(flight: &Flight, motion: &Motion, time_s: f64) -> Result<Sample, ExportError> {
+    let state = motion.state(time_s).ok_or(ExportError::NotFinite)?;
+    let acceleration = motion.acceleration(time_s).ok_or(ExportError::NotFinite)?;
+    let controls = &flight.controls;
+    // A boundary within rounding has been passed.
+    let begun = controls.partition_point(|control| control.start_s <= time_s + CLOSEST_S);
+    let torque = controls
+        .get(begun.saturating_sub(1))
+        .map(|control| control.wheel_torque_nm.clone())
+        .unwrap_or_default();
+    let numbers = state.body_rate_rad_s.iter().chain(acceleration.iter());
+    let mut numbers = numbers.chain(&state.wheel_speed_rad_s).chain(&torque);
+    if !(time_s.is_finite() && numbers.all(|number| number.is_finite())) {
+        return Err(ExportError::NotFinite);
+    }
+    Ok(Sample {
+        state,
+        acceleration,
+        torque,
+    })
+}

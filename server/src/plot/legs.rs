@@ -1,0 +1,91 @@
+//! Every slew beside the eigenaxis slew between the same attitudes.
+
+use super::canvas::{Canvas, Frame, Ink, Pen, SERIES, minus};
+use super::written::{Leg, WrittenPlan};
+
+const HIGHEST: f64 = 42.0;
+const LOWEST: f64 = 15.0;
+const NAMES: f64 = 130.0;
+/// Ends of the columns of figures, from the right.
+const OURS: f64 = 150.0;
+const THEIRS: f64 = 64.0;
+const SAVED: f64 = 0.0;
+const FIGURES: f64 = OURS + 70.0;
+/// Thickness of a bar as a share of its row.
+const THICK: f64 = 0.62;
+/// Most characters of a name.
+const LONGEST: usize = 9;
+
+/// Draws the bars, as many as there is room for.
+pub(super) fn draw(canvas: &mut Canvas, frame: Frame, plan: &WrittenPlan) {
+    let baseline = frame.top + 14.0;
+    canvas.text(frame.left, baseline, Ink::HEADING, "Slews");
+    let right = frame.left + frame.width;
+    for (words, column) in [
+        ("slew, s", OURS),
+        ("eigenaxis, s", THEIRS),
+        ("saved", SAVED),
+    ] {
+        canvas.text(right - column, baseline, Ink::SMALL.end(), words);
+    }
+    let room = frame.height - 34.0;
+    let count = plan.legs.len();
+    let height = (room / (count as f64).max(1.0)).clamp(LOWEST, HIGHEST);
+    let shown = plan.legs.iter().enumerate().take_while(|(index, _)| {
+        // The last line is kept for what is left out.
+        let lines = *index as f64 + if *index + 1 < count { 2.0 } else { 1.0 };
+        lines * height <= room + 1e-9
+    });
+    let longest = |leg: &Leg| leg.duration_s.max(leg.eigenaxis_duration_s.unwrap_or(0.0));
+    let most = plan.legs.iter().map(longest).fold(1e-9, f64::max);
+    let scale = (frame.width - NAMES - FIGURES) / most;
+    let mut top = frame.top + 28.0;
+    let mut drawn = 0;
+    for (_, leg) in shown {
+        row(canvas, (frame, top, height), leg, scale);
+        top += height;
+        drawn += 1;
+    }
+    if drawn < count {
+        let words = format!("and {} more", count - drawn);
+        canvas.text(frame.left, top + height * 0.65, Ink::SMALL, &words);
+    }
+}
+
+fn row(canvas: &mut Canvas, (frame, top, height): (Frame, f64, f64), leg: &Leg, scale: f64) {
+    let middle = top + 0.5 * height + 4.0;
+    let names = format!("{} \u{2192} {}", short(&leg.from), short(&leg.to));
+    canvas.text(frame.left, middle, Ink::PLAIN, &names);
+    let bar = |length: f64, share: f64| Frame {
+        left: frame.left + NAMES,
+        top: top + 0.5 * height * (1.0 - share),
+        width: length * scale,
+        height: height * share,
+    };
+    if let Some(eigenaxis) = leg.eigenaxis_duration_s {
+        canvas.rectangle(bar(eigenaxis, THICK), "#CFE3F1", 2.0);
+    }
+    canvas.rectangle(bar(leg.duration_s, THICK), SERIES[0], 2.0);
+    let right = frame.left + frame.width;
+    let ours = format!("{:.2}", leg.duration_s);
+    canvas.text(right - OURS, middle, Ink::PLAIN.end(), &ours);
+    let Some(eigenaxis) = leg.eigenaxis_duration_s else {
+        return;
+    };
+    let whole = bar(eigenaxis, THICK);
+    let edge = whole.left + whole.width;
+    let mark = Pen::new(SERIES[0], 1.0);
+    canvas.line((edge, whole.top), (edge, whole.top + whole.height), mark);
+    let theirs = format!("{eigenaxis:.2}");
+    canvas.text(right - THEIRS, middle, Ink::QUIET.end(), &theirs);
+    let saved = format!("{:.1} %", 100.0 * (1.0 - leg.duration_s / eigenaxis));
+    canvas.text(right - SAVED, middle, Ink::QUIET.end(), &minus(&saved));
+}
+
+fn short(name: &str) -> String {
+    if name.chars().count() <= LONGEST {
+        return name.to_owned();
+    }
+    let kept: String = name.chars().take(LONGEST - 1).collect();
+    kept + "\u{2026}"
+}

@@ -1,0 +1,107 @@
+//! A plan as it was written, as far as a picture shows it.
+
+use serde::Deserialize;
+use slewplan_solver::attitude::Attitude;
+
+/// What is read of a plan's document.
+#[derive(Debug, Deserialize)]
+pub(crate) struct WrittenPlan {
+    pub(super) status: String,
+    pub(super) total_time_s: f64,
+    pub(super) lower_bound_s: f64,
+    pub(super) relative_gap: f64,
+    pub(super) legs: Vec<Leg>,
+    pub(super) passages: Vec<Passage>,
+    pub(super) trajectory: Trajectory,
+    pub(super) verification: Option<Verification>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Leg {
+    pub(super) from: String,
+    pub(super) to: String,
+    pub(super) start_s: f64,
+    pub(super) duration_s: f64,
+    pub(super) eigenaxis_duration_s: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Passage {
+    pub(super) target: String,
+    pub(super) time_s: f64,
+    pub(super) departure_s: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Trajectory {
+    pub(super) controls: Vec<Control>,
+    pub(super) states: Vec<State>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Control {
+    pub(super) start_s: f64,
+    pub(super) duration_s: f64,
+    pub(super) wheel_torque_nm: Vec<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct State {
+    pub(super) time_s: f64,
+    quaternion: Quaternion,
+    pub(super) body_rate_rad_s: [f64; 3],
+    pub(super) wheel_speed_rad_s: Vec<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Quaternion {
+    x: f64,
+    y: f64,
+    z: f64,
+    w: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Verification {
+    pub(super) passed: bool,
+}
+
+impl State {
+    /// The attitude; body axes along the reference axes when the numbers are none.
+    pub(super) fn attitude(&self) -> Attitude {
+        let Quaternion { x, y, z, w } = self.quaternion;
+        Attitude::from_xyzw([x, y, z, w]).unwrap_or_else(Attitude::identity)
+    }
+}
+
+impl WrittenPlan {
+    /// Reads the document of a plan.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, when it is no plan or tells why there is none.
+    pub(crate) fn read(document: &[u8]) -> Result<Self, String> {
+        let plan: Self = serde_json::from_slice(document)
+            .map_err(|error| format!("not a plan that can be drawn: {error}"))?;
+        if plan.trajectory.states.len() < 2 || plan.total_time_s <= 0.0 {
+            return Err("the plan has no trajectory".to_owned());
+        }
+        let wheels = plan.wheels();
+        let same = |list: &Vec<f64>| list.len() == wheels;
+        let states = plan.trajectory.states.iter();
+        let controls = plan.trajectory.controls.iter();
+        if states.map(|s| &s.wheel_speed_rad_s).all(same)
+            && controls.map(|c| &c.wheel_torque_nm).all(same)
+        {
+            Ok(plan)
+        } else {
+            Err("the lists of wheel speeds and torques differ in length".to_owned())
+        }
+    }
+
+    /// Number of wheels.
+    pub(super) fn wheels(&self) -> usize {
+        let first = self.trajectory.states.first();
+        first.map_or(0, |state| state.wheel_speed_rad_s.len())
+    }
+}

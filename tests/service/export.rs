@@ -1,0 +1,110 @@
+//! Results in the formats of other tools.
+
+use crate::client::Request;
+
+use crate::running::{Service, small};
+
+const TYPES: [(&str, &str, &str); 7] = [
+    ("csv", "text/csv", "time_s,"),
+    ("aem-kvn", "text/x.ccsds.aem.kvn", "CCSDS_AEM_VERS"),
+    ("aem-xml", "application/x.ccsds.aem+xml", "<?xml "),
+    ("basilisk", "text/x.basilisk.waypoints", "0.000000000,"),
+    ("open-mct", "application/x.open-mct.plan+json", "{"),
+    ("stk", "text/x.stk.attitude", "stk.v.8.0"),
+    ("wheel-rpm", "text/tab-separated-values", "0\t"),
+];
+
+#[test]
+fn every_format_is_there_by_name_and_by_media_type() {
+    let service = Service::start();
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let path = format!("/v1/plans/{id}/result");
+    let mut tags = vec![
+        service
+            .get(&path)
+            .expect(200)
+            .header("etag")
+            .map(str::to_owned),
+    ];
+    for (name, media_type, begin) in TYPES {
+        let named = service.get(&format!("{path}?format={name}")).expect(200);
+        assert!(named.body.starts_with(begin), "{name}");
+        let told = named.header("content-type").expect("a media type");
+        assert_eq!(told.split(';').next(), Some(media_type));
+        let file = named.header("content-disposition").expect("a file name");
+        assert!(
+            file.starts_with(&format!("attachment; filename=\"{id}.")),
+            "{file}"
+        );
+        let accepting = Request::new("GET", &path).header("Accept", media_type);
+        // Byte for byte: an entity tag stands for it.
+        assert_eq!(service.send(&accepting).expect(200).body, named.body);
+        let tag = named.header("etag").expect("a tag").to_owned();
+        let again = Request::new("GET", &format!("{path}?format={name}"));
+        service
+            .send(&again.header("If-None-Match", &tag))
+            .expect(304);
+        tags.push(Some(tag));
+    }
+    tags.sort();
+    tags.dedup();
+    assert_eq!(tags.len(), TYPES.len() + 1);
+}
+
+#[test]
+fn samples_and_names_can_be_chosen() {
+    let service = Service::start();
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let path = format!("/v1/plans/{id}/result");
+    let get = |query: &str| service.get(&format!("{path}?{query}"));
+    let rows = |query: &str| get(query).expect(200).body.lines().count();
+    assert!(rows("format=csv&step_s=1") < rows("format=csv&step_s=0.1"));
+    assert!(rows("format=csv&tolerance=1e-3") < rows("format=csv"));
+    let named = get("format=aem-kvn&object_id=2026-001A&rates=false").expect(200);
+    assert!(named.body.contains("OBJECT_ID = 2026-001A"));
+    assert!(named.body.contains("ATTITUDE_TYPE = QUATERNION\n"));
+    assert_ne!(
+        named.header("etag"),
+        get("format=aem-kvn").expect(200).header("etag")
+    );
+    for wrong in [
+        "format=xml",
+        "format=csv&step_s=0",
+        "format=csv&tolerance=2",
+        "format=csv&wheel=x",
+    ] {
+        get(wrong).expect_problem(400, "invalid_parameter");
+    }
+    // Each is valid, but there is no such form.
+    for together in [
+        "format=csv&step_s=1&tolerance=1e-3",
+        "format=csv&wheel=0",
+        "format=wheel-rpm&wheel=9",
+        "format=stk&object_name=a",
+        "step_s=1",
+    ] {
+        get(together).expect_problem(406, "not_acceptable");
+    }
+}
+
+#[test]
+fn what_a_format_cannot_say_is_not_acceptable() {
+    let service = Service::start();
+    let mut scenario = small();
+    scenario["time_system"] = "TAI".into();
+    scenario["epoch"] = "2026-01-01T00:00:00".into();
+    let id = service.submit(&scenario);
+    service.wait_end(&id);
+    let path = format!("/v1/plans/{id}/result");
+    let refused = service.get(&format!("{path}?format=stk"));
+    let problem = refused.expect_problem(406, "not_acceptable");
+    assert!(
+        problem["detail"]
+            .as_str()
+            .is_some_and(|text| text.contains("/time_system"))
+    );
+    let message = service.get(&format!("{path}?format=aem-kvn")).expect(200);
+    assert!(message.body.contains("TIME_SYSTEM = TAI"));
+}

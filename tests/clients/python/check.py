@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Holds the Python client against `openapi.yaml`, its types against mypy, and both against a service.
+
+    python3 tests/clients/python/check.py
+
+Installs PyYAML and mypy from PyPI first where they are not there (CLIENT_VENV names another place).
+SLEWPLAN names a built binary.
+"""
+
+import inspect
+import subprocess
+import sys
+import tempfile
+import typing
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+TESTS = HERE.parents[1]
+sys.path += [str(TESTS / "peers"), str(TESTS / "load")]
+from environment import Environment  # noqa: E402
+
+CLIENT = Environment("client", ("mypy==2.4.1", "PyYAML"), ("mypy", "yaml"), "CLIENT_VENV")
+# Types of the client by their names in the description.
+TYPES = {
+    "Job": "Job",
+    "Plan": "Plan",
+    "Leg": "Leg",
+    "Passage": "Passage",
+    "Control": "Control",
+    "State": "FlownState",
+    "Trajectory": "Trajectory",
+    "Verification": "Verification",
+    "UnitQuaternion": "Quaternion",
+}
+
+
+def properties(description, schema):
+    """Names of the members of a schema, references followed."""
+    if "$ref" in schema:
+        return properties(description, description["components"]["schemas"][schema["$ref"].split("/")[-1]])
+    names = set(schema.get("properties", {}))
+    for part in schema.get("allOf", []):
+        names |= properties(description, part)
+    return names
+
+
+def described(description):
+    """What the client has and the description does not."""
+    wrong = []
+    for name, (method, path) in slewplan.OPERATIONS.items():
+        if method.lower() not in description["paths"].get(path, {}):
+            wrong.append(f"{name}: no {method} {path}")
+    for schema, name in TYPES.items():
+        members = properties(description, description["components"]["schemas"][schema])
+        for member in typing.get_type_hints(getattr(slewplan, name)):
+            if member not in members:
+                wrong.append(f"{name}: {member} is not in {schema}")
+    parameters = {p["name"]: p for p in description["paths"]["/v1/plans/{id}/result"]["get"]["parameters"]}
+    for choice in list(inspect.signature(slewplan.Client.export).parameters)[3:]:
+        if choice not in parameters:
+            wrong.append(f"export: no parameter {choice}")
+    formats = set(parameters["format"]["schema"]["enum"]) - {"json"}
+    if formats != set(typing.get_args(slewplan.Format)):
+        wrong.append(f"Format: described are {sorted(formats)}")
+    states = set(description["components"]["schemas"]["JobState"]["enum"])
+    if states != set(typing.get_args(slewplan.State)):
+        wrong.append(f"State: described are {sorted(states)}")
+    return wrong
+
+
+def used(folder):
+    """The example and the other methods with a service."""
+    with Service(Path(folder, "client.db")) as service:
+        address = f"http://{service.host}:{service.port}"
+        scenario = TESTS / "fixtures" / "two-targets.json"
+        example = [sys.executable, HERE / "example.py", address, scenario, folder]
+        subprocess.run(example, check=True)
+        assert Path(folder, "plan.aem").read_text().startswith("CCSDS_AEM_VERS")
+        client = slewplan.Client(address)
+        model = fixture("two-targets")
+        job = client.submit(model, idempotency_key="one")
+        assert client.submit(model, idempotency_key="one")["id"] == job["id"]
+        last = list(client.events(job["id"]))[-1]
+        assert client.wait(job["id"])["state"] == "succeeded", last
+        plan = client.plan(job["id"])
+        assert client.verify(model, plan)["passed"]
+        for form in typing.get_args(slewplan.Format):
+            assert client.export(job["id"], form)
+        assert len(client.export(job["id"], "csv", step_s=1.0)) < len(client.export(job["id"], "csv"))
+        client.delete(job["id"])
+        for call in (client.job, client.stop, client.cancel, client.plan):
+            try:
+                call(job["id"])
+            except slewplan.Refused as refused:
+                assert (refused.status, refused.code) == (404, "not_found")
+            else:
+                raise AssertionError("a deleted job was found")
+        try:
+            client.submit({"targets": 1})
+        except slewplan.Refused as refused:
+            assert refused.status == 422 and refused.problems
+        else:
+            raise AssertionError("nonsense was accepted")
+
+
+def main():
+    description = yaml.safe_load((TESTS.parent / "openapi.yaml").read_text(encoding="utf-8"))
+    wrong = described(description)
+    if wrong:
+        sys.exit("\n".join(wrong))
+    strict = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", HERE / "slewplan.py"]
+    subprocess.run(strict, check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        used(folder)
+    print("the client agrees with openapi.yaml and with the service")
+
+
+if __name__ == "__main__":
+    CLIENT.enter()
+    import slewplan
+    import yaml
+    from service import Service, fixture
+
+    main()

@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""Plans a scenario with a service, shows the order, and writes plan and AEM beside each other.
+
+    python3 tests/clients/python/example.py http://127.0.0.1:8080 tests/fixtures/olivares-a.json OUT
+"""
+
+import json
+import sys
+from pathlib import Path
+
+from slewplan import Client, Refused
+
+
+def main(address, scenario, folder):
+    client = Client(address)
+    try:
+        job = client.submit(json.loads(Path(scenario).read_text(encoding="utf-8")))
+    except Refused as refused:
+        for problem in refused.problems:
+            print(f"{problem['pointer']}: {problem['message']} ({problem['hint']})", file=sys.stderr)
+        sys.exit(str(refused))
+    job = client.wait(job["id"])
+    plan = client.plan(job["id"])
+    if plan["total_time_s"] is None:
+        sys.exit(f"{plan['status']}: " + "; ".join(reason["message"] for reason in plan["reasons"]))
+    print(f"{plan['status']}: {plan['total_time_s']:.2f} s, gap {100 * plan['relative_gap']:.2f} %")
+    for passage in plan["passages"]:
+        print(f"  {passage['time_s']:9.2f} s  {passage['target']}")
+    out = Path(folder)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
+    (out / "plan.aem").write_text(client.export(job["id"], "aem-kvn"), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -7,6 +7,12 @@ import { el, section } from "../dom.js";
 const FORMATS = [
   ["json", "json", "JSON", "the whole plan"],
   ["csv", "csv", "CSV", "sampled trajectory"],
+  ["aem-kvn", "aem", "CCSDS AEM", "attitude message, keywords and values"],
+  ["aem-xml", "aem.xml", "CCSDS AEM, XML", "the same message"],
+  ["basilisk", "waypoints.csv", "Basilisk", "for waypointReference"],
+  ["open-mct", "open-mct.json", "Open MCT", "activities of a plan"],
+  ["stk", "a", "STK", "attitude file"],
+  ["wheel-rpm", "tsv", "Wheel speeds", "commands in rpm"],
 ];
 
 /** The section with a link for every form of a plan. */

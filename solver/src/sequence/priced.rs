@@ -125,7 +125,7 @@ impl PricedLegs {
 
     /// Moves the prices along flown orders towards those of their flights, and solves the legs that
     /// this concerns. All or nothing: `false`, and nothing has changed, when the solve is stopped
-    /// meanwhile.
+    /// meanwhile or no flight tells prices.
     pub fn learn(
         &mut self,
         orders: &[Vec<usize>],
@@ -146,6 +146,9 @@ impl PricedLegs {
                 mean.take_in(&price);
                 moved.insert(triple);
             }
+        }
+        if moved.is_empty() {
+            return false;
         }
         let legs: BTreeSet<[usize; 4]> = moved
             .iter()

@@ -14,7 +14,7 @@ const WORTHWHILE: f64 = 2e-4;
 
 impl Search<'_> {
     /// Prices the legs, and flies the orders that are shortest by the prices. Nothing comes of it
-    /// when the search is stopped meanwhile.
+    /// when the search is stopped meanwhile, or the model knows no prices.
     pub(super) fn price(&mut self) {
         let targets = self.tree.table().targets();
         let couple = (0..targets).any(|via| self.model.couples(via));

@@ -33,8 +33,8 @@ pub(super) struct Tree {
     planted: bool,
     frontier: Frontier,
     incumbents: Incumbents,
-    /// Orders flown before the search reached them: the duration, s, if they resolved.
-    candidates: BTreeMap<Vec<usize>, Option<f64>>,
+    /// Orders that have been flown: the duration, s, if they resolved.
+    tried: BTreeMap<Vec<usize>, Option<f64>>,
     /// Smallest bound of what was ruled out, s: it cannot be among the best up to the gap.
     ruled_out_s: f64,
     /// Smallest bound of what was lost, s: unresolved leaves and dropped nodes.
@@ -62,7 +62,7 @@ impl Tree {
             planted: false,
             frontier: Frontier::new(table.targets(), settings.frontier_bytes),
             incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
-            candidates: BTreeMap::new(),
+            tried: BTreeMap::new(),
             ruled_out_s: f64::INFINITY,
             lost_s: f64::INFINITY,
             improved: false,
@@ -91,7 +91,7 @@ impl Tree {
             None => self.statistics.tours_unresolved += 1,
         }
         let order = self.either_way(order);
-        self.candidates.insert(order, duration);
+        self.tried.insert(order, duration);
     }
 
     /// The pair bounds.
@@ -140,7 +140,7 @@ impl Tree {
 
     /// Whether an order has not been flown.
     pub(super) fn is_new(&self, order: &[usize]) -> bool {
-        !self.candidates.contains_key(&self.either_way(order))
+        !self.tried.contains_key(&self.either_way(order))
     }
 
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.
@@ -253,7 +253,7 @@ impl Tree {
     /// Opens a node unless it is decided already.
     fn admit(&mut self, node: Node) {
         if self.is_leaf(&node) {
-            match self.candidates.get(&self.either_way(&node.prefix)) {
+            match self.tried.get(&self.either_way(&node.prefix)) {
                 Some(Some(duration_s)) => return self.check(&node, *duration_s),
                 Some(None) => return self.lose(node.bound),
                 None => {}
@@ -292,6 +292,8 @@ impl Tree {
         self.statistics.tours += 1;
         self.check(node, duration_s);
         self.offer(&node.prefix, duration_s);
+        let order = self.either_way(&node.prefix);
+        self.tried.insert(order, Some(duration_s));
     }
 
     /// Takes in that a leaf did not resolve.
@@ -300,6 +302,8 @@ impl Tree {
         self.statistics.tours += 1;
         self.statistics.tours_unresolved += 1;
         self.lose(node.bound);
+        let order = self.either_way(&node.prefix);
+        self.tried.insert(order, None);
     }
 
     /// Opens a node again whose evaluation was interrupted.

@@ -33,7 +33,7 @@ const PROBE_NODES: u64 = 24;
 const TIGHTEN_NODES: u64 = 160;
 
 /// After so many nodes it prices the legs.
-const PRICE_NODES: u64 = 480;
+const PRICE_NODES: u64 = 960;
 
 /// What is evaluated in a round.
 enum Task {

@@ -109,9 +109,12 @@ pub fn verify(scenario: &Scenario, flight: &Flight) -> Report {
         }
     };
     let (visits, mut failures) = visits::book(scenario, flight, &intervals);
-    let Some(body) = Body::new(spacecraft.inertia(), spacecraft.wheels()) else {
-        failures.push("the inertia without the wheels' spin has no inverse".to_owned());
-        return Report::not_flown(scenario, failures);
+    let body = match Body::new(spacecraft.inertia(), spacecraft.wheels()) {
+        Ok(body) => body,
+        Err(sentence) => {
+            failures.push(sentence);
+            return Report::not_flown(scenario, failures);
+        }
     };
     let (torque_usage, torque_failures) = limits::torque(scenario, flight);
     failures.extend(torque_failures);
@@ -142,13 +145,7 @@ struct Observed<'a> {
 
 impl<'a> Observed<'a> {
     fn new(scenario: &'a Scenario) -> Self {
-        let start = scenario.start();
-        let start = Snapshot {
-            time_s: 0.0,
-            quaternion: start.attitude.xyzw(),
-            rate: start.rate,
-            wheel_speed: start.wheel_speed.clone(),
-        };
+        let start = Snapshot::at_start(scenario);
         let watches = scenario.keep_out().iter().enumerate();
         Self {
             watches: watches

@@ -286,15 +286,12 @@ impl<'a> Flight<'a> {
 
 /// The intervals that end between two legs.
 fn arrivals(intervals: &[usize]) -> Vec<usize> {
-    let mut nodes: Vec<usize> = intervals
-        .iter()
-        .scan(0, |node, count| {
-            *node += count;
-            Some(*node)
-        })
-        .collect();
-    nodes.pop();
-    nodes.into_iter().map(|node| node - 1).collect()
+    let before_last = intervals.split_last().map_or(&[][..], |(_, before)| before);
+    let ends = before_last.iter().scan(0, |end, count| {
+        *end += count;
+        Some(*end - 1)
+    });
+    ends.collect()
 }
 
 /// The middle one of the legs' turns, rad.

@@ -153,9 +153,10 @@ pub trait TourModel: Sync {
     /// Flies a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
 
-    /// Costates of the flight of a whole order at each of its targets with a leg after it: what the state there saves the
-    /// slews before it, at the margin, and costs those after it. `None` where the order does not
-    /// resolve or the model knows no states. In a symmetric model those backwards are the same.
+    /// Costates of the flight of a whole order at each of its targets with a leg after it: what the
+    /// state there saves the slews before it, at the margin, and costs those after it. `None` where
+    /// the order does not resolve or the model knows no states. In a symmetric model those backwards
+    /// are the same.
     fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
         let _ = order;
         None

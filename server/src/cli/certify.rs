@@ -33,17 +33,9 @@ pub(super) struct Arguments {
 
 /// Prints what became of every claim on standard output.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
-        return Err(Failure::StandardInputTwice);
-    }
+    input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
-    let claims =
-        wire::claims::read(&input::read(&arguments.plan)?, &scenario).map_err(|problems| {
-            Failure::Invalid {
-                name: input::name(&arguments.plan),
-                problems,
-            }
-        })?;
+    let claims = input::of_plan(&arguments.plan, &scenario, wire::claims::read)?;
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;

@@ -28,16 +28,10 @@ pub(super) struct Arguments {
 
 /// Flies the plan and writes it, if it passes.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
-        return Err(Failure::StandardInputTwice);
-    }
+    input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let destination = Destination::open(&arguments.output)?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
-    let plan = input::read(&arguments.plan)?;
-    let flight = wire::flight::read(&plan, &scenario).map_err(|problems| Failure::Invalid {
-        name: input::name(&arguments.plan),
-        problems,
-    })?;
+    let flight = input::of_plan(&arguments.plan, &scenario, wire::flight::read)?;
     // A plan beside the wrong scenario makes files that look well and point elsewhere.
     let found = checker::verify(&scenario, &flight).verification;
     if !found.passed {

@@ -2,7 +2,8 @@
 
 use super::failure::Failure;
 use crate::wire;
-use slewplan_solver::scenario::Validated;
+use slewplan_solver::problem::Problem;
+use slewplan_solver::scenario::{Scenario, Validated};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -22,6 +23,15 @@ pub(super) fn name(path: &Path) -> String {
 /// Whether a path stands for standard input or output.
 pub(super) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
+}
+
+/// Refuses to read more than one input from standard input.
+pub(super) fn one_stream_at_most(paths: &[&Path]) -> Result<(), Failure> {
+    let streams = paths.iter().filter(|path| is_stream(path)).count();
+    if streams > 1 {
+        return Err(Failure::StandardInputTwice);
+    }
+    Ok(())
 }
 
 /// Reads all of a file or of standard input.
@@ -55,6 +65,18 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
 /// Reads a valid scenario; a time limit from the command line, s, replaces its own.
 pub(super) fn scenario(path: &Path, time_limit_s: Option<f64>) -> Result<Validated, Failure> {
     wire::scenario::read(&read(path)?, time_limit_s).map_err(|problems| Failure::Invalid {
+        name: name(path),
+        problems,
+    })
+}
+
+/// Reads what a command needs of a plan for a scenario.
+pub(super) fn of_plan<T>(
+    path: &Path,
+    scenario: &Scenario,
+    read_for: impl FnOnce(&[u8], &Scenario) -> Result<T, Vec<Problem>>,
+) -> Result<T, Failure> {
+    read_for(&read(path)?, scenario).map_err(|problems| Failure::Invalid {
         name: name(path),
         problems,
     })

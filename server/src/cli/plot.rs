@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::output::Destination;
 use super::{Exit, input};
 use crate::plot::{self, Boresight, WrittenPlan};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What `plot` takes.
 #[derive(Debug, clap::Args)]
@@ -25,16 +25,9 @@ pub(super) struct Arguments {
 
 /// Draws the plan as it was written.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let both = [Some(&arguments.plan), arguments.scenario.as_ref()];
-    if both
-        .into_iter()
-        .flatten()
-        .filter(|path| input::is_stream(path))
-        .count()
-        > 1
-    {
-        return Err(Failure::StandardInputTwice);
-    }
+    let inputs = [Some(&arguments.plan), arguments.scenario.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    input::one_stream_at_most(&inputs)?;
     let destination = Destination::open(&arguments.output)?;
     let scenario = arguments.scenario.as_deref();
     let scenario = scenario

@@ -24,16 +24,9 @@ pub(super) struct Arguments {
 
 /// Prints the verification on standard output.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if input::is_stream(&arguments.scenario) && input::is_stream(&arguments.plan) {
-        return Err(Failure::StandardInputTwice);
-    }
+    input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let valid = input::scenario(&arguments.scenario, None)?;
-    let flight = wire::flight::read(&input::read(&arguments.plan)?, &valid.scenario).map_err(
-        |problems| Failure::Invalid {
-            name: input::name(&arguments.plan),
-            problems,
-        },
-    )?;
+    let flight = input::of_plan(&arguments.plan, &valid.scenario, wire::flight::read)?;
     let found = checker::verify(&valid.scenario, &flight);
     let warnings: Vec<Problem> = valid.warnings.into_iter().chain(found.keep_out).collect();
     output::print(&if arguments.summary || stdout().is_terminal() {

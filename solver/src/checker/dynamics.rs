@@ -11,6 +11,7 @@
 //! J_eff    = J - sum I_i a_i a_i^T                  (driven wheels)
 //! ```
 
+use crate::scenario::Scenario;
 use crate::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
 
@@ -56,6 +57,17 @@ pub(super) struct Snapshot {
 }
 
 impl Snapshot {
+    /// The state in which a scenario starts.
+    pub(super) fn at_start(scenario: &Scenario) -> Self {
+        let start = scenario.start();
+        Self {
+            time_s: 0.0,
+            quaternion: start.attitude.xyzw(),
+            rate: start.rate,
+            wheel_speed: start.wheel_speed.clone(),
+        }
+    }
+
     /// Whether every number is finite.
     pub(super) fn is_finite(&self) -> bool {
         self.quaternion.iter().all(|c| c.is_finite())
@@ -82,9 +94,9 @@ pub(super) struct Body {
 }
 
 impl Body {
-    /// The body of a whole-spacecraft inertia (kg m²) and its wheels; `None` when `J_eff` has no
+    /// The body of a whole-spacecraft inertia (kg m²) and its wheels; a sentence when `J_eff` has no
     /// inverse.
-    pub(super) fn new(inertia: &Matrix3<f64>, wheels: &[Wheel]) -> Option<Self> {
+    pub(super) fn new(inertia: &Matrix3<f64>, wheels: &[Wheel]) -> Result<Self, String> {
         let rotors: Vec<Rotor> = wheels
             .iter()
             .map(|wheel| Rotor {
@@ -99,10 +111,12 @@ impl Body {
         }
         // Scaled to order one first: a determinant of very small inertias underflows.
         let scale = effective.amax();
-        let inverse = (effective / scale).try_inverse()? / scale;
-        Some(Self {
+        let Some(inverse) = (effective / scale).try_inverse() else {
+            return Err("the inertia without the wheels' spin has no inverse".to_owned());
+        };
+        Ok(Self {
             inertia: *inertia,
-            effective_inverse: inverse,
+            effective_inverse: inverse / scale,
             rotors,
         })
     }

@@ -30,8 +30,9 @@ pub(crate) fn leg_faults(
         Ok(intervals) => intervals,
         Err(faults) => return faults,
     };
-    let Some(body) = Body::new(spacecraft.inertia(), spacecraft.wheels()) else {
-        return vec!["the inertia without the wheels' spin has no inverse".to_owned()];
+    let body = match Body::new(spacecraft.inertia(), spacecraft.wheels()) {
+        Ok(body) => body,
+        Err(sentence) => return vec![sentence],
     };
     let start = Snapshot {
         time_s: 0.0,

@@ -32,18 +32,9 @@ impl Motion {
     pub fn of(scenario: &Scenario, flight: &Flight) -> Result<Self, Vec<String>> {
         let spacecraft = scenario.spacecraft();
         let intervals = timeline::intervals(flight, spacecraft.wheels())?;
-        let Some(body) = Body::new(spacecraft.inertia(), spacecraft.wheels()) else {
-            return Err(vec![
-                "the inertia without the wheels' spin has no inverse".to_owned(),
-            ]);
-        };
-        let begin = scenario.start();
-        let start = Snapshot {
-            time_s: 0.0,
-            quaternion: begin.attitude.xyzw(),
-            rate: begin.rate,
-            wheel_speed: begin.wheel_speed.clone(),
-        };
+        let body = Body::new(spacecraft.inertia(), spacecraft.wheels());
+        let body = body.map_err(|sentence| vec![sentence])?;
+        let start = Snapshot::at_start(scenario);
         let mut steps = Vec::new();
         fly(&body, start, &intervals, STEP_TOLERANCE, |step| {
             steps.push(KeptStep {

@@ -30,6 +30,16 @@ pub(super) fn stored_segment(flown: &Flown) -> StoredSegment {
     }
 }
 
+/// The flight of a stored segment, as it was solved; `None` when its numbers do not fit together.
+pub(super) fn recalled_segment(stored: StoredSegment, intervals: usize) -> Option<Flown> {
+    let (wheels, lengths) = (stored.wheel_momenta_nms, stored.lengths_s);
+    let prices = stored.passing_prices_s_per_nms.into_iter();
+    Some(Flown {
+        passing_prices: prices.map(DVector::from_vec).collect(),
+        ..recalled(&stored.attitudes_xyzw, wheels, lengths, intervals)?
+    })
+}
+
 /// The flight of stored numbers, as it was solved; `None` when they do not fit together.
 pub(super) fn recalled(
     attitudes_xyzw: &[[f64; 4]],

@@ -9,7 +9,7 @@
 use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
-use super::recall::{recalled, stored_segment};
+use super::recall::{recalled_segment, stored_segment};
 use super::segments::Segments;
 use super::tables::{CertifiedTable, LegTable};
 use crate::legs::LegKind;
@@ -20,7 +20,6 @@ use crate::sequence::{Evaluation, OrderRules, Place, Price, TourEvaluation, Tour
 use crate::slew::eigenaxis::Side;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
-use nalgebra::DVector;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -219,14 +218,8 @@ impl<'a> Tours<'a> {
     fn recall_or_solve(&self, route: &[Place], extent: Extent) -> Flown {
         let (store, name) = (self.legs.segments(), name_of(route, extent));
         let intervals = self.intervals() * (route.len() - 1);
-        let known = store.get(&name).and_then(|known| {
-            let (wheels, lengths) = (known.wheel_momenta_nms, known.lengths_s);
-            let prices = known.passing_prices_s_per_nms.into_iter();
-            Some(Flown {
-                passing_prices: prices.map(DVector::from_vec).collect(),
-                ..recalled(&known.attitudes_xyzw, wheels, lengths, intervals)?
-            })
-        });
+        let known = store.get(&name);
+        let known = known.and_then(|known| recalled_segment(known, intervals));
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(route, extent);
             // When stopped perhaps not all starts have been tried.

@@ -118,13 +118,23 @@ impl Search<'_> {
     /// Flies the orders that the pair table recommends, for a first incumbent.
     fn fly_candidates(&mut self) -> Option<SearchEnd> {
         let candidates = self.tree.candidates(self.stop);
-        let answers = self.pool.map(&candidates, |order| self.fly(order));
-        let mut interrupted = false;
-        for (order, answer) in candidates.into_iter().zip(answers) {
-            interrupted |= answer == TourEvaluation::Stopped;
-            self.tree.record_candidate(&order, answer);
-        }
+        let interrupted = self.fly_new(&candidates);
         interrupted.then(|| self.stopped())
+    }
+
+    /// Flies the orders that have not been flown; whether that was interrupted.
+    fn fly_new(&mut self, orders: &[Vec<usize>]) -> bool {
+        let fresh: Vec<&Vec<usize>> = orders
+            .iter()
+            .filter(|order| self.tree.is_new(order))
+            .collect();
+        let answers = self.pool.map(&fresh, |order| self.fly(order));
+        let mut interrupted = false;
+        for (order, answer) in fresh.into_iter().zip(answers) {
+            interrupted |= answer == TourEvaluation::Stopped;
+            self.tree.record_candidate(order, answer);
+        }
+        interrupted
     }
 
     /// One round; says when it was the last.

@@ -120,13 +120,9 @@ impl Search<'_> {
             alternatives: FLOWN - 1,
             seed,
         };
-        let mut orders = self.tree.short_orders(charges, &effort, self.stop);
+        let orders = self.tree.short_orders(charges, &effort, self.stop);
         charges.ask_along(&orders, self.model, self.pool, self.stop);
-        orders.retain(|order| self.tree.is_new(order));
-        let answers = self.pool.map(&orders, |order| self.fly(order));
-        for (order, answer) in orders.iter().zip(answers) {
-            self.tree.record_candidate(order, answer);
-        }
+        self.fly_new(&orders);
         self.account.hand_over(&self.tree);
         self.account.report(&self.tree);
     }

@@ -42,7 +42,10 @@ impl Search<'_> {
                 break;
             }
             let orders = paths.orders(ORDERS);
-            self.fly_all(&orders);
+            self.fly_new(&orders);
+            self.tree.tidy();
+            self.account.hand_over(&self.tree);
+            self.account.report(&self.tree);
             if !legs.learn(&orders, self.model, self.pool, self.stop) {
                 return;
             }
@@ -62,20 +65,5 @@ impl Search<'_> {
         let proved = self.tree.best_s().is_some_and(|best_s| last >= best_s);
         let earlier = rounds.checked_sub(PATIENT_ROUNDS);
         proved || earlier.is_some_and(|round| last <= bounds[round] * (1.0 + WORTHWHILE))
-    }
-
-    /// Flies the orders that have not been.
-    fn fly_all(&mut self, orders: &[Vec<usize>]) {
-        let fresh: Vec<&Vec<usize>> = orders
-            .iter()
-            .filter(|order| self.tree.is_new(order))
-            .collect();
-        let answers = self.pool.map(&fresh, |order| self.fly(order));
-        for (order, answer) in fresh.into_iter().zip(answers) {
-            self.tree.record_candidate(order, answer);
-        }
-        self.tree.tidy();
-        self.account.hand_over(&self.tree);
-        self.account.report(&self.tree);
     }
 }

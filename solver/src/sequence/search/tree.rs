@@ -71,11 +71,9 @@ impl Tree {
         }
     }
 
-    /// Orders worth flying first, but those that were flown.
+    /// Orders worth flying first.
     pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
-        let mut orders = heuristics::candidates(&self.table, &self.remainder, stop);
-        orders.retain(|order| self.is_new(order));
-        orders
+        heuristics::candidates(&self.table, &self.remainder, stop)
     }
 
     /// Takes in an order flown before the search reached it.

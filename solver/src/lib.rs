@@ -77,6 +77,7 @@ mod certified;
 pub mod certify;
 pub mod checker;
 mod convex;
+pub mod drive;
 mod dynamics;
 pub mod envelope;
 mod findings;

@@ -8,6 +8,7 @@ pub use spanning_tree::SpanningTrees;
 pub use subsets::SubsetTable;
 
 use super::{OrderRules, PairTable};
+use crate::stop::StopSignal;
 
 /// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 160 MiB and a quarter
 /// of a second for twenty targets, half of the one and of the other for every target less.
@@ -47,14 +48,13 @@ pub enum Remainder {
 }
 
 impl Remainder {
-    /// Prepares the bounds over a pair table, for the orders that some rules admit.
+    /// Prepares the bounds over a pair table, for the orders that some rules admit; the weaker ones
+    /// when stopped.
     #[must_use]
-    pub fn new(table: &PairTable, rules: &OrderRules) -> Self {
-        if table.targets() <= EXACT_TARGETS {
-            Self::Exact(SubsetTable::new(table, rules))
-        } else {
-            Self::Relaxed(SpanningTrees::new(table))
-        }
+    pub fn new(table: &PairTable, rules: &OrderRules, stop: &StopSignal) -> Self {
+        let few = table.targets() <= EXACT_TARGETS;
+        let exact = few.then(|| SubsetTable::new(table, rules, stop)).flatten();
+        exact.map_or_else(|| Self::Relaxed(SpanningTrees::new(table)), Self::Exact)
     }
 
     /// Lower bound, s, of the path from a place (numbered as in the table) through all remaining
@@ -110,7 +110,8 @@ mod tests {
     fn subsets_give_the_shortest_path() {
         for seed in 0..10 {
             let table = PairTable::new(&RandomModel::new(6, seed % 2 == 0, seed));
-            let exact = SubsetTable::new(&table, table.rules());
+            let exact = SubsetTable::new(&table, table.rules(), &StopSignal::new());
+            let exact = exact.expect("not stopped");
             for (from, remaining) in cases(&table) {
                 let expected = shortest(&table, from, &remaining);
                 assert!((exact.bound(&table, from, &remaining) - expected).abs() < 1e-9);
@@ -127,12 +128,30 @@ mod tests {
                 RandomModel::with_ties
             };
             let table = PairTable::new(&model(7, seed % 2 == 0, seed));
-            let exact = SubsetTable::new(&table, table.rules());
+            let exact = SubsetTable::new(&table, table.rules(), &StopSignal::new());
+            let exact = exact.expect("not stopped");
             let trees = SpanningTrees::new(&table);
             for (from, remaining) in cases(&table) {
                 let expected = exact.bound(&table, from, &remaining);
                 assert!(trees.bound(&table, from, &remaining) <= expected + 1e-9);
             }
         }
+    }
+
+    #[test]
+    fn a_stop_leaves_the_bounds_of_trees() {
+        let table = PairTable::new(&RandomModel::new(14, false, 3));
+        let stop = StopSignal::new();
+        let exact = Remainder::new(&table, table.rules(), &stop);
+        assert!(matches!(exact, Remainder::Exact(_)));
+        stop.request();
+        let relaxed = Remainder::new(&table, table.rules(), &stop);
+        assert!(matches!(relaxed, Remainder::Relaxed(_)));
+        let all: Vec<usize> = (0..14).collect();
+        let bounds = [relaxed, exact].map(|bounds| bounds.bound(&table, table.start(), &all));
+        assert!(
+            0.0 < bounds[0] && bounds[0] <= bounds[1] + 1e-9,
+            "{bounds:?}"
+        );
     }
 }

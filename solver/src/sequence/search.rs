@@ -91,7 +91,7 @@ pub fn search(
         next_probe: PROBE_NODES,
         tightened: false,
         priced: false,
-        tree: Tree::new(model, settings),
+        tree: Tree::new(model, settings, stop),
         account: Account::new(observer),
     };
     for flown in known {

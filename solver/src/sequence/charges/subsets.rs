@@ -4,21 +4,23 @@ use super::Charges;
 use super::choice::Part;
 use crate::sequence::OrderRules;
 use crate::sequence::remainder::{LegCosts, SubsetTable};
+use crate::stop::StopSignal;
 
 /// The bound of [`Charges`] with the edges chosen as a path: tighter than a tree, and a table of
 /// `n 2^n` entries. Of the shares as they were when it was filled.
 #[derive(Debug)]
 pub struct ChargedSubsets {
     charges: Charges,
-    subsets: SubsetTable,
+    /// Missing when it was not finished: then trees have to do.
+    subsets: Option<SubsetTable>,
 }
 
 impl ChargedSubsets {
-    /// Fills the table for the orders that some rules admit: `n^2 2^n` steps.
+    /// Fills the table for the orders that some rules admit, unless stopped: `n^2 2^n` steps.
     #[must_use]
-    pub fn new(charges: Charges, rules: &OrderRules) -> Self {
+    pub fn new(charges: Charges, rules: &OrderRules, stop: &StopSignal) -> Self {
         Self {
-            subsets: SubsetTable::new(&charges, rules),
+            subsets: SubsetTable::new(&charges, rules, stop),
             charges,
         }
     }
@@ -27,9 +29,8 @@ impl ChargedSubsets {
     #[must_use]
     pub fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
         let charges = &self.charges;
-        let path = self
-            .subsets
-            .entered(remaining, |to| charges.first(from, to));
+        let subsets = self.subsets.as_ref();
+        let path = subsets.and_then(|table| table.entered(remaining, |to| charges.first(from, to)));
         path.map_or_else(
             || charges.bound(from, remaining),
             |path| (charges.passing(&Part::new(from, charges.end(), remaining)) + path).max(0.0),

@@ -6,6 +6,10 @@
 
 use super::{EXACT_TARGETS, LegCosts};
 use crate::sequence::OrderRules;
+use crate::stop::StopSignal;
+
+/// Sets between two looks at the stop signal: about a millisecond.
+const SETS_PER_LOOK: usize = 1 << 12;
 
 /// `rest(i, R)` for every target and every set of others, s.
 #[derive(Debug)]
@@ -49,12 +53,19 @@ impl Admitted {
 }
 
 impl SubsetTable {
-    /// Fills the table for the orders that some rules admit: `n^2 2^n` steps.
+    /// Fills the table for the orders that some rules admit: `n^2 2^n` steps; `None` when stopped.
     #[must_use]
-    pub fn new(costs: &impl LegCosts, rules: &OrderRules) -> Self {
+    pub fn new(costs: &impl LegCosts, rules: &OrderRules, stop: &StopSignal) -> Option<Self> {
         let targets = costs.targets();
         let admitted = Admitted::of(rules, targets);
-        let mut rest = vec![f64::INFINITY; targets << targets];
+        // Piece by piece: the memory of a large table takes as long to get as its numbers.
+        let mut rest = Vec::with_capacity(targets << targets);
+        for _ in 0..targets {
+            if stop.is_set() {
+                return None;
+            }
+            rest.resize(rest.len() + (1 << targets), f64::INFINITY);
+        }
         let legs: Vec<[f64; EXACT_TARGETS]> = (0..targets)
             .map(|from| row(targets, |to| costs.cost(from, to)))
             .collect();
@@ -64,6 +75,9 @@ impl SubsetTable {
         }
         // A set is greater, as a number, than its subsets.
         for set in 1..1_usize << targets {
+            if set % SETS_PER_LOOK == 0 && stop.is_set() {
+                return None;
+            }
             let mut after = [f64::INFINITY; EXACT_TARGETS];
             for to in members(admitted.next(set)) {
                 after[to] = rest[place(to, set & !(1 << to))];
@@ -72,11 +86,11 @@ impl SubsetTable {
                 rest[place(from, set)] = least_sum(&legs[from], &after);
             }
         }
-        Self {
+        Some(Self {
             targets,
             rest,
             admitted,
-        }
+        })
     }
 
     fn after(&self, from: usize, set: usize) -> f64 {

@@ -56,7 +56,8 @@ impl Couplings {
             steps: STEPS,
         };
         charges.raise(model, &effort, pool, stop);
-        Some(Self::Paths(Box::new(ChargedSubsets::new(charges, rules))))
+        let subsets = ChargedSubsets::new(charges, rules, stop);
+        Some(Self::Paths(Box::new(subsets)))
     }
 
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.

@@ -46,7 +46,7 @@ pub(super) struct Tree {
 
 impl Tree {
     /// A tree in which nothing is open yet.
-    pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings) -> Self {
+    pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings, stop: &StopSignal) -> Self {
         let table = PairTable::new(model);
         let symmetric = model.is_symmetric();
         let mut rules = table.rules().clone();
@@ -55,7 +55,7 @@ impl Tree {
         }
         Self {
             symmetric,
-            remainder: Remainder::new(&table, &rules),
+            remainder: Remainder::new(&table, &rules, stop),
             rules,
             couplings: None,
             root_s: 0.0,

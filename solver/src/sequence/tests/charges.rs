@@ -107,7 +107,7 @@ fn no_bound_exceeds_the_cheapest_way() {
         let bound =
             |(from, _, remaining): &(usize, Place, Vec<usize>)| charges.bound(*from, remaining);
         let trees: Vec<f64> = parts.iter().map(bound).collect();
-        let subsets = ChargedSubsets::new(charges, table.rules());
+        let subsets = ChargedSubsets::new(charges, table.rules(), &StopSignal::new());
         for ((from, place, remaining), tree) in parts.into_iter().zip(trees) {
             let least = cheapest(&model, &[place], &remaining);
             let path = subsets.bound(from, &remaining);

@@ -121,10 +121,8 @@ fn subsets_give_the_shortest_admitted_path_and_trees_do_not_exceed_it() {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
-        let (exact, trees) = (
-            SubsetTable::new(&table, table.rules()),
-            SpanningTrees::new(&table),
-        );
+        let exact = SubsetTable::new(&table, table.rules(), &StopSignal::new());
+        let (exact, trees) = (exact.expect("not stopped"), SpanningTrees::new(&table));
         let mut orders = permutations(targets);
         orders.retain(|order| model.rules.admits(order));
         let prefix = &orders[random.below(orders.len())][..random.below(targets)];
@@ -152,7 +150,7 @@ fn orders_flown_early_keep_the_rules_whatever_their_number() {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
-        let remainder = Remainder::new(&table, table.rules());
+        let remainder = Remainder::new(&table, table.rules(), &StopSignal::new());
         let orders = candidates(&table, &remainder, &stop);
         assert!(!orders.is_empty());
         for order in &orders {

@@ -1,7 +1,10 @@
 //! A search that begins again with what another one had solved: the same plan for less work.
 
 use slewplan_solver::legs::{SegmentStore, StoredSegment};
+use slewplan_solver::plan::Outcome;
 use slewplan_solver::planner::{self, Run};
+use slewplan_solver::problem::Code;
+use slewplan_solver::scenario::Scenario;
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
 use std::collections::HashMap;
@@ -38,9 +41,13 @@ impl SegmentStore for Memory {
     }
 }
 
+fn eight_targets() -> Scenario {
+    scenario_of(&schedule(Region::Strip, Rates::ZeroAboutZ, 8, 1))
+}
+
 /// The plan with all of its numbers, and how many programs of several legs it took.
 fn solved(memory: &Memory) -> (String, u64) {
-    let scenario = scenario_of(&schedule(Region::Strip, Rates::ZeroAboutZ, 8, 1));
+    let scenario = eight_targets();
     let mut plan = on_threads(2, |run| {
         let segments = memory;
         planned(planner::solve(&scenario, Run { segments, ..run }))
@@ -71,4 +78,29 @@ fn what_was_solved_is_not_solved_again_and_the_plan_is_the_same() {
     assert_eq!(resumed, cold);
     assert!(half.found.load(Ordering::Relaxed) >= count / 2);
     assert!(4 * fewer < 3 * solves, "{fewer} programs after {solves}");
+}
+
+/// Whatever a store gives back, no plan leaves that does not fly.
+#[test]
+fn what_comes_back_changed_ends_in_a_failure_with_a_name() {
+    let memory = Memory {
+        most: usize::MAX,
+        ..Memory::default()
+    };
+    solved(&memory);
+    for segment in memory.segments().values_mut() {
+        for length in &mut segment.lengths_s {
+            *length *= 0.9;
+        }
+    }
+    let scenario = eight_targets();
+    let outcome = on_threads(2, |run| {
+        let segments = &memory;
+        planner::solve(&scenario, Run { segments, ..run })
+    });
+    let Outcome::Failed(problems) = outcome else {
+        panic!("{outcome:?}");
+    };
+    assert_eq!(problems[0].code, Code::VerificationFailed, "{problems:?}");
+    assert!(problems[0].message.contains("torque"), "{problems:?}");
 }

@@ -16,6 +16,7 @@ mod leg;
 mod limits;
 mod motion;
 mod order;
+mod ramped;
 mod samples;
 mod series;
 mod timeline;
@@ -25,6 +26,7 @@ mod wording;
 pub use keep_out::Intrusion;
 pub(crate) use leg::{Arrival, leg_faults};
 pub use motion::Motion;
+pub(crate) use ramped::{Moment, Ramp, fly_ramps};
 
 use crate::attitude::Attitude;
 use crate::plan::{Flight, Margins, State, Verification};

@@ -164,6 +164,17 @@ impl Drive {
         };
         self.viscous_friction * speed + coulomb
     }
+
+    /// What the motor has to give, N m, for a commanded torque at a speed (rad/s): friction too,
+    /// where an inner loop makes up for it.
+    #[must_use]
+    pub fn motor_torque(&self, commanded: f64, speed: f64) -> f64 {
+        if self.friction_compensated {
+            commanded + self.friction(speed)
+        } else {
+            commanded
+        }
+    }
 }
 
 impl Motor {

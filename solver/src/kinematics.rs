@@ -25,7 +25,7 @@ mod tests;
 pub(crate) use quaternion::{Quat, conjugate, dot4, imaginary, product, quat, rotate_back};
 
 use nalgebra::{Matrix3, Vector3};
-use runge_kutta::RungeKutta;
+use runge_kutta::{RungeKutta, flow};
 
 /// Inputs of a step with momentum.
 pub(crate) const INPUTS: usize = 9;
@@ -68,11 +68,18 @@ pub(crate) fn exact_turn(
     with_momentum: bool,
     z: &TurnInputs,
 ) -> Quat {
-    let mut map = RungeKutta::new(inertia_inverse, with_momentum, 1);
-    let mut turn = map.turn(z);
+    let map = RungeKutta::new(inertia_inverse, with_momentum, 1);
+    exact_flow(|sigma, p| map.rate(z, sigma, p))
+}
+
+/// The turn over an interval on which the rate times the length is any smooth function of the share
+/// of the interval that has passed and of the turn since its beginning.
+pub(crate) fn exact_flow(rate: impl Fn(f64, &Quat) -> Vector3<f64>) -> Quat {
+    let mut substeps = 1;
+    let mut turn = flow(substeps, &rate);
     for _ in 0..MAX_HALVINGS {
-        map = map.finer();
-        let finer = map.turn(z);
+        substeps *= 2;
+        let finer = flow(substeps, &rate);
         let change = finer.iter().zip(&turn).map(|(a, b)| (a - b).abs());
         let exact = change.fold(0.0, f64::max) <= EXACT;
         turn = finer;

@@ -84,6 +84,7 @@ mod findings;
 pub mod kinematic_bound;
 mod kinematics;
 pub mod legs;
+pub mod manoeuvre;
 mod multiphase;
 mod nlp;
 pub mod plan;

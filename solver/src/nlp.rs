@@ -52,13 +52,10 @@ pub(crate) mod tests;
 
 pub(crate) use chain::{Chain, Link, LinkMultipliers};
 pub(crate) use interior_point::InteriorPoint;
-pub(crate) use iterate::Iterate;
-#[cfg(test)]
-pub(crate) use iterate::Layout;
+pub(crate) use iterate::{Iterate, Layout};
 pub(crate) use model::{LinkModel, LinkValues};
 #[cfg(test)]
-pub(crate) use model::{models_of, values_of};
+pub(crate) use model::models_of;
+pub(crate) use model::values_of;
 pub(crate) use riccati::MAX_CONTROLS;
-#[cfg(test)]
-pub(crate) use settings::NlpReport;
-pub(crate) use settings::{Breakdown, Interruption, NlpStatus, Quantity, Settings};
+pub(crate) use settings::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity, Settings};

@@ -29,6 +29,7 @@ mod tests;
 
 pub(crate) use nodes::{Waypoint, WheelCondition};
 pub(crate) use reserves::Reserves;
+pub(crate) use rows::{Row, StateView};
 pub(crate) use scales::Scales;
 
 use crate::dynamics::Dynamics;
@@ -36,7 +37,7 @@ use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product
 use crate::nlp::{Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues};
 use nalgebra::Vector3;
 use nodes::Node;
-use rows::{LimitRow, Row, StateView};
+use rows::LimitRow;
 
 /// The quaternion of no turn.
 const NO_TURN: Quat = [0.0, 0.0, 0.0, 1.0];
@@ -66,6 +67,8 @@ pub(crate) struct Transcription {
     rates: [Row; 3],
     /// Reserve kept from every limit at every node.
     reserves: Reserves,
+    /// By how much the locked wheels' momentum exceeds that of `dynamics` at every node, N m s.
+    drift: Vec<Vector3<f64>>,
     nodes: Vec<Node>,
 }
 
@@ -105,6 +108,7 @@ impl Transcription {
             limits: Vec::new(),
             rates: Default::default(),
             reserves: Reserves::none(dynamics, intervals.iter().sum()),
+            drift: vec![Vector3::zeros(); intervals.iter().sum::<usize>() + 1],
             nodes: Vec::new(),
             dynamics: dynamics.clone(),
         };
@@ -147,20 +151,35 @@ impl Transcription {
                 control: &iterate.controls[node * controls..(node + 1) * controls],
                 next: &iterate.points[(node + 1) * points..(node + 2) * points],
             };
-            let inputs = self.turn_inputs(&link);
-            let exact = exact_turn(inverse, with_momentum, &inputs);
-            let correction = product(&conjugate(&self.turn_map.turn(&inputs)), &exact);
-            let change = product(&conjugate(&self.corrections[node]), &correction);
-            missed += 2.0 * imaginary(&change).norm();
-            self.corrections[node] = correction;
+            let exact = exact_turn(inverse, with_momentum, &self.turn_inputs(&link));
+            missed += self.correct_turn(&link, &exact);
         }
         missed
+    }
+
+    /// The same of one interval whose exact turn is known. Returns the angle, rad.
+    pub(crate) fn correct_turn(&mut self, link: &Link<'_>, exact: &Quat) -> f64 {
+        let turn = self.turn_map.turn(&self.turn_inputs(link));
+        let correction = product(&conjugate(&turn), exact);
+        let change = product(&conjugate(&self.corrections[link.node]), &correction);
+        self.corrections[link.node] = correction;
+        2.0 * imaginary(&change).norm()
+    }
+
+    /// Takes over by how much the locked wheels' momentum has changed at every node, N m s.
+    pub(crate) fn drift_by(&mut self, drift: Vec<Vector3<f64>>) {
+        self.drift = drift;
+    }
+
+    /// Goes on with a finer map of the turn from now on.
+    pub(crate) fn use_finer_map(&mut self) {
+        self.turn_map = self.turn_map.finer(self.dynamics.inertia_inverse);
     }
 
     /// Goes on with a finer map of the turn, when the one in use is too far from the truth for its
     /// derivatives to lead there.
     pub(crate) fn refine(&mut self, iterate: &Iterate) {
-        self.turn_map = self.turn_map.finer(self.dynamics.inertia_inverse);
+        self.use_finer_map();
         self.correct(iterate);
     }
 
@@ -168,10 +187,13 @@ impl Transcription {
         self.dynamics.wheel_count()
     }
 
-    fn view<'a>(&self, point: &'a [f64]) -> StateView<'a> {
-        let wheels = &point[4..];
-        let momentum = rotate_back(&quaternion_of(point), &self.dynamics.momentum);
-        StateView { momentum, wheels }
+    /// The state at a node as rows see it.
+    pub(crate) fn view<'a>(&self, node: usize, point: &'a [f64]) -> StateView<'a> {
+        StateView {
+            momentum: rotate_back(&quaternion_of(point), &self.dynamics.momentum),
+            drift: self.drift[node],
+            wheels: &point[4..],
+        }
     }
 
     /// `offset + gain h`: minus the scaled rate that the wheels make.
@@ -181,6 +203,12 @@ impl Transcription {
             rate += gain * *h;
         }
         rate
+    }
+
+    /// Number of inequalities on the state at a node.
+    pub(crate) fn state_inequalities(&self, node: usize) -> usize {
+        let node = &self.nodes[node];
+        self.inequality_rows(node).count() + usize::from(self.has_norm_row(node))
     }
 
     fn torque_margins<'a>(&'a self, control: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
@@ -200,9 +228,10 @@ impl Transcription {
             .sum()
     }
 
-    fn write_state_values(&self, at: usize, point: &[f64], out: &mut LinkValues) -> usize {
+    /// Writes the conditions on a state at a node; returns how many inequalities.
+    pub(crate) fn write_state_values(&self, at: usize, point: &[f64], out: &mut LinkValues) -> usize {
         let (node, reserves) = (&self.nodes[at], self.reserves.at(at));
-        let state = self.view(point);
+        let state = self.view(at, point);
         let mut equalities = out.equality.as_mut_slice();
         if let Some(target) = &node.attitude {
             let relative = product(&conjugate(target), &quaternion_of(point));
@@ -230,14 +259,15 @@ impl Transcription {
         count
     }
 
-    fn write_state_derivatives(
+    /// Writes their derivatives; returns how many inequalities.
+    pub(crate) fn write_state_derivatives(
         &self,
-        node: &Node,
         link: &Link<'_>,
         duals: &LinkMultipliers<'_>,
         out: &mut LinkModel,
     ) -> usize {
-        let state = self.view(link.point);
+        let node = &self.nodes[link.node];
+        let state = self.view(link.node, link.point);
         let states = self.state_dim();
         let mut offset = 0;
         if let Some(target) = &node.attitude {
@@ -296,8 +326,7 @@ impl Chain for Transcription {
         } else {
             0
         };
-        let node = &self.nodes[node];
-        self.inequality_rows(node).count() + usize::from(self.has_norm_row(node)) + of_interval
+        self.state_inequalities(node) + of_interval
     }
 
     fn retract(&self, point: &[f64], step: &[f64], moved: &mut [f64]) {
@@ -332,7 +361,7 @@ impl Chain for Transcription {
 
     fn derivatives(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
         let node = &self.nodes[link.node];
-        let count = self.write_state_derivatives(node, link, duals, out);
+        let count = self.write_state_derivatives(link, duals, out);
         out.gradient[3..][..node.prices.len()].copy_from_slice(&node.prices);
         if !link.has_interval() {
             return;

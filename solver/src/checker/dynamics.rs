@@ -7,6 +7,8 @@
 //! H_b      = J w + sum a_i I_i W_i                  (all wheels)
 //! J_eff w' = -w x H_b - sum a_i u_i                 (driven wheels)
 //! W_i'     = u_i / I_i - a_i . w'                   (driven wheels; 0 for locked ones)
+//! W_i'     = -r_i (W_i - S_i)                       (wheels with a speed law, whose -a_i I_i W_i'
+//!                                                   joins the right-hand side of J_eff w')
 //! q'       = 1/2 q (x) [w, 0]
 //! J_eff    = J - sum I_i a_i a_i^T                  (driven wheels)
 //! ```
@@ -81,8 +83,10 @@ impl Snapshot {
 pub(super) struct Rotor {
     pub(super) axis: Vector3<f64>,
     pub(super) inertia: f64,
-    /// A wheel that is not driven keeps its speed relative to the body.
+    /// A wheel that is not driven keeps its speed relative to the body, or follows its law.
     pub(super) driven: bool,
+    /// The return rate, 1/s, and the speed, rad/s, of a law that the wheel follows.
+    pub(super) law: Option<(f64, f64)>,
 }
 
 /// A rigid body with wheels.
@@ -103,6 +107,7 @@ impl Body {
                 axis: wheel.axis,
                 inertia: wheel.inertia,
                 driven: wheel.enabled,
+                law: None,
             })
             .collect();
         let mut effective = *inertia;
@@ -152,22 +157,35 @@ impl Body {
     /// `w'`, rad/s².
     pub(super) fn rate_derivative(&self, state: &Snapshot, torque: &[f64]) -> Vector3<f64> {
         let momentum = self.momentum(&state.rate, &state.wheel_speed);
-        self.effective_inverse * (self.motor_torque(torque) - state.rate.cross(&momentum))
+        let mut moment = self.motor_torque(torque) - state.rate.cross(&momentum);
+        for (rotor, speed) in self.rotors.iter().zip(&state.wheel_speed) {
+            if let Some(acceleration) = rotor.law_acceleration(*speed) {
+                moment -= rotor.axis * (rotor.inertia * acceleration);
+            }
+        }
+        self.effective_inverse * moment
     }
 
-    /// `W_i'`, rad/s², given `w'`.
+    /// `W_i'`, rad/s², of a wheel with its torque and speed, given `w'`.
     pub(super) fn wheel_derivative(
         &self,
         wheel: usize,
-        torque: f64,
+        (torque, speed): (f64, f64),
         rate_derivative: &Vector3<f64>,
     ) -> f64 {
         let rotor = &self.rotors[wheel];
         if rotor.driven {
             torque / rotor.inertia - rotor.axis.dot(rate_derivative)
         } else {
-            0.0
+            rotor.law_acceleration(speed).unwrap_or(0.0)
         }
+    }
+}
+
+impl Rotor {
+    /// `W'`, rad/s², at a speed (rad/s), where a law says so.
+    fn law_acceleration(&self, speed: f64) -> Option<f64> {
+        self.law.map(|(rate, held)| -rate * (speed - held))
     }
 }
 

@@ -10,6 +10,7 @@ use super::dynamics::{Body, Snapshot, norm, to_reference};
 use super::series::Expansion;
 use super::wording::figure;
 use nalgebra::Vector3;
+use std::borrow::Cow;
 
 /// Neglected terms relative to leading ones, per step. A few hundred steps then add up to less
 /// than 1e-12 rad, a hundredth of what the verification needs at most.
@@ -27,12 +28,27 @@ const MAX_EXTRA_STEPS: usize = 200_000;
 /// radians of the fastest oscillation, so that two extrema cannot hide between two points.
 const GRID: f64 = 16.0;
 
-/// Constant torques, N m, from one moment to another, s.
+/// Torques from one moment to another, s.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interval<'a> {
     pub(super) begin_s: f64,
     pub(super) end_s: f64,
+    /// At the beginning, N m.
     pub(super) torque: &'a [f64],
+    /// Growth, N m/s; empty for constant torques.
+    pub(super) slope: &'a [f64],
+}
+
+impl Interval<'_> {
+    /// The torques at a time, N m.
+    pub(super) fn torque_at(&self, time_s: f64) -> Cow<'_, [f64]> {
+        if self.slope.is_empty() {
+            return Cow::Borrowed(self.torque);
+        }
+        let since = time_s - self.begin_s;
+        let pairs = self.torque.iter().zip(self.slope);
+        Cow::Owned(pairs.map(|(u, slope)| u + slope * since).collect())
+    }
 }
 
 /// An accepted step.
@@ -46,6 +62,8 @@ pub(super) struct Step<'a> {
     pub(super) end_s: f64,
     /// Times since the begin at which to look, s, both ends included.
     pub(super) grid: &'a [f64],
+    /// The torques of the interval to which the step belongs.
+    pub(super) interval: &'a Interval<'a>,
 }
 
 /// What is known after the flight.
@@ -77,7 +95,8 @@ pub(super) fn fly(
         budget += 1;
         state.time_s = interval.begin_s;
         while state.time_s < interval.end_s {
-            let motion = Expansion::about(body, &state, interval.torque);
+            let torque = interval.torque_at(state.time_s);
+            let motion = Expansion::about(body, &state, (&torque, interval.slope));
             let full = motion.step_length(tolerance);
             let length = accept(body, &motion, (full, interval, state.time_s), &mut budget)?;
             let remaining = interval.end_s - state.time_s;
@@ -92,6 +111,7 @@ pub(super) fn fly(
                 begin_s: state.time_s,
                 end_s,
                 grid: &grid,
+                interval,
             });
             state = normalised(motion.state(length), end_s);
             ledger.enter(body, &state);
@@ -122,7 +142,7 @@ fn accept(
                 figure(now)
             ));
         }
-        if motion.defect(body, interval.torque, length) <= DEFECT_TOLERANCE {
+        if motion.defect(body, &interval.torque_at(now + length), length) <= DEFECT_TOLERANCE {
             return Ok(length);
         }
         length *= 0.5;

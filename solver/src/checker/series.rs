@@ -1,4 +1,4 @@
-//! Taylor expansion of the motion under constant wheel torques.
+//! Taylor expansion of the motion under wheel torques that are constant or linear in time.
 //!
 //! The right-hand sides of the [dynamics](super::dynamics) are products of at most two unknowns,
 //! so the coefficients of any order follow from Cauchy products of the lower ones. The truncated
@@ -26,8 +26,9 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
-    /// Expands the motion about a state under constant motor torques, N m.
-    pub(super) fn about(body: &Body, state: &Snapshot, torque: &[f64]) -> Self {
+    /// Expands the motion about a state under motor torques: those at the state, N m, and their
+    /// growth, N m/s, empty when they are constant.
+    pub(super) fn about(body: &Body, state: &Snapshot, drive: (&[f64], &[f64])) -> Self {
         let mut series = Self {
             quaternion: [[0.0; 4]; LEN],
             rate: [Vector3::zeros(); LEN],
@@ -41,7 +42,7 @@ impl Expansion {
         let mut momentum = [Vector3::zeros(); LEN];
         for k in 0..ORDER {
             momentum[k] = series.momentum_coefficient(body, k);
-            series.append(body, torque, &momentum, k);
+            series.append(body, drive, &momentum, k);
         }
         series
     }
@@ -55,7 +56,13 @@ impl Expansion {
     }
 
     /// Coefficients of order `k + 1` from those up to `k`.
-    fn append(&mut self, body: &Body, torque: &[f64], momentum: &[Vector3<f64>; LEN], k: usize) {
+    fn append(
+        &mut self,
+        body: &Body,
+        (torque, growth): (&[f64], &[f64]),
+        momentum: &[Vector3<f64>; LEN],
+        k: usize,
+    ) {
         let mut moment = Vector3::zeros();
         let mut turn = [0.0; 4];
         for j in 0..=k {
@@ -63,19 +70,26 @@ impl Expansion {
             let part = quaternion_derivative(&self.quaternion[j], &self.rate[k - j]);
             turn.iter_mut().zip(part).for_each(|(sum, c)| *sum += c);
         }
-        if k == 0 {
-            moment += body.motor_torque(torque);
+        let driven: &[f64] = match k {
+            0 => torque,
+            1 => growth,
+            _ => &[],
+        };
+        moment += body.motor_torque(driven);
+        for (i, rotor) in body.rotors.iter().enumerate() {
+            if let Some((rate, speed)) = rotor.law {
+                let held = if k == 0 { speed } else { 0.0 };
+                let acceleration = -rate * (self.wheel[i][k] - held);
+                moment -= rotor.axis * (rotor.inertia * acceleration);
+                self.wheel[i][k + 1] = acceleration / (k + 1) as f64;
+            }
         }
         let next = (k + 1) as f64;
         self.rate[k + 1] = body.effective_inverse * moment / next;
         self.quaternion[k + 1] = turn.map(|c| c / next);
         for (i, rotor) in body.rotors.iter().enumerate().filter(|(_, r)| r.driven) {
-            let drive = if k == 0 {
-                torque[i] / rotor.inertia
-            } else {
-                0.0
-            };
-            self.wheel[i][k + 1] = drive - rotor.axis.dot(&self.rate[k + 1]);
+            let drive = driven.get(i).map_or(0.0, |u| u / rotor.inertia);
+            self.wheel[i][k + 1] = drive / next - rotor.axis.dot(&self.rate[k + 1]);
         }
     }
 
@@ -107,7 +121,7 @@ impl Expansion {
         let rate_defect = (self.rate_slope(s) - rate_derivative).norm();
         let mut worst = (norm(&turn_defect) * s).max(ratio(rate_defect * s, rate_scale));
         for (i, wheel) in self.wheel.iter().enumerate() {
-            let expected = body.wheel_derivative(i, torque[i], &rate_derivative);
+            let expected = body.wheel_derivative(i, (torque[i], state.wheel_speed[i]), &rate_derivative);
             let drive = (torque[i] / body.rotors[i].inertia).abs() * s;
             let scale = value(s, |k| wheel[k].abs()) + drive;
             worst = worst.max(ratio((self.wheel_slope(i, s) - expected).abs() * s, scale));

@@ -127,6 +127,7 @@ fn tiles(flight: &Flight) -> Vec<Interval<'_>> {
                 begin_s,
                 end_s,
                 torque: &control.wheel_torque_nm,
+                slope: &[],
             };
             begin_s = end_s;
             interval

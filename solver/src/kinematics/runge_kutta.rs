@@ -90,6 +90,27 @@ struct StageRecord {
     sensitivity: [Quat; INPUTS],
 }
 
+/// The turn over an interval in equal substeps, under a rate times the interval's length.
+pub(super) fn flow(substeps: usize, rate: &impl Fn(f64, &Quat) -> Vector3<f64>) -> Quat {
+    let h = 1.0 / substeps as f64;
+    let mut p = [0.0, 0.0, 0.0, 1.0];
+    for step in 0..substeps {
+        let mut k = [[0.0; 4]; STAGES];
+        for i in 0..STAGES {
+            let mut at = p;
+            for j in 0..i {
+                add_scaled(&mut at, h * A[i][j], &k[j]);
+            }
+            let sigma = h * (step as f64 + C[i]);
+            k[i] = half_product(&at, &rate(sigma, &at));
+        }
+        for i in 0..STAGES {
+            add_scaled(&mut p, h * B[i], &k[i]);
+        }
+    }
+    p
+}
+
 impl RungeKutta {
     /// A map with a number of substeps per interval, for `J_eff` inverse in matching units.
     pub(super) fn new(inertia_inverse: Matrix3<f64>, with_momentum: bool, substeps: usize) -> Self {
@@ -114,7 +135,8 @@ impl RungeKutta {
         }
     }
 
-    fn rate(&self, z: &TurnInputs, sigma: f64, p: &Quat) -> Vector3<f64> {
+    /// The rate times the length of the interval.
+    pub(super) fn rate(&self, z: &TurnInputs, sigma: f64, p: &Quat) -> Vector3<f64> {
         let linear = z.begin * (1.0 - sigma) + z.end * sigma;
         if self.with_momentum {
             linear + self.inertia_inverse * rotate_back(p, &z.momentum)
@@ -125,23 +147,7 @@ impl RungeKutta {
 
     /// The turn over the interval.
     pub(super) fn turn(&self, z: &TurnInputs) -> Quat {
-        let h = 1.0 / self.substeps as f64;
-        let mut p = [0.0, 0.0, 0.0, 1.0];
-        for step in 0..self.substeps {
-            let mut k = [[0.0; 4]; STAGES];
-            for i in 0..STAGES {
-                let mut at = p;
-                for j in 0..i {
-                    add_scaled(&mut at, h * A[i][j], &k[j]);
-                }
-                let sigma = h * (step as f64 + C[i]);
-                k[i] = half_product(&at, &self.rate(z, sigma, &at));
-            }
-            for i in 0..STAGES {
-                add_scaled(&mut p, h * B[i], &k[i]);
-            }
-        }
-        p
+        flow(self.substeps, &|sigma, p| self.rate(z, sigma, p))
     }
 
     /// The turn with derivatives, the second ones weighted by `mu`.

@@ -83,7 +83,8 @@ impl LinkValues {
 }
 
 impl LinkModel {
-    fn for_node<C: Chain>(chain: &C, node: usize) -> Self {
+    /// Storage for one link of a chain.
+    pub(crate) fn for_node<C: Chain>(chain: &C, node: usize) -> Self {
         let states = chain.state_dim();
         let last = node == chain.intervals();
         let vars = if last {

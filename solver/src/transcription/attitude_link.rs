@@ -56,22 +56,26 @@ impl Transcription {
         rotate_back(&quaternion_of(point), &self.dynamics.momentum) * self.scales.time
     }
 
-    /// Writes the gap of a link: attitude, then wheel momenta.
-    pub(super) fn write_gap(&self, link: &Link<'_>, gap: &mut [f64]) {
+    /// The gap in the attitude.
+    pub(crate) fn attitude_gap(&self, link: &Link<'_>) -> Vector3<f64> {
         let turn = product(
             &self.turn_map.turn(&self.turn_inputs(link)),
             &self.corrections[link.node],
         );
         let relative = relative_attitude(link);
-        let error = chart(&product(&relative, &turn)) / self.scales.angle;
-        gap[..3].copy_from_slice(error.as_slice());
+        chart(&product(&relative, &turn)) / self.scales.angle
+    }
+
+    /// Writes the gap of a link: attitude, then wheel momenta.
+    pub(super) fn write_gap(&self, link: &Link<'_>, gap: &mut [f64]) {
+        gap[..3].copy_from_slice(self.attitude_gap(link).as_slice());
         for i in 0..self.wheels() {
             gap[3 + i] = link.point[4 + i] + link.control[i] - link.next[4 + i];
         }
     }
 
     /// Writes the attitude rows of the link Jacobian and the link's share of the Hessian.
-    pub(super) fn write_attitude_link(&self, link: &Link<'_>, lambda: &[f64], out: &mut LinkModel) {
+    pub(crate) fn write_attitude_link(&self, link: &Link<'_>, lambda: &[f64], out: &mut LinkModel) {
         let angle = self.scales.angle;
         let relative = relative_attitude(link);
         let covector = Vector3::new(lambda[0], lambda[1], lambda[2]) * (2.0 / angle);

@@ -15,13 +15,13 @@ use nalgebra::{Matrix3, Vector3};
 
 /// `c' + p . eta + g' . h`.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Row {
+pub(crate) struct Row {
     /// `c'`.
     constant: f64,
     /// `p`, per N m s.
-    pub(super) momentum: Vector3<f64>,
+    pub(crate) momentum: Vector3<f64>,
     /// `g'`, one per wheel.
-    wheels: Vec<f64>,
+    pub(crate) wheels: Vec<f64>,
 }
 
 /// One side of a speed or rate limit, `limit -+ value >= reserve limit`.
@@ -36,24 +36,26 @@ pub(super) struct LimitRow {
 }
 
 /// A state as rows see it.
-pub(super) struct StateView<'a> {
+pub(crate) struct StateView<'a> {
     /// `R(q)^T H`, N m s.
     pub(super) momentum: Vector3<f64>,
-    /// Scaled wheel momenta.
+    /// What the locked wheels have taken of it since the beginning, N m s.
+    pub(super) drift: Vector3<f64>,
+    /// Scaled wheel momenta, and what else there is in the state.
     pub(super) wheels: &'a [f64],
 }
 
 impl Row {
-    pub(super) fn value(&self, state: &StateView<'_>) -> f64 {
+    pub(crate) fn value(&self, state: &StateView<'_>) -> f64 {
         let wheels = self.wheels.iter().zip(state.wheels);
         let by_wheels: f64 = wheels.map(|(g, h)| g * h).sum();
-        self.constant + self.momentum.dot(&state.momentum) + by_wheels
+        self.constant + self.momentum.dot(&(state.momentum - state.drift)) + by_wheels
     }
 }
 
 impl Transcription {
     /// The row `c + y . w + g . h`; `g` by wheels, of which those that are not named have none.
-    pub(super) fn row(&self, constant: f64, rate: Vector3<f64>, wheels: &[(usize, f64)]) -> Row {
+    pub(crate) fn row(&self, constant: f64, rate: Vector3<f64>, wheels: &[(usize, f64)]) -> Row {
         let momentum = self.dynamics.inertia_inverse.tr_mul(&rate);
         let of_rate = |axis: &Vector3<f64>| -self.scales.momentum * momentum.dot(axis);
         let actuators = self.dynamics.actuators.iter();
@@ -69,7 +71,7 @@ impl Transcription {
     }
 
     /// Writes a row's derivative with respect to the state.
-    pub(super) fn write_row(&self, row: &Row, state: &StateView<'_>, out: &mut [f64]) {
+    pub(crate) fn write_row(&self, row: &Row, state: &StateView<'_>, out: &mut [f64]) {
         if self.dynamics.has_momentum() {
             let by_attitude = row.momentum.cross(&state.momentum) * self.scales.angle;
             out[..3].copy_from_slice(by_attitude.as_slice());
@@ -80,7 +82,7 @@ impl Transcription {
     }
 
     /// Adds the curvature of `p . eta(d)` in the attitude to a Hessian.
-    pub(super) fn add_momentum_curvature(
+    pub(crate) fn add_momentum_curvature(
         &self,
         p: &Vector3<f64>,
         state: &StateView<'_>,

@@ -83,6 +83,7 @@ fn top_error(inertia: f64, seconds: f64) -> f64 {
         begin_s: 0.0,
         end_s: seconds,
         torque: &[0.0],
+        slope: &[],
     };
     let last = end_of(&body, &start, &[interval], STEP_TOLERANCE);
     // Full turns may differ in sign, attitudes may not.
@@ -111,6 +112,7 @@ fn tighter_tolerance_changes_nothing_over_a_long_tour() {
             begin_s: 10.0 * f64::from(k),
             end_s: 10.0 * f64::from(k + 1),
             torque: &torques[usize::from(k % 2 == 1)],
+            slope: &[],
         })
         .collect();
     let body = busy_body();
@@ -126,7 +128,7 @@ fn classical_step(body: &Body, at: &Snapshot, torque: &[f64], h: f64) -> Snapsho
     let derivative = |state: &Snapshot| {
         let rate = body.rate_derivative(state, torque);
         let wheels: Vec<f64> = (0..torque.len())
-            .map(|i| body.wheel_derivative(i, torque[i], &rate))
+            .map(|i| body.wheel_derivative(i, (torque[i], state.wheel_speed[i]), &rate))
             .collect();
         (
             quaternion_derivative(&state.quaternion, &state.rate),
@@ -166,6 +168,7 @@ fn a_second_method_on_the_plain_equations_agrees() {
         begin_s: 0.0,
         end_s: 40.0,
         torque: &torque,
+        slope: &[],
     };
     let last = end_of(&body, &busy_start(), &[interval], STEP_TOLERANCE);
     let turn = turn_between(&last.quaternion, &state.quaternion);
@@ -183,12 +186,13 @@ fn a_second_method_on_the_plain_equations_agrees() {
 #[test]
 fn the_series_has_the_order_that_it_claims() {
     let (body, torque) = (busy_body(), [0.01, -0.02, 0.0, 0.015]);
-    let series = Expansion::about(&body, &busy_start(), &torque);
+    let series = Expansion::about(&body, &busy_start(), (&torque, &[]));
     let error = |s: f64| {
         let interval = Interval {
             begin_s: 0.0,
             end_s: s,
             torque: &torque,
+            slope: &[],
         };
         let exact = end_of(&body, &busy_start(), &[interval], STEP_TOLERANCE);
         (series.state(s).rate - exact.rate).norm()
@@ -206,6 +210,7 @@ fn momentum_survives_a_tour_with_bias() {
         begin_s,
         end_s,
         torque: &torque,
+        slope: &[],
     };
     let intervals = [interval(0.0, 30.0), interval(30.0, 500.0)];
     let Flown {
@@ -230,6 +235,7 @@ fn absurd_motion_ends_in_a_sentence() {
         begin_s: 0.0,
         end_s: 1e9,
         torque: &torque,
+        slope: &[],
     };
     let sentence = fly(
         &busy_body(),
@@ -247,6 +253,7 @@ fn absurd_motion_ends_in_a_sentence() {
         begin_s: 0.0,
         end_s: 1e6,
         torque: &[0.0; 4],
+        slope: &[],
     };
     let sentence = fly(&busy_body(), spinning, &[long], STEP_TOLERANCE, |_| {}).unwrap_err();
     assert!(sentence.contains("ran out of steps"), "{sentence}");

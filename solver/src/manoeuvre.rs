@@ -1,0 +1,276 @@
+//! One manoeuvre of one spacecraft, with a choice of what is minimised and of how it is commanded.
+//!
+//! A [`Manoeuvre`] leads from a state to a state. Its [`Objective`] is the time (the paper's
+//! problem), time with effort (OLRAC), the energy of the motors at a given time, or the time at a
+//! given energy (the energy thesis). Its [`Command`] says which torques can be commanded: constant
+//! on intervals of any length, on equal ones, on the samples of a clock held constant or linearly
+//! (BIROS), or continuous. [`solve`] minimises, and flies what it has found with the integrator of
+//! the [checker](crate::checker), which shares nothing with the optimiser.
+//!
+//! All of it is one nonlinear program ([`program`]) with other variables ([`shape`]) and other
+//! weights ([`ingredients`]).
+//!
+//! # Drives
+//!
+//! Torques are those that change the wheels' momenta. Where an inner loop makes up for friction the
+//! limits are the motor's, so the program keeps `u + v W + c sign(W)` within them. Where nothing does,
+//! the plan commands the motor and leaves friction to the feedback.
+//!
+//! A wheel with a speed law is not commanded. Relative to the body it is locked at a speed that is a
+//! known function of time ([`flow`]).
+//!
+//! # Energy
+//!
+//! Power is `P = (R / k^2) M^2 + M W` with the motor torque `M`. The *proxy* is the integral of `P`,
+//! which counts what braking would return; the *bill* is that of `max(P, 0)`, over the motor's
+//! efficiency and with what its electronics take (the thesis's equation 1.16). Within an interval
+//! the program lets one wheel's power of both signs cancel, so that its own bill is low by what
+//! shrinks with the square of the interval; every [`Outcome`] has both integrals of the flown
+//! motion, to rounding.
+
+mod flow;
+mod flown;
+mod frugal;
+mod ingredients;
+mod jet;
+mod motion;
+mod program;
+mod sampled;
+mod shape;
+mod solving;
+mod spec;
+mod starts;
+mod terms;
+#[cfg(test)]
+mod tests;
+
+pub use flown::{Energies, Flown, Piece};
+pub use spec::{Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Validated};
+
+use crate::nlp::{Interruption, NlpStatus};
+use crate::stop::{StopReason, StopSignal};
+use ingredients::Ingredients;
+use motion::Motion;
+use shape::{Course, Lengths, Shape};
+use solving::{Solved, Task};
+
+/// What came of a manoeuvre.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// How the last program ended: `converged`, or why not.
+    pub status: String,
+    /// Whether a local minimum was found and its flight keeps all limits and arrives.
+    pub solved: bool,
+    /// The value of the objective, in its own unit: s, or J.
+    pub objective: f64,
+    /// Duration, s.
+    pub time_s: f64,
+    /// Integral of the squared torques, (N m)² s.
+    pub effort: f64,
+    /// The flight as the independent integration found it.
+    pub flown: Flown,
+    /// Guesses tried.
+    pub starts: usize,
+    /// Interior-point iterations, all programs together.
+    pub iterations: usize,
+    /// Of a sampled manoeuvre the minimum in continuous time, s.
+    pub continuous_time_s: Option<f64>,
+    /// The motion, from which a neighbour can begin.
+    motion: Motion,
+}
+
+/// What is swept along a trade curve.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sweep {
+    /// Durations, s, of [`Objective::Energy`].
+    Durations(Vec<f64>),
+    /// Weights of [`Objective::TimeAndEffort`].
+    Weights(Vec<f64>),
+    /// Energies, J, of [`Objective::MinimumTimeAtEnergy`].
+    Energies(Vec<f64>),
+}
+
+/// Solves a manoeuvre.
+#[must_use]
+pub fn solve(manoeuvre: &Manoeuvre, stop: &StopSignal) -> Outcome {
+    solve_from(manoeuvre, None, stop)
+}
+
+/// Solves the same manoeuvre along a sweep, each from the solution before it; the objective's own
+/// value of what is swept is not used.
+///
+/// # Errors
+///
+/// Problems with the values, all of them at once; the pointers count along the sweep.
+pub fn trade_curve(
+    manoeuvre: &Manoeuvre,
+    sweep: &Sweep,
+    stop: &StopSignal,
+) -> Result<Vec<Outcome>, Vec<crate::problem::Problem>> {
+    let points = manoeuvre.along(sweep)?;
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    for point in points {
+        let before = outcomes.last().filter(|before| before.solved);
+        let outcome = solve_from(&point, before.map(|before| &before.motion), stop);
+        outcomes.push(outcome);
+        if stop.is_set() {
+            break;
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Solves from the motion of a neighbour, and from the usual guesses when there is none or it leads
+/// nowhere.
+fn solve_from(manoeuvre: &Manoeuvre, neighbour: Option<&Motion>, stop: &StopSignal) -> Outcome {
+    let stop = &|| interruption(stop);
+    let found = match (manoeuvre.command(), manoeuvre.objective()) {
+        (Command::Sampled { period_s, hold }, _) => {
+            sampled::solve(manoeuvre, (period_s, hold), neighbour, stop)
+        }
+        (
+            _,
+            Objective::MinimumTimeAtEnergy {
+                energy_j,
+                measure: Measure::Proxy,
+            },
+        ) => frugal::solve(manoeuvre, energy_j, neighbour, stop),
+        _ => direct(manoeuvre, &Plain::of(manoeuvre), neighbour, stop),
+    };
+    found.conclude(manoeuvre)
+}
+
+fn interruption(stop: &StopSignal) -> Option<Interruption> {
+    stop.reason().map(|reason| match reason {
+        StopReason::TimeLimit => Interruption::TimeLimit,
+        StopReason::Requested | StopReason::Cancelled => Interruption::Cancelled,
+    })
+}
+
+/// A solution with the way to it.
+struct Found {
+    solved: Solved,
+    starts: usize,
+    iterations: usize,
+    continuous_time: Option<f64>,
+}
+
+/// A program that one solve answers.
+struct Plain {
+    ingredients: Ingredients,
+    shape: Shape,
+    intervals: usize,
+    /// The duration of the guesses, s, where it is known.
+    lasting: Option<f64>,
+}
+
+impl Plain {
+    /// The program of a manoeuvre in continuous time.
+    fn of(manoeuvre: &Manoeuvre) -> Self {
+        let ingredients = manoeuvre.ingredients();
+        let (course, own, intervals) = match manoeuvre.command() {
+            Command::Free { intervals } => (Course::Steps, true, intervals),
+            Command::Uniform { intervals } => (Course::Steps, false, intervals),
+            Command::Smooth { intervals } => (Course::Ramps, false, intervals),
+            // In continuous time, as free as can be.
+            Command::Sampled { .. } => (Course::Steps, true, manoeuvre.usual_intervals()),
+        };
+        let lengths = match (own, ingredients.duration) {
+            (true, _) => Lengths::Own,
+            (false, None) => Lengths::Shared,
+            (false, Some(duration)) => Lengths::Given(vec![duration / intervals as f64; intervals]),
+        };
+        Self {
+            shape: manoeuvre.shape(course, lengths, &ingredients),
+            lasting: ingredients.duration,
+            ingredients,
+            intervals,
+        }
+    }
+
+    /// A guess on the nodes of the program.
+    fn meshed(&self, guess: &Motion, manoeuvre: &Manoeuvre) -> Motion {
+        let dynamics = &manoeuvre.vehicle().dynamics;
+        let lasting = self.lasting.unwrap_or_else(|| guess.duration());
+        let guess = guess.lasting(lasting, dynamics);
+        match &self.shape.lengths {
+            Lengths::Given(lengths) => guess.on_mesh(lengths),
+            Lengths::Own
+                if self.ingredients.effort == 0.0 && self.intervals >= guess.lengths.len() =>
+            {
+                guess.on_finer_mesh(self.intervals)
+            }
+            _ => guess.on_equal_mesh(self.intervals),
+        }
+    }
+}
+
+/// Solves one program: from a neighbour, or from the best of the usual guesses.
+fn direct(
+    manoeuvre: &Manoeuvre,
+    plain: &Plain,
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let mut best: Option<Solved> = None;
+    let (mut tried, mut iterations) = (0, 0);
+    let mut attempt = |guess: &Motion| {
+        let task = Task {
+            vehicle: manoeuvre.vehicle(),
+            ends: manoeuvre.ends_towards(guess),
+            shape: plain.shape.clone(),
+            ingredients: plain.ingredients,
+        };
+        let solved = task.solve(&plain.meshed(guess, manoeuvre), stop);
+        tried += 1;
+        iterations += solved.iterations;
+        let converged = solved.converged();
+        if best.as_ref().is_none_or(|best| solved.improves(best)) {
+            best = Some(solved);
+        }
+        converged
+    };
+    let known = neighbour.is_some_and(|guess| attempt(guess));
+    if !known {
+        for guess in starts::of(manoeuvre, plain.ingredients, stop) {
+            attempt(&guess);
+            if stop().is_some() {
+                break;
+            }
+        }
+    }
+    Found {
+        solved: best.expect("there is always a guess"),
+        starts: tried,
+        iterations,
+        continuous_time: None,
+    }
+}
+
+impl Found {
+    /// Flies the solution and adds it all up.
+    fn conclude(self, manoeuvre: &Manoeuvre) -> Outcome {
+        let motion = self.solved.motion;
+        let flown = flown::fly(manoeuvre, &motion);
+        let effort = flown::effort(&motion);
+        let time_s = motion.duration();
+        let objective = match manoeuvre.objective() {
+            Objective::MinimumTime | Objective::MinimumTimeAtEnergy { .. } => time_s,
+            Objective::TimeAndEffort { weight } => time_s + weight * effort,
+            Objective::Energy { measure, .. } => flown.energies.by(measure),
+        };
+        let converged = self.solved.status == NlpStatus::Converged;
+        Outcome {
+            status: self.solved.status.to_string(),
+            solved: converged && flown.failures.is_empty(),
+            objective,
+            time_s,
+            effort,
+            flown,
+            starts: self.starts,
+            iterations: self.iterations,
+            continuous_time_s: self.continuous_time,
+            motion,
+        }
+    }
+}

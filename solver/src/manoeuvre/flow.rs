@@ -1,0 +1,154 @@
+//! What happens on an interval, exactly: the turn, the momenta, the locked wheels that follow a
+//! law of their own, and the limits in between.
+//!
+//! A wheel under a speed law is no control. Relative to the body its speed is a known function of
+//! time, `W(t) = speed + (W(0) - speed) exp(-rate t)`, so it is a locked wheel whose momentum
+//! drifts. The program takes the drift at the times of its last iterate as known, and is corrected
+//! until it no longer changes: what it ends with flies exactly.
+
+use super::motion::Motion;
+use crate::attitude::Attitude;
+use crate::drive::{Drive, SpeedLaw};
+use crate::dynamics::Dynamics;
+use crate::kinematics::{Quat, exact_flow, rotate_back};
+use nalgebra::{DVector, Vector3};
+
+/// Parts of an interval at whose ends the limits are looked at.
+const SAMPLES: usize = 8;
+
+/// A wheel that follows a law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Follower {
+    /// `a I`, kg m².
+    spin: Vector3<f64>,
+    law: SpeedLaw,
+    /// Speed at the start, rad/s.
+    start: f64,
+}
+
+/// All wheels that follow laws.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Followers(Vec<Follower>);
+
+impl Followers {
+    /// Adds a wheel of axis times inertia `spin` that starts at a speed, rad/s.
+    pub(super) fn add(&mut self, spin: Vector3<f64>, law: SpeedLaw, start: f64) {
+        self.0.push(Follower { spin, law, start });
+    }
+
+    /// Change of the locked momentum since the start, N m s.
+    pub(super) fn drift(&self, time: f64) -> Vector3<f64> {
+        self.0
+            .iter()
+            .map(|f| f.spin * ((f.start - f.law.speed) * (-f.law.rate * time).exp_m1()))
+            .sum()
+    }
+
+    /// Whether any wheel's speed changes.
+    pub(super) fn move_at_all(&self) -> bool {
+        self.0
+            .iter()
+            .any(|f| f.law.rate > 0.0 && f.start != f.law.speed)
+    }
+}
+
+/// A spacecraft with everything that turns on it.
+#[derive(Debug, Clone)]
+pub(super) struct Vehicle {
+    pub(super) dynamics: Dynamics,
+    /// Drives of the commanded wheels.
+    pub(super) drives: Vec<Drive>,
+    pub(super) followers: Followers,
+}
+
+impl Vehicle {
+    /// Change of the locked momentum at the nodes of a motion, N m s.
+    pub(super) fn drift(&self, motion: &Motion) -> Vec<Vector3<f64>> {
+        let times = motion.times().into_iter();
+        times.map(|time| self.followers.drift(time)).collect()
+    }
+
+    /// Wheel momenta on an interval at a share `s` of it, N m s.
+    fn momenta(motion: &Motion, k: usize, s: f64) -> DVector<f64> {
+        let length = motion.lengths[k];
+        let (begin, end) = (&motion.begin[k], &motion.end[k]);
+        &motion.momenta[k] + begin * (length * (s - 0.5 * s * s)) + end * (length * 0.5 * s * s)
+    }
+
+    /// Body rate, rad/s, with `momentum` that in body axes, N m s.
+    fn rate(&self, momentum: &Vector3<f64>, wheels: &DVector<f64>, time: f64) -> Vector3<f64> {
+        let dynamics = &self.dynamics;
+        let held = dynamics.locked_momentum + self.followers.drift(time);
+        dynamics.inertia_inverse * (momentum - held - &dynamics.axes * wheels)
+    }
+
+    /// The turn over a part of an interval that begins at a time, s, in an attitude.
+    fn turn(&self, motion: &Motion, k: usize, time: f64, (from, to, q): (f64, f64, &Attitude)) -> Quat {
+        let length = motion.lengths[k];
+        let momentum = q.to_body(self.dynamics.momentum);
+        exact_flow(|sigma, p| {
+            let s = from + (to - from) * sigma;
+            let momentum = rotate_back(p, &momentum);
+            let wheels = Self::momenta(motion, k, s);
+            self.rate(&momentum, &wheels, time + length * s) * (length * (to - from))
+        })
+    }
+
+    /// The exact turn over every interval, from its first node.
+    pub(super) fn turns(&self, motion: &Motion) -> Vec<Quat> {
+        let times = motion.times();
+        (0..motion.lengths.len())
+            .map(|k| self.turn(motion, k, times[k], (0.0, 1.0, &motion.attitudes[k])))
+            .collect()
+    }
+
+    /// Relative excess inside every interval over the limits of [`Dynamics::limit_shares`], where it
+    /// is larger than at both ends, and over the motor torques.
+    pub(super) fn excesses(&self, motion: &Motion) -> (Vec<f64>, Vec<f64>) {
+        let times = motion.times();
+        let (mut shares, mut torques) = (Vec::new(), Vec::new());
+        for k in 0..motion.lengths.len() {
+            let mut samples: Vec<Vec<f64>> = Vec::new();
+            let mut motors = Vec::new();
+            let mut q = motion.attitudes[k];
+            for i in 0..=SAMPLES {
+                let at = |i: usize| i as f64 / SAMPLES as f64;
+                let s = at(i);
+                if i > 0 {
+                    let turn = self.turn(motion, k, times[k], (at(i - 1), s, &q));
+                    q = Attitude::from_xyzw(turn).map_or(q, |turn| q.then_in_body(&turn));
+                }
+                let wheels = Self::momenta(motion, k, s);
+                let momentum = q.to_body(self.dynamics.momentum);
+                let rate = self.rate(&momentum, &wheels, times[k] + motion.lengths[k] * s);
+                samples.push(self.dynamics.limit_shares(&rate, &wheels).collect());
+                let torque = &motion.begin[k] * (1.0 - s) + &motion.end[k] * s;
+                motors.push(self.motor_usage(&torque, &rate, &wheels));
+            }
+            for share in 0..samples[0].len() {
+                let usage = |i: usize| samples[i][share].abs();
+                shares.push(excess_inside(usage));
+            }
+            torques.push(excess_inside(|i| motors[i]));
+        }
+        (shares, torques)
+    }
+
+    /// The greatest share of its limit that any motor torque has.
+    fn motor_usage(&self, torque: &DVector<f64>, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
+        let motors = self.dynamics.actuators.iter().zip(&self.drives).enumerate();
+        let torques = motors.map(|(i, (wheel, drive))| {
+            let speed = wheels[i] / wheel.inertia - wheel.axis.dot(rate);
+            drive.motor_torque(torque[i], speed)
+        });
+        self.dynamics
+            .torque_usage(&DVector::from_iterator(torque.len(), torques))
+    }
+}
+
+/// The excess over one between the first and the last sample, if it is above both.
+fn excess_inside(usage: impl Fn(usize) -> f64) -> f64 {
+    let ends = usage(0).max(usage(SAMPLES));
+    let peak = (1..SAMPLES).map(usage).fold(0.0, f64::max);
+    if peak > ends { (peak - 1.0).max(0.0) } else { 0.0 }
+}

@@ -1,0 +1,120 @@
+//! The shortest time in which the optimum of the smooth proxy is billed no more than a given energy
+//! (the energy thesis's EEERT): a root of the bill as a function of the time.
+
+use super::flown;
+use super::ingredients::Ingredients;
+use super::motion::Motion;
+use super::shape::Lengths;
+use super::{Found, Manoeuvre, Measure, Plain, direct, starts};
+use crate::nlp::Interruption;
+
+/// Relative error of the bill that ends the search.
+const ACCURACY: f64 = 1e-5;
+/// Durations tried, and the factor between them before the root is bracketed.
+const MOST_TRIALS: usize = 40;
+const GROWTH: f64 = 1.25;
+
+/// A duration with the optimum in it.
+struct Trial {
+    duration: f64,
+    /// Logarithm of the bill over the allowed energy.
+    excess: f64,
+    found: Found,
+}
+
+/// Solves for the time.
+pub(super) fn solve(
+    manoeuvre: &Manoeuvre,
+    energy: f64,
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let guess = neighbour.cloned().or_else(|| {
+        let guesses = starts::of(manoeuvre, Ingredients::TIME, stop);
+        guesses.into_iter().next()
+    });
+    let shortest = guess.as_ref().map_or(1.0, Motion::duration);
+    let (mut starts, mut iterations) = (0, 0);
+    let mut attempt = |duration: f64, guess: Option<&Motion>| {
+        let found = in_time(manoeuvre, duration, guess, stop);
+        starts += found.starts;
+        iterations += found.iterations;
+        let bill = flown::fly(manoeuvre, &found.solved.motion).energies.bill_j;
+        let excess = if found.solved.converged() {
+            (bill / energy).ln()
+        } else {
+            f64::INFINITY
+        };
+        Trial {
+            duration,
+            excess,
+            found,
+        }
+    };
+    let mut high = attempt(shortest * GROWTH, None);
+    let mut low: Option<Trial> = None;
+    for _ in 0..MOST_TRIALS {
+        if stop().is_some() || high.excess.abs() <= ACCURACY {
+            break;
+        }
+        let known = |trial: &Trial| Some(trial.found.solved.motion.clone()).filter(|_| trial.excess.is_finite());
+        match &mut low {
+            // Too short still: go on.
+            _ if high.excess > 0.0 => {
+                let next = attempt(high.duration * GROWTH, known(&high).as_ref());
+                low = Some(std::mem::replace(&mut high, next));
+            }
+            // Long enough at once: look for one that is too short.
+            None => {
+                let next = attempt(high.duration / GROWTH, known(&high).as_ref());
+                if next.excess > 0.0 {
+                    low = Some(next);
+                } else {
+                    high = next;
+                }
+            }
+            Some(low) => {
+                let next = attempt(between(low, &high), known(&high).as_ref());
+                if next.excess > ACCURACY {
+                    *low = next;
+                } else {
+                    high = next;
+                }
+            }
+        }
+    }
+    Found {
+        starts,
+        iterations,
+        ..high.found
+    }
+}
+
+/// A duration at which the bill should be right: the bill is about a power of the time.
+fn between(low: &Trial, high: &Trial) -> f64 {
+    let share = if low.excess.is_finite() {
+        (low.excess / (low.excess - high.excess)).clamp(0.1, 0.98)
+    } else {
+        0.5
+    };
+    let (from, to) = (low.duration.ln(), high.duration.ln());
+    (from + (to - from) * share).exp()
+}
+
+/// The optimum of the proxy in a time.
+fn in_time(
+    manoeuvre: &Manoeuvre,
+    duration: f64,
+    guess: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let mut plain = Plain::of(manoeuvre);
+    plain.ingredients = Ingredients::energy_in(duration, Measure::Proxy);
+    plain.lasting = Some(duration);
+    let lengths = match plain.shape.lengths {
+        Lengths::Own => Lengths::Own,
+        _ => Lengths::Given(vec![duration / plain.intervals as f64; plain.intervals]),
+    };
+    plain.shape = manoeuvre.shape(plain.shape.course, lengths, &plain.ingredients);
+    direct(manoeuvre, &plain, guess, stop)
+}

@@ -1,0 +1,166 @@
+//! Commands held on the samples of a clock, in BIROS's three steps.
+//!
+//! First the minimum in continuous time; then its duration is rounded up to the clock, and torque
+//! held linearly; then it is held constant, from the motion before. Where no motion is found in so
+//! many samples, one more is allowed. In its fixed time a manoeuvre for time alone takes the least
+//! effort.
+
+use super::flown::{self, effort};
+use super::ingredients::Ingredients;
+use super::motion::Motion;
+use super::shape::{Course, Lengths};
+use super::{Found, Hold, Manoeuvre, Objective, Plain, direct};
+use crate::nlp::Interruption;
+
+/// Samples allowed beyond those of the continuous minimum.
+const MOST_EXTRA: usize = 12;
+/// Share of a sample by which a duration may exceed a multiple of it as rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Solves a sampled manoeuvre.
+pub(super) fn solve(
+    manoeuvre: &Manoeuvre,
+    (period, hold): (f64, Hold),
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let continuous = continuous(manoeuvre, neighbour, stop);
+    if !continuous.solved.converged() || stop().is_some() {
+        return continuous;
+    }
+    let clock = Clock {
+        manoeuvre,
+        period,
+        hold,
+        stop,
+    };
+    let shortest = continuous.solved.motion.duration() / period;
+    let least = ((shortest - ROUNDING).ceil() as usize).max(2);
+    let mut best: Option<Found> = None;
+    let mut last = None;
+    for samples in clock.candidates(least) {
+        let found = clock.hold(samples, &continuous.solved.motion);
+        if clock.is_answer(&found) {
+            if best.as_ref().is_none_or(|best| clock.value(&found) < clock.value(best)) {
+                best = Some(found);
+            }
+            if samples >= least {
+                break;
+            }
+        } else {
+            last = Some(found);
+        }
+        if stop().is_some() {
+            break;
+        }
+    }
+    let mut found = best.or(last).unwrap_or(continuous);
+    found.continuous_time = Some(shortest * period);
+    found
+}
+
+/// The minimum in continuous time.
+fn continuous(
+    manoeuvre: &Manoeuvre,
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    match manoeuvre.objective() {
+        Objective::MinimumTimeAtEnergy {
+            energy_j,
+            measure: super::Measure::Proxy,
+        } => super::frugal::solve(manoeuvre, energy_j, neighbour, stop),
+        _ => direct(manoeuvre, &Plain::of(manoeuvre), neighbour, stop),
+    }
+}
+
+/// A manoeuvre on a clock.
+struct Clock<'a> {
+    manoeuvre: &'a Manoeuvre,
+    period: f64,
+    hold: Hold,
+    stop: &'a dyn Fn() -> Option<Interruption>,
+}
+
+impl Clock<'_> {
+    /// Numbers of samples to try, given the least that the continuous minimum admits.
+    fn candidates(&self, least: usize) -> Vec<usize> {
+        match self.manoeuvre.objective() {
+            Objective::Energy { duration_s, .. } => vec![(duration_s / self.period).round() as usize],
+            // Time weighs against effort, so that the shorter side of the optimum counts too.
+            Objective::TimeAndEffort { .. } => (least.saturating_sub(1).max(2)..=least + MOST_EXTRA).collect(),
+            _ => (least..=least + MOST_EXTRA).collect(),
+        }
+    }
+
+    /// What is minimised once the number of samples is fixed.
+    fn ingredients(&self, duration: f64) -> Ingredients {
+        match self.manoeuvre.objective() {
+            Objective::MinimumTime => Ingredients {
+                time: 0.0,
+                effort: 1.0,
+                duration: Some(duration),
+                ..Ingredients::TIME
+            },
+            Objective::TimeAndEffort { weight } => Ingredients {
+                effort: weight,
+                duration: Some(duration),
+                ..Ingredients::TIME
+            },
+            Objective::Energy { measure, .. } | Objective::MinimumTimeAtEnergy { measure, .. } => {
+                Ingredients::energy_in(duration, measure)
+            }
+        }
+    }
+
+    /// The optimum in so many samples: held linearly, and from there held constant.
+    fn hold(&self, samples: usize, guess: &Motion) -> Found {
+        let duration = samples as f64 * self.period;
+        let ingredients = self.ingredients(duration);
+        let solve = |course: Course, guess: &Motion| {
+            let lengths = Lengths::Given(vec![self.period; samples]);
+            let plain = Plain {
+                shape: self.manoeuvre.shape(course, lengths, &ingredients),
+                lasting: Some(duration),
+                intervals: samples,
+                ingredients,
+            };
+            direct(self.manoeuvre, &plain, Some(guess), self.stop)
+        };
+        let linear = solve(Course::Ramps, guess);
+        if self.hold == Hold::Linear {
+            return linear;
+        }
+        // Torque that may jump needs less time than one that may not: no motion of the second kind
+        // says nothing about the first.
+        let guess = if linear.solved.converged() {
+            &linear.solved.motion
+        } else {
+            guess
+        };
+        let mut constant = solve(Course::Steps, guess);
+        constant.starts += linear.starts;
+        constant.iterations += linear.iterations;
+        constant
+    }
+
+    /// Whether a solution answers the manoeuvre.
+    fn is_answer(&self, found: &Found) -> bool {
+        found.solved.converged()
+            && match self.manoeuvre.objective() {
+                Objective::MinimumTimeAtEnergy { energy_j, .. } => {
+                    let flown = flown::fly(self.manoeuvre, &found.solved.motion);
+                    flown.energies.bill_j <= energy_j
+                }
+                _ => true,
+            }
+    }
+
+    fn value(&self, found: &Found) -> f64 {
+        let motion = &found.solved.motion;
+        match self.manoeuvre.objective() {
+            Objective::TimeAndEffort { weight } => motion.duration() + weight * effort(motion),
+            _ => motion.duration(),
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Guesses for a manoeuvre: the fastest motion, and slews about the eigenaxis bowed to either side.
+
+use super::Manoeuvre;
+use super::ingredients::Ingredients;
+use super::motion::Motion;
+use crate::nlp::Interruption;
+use crate::slew::eigenaxis::Side;
+use crate::slew::extremal::KinematicExtremals;
+use crate::slew::{self, Resolution, SlewProblem};
+use crate::spec::Accuracy;
+
+/// The guesses, best first: minimum time has one, since the fastest motion is itself the best of
+/// several; what is smooth may have more than one minimum.
+pub(super) fn of(
+    manoeuvre: &Manoeuvre,
+    ingredients: Ingredients,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Vec<Motion> {
+    let vehicle = manoeuvre.vehicle();
+    let dynamics = &vehicle.dynamics;
+    let ends = manoeuvre.ends();
+    let null = dynamics.null_component(manoeuvre.start_momenta());
+    let problem = SlewProblem {
+        dynamics,
+        from: &ends[0],
+        to: &ends[1],
+        arrival: manoeuvre.arrival(),
+        null: &null,
+        extremals: &KinematicExtremals::of(dynamics),
+        resolution: Resolution::of(Accuracy::Standard, dynamics),
+    };
+    let fastest = slew::solve(&problem, None, stop).flown;
+    let converged = fastest.duration().is_some();
+    let mut guesses = vec![Motion::of_profile(&fastest.profile)];
+    let hurried = ingredients.effort == 0.0 && !ingredients.uses_energy();
+    if !converged || !hurried {
+        let bowed = [Side::Far, Side::Near].map(|side| Motion::of_profile(&problem.bowed(side)));
+        guesses.extend(bowed);
+    }
+    guesses
+}
+
+impl Manoeuvre {
+    /// Intervals that resolve a motion in minimum time.
+    pub(super) fn usual_intervals(&self) -> usize {
+        2 * Resolution::of(Accuracy::Standard, &self.vehicle().dynamics).intervals
+    }
+}

@@ -28,6 +28,7 @@
 //! shrinks with the square of the interval; every [`Outcome`] has both integrals of the flown
 //! motion, to rounding.
 
+pub mod evidence;
 mod flow;
 mod flown;
 mod frugal;
@@ -54,6 +55,10 @@ use motion::Motion;
 use shape::{Course, Lengths, Shape};
 use solving::{Solved, Task};
 
+/// Rounds in which a budget is corrected, and the share of it that may be left.
+const BUDGET_ROUNDS: usize = 8;
+const BUDGET_ACCURACY: f64 = 1e-5;
+
 /// What came of a manoeuvre.
 #[derive(Debug, Clone)]
 pub struct Outcome {
@@ -75,8 +80,8 @@ pub struct Outcome {
     pub iterations: usize,
     /// Of a sampled manoeuvre the minimum in continuous time, s.
     pub continuous_time_s: Option<f64>,
-    /// The motion, from which a neighbour can begin.
-    motion: Motion,
+    /// The program's solution, from which a neighbour can begin.
+    solution: Solved,
 }
 
 /// What is swept along a trade curve.
@@ -111,7 +116,7 @@ pub fn trade_curve(
     let mut outcomes: Vec<Outcome> = Vec::new();
     for point in points {
         let before = outcomes.last().filter(|before| before.solved);
-        let outcome = solve_from(&point, before.map(|before| &before.motion), stop);
+        let outcome = solve_from(&point, before.map(|before| &before.solution.motion), stop);
         outcomes.push(outcome);
         if stop.is_set() {
             break;
@@ -135,6 +140,9 @@ fn solve_from(manoeuvre: &Manoeuvre, neighbour: Option<&Motion>, stop: &StopSign
                 measure: Measure::Proxy,
             },
         ) => frugal::solve(manoeuvre, energy_j, neighbour, stop),
+        (_, Objective::MinimumTimeAtEnergy { energy_j, .. }) => {
+            billed(manoeuvre, energy_j, neighbour, stop)
+        }
         _ => direct(manoeuvre, &Plain::of(manoeuvre), neighbour, stop),
     };
     found.conclude(manoeuvre)
@@ -247,12 +255,43 @@ fn direct(
     }
 }
 
+/// Solves for the time with a bill: the program's own bill is a little low, so that its budget is
+/// lowered until the flight's keeps within the energy.
+fn billed(
+    manoeuvre: &Manoeuvre,
+    energy: f64,
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let mut plain = Plain::of(manoeuvre);
+    let mut found = direct(manoeuvre, &plain, neighbour, stop);
+    for _ in 0..BUDGET_ROUNDS {
+        let bill = flown::fly(manoeuvre, &found.solved.motion).energies.bill_j;
+        let Some(budget) = plain.ingredients.budget else {
+            break;
+        };
+        let kept = bill <= energy && bill >= energy * (1.0 - BUDGET_ACCURACY);
+        if kept || !found.solved.converged() || stop().is_some() {
+            break;
+        }
+        plain.ingredients.budget = Some(budget * energy / bill * (1.0 - 0.5 * BUDGET_ACCURACY));
+        let guess = found.solved.motion.clone();
+        let next = direct(manoeuvre, &plain, Some(&guess), stop);
+        found = Found {
+            starts: found.starts + next.starts,
+            iterations: found.iterations + next.iterations,
+            ..next
+        };
+    }
+    found
+}
+
 impl Found {
     /// Flies the solution and adds it all up.
     fn conclude(self, manoeuvre: &Manoeuvre) -> Outcome {
-        let motion = self.solved.motion;
-        let flown = flown::fly(manoeuvre, &motion);
-        let effort = flown::effort(&motion);
+        let motion = &self.solved.motion;
+        let flown = flown::fly(manoeuvre, motion);
+        let effort = flown::effort(motion);
         let time_s = motion.duration();
         let objective = match manoeuvre.objective() {
             Objective::MinimumTime | Objective::MinimumTimeAtEnergy { .. } => time_s,
@@ -270,7 +309,7 @@ impl Found {
             starts: self.starts,
             iterations: self.iterations,
             continuous_time_s: self.continuous_time,
-            motion,
+            solution: self.solved,
         }
     }
 }

@@ -61,6 +61,21 @@ pub(super) struct Vehicle {
     pub(super) followers: Followers,
 }
 
+/// The motion at a moment.
+#[derive(Debug, Clone)]
+pub(super) struct Sample {
+    /// Body rate, rad/s.
+    pub(super) rate: Vector3<f64>,
+    /// Total momentum in body axes, N m s.
+    pub(super) stored: Vector3<f64>,
+    /// Momenta of the commanded wheels, N m s.
+    pub(super) momenta: DVector<f64>,
+    /// Their speeds relative to the body, rad/s.
+    pub(super) speeds: Vec<f64>,
+    /// Their commanded torques, N m.
+    pub(super) torques: DVector<f64>,
+}
+
 impl Vehicle {
     /// Change of the locked momentum at the nodes of a motion, N m s.
     pub(super) fn drift(&self, motion: &Motion) -> Vec<Vector3<f64>> {
@@ -102,47 +117,60 @@ impl Vehicle {
             .collect()
     }
 
+    /// The motion at the ends of equal parts of an interval, the first and the last included.
+    pub(super) fn samples(&self, motion: &Motion, k: usize, begin: f64, parts: usize) -> Vec<Sample> {
+        let at = |i: usize| i as f64 / parts as f64;
+        let mut attitude = motion.attitudes[k];
+        let mut samples = Vec::with_capacity(parts + 1);
+        for i in 0..=parts {
+            if i > 0 {
+                let turn = self.turn(motion, k, begin, (at(i - 1), at(i), &attitude));
+                attitude = Attitude::from_xyzw(turn)
+                    .map_or(attitude, |turn| attitude.then_in_body(&turn));
+            }
+            let s = at(i);
+            let momenta = Self::momenta(motion, k, s);
+            let stored = attitude.to_body(self.dynamics.momentum);
+            let rate = self.rate(&stored, &momenta, begin + motion.lengths[k] * s);
+            let actuators = self.dynamics.actuators.iter().zip(momenta.iter());
+            let speeds = actuators.map(|(wheel, h)| h / wheel.inertia - wheel.axis.dot(&rate));
+            samples.push(Sample {
+                speeds: speeds.collect(),
+                torques: &motion.begin[k] * (1.0 - s) + &motion.end[k] * s,
+                stored,
+                rate,
+                momenta,
+            });
+        }
+        samples
+    }
+
     /// Relative excess inside every interval over the limits of [`Dynamics::limit_shares`], where it
     /// is larger than at both ends, and over the motor torques.
     pub(super) fn excesses(&self, motion: &Motion) -> (Vec<f64>, Vec<f64>) {
         let times = motion.times();
         let (mut shares, mut torques) = (Vec::new(), Vec::new());
         for k in 0..motion.lengths.len() {
-            let mut samples: Vec<Vec<f64>> = Vec::new();
-            let mut motors = Vec::new();
-            let mut q = motion.attitudes[k];
-            for i in 0..=SAMPLES {
-                let at = |i: usize| i as f64 / SAMPLES as f64;
-                let s = at(i);
-                if i > 0 {
-                    let turn = self.turn(motion, k, times[k], (at(i - 1), s, &q));
-                    q = Attitude::from_xyzw(turn).map_or(q, |turn| q.then_in_body(&turn));
-                }
-                let wheels = Self::momenta(motion, k, s);
-                let momentum = q.to_body(self.dynamics.momentum);
-                let rate = self.rate(&momentum, &wheels, times[k] + motion.lengths[k] * s);
-                samples.push(self.dynamics.limit_shares(&rate, &wheels).collect());
-                let torque = &motion.begin[k] * (1.0 - s) + &motion.end[k] * s;
-                motors.push(self.motor_usage(&torque, &rate, &wheels));
+            let samples = self.samples(motion, k, times[k], SAMPLES);
+            let usages: Vec<Vec<f64>> = samples
+                .iter()
+                .map(|at| self.dynamics.limit_shares(&at.rate, &at.momenta).collect())
+                .collect();
+            for share in 0..usages[0].len() {
+                shares.push(excess_inside(|i| usages[i][share].abs()));
             }
-            for share in 0..samples[0].len() {
-                let usage = |i: usize| samples[i][share].abs();
-                shares.push(excess_inside(usage));
-            }
+            let motors: Vec<f64> = samples.iter().map(|at| self.motor_usage(at)).collect();
             torques.push(excess_inside(|i| motors[i]));
         }
         (shares, torques)
     }
 
     /// The greatest share of its limit that any motor torque has.
-    fn motor_usage(&self, torque: &DVector<f64>, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
-        let motors = self.dynamics.actuators.iter().zip(&self.drives).enumerate();
-        let torques = motors.map(|(i, (wheel, drive))| {
-            let speed = wheels[i] / wheel.inertia - wheel.axis.dot(rate);
-            drive.motor_torque(torque[i], speed)
-        });
+    fn motor_usage(&self, at: &Sample) -> f64 {
+        let motors = self.drives.iter().zip(at.torques.iter()).zip(&at.speeds);
+        let torques = motors.map(|((drive, torque), speed)| drive.motor_torque(*torque, *speed));
         self.dynamics
-            .torque_usage(&DVector::from_iterator(torque.len(), torques))
+            .torque_usage(&DVector::from_iterator(at.speeds.len(), torques))
     }
 }
 

@@ -48,6 +48,14 @@ impl Ingredients {
         }
     }
 
+    /// What of the motor's energy counts as the objective's: the bill is at the supply.
+    pub(super) fn share(&self, efficiency: f64) -> f64 {
+        match self.measure {
+            Measure::Proxy => 1.0,
+            Measure::Bill => efficiency.recip(),
+        }
+    }
+
     /// Whether energy matters.
     pub(super) fn uses_energy(&self) -> bool {
         self.energy > 0.0 || self.budget.is_some()

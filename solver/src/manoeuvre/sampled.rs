@@ -70,6 +70,9 @@ fn continuous(
             energy_j,
             measure: super::Measure::Proxy,
         } => super::frugal::solve(manoeuvre, energy_j, neighbour, stop),
+        Objective::MinimumTimeAtEnergy { energy_j, .. } => {
+            super::billed(manoeuvre, energy_j, neighbour, stop)
+        }
         _ => direct(manoeuvre, &Plain::of(manoeuvre), neighbour, stop),
     }
 }

@@ -43,6 +43,20 @@ const WITHOUT_LENGTHS: [Phase; 1] = [Phase {
     },
     length_penalty: 0.0,
 }];
+/// From a solution to one whose multipliers are evidence.
+const POLISHING: Phase = Phase {
+    settings: Settings {
+        tolerance: 1e-8,
+        initial_barrier: 1e-5,
+        initial_slack: 1e-5,
+        max_iterations: 200,
+        ..Settings::COLD
+    },
+    length_penalty: 1e-3,
+};
+/// Rounds of polishing: each turns the penalty on lengths to those of the last (the proximal point
+/// method), so that its share in the multipliers fades.
+const POLISH_ROUNDS: usize = 4;
 /// Rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 15;
 /// Rounds that keep a reserve only where a limit was exceeded; then everywhere.
@@ -70,7 +84,7 @@ pub(super) struct Task<'a> {
 }
 
 /// What came of it.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(super) struct Solved {
     pub(super) status: NlpStatus,
     pub(super) motion: Motion,
@@ -86,6 +100,26 @@ impl Solved {
     /// Whether it ended in a local minimum.
     pub(super) fn converged(&self) -> bool {
         self.status == NlpStatus::Converged
+    }
+
+    /// The same solution with multipliers to more digits, where they can be had.
+    pub(super) fn polished(&self, vehicle: &Vehicle, stop: &dyn Fn() -> Option<Interruption>) -> Self {
+        let mut best = self.clone();
+        for _ in 0..POLISH_ROUNDS {
+            let mut run = Run {
+                engine: InteriorPoint::new(&best.program, POLISHING.settings),
+                solved: best.clone(),
+                vehicle,
+            };
+            run.draw_lengths(POLISHING.length_penalty);
+            run.forget_multipliers();
+            if !run.converges(stop) {
+                break;
+            }
+            run.correct();
+            best = run.solved;
+        }
+        best
     }
 
     /// Whether it beats another.
@@ -256,13 +290,18 @@ impl Run<'_> {
             program.torque_reserve.iter_mut().for_each(|r| *r += most(torques));
         }
         program.base.keep(reserves);
-        // Slacks belong to the old limits: begin again from the primal point alone.
+        // Slacks belong to the old limits.
+        self.forget_multipliers();
+        self.engine.settings.initial_barrier = Settings::COLD.initial_barrier;
+    }
+
+    /// Begins again from the primal point alone.
+    fn forget_multipliers(&mut self) {
         let iterate = &mut self.solved.iterate;
         *iterate = Iterate::cold(
             std::mem::take(&mut iterate.points),
             std::mem::take(&mut iterate.controls),
         );
-        self.engine.settings.initial_barrier = Settings::COLD.initial_barrier;
     }
 
     /// Runs the engine from where the run is; whether it converges.

@@ -4,4 +4,5 @@ mod craft;
 mod derivatives;
 mod effort;
 mod energy;
+mod evidence;
 mod sampled;

@@ -123,7 +123,7 @@ pub(super) fn lro_end() -> StateSpec {
 /// BIROS with its high-torque wheels, and the pyramid of small ones on request.
 pub(super) fn biros(pyramid: bool) -> (SpacecraftSpec, Vec<DriveSpec>, StateSpec) {
     let rpm = std::f64::consts::PI / 30.0;
-    let high = |axis| wheel(axis, 5e-3, 0.23, Some(3000.0 * rpm));
+    let high = |axis| wheel(axis, 5e-3, 0.21, Some(1825.0 * rpm));
     let mut wheels = vec![
         high([1.0, 0.0, 0.0]),
         high([0.0, 1.0, 0.0]),

@@ -214,7 +214,7 @@ impl Fixture {
     fn check_second(&self) {
         let zero = vec![0.0; 40];
         let base = self.model(&zero);
-        let (vars, by) = (base.vars, 3e-4);
+        let (vars, by) = (base.vars, 1e-4);
         let at = |i: usize, si: f64, j: usize, sj: f64| {
             let mut step = zero.clone();
             step[i] += si * by;

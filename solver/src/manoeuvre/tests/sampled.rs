@@ -62,14 +62,7 @@ fn thirty_degrees_about_ten_take_ten_seconds() {
     let outcome = solved(&ManoeuvreSpec {
         spacecraft: SpacecraftSpec {
             inertia_kg_m2: diagonal([10.0, 10.0, 10.0]),
-            wheels: spacecraft
-                .wheels
-                .into_iter()
-                .map(|mut wheel| {
-                    wheel.max_torque_nm = 0.21;
-                    wheel
-                })
-                .collect(),
+            wheels: spacecraft.wheels,
             ..SpacecraftSpec::default()
         },
         drives,

@@ -28,6 +28,7 @@
 //! shrinks with the square of the interval; every [`Outcome`] has both integrals of the flown
 //! motion, to rounding.
 
+mod choices;
 pub mod evidence;
 mod flow;
 mod flown;
@@ -46,7 +47,9 @@ mod terms;
 mod tests;
 
 pub use flown::{Energies, Flown, Piece};
-pub use spec::{Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Validated};
+pub use spec::{
+    Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Validated,
+};
 
 use crate::nlp::{Interruption, NlpStatus};
 use crate::stop::{StopReason, StopSignal};
@@ -58,6 +61,8 @@ use solving::{Solved, Task};
 /// Rounds in which a budget is corrected, and the share of it that may be left.
 const BUDGET_ROUNDS: usize = 8;
 const BUDGET_ACCURACY: f64 = 1e-5;
+/// Relative excess over an energy that is no failure.
+const BUDGET_TOLERANCE: f64 = 1e-4;
 
 /// What came of a manoeuvre.
 #[derive(Debug, Clone)]
@@ -161,6 +166,8 @@ struct Found {
     starts: usize,
     iterations: usize,
     continuous_time: Option<f64>,
+    /// Why this is no answer, although it is a solution.
+    refusal: Option<String>,
 }
 
 /// A program that one solve answers.
@@ -238,7 +245,7 @@ fn direct(
         }
         converged
     };
-    let known = neighbour.is_some_and(|guess| attempt(guess));
+    let known = neighbour.is_some_and(&mut attempt);
     if !known {
         for guess in starts::of(manoeuvre, plain.ingredients, stop) {
             attempt(&guess);
@@ -252,6 +259,7 @@ fn direct(
         starts: tried,
         iterations,
         continuous_time: None,
+        refusal: None,
     }
 }
 
@@ -290,7 +298,16 @@ impl Found {
     /// Flies the solution and adds it all up.
     fn conclude(self, manoeuvre: &Manoeuvre) -> Outcome {
         let motion = &self.solved.motion;
-        let flown = flown::fly(manoeuvre, motion);
+        let mut flown = flown::fly(manoeuvre, motion);
+        flown.failures.extend(self.refusal);
+        if let Objective::MinimumTimeAtEnergy { energy_j, .. } = manoeuvre.objective() {
+            let bill = flown.energies.bill_j;
+            if bill.is_nan() || bill > energy_j * (1.0 + BUDGET_TOLERANCE) {
+                let sentence =
+                    format!("the bill is {bill:.6} J, more than the {energy_j} J allowed");
+                flown.failures.push(sentence);
+            }
+        }
         let effort = flown::effort(motion);
         let time_s = motion.duration();
         let objective = match manoeuvre.objective() {

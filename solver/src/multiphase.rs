@@ -15,6 +15,7 @@ use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
 use crate::profile::Profile;
 use crate::transcription::{Reserves, Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
+pub(crate) use between_nodes::excess_inside;
 pub(crate) use extended::fly_on;
 use nalgebra::DVector;
 pub(crate) use rolling::fly_rolling;

@@ -53,9 +53,9 @@ pub(crate) mod tests;
 pub(crate) use chain::{Chain, Link, LinkMultipliers};
 pub(crate) use interior_point::InteriorPoint;
 pub(crate) use iterate::{Iterate, Layout};
-pub(crate) use model::{LinkModel, LinkValues};
 #[cfg(test)]
 pub(crate) use model::models_of;
 pub(crate) use model::values_of;
+pub(crate) use model::{LinkModel, LinkValues};
 pub(crate) use riccati::MAX_CONTROLS;
 pub(crate) use settings::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity, Settings};

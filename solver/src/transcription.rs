@@ -229,7 +229,12 @@ impl Transcription {
     }
 
     /// Writes the conditions on a state at a node; returns how many inequalities.
-    pub(crate) fn write_state_values(&self, at: usize, point: &[f64], out: &mut LinkValues) -> usize {
+    pub(crate) fn write_state_values(
+        &self,
+        at: usize,
+        point: &[f64],
+        out: &mut LinkValues,
+    ) -> usize {
         let (node, reserves) = (&self.nodes[at], self.reserves.at(at));
         let state = self.view(at, point);
         let mut equalities = out.equality.as_mut_slice();

@@ -109,7 +109,11 @@ pub(crate) fn fly_ramps(
                 for s in [0.0, moment.length_s] {
                     let (torque, speed) = (moment.torque(index, s), moment.speed(index, s));
                     let motor = drives[index].motor_torque(torque, speed);
-                    let limit = if motor < 0.0 { wheel.min_torque } else { wheel.max_torque };
+                    let limit = if motor < 0.0 {
+                        wheel.min_torque
+                    } else {
+                        wheel.max_torque
+                    };
                     torque_usage = torque_usage.max(motor / (limit * authority));
                 }
             }
@@ -136,7 +140,11 @@ fn slope(ramp: &Ramp) -> Vec<f64> {
     pairs
         .map(|(begin, end)| {
             let grown = end - begin;
-            if grown == 0.0 { 0.0 } else { grown / ramp.duration_s }
+            if grown == 0.0 {
+                0.0
+            } else {
+                grown / ramp.duration_s
+            }
         })
         .collect()
 }

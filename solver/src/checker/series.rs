@@ -121,7 +121,8 @@ impl Expansion {
         let rate_defect = (self.rate_slope(s) - rate_derivative).norm();
         let mut worst = (norm(&turn_defect) * s).max(ratio(rate_defect * s, rate_scale));
         for (i, wheel) in self.wheel.iter().enumerate() {
-            let expected = body.wheel_derivative(i, (torque[i], state.wheel_speed[i]), &rate_derivative);
+            let expected =
+                body.wheel_derivative(i, (torque[i], state.wheel_speed[i]), &rate_derivative);
             let drive = (torque[i] / body.rotors[i].inertia).abs() * s;
             let scale = value(s, |k| wheel[k].abs()) + drive;
             worst = worst.max(ratio((self.wheel_slope(i, s) - expected).abs() * s, scale));

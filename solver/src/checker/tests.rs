@@ -6,4 +6,5 @@ mod dense;
 mod flights;
 mod limits;
 mod motion;
+mod ramped;
 mod refusals;

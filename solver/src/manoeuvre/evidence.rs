@@ -35,7 +35,8 @@ const PARTS: usize = 8;
 pub struct Evidence {
     /// Every interval that takes time.
     pub intervals: Vec<IntervalEvidence>,
-    /// Mean of the Hamiltonian over the time: zero when the duration is free.
+    /// Mean of the Hamiltonian over the time: zero when the duration is free, else what a second
+    /// more would add to the objective.
     pub hamiltonian: f64,
     /// What its differences are measured by: the mean size of `p . w + r . u`, one for minimum time.
     pub scale: f64,
@@ -50,8 +51,8 @@ pub struct Evidence {
     pub costate_defect: f64,
     /// Greatest product of a limit's slack and its multiplier, in the unit of the objective.
     pub complementarity: f64,
-    /// Share of the time, over all wheels, in which a torque at its limit has the sign that the
-    /// switching function asks for; one where none is at a limit.
+    /// Of the size of the switching functions of torques at their limits, integrated over the time,
+    /// the share that belongs to torques of the sign asked for; one where none is at a limit.
     pub switching_agreement: f64,
 }
 
@@ -123,7 +124,8 @@ struct Tested {
     motion: f64,
     /// Integral of what the torques could lower the Hamiltonian by.
     gap: f64,
-    /// Time of all wheels with torques at limits, and with those of the right sign, s.
+    /// Integrals of the switching functions' size, of torques at limits, and of those of the right
+    /// sign.
     limited: [f64; 2],
 }
 
@@ -197,7 +199,9 @@ impl Witness<'_> {
         let samples = vehicle.samples(&self.solved.motion, k, begin, 2 * PARTS);
         let costates = self.costates(k, &samples, price);
         let nodes = || costates.iter().zip(samples.iter().step_by(2));
-        let values: Vec<f64> = nodes().map(|(p, at)| self.hamiltonian(p, at, price)).collect();
+        let values: Vec<f64> = nodes()
+            .map(|(p, at)| self.hamiltonian(p, at, price))
+            .collect();
         let average = trapezoid(&values);
         let moving: Vec<f64> = nodes()
             .map(|(p, at)| (p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques)).abs())
@@ -206,13 +210,15 @@ impl Witness<'_> {
         let switching = |i: usize| -> Vec<f64> {
             let at = &samples[2 * i];
             let wheels = 0..at.speeds.len();
-            wheels.map(|w| self.switching(w, &costates[i], at, price)).collect()
+            wheels
+                .map(|w| self.switching(w, &costates[i], at, price))
+                .collect()
         };
         let mut limited = [0.0; 2];
         for (p, at) in nodes() {
-            for (agrees, share) in self.limited_torques(p, at, price) {
-                limited[0] += share * length;
-                limited[1] += if agrees { share * length } else { 0.0 };
+            for (agrees, size) in self.limited_torques(p, at, price) {
+                limited[0] += size * length;
+                limited[1] += if agrees { size * length } else { 0.0 };
             }
         }
         let ends = [&costates[0], &costates[PARTS]];
@@ -296,7 +302,11 @@ impl Witness<'_> {
                     return 0.0;
                 };
                 let given = drive.motor_torque(*torque, *speed);
-                let viscous = if drive.friction_compensated { drive.viscous_friction } else { 0.0 };
+                let viscous = if drive.friction_compensated {
+                    drive.viscous_friction
+                } else {
+                    0.0
+                };
                 let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
                 if self.counts(motor.power(given, *speed)) {
                     let share = self.ingredients().share(motor.efficiency);
@@ -318,12 +328,19 @@ impl Witness<'_> {
         let speed = at.speeds[wheel];
         let power = motor.power(drive.motor_torque(torque, speed), speed);
         let share = self.ingredients().share(motor.efficiency);
-        effort + if self.counts(power) { price * share * power } else { 0.0 }
+        effort
+            + if self.counts(power) {
+                price * share * power
+            } else {
+                0.0
+            }
     }
 
     fn hamiltonian(&self, p: &Costate, at: &Sample, price: f64) -> f64 {
         let wheels = 0..at.speeds.len();
-        let cost: f64 = wheels.map(|w| self.wheel_cost(w, at.torques[w], at, price)).sum();
+        let cost: f64 = wheels
+            .map(|w| self.wheel_cost(w, at.torques[w], at, price))
+            .sum();
         self.ingredients().time + cost + p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques)
     }
 
@@ -350,7 +367,10 @@ impl Witness<'_> {
         let vehicle = self.manoeuvre.vehicle();
         let actuator = &vehicle.dynamics.actuators[wheel];
         let friction = vehicle.drives[wheel].motor_torque(0.0, at.speeds[wheel]);
-        [actuator.min_torque - friction, actuator.max_torque - friction]
+        [
+            actuator.min_torque - friction,
+            actuator.max_torque - friction,
+        ]
     }
 
     /// By how much other torques could lower the Hamiltonian, wheels at a speed limit left out.
@@ -360,7 +380,8 @@ impl Witness<'_> {
             .map(|wheel| {
                 let [least, most] = self.range(wheel, at);
                 let value = |u: f64| self.wheel_cost(wheel, u, at, price) + p.momenta[wheel] * u;
-                let trials = (0..=TRIALS).map(|i| least + (most - least) * i as f64 / TRIALS as f64);
+                let trials =
+                    (0..=TRIALS).map(|i| least + (most - least) * i as f64 / TRIALS as f64);
                 let best = trials.map(value).fold(f64::INFINITY, f64::min);
                 (value(at.torques[wheel]) - best).max(0.0)
             })
@@ -377,8 +398,8 @@ impl Witness<'_> {
         own || rates.into_iter().any(|share| share.abs() > NEAR)
     }
 
-    /// Of every wheel whose torque is at a limit whether its sign is right, and the share of the
-    /// interval for which a moment stands.
+    /// Of every wheel whose torque is at a limit whether its sign is right, and the size of its
+    /// switching function.
     fn limited_torques(&self, p: &Costate, at: &Sample, price: f64) -> Vec<(bool, f64)> {
         (0..at.speeds.len())
             .filter(|wheel| !self.held(*wheel, at))
@@ -393,7 +414,7 @@ impl Witness<'_> {
                 } else {
                     return None;
                 };
-                Some((agrees, 1.0 / (PARTS + 1) as f64))
+                Some((agrees, wanted.abs()))
             })
             .collect()
     }
@@ -419,7 +440,11 @@ impl Witness<'_> {
 
     fn complementarity(&self) -> f64 {
         let iterate = &self.solved.iterate;
-        let products = iterate.slack.iter().zip(&iterate.z).map(|(s, z)| (s * z).abs());
+        let products = iterate
+            .slack
+            .iter()
+            .zip(&iterate.z)
+            .map(|(s, z)| (s * z).abs());
         products.fold(0.0, f64::max) * self.program().units.cost
     }
 }

@@ -11,6 +11,7 @@ use crate::attitude::Attitude;
 use crate::drive::{Drive, SpeedLaw};
 use crate::dynamics::Dynamics;
 use crate::kinematics::{Quat, exact_flow, rotate_back};
+use crate::multiphase::excess_inside;
 use nalgebra::{DVector, Vector3};
 
 /// Parts of an interval at whose ends the limits are looked at.
@@ -48,7 +49,7 @@ impl Followers {
     pub(super) fn move_at_all(&self) -> bool {
         self.0
             .iter()
-            .any(|f| f.law.rate > 0.0 && f.start != f.law.speed)
+            .any(|f| f.law.rate > 0.0 && (f.start - f.law.speed).abs() > 0.0)
     }
 }
 
@@ -98,7 +99,13 @@ impl Vehicle {
     }
 
     /// The turn over a part of an interval that begins at a time, s, in an attitude.
-    fn turn(&self, motion: &Motion, k: usize, time: f64, (from, to, q): (f64, f64, &Attitude)) -> Quat {
+    fn turn(
+        &self,
+        motion: &Motion,
+        k: usize,
+        time: f64,
+        (from, to, q): (f64, f64, &Attitude),
+    ) -> Quat {
         let length = motion.lengths[k];
         let momentum = q.to_body(self.dynamics.momentum);
         exact_flow(|sigma, p| {
@@ -118,15 +125,21 @@ impl Vehicle {
     }
 
     /// The motion at the ends of equal parts of an interval, the first and the last included.
-    pub(super) fn samples(&self, motion: &Motion, k: usize, begin: f64, parts: usize) -> Vec<Sample> {
+    pub(super) fn samples(
+        &self,
+        motion: &Motion,
+        k: usize,
+        begin: f64,
+        parts: usize,
+    ) -> Vec<Sample> {
         let at = |i: usize| i as f64 / parts as f64;
         let mut attitude = motion.attitudes[k];
         let mut samples = Vec::with_capacity(parts + 1);
         for i in 0..=parts {
             if i > 0 {
                 let turn = self.turn(motion, k, begin, (at(i - 1), at(i), &attitude));
-                attitude = Attitude::from_xyzw(turn)
-                    .map_or(attitude, |turn| attitude.then_in_body(&turn));
+                attitude =
+                    Attitude::from_xyzw(turn).map_or(attitude, |turn| attitude.then_in_body(&turn));
             }
             let s = at(i);
             let momenta = Self::momenta(motion, k, s);
@@ -157,10 +170,11 @@ impl Vehicle {
                 .map(|at| self.dynamics.limit_shares(&at.rate, &at.momenta).collect())
                 .collect();
             for share in 0..usages[0].len() {
-                shares.push(excess_inside(|i| usages[i][share].abs()));
+                let series: Vec<f64> = usages.iter().map(|usage| usage[share]).collect();
+                shares.push(excess_inside(&series));
             }
             let motors: Vec<f64> = samples.iter().map(|at| self.motor_usage(at)).collect();
-            torques.push(excess_inside(|i| motors[i]));
+            torques.push(excess_inside(&motors));
         }
         (shares, torques)
     }
@@ -172,11 +186,4 @@ impl Vehicle {
         self.dynamics
             .torque_usage(&DVector::from_iterator(at.speeds.len(), torques))
     }
-}
-
-/// The excess over one between the first and the last sample, if it is above both.
-fn excess_inside(usage: impl Fn(usize) -> f64) -> f64 {
-    let ends = usage(0).max(usage(SAMPLES));
-    let peak = (1..SAMPLES).map(usage).fold(0.0, f64::max);
-    if peak > ends { (peak - 1.0).max(0.0) } else { 0.0 }
 }

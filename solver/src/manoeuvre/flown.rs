@@ -2,7 +2,10 @@
 
 use super::motion::Motion;
 use super::spec::{Manoeuvre, Measure};
-use crate::checker::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment, Ramp, RATE_TOLERANCE, fly_ramps};
+use crate::checker::{
+    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
+    RATE_TOLERANCE, Ramp, fly_ramps,
+};
 use crate::drive::Drive;
 use crate::plan::State;
 use crate::transcription::WheelCondition;
@@ -129,6 +132,7 @@ pub(super) fn fly(manoeuvre: &Manoeuvre, motion: &Motion) -> Flown {
     flown.failures = flight.failures;
     flown.failures.extend(faults(&flown, flight.momentum_drift));
     flown.states = flight.states;
+    flown.failures.extend(speed_fault(manoeuvre, &flown));
     flown
 }
 
@@ -139,17 +143,55 @@ fn excess(usage: f64) -> f64 {
 /// Sentences about the end and the torques; speeds and rates have their own.
 fn faults(flown: &Flown, momentum_drift: f64) -> Vec<String> {
     let too_large = [
-        (flown.attitude_error_rad, ATTITUDE_TOLERANCE, "the end is missed by", "rad"),
-        (flown.rate_error_rad_s, RATE_TOLERANCE, "the rate at the end is off by", "rad/s"),
-        (flown.torque_excess, LIMIT_TOLERANCE, "a motor torque exceeds its limit by a share of", ""),
-        (momentum_drift, MOMENTUM_TOLERANCE, "the integration lost momentum, a share of", ""),
+        (
+            flown.attitude_error_rad,
+            ATTITUDE_TOLERANCE,
+            "the end is missed by",
+            "rad",
+        ),
+        (
+            flown.rate_error_rad_s,
+            RATE_TOLERANCE,
+            "the rate at the end is off by",
+            "rad/s",
+        ),
+        (
+            flown.torque_excess,
+            LIMIT_TOLERANCE,
+            "a motor torque exceeds its limit by a share of",
+            "",
+        ),
+        (
+            momentum_drift,
+            MOMENTUM_TOLERANCE,
+            "the integration lost momentum, a share of",
+            "",
+        ),
     ];
     too_large
         .into_iter()
         // What is not a number is no success.
-        .filter(|(value, tolerance, ..)| !(value <= tolerance))
+        .filter(|(value, tolerance, ..)| value.is_nan() || value > tolerance)
         .map(|(value, _, what, unit)| format!("{what} {value:.3e} {unit}").trim_end().to_owned())
         .collect()
+}
+
+/// A sentence when the wheels miss their prescribed speeds, measured by the least limit or, where
+/// nothing is limited, by the fastest wheel.
+fn speed_fault(manoeuvre: &Manoeuvre, flown: &Flown) -> Option<String> {
+    let actuators = manoeuvre.vehicle().dynamics.actuators.iter();
+    let least = actuators
+        .map(|wheel| wheel.max_speed)
+        .fold(f64::INFINITY, f64::min);
+    let speeds = flown
+        .states
+        .iter()
+        .flat_map(|state| &state.wheel_speed_rad_s);
+    let fastest = speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs()));
+    let unit = if least.is_finite() { least } else { fastest };
+    let error = flown.wheel_speed_error_rad_s;
+    (error > END_SPEED_TOLERANCE * unit)
+        .then(|| format!("a wheel misses its final speed by {error:.3e} rad/s"))
 }
 
 /// The greatest error of a prescribed final speed, rad/s.
@@ -159,7 +201,10 @@ fn speed_error(manoeuvre: &Manoeuvre, end: &State) -> f64 {
     let WheelCondition::Fixed(wanted) = &manoeuvre.ends()[1].wheels else {
         return 0.0;
     };
-    let errors = dynamics.actuators.iter().zip((momenta - wanted).iter().copied().collect::<Vec<_>>());
+    let errors = dynamics
+        .actuators
+        .iter()
+        .zip((momenta - wanted).iter().copied().collect::<Vec<_>>());
     errors
         .map(|(wheel, error)| (error / wheel.inertia).abs())
         .fold(0.0, f64::max)
@@ -218,7 +263,10 @@ fn spent(drive: &Drive, wheel: usize, moment: &Moment<'_>) -> Energies {
         for (from, to) in [(begin, cut), (cut, end)] {
             let integral = |f: &dyn Fn(f64) -> f64| -> f64 {
                 let points = GAUSS.iter();
-                (to - from) * points.map(|(s, w)| w * f(from + (to - from) * s)).sum::<f64>()
+                (to - from)
+                    * points
+                        .map(|(s, w)| w * f(from + (to - from) * s))
+                        .sum::<f64>()
             };
             energies.proxy_j += integral(&power);
             energies.bill_j += integral(&|s| power(s).max(0.0)) / motor.efficiency;

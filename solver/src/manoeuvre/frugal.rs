@@ -57,7 +57,9 @@ pub(super) fn solve(
         if stop().is_some() || high.excess.abs() <= ACCURACY {
             break;
         }
-        let known = |trial: &Trial| Some(trial.found.solved.motion.clone()).filter(|_| trial.excess.is_finite());
+        let known = |trial: &Trial| {
+            Some(trial.found.solved.motion.clone()).filter(|_| trial.excess.is_finite())
+        };
         match &mut low {
             // Too short still: go on.
             _ if high.excess > 0.0 => {

@@ -91,7 +91,9 @@ impl Motion {
                 0.0
             };
             let turn = self.attitudes[k].signed_turn_to(&self.attitudes[k + 1]);
-            profile.attitudes.push(self.attitudes[k].retract(turn * share));
+            profile
+                .attitudes
+                .push(self.attitudes[k].retract(turn * share));
             profile
                 .wheels
                 .push(&self.momenta[k] * (1.0 - share) + &self.momenta[k + 1] * share);
@@ -196,7 +198,9 @@ impl Motion {
             let point = link.point;
             // Retraction keeps quaternions at unit length.
             let attitude = Attitude::from_xyzw([point[0], point[1], point[2], point[3]]);
-            motion.attitudes.push(attitude.unwrap_or_else(Attitude::identity));
+            motion
+                .attitudes
+                .push(attitude.unwrap_or_else(Attitude::identity));
             let momenta = DVector::from_column_slice(&point[4..4 + wheels]);
             motion.momenta.push(momenta * scales.momentum);
             if !link.has_interval() {

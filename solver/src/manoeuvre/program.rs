@@ -8,6 +8,7 @@
 //! integral of the rate exact, and the rest is left to the corrections of the turns.
 
 mod chain;
+mod listing;
 
 use super::flow::Vehicle;
 use super::ingredients::Ingredients;
@@ -102,7 +103,11 @@ impl Program {
             base.row(0.0, -wheel.axis, &[(i, per_momentum)])
         });
         let speed_per_momentum = DMatrix::from_fn(actuators.len(), actuators.len(), |i, j| {
-            let own = if i == j { actuators[i].inertia.recip() } else { 0.0 };
+            let own = if i == j {
+                actuators[i].inertia.recip()
+            } else {
+                0.0
+            };
             own + actuators[i]
                 .axis
                 .dot(&(dynamics.inertia_inverse * actuators[j].axis))
@@ -138,10 +143,13 @@ impl Program {
     /// Takes over by how much the locked wheels' momentum has changed at every node, N m s. Returns
     /// the greatest change of that, scaled.
     pub(super) fn drift_by(&mut self, dynamics: &Dynamics, drift: Vec<Vector3<f64>>) -> f64 {
-        let equivalent = |change: &Vector3<f64>| &dynamics.axes_inverse * change / self.scales.momentum;
+        let equivalent =
+            |change: &Vector3<f64>| &dynamics.axes_inverse * change / self.scales.momentum;
         let equivalents: Vec<_> = drift.iter().map(equivalent).collect();
         let pairs = equivalents.iter().zip(&self.drift);
-        let change = pairs.map(|(new, old)| (new - old).amax()).fold(0.0, f64::max);
+        let change = pairs
+            .map(|(new, old)| (new - old).amax())
+            .fold(0.0, f64::max);
         self.drift = equivalents;
         self.base.drift_by(drift);
         change
@@ -235,7 +243,11 @@ impl Program {
         features[SPEED] = self.speeds[wheel].value(&view);
         let couplings = self.speed_per_momentum.row(wheel);
         let sum = |values: &[f64], unit: f64| {
-            couplings.iter().zip(values).map(|(c, v)| c * v * unit).sum::<f64>()
+            couplings
+                .iter()
+                .zip(values)
+                .map(|(c, v)| c * v * unit)
+                .sum::<f64>()
         };
         let torques = &link.point[1 + shape.torque_at()..];
         if shape.course == Course::Ramps {
@@ -267,7 +279,9 @@ impl Program {
         let (torques, controls) = (shape.torque_at(), shape.states());
         let coupled = |first: usize, unit: f64| {
             let couplings = self.speed_per_momentum.row(wheel);
-            (0..shape.wheels).map(|j| (first + j, couplings[j] * unit)).collect()
+            (0..shape.wheels)
+                .map(|j| (first + j, couplings[j] * unit))
+                .collect()
         };
         match (feature, shape.course) {
             (SPEED, _) => {
@@ -318,161 +332,5 @@ impl Program {
             }
         }
         local
-    }
-
-    /// Shows every term of a link.
-    fn terms<'a>(&self, link: &'a Link<'a>, mut show: impl FnMut(&Term<'a>)) {
-        let shape = &self.shape;
-        let mut row = self.base.state_inequalities(link.node);
-        let ingredients = &self.ingredients;
-        for wheel in 0..shape.wheels {
-            let state = self.wheel_state(wheel, link);
-            let mut emit = |place, jet| show(&Term { place, jet, wheel, link });
-            let mut limit = |jet: Jet| {
-                row += 1;
-                (Place::Inequality(row - 1), jet)
-            };
-            let reserve = self.torque_reserve[link.node];
-            if shape.course == Course::Ramps {
-                for margin in self.wheels[wheel].node_margins(&state) {
-                    let (place, jet) = limit(margin - Jet::constant(reserve));
-                    emit(place, jet);
-                }
-            }
-            if !link.has_interval() {
-                continue;
-            }
-            if shape.course == Course::Steps {
-                for margin in self.wheels[wheel].step_margins(&state) {
-                    let margin = margin - state.length() * reserve;
-                    let (place, jet) = limit(margin * self.scales.time.recip());
-                    emit(place, jet);
-                }
-            }
-            emit(Place::Gap(3 + wheel), state.impulse() * self.scales.momentum.recip());
-            if ingredients.effort > 0.0 {
-                emit(Place::Cost, state.effort() * (ingredients.effort / self.units.cost));
-            }
-            if ingredients.uses_energy() {
-                let energy = self.wheels[wheel].energy(&state);
-                if shape.slacks {
-                    let (place, jet) = limit(energy * -self.units.energy.recip());
-                    emit(place, jet);
-                } else {
-                    self.spend(energy, &mut emit);
-                }
-            }
-        }
-    }
-
-    /// Energy as far as it is not a slack.
-    fn spend(&self, energy: Jet, emit: &mut impl FnMut(Place, Jet)) {
-        if self.ingredients.energy > 0.0 {
-            emit(Place::Cost, energy * (self.ingredients.energy / self.units.cost));
-        }
-        if self.shape.account {
-            let place = Place::Gap(self.shape.account_at());
-            emit(place, energy * self.units.energy.recip());
-        }
-    }
-
-    /// Where the rows of a wheel at a node and on its interval begin; where those of all wheels end
-    /// for the wheel after the last.
-    fn wheel_rows_at(&self, node: usize, wheel: usize) -> usize {
-        let interval = node < self.base.intervals();
-        let rows = |wheel: &DrivenWheel| match self.shape.course {
-            Course::Ramps => 2,
-            Course::Steps if interval => wheel.step_rows(),
-            Course::Steps => 0,
-        };
-        let slacks = usize::from(self.shape.slacks && interval);
-        let before: usize = self.wheels[..wheel].iter().map(|w| rows(w) + slacks).sum();
-        self.base.state_inequalities(node) + before
-    }
-
-    /// Number of inequalities of a node and its interval.
-    fn rows(&self, node: usize) -> usize {
-        let plain = if node == self.base.intervals() {
-            usize::from(self.ingredients.budget.is_some())
-        } else {
-            usize::from(self.limits_length()) + if self.shape.slacks { self.shape.wheels } else { 0 }
-        };
-        self.wheel_rows_at(node, self.shape.wheels) + plain
-    }
-
-    fn limits_length(&self) -> bool {
-        self.shape.course == Course::Ramps && !matches!(self.shape.lengths, Lengths::Given(_))
-    }
-
-    /// What the supply gives per slack: energy over the motor's efficiency.
-    fn slack_price(&self, wheel: usize) -> f64 {
-        self.units.energy / self.efficiency[wheel]
-    }
-
-    /// Linear terms as `(place, variable or none, coefficient)`.
-    fn linear_terms(&self, node: usize, mut show: impl FnMut(Place, Option<usize>, f64)) {
-        let (shape, states) = (&self.shape, self.shape.states());
-        let mut row = self.wheel_rows_at(node, shape.wheels);
-        if node == self.base.intervals() {
-            if let Some(budget) = self.ingredients.budget {
-                show(Place::Inequality(row), None, budget / self.units.energy);
-                show(Place::Inequality(row), Some(shape.account_at()), -1.0);
-            }
-            return;
-        }
-        for i in 3..shape.torque_at() {
-            show(Place::Gap(i), Some(i), 1.0);
-        }
-        if shape.course == Course::Ramps {
-            for wheel in 0..shape.wheels {
-                show(Place::Gap(shape.torque_at() + wheel), Some(states + wheel), 1.0);
-            }
-        }
-        let length = shape.length_variable();
-        let given = match &shape.lengths {
-            Lengths::Given(lengths) => lengths[node] / self.scales.time,
-            _ => 1.0,
-        };
-        show(
-            Place::Cost,
-            length,
-            given * self.ingredients.time * self.scales.time / self.units.cost,
-        );
-        if shape.lengths == Lengths::Shared {
-            show(Place::Gap(shape.shared_at()), Some(shape.shared_at()), 1.0);
-        }
-        if shape.clock {
-            show(Place::Gap(shape.clock_at()), Some(shape.clock_at()), 1.0);
-            show(Place::Gap(shape.clock_at()), length, given);
-        }
-        if shape.account {
-            show(Place::Gap(shape.account_at()), Some(shape.account_at()), 1.0);
-        }
-        if shape.account && self.ingredients.bills() {
-            let idle = self.quiescent_power * self.scales.time / self.units.energy;
-            show(Place::Gap(shape.account_at()), length, given * idle);
-        }
-        if self.limits_length() {
-            show(Place::Inequality(row), length, 1.0);
-            row += 1;
-        }
-        if shape.slacks {
-            for wheel in 0..shape.wheels {
-                let slack = Some(states + shape.slack_at() + wheel);
-                // The row of the wheel's energy is its last.
-                let energy_row = self.wheel_rows_at(node, wheel + 1) - 1;
-                show(Place::Inequality(energy_row), slack, 1.0);
-                show(Place::Inequality(row + wheel), slack, 1.0);
-                let price = self.slack_price(wheel);
-                if self.ingredients.energy > 0.0 {
-                    let weight = self.ingredients.energy / self.units.cost;
-                    show(Place::Cost, slack, price * weight);
-                }
-                if shape.account {
-                    let at = Place::Gap(shape.account_at());
-                    show(at, slack, price / self.units.energy);
-                }
-            }
-        }
     }
 }

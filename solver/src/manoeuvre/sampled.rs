@@ -5,6 +5,7 @@
 //! many samples, one more is allowed. In its fixed time a manoeuvre for time alone takes the least
 //! effort.
 
+use super::choices::MOST_INTERVALS;
 use super::flown::{self, effort};
 use super::ingredients::Ingredients;
 use super::motion::Motion;
@@ -24,7 +25,7 @@ pub(super) fn solve(
     neighbour: Option<&Motion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
-    let continuous = continuous(manoeuvre, neighbour, stop);
+    let mut continuous = continuous(manoeuvre, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
         return continuous;
     }
@@ -35,13 +36,23 @@ pub(super) fn solve(
         stop,
     };
     let shortest = continuous.solved.motion.duration() / period;
-    let least = ((shortest - ROUNDING).ceil() as usize).max(2);
+    let least = whole((shortest - ROUNDING).ceil()).max(2);
+    if least + MOST_EXTRA > MOST_INTERVALS {
+        continuous.refusal = Some(format!(
+            "a minimum of {:.6e} s would take more than {MOST_INTERVALS} samples of {period} s",
+            continuous.solved.motion.duration()
+        ));
+        return continuous;
+    }
     let mut best: Option<Found> = None;
     let mut last = None;
     for samples in clock.candidates(least) {
         let found = clock.hold(samples, &continuous.solved.motion);
         if clock.is_answer(&found) {
-            if best.as_ref().is_none_or(|best| clock.value(&found) < clock.value(best)) {
+            if best
+                .as_ref()
+                .is_none_or(|best| clock.value(&found) < clock.value(best))
+            {
                 best = Some(found);
             }
             if samples >= least {
@@ -57,6 +68,16 @@ pub(super) fn solve(
     let mut found = best.or(last).unwrap_or(continuous);
     found.continuous_time = Some(shortest * period);
     found
+}
+
+/// A whole number as a count; more than any program has intervals counts as one too many.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to a range that fits"
+)]
+fn whole(number: f64) -> usize {
+    number.clamp(0.0, (MOST_INTERVALS + 1) as f64) as usize
 }
 
 /// The minimum in continuous time.
@@ -89,9 +110,13 @@ impl Clock<'_> {
     /// Numbers of samples to try, given the least that the continuous minimum admits.
     fn candidates(&self, least: usize) -> Vec<usize> {
         match self.manoeuvre.objective() {
-            Objective::Energy { duration_s, .. } => vec![(duration_s / self.period).round() as usize],
+            Objective::Energy { duration_s, .. } => {
+                vec![whole((duration_s / self.period).round())]
+            }
             // Time weighs against effort, so that the shorter side of the optimum counts too.
-            Objective::TimeAndEffort { .. } => (least.saturating_sub(1).max(2)..=least + MOST_EXTRA).collect(),
+            Objective::TimeAndEffort { .. } => {
+                (least.saturating_sub(1).max(2)..=least + MOST_EXTRA).collect()
+            }
             _ => (least..=least + MOST_EXTRA).collect(),
         }
     }

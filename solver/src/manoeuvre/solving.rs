@@ -103,7 +103,11 @@ impl Solved {
     }
 
     /// The same solution with multipliers to more digits, where they can be had.
-    pub(super) fn polished(&self, vehicle: &Vehicle, stop: &dyn Fn() -> Option<Interruption>) -> Self {
+    pub(super) fn polished(
+        &self,
+        vehicle: &Vehicle,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Self {
         let mut best = self.clone();
         for _ in 0..POLISH_ROUNDS {
             let mut run = Run {
@@ -287,7 +291,10 @@ impl Run<'_> {
             }
         } else {
             reserves.raise_all(most(shares));
-            program.torque_reserve.iter_mut().for_each(|r| *r += most(torques));
+            program
+                .torque_reserve
+                .iter_mut()
+                .for_each(|r| *r += most(torques));
         }
         program.base.keep(reserves);
         // Slacks belong to the old limits.

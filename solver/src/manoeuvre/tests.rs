@@ -6,3 +6,4 @@ mod effort;
 mod energy;
 mod evidence;
 mod sampled;
+mod variety;

@@ -17,16 +17,17 @@ pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Ve
     }
     (0..profile.intervals())
         .flat_map(|k| shares_inside(dynamics, profile, k))
-        .map(|shares| excess(&shares))
+        .map(|shares| excess_inside(&shares))
         .collect()
 }
 
-/// How far a share's peak exceeds one, when it lies between the ends.
-fn excess(shares: &[f64]) -> f64 {
+/// How far a share's peak exceeds one in size, when it lies between the ends; of samples at even
+/// times, both ends included.
+pub(crate) fn excess_inside(shares: &[f64]) -> f64 {
     let over = |sign: f64| {
         let usage: Vec<_> = shares.iter().map(|share| sign * share).collect();
         let peak = peak(&usage);
-        if peak > usage[0].max(usage[SAMPLES]) {
+        if peak > usage[0].max(usage[usage.len() - 1]) {
             (peak - 1.0).max(0.0)
         } else {
             0.0

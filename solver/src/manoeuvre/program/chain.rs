@@ -96,12 +96,7 @@ impl Program {
     }
 
     /// Adds a term to the derivatives of a link, weighed by the multipliers.
-    fn add_term(
-        &self,
-        term: &super::Term<'_>,
-        duals: &LinkMultipliers<'_>,
-        out: &mut LinkModel,
-    ) {
+    fn add_term(&self, term: &super::Term<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
         let local = self.local(term.wheel, &term.jet, term.link);
         let (row, weight) = place_in(term.place, duals, out);
         for (at, c) in &local.gradient {
@@ -261,9 +256,14 @@ impl Chain for Program {
             let mut base = LinkModel::for_node(&self.base, link.node);
             let inner = self.base_link(link);
             let inner = inner.link(link, self.shape.wheels);
-            self.base.write_attitude_link(&inner, &duals.gap[..3], &mut base);
+            self.base
+                .write_attitude_link(&inner, &duals.gap[..3], &mut base);
             self.pull_back(&base, duals.gap, link, out);
-            if let Some(at) = self.shape.length_variable().filter(|_| self.draws_lengths()) {
+            if let Some(at) = self
+                .shape
+                .length_variable()
+                .filter(|_| self.draws_lengths())
+            {
                 out.gradient[at] += self.penalty.weight * self.stray(link);
                 out.hessian[at * out.vars + at] += self.penalty.weight;
             }

@@ -34,7 +34,9 @@ pub(super) fn turn(axis: [f64; 3], angle: f64) -> StateSpec {
 
 /// Solves and demands an answer.
 pub(super) fn solved(spec: &ManoeuvreSpec) -> Outcome {
-    let manoeuvre = Manoeuvre::try_new(spec).expect("a valid manoeuvre").manoeuvre;
+    let manoeuvre = Manoeuvre::try_new(spec)
+        .expect("a valid manoeuvre")
+        .manoeuvre;
     let outcome = solve(&manoeuvre, &StopSignal::new());
     println!(
         "{:?} {:?}: {} {:?} time {:.4} effort {:.5} proxy {:.4} bill {:.4} continuous {:?} | att {:.2e} rate {:.2e} torque {:.1e} speed {:.1e} rate {:.1e} | {} starts {} iterations",
@@ -55,7 +57,11 @@ pub(super) fn solved(spec: &ManoeuvreSpec) -> Outcome {
         outcome.starts,
         outcome.iterations,
     );
-    assert!(outcome.solved, "{} {:?}", outcome.status, outcome.flown.failures);
+    assert!(
+        outcome.solved,
+        "{} {:?}",
+        outcome.status, outcome.flown.failures
+    );
     outcome
 }
 

@@ -49,14 +49,20 @@ fn manoeuvre() -> Manoeuvre {
         },
         ..ManoeuvreSpec::default()
     };
-    Manoeuvre::try_new(&spec).expect("a valid manoeuvre").manoeuvre
+    Manoeuvre::try_new(&spec)
+        .expect("a valid manoeuvre")
+        .manoeuvre
 }
 
 /// A wild motion of two intervals.
 fn motion() -> Motion {
     let at = |v: [f64; 3]| crate::attitude::Attitude::from_rotation_vector(Vector3::from(v));
     Motion::of_profile(&Profile {
-        attitudes: vec![at([0.1, -0.2, 0.1]), at([0.3, -0.25, 0.2]), at([0.5, -0.3, 0.4])],
+        attitudes: vec![
+            at([0.1, -0.2, 0.1]),
+            at([0.3, -0.25, 0.2]),
+            at([0.5, -0.3, 0.4]),
+        ],
         wheels: vec![
             DVector::from_vec(vec![0.012, -0.021, 0.0031, 0.4]),
             DVector::from_vec(vec![0.35, -0.4, -0.3, 0.8]),
@@ -147,7 +153,8 @@ impl Fixture {
         let base = self.iterate.link(&layout, self.node);
         let states = self.program.state_dim();
         let mut point = vec![0.0; states + 1];
-        self.program.retract(base.point, &step[..states], &mut point);
+        self.program
+            .retract(base.point, &step[..states], &mut point);
         let steps = base.control.iter().zip(&step[states..]);
         let control: Vec<f64> = steps.map(|(c, s)| c + s).collect();
         let link = Link {
@@ -262,5 +269,8 @@ fn a_wheel_under_a_law_is_no_actuator() {
     let manoeuvre = Manoeuvre::try_new(&spec).expect("valid").manoeuvre;
     assert_eq!(manoeuvre.vehicle().dynamics.wheel_count(), 3);
     let stored = manoeuvre.vehicle().dynamics.locked_momentum;
-    assert!((stored - Vector3::new(0.0, 0.0, -0.194)).norm() < 1e-4, "{stored}");
+    assert!(
+        (stored - Vector3::new(0.0, 0.0, -0.194)).norm() < 1e-4,
+        "{stored}"
+    );
 }

@@ -38,7 +38,11 @@ fn the_proxy_is_billed_like_the_eigenaxis_in_870_seconds() {
         measure: Measure::Proxy,
     };
     let outcome = lro_slew(objective, Command::Uniform { intervals: 80 });
-    assert!((869.0..=870.0).contains(&outcome.time_s), "{}", outcome.time_s);
+    assert!(
+        (869.0..=870.0).contains(&outcome.time_s),
+        "{}",
+        outcome.time_s
+    );
 }
 
 #[test]

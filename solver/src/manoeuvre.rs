@@ -203,6 +203,21 @@ impl Plain {
         }
     }
 
+    /// The same program with the smooth proxy instead of the bill, which has many local minima.
+    fn proxy(&self, manoeuvre: &Manoeuvre) -> Option<Self> {
+        let billed = self.ingredients.bills() && self.ingredients.budget.is_none();
+        let ingredients = Ingredients {
+            measure: Measure::Proxy,
+            ..self.ingredients
+        };
+        billed.then(|| Self {
+            shape: manoeuvre.shape(self.shape.course, self.shape.lengths.clone(), &ingredients),
+            ingredients,
+            intervals: self.intervals,
+            lasting: self.lasting,
+        })
+    }
+
     /// A guess on the nodes of the program.
     fn meshed(&self, guess: &Motion, manoeuvre: &Manoeuvre) -> Motion {
         let dynamics = &manoeuvre.vehicle().dynamics;
@@ -210,9 +225,8 @@ impl Plain {
         let guess = guess.lasting(lasting, dynamics);
         match &self.shape.lengths {
             Lengths::Given(lengths) => guess.on_mesh(lengths),
-            Lengths::Own
-                if self.ingredients.effort == 0.0 && self.intervals >= guess.lengths.len() =>
-            {
+            // What only time counts for switches, and the guess knows when; what is smooth does not.
+            Lengths::Own if self.ingredients.hurries() && self.intervals >= guess.lengths.len() => {
                 guess.on_finer_mesh(self.intervals)
             }
             _ => guess.on_equal_mesh(self.intervals),
@@ -247,7 +261,16 @@ fn direct(
     };
     let known = neighbour.is_some_and(&mut attempt);
     if !known {
-        for guess in starts::of(manoeuvre, plain.ingredients, stop) {
+        let proxy = plain
+            .proxy(manoeuvre)
+            .map(|proxy| direct(manoeuvre, &proxy, None, stop));
+        let smooth = proxy.filter(|proxy| proxy.solved.converged());
+        let mut guesses: Vec<_> = smooth
+            .map(|proxy| proxy.solved.motion)
+            .into_iter()
+            .collect();
+        guesses.extend(starts::of(manoeuvre, plain.ingredients, stop));
+        for guess in guesses {
             attempt(&guess);
             if stop().is_some() {
                 break;

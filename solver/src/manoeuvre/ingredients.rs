@@ -56,6 +56,11 @@ impl Ingredients {
         }
     }
 
+    /// Whether only time counts.
+    pub(super) fn hurries(&self) -> bool {
+        self.effort == 0.0 && !self.uses_energy()
+    }
+
     /// Whether energy matters.
     pub(super) fn uses_energy(&self) -> bool {
         self.energy > 0.0 || self.budget.is_some()

@@ -57,10 +57,18 @@ const POLISHING: Phase = Phase {
 /// Rounds of polishing: each turns the penalty on lengths to those of the last (the proximal point
 /// method), so that its share in the multipliers fades.
 const POLISH_ROUNDS: usize = 4;
+/// The penalty on lengths where energy is billed: the program would stretch the intervals on which
+/// power changes its sign, because it lets the signs cancel there.
+const BILLED_PENALTY: f64 = 0.1;
 /// Rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 15;
 /// Rounds that keep a reserve only where a limit was exceeded; then everywhere.
 const LOCAL_ROUNDS: usize = 6;
+/// Rounds in which lengths may follow the drift of wheels with laws of their own, and the penalty
+/// that holds them from then on: a drift that follows lengths only as exact as the engine's
+/// tolerance would not settle.
+const DRIFTING_ROUNDS: usize = 3;
+const HOLDING_PENALTY: f64 = 1e2;
 /// Reserve per excess: a little more than is missing.
 const RESERVE_FACTOR: f64 = 1.1;
 /// Angle, rad, by which a flight may miss its end as the optimiser sees it.
@@ -210,7 +218,12 @@ impl Run<'_> {
             _ => &WITHOUT_LENGTHS,
         };
         for phase in phases {
-            self.draw_lengths(phase.length_penalty);
+            let penalty = if self.solved.program.ingredients.bills() {
+                BILLED_PENALTY
+            } else {
+                phase.length_penalty
+            };
+            self.draw_lengths(penalty);
             self.engine.settings = phase.settings;
             if !self.converges(stop) {
                 return;
@@ -231,6 +244,9 @@ impl Run<'_> {
             }
             if excess > LIMIT_TOLERANCE {
                 self.keep_reserves(round, &mut reserves, (&shares, &torques));
+            }
+            if round == DRIFTING_ROUNDS && self.vehicle.followers.move_at_all() {
+                self.draw_lengths(HOLDING_PENALTY);
             }
             if !self.converges(stop) {
                 return;

@@ -32,8 +32,7 @@ pub(super) fn of(
     let fastest = slew::solve(&problem, None, stop).flown;
     let converged = fastest.duration().is_some();
     let mut guesses = vec![Motion::of_profile(&fastest.profile)];
-    let hurried = ingredients.effort == 0.0 && !ingredients.uses_energy();
-    if !converged || !hurried {
+    if !converged || !ingredients.hurries() {
         let bowed = [Side::Far, Side::Near].map(|side| Motion::of_profile(&problem.bowed(side)));
         guesses.extend(bowed);
     }

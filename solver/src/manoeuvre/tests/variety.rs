@@ -43,7 +43,7 @@ fn every_command_comes_to_about_the_same_energy() {
         .map(|command| solved(&thrifty(command, measure)).objective);
         let least = energies.iter().copied().fold(f64::INFINITY, f64::min);
         for energy in energies {
-            assert!(energy < 1.03 * least, "{energies:?}");
+            assert!(energy < 1.05 * least, "{measure:?} {energies:?}");
         }
     }
 }

@@ -72,6 +72,7 @@ fn the_checker_uses_nothing_of_the_optimiser() {
     let given = [
         "attitude",
         "checker",
+        "drive",
         "plan",
         "problem",
         "scenario",

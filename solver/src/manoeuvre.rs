@@ -7,8 +7,8 @@
 //! (BIROS), or continuous. [`solve`] minimises, and flies what it has found with the integrator of
 //! the [checker](crate::checker), which shares nothing with the optimiser.
 //!
-//! All of it is one nonlinear program ([`program`]) with other variables ([`shape`]) and other
-//! weights ([`ingredients`]).
+//! All of it is one nonlinear program (`program`) with other variables (`shape`) and other
+//! weights (`ingredients`).
 //!
 //! # Drives
 //!
@@ -17,7 +17,7 @@
 //! the plan commands the motor and leaves friction to the feedback.
 //!
 //! A wheel with a speed law is not commanded. Relative to the body it is locked at a speed that is a
-//! known function of time ([`flow`]).
+//! known function of time (`flow`).
 //!
 //! # Energy
 //!

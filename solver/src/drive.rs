@@ -134,13 +134,9 @@ impl Drive {
 
     fn read(spec: &DriveSpec, pointer: &str, findings: &mut Findings) -> Option<Self> {
         let viscous = spec.viscous_friction_nms.unwrap_or(0.0);
-        let viscous = not_negative(
-            viscous,
-            &format!("{pointer}/viscous_friction_nms"),
-            findings,
-        );
+        let viscous = findings.not_negative(&format!("{pointer}/viscous_friction_nms"), viscous);
         let coulomb = spec.coulomb_friction_nm.unwrap_or(0.0);
-        let coulomb = not_negative(coulomb, &format!("{pointer}/coulomb_friction_nm"), findings);
+        let coulomb = findings.not_negative(&format!("{pointer}/coulomb_friction_nm"), coulomb);
         let motor = spec.motor.as_ref();
         let motor = motor.map(|motor| Motor::read(motor, &format!("{pointer}/motor"), findings));
         let law = spec.speed_law.as_ref();
@@ -199,7 +195,7 @@ impl Motor {
             efficiency <= 1.0
         });
         let quiescent = spec.quiescent_power_w.unwrap_or(0.0);
-        let quiescent = not_negative(quiescent, &format!("{pointer}/quiescent_power_w"), findings);
+        let quiescent = findings.not_negative(&format!("{pointer}/quiescent_power_w"), quiescent);
         Some(Self {
             resistance: resistance?,
             torque_constant: torque_constant?,
@@ -224,28 +220,13 @@ impl Motor {
 
 impl SpeedLaw {
     fn read(spec: &SpeedLawSpec, pointer: &str, findings: &mut Findings) -> Option<Self> {
-        let rate = not_negative(spec.rate_per_s, &format!("{pointer}/rate_per_s"), findings);
+        let rate = findings.not_negative(&format!("{pointer}/rate_per_s"), spec.rate_per_s);
         let speed = findings.finite(&format!("{pointer}/speed_rad_s"), spec.speed_rad_s);
         Some(Self {
             rate: rate?,
             speed: speed?,
         })
     }
-}
-
-/// A finite number that is zero or above.
-fn not_negative(value: f64, pointer: &str, findings: &mut Findings) -> Option<f64> {
-    let value = findings.finite(pointer, value)?;
-    if value < 0.0 {
-        findings.refuse(
-            pointer,
-            Code::OutOfRange,
-            format!("the number is {value}, it must not be below 0"),
-            "give zero or a number above it",
-        );
-        return None;
-    }
-    Some(value)
 }
 
 #[cfg(test)]

@@ -38,6 +38,11 @@ impl Findings {
             .push(Problem::new(pointer, code, message, hint));
     }
 
+    /// Takes over the problems that another reader has found.
+    pub(crate) fn include(&mut self, problems: Vec<Problem>) {
+        self.problems.extend(problems);
+    }
+
     /// The value with its warnings, or all the problems.
     ///
     /// Whoever returns `None` has noted why, so the two always agree.
@@ -106,6 +111,21 @@ impl Findings {
             Code::OutOfRange,
             format!("the number is {value}, it must be above 0"),
             "give a value above 0; leave an optional limit out, or null, for none",
+        );
+        None
+    }
+
+    /// A finite number that is zero or above.
+    pub(crate) fn not_negative(&mut self, pointer: &str, value: f64) -> Option<f64> {
+        let value = self.finite(pointer, value)?;
+        if value >= 0.0 {
+            return Some(value);
+        }
+        self.refuse(
+            pointer,
+            Code::OutOfRange,
+            format!("the number is {value}, it must not be below 0"),
+            "give zero or a number above it",
         );
         None
     }

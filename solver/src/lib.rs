@@ -93,10 +93,12 @@ pub mod pool;
 pub mod problem;
 mod profile;
 pub mod progress;
+mod random;
 pub mod scenario;
 #[cfg(test)]
 mod second_engine;
 pub mod sequence;
+pub mod simulation;
 mod slew;
 pub mod spacecraft;
 pub mod spec;

@@ -85,8 +85,32 @@ fn the_checker_uses_nothing_of_the_optimiser() {
 }
 
 #[test]
+fn a_simulated_flight_uses_nothing_of_the_optimiser() {
+    let given = [
+        "attitude",
+        "checker",
+        "drive",
+        "findings",
+        "plan",
+        "pool",
+        "problem",
+        "random",
+        "scenario",
+        "simulation",
+        "spacecraft",
+        "stop",
+    ];
+    // The study plans anew for every choice of authorities, and tests plan too.
+    let flies = |name: &str| name != "simulation/study.rs" && !name.starts_with("simulation/tests");
+    let used = used_by("simulation");
+    for (file, target) in used.into_iter().filter(|(name, _)| flies(name)) {
+        assert!(given.contains(&target.as_str()), "{file} uses {target}");
+    }
+}
+
+#[test]
 fn the_search_knows_slews_through_its_trait_only() {
-    let given = ["sequence", "pool", "progress", "stop"];
+    let given = ["sequence", "pool", "progress", "random", "stop"];
     for (file, target) in used_by("sequence") {
         assert!(given.contains(&target.as_str()), "{file} uses {target}");
     }

@@ -5,12 +5,8 @@ mod iterated;
 mod local_search;
 mod neighbours;
 mod path;
-mod split_mix;
 #[cfg(test)]
 mod tests;
-
-#[cfg(test)]
-pub(super) use split_mix::SplitMix;
 
 use super::charges::Charges;
 use super::remainder::Remainder;

@@ -14,7 +14,7 @@
 
 use super::cost::OrderCost;
 use super::local_search::{LocalSearch, OrderTask};
-use super::split_mix::SplitMix;
+use crate::random::SplitMix;
 use crate::sequence::FlownOrder;
 use crate::sequence::incumbents::Incumbents;
 use crate::stop::StopSignal;

@@ -1,6 +1,6 @@
 //! Cost models in place of slews.
 
-pub(super) use crate::sequence::heuristics::SplitMix;
+pub(super) use crate::random::SplitMix;
 use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
 
 /// A number in `[0, 1)`.

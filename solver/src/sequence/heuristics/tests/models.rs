@@ -1,7 +1,7 @@
 //! Costs of orders in place of slews.
 
+use crate::random::SplitMix;
 use crate::sequence::heuristics::cost::OrderCost;
-use crate::sequence::heuristics::split_mix::SplitMix;
 use crate::sequence::tests::unit;
 use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
 

@@ -1,9 +1,9 @@
 //! What moves are said to cost, and what they do.
 
 use super::models::{Bends, Legs, RandomCost};
+use crate::random::SplitMix;
 use crate::sequence::heuristics::cost::{Legs as ChargedLegs, length};
 use crate::sequence::heuristics::path::{Move, Path};
-use crate::sequence::heuristics::split_mix::SplitMix;
 
 /// A random move of an order of so many targets, of which there are at least two.
 fn random_move(random: &mut SplitMix, targets: usize) -> Move {

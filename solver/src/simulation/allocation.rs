@@ -1,0 +1,97 @@
+//! From a torque on the body to torques of the wheels.
+
+use crate::drive::Drive;
+use crate::spacecraft::Wheel;
+use nalgebra::{Matrix3, Vector3};
+
+/// Smallest over largest singular value of the axes below which a direction is out of reach.
+const REACH: f64 = 1e-6;
+
+/// The pseudo-inverse of the wheel axes: of all torques of the wheels that make a torque on the
+/// body it gives those with the least sum of squares (RW/CMG thesis, equation 158).
+#[derive(Debug, Clone)]
+pub(super) struct Allocation {
+    /// Rows of `A^T (A A^T)^-1`, one per wheel; zero for wheels that take no commands.
+    rows: Vec<Vector3<f64>>,
+}
+
+impl Allocation {
+    /// `None` when the wheels that take commands do not span space.
+    pub(super) fn new(wheels: &[Wheel], drives: &[Drive]) -> Option<Self> {
+        let commanded =
+            |(wheel, drive): &(&Wheel, &Drive)| wheel.enabled && drive.speed_law.is_none();
+        let gram: Matrix3<f64> = wheels
+            .iter()
+            .zip(drives)
+            .filter(commanded)
+            .map(|(wheel, _)| wheel.axis * wheel.axis.transpose())
+            .sum();
+        let squares = gram.symmetric_eigenvalues();
+        if squares.min() <= REACH * REACH * squares.max() {
+            return None;
+        }
+        let inverse = gram.try_inverse()?;
+        let rows = wheels.iter().zip(drives).map(|pair| {
+            if commanded(&pair) {
+                inverse * pair.0.axis
+            } else {
+                Vector3::zeros()
+            }
+        });
+        Some(Self {
+            rows: rows.collect(),
+        })
+    }
+
+    /// Torque of a wheel, N m, for a torque on the body, N m, which feels the opposite.
+    pub(super) fn wheel_torque(&self, wheel: usize, on_body: &Vector3<f64>) -> f64 {
+        -self.rows[wheel].dot(on_body)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wheel(axis: [f64; 3], enabled: bool) -> Wheel {
+        Wheel {
+            axis: Vector3::from(axis),
+            inertia: 1e-3,
+            min_torque: -1.0,
+            max_torque: 1.0,
+            max_speed: f64::INFINITY,
+            enabled,
+        }
+    }
+
+    #[test]
+    fn the_wheels_make_the_torque_with_the_least_effort() {
+        let wheels = [
+            wheel([0.8, 0.0, 0.6], true),
+            wheel([0.0, 0.8, 0.6], true),
+            wheel([-0.8, 0.0, 0.6], true),
+            wheel([0.0, -0.8, 0.6], true),
+            wheel([1.0, 0.0, 0.0], false),
+        ];
+        let allocation = Allocation::new(&wheels, &[Drive::IDEAL; 5]).unwrap();
+        let wanted = Vector3::new(0.3, -0.2, 0.5);
+        let torques: Vec<f64> = (0..5)
+            .map(|wheel| allocation.wheel_torque(wheel, &wanted))
+            .collect();
+        let made: Vector3<f64> = wheels.iter().zip(&torques).map(|(w, u)| -w.axis * *u).sum();
+        assert!((made - wanted).norm() < 1e-15, "{made}");
+        // Nothing along the null space (1, -1, 1, -1) of the pyramid, nothing for a locked wheel.
+        assert!((torques[0] - torques[1] + torques[2] - torques[3]).abs() < 1e-15);
+        assert!(torques[4].abs() <= 0.0);
+    }
+
+    #[test]
+    fn axes_in_a_plane_are_refused() {
+        let wheels = [
+            wheel([1.0, 0.0, 0.0], true),
+            wheel([0.0, 1.0, 0.0], true),
+            wheel([1.0, 1.0, 0.0], true),
+        ];
+        assert!(Allocation::new(&wheels, &[Drive::IDEAL; 3]).is_none());
+    }
+}

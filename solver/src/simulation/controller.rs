@@ -1,0 +1,162 @@
+//! The control laws at the samples of the on-board computer.
+//!
+//! With the measured attitude `R` and rate `w`, the commanded `R_d`, `w_d`, and the error quaternion
+//! `q_e = q_d* (x) q` on the hemisphere of the identity (rotation by the angle `theta` about `n`):
+//!
+//! ```text
+//!   q_e  = n sin(theta / 2)                                        vector part
+//!   e_R  = 1/2 (R_d^T R - R^T R_d)^v = n sin(theta)                BIROS (19)
+//!   e_w  = w - R^T R_d w_d                                         BIROS (20)
+//!
+//!   tau  = -k J q_e - c J e_w + (w x H_b - w_d x H_d)              thesis (28), (157)
+//!   tau  = -k_R e_R - k_w e_w - k_I e_I                            BIROS (23)
+//!   e_I  = t_s sum of (e_w + k_p e_R) over the samples before      BIROS (24)
+//! ```
+//!
+//! The thesis writes `w x J w` where the momentum of the wheels is dealt with elsewhere. Here `H_b`
+//! is that of body and wheels, and what the plan's torques already contain is left out: `H_d` is the
+//! plan's momentum.
+
+use super::settings::{Law, Settings};
+use crate::attitude::Attitude;
+use crate::spacecraft::Spacecraft;
+use nalgebra::Vector3;
+use std::collections::VecDeque;
+
+/// What the controller is to bring about at a moment.
+#[derive(Debug, Clone)]
+pub(super) struct Desired {
+    pub(super) attitude: Attitude,
+    /// Body axes of that attitude, rad/s.
+    pub(super) rate: Vector3<f64>,
+    /// `w_d x H_d`: the gyroscopic torque that the torques fed forward make up for, N m.
+    pub(super) gyroscopic: Vector3<f64>,
+}
+
+/// What the sensors say.
+#[derive(Debug, Clone)]
+pub(super) struct Measured<'a> {
+    pub(super) attitude: Attitude,
+    pub(super) rate: Vector3<f64>,
+    /// One per wheel, rad/s.
+    pub(super) wheel_speed: &'a [f64],
+}
+
+/// A control law with its memory.
+#[derive(Debug)]
+pub(super) struct Controller<'a> {
+    settings: &'a Settings,
+    spacecraft: &'a Spacecraft,
+    /// `e_I`, rad.
+    integral: Vector3<f64>,
+    /// Torques that are not yet applied, N m, oldest first.
+    late: VecDeque<Vector3<f64>>,
+}
+
+impl<'a> Controller<'a> {
+    pub(super) fn new(settings: &'a Settings, spacecraft: &'a Spacecraft) -> Self {
+        Self {
+            settings,
+            spacecraft,
+            integral: Vector3::zeros(),
+            late: std::iter::repeat_n(Vector3::zeros(), settings.delay).collect(),
+        }
+    }
+
+    /// Torques of the wheels, N m, that feedback adds from a sample on, written over `torque`.
+    pub(super) fn sample(
+        &mut self,
+        measured: &Measured<'_>,
+        desired: &Desired,
+        torque: &mut [f64],
+    ) {
+        let (body_torque, allocation) = match &self.settings.law {
+            Law::Open => {
+                torque.fill(0.0);
+                return;
+            }
+            Law::Quaternion {
+                gains,
+                gyroscopic,
+                allocation,
+            } => {
+                let (turn, rate_error) = errors(measured, desired);
+                let wanted = turn.vector * gains.attitude + rate_error * gains.rate;
+                let mut body_torque = -(self.spacecraft.inertia() * wanted);
+                if *gyroscopic {
+                    let momentum = self
+                        .spacecraft
+                        .body_momentum(measured.rate, measured.wheel_speed);
+                    body_torque += measured.rate.cross(&momentum) - desired.gyroscopic;
+                }
+                (body_torque, allocation)
+            }
+            Law::Pid { gains, allocation } => {
+                let (turn, rate_error) = errors(measured, desired);
+                let attitude_error = turn.vector * (2.0 * turn.scalar);
+                let body_torque = -(gains.attitude * attitude_error
+                    + gains.rate * rate_error
+                    + gains.integral * self.integral);
+                self.integral +=
+                    (rate_error + attitude_error * gains.attitude_weight) * self.settings.sample_s;
+                (body_torque, allocation)
+            }
+        };
+        self.late.push_back(body_torque);
+        let due = self.late.pop_front().unwrap_or_default();
+        for (wheel, torque) in torque.iter_mut().enumerate() {
+            *torque = allocation.wheel_torque(wheel, &due);
+        }
+    }
+}
+
+/// The error quaternion with a scalar part that is not negative.
+struct ErrorQuaternion {
+    vector: Vector3<f64>,
+    scalar: f64,
+}
+
+/// Errors of attitude and rate, the latter in rad/s.
+fn errors(measured: &Measured<'_>, desired: &Desired) -> (ErrorQuaternion, Vector3<f64>) {
+    let turn = desired.attitude.relative_to(&measured.attitude);
+    let rate_error = measured.rate - turn.to_body(desired.rate);
+    let [x, y, z, w] = turn.nearest_sign(&Attitude::identity()).xyzw();
+    let error = ErrorQuaternion {
+        vector: Vector3::new(x, y, z),
+        scalar: w,
+    };
+    (error, rate_error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    /// The vector of a skew-symmetric matrix.
+    fn vee(m: &Matrix3<f64>) -> Vector3<f64> {
+        Vector3::new(m.m32, m.m13, m.m21)
+    }
+
+    #[test]
+    fn errors_are_those_of_the_matrices() {
+        let desired = Desired {
+            attitude: Attitude::from_xyzw([0.1, -0.5, 0.5, 0.7]).unwrap(),
+            rate: Vector3::new(0.01, -0.03, 0.02),
+            gyroscopic: Vector3::zeros(),
+        };
+        let attitude = Attitude::from_xyzw([0.3, 0.2, -0.6, -0.4]).unwrap();
+        let measured = Measured {
+            attitude,
+            rate: Vector3::new(-0.02, 0.04, 0.01),
+            wheel_speed: &[],
+        };
+        let (turn, rate_error) = errors(&measured, &desired);
+        let (r, d) = (attitude.matrix(), desired.attitude.matrix());
+        let e_r = vee(&(d.transpose() * r - r.transpose() * d)) * 0.5;
+        assert!((turn.vector * (2.0 * turn.scalar) - e_r).norm() < 1e-15);
+        let e_w = measured.rate - r.transpose() * d * desired.rate;
+        assert!((rate_error - e_w).norm() < 1e-15);
+        assert!(turn.scalar >= 0.0);
+    }
+}

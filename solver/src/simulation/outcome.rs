@@ -1,0 +1,189 @@
+//! What a simulated flight shows, and how it is noted on the way.
+
+use super::controller::Desired;
+use super::course::{Course, Event};
+use super::wheel_loop::Cycle;
+use crate::attitude::Attitude;
+use crate::checker::NOT_COMPUTED;
+use crate::plan::Flight;
+use nalgebra::Vector3;
+
+/// How far the spacecraft is from where it should be.
+///
+/// A flight whose numbers left what can be computed has [`NOT_COMPUTED`] from then on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackingError {
+    /// Angle between the attitudes, rad.
+    pub attitude_rad: f64,
+    /// Size of the difference of the body rates, rad/s.
+    pub rate_rad_s: f64,
+}
+
+/// The error at an arrival.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassageError {
+    /// Identifier of the target.
+    pub target: String,
+    /// Arrival by the plan, s.
+    pub time_s: f64,
+    /// Error against the plan's state there.
+    pub error: TrackingError,
+}
+
+/// Share of the flight during which a wheel was at a limit and should have gone beyond.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Saturation {
+    /// The motor's torque.
+    pub torque: f64,
+    /// The wheel's speed.
+    pub speed: f64,
+}
+
+/// A state on the way, for a plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedState {
+    /// Time, s.
+    pub time_s: f64,
+    /// True attitude.
+    pub attitude: Attitude,
+    /// True body rate, body axes, rad/s.
+    pub body_rate_rad_s: Vector3<f64>,
+    /// True wheel speeds relative to the body, rad/s.
+    pub wheel_speed_rad_s: Vec<f64>,
+    /// Commanded torques of the wheels from here on, feed-forward and feedback, N m; before the
+    /// limits.
+    pub wheel_torque_nm: Vec<f64>,
+    /// Error against what the controller follows.
+    pub error: TrackingError,
+}
+
+/// One simulated flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedFlight {
+    /// Error at the end of the plan, against its state there.
+    pub plan_end: TrackingError,
+    /// Error at the end of the flight: after the time to settle, when there is one.
+    pub end: TrackingError,
+    /// Errors at the arrivals, in order of the plan.
+    pub passages: Vec<PassageError>,
+    /// Largest errors at any sample, each by itself, against what the controller follows.
+    pub peak: TrackingError,
+    /// One entry per wheel.
+    pub saturation: Vec<Saturation>,
+    /// States at every so many samples of the on-board computer, when asked for.
+    pub states: Vec<SimulatedState>,
+}
+
+impl TrackingError {
+    pub(super) const UNKNOWN: Self = Self {
+        attitude_rad: NOT_COMPUTED,
+        rate_rad_s: NOT_COMPUTED,
+    };
+
+    pub(super) fn of(attitude: &Attitude, rate: &Vector3<f64>, desired: &Desired) -> Self {
+        let turn = desired.attitude.relative_to(attitude);
+        let finite = |value: f64| {
+            if value.is_finite() {
+                value
+            } else {
+                NOT_COMPUTED
+            }
+        };
+        Self {
+            attitude_rad: finite(turn.angle_to(&Attitude::identity())),
+            rate_rad_s: finite((rate - turn.to_body(desired.rate)).norm()),
+        }
+    }
+}
+
+/// Notes on the way.
+#[derive(Debug)]
+pub(super) struct Log {
+    flight: SimulatedFlight,
+    seconds: f64,
+    next_mark: usize,
+}
+
+impl Log {
+    pub(super) fn open(flight: &Flight, wheels: usize) -> Self {
+        let passages = flight.passages.iter().map(|passage| PassageError {
+            target: passage.target.clone(),
+            time_s: passage.time_s,
+            error: TrackingError::UNKNOWN,
+        });
+        let still = TrackingError {
+            attitude_rad: 0.0,
+            rate_rad_s: 0.0,
+        };
+        Self {
+            flight: SimulatedFlight {
+                plan_end: TrackingError::UNKNOWN,
+                end: TrackingError::UNKNOWN,
+                passages: passages.collect(),
+                peak: still,
+                saturation: vec![Saturation::default(); wheels],
+                states: Vec::new(),
+            },
+            seconds: 0.0,
+            next_mark: 0,
+        }
+    }
+
+    /// Notes a sample.
+    pub(super) fn sample(&mut self, error: TrackingError) {
+        let peak = &mut self.flight.peak;
+        peak.attitude_rad = peak.attitude_rad.max(error.attitude_rad);
+        peak.rate_rad_s = peak.rate_rad_s.max(error.rate_rad_s);
+    }
+
+    /// Keeps a state for a plot.
+    pub(super) fn keep(&mut self, state: SimulatedState) {
+        self.flight.states.push(state);
+    }
+
+    /// Notes what a wheel met during a time, s.
+    pub(super) fn wheel(&mut self, wheel: usize, cycle: &Cycle, seconds: f64) {
+        let saturation = &mut self.flight.saturation[wheel];
+        saturation.torque += if cycle.torque_limited { seconds } else { 0.0 };
+        saturation.speed += if cycle.speed_limited { seconds } else { 0.0 };
+    }
+
+    /// Notes that a time has passed, and the errors at the marks that have been reached.
+    pub(super) fn reach(
+        &mut self,
+        course: &Course,
+        time_s: f64,
+        state: Option<(&Attitude, &Vector3<f64>)>,
+    ) {
+        self.seconds = time_s;
+        let reached = |mark: &&super::course::Mark| mark.time_s <= time_s;
+        while let Some(mark) = course.marks.get(self.next_mark).filter(reached) {
+            let error = state.map_or(TrackingError::UNKNOWN, |(attitude, rate)| {
+                TrackingError::of(attitude, rate, &mark.planned)
+            });
+            match mark.event {
+                Event::Arrival(index) => self.flight.passages[index].error = error,
+                Event::PlanEnd => self.flight.plan_end = error,
+                Event::End => {
+                    self.flight.end = error;
+                    self.sample(error);
+                }
+            }
+            self.next_mark += 1;
+        }
+    }
+
+    /// Notes that nothing more can be computed.
+    pub(super) fn break_off(&mut self) {
+        self.flight.peak = TrackingError::UNKNOWN;
+    }
+
+    pub(super) fn close(mut self) -> SimulatedFlight {
+        for saturation in &mut self.flight.saturation {
+            let seconds = self.seconds.max(f64::MIN_POSITIVE);
+            saturation.torque = (saturation.torque / seconds).min(1.0);
+            saturation.speed = (saturation.speed / seconds).min(1.0);
+        }
+        self.flight
+    }
+}

@@ -1,0 +1,181 @@
+//! How much of the wheels a plan should leave to feedback.
+//!
+//! The more of torque and speed a plan uses, the faster it is, and the less is left to make up for
+//! what is not as believed. The study plans a scenario anew for each pair of shares and flies every
+//! plan with the same errors: the table from which a planner chooses.
+
+use super::Simulation;
+use super::monte_carlo::Spread;
+use super::settings::Settings;
+use super::spec::SimulationSpec;
+use crate::findings::Findings;
+use crate::plan::{Optimality, Outcome, Plan};
+use crate::planner::{Run, solve};
+use crate::problem::{Code, Problem};
+use crate::scenario::Scenario;
+use crate::spec::ScenarioSpec;
+
+/// Most pairs of shares of one study: each is a plan and as many flights as asked for.
+const MOST_ROWS: usize = 200;
+
+/// Shares of every torque and speed limit that a plan may use.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Authorities {
+    /// `torque_authority` of the plan.
+    pub torque: f64,
+    /// `momentum_authority` of the plan.
+    pub momentum: f64,
+}
+
+/// A study as a caller describes it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct AuthorityStudySpec {
+    /// How every plan is flown.
+    pub simulation: SimulationSpec,
+    /// The pairs of shares to compare.
+    pub authorities: Vec<Authorities>,
+}
+
+/// One line of the table.
+#[derive(Debug, Clone)]
+pub struct AuthorityRow {
+    /// The shares.
+    pub authorities: Authorities,
+    /// What they lead to.
+    pub outcome: RowOutcome,
+}
+
+/// What a pair of shares leads to.
+#[derive(Debug, Clone)]
+pub enum RowOutcome {
+    /// A plan, flown.
+    Flown {
+        /// Duration of the plan, s.
+        total_time_s: f64,
+        /// What is known about its optimality.
+        optimality: Optimality,
+        /// The visited targets in order.
+        sequence: Vec<String>,
+        /// What its flights have in common.
+        spread: Box<Spread>,
+    },
+    /// No plan, for these reasons: the scenario is not valid with these shares, or has no plan.
+    NoPlan(Vec<Problem>),
+    /// Stopped before a first plan was found.
+    Stopped,
+}
+
+/// Plans a scenario for each pair of shares and flies the plans.
+///
+/// # Errors
+///
+/// All problems of the scenario as it is and of the study at once; pointers into the study begin
+/// with `pointer`.
+pub fn study(
+    scenario: &ScenarioSpec,
+    spec: &AuthorityStudySpec,
+    pointer: &str,
+    run: Run<'_>,
+) -> Result<Vec<AuthorityRow>, Vec<Problem>> {
+    let mut findings = Findings::default();
+    let given = Scenario::try_new(scenario)
+        .map_err(|problems| findings.include(problems))
+        .ok();
+    let at = format!("{pointer}/simulation");
+    let settings = given.as_ref().and_then(|given| {
+        Settings::read(
+            &spec.simulation,
+            given.scenario.spacecraft(),
+            &at,
+            &mut findings,
+        )
+    });
+    let rows = check_shares(&spec.authorities, pointer, &mut findings);
+    findings.conclude(settings.filter(|_| rows))?;
+    let rows = spec.authorities.iter().map(|&authorities| AuthorityRow {
+        authorities,
+        outcome: row(scenario, &spec.simulation, authorities, &at, run),
+    });
+    Ok(rows.collect())
+}
+
+fn check_shares(authorities: &[Authorities], pointer: &str, findings: &mut Findings) -> bool {
+    let mut valid = (1..=MOST_ROWS).contains(&authorities.len());
+    if !valid {
+        findings.refuse(
+            format!("{pointer}/authorities"),
+            Code::WrongLength,
+            format!(
+                "there are {} pairs, there must be from 1 to {MOST_ROWS}",
+                authorities.len()
+            ),
+            "list the pairs of shares to compare",
+        );
+    }
+    for (index, pair) in authorities.iter().enumerate() {
+        for (name, share) in [
+            ("torque_authority", pair.torque),
+            ("momentum_authority", pair.momentum),
+        ] {
+            let at = format!("{pointer}/authorities/{index}/{name}");
+            let share = findings.positive(&at, share);
+            valid &= share.is_some_and(|share| share <= 1.0);
+            if let Some(share) = share.filter(|&share| share > 1.0) {
+                findings.refuse(
+                    at,
+                    Code::OutOfRange,
+                    format!("the share is {share}, it must be at most 1"),
+                    "give the share of the limit that the plan may use",
+                );
+            }
+        }
+    }
+    valid
+}
+
+fn row(
+    scenario: &ScenarioSpec,
+    simulation: &SimulationSpec,
+    authorities: Authorities,
+    pointer: &str,
+    run: Run<'_>,
+) -> RowOutcome {
+    if run.stop.is_set() {
+        return RowOutcome::Stopped;
+    }
+    let mut spec = scenario.clone();
+    spec.options.torque_authority = authorities.torque;
+    spec.options.momentum_authority = authorities.momentum;
+    let scenario = match Scenario::try_new(&spec) {
+        Ok(validated) => validated.scenario,
+        Err(problems) => return RowOutcome::NoPlan(problems),
+    };
+    match solve(&scenario, run) {
+        Outcome::Planned(plan) => fly(&scenario, *plan, simulation, pointer, run),
+        Outcome::Infeasible(problems) | Outcome::Failed(problems) => RowOutcome::NoPlan(problems),
+        Outcome::StoppedEmpty => RowOutcome::Stopped,
+    }
+}
+
+fn fly(
+    scenario: &Scenario,
+    plan: Plan,
+    simulation: &SimulationSpec,
+    pointer: &str,
+    run: Run<'_>,
+) -> RowOutcome {
+    match Simulation::try_new(scenario, &plan.flight, simulation, pointer) {
+        Ok(simulation) => RowOutcome::Flown {
+            total_time_s: plan.total_time_s,
+            optimality: plan.optimality,
+            spread: Box::new(simulation.monte_carlo(run.pool, run.stop)),
+            sequence: plan
+                .flight
+                .passages
+                .into_iter()
+                .map(|passage| passage.target)
+                .collect(),
+        },
+        Err(problems) => RowOutcome::NoPlan(problems),
+    }
+}

@@ -1,0 +1,7 @@
+//! Flights against closed forms, plans and each other.
+
+mod build;
+mod control;
+mod flying;
+mod random;
+mod validation;

@@ -1,0 +1,119 @@
+//! The loop at the wheels, faster than the on-board computer: from commands to motor torques.
+//!
+//! Once per cycle a drive looks at its wheel's speed and sets the motor's torque for the cycle
+//! (BIROS, equations 14 and 15):
+//!
+//! ```text
+//!   M = u + v W + c sign(W)          friction compensated, with the coefficients that are believed
+//!   M = u                            not compensated
+//!   u = -I rate (W - speed)          of a wheel that follows a law, in place of a command
+//! ```
+//!
+//! It then takes from `M` what would carry the wheel beyond its speed limit by the end of the
+//! cycle, and at last what is beyond the motor's torque.
+
+use crate::checker::LIMIT_TOLERANCE;
+use crate::drive::Drive;
+use crate::spacecraft::Wheel;
+
+/// What a motor does in a cycle, and which limits it met.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cycle {
+    /// N m.
+    pub(super) motor_torque: f64,
+    pub(super) torque_limited: bool,
+    pub(super) speed_limited: bool,
+}
+
+/// Sets the torque of a wheel's motor for a cycle of this length, s, from a command (N m) and the
+/// wheel's speed (rad/s).
+pub(super) fn cycle(wheel: &Wheel, drive: &Drive, command: f64, speed: f64, length: f64) -> Cycle {
+    let wanted = drive.speed_law.map_or(command, |law| {
+        -wheel.inertia * law.rate * (speed - law.speed)
+    });
+    let friction = drive.friction(speed);
+    let demand = if drive.friction_compensated {
+        wanted + friction
+    } else {
+        wanted
+    };
+    // Plans may exceed a limit by rounding, which is no saturation.
+    let rounding = LIMIT_TOLERANCE * wheel.max_torque.max(-wheel.min_torque);
+    let most_speed = wheel.max_speed * (1.0 + LIMIT_TOLERANCE);
+    let most = wheel.inertia * (most_speed - speed) / length + friction;
+    let least = wheel.inertia * (-most_speed - speed) / length + friction;
+    let slow_enough = demand.min(most).max(least);
+    let motor_torque = slow_enough.min(wheel.max_torque).max(wheel.min_torque);
+    Cycle {
+        motor_torque,
+        torque_limited: (motor_torque - slow_enough).abs() > rounding,
+        speed_limited: (slow_enough - demand).abs() > rounding,
+    }
+}
+
+/// Torques that the on-board computer may command to a wheel, N m.
+pub(super) fn commandable(wheel: &Wheel, torque: f64) -> (f64, bool) {
+    let limited = torque.min(wheel.max_torque).max(wheel.min_torque);
+    let rounding = LIMIT_TOLERANCE * wheel.max_torque.max(-wheel.min_torque);
+    (limited, (torque - limited).abs() > rounding)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::SpeedLaw;
+    use nalgebra::Vector3;
+
+    const WHEEL: Wheel = Wheel {
+        axis: Vector3::new(1.0, 0.0, 0.0),
+        inertia: 1e-3,
+        min_torque: -0.1,
+        max_torque: 0.1,
+        max_speed: 100.0,
+        enabled: true,
+    };
+    const RUBBING: Drive = Drive {
+        viscous_friction: 1e-4,
+        coulomb_friction: 2e-3,
+        ..Drive::IDEAL
+    };
+
+    #[test]
+    fn friction_is_added_and_counts_against_the_motor() {
+        let free = cycle(&WHEEL, &RUBBING, 0.05, 50.0, 0.01);
+        assert!((free.motor_torque - 0.057).abs() < 1e-15);
+        assert!(!free.torque_limited && !free.speed_limited);
+        let full = cycle(&WHEEL, &RUBBING, 0.099, 50.0, 0.01);
+        assert!((full.motor_torque - 0.1).abs() < 1e-15 && full.torque_limited);
+        let bare = Drive {
+            friction_compensated: false,
+            ..RUBBING
+        };
+        let torque = cycle(&WHEEL, &bare, 0.05, 50.0, 0.01).motor_torque;
+        assert!((torque - 0.05).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_wheel_arrives_at_its_speed_limit_and_stays() {
+        let near = cycle(&WHEEL, &Drive::IDEAL, 0.1, 99.9, 0.01);
+        assert!((near.motor_torque - 0.01).abs() < 2e-5, "{near:?}");
+        assert!(near.speed_limited && !near.torque_limited);
+        let at = cycle(&WHEEL, &RUBBING, 0.1, 100.0, 0.01);
+        assert!((at.motor_torque - 0.012).abs() < 2e-5, "{at:?}");
+        let back = cycle(&WHEEL, &Drive::IDEAL, -0.1, 100.0, 0.01);
+        assert!((back.motor_torque + 0.1).abs() < 1e-15 && !back.speed_limited);
+    }
+
+    #[test]
+    fn a_wheel_with_a_law_takes_no_commands() {
+        let held = Drive {
+            speed_law: Some(SpeedLaw {
+                rate: 0.5,
+                speed: -20.0,
+            }),
+            ..Drive::IDEAL
+        };
+        let torque = cycle(&WHEEL, &held, 0.1, -10.0, 0.01).motor_torque;
+        assert!((torque + 5e-3).abs() < 1e-15, "{torque}");
+    }
+}

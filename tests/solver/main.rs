@@ -4,6 +4,7 @@ mod arrays;
 mod boundaries;
 mod certified;
 mod fixed_order;
+mod flown;
 mod infeasible;
 mod invariance;
 mod oracle;

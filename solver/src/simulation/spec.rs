@@ -75,14 +75,15 @@ pub enum ControllerSpec {
 }
 
 impl Default for ControllerSpec {
-    /// Quaternion feedback of 0.1 rad/s.
+    /// Quaternion feedback of 0.1 rad/s. Without the gyroscopic term: along a plan it makes up for
+    /// little, and for the wrong momentum as far as the inertia is.
     fn default() -> Self {
         Self::Quaternion {
             gains: GainsSpec::Bandwidth {
                 bandwidth_rad_s: 0.1,
                 damping: 0.7,
             },
-            gyroscopic: true,
+            gyroscopic: false,
         }
     }
 }

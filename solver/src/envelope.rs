@@ -4,7 +4,7 @@
 //! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels share this in many
 //! ways; the best is the one whose most loaded wheel is loaded least, which a linear program finds.
 
-use crate::convex::{ConvexProgram, Ending};
+use crate::allocation;
 use crate::problem::{Code, Problem};
 use crate::scenario::{RateCondition, Scenario};
 use crate::spacecraft::{Spacecraft, Wheel};
@@ -78,38 +78,12 @@ pub fn hold_momentum(
     Some(Hold { wheel_speed, load })
 }
 
-/// Momenta of the wheels about their axes that sum to `demand` with the least largest weighted
-/// size.
+/// Momenta of the wheels about their axes that sum to `demand` with the least largest load.
 fn least_loaded(wheels: &[(usize, &Wheel)], demand: Vector3<f64>) -> Option<DVector<f64>> {
-    let count = wheels.len();
-    let axes = DMatrix::from_fn(3, count, |row, column| wheels[column].1.axis[row]);
-    let weights = weights(wheels);
-    // Unknowns: the momenta, then the largest weighted size, which is the cost.
-    let program = ConvexProgram {
-        quadratic: None,
-        cost: DVector::from_fn(count + 1, |i, _| if i == count { 1.0 } else { 0.0 }),
-        equal: axes.clone().insert_column(count, 0.0),
-        equal_to: DVector::from_column_slice(demand.as_slice()),
-        below: DMatrix::from_fn(2 * count, count + 1, |row, column| {
-            let sign = if row < count { 1.0 } else { -1.0 };
-            match column {
-                column if column == count => -1.0,
-                column if column == row % count => sign * weights[column],
-                _ => 0.0,
-            }
-        }),
-        at_most: DVector::zeros(2 * count),
-    };
-    match program.minimise() {
-        Ending::Solved(minimum) => {
-            let momenta = minimum.unknowns.rows(0, count).into_owned();
-            // The equations hold to solver accuracy only; the least correction makes them exact.
-            let residual = &program.equal_to - &axes * &momenta;
-            let correction = axes.svd(true, true).solve(&residual, f64::EPSILON).ok()?;
-            Some(momenta + correction)
-        }
-        Ending::Infeasible | Ending::Failed(_) => None,
-    }
+    let axes = DMatrix::from_fn(3, wheels.len(), |row, column| wheels[column].1.axis[row]);
+    // Speeds are limited alike to both sides.
+    let weights: Vec<_> = weights(wheels).into_iter().map(|w| [w, w]).collect();
+    allocation::least_loaded(&axes, &weights, demand)
 }
 
 /// Inverse capacity of each wheel, the largest being 1; the authority shares out equally.

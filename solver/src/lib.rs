@@ -72,19 +72,26 @@
 //! # Ok::<(), slewplan_solver::pool::PoolError>(())
 //! ```
 
+pub mod allocation;
+pub mod array;
 pub mod attitude;
 mod certified;
 pub mod certify;
 pub mod checker;
+pub mod cmg;
+pub mod comparison;
 mod convex;
 pub mod drive;
 mod dynamics;
+pub mod eigenaxis;
 pub mod envelope;
+pub mod envelope_path;
 mod findings;
 pub mod kinematic_bound;
 mod kinematics;
 pub mod legs;
 pub mod manoeuvre;
+pub mod market;
 mod multiphase;
 mod nlp;
 pub mod plan;

@@ -9,6 +9,7 @@ mod first;
 mod fixed_order;
 mod legs;
 mod memory;
+mod offered;
 mod places;
 mod priced;
 mod recall;
@@ -41,6 +42,7 @@ use tours::Tours;
 pub use claims::{CheckedClaims, LegClaim, Objection, Obstacle, PlanClaims, Verdict, certify_plan};
 pub use fixed_order::{BoundFrom, OrderError, fly_order};
 pub use memory::memory_estimate;
+pub use offered::{LegCheck, OfferedLeg};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]
@@ -171,11 +173,8 @@ pub fn leg_table(
 ) -> (Vec<LegRow>, bool) {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    let all = places.all();
-    let pairs: Vec<_> = all
-        .iter()
-        .flat_map(|from| all.iter().map(move |to| (*from, *to)))
-        .filter(|(from, to)| from != to)
+    let pairs: Vec<_> = all_pairs(&places)
+        .into_iter()
         .enumerate()
         .filter(|(i, _)| i % shard.of.max(1) == shard.index)
         .map(|(_, pair)| pair)
@@ -259,6 +258,15 @@ fn interruption(stop: &StopSignal) -> Option<Interruption> {
         StopReason::TimeLimit => Interruption::TimeLimit,
         StopReason::Requested | StopReason::Cancelled => Interruption::Cancelled,
     })
+}
+
+/// All ordered pairs of places, in the order of a table.
+fn all_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
+    let all = places.all();
+    all.iter()
+        .flat_map(|from| all.iter().map(move |to| (*from, *to)))
+        .filter(|(from, to)| from != to)
+        .collect()
 }
 
 /// The ordered pairs that a tour may fly.

@@ -7,6 +7,7 @@ mod fixed_order;
 mod flown;
 mod infeasible;
 mod invariance;
+mod offered;
 mod oracle;
 mod order_rules;
 mod published;

@@ -282,14 +282,16 @@ fn missing_from<'c, T>(
         .collect()
 }
 
-fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
+/// A place under the conditions of a kind of leg.
+pub(super) fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
     match kind {
         LegKind::RestToRest | LegKind::Certified => places.at_rest(place),
         LegKind::LowerBound => places.waypoint(place),
     }
 }
 
-fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
+/// What is proved of a leg.
+pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     let begin = Instant::now();
     CertifiedLeg {
         lower_bound: places
@@ -354,7 +356,8 @@ fn standstill(leg: &slew::SlewProblem<'_>) -> Option<Flown> {
     })
 }
 
-fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
+/// A solved leg to be stored.
+pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
     let profile = &solved.flown.profile;
     StoredLeg {
         spacecraft: leg.spacecraft.clone(),

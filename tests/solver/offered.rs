@@ -1,0 +1,146 @@
+//! Legs that were solved elsewhere: taken bit for bit when they fly, refused when they do not.
+
+use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};
+use slewplan_solver::planner::{LegCheck, OfferedLeg, Run, Shard, leg_table};
+use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::stop::StopSignal;
+use slewplan_tests::random::Generator;
+use slewplan_tests::schedules::{Rates, Region, schedule};
+use slewplan_tests::solving::{on_threads, pool, scenario_of};
+use slewplan_tests::suite;
+use std::collections::HashMap;
+use std::sync::Mutex;
+
+const WHOLE: Shard = Shard { index: 0, of: 1 };
+
+#[derive(Default)]
+struct Memory(Mutex<HashMap<String, StoredLeg>>);
+
+impl LegStore for Memory {
+    fn get(&self, _: &str) -> Option<StoredLeg> {
+        None
+    }
+
+    fn put(&self, identity: &str, leg: &StoredLeg) {
+        let mut legs = self.0.lock().expect("nobody panics");
+        legs.insert(identity.to_owned(), leg.clone());
+    }
+}
+
+/// All solved legs of a scenario.
+fn solved(spec: &ScenarioSpec, kind: LegKind) -> HashMap<String, StoredLeg> {
+    let (scenario, memory) = (scenario_of(spec), Memory::default());
+    on_threads(2, |run| {
+        let legs = &memory;
+        leg_table(&scenario, kind, WHOLE, Run { legs, ..run })
+    });
+    memory.0.into_inner().expect("nobody panics")
+}
+
+fn offered(leg: &StoredLeg) -> OfferedLeg {
+    OfferedLeg {
+        attitudes_xyzw: leg.attitudes_xyzw.clone(),
+        wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
+        lengths_s: leg.lengths_s.clone(),
+        solve_time_s: leg.solve_time_s,
+    }
+}
+
+/// What becomes of a leg that is offered for a scenario.
+fn judged(
+    spec: &ScenarioSpec,
+    kind: LegKind,
+    identity: &str,
+    leg: OfferedLeg,
+) -> Result<StoredLeg, Vec<String>> {
+    let (scenario, pool, stop) = (scenario_of(spec), pool(1), StopSignal::new());
+    let wanted = |other: &str| other == identity;
+    let check = LegCheck::new(&scenario, kind, &wanted, (&pool, &stop)).expect("nobody stops it");
+    check.check(identity, leg)
+}
+
+fn quaternions() -> ScenarioSpec {
+    let mut spec = schedule(Region::Sphere, Rates::ZeroAboutZ, 4, 3);
+    spec.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
+    spec
+}
+
+#[test]
+fn what_the_solver_found_is_taken_as_it_is() {
+    let random = (0..6).map(|seed| Generator::new(seed).single_slews());
+    let arrays = [1, 6, 15].map(|spacecraft| suite::leg(spacecraft, 1));
+    let scenarios = random.chain(arrays).chain([quaternions()]);
+    let mut count = 0;
+    for (number, spec) in scenarios.enumerate() {
+        for kind in [LegKind::RestToRest, LegKind::LowerBound] {
+            for (identity, leg) in solved(&spec, kind) {
+                let taken = judged(&spec, kind, &identity, offered(&leg));
+                assert_eq!(taken.as_ref(), Ok(&leg), "scenario {number}, {kind:?}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 40, "{count} legs");
+}
+
+#[test]
+fn what_does_not_fly_is_refused_with_a_reason() {
+    let spec = schedule(Region::Sphere, Rates::AllZero, 2, 1);
+    let kind = LegKind::RestToRest;
+    let legs = solved(&spec, kind);
+    let (identity, leg) = legs
+        .iter()
+        .max_by(|a, b| a.1.duration_s.total_cmp(&b.1.duration_s))
+        .expect("there are legs");
+    let cases: [(&str, fn(&mut OfferedLeg)); 12] = [
+        ("the end is missed", |leg| {
+            leg.lengths_s.iter_mut().for_each(|length| *length *= 1.001);
+        }),
+        ("the end is missed", |leg| {
+            // Twice as fast: with torques within their limits the wheels do not follow.
+            leg.lengths_s.iter_mut().for_each(|length| *length *= 0.5);
+            let momenta = leg.wheel_momenta_nms.iter_mut().flatten();
+            momenta.for_each(|momentum| *momentum *= 2.0);
+        }),
+        ("eigenaxis", |leg| {
+            // Twice as slow: it flies, but is no minimum.
+            leg.lengths_s.iter_mut().for_each(|length| *length *= 2.0);
+            let momenta = leg.wheel_momenta_nms.iter_mut().flatten();
+            momenta.for_each(|momentum| *momentum *= 0.5);
+        }),
+        ("between nodes 2 and 3", |leg| {
+            leg.attitudes_xyzw[3] = leg.attitudes_xyzw[4];
+        }),
+        ("begins", |leg| {
+            leg.attitudes_xyzw[0] = leg.attitudes_xyzw[1];
+        }),
+        ("the rate about x is off", |leg| {
+            leg.wheel_momenta_nms[0][0] += 0.001;
+        }),
+        ("at the end", |leg| {
+            let last = leg.wheel_momenta_nms.last_mut().expect("nodes");
+            last[2] += 0.001;
+        }),
+        ("unit quaternions", |leg| {
+            leg.attitudes_xyzw[1] = [0.0, 0.0, 0.0, 2.0];
+        }),
+        ("unit quaternions", |leg| {
+            leg.lengths_s.pop();
+        }),
+        ("momenta of 3 wheels", |leg| {
+            leg.wheel_momenta_nms[5].pop();
+        }),
+        ("not finite", |leg| leg.wheel_momenta_nms[1][1] = f64::NAN),
+        ("negative", |leg| leg.lengths_s[1] = -1.0),
+    ];
+    for (reason, spoil) in cases {
+        let mut spoilt = offered(leg);
+        spoil(&mut spoilt);
+        let faults = judged(&spec, kind, identity, spoilt).expect_err(reason);
+        assert!(faults.join("; ").contains(reason), "{reason}: {faults:?}");
+    }
+    let other = legs.keys().find(|key| *key != identity).expect("another");
+    assert!(judged(&spec, kind, other, offered(leg)).is_err());
+    let unknown = judged(&spec, kind, "another problem", offered(leg));
+    assert!(unknown.expect_err("unknown")[0].contains("no such leg"));
+}

@@ -57,8 +57,32 @@ fn the_documentation_needs_no_other_host() {
         "{page}"
     );
     service.get("/docs/swagger-ui-bundle.js").expect(200);
+}
+
+#[test]
+fn the_index_of_errors_is_where_problems_point_to() {
+    let service = Service::start();
     let index = service.get("/docs/errors").expect(200).body;
-    for code in ["queue_full", "momentum_exceeds_envelope", "malformed_json"] {
-        assert!(index.contains(code), "{code}");
+    assert!(!index.contains("https://"), "{index}");
+    // Every row has a place, a meaning and what to do.
+    let rows: Vec<&str> = index.split("<tr id=").skip(1).collect();
+    assert!(rows.len() > 60, "{}", rows.len());
+    for row in &rows {
+        let cells: Vec<&str> = row.split("<td>").skip(1).collect();
+        assert!((3..=4).contains(&cells.len()), "{row}");
+        assert!(cells.iter().all(|cell| cell.len() > 2), "{row}");
     }
+    for anchor in [
+        "queue_full",
+        "input-momentum_exceeds_envelope",
+        "input-leg_refused",
+    ] {
+        assert!(index.contains(&format!("id=\"{anchor}\"")), "{anchor}");
+    }
+    let problem = service
+        .get("/v1/plans/nothing")
+        .expect_problem(404, "not_found");
+    let place = problem["type"].as_str().expect("text");
+    let anchor = place.strip_prefix("/docs/errors#").expect("the index");
+    assert!(index.contains(&format!("id=\"{anchor}\"")), "{anchor}");
 }

@@ -14,7 +14,7 @@ const MOST_PROBLEMS: usize = 100;
 pub(super) const PROBLEM_JSON: &str = "application/problem+json";
 
 macro_rules! error_codes {
-    ($($name:ident = $text:literal, $status:ident, $title:literal;)+) => {
+    ($($name:ident = $text:literal, $status:ident, $title:literal, $remedy:literal;)+) => {
         /// Stable codes of errors of the service; those of an input are in its `errors`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub(super) enum ErrorCode { $($name,)+ }
@@ -37,39 +37,71 @@ macro_rules! error_codes {
             pub(super) const fn title(self) -> &'static str {
                 match self { $(Self::$name => $title,)+ }
             }
+
+            /// What to do about it.
+            pub(super) const fn remedy(self) -> &'static str {
+                match self { $(Self::$name => $remedy,)+ }
+            }
         }
     };
 }
 
 error_codes! {
-    MalformedJson = "malformed_json", BAD_REQUEST, "The body is not valid JSON";
-    BadRequest = "bad_request", BAD_REQUEST, "The request cannot be understood";
-    InvalidParameter = "invalid_parameter", BAD_REQUEST, "A parameter or header is not valid";
-    Unauthorized = "unauthorized", UNAUTHORIZED, "A key is needed";
-    ScopeMissing = "scope_missing", FORBIDDEN, "The key does not open this";
-    NotFound = "not_found", NOT_FOUND, "There is nothing here";
-    MethodNotAllowed = "method_not_allowed", METHOD_NOT_ALLOWED, "The method does not exist here";
-    NotAcceptable = "not_acceptable", NOT_ACCEPTABLE, "The answer has none of the accepted forms";
-    NotRunning = "not_running", CONFLICT, "The job has not begun yet";
-    JobHasEnded = "job_has_ended", CONFLICT, "The job has ended before";
-    ResultNotReady = "result_not_ready", CONFLICT, "The job has no plan yet";
-    NoResult = "no_result", CONFLICT, "The job ended without such a result";
-    BodyTooSlow = "body_too_slow", REQUEST_TIMEOUT, "The body did not arrive in time";
-    BodyTooLarge = "body_too_large", PAYLOAD_TOO_LARGE, "The body is too large";
-    TooManyTargets = "too_many_targets", PAYLOAD_TOO_LARGE, "The scenario has too many targets";
-    TooMuchMemory = "too_much_memory", PAYLOAD_TOO_LARGE, "The job would need too much memory";
-    TooManyPairs = "too_many_pairs", PAYLOAD_TOO_LARGE, "The query asks for too many legs";
+    MalformedJson = "malformed_json", BAD_REQUEST, "The body is not valid JSON",
+        "Correct the syntax at the line and column of the entry in errors.";
+    BadRequest = "bad_request", BAD_REQUEST, "The request cannot be understood",
+        "Correct what the detail names.";
+    InvalidParameter = "invalid_parameter", BAD_REQUEST, "A parameter or header is not valid",
+        "Correct the parameter or header that the detail names.";
+    Unauthorized = "unauthorized", UNAUTHORIZED, "A key is needed",
+        "Send Authorization: Bearer with a key from slewplan keys create.";
+    ScopeMissing = "scope_missing", FORBIDDEN, "The key does not open this",
+        "Use a key with the scope that the detail names.";
+    NotFound = "not_found", NOT_FOUND, "There is nothing here",
+        "Look for a mistake in the address; what belongs to another client is not there either.";
+    MethodNotAllowed = "method_not_allowed", METHOD_NOT_ALLOWED, "The method does not exist here",
+        "Take a method from the description of the interface.";
+    NotAcceptable = "not_acceptable", NOT_ACCEPTABLE, "The answer has none of the accepted forms",
+        "Accept application/json, or a format that the description names.";
+    NotRunning = "not_running", CONFLICT, "The job has not begun yet",
+        "Wait until the job runs, or cancel it.";
+    JobHasEnded = "job_has_ended", CONFLICT, "The job has ended before",
+        "Read its result; there is nothing to stop any more.";
+    ResultNotReady = "result_not_ready", CONFLICT, "The job has no plan yet",
+        "Ask again later, or follow the events of the job.";
+    NoResult = "no_result", CONFLICT, "The job ended without such a result",
+        "Read the job or its result as JSON for the reasons.";
+    BodyTooSlow = "body_too_slow", REQUEST_TIMEOUT, "The body did not arrive in time",
+        "Send the body without long pauses.";
+    BodyTooLarge = "body_too_large", PAYLOAD_TOO_LARGE, "The body is too large",
+        "Send less, or raise --max-body-bytes of the service; slewplan import takes larger files \
+         of legs.";
+    TooManyTargets = "too_many_targets", PAYLOAD_TOO_LARGE, "The scenario has too many targets",
+        "Plan fewer targets at once, or raise --max-targets of the service.";
+    TooMuchMemory = "too_much_memory", PAYLOAD_TOO_LARGE, "The job would need too much memory",
+        "Plan fewer targets at once, or raise --job-memory of the service.";
+    TooManyPairs = "too_many_pairs", PAYLOAD_TOO_LARGE, "The query asks for too many legs",
+        "Ask for fewer legs at once.";
     UnsupportedMediaType = "unsupported_media_type", UNSUPPORTED_MEDIA_TYPE,
-        "The body has a form that is not supported";
-    InvalidInput = "invalid_input", UNPROCESSABLE_ENTITY, "The input is not valid";
+        "The body has a form that is not supported",
+        "Send application/json without Content-Encoding.";
+    InvalidInput = "invalid_input", UNPROCESSABLE_ENTITY, "The input is not valid",
+        "Correct what errors lists, each entry with its pointer and hint.";
     IdempotencyKeyReused = "idempotency_key_reused", UNPROCESSABLE_ENTITY,
-        "The idempotency key belongs to another request";
-    QuotaExceeded = "quota_exceeded", TOO_MANY_REQUESTS, "The client has too many jobs waiting";
-    QueueFull = "queue_full", SERVICE_UNAVAILABLE, "Too many jobs wait already";
-    Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy";
-    NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now";
-    DiskFull = "disk_full", INSUFFICIENT_STORAGE, "The disk of the service is full";
-    Internal = "internal_error", INTERNAL_SERVER_ERROR, "Something went wrong inside";
+        "The idempotency key belongs to another request",
+        "Use a new key for another request.";
+    QuotaExceeded = "quota_exceeded", TOO_MANY_REQUESTS, "The client has too many jobs waiting",
+        "Come again after Retry-After, or cancel jobs that wait.";
+    QueueFull = "queue_full", SERVICE_UNAVAILABLE, "Too many jobs wait already",
+        "Come again after Retry-After.";
+    Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy",
+        "Come again after Retry-After.";
+    NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now",
+        "Come again later; the log of the service tells why.";
+    DiskFull = "disk_full", INSUFFICIENT_STORAGE, "The disk of the service is full",
+        "Make room on the disk of the service; slewplan serve --retain DAYS deletes old jobs.";
+    Internal = "internal_error", INTERNAL_SERVER_ERROR, "Something went wrong inside",
+        "Look into the log of the service for the X-Request-Id of the answer.";
 }
 
 /// An error on its way to the caller.

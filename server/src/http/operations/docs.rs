@@ -20,6 +20,12 @@ pub(in crate::http) async fn openapi() -> ([(HeaderName, &'static str); 1], Stri
     )
 }
 
+/// Enough to read the tables by; nothing is loaded.
+const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;\
+    padding:0 1rem;color-scheme:light dark}table{border-collapse:collapse;width:100%}\
+    th,td{text-align:left;vertical-align:top;padding:.35rem .75rem .35rem 0;\
+    border-bottom:1px solid #8886}:target{background:#fc04}";
+
 /// Read the index of errors
 #[utoipa::path(
     get, path = "/docs/errors", tag = "operations", operation_id = "get_error_index",
@@ -27,26 +33,39 @@ pub(in crate::http) async fn openapi() -> ([(HeaderName, &'static str); 1], Stri
         content_type = "text/html")),
 )]
 pub(in crate::http) async fn errors() -> Html<String> {
-    let mut page = String::from(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Errors</title>\
-         <h1>Errors of requests</h1><p>The <code>code</code> of a problem document.</p>\
-         <table><tr><th>Code<th>Status<th>Meaning",
+    let mut page = format!(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width\"><title>Errors of slewplan</title>\
+         <style>{STYLE}</style>\
+         <h1>Errors of slewplan</h1>\
+         <p>Codes never change their meaning. <a href=\"#requests\">Errors of requests</a> are \
+         the <code>code</code> of a problem document (RFC 9457); its <code>type</code> leads here. \
+         <a href=\"#inputs\">Problems of inputs</a> are the <code>code</code> of an entry of \
+         <code>errors</code>, <code>warnings</code>, <code>reasons</code> or <code>refused</code>, \
+         and stand in brackets where a command lists them; each comes with a pointer to its place \
+         (RFC 6901), a message and a hint.</p>\
+         <h2 id=\"requests\">Errors of requests</h2>\
+         <table><tr><th>Code<th>Status<th>Meaning<th>What to do"
     );
     for code in ErrorCode::ALL {
-        let (name, status, title) = (code.as_str(), code.status().as_u16(), code.title());
+        let (name, status) = (code.as_str(), code.status().as_u16());
+        let (title, remedy) = (code.title(), code.remedy());
         let _ = write!(
             page,
-            "<tr id=\"{name}\"><td><code>{name}</code><td>{status}<td>{title}"
+            "<tr id=\"{name}\"><td><code>{name}</code><td>{status}<td>{title}.<td>{remedy}"
         );
     }
     page.push_str(
-        "</table><h1>Problems of inputs</h1><p>The <code>code</code> of an entry of \
-         <code>errors</code>, <code>warnings</code> or <code>reasons</code>; each comes with a \
-         pointer to its place, a message and a hint.</p><ul>",
+        "</table><h2 id=\"inputs\">Problems of inputs</h2>\
+         <table><tr><th>Code<th>Meaning<th>What to do",
     );
     for code in Code::ALL {
-        let _ = write!(page, "<li id=\"input-{code}\"><code>{code}</code>");
+        let (meaning, remedy) = (code.meaning(), code.remedy());
+        let _ = write!(
+            page,
+            "<tr id=\"input-{code}\"><td><code>{code}</code><td>{meaning}<td>{remedy}"
+        );
     }
-    page.push_str("</ul></html>\n");
+    page.push_str("</table></html>\n");
     Html(page)
 }

@@ -19,7 +19,7 @@ pub(crate) enum Scope {
     Read,
     /// Submit, end and delete jobs, store spacecraft, compute
     Write,
-    /// Read metrics and the cached legs of all clients
+    /// Read metrics and the cached legs of all clients, import legs
     Operate,
 }
 

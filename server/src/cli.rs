@@ -8,12 +8,12 @@ mod certify;
 mod export;
 mod failure;
 mod form;
+mod import;
 mod input;
 mod keys;
 mod legs;
 mod openapi;
 mod output;
-
 mod panics;
 mod plot;
 mod remembered;
@@ -43,6 +43,8 @@ enum Command {
     Solve(solve::Arguments),
     /// Tabulate the times of the legs between start, targets and end
     Legs(legs::Arguments),
+    /// Put legs that were solved elsewhere into the database of a service
+    Import(import::Arguments),
     /// List everything that is wrong or doubtful with a scenario
     Validate(validate::Arguments),
     /// Fly a plan made by anyone again and test every limit
@@ -72,7 +74,8 @@ pub(crate) enum Exit {
     Failed,
     /// The input is not valid.
     Invalid,
-    /// No plan can exist, or the plan did not pass or its bounds are not confirmed.
+    /// No plan can exist, or the plan did not pass or its bounds are not confirmed, or legs are
+    /// refused.
     Negative,
     /// Stopped with the best answer so far.
     Stopped,
@@ -114,6 +117,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Legs(arguments) => legs::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Certify(arguments) => certify::run(arguments),

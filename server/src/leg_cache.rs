@@ -132,7 +132,8 @@ impl Drop for LegCache {
     }
 }
 
-fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
+/// A leg as the database keeps it.
+pub(crate) fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
     NewLeg {
         identity: identity.to_owned(),
         spacecraft: leg.spacecraft.clone(),

@@ -10,6 +10,7 @@ pub(crate) mod claims;
 pub(crate) mod document;
 pub(crate) mod flight;
 pub(crate) mod jobs;
+pub(crate) mod leg_import;
 pub(crate) mod leg_query;
 pub(crate) mod legs;
 #[cfg(test)]

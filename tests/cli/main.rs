@@ -3,8 +3,10 @@
 mod certify;
 mod export;
 mod files;
+mod importing;
 mod invalid;
 mod legs;
+mod merging;
 mod plot;
 mod refusals;
 mod run;

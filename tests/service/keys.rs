@@ -182,6 +182,7 @@ fn a_key_opens_what_its_scopes_say() {
     let (_folder, database) = folder();
     let reader = key(&database, &["one", "--scopes", "read", "--expires", "1"]);
     let operator = key(&database, &["one", "--scopes", "operate"]);
+    let writer = key(&database, &["one"]);
     let service = Service::on(&database, &[]);
     let send = |method, path, key: &str| service.send(&request(method, path, key));
     send("GET", "/v1/plans", &reader).expect(200);
@@ -189,6 +190,8 @@ fn a_key_opens_what_its_scopes_say() {
     send("GET", "/metrics", &reader).expect_problem(403, "scope_missing");
     send("GET", "/metrics", &operator).expect(200);
     send("GET", "/v1/plans", &operator).expect_problem(403, "scope_missing");
+    send("POST", "/v1/legs/import", &writer).expect_problem(403, "scope_missing");
+    send("POST", "/v1/legs/import", &operator).expect_problem(415, "unsupported_media_type");
 }
 
 #[test]

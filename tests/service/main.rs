@@ -8,6 +8,7 @@ mod events;
 mod examples;
 mod export;
 mod idempotency;
+mod imports;
 mod keys;
 mod legs;
 mod operations;

@@ -37,6 +37,12 @@ pub(crate) enum Failure {
         /// Everything that is wrong with it.
         problems: Vec<Problem>,
     },
+    /// Inputs that do not fit together; problems of all of them together have no name.
+    #[error("{}", listings(problems))]
+    Misfits {
+        /// Everything that is wrong, with the input that it is wrong with.
+        problems: Vec<(Option<String>, Problem)>,
+    },
     /// An output that cannot be written.
     #[error("cannot write {name}: {source}")]
     Unwritable {
@@ -75,7 +81,8 @@ impl Failure {
             | Self::TooLarge { .. }
             | Self::StandardInputTwice
             | Self::Setting { .. }
-            | Self::Invalid { .. } => Exit::Invalid,
+            | Self::Invalid { .. }
+            | Self::Misfits { .. } => Exit::Invalid,
             Self::Unwritable { .. }
             | Self::Service(_)
             | Self::Pool(_)
@@ -83,6 +90,19 @@ impl Failure {
             | Self::Unspeakable(_) => Exit::Failed,
         }
     }
+}
+
+/// Problems of several inputs as text, those of one input in a row.
+fn listings(problems: &[(Option<String>, Problem)]) -> String {
+    let mut names: Vec<&Option<String>> = problems.iter().map(|(name, _)| name).collect();
+    names.dedup();
+    let part = |name: &&Option<String>| {
+        let of_it = problems.iter().filter(|(other, _)| other == *name);
+        let found: Vec<Problem> = of_it.map(|(_, problem)| problem.clone()).collect();
+        listing(name.as_deref().unwrap_or("the table of all files"), &found)
+    };
+    let parts: Vec<String> = names.iter().map(part).collect();
+    parts.join("\n")
 }
 
 /// Problems as text: a head line and one paragraph each.

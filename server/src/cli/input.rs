@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use crate::wire;
+use crate::wire::document::Node;
 use slewplan_solver::problem::Problem;
 use slewplan_solver::scenario::{Scenario, Validated};
 use std::fs::File;
@@ -60,6 +61,14 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
         .take((LARGEST_MIB << 20) + 1)
         .read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// Reads a document of any meaning.
+pub(super) fn document(path: &Path) -> Result<Node, Failure> {
+    wire::document::parse(&read(path)?).map_err(|problem| Failure::Invalid {
+        name: name(path),
+        problems: vec![problem],
+    })
 }
 
 /// Reads a valid scenario; a time limit from the command line, s, replaces its own.

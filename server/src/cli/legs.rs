@@ -1,30 +1,49 @@
-//! `slewplan legs`: the table of leg times.
+//! `slewplan legs`: the table of leg times, whole, in parts, or joined from parts.
 
 use super::failure::Failure;
 use super::output::{self, Destination};
+use super::remembered::RememberedLegs;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input};
 use crate::progress::{self, ProgressMode};
-use crate::signals;
-use crate::wire::legs::LegTableDocument;
+use crate::signals::{self, Received};
+use crate::wire;
+use crate::wire::document::Node;
+use crate::wire::legs::{LegTable, LegTableDocument};
 use clap::ValueEnum;
-use slewplan_solver::legs::{LegKind, NoStore};
-use slewplan_solver::planner::{self, LegRow, Run, Shard};
+use recorder::Recorder;
+use slewplan_solver::legs::{LegKind, LegStore, NoStore};
+use slewplan_solver::planner::{self, Run, Shard};
+use slewplan_solver::scenario::Scenario;
 use slewplan_solver::stop::StopSignal;
 use std::path::PathBuf;
 use std::str::FromStr;
+
+mod merge;
+mod recorder;
 
 /// What `legs` takes.
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
     /// The scenario, - for standard input
-    scenario: PathBuf,
+    #[arg(required_unless_present = "merge")]
+    scenario: Option<PathBuf>,
+    /// Join the files of all parts of a table to the file of the whole
+    #[arg(long, value_name = "FILE", num_args = 1..,
+        conflicts_with_all = ["scenario", "kind", "shard", "trajectories", "database", "threads"])]
+    merge: Vec<PathBuf>,
     /// The conditions at the two ends of a leg
     #[arg(long, value_enum, default_value_t = Kind::RestToRest)]
     kind: Kind,
     /// Solve only part I of N, counted from 1; the parts together are the whole table
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: ShardArgument,
+    /// Write the motions and the scenario too, so that the file can be imported
+    #[arg(long)]
+    trajectories: bool,
+    /// Take known legs from this database of the service, and remember new ones in it
+    #[arg(long, value_name = "FILE")]
+    database: Option<PathBuf>,
     /// Write the table to this file instead of standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
@@ -82,55 +101,98 @@ impl FromStr for ShardArgument {
     }
 }
 
-/// Solves the legs and writes the table.
+/// Solves the legs, or joins parts, and writes the table.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
-    let scenario = input::scenario(&arguments.scenario, None)?.scenario;
-    let obstacles = planner::feasibility_problems(&scenario);
-    if !obstacles.is_empty() {
-        for obstacle in &obstacles {
-            output::complain(&obstacle.to_string());
+    let table = match &arguments.scenario {
+        None => merge::table(&arguments.merge)?,
+        Some(path) => {
+            let node = input::document(path)?;
+            let read = wire::scenario::read_node(&node, None);
+            let scenario = read.map_err(|problems| Failure::Invalid {
+                name: input::name(path),
+                problems,
+            })?;
+            let scenario = scenario.scenario;
+            let obstacles = planner::feasibility_problems(&scenario);
+            if !obstacles.is_empty() {
+                for obstacle in &obstacles {
+                    output::complain(&obstacle.to_string());
+                }
+                return Ok(Exit::Negative);
+            }
+            let (table, received) = solve(arguments, (node, &scenario))?;
+            let nothing = table.rows.is_empty() && !table.complete;
+            if let (true, Some(code)) = (nothing, received.exit_code()) {
+                return Ok(Exit::Signalled(code));
+            }
+            table
         }
-        return Ok(Exit::Negative);
+    };
+    let document = LegTableDocument::new(&table);
+    let document = document.map_err(|error| Failure::Unspeakable(error.to_string()))?;
+    destination.write(&output::json(&document)?)?;
+    Ok(exit(&table))
+}
+
+fn solve(
+    arguments: &Arguments,
+    (node, scenario): (Node, &Scenario),
+) -> Result<(LegTable, Received), Failure> {
+    let kind = arguments.kind.into();
+    if arguments.trajectories && kind == LegKind::Certified {
+        return Err(Failure::Setting {
+            name: "--trajectories",
+            what: "bounds are proved without any motion".into(),
+        });
     }
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let (kind, shard) = (arguments.kind.into(), arguments.shard.0);
     let observer = progress::observer(arguments.progress);
+    let database = arguments.database.as_deref();
+    let remembered = database.map(RememberedLegs::open).transpose()?;
+    let legs = remembered.as_ref();
+    let legs = legs.map_or(&NoStore as &dyn LegStore, RememberedLegs::legs);
+    let recorder = arguments.trajectories.then(|| Recorder::new(legs));
     let run = Run {
         pool: &pool,
         stop: &stop,
         observer: &*observer,
-        legs: &NoStore,
+        legs: recorder.as_ref().map_or(legs, |recorder| recorder),
         segments: &NoStore,
     };
-    let (rows, complete) = planner::leg_table(&scenario, kind, shard, run);
-    drop(observer);
-    if let (true, Some(code)) = (rows.is_empty() && !complete, received.exit_code()) {
-        return Ok(Exit::Signalled(code));
-    }
-    destination.write(&output::json(&LegTableDocument::new(
-        kind, shard, &rows, complete,
-    ))?)?;
-    Ok(exit(kind, &rows, complete))
+    let shard = arguments.shard.0;
+    let (rows, complete) = planner::leg_table(scenario, kind, shard, run);
+    let table = LegTable {
+        version: env!("CARGO_PKG_VERSION").into(),
+        kind,
+        scenario_key: wire::legs::scenario_key(&node),
+        shard,
+        complete,
+        scenario: arguments.trajectories.then_some(node),
+        rows,
+        motions: recorder.map(Recorder::into_motions),
+    };
+    Ok((table, received))
 }
 
-fn exit(kind: LegKind, rows: &[LegRow], complete: bool) -> Exit {
-    if !complete {
+fn exit(table: &LegTable) -> Exit {
+    if !table.complete {
         return Exit::Stopped;
     }
     // That nothing is proved of a leg is an answer.
-    if kind == LegKind::Certified {
+    if table.kind == LegKind::Certified {
         return Exit::Complete;
     }
-    let unsolved = rows.iter().filter(|row| row.duration_s.is_none()).count();
+    let rows = table.rows.iter();
+    let unsolved = rows.filter(|row| row.duration_s.is_none()).count();
     if unsolved == 0 {
         return Exit::Complete;
     }
     output::complain(&format!(
         "{unsolved} of {} legs could not be solved",
-        rows.len()
+        table.rows.len()
     ));
     Exit::Failed
 }

@@ -57,8 +57,10 @@ fn rule(method: &Method, route: &str) -> Option<Rule> {
             Some(Rule::Public)
         }
         _ if route.starts_with("/docs") => Some(Rule::Public),
-        // Cached legs tell about the spacecraft of all clients.
-        "/metrics" | "/v1/legs" | "/v1/legs/{key}" => Some(Rule::Needs(Scope::Operate)),
+        // Cached legs tell about the spacecraft of all clients, and the plans of all rest on them.
+        "/metrics" | "/v1/legs" | "/v1/legs/import" | "/v1/legs/{key}" => {
+            Some(Rule::Needs(Scope::Operate))
+        }
         "/v1/legs/query" | "/v1/verify" => Some(Rule::Needs(Scope::Write)),
         _ if route.starts_with("/v1/plans") || route.starts_with("/v1/spacecraft/") => {
             Some(Rule::Needs(if reads { Scope::Read } else { Scope::Write }))

@@ -6,12 +6,14 @@
 
 mod examples;
 mod inputs;
+mod leg_file;
 mod outcomes;
 
 pub(super) use examples::{
-    experiment_a, leg_matrix, leg_pair, spacecraft, two_targets, verify_request,
+    experiment_a, leg_file, leg_matrix, leg_pair, spacecraft, two_targets, verify_request,
 };
 pub(super) use inputs::{LegQueryBody, Scenario, Spacecraft, VerifyBody};
+pub(super) use leg_file::LegFileBody;
 pub(super) use outcomes::{
     BodyErrors, Conflict, NotFound, ParameterErrors, QuotaErrors, ServerErrors,
 };

@@ -1,5 +1,6 @@
 //! Leg times.
 
 pub(super) mod get;
+pub(super) mod import;
 pub(super) mod list;
 pub(super) mod query;

@@ -42,6 +42,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(plans::cancel::handler))
         .routes(routes!(legs::query::handler))
         .routes(routes!(legs::list::handler))
+        .routes(routes!(legs::import::handler))
         .routes(routes!(legs::get::handler))
         .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
         .routes(routes!(verify::handler))

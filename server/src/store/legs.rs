@@ -150,13 +150,15 @@ impl Store {
         .transpose()
     }
 
-    /// Remembers legs, all of them or none.
-    pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<(), StoreError> {
+    /// Remembers legs, all of them or none; how many of them this version had not solved before.
+    pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
+        let mut new = 0;
         for leg in legs {
-            put_leg(&mut transaction, leg, now_us).await?;
+            new += put_leg(&mut transaction, leg, now_us).await?;
         }
-        transaction.commit().await
+        transaction.commit().await?;
+        Ok(new)
     }
 
     /// A leg by its key, with its motion.
@@ -227,7 +229,7 @@ async fn put_leg(
     connection: &mut SqliteConnection,
     leg: &NewLeg,
     now_us: i64,
-) -> Result<(), StoreError> {
+) -> Result<u64, StoreError> {
     let trajectory =
         serde_json::to_vec(&leg.trajectory).map_err(|error| StoreError::Inconsistent {
             table: "legs",
@@ -257,7 +259,7 @@ async fn put_leg(
     for number in leg.turn_xyzw.into_iter().chain(leg.momentum) {
         query = query.bind(number);
     }
-    query
+    let done = query
         .bind(leg.reversible)
         .bind(leg.duration_s)
         .bind(leg.certified_lower_bound_s)
@@ -268,5 +270,5 @@ async fn put_leg(
         .bind(now_us)
         .execute(connection)
         .await?;
-    Ok(())
+    Ok(done.rows_affected())
 }

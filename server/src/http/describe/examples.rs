@@ -1,5 +1,6 @@
 //! Examples that are really answered with success.
 
+use crate::wire::{document, legs};
 use serde_json::{Value, json};
 
 fn parsed(text: &str) -> Value {
@@ -44,6 +45,26 @@ pub(in crate::http) fn leg_pair() -> Value {
             "to": {"quaternion": {"x": 0, "y": 0, "z": 0, "w": 1}},
         }],
         "mode": "cached_only",
+    })
+}
+
+/// A file of legs whose run had nothing to solve.
+pub(in crate::http) fn leg_file() -> Value {
+    let scenario = json!({
+        "spacecraft": spacecraft(),
+        "start": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 0]}},
+        "targets": [{"id": "a", "attitude": {"roll_pitch_yaw_deg": [15, 0, 10]}}],
+    });
+    let node = document::parse(scenario.to_string().as_bytes());
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "kind": "rest_to_rest",
+        "scenario_key": legs::scenario_key(&node.expect("an example is JSON")),
+        "shard": {"index": 1, "of": 1},
+        "complete": true,
+        "scenario": scenario,
+        "legs": [],
+        "trajectories": [],
     })
 }
 

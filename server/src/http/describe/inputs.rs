@@ -360,7 +360,7 @@ struct PairBody {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[expect(dead_code, reason = "only describes the input")]
-enum Kind {
+pub(super) enum Kind {
     RestToRest,
     LowerBound,
     Certified,

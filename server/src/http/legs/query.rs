@@ -76,7 +76,7 @@ pub(in crate::http) async fn handler(
 }
 
 /// Stops the work when nobody waits for it any more.
-struct StopOnDrop(StopSignal);
+pub(super) struct StopOnDrop(pub(super) StopSignal);
 
 impl Drop for StopOnDrop {
     fn drop(&mut self) {

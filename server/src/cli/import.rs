@@ -1,0 +1,53 @@
+//! `slewplan import`: legs that were solved elsewhere enter a database.
+
+use super::failure::Failure;
+use super::solve::{Threads, start_pool};
+use super::{Exit, input, output, runtime};
+use crate::leg_import;
+use crate::service::ServiceError;
+use crate::signals;
+use crate::wire::leg_import::LegImportDocument;
+use slewplan_solver::stop::StopSignal;
+use std::path::PathBuf;
+
+/// What `import` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// A file of legs --trajectories, whole or a shard, - for standard input
+    file: PathBuf,
+    /// The database of the service, which may be running
+    #[arg(
+        long,
+        env = "SLEWPLAN_DATABASE",
+        value_name = "FILE",
+        default_value = "slewplan.db"
+    )]
+    database: PathBuf,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// Flies every leg, keeps those that fly, and prints what became of them.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let read = leg_import::read(&input::document(&arguments.file)?);
+    let import = read.map_err(|problems| Failure::Invalid {
+        name: input::name(&arguments.file),
+        problems,
+    })?;
+    let pool = start_pool(&arguments.threads)?;
+    let stop = StopSignal::new();
+    let received = signals::listen(&stop).map_err(Failure::Signals)?;
+    let Some(judged) = import.judge(&pool, &stop) else {
+        return Ok(received.exit_code().map_or(Exit::Failed, Exit::Signalled));
+    };
+    let counts = runtime::with_store(&arguments.database, async |store| {
+        Ok(judged.store(store).await.map_err(ServiceError::from)?)
+    })?;
+    let document = LegImportDocument::new(counts, &judged.refused);
+    output::print(&output::json(&document)?)?;
+    if judged.refused.is_empty() {
+        return Ok(Exit::Complete);
+    }
+    output::complain(&format!("{} legs are refused", judged.refused.len()));
+    Ok(Exit::Negative)
+}

@@ -1,0 +1,33 @@
+//! `slewplan legs --merge`: the files of parts become the file of the whole.
+
+use super::super::failure::Failure;
+use super::super::input;
+use crate::shards;
+use crate::wire;
+use crate::wire::legs::LegTable;
+use std::path::{Path, PathBuf};
+
+/// The whole table of the parts in some files.
+pub(super) fn table(files: &[PathBuf]) -> Result<LegTable, Failure> {
+    let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    input::one_stream_at_most(&paths)?;
+    let (mut parts, mut problems) = (Vec::new(), Vec::new());
+    for path in &paths {
+        let name = || Some(input::name(path));
+        match wire::legs::read::read(&input::document(path)?) {
+            Ok(part) => parts.push(part),
+            Err(found) => problems.extend(found.into_iter().map(|problem| (name(), problem))),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(Failure::Misfits { problems });
+    }
+    shards::join(parts).map_err(|misfits| {
+        let named = misfits
+            .into_iter()
+            .map(|(part, problem)| (part.map(|part| input::name(paths[part])), problem));
+        Failure::Misfits {
+            problems: named.collect(),
+        }
+    })
+}

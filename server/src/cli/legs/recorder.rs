@@ -1,0 +1,58 @@
+//! Notes the motions of the legs of a run.
+
+use crate::store::leg_key;
+use crate::wire::legs::KeyedLeg;
+use slewplan_solver::legs::{LegStore, StoredLeg};
+use slewplan_solver::planner::OfferedLeg;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// A store of legs that notes what comes out of it and what goes into it.
+pub(super) struct Recorder<'a> {
+    legs: &'a dyn LegStore,
+    /// By their keys, in the order in which a file has them.
+    seen: Mutex<BTreeMap<String, OfferedLeg>>,
+}
+
+impl<'a> Recorder<'a> {
+    /// Notes what another store sees.
+    pub(super) fn new(legs: &'a dyn LegStore) -> Self {
+        Self {
+            legs,
+            seen: Mutex::default(),
+        }
+    }
+
+    /// What it has seen.
+    pub(super) fn into_motions(self) -> Vec<KeyedLeg> {
+        let seen = self.seen.into_inner();
+        let seen = seen.unwrap_or_else(PoisonError::into_inner);
+        seen.into_iter()
+            .map(|(key, leg)| KeyedLeg { key, leg })
+            .collect()
+    }
+
+    fn note(&self, identity: &str, leg: &StoredLeg) {
+        let motion = OfferedLeg {
+            attitudes_xyzw: leg.attitudes_xyzw.clone(),
+            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
+            lengths_s: leg.lengths_s.clone(),
+            solve_time_s: leg.solve_time_s,
+        };
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        seen.insert(leg_key(identity), motion);
+    }
+}
+
+impl LegStore for Recorder<'_> {
+    fn get(&self, identity: &str) -> Option<StoredLeg> {
+        let leg = self.legs.get(identity)?;
+        self.note(identity, &leg);
+        Some(leg)
+    }
+
+    fn put(&self, identity: &str, leg: &StoredLeg) {
+        self.legs.put(identity, leg);
+        self.note(identity, leg);
+    }
+}

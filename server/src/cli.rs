@@ -8,6 +8,7 @@ mod certify;
 mod export;
 mod failure;
 mod form;
+mod health;
 mod import;
 mod input;
 mod keys;
@@ -19,6 +20,7 @@ mod plot;
 mod remembered;
 mod runtime;
 mod serve;
+mod shard;
 mod solve;
 mod validate;
 mod verify;
@@ -57,6 +59,8 @@ enum Command {
     Plot(plot::Arguments),
     /// Run the HTTP service
     Serve(serve::Arguments),
+    /// Ask a running service whether it can take work
+    Health(health::Arguments),
     /// Copy the database while the service uses it
     Backup(backup::Arguments),
     /// Make, list and revoke keys for the service
@@ -124,6 +128,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Export(arguments) => export::run(arguments),
         Command::Plot(arguments) => plot::run(arguments),
         Command::Serve(arguments) => serve::run(arguments),
+        Command::Health(arguments) => health::run(arguments),
         Command::Backup(arguments) => backup::run(arguments),
         Command::Keys(arguments) => keys::run(arguments),
         Command::Openapi => openapi::run(),

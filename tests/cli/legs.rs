@@ -1,6 +1,6 @@
 //! `slewplan legs`.
 
-use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
+use crate::run::{Ended, binary, fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -163,4 +163,33 @@ fn the_table_goes_to_a_file() {
     assert_eq!(ended.stdout, "");
     let text = std::fs::read_to_string(path).expect("the table is there");
     assert!(serde_json::from_str::<Value>(&text).is_ok());
+}
+
+#[test]
+fn a_pod_of_an_indexed_job_solves_the_shard_of_its_index() {
+    let path = fixture("two-targets.json");
+    let pod = |index: Option<&str>| -> Ended {
+        let mut command = binary();
+        command.args(["legs", &path, "--kind", "certified", "--shard", "indexed/2"]);
+        match index {
+            Some(index) => command.env("JOB_COMPLETION_INDEX", index),
+            None => command.env_remove("JOB_COMPLETION_INDEX"),
+        };
+        command.output().expect("the binary starts").into()
+    };
+    for (index, part) in [("0", "1/2"), ("1", "2/2")] {
+        let named = slewplan(&["legs", &path, "--kind", "certified", "--shard", part]);
+        assert_eq!(
+            rows(&pod(Some(index)).expect_code(0).json()),
+            rows(&named.expect_code(0).json())
+        );
+    }
+    for wrong in [None, Some("2"), Some("first")] {
+        let refused = pod(wrong).expect_code(2);
+        assert!(
+            refused.stderr.contains("JOB_COMPLETION_INDEX"),
+            "{refused:?}"
+        );
+        assert!(refused.stdout.is_empty());
+    }
 }

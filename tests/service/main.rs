@@ -7,6 +7,7 @@ mod durability;
 mod events;
 mod examples;
 mod export;
+mod health;
 mod idempotency;
 mod imports;
 mod keys;

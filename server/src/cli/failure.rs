@@ -6,6 +6,7 @@ use slewplan_solver::pool::PoolError;
 use slewplan_solver::problem::Problem;
 use std::fmt::Write;
 use std::io;
+use std::net::SocketAddr;
 
 /// Ends a command with a message on standard error.
 #[derive(Debug, thiserror::Error)]
@@ -62,6 +63,16 @@ pub(crate) enum Failure {
     /// The service cannot run.
     #[error(transparent)]
     Service(#[from] ServiceError),
+    /// A service that is not there or cannot take work.
+    #[error("not well: http://{address}{route}: {what}")]
+    Unhealthy {
+        /// Where it was asked.
+        address: SocketAddr,
+        /// What it was asked for.
+        route: &'static str,
+        /// What it said, or why it said nothing.
+        what: String,
+    },
     /// The operating system refused threads.
     #[error(transparent)]
     Pool(#[from] PoolError),
@@ -85,6 +96,7 @@ impl Failure {
             | Self::Misfits { .. } => Exit::Invalid,
             Self::Unwritable { .. }
             | Self::Service(_)
+            | Self::Unhealthy { .. }
             | Self::Pool(_)
             | Self::Signals(_)
             | Self::Unspeakable(_) => Exit::Failed,

@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::output::{self, Destination};
 use super::remembered::RememberedLegs;
+use super::shard::ShardArgument;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input};
 use crate::progress::{self, ProgressMode};
@@ -13,11 +14,10 @@ use crate::wire::legs::{LegTable, LegTableDocument};
 use clap::ValueEnum;
 use recorder::Recorder;
 use slewplan_solver::legs::{LegKind, LegStore, NoStore};
-use slewplan_solver::planner::{self, Run, Shard};
+use slewplan_solver::planner::{self, Run};
 use slewplan_solver::scenario::Scenario;
 use slewplan_solver::stop::StopSignal;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 mod merge;
 mod recorder;
@@ -35,7 +35,8 @@ pub(super) struct Arguments {
     /// The conditions at the two ends of a leg
     #[arg(long, value_enum, default_value_t = Kind::RestToRest)]
     kind: Kind,
-    /// Solve only part I of N, counted from 1; the parts together are the whole table
+    /// Solve only part I of N, counted from 1; the parts together are the whole table; with
+    /// indexed/N, in a pod of a Kubernetes Indexed Job, the part of that pod
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: ShardArgument,
     /// Write the motions and the scenario too, so that the file can be imported
@@ -73,30 +74,6 @@ impl From<Kind> for LegKind {
             Kind::RestToRest => Self::RestToRest,
             Kind::LowerBound => Self::LowerBound,
             Kind::Certified => Self::Certified,
-        }
-    }
-}
-
-/// A part of the table as written on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct ShardArgument(Shard);
-
-impl FromStr for ShardArgument {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let parts = text
-            .split_once('/')
-            .map(|(index, of)| (index.parse(), of.parse()));
-        match parts {
-            Some((Ok(index), Ok(of))) if (1..=of).contains(&index) => {
-                let index: usize = index;
-                Ok(Self(Shard {
-                    index: index - 1,
-                    of,
-                }))
-            }
-            _ => Err("expected I/N with 1 <= I <= N, for example 2/4"),
         }
     }
 }
@@ -139,7 +116,7 @@ fn solve(
     arguments: &Arguments,
     (node, scenario): (Node, &Scenario),
 ) -> Result<(LegTable, Received), Failure> {
-    let kind = arguments.kind.into();
+    let (kind, shard) = (arguments.kind.into(), arguments.shard.resolve()?);
     if arguments.trajectories && kind == LegKind::Certified {
         return Err(Failure::Setting {
             name: "--trajectories",
@@ -162,7 +139,6 @@ fn solve(
         legs: recorder.as_ref().map_or(legs, |recorder| recorder),
         segments: &NoStore,
     };
-    let shard = arguments.shard.0;
     let (rows, complete) = planner::leg_table(scenario, kind, shard, run);
     let table = LegTable {
         version: env!("CARGO_PKG_VERSION").into(),
@@ -195,17 +171,4 @@ fn exit(table: &LegTable) -> Exit {
         table.rows.len()
     ));
     Exit::Failed
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shards_count_from_one() {
-        assert_eq!("2/4".parse(), Ok(ShardArgument(Shard { index: 1, of: 4 })));
-        for wrong in ["0/4", "5/4", "1/0", "1", "a/b", "1/2/3", "-1/2", ""] {
-            assert!(wrong.parse::<ShardArgument>().is_err(), "{wrong}");
-        }
-    }
 }

@@ -21,6 +21,7 @@ mod remembered;
 mod runtime;
 mod serve;
 mod shard;
+mod slew;
 mod solve;
 mod validate;
 mod verify;
@@ -43,6 +44,8 @@ struct Arguments {
 enum Command {
     /// Find the visiting order and the wheel torques of minimum time
     Solve(solve::Arguments),
+    /// Solve one slew, with a choice of objective and command
+    Slew(slew::Arguments),
     /// Tabulate the times of the legs between start, targets and end
     Legs(legs::Arguments),
     /// Put legs that were solved elsewhere into the database of a service
@@ -120,6 +123,7 @@ pub(crate) fn run() -> ExitCode {
 fn dispatch(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Solve(arguments) => solve::run(arguments),
+        Command::Slew(arguments) => slew::run(arguments),
         Command::Legs(arguments) => legs::run(arguments),
         Command::Import(arguments) => import::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),

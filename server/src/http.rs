@@ -1,6 +1,7 @@
 //! HTTP: routes, what they take and what they answer. No SQL and no solving here.
 
 mod access;
+mod computing;
 mod describe;
 mod error;
 mod extract;
@@ -13,6 +14,7 @@ mod plans;
 mod protect;
 mod respond;
 mod router;
+mod slews;
 mod spacecraft;
 mod stored;
 mod verify;

@@ -20,6 +20,7 @@ mod report;
 mod service;
 mod shards;
 mod signals;
+mod slews;
 mod store;
 mod wire;
 

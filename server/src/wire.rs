@@ -20,6 +20,7 @@ pub(crate) mod plan;
 pub(crate) mod problems;
 pub(crate) mod reader;
 pub(crate) mod scenario;
+pub(crate) mod slew;
 pub(crate) mod spacecraft;
 pub(crate) mod stored_legs;
 pub(crate) mod verification;

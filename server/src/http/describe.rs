@@ -8,12 +8,15 @@ mod examples;
 mod inputs;
 mod leg_file;
 mod outcomes;
+mod slews;
 
 pub(super) use examples::{
-    experiment_a, leg_file, leg_matrix, leg_pair, spacecraft, two_targets, verify_request,
+    effort_sweep, experiment_a, leg_file, leg_matrix, leg_pair, quarter_slew, spacecraft,
+    two_targets, verify_request,
 };
 pub(super) use inputs::{LegQueryBody, Scenario, Spacecraft, VerifyBody};
 pub(super) use leg_file::LegFileBody;
 pub(super) use outcomes::{
     BodyErrors, Conflict, NotFound, ParameterErrors, QuotaErrors, ServerErrors,
 };
+pub(super) use slews::SlewBody;

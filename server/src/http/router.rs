@@ -1,6 +1,8 @@
 //! The only list of routes, and what every request passes through.
 
-use super::{App, access, legs, observe, operations, page, plans, protect, spacecraft, verify};
+use super::{
+    App, access, legs, observe, operations, page, plans, protect, slews, spacecraft, verify,
+};
 use crate::wire::jobs::EventDocument;
 use axum::Router;
 use axum::middleware::{from_fn, from_fn_with_state};
@@ -24,6 +26,7 @@ use utoipa_swagger_ui::SwaggerUi;
     tags(
         (name = "plans", description = "Planning jobs"),
         (name = "legs", description = "Leg times"),
+        (name = "slews", description = "Single manoeuvres with a choice of objective and command"),
         (name = "spacecraft", description = "Stored spacecraft"),
         (name = "verify", description = "Independent verification"),
         (name = "operations", description = "Running the service"),
@@ -44,6 +47,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(legs::list::handler))
         .routes(routes!(legs::import::handler))
         .routes(routes!(legs::get::handler))
+        .routes(routes!(slews::handler))
         .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
         .routes(routes!(verify::handler))
         .routes(routes!(page::handler))

@@ -11,9 +11,9 @@ mod parts;
 mod statistics;
 
 pub(crate) use parts::{
-    ControlDocument, MarginsDocument, QuaternionDocument, VerificationDocument,
+    ControlDocument, MarginsDocument, QuaternionDocument, StateDocument, VerificationDocument,
 };
-use parts::{LegDocument, PassageDocument, StateDocument};
+use parts::{LegDocument, PassageDocument};
 use statistics::StatisticsDocument;
 
 /// The answer of `solve`. All times are `null` and all lists empty when there is no plan.

@@ -68,6 +68,28 @@ pub(in crate::http) fn leg_file() -> Value {
     })
 }
 
+/// A quarter turn.
+pub(in crate::http) fn quarter_slew() -> Value {
+    json!({
+        "spacecraft": spacecraft(),
+        "start": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 0]}},
+        "end": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 90]}},
+        "evidence": true,
+    })
+}
+
+/// A quarter turn for time and effort.
+pub(in crate::http) fn effort_sweep() -> Value {
+    json!({
+        "spacecraft": spacecraft(),
+        "start": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 0]}},
+        "end": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 90]}},
+        "objective": {"kind": "time_and_effort"},
+        "command": {"kind": "smooth", "intervals": 20},
+        "sweep": {"weights": [10_000.0, 100_000.0, 1_000_000.0]},
+    })
+}
+
 /// A plan that does nothing for a second, and so misses its target: the verification says so.
 pub(in crate::http) fn verify_request() -> Value {
     let scenario = json!({

@@ -114,7 +114,7 @@ struct Boresight {
 #[derive(Serialize, ToSchema)]
 #[schema(as = BoundaryState)]
 #[serde(deny_unknown_fields)]
-struct State {
+pub(super) struct State {
     attitude: Attitude,
     /// Body rate in body axes; zero without it.
     #[schema(required = false)]
@@ -283,7 +283,7 @@ enum Accuracy {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 #[expect(dead_code, reason = "only describes the input")]
-enum Equivalence {
+pub(super) enum Equivalence {
     Rotation,
     Quaternion,
 }

@@ -1,22 +1,16 @@
 //! `POST /v1/legs/import`: legs that were solved elsewhere enter the cache.
 
-use super::super::App;
 use super::super::describe::{self, BodyErrors, LegFileBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
-use super::query::StopOnDrop;
-use crate::leg_import::{self, Import, Judged};
+use super::super::{App, computing};
+use crate::leg_import;
 use crate::wire::leg_import::LegImportDocument;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
-use std::time::Duration;
-
-/// Longest wait for a turn, and time after which another try is worth it.
-const PATIENCE: Duration = Duration::from_mins(1);
-const RETRY_S: u32 = 5;
 
 /// Put legs that were solved elsewhere into the cache
 ///
@@ -43,12 +37,11 @@ pub(in crate::http) async fn handler(
         let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
         return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
     }
-    let turn = tokio::time::timeout(PATIENCE, app.0.computing.acquire()).await;
-    let Ok(Ok(_turn)) = turn else {
-        let error = ApiError::new(ErrorCode::Busy, "queries for legs are being computed");
-        return Err(error.retry_after(RETRY_S));
-    };
-    let judged = judge(&app, import).await?;
+    let pool = Arc::clone(&app.0.pool);
+    let work = move |stop: &StopSignal| import.judge(&pool, stop);
+    let judged = computing::in_turn(&app, computing::UNTIL_DONE, work).await?;
+    let judged =
+        judged.ok_or_else(|| ApiError::new(ErrorCode::NotReady, "the service is about to end"))?;
     let counts = judged.store(app.store()).await?;
     let document = LegImportDocument::new(counts, &judged.refused);
     let json = serde_json::to_vec(&document).map_err(|error| {
@@ -56,22 +49,4 @@ pub(in crate::http) async fn handler(
         ApiError::new(ErrorCode::Internal, "the answer cannot be written")
     })?;
     Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
-}
-
-/// Has every leg flown, unless the service ends or nobody waits any more.
-async fn judge(app: &App, import: Import) -> Result<Judged, ApiError> {
-    let (pool, stop) = (Arc::clone(&app.0.pool), StopSignal::new());
-    let _guard = StopOnDrop(stop.clone());
-    let signal = stop.clone();
-    let mut work = tokio::task::spawn_blocking(move || import.judge(&pool, &signal));
-    let mut shutdown = app.shutdown().clone();
-    let finished = tokio::select! {
-        finished = &mut work => finished,
-        () = shutdown.begun() => { stop.cancel(); work.await }
-    };
-    let judged = finished.map_err(|error| {
-        tracing::error!(%error, "an import of legs failed");
-        ApiError::new(ErrorCode::Internal, "the legs could not be looked at")
-    })?;
-    judged.ok_or_else(|| ApiError::new(ErrorCode::NotReady, "the service is about to end"))
 }

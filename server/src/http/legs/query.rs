@@ -4,7 +4,7 @@ use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
-use super::super::{App, stored};
+use super::super::{App, computing, stored};
 use crate::store::leg_key;
 use crate::wire::leg_query::{
     self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
@@ -19,14 +19,10 @@ use slewplan_solver::progress::Silent;
 use slewplan_solver::sequence::Place;
 use slewplan_solver::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 use tokio::runtime::Handle;
 
 /// Most legs of one query: the full matrix of 32 attitudes.
 pub(in crate::http) const MOST_PAIRS: usize = 1000;
-/// Longest time that a query may compute, s; what is not done then is missing.
-pub(in crate::http) const LONGEST_S: u64 = 60;
-const RETRY_S: u32 = 5;
 /// With a start and two targets, the fourth of six pairs leads from the first target to the second.
 const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 
@@ -61,55 +57,32 @@ pub(in crate::http) async fn handler(
             ApiError::new(ErrorCode::TooManyPairs, detail)
         }
     })?;
-    let stop = StopSignal::new();
     if !query.compute {
+        let stop = StopSignal::new();
         stop.request();
-        return run(&app, query, stop, false).await;
+        let answers =
+            computing::at_once(&app, (stop, computing::LONGEST), work(&app, query, false)).await;
+        return answers.map(Json);
     }
-    let patience = Duration::from_secs(LONGEST_S);
-    let turn = tokio::time::timeout(patience, app.0.computing.acquire()).await;
-    let Ok(Ok(_permit)) = turn else {
-        let error = ApiError::new(ErrorCode::Busy, "other queries are being computed");
-        return Err(error.retry_after(RETRY_S));
-    };
-    run(&app, query, stop, true).await
+    computing::in_turn(&app, computing::LONGEST, work(&app, query, true))
+        .await
+        .map(Json)
 }
 
-/// Stops the work when nobody waits for it any more.
-pub(super) struct StopOnDrop(pub(super) StopSignal);
-
-impl Drop for StopOnDrop {
-    fn drop(&mut self) {
-        self.0.cancel();
-    }
-}
-
-async fn run(
+/// The work of a query.
+fn work(
     app: &App,
     query: LegQuery,
-    stop: StopSignal,
     compute: bool,
-) -> Result<Json<LegAnswersDocument>, ApiError> {
+) -> impl FnOnce(&StopSignal) -> LegAnswersDocument + Send + use<> {
     let cache = app.jobs().legs(Handle::current());
     let pool = Arc::clone(if compute { &app.0.pool } else { &app.0.lookups });
-    let _guard = StopOnDrop(stop.clone());
-    let signal = stop.clone();
-    let mut work = tokio::task::spawn_blocking(move || {
-        let answers = answers(&query, &pool, &signal, &cache);
+    move |stop| {
+        let answers = answers(&query, &pool, stop, &cache);
         // Written before the answer names their keys.
         drop(cache);
         answers
-    });
-    let mut shutdown = app.shutdown().clone();
-    let finished = tokio::select! {
-        finished = &mut work => finished,
-        () = tokio::time::sleep(Duration::from_secs(LONGEST_S)) => { stop.request(); work.await }
-        () = shutdown.begun() => { stop.cancel(); work.await }
-    };
-    finished.map(Json).map_err(|error| {
-        tracing::error!(%error, "a query for legs failed");
-        ApiError::new(ErrorCode::Internal, "the legs could not be computed")
-    })
+    }
 }
 
 fn answers(

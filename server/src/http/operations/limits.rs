@@ -1,7 +1,7 @@
 //! `GET /v1/limits`: what a request may ask for at most.
 
 use super::super::App;
-use super::super::{legs::query, plans::create};
+use super::super::{computing, legs::query, plans::create};
 use axum::Json;
 use axum::extract::State;
 use serde::Serialize;
@@ -45,7 +45,7 @@ pub(in crate::http) async fn handler(State(app): State<App>) -> Json<Document> {
         client_queue_limit: app.jobs().queue_limits().client,
         max_wait_s: create::LONGEST_WAIT_S,
         max_leg_pairs: query::MOST_PAIRS,
-        max_leg_query_s: query::LONGEST_S,
+        max_leg_query_s: computing::LONGEST_S,
         solver_threads: app.0.pool.threads(),
     })
 }

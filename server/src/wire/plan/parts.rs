@@ -129,7 +129,7 @@ impl ControlDocument {
 
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = State)]
-pub(super) struct StateDocument {
+pub(crate) struct StateDocument {
     time_s: Number,
     quaternion: QuaternionDocument,
     body_rate_rad_s: [Number; 3],

@@ -1,0 +1,64 @@
+//! `slewplan slew`: one manoeuvre with a choice of objective and command.
+
+use super::failure::Failure;
+use super::output::{self, Destination};
+use super::{Exit, input};
+use crate::signals;
+use crate::slews::{self, Solved};
+use crate::wire::slew::{self, SlewAnswerDocument};
+use slewplan_solver::stop::StopSignal;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What `slew` takes.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The slew, - for standard input
+    slew: PathBuf,
+    /// Write the answer to this file instead of standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+}
+
+/// Solves the slew and writes the answer.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let destination = Destination::open(&arguments.output)?;
+    let bytes = input::read(&arguments.slew)?;
+    let invalid = |problems| Failure::Invalid {
+        name: input::name(&arguments.slew),
+        problems,
+    };
+    let request = slew::read(&bytes).map_err(invalid)?;
+    let stop = StopSignal::new();
+    let received = signals::listen(&stop).map_err(Failure::Signals)?;
+    let stop = match request.time_limit_s {
+        Some(seconds) => stop.with_time_limit(Duration::from_secs_f64(seconds)),
+        None => stop,
+    };
+    let solved = slews::solve(&request, &stop).map_err(invalid)?;
+    if let (true, Some(code)) = (solved.outcomes.is_empty(), received.exit_code()) {
+        return Ok(Exit::Signalled(code));
+    }
+    let document = SlewAnswerDocument::new(&request, &solved.outcomes, solved.complete);
+    destination.write(&output::json(&document)?)?;
+    Ok(exit(&solved))
+}
+
+fn exit(solved: &Solved) -> Exit {
+    if !solved.complete {
+        return Exit::Stopped;
+    }
+    let unsolved = solved
+        .outcomes
+        .iter()
+        .filter(|(outcome, _)| !outcome.solved);
+    let unsolved = unsolved.count();
+    if unsolved == 0 {
+        return Exit::Complete;
+    }
+    output::complain(&format!(
+        "{unsolved} of {} slews could not be solved",
+        solved.outcomes.len()
+    ));
+    Exit::Failed
+}

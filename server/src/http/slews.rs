@@ -1,0 +1,63 @@
+//! `POST /v1/slews`: one manoeuvre, with a choice of objective and command model.
+
+use super::access::Caller;
+use super::describe::{self, BodyErrors, ServerErrors, SlewBody};
+use super::error::{ApiError, ErrorCode};
+use super::extract::JsonBody;
+use super::{App, computing, stored};
+use crate::slews;
+use crate::wire::slew::{self, SlewAnswerDocument, SlewRequest};
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use slewplan_solver::stop::StopSignal;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Solve one slew
+///
+/// From a state to a state, in minimum time or for another objective, with torques that are free,
+/// sampled or continuous. With `sweep` once for every value, each from the solution before it. The
+/// answer is flown by an integrator that shares nothing with the optimiser. What is not done within
+/// a minute is left out, and `complete` is false.
+#[utoipa::path(
+    post, path = "/v1/slews", tag = "slews", operation_id = "solve_slew",
+    request_body(content = SlewBody, examples(
+        ("quarter" = (summary = "A quarter turn in minimum time",
+            value = json!(describe::quarter_slew()))),
+        ("effort" = (summary = "The same for time and effort, at three weights",
+            value = json!(describe::effort_sweep()))),
+    )),
+    responses(
+        (status = 200, description = "The slews", body = SlewAnswerDocument<'static>),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(super) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
+    let request = slew::read_node(&node).map_err(ApiError::input)?;
+    let pool = Arc::clone(&app.0.pool);
+    // On the solver's threads, which stand back behind those for requests.
+    let work = move |stop: &StopSignal| pool.map(&[request], |request| answer(request, stop)).pop();
+    let answered = computing::in_turn(&app, computing::LONGEST, work).await?;
+    let json =
+        answered.ok_or_else(|| ApiError::new(ErrorCode::Internal, "no answer was made"))??;
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+}
+
+fn answer(request: &SlewRequest, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
+    let stop = match request.time_limit_s {
+        Some(seconds) => stop.with_time_limit(Duration::from_secs_f64(seconds)),
+        None => stop.clone(),
+    };
+    let solved = slews::solve(request, &stop).map_err(ApiError::input)?;
+    let document = SlewAnswerDocument::new(request, &solved.outcomes, solved.complete);
+    serde_json::to_vec(&document).map_err(|error| {
+        tracing::error!(%error, "a slew cannot be written");
+        ApiError::new(ErrorCode::Internal, "the slew cannot be written")
+    })
+}

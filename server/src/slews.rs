@@ -1,0 +1,41 @@
+//! Solving a request for slews, for the command line and the service alike.
+
+use crate::wire::slew::SlewRequest;
+use slewplan_solver::manoeuvre::evidence::{self, Evidence};
+use slewplan_solver::manoeuvre::{self, Outcome};
+use slewplan_solver::problem::Problem;
+use slewplan_solver::stop::StopSignal;
+
+/// What came of a request.
+pub(crate) struct Solved {
+    /// Every slew that was reached, with its evidence where that was asked for and there is any.
+    pub(crate) outcomes: Vec<(Outcome, Option<Evidence>)>,
+    /// Whether every slew was reached.
+    pub(crate) complete: bool,
+}
+
+/// Solves the slew, or those along the sweep.
+///
+/// # Errors
+///
+/// Problems with the values of the sweep.
+pub(crate) fn solve(request: &SlewRequest, stop: &StopSignal) -> Result<Solved, Vec<Problem>> {
+    let manoeuvre = &request.manoeuvre;
+    let outcomes = match &request.sweep {
+        Some(sweep) => manoeuvre::trade_curve(manoeuvre, sweep, stop)?,
+        None => vec![manoeuvre::solve(manoeuvre, stop)],
+    };
+    // What was interrupted is not complete, however far it came.
+    let complete = !stop.is_set();
+    let witnessed = outcomes.into_iter().map(|outcome| {
+        let evidence = request
+            .evidence
+            .then(|| evidence::of(manoeuvre, &outcome, stop))
+            .flatten();
+        (outcome, evidence)
+    });
+    Ok(Solved {
+        outcomes: witnessed.collect(),
+        complete,
+    })
+}

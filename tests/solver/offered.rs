@@ -11,6 +11,9 @@ use slewplan_tests::suite;
 use std::collections::HashMap;
 use std::sync::Mutex;
 
+/// What makes a leg one that does not fly.
+type Spoil = fn(&mut OfferedLeg);
+
 const WHOLE: Shard = Shard { index: 0, of: 1 };
 
 #[derive(Default)]
@@ -92,7 +95,7 @@ fn what_does_not_fly_is_refused_with_a_reason() {
         .iter()
         .max_by(|a, b| a.1.duration_s.total_cmp(&b.1.duration_s))
         .expect("there are legs");
-    let cases: [(&str, fn(&mut OfferedLeg)); 12] = [
+    let cases: [(&str, Spoil); 12] = [
         ("the end is missed", |leg| {
             leg.lengths_s.iter_mut().for_each(|length| *length *= 1.001);
         }),

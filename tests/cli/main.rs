@@ -10,6 +10,7 @@ mod merging;
 mod plot;
 mod refusals;
 mod run;
+mod slew;
 mod solve;
 mod stopping;
 mod structure;

@@ -18,5 +18,6 @@ mod plans;
 mod refusals;
 mod running;
 mod scenario;
+mod slews;
 mod spacecraft;
 mod verify;

@@ -23,6 +23,7 @@ mod serve;
 mod shard;
 mod slew;
 mod solve;
+mod study;
 mod validate;
 mod verify;
 
@@ -46,6 +47,8 @@ enum Command {
     Solve(solve::Arguments),
     /// Solve one slew, with a choice of objective and command
     Slew(slew::Arguments),
+    /// Compare what a choice leads to
+    Study(study::Arguments),
     /// Tabulate the times of the legs between start, targets and end
     Legs(legs::Arguments),
     /// Put legs that were solved elsewhere into the database of a service
@@ -124,6 +127,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Slew(arguments) => slew::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
         Command::Legs(arguments) => legs::run(arguments),
         Command::Import(arguments) => import::run(arguments),
         Command::Validate(arguments) => validate::run(arguments),

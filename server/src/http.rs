@@ -17,6 +17,7 @@ mod router;
 mod slews;
 mod spacecraft;
 mod stored;
+mod studies;
 mod verify;
 
 pub(crate) use access::Access;

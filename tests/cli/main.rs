@@ -14,5 +14,6 @@ mod slew;
 mod solve;
 mod stopping;
 mod structure;
+mod study;
 mod validate;
 mod verify;

@@ -20,4 +20,5 @@ mod running;
 mod scenario;
 mod slews;
 mod spacecraft;
+mod studies;
 mod verify;

@@ -1,5 +1,6 @@
 //! Single slews over HTTP.
 
+use crate::client::Request;
 use crate::running::Service;
 use serde_json::{Value, json};
 
@@ -45,7 +46,8 @@ fn a_stored_spacecraft_can_be_named_and_problems_have_pointers() {
     let service = Service::start();
     let mut slew = quarter();
     let craft = slew["spacecraft"].take();
-    service.put("/v1/spacecraft/small", &craft);
+    let store = Request::new("PUT", "/v1/spacecraft/small").json(&craft);
+    service.send(&store);
     slew["spacecraft"] = json!({"ref": "small"});
     let answer = service.post("/v1/slews", &slew).expect(200).json();
     assert_eq!(answer["slews"][0]["status"], "converged");

@@ -9,10 +9,11 @@ mod inputs;
 mod leg_file;
 mod outcomes;
 mod slews;
+mod studies;
 
 pub(super) use examples::{
-    effort_sweep, experiment_a, leg_file, leg_matrix, leg_pair, quarter_slew, spacecraft,
-    two_targets, verify_request,
+    authority_study, effort_sweep, experiment_a, leg_file, leg_matrix, leg_pair, quarter_slew,
+    spacecraft, two_targets, verify_request,
 };
 pub(super) use inputs::{LegQueryBody, Scenario, Spacecraft, VerifyBody};
 pub(super) use leg_file::LegFileBody;
@@ -20,3 +21,4 @@ pub(super) use outcomes::{
     BodyErrors, Conflict, NotFound, ParameterErrors, QuotaErrors, ServerErrors,
 };
 pub(super) use slews::SlewBody;
+pub(super) use studies::AuthorityBody;

@@ -1,7 +1,8 @@
 //! The only list of routes, and what every request passes through.
 
 use super::{
-    App, access, legs, observe, operations, page, plans, protect, slews, spacecraft, verify,
+    App, access, legs, observe, operations, page, plans, protect, slews, spacecraft, studies,
+    verify,
 };
 use crate::wire::jobs::EventDocument;
 use axum::Router;
@@ -27,6 +28,7 @@ use utoipa_swagger_ui::SwaggerUi;
         (name = "plans", description = "Planning jobs"),
         (name = "legs", description = "Leg times"),
         (name = "slews", description = "Single manoeuvres with a choice of objective and command"),
+        (name = "studies", description = "What the choice of an option leads to"),
         (name = "spacecraft", description = "Stored spacecraft"),
         (name = "verify", description = "Independent verification"),
         (name = "operations", description = "Running the service"),
@@ -48,6 +50,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(legs::import::handler))
         .routes(routes!(legs::get::handler))
         .routes(routes!(slews::handler))
+        .routes(routes!(studies::authority::handler))
         .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
         .routes(routes!(verify::handler))
         .routes(routes!(page::handler))

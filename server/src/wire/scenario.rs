@@ -110,6 +110,12 @@ fn contains(outer: &str, inner: &str) -> bool {
 /// The scenario with substitutes for what cannot be read, and what that was.
 fn decode(node: &Node) -> (ScenarioSpec, Vec<Problem>) {
     let sink = Sink::default();
+    let spec = spec(&Cursor::root(node, &sink));
+    (spec, sink.into_problems())
+}
+
+/// The scenario at a place, with substitutes for what cannot be read.
+pub(super) fn spec(cursor: &Cursor<'_>) -> ScenarioSpec {
     let known = &[
         "name",
         "epoch",
@@ -122,10 +128,9 @@ fn decode(node: &Node) -> (ScenarioSpec, Vec<Problem>) {
         "keep_out",
         "options",
     ];
-    let spec = Cursor::root(node, &sink)
+    cursor
         .object(known)
-        .map_or_else(substitute, |fields| scenario(&fields));
-    (spec, sink.into_problems())
+        .map_or_else(substitute, |fields| scenario(&fields))
 }
 
 fn substitute() -> ScenarioSpec {

@@ -4,13 +4,12 @@
 //! problems at once.
 
 mod answer;
-mod drives;
 
 pub(crate) use answer::SlewAnswerDocument;
 
 use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
-use super::{scenario, spacecraft};
+use super::{drives, scenario, spacecraft};
 use slewplan_solver::manoeuvre::{
     Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Sweep,
 };

@@ -68,6 +68,18 @@ pub(in crate::http) fn leg_file() -> Value {
     })
 }
 
+/// Two pairs of shares, a few flights each.
+pub(in crate::http) fn authority_study() -> Value {
+    json!({
+        "scenario": two_targets(),
+        "simulation": {"errors": {"inertia_3_sigma": 0.02}, "runs": 20},
+        "authorities": [
+            {"torque_authority": 1.0, "momentum_authority": 1.0},
+            {"torque_authority": 0.95, "momentum_authority": 0.95},
+        ],
+    })
+}
+
 /// A quarter turn.
 pub(in crate::http) fn quarter_slew() -> Value {
     json!({

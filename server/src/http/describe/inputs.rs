@@ -290,7 +290,7 @@ pub(super) enum Equivalence {
 
 /// Three numbers.
 #[derive(Serialize)]
-struct Vector([f64; 3]);
+pub(super) struct Vector([f64; 3]);
 
 impl PartialSchema for Vector {
     fn schema() -> RefOr<Schema> {

@@ -41,7 +41,7 @@ pub(in crate::http) struct SlewBody {
 #[derive(Serialize, ToSchema)]
 #[schema(as = WheelDrive)]
 #[serde(deny_unknown_fields)]
-struct Drive {
+pub(super) struct Drive {
     #[schema(required = false, minimum = 0, default = 0.0)]
     viscous_friction_nms: Option<f64>,
     #[schema(required = false, minimum = 0, default = 0.0)]

@@ -1,10 +1,10 @@
-//! Reading how wheels are driven.
+//! Reading how wheels are driven, for slews and for flights with errors.
 
-use crate::wire::reader::Cursor;
+use super::reader::Cursor;
 use slewplan_solver::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 
 /// Reads one drive per wheel; ideal ones stand in where they cannot be read.
-pub(super) fn read(cursor: &Cursor<'_>) -> Vec<DriveSpec> {
+pub(crate) fn read(cursor: &Cursor<'_>) -> Vec<DriveSpec> {
     let drives = cursor.list().unwrap_or_default();
     drives.iter().map(drive).collect()
 }

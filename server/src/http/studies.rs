@@ -1,0 +1,3 @@
+//! What the choice of an option leads to.
+
+pub(super) mod authority;

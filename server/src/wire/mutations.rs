@@ -6,7 +6,7 @@
 //! flown as far as it can be. `SLEWPLAN_MUTATIONS` says how many documents of each kind there are,
 //! `SLEWPLAN_SEED` begins elsewhere.
 
-use super::{flight, plan, scenario};
+use super::{flight, plan, scenario, slew};
 use fastrand::Rng;
 use serde_json::json;
 use slewplan_solver::checker;
@@ -53,10 +53,14 @@ fn setting(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a number"))
 }
 
-fn fixtures() -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
+/// The documents in a folder of the tests.
+fn fixtures(folder: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../tests")
+        .join(folder);
     let files = std::fs::read_dir(folder).expect("the fixtures are there");
     let mut paths: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
+    paths.retain(|path| path.is_file());
     paths.sort();
     let read = |path| std::fs::read(path).expect("a fixture can be read");
     paths.into_iter().map(read).collect()
@@ -145,8 +149,10 @@ fn read_many(name: &str, seeds: &[Vec<u8>], read: impl Fn(&[u8]) -> bool) {
 
 #[test]
 fn scenarios_that_are_almost_right_are_read_or_refused() {
-    read_many("scenarios", &fixtures(), |text| {
-        match scenario::read(text, None) {
+    read_many(
+        "scenarios",
+        &fixtures("fixtures"),
+        |text| match scenario::read(text, None) {
             Ok(valid) => {
                 let _ = planner::feasibility_problems(&valid.scenario);
                 true
@@ -155,7 +161,20 @@ fn scenarios_that_are_almost_right_are_read_or_refused() {
                 assert!(!problems.is_empty(), "refused without a reason");
                 false
             }
-        }
+        },
+    );
+}
+
+#[test]
+fn slews_that_are_almost_right_are_read_or_refused() {
+    read_many("slews", &fixtures("fixtures/slews"), |text| {
+        slew::read(text).map_or_else(
+            |problems| {
+                assert!(!problems.is_empty(), "refused without a reason");
+                false
+            },
+            |_| true,
+        )
     });
 }
 

@@ -61,11 +61,16 @@ fn what_does_not_fly_is_listed_and_what_means_nothing_refused() {
     let service = Service::start_with(&["--max-targets", "2"]);
     let whole = file(&small(), "rest_to_rest");
     let mut spoilt = whole.clone();
-    spoilt["trajectories"][0]["attitudes_xyzw"][5] = json!([0, 0, 0, 1]);
+    // A leg that turns: one that stays is where it should be whatever it says.
+    let motions = whole["trajectories"].as_array().expect("a list");
+    let turns = |motion: &Value| motion["lengths_s"][0].as_f64() > Some(0.1);
+    let turning = motions.iter().position(turns).expect("a leg that turns");
+    spoilt["trajectories"][turning]["attitudes_xyzw"][5] = json!([0, 0, 0, 1]);
     let answer = service.post("/v1/legs/import", &spoilt).expect(200).json();
-    assert_eq!(answer["refused"][0]["pointer"], "/trajectories/0");
+    let place = format!("/trajectories/{turning}");
+    assert_eq!(answer["refused"][0]["pointer"], place.as_str());
     assert_eq!(answer["refused"][0]["code"], "leg_refused");
-    let key = whole["trajectories"][0]["key"].as_str().expect("a key");
+    let key = motions[turning]["key"].as_str().expect("a key");
     service
         .get(&format!("/v1/legs/{key}"))
         .expect_problem(404, "not_found");

@@ -101,9 +101,13 @@ impl Settings {
         )
         .map_err(|problems| findings.include(problems))
         .ok();
-        let law = drives
-            .as_ref()
-            .and_then(|drives| law(&spec.controller, spacecraft, drives, pointer, findings));
+        let law = law(
+            &spec.controller,
+            spacecraft,
+            drives.as_deref(),
+            pointer,
+            findings,
+        );
         let rate = rate(
             "on_board_rate_hz",
             spec.on_board_rate_hz.unwrap_or(ON_BOARD_RATE),
@@ -159,13 +163,13 @@ impl Settings {
 fn law(
     spec: &ControllerSpec,
     spacecraft: &Spacecraft,
-    drives: &[Drive],
+    drives: Option<&[Drive]>,
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<Law> {
     let at = format!("{pointer}/controller/gains");
     let allocation = |findings: &mut Findings| {
-        let allocation = Allocation::new(spacecraft.wheels(), drives);
+        let allocation = Allocation::new(spacecraft.wheels(), drives?);
         if allocation.is_none() {
             findings.refuse(
                 format!("{pointer}/drives"),

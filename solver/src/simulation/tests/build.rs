@@ -19,8 +19,7 @@ fn wheel(axis: [f64; 3]) -> WheelSpec {
     }
 }
 
-/// A pyramid of wheels, the last one in need of a command to hold its speed, and a locked one; with
-/// products of inertia and stored momentum.
+/// A pyramid of wheels and a locked one, with products of inertia and stored momentum.
 pub(super) fn spec() -> ScenarioSpec {
     let mut wheels: Vec<WheelSpec> = [
         [0.8, 0.0, 0.6],

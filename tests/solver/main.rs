@@ -11,6 +11,7 @@ mod offered;
 mod oracle;
 mod order_rules;
 mod published;
+mod pyramid;
 mod random_suite;
 mod resumed;
 mod stopping;

@@ -42,10 +42,10 @@ enum FlownKind {
 #[schema(as = Shard)]
 #[serde(deny_unknown_fields)]
 struct ShardBody {
-    #[schema(minimum = 1)]
-    index: u32,
-    #[schema(minimum = 1)]
-    of: u32,
+    #[schema(minimum = 1, format = "uint64")]
+    index: u64,
+    #[schema(minimum = 1, format = "uint64")]
+    of: u64,
 }
 
 /// The time of a leg.

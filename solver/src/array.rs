@@ -17,9 +17,12 @@
 
 mod half_spaces;
 mod mean_radius;
+mod of_spacecraft;
 mod polytope;
 mod zonotope;
 
+pub(crate) use of_spacecraft::authority_problems;
+pub use of_spacecraft::{EnvelopedArray, SpacecraftEnvelopes};
 pub use polytope::{Facet, Figures, Polytope};
 
 use crate::findings::Findings;

@@ -46,6 +46,9 @@ const ALONG: f64 = 1e-9;
 /// Eigenvalue below which a second-order form is not definite.
 const DEFINITE: f64 = 1e-9;
 
+/// Most circles of latitude of a singular surface: 80,000 states, some 12 MB for four gyroscopes.
+pub const MOST_SURFACE_ROWS: usize = 200;
+
 /// A rotor with its gimbal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Gimbal {
@@ -231,9 +234,11 @@ impl CmgCluster {
     }
 
     /// The singular surface of a pattern of signs over a grid with so many circles of latitude, the
-    /// poles left out, and twice as many meridians.
+    /// poles left out, and twice as many meridians. More than [`MOST_SURFACE_ROWS`] count as these;
+    /// the surface says how many it has.
     #[must_use]
     pub fn singular_surface(&self, signs: &[bool], rows: usize) -> SingularSurface {
+        let rows = rows.min(MOST_SURFACE_ROWS);
         let directions = grid(rows);
         SingularSurface {
             signs: signs.to_vec(),

@@ -31,9 +31,11 @@
 
 mod mass;
 mod radii;
+mod study;
 
 pub use mass::{MassPoint, MassStudy};
 pub use radii::{Control, Radii, Radius};
+pub use study::{AdvantageCurve, MarketFit, PyramidEnvelopes, SingularStates, Study, StudySpec};
 
 use crate::eigenaxis::BangCoastBang;
 use crate::findings::Findings;

@@ -16,7 +16,7 @@
 //!   T = angle / w + w / w'    where the rate is reached, else    T = 2 sqrt(angle / w')
 //! ```
 
-use crate::array::{Envelopes, Polytope, WheelArray};
+use crate::array::{Envelopes, Polytope, SpacecraftEnvelopes};
 use crate::problem::Problem;
 use crate::slew::eigenaxis::Trapezoid;
 use crate::spacecraft::Spacecraft;
@@ -159,8 +159,7 @@ pub struct EigenaxisSlew {
 #[derive(Debug, Clone)]
 pub struct Baselines {
     spacecraft: Spacecraft,
-    torque: Envelopes,
-    momentum: Option<Envelopes>,
+    envelopes: SpacecraftEnvelopes,
 }
 
 impl Baselines {
@@ -175,24 +174,16 @@ impl Baselines {
         torque_authority: f64,
         momentum_authority: f64,
     ) -> Result<Self, Vec<Problem>> {
-        let limited = spacecraft
-            .enabled_wheels()
-            .all(|(_, wheel)| wheel.max_speed.is_finite());
-        let torque = WheelArray::torque(spacecraft, torque_authority);
-        let momentum = limited
-            .then(|| WheelArray::momentum(spacecraft, momentum_authority))
-            .transpose();
-        match (torque, momentum) {
-            (Ok(torque), Ok(momentum)) => Ok(Self {
-                spacecraft: spacecraft.clone(),
-                torque: torque.envelopes(),
-                momentum: momentum.map(|array| array.envelopes()),
-            }),
-            (torque, momentum) => {
-                let problems = [torque.err(), momentum.err()];
-                Err(problems.into_iter().flatten().flatten().collect())
-            }
-        }
+        Ok(Self {
+            envelopes: SpacecraftEnvelopes::of(spacecraft, torque_authority, momentum_authority)?,
+            spacecraft: spacecraft.clone(),
+        })
+    }
+
+    /// The envelopes within which the slews stay.
+    #[must_use]
+    pub fn envelopes(&self) -> &SpacecraftEnvelopes {
+        &self.envelopes
     }
 
     /// The fastest slew by a rotation vector (axis times angle, body axes, rad) under each limit.
@@ -207,10 +198,8 @@ impl Baselines {
         // What the wheels hold and take up per unit of rate and of acceleration.
         let held = -(self.spacecraft.inertia() * axis);
         let taken = -(self.spacecraft.effective_inertia() * axis);
-        let by_wheels = self
-            .momentum
-            .as_ref()
-            .map(|momentum| limit.multiple(momentum, &held));
+        let momentum = self.envelopes.momentum.as_ref();
+        let by_wheels = momentum.map(|momentum| limit.multiple(&momentum.envelopes, &held));
         let per_axis = axis
             .abs()
             .zip_map(&self.spacecraft.max_rate(), |share, most| most / share);
@@ -219,8 +208,9 @@ impl Baselines {
             .min(per_axis.min())
             .min(self.spacecraft.max_rate_norm());
         // Uneven torque limits: both ramps are as steep as the flatter one has to be.
-        let speeding = limit.multiple(&self.torque, &taken);
-        let braking = limit.multiple(&self.torque, &-taken);
+        let torque = &self.envelopes.torque.envelopes;
+        let speeding = limit.multiple(torque, &taken);
+        let braking = limit.multiple(torque, &-taken);
         let course = BangCoastBang::fastest(angle, speeding.min(braking), rate);
         EigenaxisSlew {
             limit,

@@ -6,10 +6,9 @@
 //! body axes, and the shares of the full and of the pseudo-inverse-limited envelope that this is.
 //! A share of the latter above 1 is what no pseudo-inverse could have shared out.
 
-use crate::array::{Envelopes, WheelArray};
+use crate::array::{EnvelopedArray, SpacecraftEnvelopes};
 use crate::eigenaxis::EigenaxisSlew;
 use crate::plan::{Control, State};
-use crate::problem::Problem;
 use crate::spacecraft::Spacecraft;
 use nalgebra::Vector3;
 
@@ -47,116 +46,92 @@ pub struct TorqueStep {
 /// The way of a slew through the envelopes of its wheels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopePath {
-    /// The momentum, in order of time.
+    /// The momentum, in order of time; empty where it has no envelope.
     pub momentum: Vec<MomentumSample>,
     /// The torque, in order of time.
     pub torque: Vec<TorqueStep>,
 }
 
-/// The wheels of a spacecraft with their envelopes, to look up where slews go.
-#[derive(Debug, Clone)]
-pub struct EnvelopeMap {
-    torque: (WheelArray, Envelopes),
-    momentum: (WheelArray, Envelopes),
-}
-
-impl EnvelopeMap {
-    /// The envelopes of a spacecraft at its full limits.
+impl EnvelopePath {
+    /// The way of a flight: its states and its controls, with one speed or torque per wheel of the
+    /// spacecraft whose envelopes these are.
     ///
-    /// # Errors
+    /// # Panics
     ///
-    /// Every enabled wheel without a speed limit: the momentum envelope would have no end.
-    pub fn of(spacecraft: &Spacecraft) -> Result<Self, Vec<Problem>> {
-        let with_envelopes = |array: WheelArray| {
-            let envelopes = array.envelopes();
-            (array, envelopes)
-        };
-        Ok(Self {
-            torque: with_envelopes(WheelArray::torque(spacecraft, 1.0)?),
-            momentum: with_envelopes(WheelArray::momentum(spacecraft, 1.0)?),
-        })
-    }
-
-    /// The envelopes of the torques, N m.
+    /// When a list has fewer entries than the spacecraft has wheels.
     #[must_use]
-    pub fn torque(&self) -> &Envelopes {
-        &self.torque.1
-    }
-
-    /// The envelopes of the momenta, N m s.
-    #[must_use]
-    pub fn momentum(&self) -> &Envelopes {
-        &self.momentum.1
-    }
-
-    /// The way of a flight: its states and its controls, with one speed or torque per wheel.
-    #[must_use]
-    pub fn path(
-        &self,
+    pub fn of_flight(
+        envelopes: &SpacecraftEnvelopes,
         spacecraft: &Spacecraft,
         states: &[State],
         controls: &[Control],
-    ) -> EnvelopePath {
+    ) -> Self {
         let held = |state: &State| {
             let spins = spacecraft.wheels().iter().zip(&state.wheel_speed_rad_s);
             spins
                 .map(|(wheel, speed)| wheel.inertia * speed)
                 .collect::<Vec<_>>()
         };
-        EnvelopePath {
-            momentum: states
-                .iter()
-                .map(|state| MomentumSample {
-                    time_s: state.time_s,
-                    momentum: point(&self.momentum.1, self.momentum.0.sum(&held(state))),
-                })
-                .collect(),
-            torque: controls
-                .iter()
-                .map(|control| TorqueStep {
-                    start_s: control.start_s,
-                    duration_s: control.duration_s,
-                    torque: point(&self.torque.1, self.torque.0.sum(&control.wheel_torque_nm)),
-                })
-                .collect(),
+        let momentum = envelopes.momentum.iter().flat_map(|within| {
+            states.iter().map(|state| MomentumSample {
+                time_s: state.time_s,
+                momentum: point(within, within.array.sum(&held(state))),
+            })
+        });
+        let torque = controls.iter().map(|control| TorqueStep {
+            start_s: control.start_s,
+            duration_s: control.duration_s,
+            torque: point(
+                &envelopes.torque,
+                envelopes.torque.array.sum(&control.wheel_torque_nm),
+            ),
+        });
+        Self {
+            momentum: momentum.collect(),
+            torque: torque.collect(),
         }
     }
 
     /// The way of a slew about the eigenaxis from rest to rest: its corners, since it is straight
     /// between them.
     #[must_use]
-    pub fn eigenaxis_path(&self, slew: &EigenaxisSlew) -> EnvelopePath {
+    pub fn of_eigenaxis_slew(envelopes: &SpacecraftEnvelopes, slew: &EigenaxisSlew) -> Self {
         let (duration, ramp) = (slew.course.duration(), slew.course.ramp());
-        let momentum = |time_s: f64, share: f64| MomentumSample {
-            time_s,
-            momentum: point(&self.momentum.1, slew.peak_momentum * share),
-        };
-        let torque = |start_s: f64, duration_s: f64, share: f64| TorqueStep {
-            start_s,
-            duration_s,
-            torque: point(&self.torque.1, slew.ramp_torque * share),
-        };
-        EnvelopePath {
-            momentum: vec![
-                momentum(0.0, 0.0),
-                momentum(ramp, 1.0),
-                momentum(duration - ramp, 1.0),
-                momentum(duration, 0.0),
-            ],
-            torque: vec![
-                torque(0.0, ramp, 1.0),
-                torque(ramp, duration - 2.0 * ramp, 0.0),
-                torque(duration - ramp, ramp, -1.0),
-            ],
+        let corners = [
+            (0.0, 0.0),
+            (ramp, 1.0),
+            (duration - ramp, 1.0),
+            (duration, 0.0),
+        ];
+        let momentum = envelopes.momentum.iter().flat_map(|within| {
+            corners.map(|(time_s, share)| MomentumSample {
+                time_s,
+                momentum: point(within, slew.peak_momentum * share),
+            })
+        });
+        let steps = [
+            (0.0, ramp, 1.0),
+            (ramp, duration - 2.0 * ramp, 0.0),
+            (duration - ramp, ramp, -1.0),
+        ];
+        Self {
+            momentum: momentum.collect(),
+            torque: steps
+                .map(|(start_s, duration_s, share)| TorqueStep {
+                    start_s,
+                    duration_s,
+                    torque: point(&envelopes.torque, slew.ramp_torque * share),
+                })
+                .into(),
         }
     }
 }
 
-fn point(envelopes: &Envelopes, vector: Vector3<f64>) -> EnvelopePoint {
+fn point(within: &EnvelopedArray, vector: Vector3<f64>) -> EnvelopePoint {
     EnvelopePoint {
         vector,
-        full_share: envelopes.full.share(&vector),
-        pseudo_inverse_share: envelopes.pseudo_inverse.share(&vector),
+        full_share: within.envelopes.full.share(&vector),
+        pseudo_inverse_share: within.envelopes.pseudo_inverse.share(&vector),
     }
 }
 
@@ -207,7 +182,7 @@ mod tests {
     #[test]
     fn a_minor_vertex_is_beyond_the_pseudo_inverse() {
         let spacecraft = pyramid();
-        let map = EnvelopeMap::of(&spacecraft).unwrap();
+        let envelopes = SpacecraftEnvelopes::of(&spacecraft, 1.0, 1.0).unwrap();
         let state = State {
             time_s: 2.0,
             attitude: Attitude::identity(),
@@ -220,27 +195,25 @@ mod tests {
             duration_s: 2.0,
             wheel_torque_nm: vec![0.05, 0.0, 0.05, 0.05, 0.05],
         };
-        let path = map.path(&spacecraft, &[state], &[control]);
+        let path = EnvelopePath::of_flight(&envelopes, &spacecraft, &[state], &[control]);
         let vertex = Vector3::new(2.0 * S, 0.0, 2.0 * C);
         assert!((path.momentum[0].momentum.vector - vertex).norm() < 1e-12);
         assert_shares(&path.momentum[0].momentum, 1.0, 1.5);
         // On the pyramid's axis both envelopes have the same vertex.
         assert_shares(&path.torque[0].torque, 0.5, 0.5);
-        assert!((map.momentum().full.figures().greatest_radius - 4.0 * C).abs() < 1e-12);
-        assert!((map.torque().full.figures().greatest_radius - 0.4 * C).abs() < 1e-12);
+        let reach = |of: &EnvelopedArray| of.envelopes.full.figures().greatest_radius;
+        let momentum = envelopes.momentum.unwrap();
+        assert!((reach(&momentum) - 4.0 * C).abs() < 1e-12);
+        assert!((reach(&envelopes.torque) - 0.4 * C).abs() < 1e-12);
     }
 
     #[test]
     fn slews_about_the_eigenaxis_go_to_the_surface_that_limits_them() {
         let spacecraft = pyramid();
-        let map = EnvelopeMap::of(&spacecraft).unwrap();
         let turn = Vector3::new(1.2, 0.5, -0.8);
-        let slews = Baselines::of(&spacecraft, 1.0, 1.0)
-            .unwrap()
-            .slews(&turn)
-            .unwrap();
-        for slew in slews {
-            let path = map.eigenaxis_path(&slew);
+        let baselines = Baselines::of(&spacecraft, 1.0, 1.0).unwrap();
+        for slew in baselines.slews(&turn).unwrap() {
+            let path = EnvelopePath::of_eigenaxis_slew(baselines.envelopes(), &slew);
             let (momentum, torque) = (&path.momentum[1].momentum, &path.torque[0].torque);
             match slew.limit {
                 Limit::PseudoInverse => {

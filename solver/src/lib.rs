@@ -86,6 +86,7 @@ mod dynamics;
 pub mod eigenaxis;
 pub mod envelope;
 pub mod envelope_path;
+pub mod envelope_study;
 mod findings;
 pub mod kinematic_bound;
 mod kinematics;

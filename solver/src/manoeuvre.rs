@@ -7,6 +7,8 @@
 //! (BIROS), or continuous. [`solve`] minimises, and flies what it has found with the integrator of
 //! the [checker](crate::checker), which shares nothing with the optimiser.
 //!
+//! With [`WheelAllocation::PseudoInverse`] the wheels' torques are `A^+ A u`, in the program as in flight.
+//!
 //! All of it is one nonlinear program (`program`) with other variables (`shape`) and other
 //! weights (`ingredients`).
 //!
@@ -50,6 +52,7 @@ mod tests;
 pub use flown::{Energies, Flown, Piece};
 pub use spec::{
     Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Validated,
+    WheelAllocation,
 };
 
 use crate::nlp::{Interruption, NlpStatus};

@@ -41,6 +41,7 @@ use crate::findings::Findings;
 use crate::plan::Flight;
 use crate::problem::{Code, Problem};
 use crate::scenario::Scenario;
+use crate::spacecraft::Spacecraft;
 use controller::{Controller, Measured};
 use course::{Course, Sample};
 use draws::{Drawn, draw, normals};
@@ -49,8 +50,8 @@ use outcome::Log;
 use settings::Settings;
 use truth::{Rotor, Scratch, State, Truth};
 
-/// Most steps of integration of one flight: a day at 100 Hz.
-const MAX_STEPS: f64 = 1e7;
+/// Most steps of integration of one flight: five hours at 100 Hz.
+const MAX_STEPS: f64 = 2e6;
 /// Rate at the end of a plan, rad/s, up to which it can be held there.
 const REST: f64 = 1e-6;
 /// Decay of a wheel's speed by viscous friction in one step that the integration follows closely.
@@ -161,6 +162,11 @@ impl<'a> Simulation<'a> {
             };
             craft.read_speeds();
             self.compute(&mut computer, (attitude, rate), sample, &craft.speed);
+            // Gains beyond all numbers ask for a torque that is none.
+            if !computer.feedback.iter().all(|torque| torque.is_finite()) {
+                log.break_off();
+                break;
+            }
             let error = TrackingError::of(&attitude, &rate, &sample.desired);
             log.sample(error);
             if keep_every.is_some_and(|every| index % every.max(1) == 0) {
@@ -170,12 +176,38 @@ impl<'a> Simulation<'a> {
                     body_rate_rad_s: rate,
                     wheel_speed_rad_s: craft.speed.clone(),
                     wheel_torque_nm: self.commanded(sample, &computer.feedback),
+                    torque_limited: vec![false; wheels],
+                    speed_limited: vec![false; wheels],
                     error,
                 });
             }
             self.advance(&mut craft, sample, &computer.feedback, &mut log);
         }
         log.close()
+    }
+
+    /// Number of samples of the on-board computer.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.course.samples.len()
+    }
+
+    /// Time between two samples of the on-board computer, s.
+    #[must_use]
+    pub fn sample_s(&self) -> f64 {
+        self.settings.sample_s
+    }
+
+    /// Duration of a flight with the time to settle, s.
+    #[must_use]
+    pub fn flight_time_s(&self) -> f64 {
+        self.flight.total_time_s + self.settings.settle_s
+    }
+
+    /// Attitude error at the end up to which a flight counts as a success, rad.
+    #[must_use]
+    pub fn tolerance_rad(&self) -> f64 {
+        self.settings.tolerance
     }
 
     /// A sample of the on-board computer: sensors, control law, allocation.
@@ -236,6 +268,15 @@ impl<'a> Simulation<'a> {
         let forward = piece.map_or(&[][..], |piece| self.course.torques(piece));
         forward.iter().zip(feedback).map(|(a, b)| a + b).collect()
     }
+}
+
+/// What is wrong with how a spacecraft is to be flown, as far as that does not depend on the plan;
+/// `pointer` is the JSON pointer of the description.
+#[must_use]
+pub fn check(spec: &SimulationSpec, spacecraft: &Spacecraft, pointer: &str) -> Vec<Problem> {
+    let mut findings = Findings::default();
+    let settings = Settings::read(spec, spacecraft, pointer, &mut findings);
+    findings.conclude(settings).err().unwrap_or_default()
 }
 
 /// The spacecraft in flight.

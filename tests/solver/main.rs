@@ -3,6 +3,7 @@
 mod arrays;
 mod boundaries;
 mod certified;
+mod envelopes;
 mod fixed_order;
 mod flown;
 mod infeasible;

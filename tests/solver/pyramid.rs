@@ -4,8 +4,11 @@
 use slewplan_solver::attitude::Attitude;
 use slewplan_solver::comparison::{Control, Radii};
 use slewplan_solver::eigenaxis::{BangCoastBang, Baselines};
-use slewplan_solver::envelope_path::EnvelopeMap;
+use slewplan_solver::envelope_path::EnvelopePath;
+use slewplan_solver::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
+use slewplan_solver::pool::SolverPool;
 use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
+use slewplan_solver::stop::StopSignal;
 use slewplan_tests::pyramid_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, plan_of, scenario_of};
@@ -15,11 +18,23 @@ const INERTIA: f64 = 25.4;
 const MOMENTUM: f64 = 1.0;
 const SLEWS: usize = 100;
 
-/// From a random attitude to the identity as the RW/CMG thesis draws it (equation 175), at rest and
-/// with wheels at zero at both ends.
-fn random_slew(generator: &mut Generator, torque: f64) -> (f64, ScenarioSpec) {
+/// A random attitude as the RW/CMG thesis draws it (equation 175).
+fn random_attitude(generator: &mut Generator) -> Attitude {
     let components = [(); 4].map(|()| generator.between(-1.0, 1.0));
-    let from = Attitude::from_xyzw(components).expect("not all components are zero");
+    Attitude::from_xyzw(components).expect("not all components are zero")
+}
+
+/// The time on a published curve, s, that has these radii for all directions.
+fn on_curve(control: Control, angle: f64, torque: f64) -> f64 {
+    let radius = Radii::PUBLISHED.of(control);
+    let acceleration = radius.torque * torque / INERTIA;
+    let rate = radius.momentum * MOMENTUM / INERTIA;
+    BangCoastBang::fastest(angle, acceleration, rate).duration()
+}
+
+/// From a random attitude to the identity, at rest and with wheels at zero at both ends.
+fn random_slew(generator: &mut Generator, torque: f64) -> (f64, ScenarioSpec) {
+    let from = random_attitude(generator);
     let mut spec = pyramid_spec();
     spec.targets.clear();
     spec.start.attitude = AttitudeSpec::Quaternion(from.xyzw());
@@ -35,13 +50,10 @@ fn random_slew(generator: &mut Generator, torque: f64) -> (f64, ScenarioSpec) {
 
 /// The greatest share that a slew takes of the time on the curve of the spheres.
 fn worst_share(torque: f64) -> f64 {
-    let radius = Radii::PUBLISHED.of(Control::Optimal);
     let mut generator = Generator::new(175);
     let shares = (0..SLEWS).map(|_| {
         let (angle, spec) = random_slew(&mut generator, torque);
-        let acceleration = radius.torque * torque / INERTIA;
-        let rate = radius.momentum * MOMENTUM / INERTIA;
-        let curve = BangCoastBang::fastest(angle, acceleration, rate).duration();
+        let curve = on_curve(Control::Optimal, angle, torque);
         let share = plan_of(&spec).total_time_s / curve;
         if share > 0.99 {
             println!(
@@ -69,13 +81,51 @@ fn random_slews_with_the_torque_of_the_published_figure_lie_on_or_below_its_curv
 }
 
 #[test]
+fn random_slews_by_the_pseudo_inverse_lie_about_the_published_curve() {
+    let mut generator = Generator::new(175);
+    let turns = [(); SLEWS / 2].map(|()| TurnSpec {
+        from: AttitudeSpec::Quaternion(random_attitude(&mut generator).xyzw()),
+        to: AttitudeSpec::default(),
+    });
+    let spec = EnvelopeStudySpec {
+        spacecraft: pyramid_spec().spacecraft,
+        torque_authority: 1.0,
+        momentum_authority: 1.0,
+        turns: turns.into(),
+        demands_nm: Vec::new(),
+        time_optimal: true,
+    };
+    let (study, _) = EnvelopeStudy::try_new(&spec).expect("a valid study");
+    let pool = SolverPool::new(None).expect("threads");
+    let report = study.conduct(&pool, &StopSignal::new());
+    let shares = report.turns.iter().map(|turn| {
+        let [free, shared] = [0, 1].map(|i| {
+            let found = turn.time_optimal[i].found.as_ref();
+            found.expect("a slew").0
+        });
+        let about = turn.eigenaxis[1].0.course.duration();
+        let slack = 1.0 + 1e-4;
+        assert!(free <= shared * slack && shared <= about * slack);
+        let curve = on_curve(Control::PseudoOptimal, turn.vector.norm(), 0.0857);
+        shared / curve
+    });
+    let shares: Vec<f64> = shares.collect();
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    let worst = shares.into_iter().fold(0.0, f64::max);
+    println!("{mean:.4} of the curve in the mean, {worst:.4} at most");
+    assert!(mean < 0.92 && worst < 1.01);
+}
+
+#[test]
 fn a_time_optimal_slew_goes_where_no_pseudo_inverse_does() {
     let spec = pyramid_spec();
     let scenario = scenario_of(&spec);
     let spacecraft = scenario.spacecraft();
-    let map = EnvelopeMap::of(spacecraft).expect("every wheel has a speed limit");
+    let baselines = Baselines::of(spacecraft, 1.0, 1.0).expect("valid authorities");
+    let envelopes = baselines.envelopes();
     let plan = plan_of(&spec);
-    let path = map.path(spacecraft, &plan.states, &plan.flight.controls);
+    let (states, controls) = (&plan.states, &plan.flight.controls);
+    let path = EnvelopePath::of_flight(envelopes, spacecraft, states, controls);
     let momentum = path.momentum.iter().map(|sample| sample.momentum);
     let torque = path.torque.iter().map(|step| step.torque);
     for (name, points) in [
@@ -93,7 +143,6 @@ fn a_time_optimal_slew_goes_where_no_pseudo_inverse_does() {
     let torque = path.torque.iter().map(|step| step.torque.vector.norm());
     assert!(torque.fold(0.0, f64::max) > 0.99 * 2.0 * 0.0857);
     // The slew about the eigenaxis by the pseudo-inverse takes 51.6 s and uses two thirds of it.
-    let baselines = Baselines::of(spacecraft, 1.0, 1.0).expect("valid authorities");
     let turn = scenario
         .start()
         .attitude
@@ -107,6 +156,6 @@ fn a_time_optimal_slew_goes_where_no_pseudo_inverse_does() {
         plan.total_time_s
     );
     assert!(agree(plan.total_time_s, fastest, 5e-4));
-    let straight = map.eigenaxis_path(&simple);
+    let straight = EnvelopePath::of_eigenaxis_slew(envelopes, &simple);
     assert!((straight.momentum[1].momentum.full_share - 2.0 / 3.0).abs() < 1e-9);
 }

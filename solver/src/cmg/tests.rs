@@ -148,3 +148,16 @@ fn rims_are_the_limits_of_their_surfaces() {
         }
     }
 }
+
+#[test]
+fn a_surface_has_an_end() {
+    let single = CmgCluster {
+        gimbals: CmgCluster::thesis().gimbals[..1].to_vec(),
+    };
+    let surface = single.singular_surface(&[true], usize::MAX);
+    assert_eq!(surface.rows, MOST_SURFACE_ROWS);
+    assert_eq!(
+        surface.states.len(),
+        2 * MOST_SURFACE_ROWS * MOST_SURFACE_ROWS
+    );
+}

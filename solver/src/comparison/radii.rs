@@ -1,9 +1,8 @@
 //! What a pyramid of four devices counts with: spheres of momentum and torque.
 
-use crate::array::{WheelArray, WheelRange};
+use super::study::pyramid_envelopes;
 use crate::cmg::CmgCluster;
 use crate::findings::Findings;
-use nalgebra::Vector3;
 
 /// How a pyramid of devices is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,18 +87,14 @@ impl Radii {
     /// ([`CmgCluster::least_with_one_reversed`]). `None` never, for this pyramid.
     #[must_use]
     pub fn of_the_pyramid() -> Option<Self> {
-        let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
-        let axes = [[s, 0.0, c], [0.0, s, c], [-s, 0.0, c], [0.0, -s, c]];
-        let ranges = axes.map(|axis| WheelRange::symmetric(Vector3::from(axis), 1.0));
-        let envelopes = WheelArray::try_new(&ranges, "").ok()?.envelopes();
-        let pseudo_inverse = envelopes.pseudo_inverse.figures();
-        let torque = pseudo_inverse.inscribed_radius;
+        let envelopes = pyramid_envelopes()?;
+        let torque = envelopes.pseudo_inverse.inscribed_radius;
         let sphere = CmgCluster::thesis().least_with_one_reversed();
         let wheels = |momentum| Radius { momentum, torque };
         Some(Self {
-            eigenaxis: wheels(pseudo_inverse.inscribed_radius),
-            pseudo_optimal: wheels(pseudo_inverse.equal_volume_radius),
-            optimal: wheels(envelopes.full.figures().equal_volume_radius),
+            eigenaxis: wheels(envelopes.pseudo_inverse.inscribed_radius),
+            pseudo_optimal: wheels(envelopes.pseudo_inverse.equal_volume_radius),
+            optimal: wheels(envelopes.full.equal_volume_radius),
             gyroscopes: Radius {
                 momentum: sphere,
                 torque: sphere,

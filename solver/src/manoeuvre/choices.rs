@@ -1,6 +1,6 @@
 //! Whether objective, command and conditions of a manoeuvre are valid and go with its wheels.
 
-use super::spec::{Command, FinalWheels, Hold, ManoeuvreSpec, Measure, Objective};
+use super::spec::{Command, FinalWheels, Hold, ManoeuvreSpec, Measure, Objective, WheelAllocation};
 use crate::findings::Findings;
 use crate::nlp::MAX_CONTROLS;
 use crate::problem::Code;
@@ -27,6 +27,7 @@ pub(super) fn check(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
         check_size(spec, findings),
         check_final_wheels(spec, findings),
         check_laws(spec, findings),
+        check_allocation(spec, findings),
     ];
     checks.iter().all(|passed| *passed)
 }
@@ -208,6 +209,21 @@ fn check_laws(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
                 "enable the wheel, or remove the law: a disabled wheel keeps its speed",
             );
         }
+    }
+    valid
+}
+
+/// The pseudo-inverse leaves null-space momentum alone, so nothing is left to choose at the end.
+fn check_allocation(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    let valid = spec.allocation == WheelAllocation::Free || spec.final_wheels != FinalWheels::Given;
+    if !valid {
+        findings.refuse(
+            "/allocation",
+            Code::ConflictingFields,
+            "the pseudo-inverse keeps the null-space momentum of the start, but speeds are given \
+             for the end",
+            "leave the wheels free at the end: attitude, rate and start settle their speeds",
+        );
     }
     valid
 }

@@ -22,7 +22,7 @@ use super::flow::Sample;
 use super::ingredients::Ingredients;
 use super::program::Program;
 use super::solving::Solved;
-use super::{Manoeuvre, Measure, Outcome, interruption};
+use super::{Manoeuvre, Measure, Outcome, WheelAllocation, interruption};
 use crate::nlp::{Chain, Layout};
 use crate::stop::StopSignal;
 use nalgebra::{DVector, Vector3};
@@ -89,12 +89,13 @@ impl Costate {
     }
 }
 
-/// The evidence for an outcome; `None` when it is not solved, or the stop signal comes first.
+/// The evidence for an outcome; `None` when it is not solved, the stop signal comes first, or the
+/// pseudo-inverse shares torques out: the equations above are those of torques free of each other.
 ///
 /// The solution is polished before, which takes a few iterations more.
 #[must_use]
 pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option<Evidence> {
-    if !outcome.solved {
+    if !outcome.solved || manoeuvre.allocation() != WheelAllocation::Free {
         return None;
     }
     let polished = outcome

@@ -60,6 +60,9 @@ pub(super) struct Vehicle {
     /// Drives of the commanded wheels.
     pub(super) drives: Vec<Drive>,
     pub(super) followers: Followers,
+    /// What the commanded wheels' momenta keep in the null space of their axes, N m s, where the
+    /// pseudo-inverse shares torques out; none where torques are free of each other.
+    pub(super) kept: Option<DVector<f64>>,
 }
 
 /// The motion at a moment.

@@ -76,6 +76,17 @@ impl Motion {
         })
     }
 
+    /// The same attitudes and rates with these null-space momenta, N m s.
+    pub(super) fn keeping(&self, null: &DVector<f64>, dynamics: &Dynamics) -> Self {
+        let states = self.attitudes.iter().zip(&self.momenta);
+        let wheels = states.map(|(q, h)| dynamics.wheels_at(q, &dynamics.rate(q, h), null));
+        Self::of_profile(&Profile {
+            attitudes: self.attitudes.clone(),
+            wheels: wheels.collect(),
+            lengths: self.lengths.clone(),
+        })
+    }
+
     /// The motion seen at other nodes, given by the lengths between them, s.
     pub(super) fn on_mesh(&self, lengths: &[f64]) -> Self {
         let times = self.times();

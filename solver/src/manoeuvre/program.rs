@@ -7,6 +7,7 @@
 //! momenta; the link then gets momenta that are moved by the mean of the bulge, which makes the
 //! integral of the rate exact, and the rest is left to the corrections of the turns.
 
+mod allocation;
 mod chain;
 mod listing;
 
@@ -19,6 +20,7 @@ use crate::dynamics::Dynamics;
 use crate::kinematics::Quat;
 use crate::nlp::{Chain, Iterate, Layout, Link};
 use crate::transcription::{Row, Scales, Transcription, Waypoint};
+use allocation::Kept;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Weight of the penalty that draws interval lengths together, and to which lengths.
@@ -60,6 +62,8 @@ pub(super) struct Program {
     drift: Vec<DVector<f64>>,
     /// Reserve kept from the torque limits on every interval, relative.
     pub(super) torque_reserve: Vec<f64>,
+    /// What the momenta keep where the pseudo-inverse shares torques out.
+    kept: Option<Kept>,
 }
 
 /// Where a term belongs.
@@ -132,6 +136,10 @@ impl Program {
             },
             drift: vec![DVector::zeros(actuators.len()); intervals + 1],
             torque_reserve: vec![0.0; intervals + 1],
+            kept: vehicle.kept.as_ref().map(|momenta| Kept {
+                null_space: dynamics.null_space.clone(),
+                momenta: momenta / scales.momentum,
+            }),
             base,
             shape,
             scales,

@@ -101,6 +101,31 @@ pub enum FinalWheels {
     NullSpaceOfStart,
 }
 
+/// How torque on the body is shared out among the wheels.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum WheelAllocation {
+    /// Any way within the limits: the wheels' torques are free of each other.
+    #[default]
+    Free,
+    /// By the pseudo-inverse, as most flight software does: `u = A^+ A u`. Null-space momentum stays
+    /// what it is at the start, and less than the [full envelope](crate::array) is within reach.
+    PseudoInverse,
+}
+
+impl WheelAllocation {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Free, Self::PseudoInverse];
+
+    /// The stable text of the allocation.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::PseudoInverse => "pseudo_inverse",
+        }
+    }
+}
+
 /// A manoeuvre as a caller describes it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ManoeuvreSpec {
@@ -118,6 +143,8 @@ pub struct ManoeuvreSpec {
     pub objective: Objective,
     /// What can be commanded.
     pub command: Command,
+    /// How torque is shared out among the wheels.
+    pub allocation: WheelAllocation,
     /// Meaning of equal attitudes.
     pub attitude_equivalence: AttitudeEquivalence,
     /// Share of every torque limit that may be used.
@@ -136,6 +163,7 @@ impl Default for ManoeuvreSpec {
             final_wheels: FinalWheels::default(),
             objective: Objective::MinimumTime,
             command: Command::Free { intervals: 24 },
+            allocation: WheelAllocation::default(),
             attitude_equivalence: AttitudeEquivalence::default(),
             torque_authority: 1.0,
             momentum_authority: 1.0,
@@ -167,7 +195,7 @@ pub struct Validated {
 
 impl Manoeuvre {
     /// Validates a description and collects every problem. Pointers are those of the fields:
-    /// `/spacecraft`, `/drives`, `/start`, `/end`, `/objective`, `/command`, `/options`.
+    /// `/spacecraft`, `/drives`, `/start`, `/end`, `/objective`, `/command`, `/allocation`, `/options`.
     ///
     /// # Errors
     ///
@@ -217,13 +245,14 @@ impl Manoeuvre {
         let target = scenario.end().map_or(start.attitude, |end| end.attitude);
         let rate = scenario.end().map_or(start.rate, |end| end.rate);
         let speeds = scenario.end().and_then(|end| end.wheel_speed.clone());
+        let null = dynamics.null_component(&start_momenta);
+        let kept = (spec.allocation == WheelAllocation::PseudoInverse).then(|| null.clone());
         let wheels = match (spec.final_wheels, speeds) {
             (FinalWheels::Given, Some(speeds)) => {
                 WheelCondition::Fixed(dynamics.wheels_of_speeds(&rate, &speeds))
             }
-            (FinalWheels::NullSpaceOfStart, _) => {
-                WheelCondition::NullSpace(dynamics.null_component(&start_momenta))
-            }
+            (FinalWheels::NullSpaceOfStart, _) => WheelCondition::NullSpace(null),
+            _ if kept.is_some() => WheelCondition::NullSpace(null),
             _ => WheelCondition::Free,
         };
         let end = Waypoint {
@@ -238,6 +267,7 @@ impl Manoeuvre {
                 drives: commanded.collect(),
                 dynamics,
                 followers,
+                kept,
             },
             ends: [begin, end],
             start_momenta,
@@ -259,6 +289,15 @@ impl Manoeuvre {
     #[must_use]
     pub fn command(&self) -> Command {
         self.command
+    }
+
+    /// How torque is shared out among the wheels.
+    #[must_use]
+    pub fn allocation(&self) -> WheelAllocation {
+        match self.vehicle.kept {
+            Some(_) => WheelAllocation::PseudoInverse,
+            None => WheelAllocation::Free,
+        }
     }
 
     /// The spacecraft with start and end, as a scenario without targets.

@@ -10,7 +10,7 @@ use crate::slew::{self, Resolution, SlewProblem};
 use crate::spec::Accuracy;
 
 /// The guesses, best first: minimum time has one, since the fastest motion is itself the best of
-/// several; what is smooth may have more than one minimum.
+/// several; what is smooth, or may not use all torques, may have more than one minimum.
 pub(super) fn of(
     manoeuvre: &Manoeuvre,
     ingredients: Ingredients,
@@ -31,8 +31,13 @@ pub(super) fn of(
     };
     let fastest = slew::solve(&problem, None, stop).flown;
     let converged = fastest.duration().is_some();
-    let mut guesses = vec![Motion::of_profile(&fastest.profile)];
-    if !converged || !ingredients.hurries() {
+    let fastest = Motion::of_profile(&fastest.profile);
+    let mut guesses = vec![match &vehicle.kept {
+        Some(null) => fastest.keeping(null, dynamics),
+        None => fastest,
+    }];
+    // Where the pseudo-inverse shares torques out, the fastest motion is another problem's.
+    if !converged || !ingredients.hurries() || vehicle.kept.is_some() {
         let bowed = [Side::Far, Side::Near].map(|side| Motion::of_profile(&problem.bowed(side)));
         guesses.extend(bowed);
     }

@@ -1,5 +1,6 @@
 //! Manoeuvres with published answers, and the derivatives of their programs.
 
+mod allocation;
 mod craft;
 mod derivatives;
 mod effort;

@@ -13,7 +13,7 @@ use crate::sequence::remainder::EXACT_TARGETS;
 /// resident memory, with a quarter as much again, bytes.
 const LEAST: u64 = 3 << 20;
 const PAIR: u64 = 5 << 10;
-const SEARCHED: u64 = 768 << 10;
+const SEARCHED: u64 = 1280 << 10;
 /// Segments and nodes are bounded, bytes.
 const MOST_SEARCHED: u64 = 144 << 20;
 
@@ -24,12 +24,6 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     let count = scenario.targets().len();
     let targets = count as u64;
     let places = targets + 2;
-    let subsets = if count <= EXACT_TARGETS {
-        // One duration for every subset and its first target.
-        (targets << targets) * 8
-    } else {
-        0
-    };
     // With more than three wheels the null space is free too.
     let turns = |target: &Target| {
         target
@@ -39,6 +33,14 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     };
     let couples =
         scenario.targets().iter().any(turns) || scenario.spacecraft().enabled_wheels().count() > 3;
+    let subsets = if count <= EXACT_TARGETS {
+        // One duration for every subset and its first target; where legs charge each other, the
+        // table with charges beside the one before.
+        let tables = if couples { 2 } else { 1 };
+        (targets << targets) * 8 * tables * 9 / 8
+    } else {
+        0
+    };
     let searched = if couples {
         (targets * SEARCHED).min(MOST_SEARCHED)
     } else {

@@ -53,6 +53,10 @@ pub struct SimulatedState {
     /// Commanded torques of the wheels from here on, feed-forward and feedback, N m; before the
     /// limits.
     pub wheel_torque_nm: Vec<f64>,
+    /// Whether each wheel met its limit of torque on the way to the next state that is kept.
+    pub torque_limited: Vec<bool>,
+    /// The same for its limit of speed.
+    pub speed_limited: Vec<bool>,
     /// Error against what the controller follows.
     pub error: TrackingError,
 }
@@ -146,6 +150,10 @@ impl Log {
         let saturation = &mut self.flight.saturation[wheel];
         saturation.torque += if cycle.torque_limited { seconds } else { 0.0 };
         saturation.speed += if cycle.speed_limited { seconds } else { 0.0 };
+        if let Some(state) = self.flight.states.last_mut() {
+            state.torque_limited[wheel] |= cycle.torque_limited;
+            state.speed_limited[wheel] |= cycle.speed_limited;
+        }
     }
 
     /// Notes that a time has passed, and the errors at the marks that have been reached.

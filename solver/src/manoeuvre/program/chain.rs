@@ -198,7 +198,8 @@ impl Chain for Program {
     }
 
     fn equalities(&self, node: usize) -> usize {
-        self.base.equalities(node) + self.fixed_parts(node).count()
+        let own = self.fixed_parts(node).count() + self.allocation_rows(node).count();
+        self.base.equalities(node) + own
     }
 
     fn inequalities(&self, node: usize) -> usize {
@@ -213,8 +214,12 @@ impl Chain for Program {
         let count = self.base.write_state_values(link.node, link.point, out);
         out.inequality[count..].fill(0.0);
         let fixed = self.base.equalities(link.node);
-        for (i, (at, value)) in self.fixed_parts(link.node).enumerate() {
-            out.equality[fixed + i] = link.point[1 + at] - value;
+        let parts = self.fixed_parts(link.node);
+        let parts = parts.map(|(at, value)| link.point[1 + at] - value);
+        let shared = self.allocation_rows(link.node);
+        let residuals = parts.chain(shared.map(|row| row.residual(link.point)));
+        for (out, residual) in out.equality[fixed..].iter_mut().zip(residuals) {
+            *out = residual;
         }
         out.cost = 0.0;
         if link.has_interval() {
@@ -249,8 +254,13 @@ impl Chain for Program {
         self.add_state(link, duals, out);
         let states = self.shape.states();
         let fixed = self.base.equalities(link.node);
-        for (i, (at, _)) in self.fixed_parts(link.node).enumerate() {
-            out.equality_jacobian[(fixed + i) * states + at] = 1.0;
+        let mut rows = out.equality_jacobian[fixed * states..].chunks_exact_mut(states);
+        for ((at, _), row) in self.fixed_parts(link.node).zip(&mut rows) {
+            row[at] = 1.0;
+        }
+        for (shared, row) in self.allocation_rows(link.node).zip(&mut rows) {
+            row[shared.at..shared.at + shared.coefficients.len()]
+                .copy_from_slice(&shared.coefficients);
         }
         if link.has_interval() {
             let mut base = LinkModel::for_node(&self.base, link.node);

@@ -84,6 +84,23 @@ pub(super) fn olrac(wheels: usize) -> SpacecraftSpec {
     }
 }
 
+/// The RW/CMG thesis's pyramid of four wheels, 1 N m s and 85.7 mN m each.
+pub(super) fn pyramid() -> SpacecraftSpec {
+    let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
+    SpacecraftSpec {
+        inertia_kg_m2: diagonal([25.4; 3]),
+        wheels: [[s, 0.0, c], [0.0, s, c], [-s, 0.0, c], [0.0, -s, c]]
+            .map(|axis| wheel(axis, 1.0 / 314.159, 0.0857, Some(314.159)))
+            .to_vec(),
+        ..SpacecraftSpec::default()
+    }
+}
+
+/// Its turn by 120 degrees about the axis of the first wheel.
+pub(super) fn pyramid_end() -> StateSpec {
+    turn(pyramid().wheels[0].axis, 120_f64.to_radians())
+}
+
 /// OLRAC's axis.
 pub(super) const OLRAC_AXIS: [f64; 3] = [0.4896, 0.2032, 0.8480];
 

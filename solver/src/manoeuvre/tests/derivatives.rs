@@ -6,7 +6,7 @@ use crate::manoeuvre::ingredients::Ingredients;
 use crate::manoeuvre::motion::Motion;
 use crate::manoeuvre::program::{LengthPenalty, Program, Units};
 use crate::manoeuvre::shape::{Course, Lengths, Shape};
-use crate::manoeuvre::{Manoeuvre, ManoeuvreSpec, Measure};
+use crate::manoeuvre::{Manoeuvre, ManoeuvreSpec, Measure, WheelAllocation};
 use crate::nlp::{Chain, Iterate, Layout, Link, LinkModel, LinkMultipliers, models_of};
 use crate::profile::Profile;
 use crate::spec::{SpacecraftSpec, StateSpec};
@@ -14,7 +14,7 @@ use crate::transcription::Scales;
 use nalgebra::{DVector, Vector3};
 
 /// Four wheels with friction and motors, one that follows a law, stored momentum, rate limits.
-fn manoeuvre() -> Manoeuvre {
+fn manoeuvre(allocation: WheelAllocation) -> Manoeuvre {
     let mut drives = lro_drives();
     for drive in &mut drives {
         drive.coulomb_friction_nm = Some(0.004);
@@ -47,6 +47,7 @@ fn manoeuvre() -> Manoeuvre {
             wheel_speed_rad_s: Some(vec![1.0, -2.0, 0.5, 40.0, 50.0]),
             ..StateSpec::default()
         },
+        allocation,
         ..ManoeuvreSpec::default()
     };
     Manoeuvre::try_new(&spec)
@@ -247,12 +248,14 @@ impl Fixture {
 
 #[test]
 fn derivatives_of_every_shape_match_finite_differences() {
-    let manoeuvre = manoeuvre();
-    for of in shapes(&manoeuvre) {
-        for node in 0..3 {
-            let fixture = Fixture::new(&manoeuvre, of.clone(), node);
-            fixture.check_first();
-            fixture.check_second();
+    for allocation in [WheelAllocation::Free, WheelAllocation::PseudoInverse] {
+        let manoeuvre = manoeuvre(allocation);
+        for of in shapes(&manoeuvre) {
+            for node in 0..3 {
+                let fixture = Fixture::new(&manoeuvre, of.clone(), node);
+                fixture.check_first();
+                fixture.check_second();
+            }
         }
     }
 }

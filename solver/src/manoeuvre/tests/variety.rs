@@ -1,14 +1,15 @@
 //! Combinations of objectives, commands and drives that no source has, all of them flown.
 
 use super::craft::{
-    OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, solved, turn, wheel,
+    OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, pyramid, pyramid_end, solved,
+    turn,
 };
 use crate::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 use crate::manoeuvre::{
     Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Sweep, solve,
     trade_curve,
 };
-use crate::spec::{SpacecraftSpec, StateSpec};
+use crate::spec::StateSpec;
 use crate::stop::StopSignal;
 
 fn thrifty(command: Command, measure: Measure) -> ManoeuvreSpec {
@@ -145,23 +146,14 @@ fn friction_costs_time_where_it_is_made_up_for() {
 
 #[test]
 fn a_pinned_null_space_returns_and_costs_time() {
-    let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
-    let axes = [[s, 0.0, c], [0.0, s, c], [-s, 0.0, c], [0.0, -s, c]];
-    let inertia = 1.0 / 314.159;
     let spec = |final_wheels| ManoeuvreSpec {
-        spacecraft: SpacecraftSpec {
-            inertia_kg_m2: [[25.4, 0.0, 0.0], [0.0, 25.4, 0.0], [0.0, 0.0, 25.4]],
-            wheels: axes
-                .map(|axis| wheel(axis, inertia, 0.0857, Some(314.159)))
-                .to_vec(),
-            ..SpacecraftSpec::default()
-        },
+        spacecraft: pyramid(),
         start: StateSpec {
             // Along the null space: no momentum in sum.
             wheel_speed_rad_s: Some(vec![157.0, -157.0, 157.0, -157.0]),
             ..StateSpec::default()
         },
-        end: turn([s, 0.0, c], 120_f64.to_radians()),
+        end: pyramid_end(),
         final_wheels,
         command: Command::Free { intervals: 40 },
         ..ManoeuvreSpec::default()

@@ -2,7 +2,7 @@
 
 use super::super::draws::draw;
 use super::super::truth::{Scratch, State};
-use super::super::{ControllerSpec, ErrorsSpec, FeedForward, SimulationSpec};
+use super::super::{ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, SimulationSpec};
 use super::build::{
     BANDWIDTH, MAX_TORQUE, calm_scenario, idle, lively, quaternion, scenario, simulation,
 };
@@ -183,4 +183,47 @@ fn drives_stay_within_torque_and_speed() {
     assert!((first.speed - 0.2).abs() < 2e-3, "{first:?}");
     assert!(first.torque > 0.99, "{first:?}");
     assert!(second.torque.abs() <= 0.0 && second.speed.abs() <= 0.0);
+}
+
+#[test]
+fn kept_states_tell_which_limits_are_met_until_the_next() {
+    let (scenario, flight) = (scenario(), lively());
+    let calm = simulation(&scenario, &flight, &open(FeedForward::TimeTagged));
+    let flown = calm.fly(0, Some(1));
+    assert_eq!(flown.states.len(), calm.samples());
+    let met = |flags: &[bool]| flags.contains(&true);
+    assert!(
+        !flown
+            .states
+            .iter()
+            .any(|s| met(&s.torque_limited) || met(&s.speed_limited))
+    );
+    // Much too high a gain for the wheels.
+    let stiff = SimulationSpec {
+        controller: quaternion(GainsSpec::Given {
+            attitude_per_s2: 50.0,
+            rate_per_s: 50.0,
+        }),
+        errors: ErrorsSpec {
+            initial_attitude_3_sigma_rad: Some(0.3),
+            ..ErrorsSpec::default()
+        },
+        ..SimulationSpec::default()
+    };
+    let stiff = simulation(&scenario, &flight, &stiff);
+    let (all, few) = (stiff.fly(0, Some(1)), stiff.fly(0, Some(10)));
+    for (wheel, share) in all.saturation.iter().enumerate() {
+        let limited = all
+            .states
+            .iter()
+            .filter(|s| s.torque_limited[wheel])
+            .count();
+        assert!(limited as f64 >= share.torque * all.states.len() as f64 - 1e-9);
+        assert_eq!(limited > 0, share.torque > 0.0);
+        for (chunk, kept) in all.states.chunks(10).zip(&few.states) {
+            let any = chunk.iter().any(|s| s.torque_limited[wheel]);
+            assert_eq!(any, kept.torque_limited[wheel]);
+        }
+    }
+    assert!(all.states.iter().any(|s| met(&s.torque_limited)));
 }

@@ -1,7 +1,7 @@
 // A service of its own, a browser, and pages that note whatever goes wrong in them.
 
 import { execFileSync, spawn } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -83,4 +83,12 @@ export async function findings(page) {
   const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
   const places = (one) => one.nodes.slice(0, 3).map((node) => node.target.join(" ")).join("; ");
   return violations.map((one) => `${one.impact} ${one.id}: ${one.help} (${places(one)})`);
+}
+
+/** All of a page as a file, where SCREENSHOTS names a folder. */
+export async function picture(page, name) {
+  const folder = process.env.SCREENSHOTS;
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
 }

@@ -1,8 +1,6 @@
 // Every view at two widths, in both themes and enlarged: nothing cut off, nothing that axe-core finds.
 
-import { mkdirSync } from "node:fs";
-import { join } from "node:path";
-import { check, findings, fixture, openPage, planned } from "./harness.mjs";
+import { check, findings, fixture, openPage, picture, planned } from "./harness.mjs";
 
 /** Enlarged to 200 %: half as many pixels of the page, each twice as large. */
 const SIZES = {
@@ -10,6 +8,9 @@ const SIZES = {
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true },
   zoomed: { viewport: { width: 640, height: 450 }, deviceScaleFactor: 2 },
 };
+
+/** Views that are complete once they have been sent, and by which button. */
+const SENT = { slew: "Solve", trade: "Solve", study: "Run" };
 
 export async function looks({ browser, service, must }) {
   const ids = {};
@@ -19,6 +20,8 @@ export async function looks({ browser, service, must }) {
   const views = {
     list: "#/", new: "#/new?example=olivares-a", plan: `#/plans/${ids["olivares-a"]}`,
     "keep-out": `#/plans/${ids["two-targets"]}`, pyramid: `#/plans/${ids["pyramid-momentum-bias"]}`,
+    slew: "#/slew?example=quarter-turn", trade: "#/slew?example=olrac-four-wheels",
+    study: "#/studies?example=study-authority",
   };
   for (const [size, context] of Object.entries(SIZES)) {
     for (const theme of ["light", "dark"]) {
@@ -45,9 +48,9 @@ export async function looks({ browser, service, must }) {
 async function ready(page, view) {
   if (view === "list") return page.locator("tbody tr").first().waitFor();
   if (view === "new") return page.waitForFunction(() => document.querySelector("#scenario").value.length > 0);
-  await page.locator(".sphere .stop").first().waitFor();
-  await page.locator(".search .uplot").waitFor();
-  await page.locator(".matrix").waitFor();
+  if (view in SENT) await send(page, SENT[view]);
+  else await Promise.all([".sphere .stop", ".search .uplot", ".matrix"].map((part) => page.locator(part).first().waitFor()));
+  if (view === "study") return page.locator(".curves .uplot").nth(2).waitFor();
   await page.getByLabel("Moment").evaluate((slider) => {
     slider.value = String(0.4 * Number(slider.max));
     slider.dispatchEvent(new Event("input"));
@@ -55,21 +58,26 @@ async function ready(page, view) {
   return page.waitForFunction(() => !document.querySelector(".moment").textContent.startsWith("0.0 s"));
 }
 
-async function picture(page, name) {
-  const folder = process.env.SCREENSHOTS;
-  if (!folder) return;
-  mkdirSync(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+async function send(page, verb) {
+  await page.waitForFunction(() => document.querySelector("textarea").value.length > 0);
+  await page.getByRole("button", { name: verb, exact: true }).click();
+  await page.locator(".result .uplot").first().waitFor();
 }
 
 /** Letters of twice the size, for those who set them so. */
 async function largeType({ browser, service, must }, views) {
   const { page, close } = await openPage(browser, service);
+  // Set before the page looks, as a setting of the browser is, which pictures would not show.
+  await page.addInitScript(() => {
+    new MutationObserver((_, watcher) => {
+      document.documentElement.style.setProperty("font-size", "200%");
+      watcher.disconnect();
+    }).observe(document, { childList: true });
+  });
   for (const [view, path] of Object.entries(views)) {
     await must(`${view}, letters of twice the size`, async () => {
       await page.goto("about:blank");
       await page.goto(`${service.address}/${path}`);
-      await page.evaluate(() => document.documentElement.style.setProperty("font-size", "200%"));
       await ready(page, view);
       await picture(page, `${view}-large-type`);
       await uncut(page);

@@ -47,6 +47,36 @@ export async function modules({ browser, service, must }) {
     const expected = ["1", '"x\\"}"', "[ ]", "null", '{"b/c": "x\\"}", "d": [ ]}', null];
     check(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
   });
+  await must("any study is shown as tables, whatever is in it", async () => {
+    const found = await inPage(async (folder) => {
+      const { generic } = await import(`${folder}/app/studies/generic.js`);
+      const row = (share, errors) => ({ torque_authority: share, plan: { total_time_s: 12.5, order: ["a", "b"] }, errors });
+      const document = {
+        complete: true, none: null, bound: { peak_rate_rad_s: 2e-7 },
+        rows: [row(1, [{ target: "a", error_rad: 0.25 }]), row(0.5, [{ target: "b", error_rad: 1 }])],
+      };
+      const node = generic({ document });
+      globalThis.document.body.append(node);
+      for (const one of node.querySelectorAll("details")) one.open = true;
+      await new Promise((resolve) => setTimeout(resolve, 50));
+      for (const one of node.querySelectorAll("details")) one.open = true;
+      await new Promise((resolve) => setTimeout(resolve, 50));
+      const texts = (list) => [...list].map((item) => item.textContent);
+      const tables = [...node.querySelectorAll("table")].map((table) =>
+        [...table.rows].map((row) => texts(row.cells).join(" | ")));
+      const labels = [...node.querySelectorAll("[role=region]")].map((region) => region.getAttribute("aria-label"));
+      node.remove();
+      return { tables, labels };
+    });
+    const expected = [
+      ["Figure | Value", "complete | yes", "none | –", "bound, peak rate, rad/s | 2·10⁻⁷"],
+      ["No. | torque authority | plan, total time, s | plan, order", "1 | 1 | 12.5 | a, b", "2 | 0.5 | 12.5 | a, b"],
+      ["No. | target | error, rad", "1 | a | 0.25"],
+      ["No. | target | error, rad", "1 | b | 1"],
+    ];
+    check(JSON.stringify(found.tables) === JSON.stringify(expected), JSON.stringify(found.tables));
+    check(new Set(found.labels).size === found.labels.length, found.labels.join("; "));
+  });
   await close();
 }
 

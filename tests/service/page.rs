@@ -119,6 +119,74 @@ fn the_examples_of_the_page_are_valid_scenarios() {
     }
 }
 
+#[test]
+fn the_slews_and_studies_of_the_page_are_answered() {
+    let service = Service::start();
+    let page = service.get("/").expect(200).body;
+    let folder = folder(&page);
+    for (view, path, name, place) in [
+        (
+            "views/slew",
+            "/v1/slews",
+            "quarter-turn",
+            "slews/quarter-turn",
+        ),
+        (
+            "views/slew",
+            "/v1/slews",
+            "olrac-four-wheels",
+            "slews/olrac-four-wheels",
+        ),
+        (
+            "views/slew",
+            "/v1/slews",
+            "biros-sampled",
+            "slews/biros-sampled",
+        ),
+        (
+            "views/slew",
+            "/v1/slews",
+            "lro-least-bill",
+            "slews/lro-least-bill",
+        ),
+        (
+            "studies/registry",
+            "/v1/studies/authority",
+            "study-authority",
+            "studies/authority",
+        ),
+        (
+            "studies/registry",
+            "/v1/studies/envelopes",
+            "study-envelopes",
+            "studies/pyramid-envelopes",
+        ),
+        (
+            "studies/registry",
+            "/v1/studies/comparison",
+            "study-comparison",
+            "studies/comparison",
+        ),
+        (
+            "studies/registry",
+            "/v1/studies/flight",
+            "study-flight",
+            "studies/flight",
+        ),
+    ] {
+        let view = service
+            .get(&format!("{folder}/app/{view}.js"))
+            .expect(200)
+            .body;
+        assert!(view.contains(&format!("[\"{name}\",")), "{name}");
+        let example = format!("{folder}/examples/{name}.json");
+        let example = service.get(&example).expect(200).json();
+        assert_eq!(example, fixture(&format!("{place}.json")));
+        let answer = service.post(path, &example).expect(200).json();
+        assert_ne!(answer["complete"], false, "{name}");
+    }
+}
+
 /// The values that a schema allows, wherever in it they are listed.
 fn listed(schema: &Value) -> Vec<String> {
     match schema {

@@ -48,11 +48,16 @@ export async function read(path, signal) {
   return (await request(path, { signal })).json();
 }
 
-/** Posts a document, or nothing. */
-export async function post(path, document, signal) {
+/** Posts a document, or nothing; the answer as it came. */
+export async function postForText(path, document, signal) {
   const body = document === undefined ? undefined : typeof document === "string" ? document : JSON.stringify(document);
   const headers = body === undefined ? {} : { "Content-Type": "application/json" };
-  return (await request(path, { method: "POST", headers, body, signal })).json();
+  return (await request(path, { method: "POST", headers, body, signal })).text();
+}
+
+/** Posts a document, or nothing. */
+export async function post(path, document, signal) {
+  return JSON.parse(await postForText(path, document, signal));
 }
 
 /** Deletes what is at a path. */

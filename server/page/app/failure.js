@@ -1,6 +1,7 @@
-// What went wrong with a request.
+// What went wrong with a request, and what is doubtful about one that went well.
 
 import { el } from "./dom.js";
+import { count } from "./format.js";
 
 /** A message for a failed request, with all problems of an input; `locate` shows the place of one. */
 export function failure(error, locate) {
@@ -11,6 +12,16 @@ export function failure(error, locate) {
     el("p", { class: "failure-title" }, error.title ?? "Something went wrong"),
     items.length ? null : el("p", {}, error.message),
     items.length ? el("ul", {}, items) : null,
+  );
+}
+
+/** A message for a request that succeeded, with the warnings about its input. */
+export function success(title, warnings, locate) {
+  return el(
+    "div",
+    { class: "success", role: "status" },
+    el("p", { class: "success-title" }, warnings.length ? `${title}, with ${count(warnings.length, "warning")}` : title),
+    warnings.length ? el("ul", {}, warnings.map((warning) => item(warning, locate))) : null,
   );
 }
 

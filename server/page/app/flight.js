@@ -1,4 +1,4 @@
-// What the plots draw: a plan together with the limits of its scenario.
+// What the plots draw: a motion together with the limits that were asked for.
 
 import { quaternion, slerp } from "./rotation.js";
 
@@ -6,22 +6,32 @@ import { quaternion, slerp } from "./rotation.js";
 export function flightOf(plan, scenario) {
   const { states, controls } = plan.trajectory ?? {};
   if (!states?.length) return null;
-  const times = states.map((state) => state.time_s);
+  const moved = motion(states, scenario);
   const wheels = scenario.spacecraft.wheels;
-  const inForce = torques(times, controls, wheels.length);
+  const inForce = torques(moved.times, controls, wheels.length);
+  return {
+    ...moved,
+    total: plan.total_time_s,
+    torques: { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true },
+    phases: phases(plan, scenario),
+    stops: stops(plan),
+  };
+}
+
+/** What every motion has, from sampled states and what was asked for: curves with their limits. */
+export function motion(states, asked) {
+  const times = states.map((state) => state.time_s);
   const attitudes = states.map((state) => quaternion(state.quaternion));
   return {
-    plan,
-    scenario,
-    total: plan.total_time_s,
+    scenario: asked,
+    total: times.at(-1),
     times,
     attitudes,
     rates: [0, 1, 2].map((axis) => states.map((state) => state.body_rate_rad_s[axis])),
-    speeds: wheels.map((_, wheel) => states.map((state) => state.wheel_speed_rad_s[wheel])),
-    torques: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])),
-    limits: limits(scenario),
-    phases: phases(plan, scenario),
-    stops: stops(plan),
+    speeds: asked.spacecraft.wheels.map((_, wheel) => states.map((state) => state.wheel_speed_rad_s[wheel])),
+    limits: limits(asked),
+    phases: [],
+    stops: [],
     attitudeAt: (time) => attitudeAt(times, attitudes, time),
   };
 }

@@ -26,9 +26,21 @@ export function percent(value, digits = 2) {
 export function small(value) {
   if (!known(value)) return DASH;
   if (value === 0) return "0";
-  const [digits, exponent] = value.toExponential(1).split("e");
-  const raised = [...exponent.replace("+", "")].map((sign) => RAISED[sign]).join("");
-  return `${digits}·10${raised}`;
+  return raised(value, 1);
+}
+
+function raised(value, digits) {
+  const [shown, exponent] = value.toExponential(digits).split("e");
+  const power = [...exponent.replace("+", "")].map((sign) => RAISED[sign]).join("");
+  return `${shown.replace("-", "−")}·10${power}`;
+}
+
+/** A number of any size with so many digits that count. */
+export function significant(value, digits = 4) {
+  if (!known(value)) return DASH;
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e6)) return raised(value, digits - 1).replace(/\.?0+·/, "·");
+  return String(Number(value.toPrecision(Math.max(digits, String(Math.trunc(size)).length)))).replace("-", "−");
 }
 
 /** A moment in the time of the reader, the date only when it is not today. */

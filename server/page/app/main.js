@@ -5,12 +5,16 @@ import { el } from "./dom.js";
 import { askForKey } from "./key.js";
 import { list } from "./views/list.js";
 import { plan } from "./views/plan.js";
+import { slew } from "./views/slew.js";
+import { studies } from "./views/studies.js";
 import { submit } from "./views/submit.js";
 
 const ROUTES = [
   [/^$/, list],
   [/^new$/, submit],
   [/^plans\/([0-9a-f-]+)$/, plan],
+  [/^slew$/, slew],
+  [/^studies(?:\/([a-z_-]+))?$/, studies],
 ];
 
 const main = document.getElementById("main");
@@ -23,7 +27,8 @@ function show() {
   leave = new AbortController();
   const { signal } = leave;
   for (const link of document.querySelectorAll(".masthead nav a")) {
-    const current = link.getAttribute("href") === `#/${path}`;
+    const place = link.getAttribute("href");
+    const current = place === `#/${path}` || (place !== "#/" && `#/${path}`.startsWith(`${place}/`));
     if (current) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }

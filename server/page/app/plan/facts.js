@@ -2,18 +2,13 @@
 
 import { el } from "../dom.js";
 import { fixed, percent, seconds } from "../format.js";
+import { strip } from "../strip.js";
 
 const KINDS = {
   nlp_relaxation: "relaxed problems, each taken to be solved globally",
   pair_table: "table of slews, each taken to be solved globally",
   certified: "proved",
 };
-
-function strip(items) {
-  return el("dl", { class: "facts" }, items.filter(Boolean).map(([name, value, note]) =>
-    el("div", {}, el("dt", {}, name), el("dd", {}, el("span", { class: "figure" }, value),
-      note ? el("span", { class: "note" }, note) : null))));
-}
 
 /** How a job stands. */
 export function standing(job, elapsed) {

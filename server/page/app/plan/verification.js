@@ -1,26 +1,22 @@
 // What the independent flight of a plan showed.
 
-import { el, section, table } from "../dom.js";
-import { fixed, percent, small } from "../format.js";
-
-/** The tolerances that a verification passes with. */
-const ALLOWED = { attitude: 1e-6, rate: 1e-7, excess: 1e-6 };
+import { ALLOWED, checks, messages, verdict } from "../checks.js";
+import { el, section } from "../dom.js";
+import { fixed, percent } from "../format.js";
 
 /** The section with the verification, the margins and the warnings of a plan. */
 export function verification(plan, scenario) {
   const found = plan.verification;
   if (!found) return null;
-  const verdict = el("span", { class: `chip ${found.passed ? "good" : "bad"}` }, found.passed ? "Passed" : "Not passed");
-  const columns = [{ title: "Largest", head: true }, { title: "Found", number: true }, { title: "Allowed", number: true }];
   const rows = [
-    ["attitude error, rad", small(found.max_attitude_error_rad), small(ALLOWED.attitude)],
-    ["rate error, rad/s", small(found.max_rate_error_rad_s), small(ALLOWED.rate)],
-    ["wheel speed excess", small(found.max_wheel_speed_excess), small(ALLOWED.excess)],
-    ["torque excess", small(found.max_torque_excess), small(ALLOWED.excess)],
-    ["body rate excess", small(found.max_rate_excess), small(ALLOWED.excess)],
+    ["attitude error, rad", found.max_attitude_error_rad, ALLOWED.attitude],
+    ["rate error, rad/s", found.max_rate_error_rad_s, ALLOWED.rate],
+    ["wheel speed excess", found.max_wheel_speed_excess, ALLOWED.excess],
+    ["torque excess", found.max_torque_excess, ALLOWED.excess],
+    ["body rate excess", found.max_rate_excess, ALLOWED.excess],
   ];
-  return section("Verification", { head: verdict, class: "card" },
-    table("Errors and excesses of the flight", columns, rows),
+  return section("Verification", { head: verdict(found.passed), class: "card" },
+    checks(rows),
     margins(plan.margins, scenario),
     messages("Failures", found.failures),
     messages("Warnings", plan.warnings),
@@ -39,10 +35,4 @@ function margins(margins, scenario) {
     ...cones,
   ];
   return el("dl", { class: "pairs" }, items.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
-}
-
-function messages(title, list) {
-  if (!list?.length) return null;
-  const text = (entry) => (typeof entry === "string" ? entry : entry.message ?? JSON.stringify(entry));
-  return el("div", { class: "messages" }, el("h3", {}, title), el("ul", {}, list.map((entry) => el("li", {}, text(entry)))));
 }

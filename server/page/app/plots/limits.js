@@ -4,24 +4,49 @@ import { colour } from "./palette.js";
 
 const ROOM = 0.08;
 
-/** Lowest and highest value of a plot: those of the curves and of their limits, with some room. */
-export function reach({ curves, limits }) {
-  const all = [...curves.flat(), ...limits.flatMap((limit) => limit ?? []), 0];
-  const [low, high] = all.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [0, 0]);
+/** Limits of which the curves use less than this share are outside of a plot. */
+const USED = 0.2;
+/** What curves far from their limits are drawn on at least, as a share of these: less may be rounding. */
+const LEAST = 0.02;
+
+const largest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+const all = (limits) => limits.flatMap((limit) => limit ?? []);
+const isFar = (limit, curves) => largest(curves.flat()) < USED * Math.abs(limit);
+
+/** The farthest limit, where it is so far away that nobody could see the curves beside it. */
+export function beyond({ curves, limits }) {
+  return largest(all(limits).filter((limit) => isFar(limit, curves))) || null;
+}
+
+/**
+ * Lowest and highest value of a plot: those of the curves and of the limits near them, and at least
+ * some about zero, with some room.
+ */
+export function reach(group) {
+  const { curves, limits, least = 0 } = group;
+  const about = Math.max(least, LEAST * (beyond(group) ?? 0));
+  const near = all(limits).filter((limit) => !isFar(limit, curves));
+  const [low, high] = [...curves.flat(), ...near, -about, about]
+    .reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [0, 0]);
   const room = ROOM * (high - low || 1);
   return [low - room, high + room];
 }
 
 /** The hooks of uPlot that draw it. */
 export function decorate(flight, group) {
-  const values = [...new Set(group.limits.flatMap((limit) => limit ?? []))];
+  const values = [...new Set(all(group.limits))];
   return {
     drawClear: [(drawn) => within(drawn, () => {
       shade(drawn, flight.phases);
       arrivals(drawn, flight.stops);
     })],
-    draw: [(drawn) => within(drawn, () => values.forEach((value) => limit(drawn, value)))],
+    draw: [(drawn) => within(drawn, () => values.forEach((value) => across(drawn, value)))],
   };
+}
+
+/** Draws the line of a limit across a plot. */
+export function limitLine(drawn, value) {
+  within(drawn, () => across(drawn, value));
 }
 
 function within(drawn, paint) {
@@ -51,7 +76,7 @@ function arrivals(drawn, stops) {
   }
 }
 
-function limit(drawn, value) {
+function across(drawn, value) {
   const y = Math.round(drawn.valToPos(value, "y", true)) + 0.5;
   const { left, width } = drawn.bbox;
   line(drawn, [left, y], [left + width, y], colour("limit"), [6, 4]);

@@ -1,23 +1,29 @@
-// Body rates, wheel speeds and wheel torques over time, each with its limits, and the phases of the
-// flight below them. All show the same moment.
+// Body rates, wheel speeds and wheel torques over time, each with its limits, what else there is, and
+// the phases of the flight below them. All show the same moment.
 
 import { disclosure, el, section, table } from "../dom.js";
-import { fixed } from "../format.js";
+import { fixed, significant } from "../format.js";
 import { indexAt } from "../flight.js";
 import { lanes } from "./lanes.js";
-import { decorate, reach } from "./limits.js";
+import { beyond, decorate, reach } from "./limits.js";
 import { curve } from "./palette.js";
 import { plot } from "./plot.js";
 
 const HEIGHT = 168;
-const SLIDER_STEPS = 2000;
+/** A slider stops at whole steps, of which rounding may make the last too long: these are shorter. */
+const SLIDER_STEPS = 2000 * (1 + 1e-9);
 const ZOOM_STEP = 2;
 /** More rows than this are for a program: the CSV has them. */
 const MOST_ROWS = 3000;
 
-/** The section with the timelines of a flight. */
-export function timelines(flight, cursor, signal) {
-  const charts = groups(flight).map((group) => chart(flight, group));
+/**
+ * The section with the timelines of a flight. More groups of curves stand below its own: {title, unit,
+ * names, times, curves, limits, text, steps, data}, of which `text` writes a value and `data` makes a
+ * table.
+ */
+export function timelines(flight, cursor, signal, more = []) {
+  const own = groups(flight);
+  const charts = [...own, ...more].map((group) => chart(flight, group));
   const moment = el("output", { class: "moment", for: "moment" });
   const slider = el("input", {
     type: "range", id: "moment", "aria-label": "Moment", min: "0", max: String(flight.total),
@@ -36,16 +42,16 @@ export function timelines(flight, cursor, signal) {
   const tools = el("div", { class: "tools" }, moment,
     button("−", "Show a longer time", () => zoom(ZOOM_STEP)), button("+", "Show a shorter time", () => zoom(1 / ZOOM_STEP)),
     button("All", "All of the flight", () => look(0, flight.total)));
-  const lane = lanes(flight, look);
+  const lane = flight.phases.length ? lanes(flight, look) : null;
 
   slider.addEventListener("input", () => cursor.set(Number(slider.value)));
   cursor.listen((time) => {
     const phase = flight.phases.findLast((phase) => phase.begin <= time + 1e-9);
-    const text = `${fixed(time, 1)} s · ${phase?.name ?? ""}`;
+    const text = [`${fixed(time, 1)} s`, phase?.name].filter(Boolean).join(" · ");
     slider.value = String(time);
     slider.setAttribute("aria-valuetext", text);
     moment.textContent = text;
-    lane.show(time);
+    lane?.show(time);
     for (const one of charts) one.show(time);
   });
   const build = () => {
@@ -58,20 +64,27 @@ export function timelines(flight, cursor, signal) {
     "Timelines",
     { class: "timelines", head: tools },
     charts.map((one) => one.node),
-    lane.node,
+    lane?.node,
     slider,
     el("p", { class: "quiet" }, "Drag across a plot to look closer, double-click to see all; the buttons look at the moment shown."),
-    lane.data,
-    disclosure("Samples as a table", () => samples(flight)),
+    lane?.data,
+    disclosure("Samples as a table", () => samples(flight, own)),
+    more.map((group) => disclosure(`${group.title} as a table`, group.data)),
   );
 }
 
-function groups({ rates, speeds, torques, limits }) {
+/** The curves that every flight has; `column` and `digits` are those of the table of samples. */
+function groups({ times, rates, speeds, torques, limits }) {
   const wheels = speeds.map((_, wheel) => `wheel ${wheel}`);
+  const numbers = speeds.map((_, wheel) => String(wheel));
+  const group = (more, shown) => ({ times, text: (value) => fixed(value, shown), ...more });
   return [
-    { title: "Body rates", unit: "rad/s", names: ["x", "y", "z"], curves: rates, limits: limits.rates, digits: 4 },
-    { title: "Wheel speeds", unit: "rad/s", names: wheels, curves: speeds, limits: limits.speeds, digits: 1 },
-    { title: "Wheel torques", unit: "N m", names: wheels, curves: torques, limits: limits.torques, digits: 4, steps: true },
+    group({ title: "Body rates", unit: "rad/s", names: ["x", "y", "z"], curves: rates, limits: limits.rates,
+      column: ["Rate", ["x", "y", "z"]], digits: 6 }, 4),
+    group({ title: "Wheel speeds", unit: "rad/s", names: wheels, curves: speeds, limits: limits.speeds,
+      column: ["Speed", numbers], digits: 2 }, 1),
+    group({ title: "Wheel torques", unit: "N m", names: wheels, ...torques, limits: limits.torques,
+      column: ["Torque", numbers], digits: 6 }, 4),
   ];
 }
 
@@ -79,23 +92,22 @@ function chart(flight, group) {
   const values = group.names.map(() => el("span", { class: "value" }));
   const key = el("ul", { class: "key" }, group.names.map((name, index) =>
     el("li", {}, el("span", { class: `swatch curve-${(index % 6) + 1}`, "aria-hidden": "true" }), name, " ", values[index])));
+  const far = beyond(group);
   const limited = group.limits.some(Boolean);
+  const unit = far === null ? group.unit : `${group.unit}, limit ${significant(far)}`;
   const place = el("div", {
     class: "plot", role: "img",
     "aria-label": `${group.title} over time${limited ? ", with limit lines" : ""}. The samples are in the table below.`,
   });
   const one = {
     node: el("div", { class: "chart" },
-      el("div", { class: "chart-head" }, el("h3", {}, group.title, " ", el("span", { class: "unit" }, group.unit)), key), place),
+      el("div", { class: "chart-head" }, el("h3", {}, group.title, " ", el("span", { class: "unit" }, unit)), key), place),
     plot: null,
     build(cursor, charts, lane, signal) {
-      one.plot = plot(place, options(flight, group, cursor, one, charts, lane), [flight.times, ...group.curves], signal);
+      one.plot = plot(place, options(flight, group, cursor, one, charts, lane), [group.times, ...group.curves], signal);
     },
     show(time) {
-      const index = indexAt(flight.times, time);
-      group.curves.forEach((samples, which) => {
-        values[which].textContent = fixed(group.steps ? samples[index] : between(flight.times, samples, index, time), group.digits);
-      });
+      group.names.forEach((_, which) => (values[which].textContent = group.text(valueAt(group, which, time))));
       if (!one.plot || one.hovered) return;
       one.plot.setCursor({ left: one.plot.valToPos(time, "x"), top: 0 }, false, false);
     },
@@ -103,10 +115,14 @@ function chart(flight, group) {
   return one;
 }
 
-function between(times, samples, index, time) {
+/** The value of a curve at a moment: that in force, or between two samples. */
+function valueAt({ times, curves, steps }, which, time) {
+  const index = indexAt(times, time);
   const next = Math.min(index + 1, times.length - 1);
   const span = times[next] - times[index];
-  return span > 0 ? samples[index] + ((samples[next] - samples[index]) * (time - times[index])) / span : samples[index];
+  const samples = curves[which];
+  if (steps || span <= 0) return samples[index];
+  return samples[index] + ((samples[next] - samples[index]) * (time - times[index])) / span;
 }
 
 function options(flight, group, cursor, one, charts, lane) {
@@ -132,7 +148,7 @@ function options(flight, group, cursor, one, charts, lane) {
       setScale: [(drawn, scale) => {
         if (scale !== "x") return;
         const { min, max } = drawn.scales.x;
-        lane.zoom(min, max);
+        lane?.zoom(min, max);
         // The moment is somewhere else in the plot once this is drawn.
         requestAnimationFrame(() => one.show(cursor.time ?? 0));
         for (const { plot } of charts) {
@@ -155,22 +171,13 @@ function ticksOf(_, ticks) {
   return ticks.map((tick) => fixed(tick, digits));
 }
 
-function samples(flight) {
-  const wheels = flight.speeds.map((_, wheel) => wheel);
-  const columns = [
-    { title: "Time, s", number: true },
-    ...["x", "y", "z"].map((axis) => ({ title: `Rate ${axis}, rad/s`, number: true })),
-    ...wheels.map((wheel) => ({ title: `Speed ${wheel}, rad/s`, number: true })),
-    ...wheels.map((wheel) => ({ title: `Torque ${wheel}, N m`, number: true })),
-  ];
+function samples(flight, own) {
+  const columns = own.flatMap(({ unit, column: [what, names] }) =>
+    names.map((name) => ({ title: `${what} ${name}, ${unit}`, number: true })));
   const shown = flight.times.slice(0, MOST_ROWS);
-  const rows = shown.map((time, index) => [
-    fixed(time, 3),
-    ...flight.rates.map((samples) => fixed(samples[index], 6)),
-    ...flight.speeds.map((samples) => fixed(samples[index], 2)),
-    ...flight.torques.map((samples) => fixed(samples[index], 6)),
-  ]);
+  const rows = shown.map((time) => [fixed(time, 3), ...own.flatMap((group) =>
+    group.curves.map((_, which) => fixed(valueAt(group, which, time), group.digits)))]);
   const more = flight.times.length - shown.length;
-  return el("div", {}, table("Samples of the trajectory", columns, rows),
+  return el("div", {}, table("Samples of the trajectory", [{ title: "Time, s", number: true }, ...columns], rows),
     more > 0 ? el("p", { class: "quiet" }, `${more} more rows are in the CSV.`) : null);
 }

@@ -3,7 +3,7 @@
 
 import { disclosure, el, section, svg, table } from "../dom.js";
 import { fixed } from "../format.js";
-import { longitudeLatitude, rotate, sum, unit } from "../rotation.js";
+import { dot, longitudeLatitude, rotate, sum, unit } from "../rotation.js";
 import { viewOn } from "./projection.js";
 import { draw } from "./scene.js";
 
@@ -17,7 +17,7 @@ const STEP = Math.PI / 90;
 /** The section with the sphere of a flight. */
 export function sphere(flight, cursor, signal) {
   const axes = bodyAxes(flight.scenario);
-  let axis = axes[0];
+  let axis = axes[first(flight, axes)];
   let content = contentOf(flight, axis);
   const pose = { longitude: 0, latitude: 0, zoom: 1 };
   const picture = svg("svg", {
@@ -25,6 +25,7 @@ export function sphere(flight, cursor, signal) {
     "aria-label": "Sphere with the trace of the body axis. Arrow keys turn it, plus and minus zoom, 0 resets.",
   });
   const choice = el("select", { id: "body-axis" }, axes.map(({ name }, index) => el("option", { value: String(index) }, name)));
+  choice.value = String(axes.indexOf(axis));
   choice.addEventListener("change", () => {
     axis = axes[choice.value];
     content = contentOf(flight, axis);
@@ -96,11 +97,19 @@ function bodyAxes(scenario) {
   return [...named, ...plain.map(([name, direction]) => ({ name: `${name} body`, boresight: null, direction }))];
 }
 
+/** The first boresight; without any, and without targets, the axis that ends farthest from its start. */
+function first(flight, axes) {
+  if (axes[0].boresight || flight.stops.length) return 0;
+  const [from, to] = [flight.attitudes[0], flight.attitudes.at(-1)];
+  const near = axes.map(({ direction }) => dot(rotate(from, direction), rotate(to, direction)));
+  // What turns as far as the axis before it is rounding.
+  return near.reduce((best, value, index) => (value < near[best] - 1e-9 ? index : best), 0);
+}
+
 function contentOf(flight, axis) {
   const direction = (attitude) => rotate(attitude, axis.direction);
   const stops = flight.stops.map((stop) => ({ ...stop, direction: direction(stop.attitude), reached: false }));
-  const ends = [{ name: "start", direction: direction(flight.attitudes[0]) }];
-  if (flight.scenario.end) ends.push({ name: "end", direction: direction(flight.attitudes.at(-1)) });
+  const ends = endsOf(flight).map((end) => ({ ...end, direction: direction(end.attitude) }));
   const caps = (flight.scenario.keep_out ?? []).map((cone) => ({
     name: `keep-out of ${cone.boresight}, ${cone.half_angle_deg}°`,
     direction: cone.direction,
@@ -108,6 +117,12 @@ function contentOf(flight, axis) {
     applies: cone.boresight === axis.boresight,
   }));
   return { trace: trace(flight, axis), stops, ends, caps, now: null };
+}
+
+/** The start, and the end where one is asked for. */
+function endsOf({ attitudes, total, scenario }) {
+  const start = { name: "start", time: 0, attitude: attitudes[0] };
+  return scenario.end ? [start, { name: "end", time: total, attitude: attitudes.at(-1) }] : [start];
 }
 
 /** The way of the axis, with more points where the samples are far apart. */
@@ -126,10 +141,11 @@ function trace(flight, axis) {
   return way;
 }
 
-/** Longitude and latitude in the middle of the targets, or somewhat above a ring of them. */
+/** Longitude and latitude in the middle of the targets or ends, or somewhat above a ring of them. */
 function middle(content) {
-  const mean = content.stops.reduce((total, stop) => sum(total, stop.direction), [0, 0, 0]);
-  const clear = Math.hypot(...mean) > CLEAR * content.stops.length;
+  const places = content.stops.length ? content.stops : content.ends;
+  const mean = places.reduce((total, place) => sum(total, place.direction), [0, 0, 0]);
+  const clear = Math.hypot(...mean) > CLEAR * places.length;
   return clear ? longitudeLatitude(mean) : [longitudeLatitude(content.ends[0].direction)[0], 30];
 }
 
@@ -167,19 +183,21 @@ function listenToPointer(picture, pressed, dragged) {
 function legend(flight) {
   const cones = flight.scenario.keep_out?.length > 0;
   const frame = flight.scenario.reference_frame ?? "the reference frame";
-  return el("p", { class: "quiet" }, `Seen from outside, in ${frame}. Numbers give the visiting order`,
+  const marks = flight.stops.length ? "Numbers give the visiting order" : "Rings are the start and the end";
+  return el("p", { class: "quiet" }, `Seen from outside, in ${frame}. ${marks}`,
     cones ? "; red are keep-out cones, of other boresights dashed." : ".");
 }
 
 function directions(flight, axis) {
   return disclosure("Directions as a table", () => {
     const columns = [
-      { title: "No.", number: true }, { title: "Target", head: true }, { title: "Arrival, s", number: true },
+      { title: "Place", head: true }, { title: "Arrival, s", number: true },
       { title: "Longitude, °", number: true }, { title: "Latitude, °", number: true },
     ];
-    return table(`Where ${axis.name} points`, columns, flight.stops.map((stop) => {
-      const [longitude, latitude] = longitudeLatitude(rotate(stop.attitude, axis.direction));
-      return [String(stop.number), stop.name, fixed(stop.time), fixed(longitude, 1), fixed(latitude, 1)];
+    const places = flight.stops.length ? flight.stops : endsOf(flight);
+    return table(`Where ${axis.name} points`, columns, places.map(({ number, name, time, attitude }) => {
+      const [longitude, latitude] = longitudeLatitude(rotate(attitude, axis.direction));
+      return [number ? `${number}: ${name}` : name, fixed(time), fixed(longitude, 1), fixed(latitude, 1)];
     }));
   });
 }

@@ -61,7 +61,7 @@ enum Command {
     Certify(certify::Arguments),
     /// Write a plan in the format of another tool
     Export(export::Arguments),
-    /// Draw a plan
+    /// Draw a plan, a slew, trade curves or a study of wheels
     Plot(plot::Arguments),
     /// Run the HTTP service
     Serve(serve::Arguments),

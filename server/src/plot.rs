@@ -1,36 +1,57 @@
-//! A plan as a picture: sphere, legs, timelines. Plain SVG, so that it needs no browser and no
-//! fonts and stays sharp in print.
+//! Plans and other answers as pictures. Plain SVG, so that it needs no browser and no fonts and
+//! stays sharp in print.
+//!
+//! A plan is a sphere, its legs and timelines; a slew has timelines, and with a sweep a trade curve;
+//! studies of wheels have their diagrams, a flight in closed loop its timelines.
 
 use slewplan_solver::scenario::Scenario;
 
+mod axes;
 mod canvas;
+mod chart;
+mod comparison;
+mod document;
+mod envelopes;
+mod flight;
 mod legs;
+mod panel;
 mod scale;
+mod slews;
 mod sphere;
 #[cfg(test)]
 mod tests;
 mod timeline;
 mod view;
 mod written;
+mod written_comparison;
+mod written_flight;
+mod written_slews;
 
 use canvas::{Canvas, Frame, Ink};
+pub(crate) use comparison::draw as comparison;
+pub(crate) use document::Document;
+pub(crate) use envelopes::{WrittenEnvelopes, svg as envelopes};
+pub(crate) use flight::draw as flight;
+pub(crate) use slews::{Marks, single as slew, trade};
 pub(crate) use view::Boresight;
 pub(crate) use written::WrittenPlan;
+pub(crate) use written_comparison::WrittenComparison;
+pub(crate) use written_flight::WrittenFlight;
+pub(crate) use written_slews::WrittenSlews;
 
 const WIDTH: f64 = 1200.0;
 const MARGIN: f64 = 36.0;
 const HEAD: f64 = 84.0;
 const UPPER: f64 = 400.0;
 const STRIP: f64 = 34.0;
-const PANEL: f64 = 150.0;
-const GAP: f64 = 44.0;
+const BELOW_STRIP: f64 = 33.0;
 
-/// The picture of a plan. The scenario adds what the plan does not tell: limits and keep-out cones.
+/// The picture of a plan. Its scenario adds what the plan does not tell: limits and keep-out cones.
 ///
 /// # Errors
 ///
 /// A sentence, when the scenario has another number of wheels.
-pub(crate) fn svg(
+pub(crate) fn plan(
     plan: &WrittenPlan,
     scenario: Option<&Scenario>,
     view: &Boresight,
@@ -41,11 +62,12 @@ pub(crate) fn svg(
         return Err(format!("it has {expected} wheels, the plan {wheels}"));
     }
     let lower = HEAD + UPPER + 46.0;
-    let panels = timeline::panels(plan, scenario);
-    let height = lower + STRIP + panels.len() as f64 * (PANEL + GAP) + 24.0;
+    let record = plan.record();
+    let panels = timeline::panels(&record, scenario.map(Scenario::spacecraft));
+    let height = lower + STRIP + timeline::height(&panels) + 24.0;
     let name = scenario.and_then(Scenario::name).unwrap_or("Plan");
     let mut canvas = Canvas::new(WIDTH, height, &described(name, plan));
-    head(&mut canvas, name, plan);
+    head(&mut canvas, name, &summary(plan));
     let globe = Frame {
         left: MARGIN,
         top: HEAD,
@@ -68,22 +90,17 @@ pub(crate) fn svg(
         height: height - lower,
     };
     timeline::strip(&mut canvas, times, plan, STRIP);
-    let mut top = lower + STRIP + GAP * 0.75;
-    for panel in &panels {
-        let frame = Frame {
-            top,
-            height: PANEL,
-            ..times
-        };
-        timeline::draw(&mut canvas, frame, panel, plan);
-        top += PANEL + GAP;
-    }
+    let below = Frame {
+        top: lower + STRIP + BELOW_STRIP,
+        ..times
+    };
+    timeline::stack(&mut canvas, below, &panels, &record);
     Ok(canvas.finish())
 }
 
-fn head(canvas: &mut Canvas, name: &str, plan: &WrittenPlan) {
+fn head(canvas: &mut Canvas, name: &str, summary: &str) {
     canvas.text(MARGIN, 44.0, Ink::TITLE, name);
-    canvas.text(MARGIN, 68.0, Ink::QUIET, &summary(plan));
+    canvas.text(MARGIN, 68.0, Ink::QUIET, summary);
 }
 
 /// The plan in a line.

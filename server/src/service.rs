@@ -98,8 +98,14 @@ pub(crate) fn run(
         .build()
         .map_err(system("cannot start the threads for requests"))?;
     let served = runtime.block_on(serve(settings, pools, tell));
-    // What blocks a thread now is not worth waiting for.
-    runtime.shutdown_timeout(LAST);
+    if served.is_ok() {
+        // What blocks a thread now is not worth waiting for.
+        runtime.shutdown_timeout(LAST);
+    } else {
+        // The process ends at once; a worker that was not asked to end must not find its runtime
+        // gone before that.
+        std::mem::forget(runtime);
+    }
     served.map(|()| Exit::Complete)
 }
 

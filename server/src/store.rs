@@ -8,6 +8,7 @@ mod backup;
 mod claims;
 mod error;
 mod events;
+mod folding;
 mod jobs;
 mod keys;
 mod legs;
@@ -40,7 +41,9 @@ use sqlx::sqlite::{
 };
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
+use tokio::sync::Notify;
 use writing::Alarm;
 
 /// Embedded when building.
@@ -61,6 +64,8 @@ pub(crate) struct Store {
     writer: SqlitePool,
     readers: SqlitePool,
     alarm: Alarm,
+    /// Told after every commit.
+    written: Arc<Notify>,
     recent: Recent,
     path: PathBuf,
 }
@@ -113,7 +118,9 @@ impl Store {
             .foreign_keys(true)
             .pragma("temp_store", "memory")
             .pragma("trusted_schema", "off")
-            .pragma("journal_size_limit", "67108864");
+            .pragma("journal_size_limit", "67108864")
+            // Done by `folding`, which does not overlook a failing disk.
+            .pragma("wal_autocheckpoint", "0");
         let writer = SqlitePoolOptions::new()
             .max_connections(1)
             .acquire_timeout(PATIENCE)
@@ -130,10 +137,14 @@ impl Store {
             .acquire_timeout(PATIENCE)
             .connect_with(options.read_only(true).create_if_missing(false))
             .await?;
+        let (alarm, written) = (Alarm::default(), Arc::default());
+        let folded = folding::keep_small(writer.clone(), alarm.clone(), Arc::clone(&written));
+        tokio::spawn(folded);
         Ok(Self {
             writer,
             readers,
-            alarm: Alarm::default(),
+            alarm,
+            written,
             recent: Recent::default(),
             path: path.to_owned(),
         })

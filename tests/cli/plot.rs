@@ -1,6 +1,7 @@
 //! `slewplan plot`.
 
-use crate::run::{fixture, slewplan, slewplan_fed};
+use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
+use serde_json::json;
 
 #[test]
 fn a_plan_is_drawn_alone_or_with_its_scenario() {
@@ -27,4 +28,62 @@ fn what_cannot_be_drawn_is_refused() {
     assert!(other.expect_code(2).stderr.contains("wheels"));
     slewplan_fed(&["plot", "-"], b"{}").expect_code(2);
     slewplan(&["plot", "-", "--scenario", "-"]).expect_code(2);
+}
+
+#[test]
+fn a_slew_is_drawn_over_time_with_the_limits_of_its_request() {
+    let mut slew = fixture_json("slews/olrac-three-wheels.json");
+    slew["objective"] = json!({"kind": "minimum_time"});
+    slew["sweep"] = json!(null);
+    let folder = tempfile::tempdir().expect("a folder");
+    let request = folder.path().join("slew.json");
+    std::fs::write(&request, slew.to_string()).expect("written");
+    let request = request.to_str().expect("UTF-8");
+    let answer = slewplan(&["slew", request]).expect_code(0).stdout;
+    let line = ["plot", "-", "--scenario", request];
+    let drawn = slewplan_fed(&line, answer.as_bytes()).expect_code(0).stdout;
+    assert!(drawn.contains("olrac-three-wheels") && drawn.contains("limit \u{b1}550"));
+    assert!(drawn.contains(">28.6") && drawn.contains("Wheel speed, rad/s"));
+    for refused in [["--boresight", "x"], ["--mark", "1"]] {
+        slewplan_fed(&["plot", "-", refused[0], refused[1]], answer.as_bytes()).expect_code(2);
+    }
+}
+
+#[test]
+fn answers_with_a_sweep_are_drawn_together() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let answer = |name: &str| {
+        let path = folder.path().join(name).to_str().expect("UTF-8").to_owned();
+        slewplan(&["slew", &fixture(&format!("slews/{name}")), "-o", &path]).expect_code(0);
+        path
+    };
+    let (three, five) = (
+        answer("olrac-three-wheels.json"),
+        answer("olrac-five-wheels.json"),
+    );
+    let line = ["plot", &three, &five, "--level", "20"];
+    let drawn = slewplan(&line).expect_code(0).stdout;
+    for words in [
+        "olrac-three-wheels",
+        "olrac-five-wheels",
+        "Duration, s",
+        "0.01",
+        "10",
+    ] {
+        assert!(drawn.contains(&format!(">{words}<")), "{words}");
+    }
+    assert!(drawn.contains("14 slews over weight of the effort"));
+    // Each curve crosses the level once, somewhere near a weight of 0.1.
+    assert_eq!(drawn.matches("r=\"4.0\"").count(), 2);
+    // Other sweeps, and other documents, have no place in this picture.
+    let bill = answer("lro-bill-curve.json");
+    slewplan(&["plot", &three, &bill]).expect_code(2);
+    let scenario = fixture("two-targets.json");
+    let plan = slewplan(&["solve", &scenario]).expect_code(0).stdout;
+    slewplan_fed(&["plot", &three, "-"], plan.as_bytes()).expect_code(2);
+    slewplan(&["plot", &three, "--scenario", &scenario]).expect_code(2);
+    let energies = slewplan(&["plot", &bill, "--mark", "910.1"]).expect_code(0);
+    let energies = energies.stdout;
+    assert!(energies.contains(">910.1<") && energies.contains("Energy, J"));
+    assert!(!energies.contains("Duration, s"));
 }

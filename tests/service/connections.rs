@@ -26,6 +26,23 @@ fn rest(mut stream: TcpStream) -> String {
 }
 
 #[test]
+fn a_body_that_breaks_off_is_told_from_one_that_is_wrong() {
+    let service = Service::start();
+    let mut broken = connected(&service);
+    broken
+        .write_all(
+            b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n\
+              Transfer-Encoding: chunked\r\n\r\n5\r\n{\"a\":\r\nno length\r\n",
+        )
+        .expect("sent");
+    let answer = rest(broken);
+    assert!(
+        answer.starts_with("HTTP/1.1 400 ") && answer.contains("bad_request"),
+        "{answer}"
+    );
+}
+
+#[test]
 fn who_does_not_send_is_cut_off() {
     let service = Service::start();
     let silent = connected(&service);

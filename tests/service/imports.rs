@@ -85,6 +85,14 @@ fn what_does_not_fly_is_listed_and_what_means_nothing_refused() {
     let pointers: Vec<_> = pointers.map(|error| &error["pointer"]).collect();
     assert_eq!(pointers, ["/trajectories/0/lengths_s"]);
 
+    let mut old = whole;
+    old["version"] = json!("0.0.1");
+    let problem = service
+        .post("/v1/legs/import", &old)
+        .expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/version");
+    assert_eq!(problem["errors"][0]["code"], "version_mismatch");
+
     let mut three = small();
     let mut third = three["targets"][0].clone();
     third["id"] = json!("third");

@@ -1,5 +1,6 @@
 //! Studies over HTTP.
 
+use crate::client::Request;
 use crate::running::{Service, small};
 use serde_json::{Value, json};
 
@@ -57,4 +58,115 @@ fn problems_of_scenario_and_study_have_their_places() {
     let problem = service.post("/v1/studies/authority", &json!({"authorities": 1}));
     let problem = problem.expect_problem(422, "invalid_input");
     assert_eq!(problem["errors"][0]["pointer"], "/scenario");
+}
+
+#[test]
+fn a_stored_spacecraft_has_envelopes_and_slews_within_them() {
+    let service = Service::start();
+    let craft = &small()["spacecraft"];
+    service.send(&Request::new("PUT", "/v1/spacecraft/small").json(craft));
+    let mut study = json!({
+        "spacecraft": {"ref": "small"},
+        "turns": [{
+            "from": {"roll_pitch_yaw_deg": [0, 0, 0]},
+            "to": {"roll_pitch_yaw_deg": [20, 30, 40]},
+        }],
+        "demands_nm": [[0.001, 0, 0]],
+        "time_optimal": true,
+        "options": {"torque_authority": 0.5},
+    });
+    let path = "/v1/studies/envelopes";
+    let answer = service.post(path, &study).expect(200).json();
+    assert_eq!(answer["complete"], true);
+    let turn = &answer["turns"][0];
+    // Without wheels to spare the pseudo-inverse is the only way, and both optima are one.
+    let times = [0, 1].map(|i| {
+        turn["time_optimal"][i]["duration_s"]
+            .as_f64()
+            .expect("solved")
+    });
+    assert!((times[0] - times[1]).abs() < 1e-6 * times[0], "{times:?}");
+    let samples = turn["time_optimal"][0]["path"]["torque"].as_array();
+    let shares = samples.expect("a list").iter().map(|step| {
+        let share = step["full_share"].as_f64().expect("a number");
+        assert_eq!(
+            step["pseudo_inverse_share"]
+                .as_f64()
+                .map(|s| (s - share).abs() < 1e-9),
+            Some(true)
+        );
+        share
+    });
+    let most = shares.fold(0.0, f64::max);
+    assert!(most <= 1.0 + 1e-6 && most > 1.0 - 1e-3, "{most}");
+    study["spacecraft"] = json!({"ref": "other"});
+    let problem = service
+        .post(path, &study)
+        .expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["pointer"], "/spacecraft/ref");
+}
+
+#[test]
+fn the_published_comparison_is_repeated_over_http() {
+    let service = Service::start();
+    let body = json!({"surface_rows": 2});
+    let study = service.post("/v1/studies/comparison", &body).expect(200);
+    let study = study.json();
+    let crossover = study["mass"]["crossover_kg"].as_f64();
+    assert!(crossover.is_some_and(|kg| (kg - 0.908).abs() < 1e-3));
+    let wrong = json!({"laws": {"kind": "given", "wheel": {"factor": -1, "exponent": 9}}});
+    let problem = service.post("/v1/studies/comparison", &wrong);
+    let problem = problem.expect_problem(422, "invalid_input");
+    let errors = problem["errors"].as_array().expect("a list");
+    let places: Vec<_> = errors
+        .iter()
+        .filter_map(|e| e["pointer"].as_str())
+        .collect();
+    assert_eq!(places, ["/laws/wheel/exponent", "/laws/wheel/factor"]);
+}
+
+#[test]
+fn a_flight_is_flown_over_http() {
+    let service = Service::start();
+    let mut body = json!({
+        "scenario": small(),
+        "simulation": {"errors": {"inertia_3_sigma": 0.02}, "settle_s": 5},
+        "keep_every": 20,
+    });
+    let answer = service.post("/v1/studies/flight", &body).expect(200).json();
+    let flight = &answer["flight"];
+    let time = |name: &str| flight[name].as_f64().expect("a time");
+    assert!((time("flight_time_s") - time("total_time_s") - 5.0).abs() < 1e-9);
+    let samples = flight["samples"].as_array().map_or(0, Vec::len);
+    assert!(
+        (samples as f64 - time("flight_time_s") / 2.0).abs() <= 1.0,
+        "{samples}"
+    );
+    body["keep_every"] = json!(0);
+    body["simulation"]["settle_s"] = json!(-5);
+    let problem = service.post("/v1/studies/flight", &body);
+    let problem = problem.expect_problem(422, "invalid_input");
+    let errors = problem["errors"].as_array().expect("a list");
+    let places: Vec<_> = errors
+        .iter()
+        .filter_map(|e| e["pointer"].as_str())
+        .collect();
+    assert_eq!(places, ["/keep_every", "/simulation/settle_s"]);
+}
+
+#[test]
+fn a_flight_with_gains_beyond_all_numbers_is_lost_and_says_so() {
+    let service = Service::start();
+    let gains = json!({"kind": "settling_time", "settling_time_s": 5e-324});
+    let study = json!({
+        "scenario": small(),
+        "simulation": {
+            "controller": {"kind": "step_input", "gains": gains},
+            "errors": {"inertia_3_sigma": 0.02},
+        },
+    });
+    let answer = service.post("/v1/studies/flight", &study).expect(200);
+    let flight = &answer.json()["flight"];
+    assert_eq!(flight["within_tolerance"], false);
+    assert!(flight["end"]["attitude_rad"].as_f64() > Some(1e3));
 }

@@ -72,10 +72,9 @@ fn ask(address: SocketAddr, route: &str, patience: Duration) -> io::Result<Vec<u
     let end = Instant::now() + patience;
     let mut stream = TcpStream::connect_timeout(&address, patience)?;
     stream.set_write_timeout(Some(patience))?;
-    write!(
-        stream,
-        "GET {route} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n"
-    )?;
+    // At once: whoever answers the first piece and hangs up would break the next one.
+    let request = format!("GET {route} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n");
+    stream.write_all(request.as_bytes())?;
     let mut answer = Vec::new();
     let mut part = [0; 4096];
     loop {

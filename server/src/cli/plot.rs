@@ -1,44 +1,185 @@
-//! `slewplan plot`: a plan as a picture.
+//! `slewplan plot`: plans and other answers as pictures.
 
 use super::failure::Failure;
 use super::output::Destination;
 use super::{Exit, input};
-use crate::plot::{self, Boresight, WrittenPlan};
+use crate::plot::{
+    self, Boresight, Document, Marks, WrittenComparison, WrittenEnvelopes, WrittenFlight,
+    WrittenPlan, WrittenSlews,
+};
+use crate::wire::slew;
+use slewplan_solver::scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 /// What `plot` takes.
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// The plan in JSON, - for standard input
-    plan: PathBuf,
-    /// Its scenario, which knows the limits, the keep-out cones and the boresights
+    /// What to draw, - for standard input: a plan, the answer to a slew, to a study of a flight or
+    /// of wheels, or answers to slews with a sweep, which are drawn as trade curves in one picture
+    #[arg(required = true, value_name = "DOCUMENT")]
+    documents: Vec<PathBuf>,
+    /// The scenario of the plan or flight, which knows the limits, the keep-out cones and the boresights; of
+    /// a single slew the document that asked for it
     #[arg(long, value_name = "SCENARIO")]
     scenario: Option<PathBuf>,
-    /// What to follow on the sphere: a boresight of the scenario, x, y, z, -x, -y or -z [default:
-    /// the first boresight, or x]
+    /// What to follow on the sphere of a plan: a boresight of the scenario, x, y, z, -x, -y or -z
+    /// [default: the first boresight, or x]
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     boresight: Option<String>,
+    /// Which turn of a study of envelopes, counted from 0 [default: 0]
+    #[arg(long, value_name = "N")]
+    turn: Option<usize>,
+    /// Mark this value of what is swept in a trade curve; may be given several times
+    #[arg(long, value_name = "VALUE")]
+    mark: Vec<f64>,
+    /// Mark this cost in a trade curve, and where curves cross it; may be given several times
+    #[arg(long, value_name = "VALUE")]
+    level: Vec<f64>,
     /// Write the SVG to this file
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 }
 
-/// Draws the plan as it was written.
+/// Draws the documents as they were written.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let inputs = [Some(&arguments.plan), arguments.scenario.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let inputs = arguments.documents.iter().chain(&arguments.scenario);
+    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     input::one_stream_at_most(&inputs)?;
     let destination = Destination::open(&arguments.output)?;
-    let scenario = arguments.scenario.as_deref();
-    let scenario = scenario
-        .map(|path| input::scenario(path, None))
-        .transpose()?;
-    let scenario = scenario.as_ref().map(|valid| &valid.scenario);
-    let wrong = |name: &'static str| move |what: String| Failure::Setting { name, what };
-    let plan = WrittenPlan::read(&input::read(&arguments.plan)?).map_err(wrong("PLAN"))?;
+    let read = |path: &PathBuf| Document::read(&input::read(path)?).map_err(wrong("DOCUMENT"));
+    let documents: Result<Vec<Document>, Failure> = arguments.documents.iter().map(read).collect();
+    let mut documents = documents?;
+    let picture = if documents.iter().all(Document::is_swept) || documents.len() > 1 {
+        trade(documents, arguments)
+    } else {
+        // There is exactly one.
+        match documents.pop() {
+            Some(Document::Plan(plan)) => draw_plan(&plan, arguments),
+            Some(Document::Slews(slew)) => draw_slew(&slew, arguments),
+            Some(Document::Comparison(study)) => draw_comparison(&study, arguments),
+            Some(Document::Envelopes(study)) => draw_envelopes(&study, arguments),
+            Some(Document::Flight(flight)) => draw_flight(&flight, arguments),
+            None => Err(wrong("DOCUMENT")("there is none".to_owned())),
+        }
+    };
+    destination.write(&picture?)?;
+    Ok(Exit::Complete)
+}
+
+fn wrong(name: &'static str) -> impl Fn(String) -> Failure {
+    move |what| Failure::Setting { name, what }
+}
+
+fn draw_plan(plan: &WrittenPlan, arguments: &Arguments) -> Result<String, Failure> {
+    arguments.refuse_marks()?;
+    arguments.refuse_turn()?;
+    let scenario = arguments.scenario()?;
+    let scenario = scenario.as_ref();
     let boresight =
         Boresight::find(arguments.boresight.as_deref(), scenario).map_err(wrong("--boresight"))?;
-    let picture = plot::svg(&plan, scenario, &boresight).map_err(wrong("--scenario"))?;
-    destination.write(&picture)?;
-    Ok(Exit::Complete)
+    plot::plan(plan, scenario, &boresight).map_err(wrong("--scenario"))
+}
+
+fn draw_slew(answer: &WrittenSlews, arguments: &Arguments) -> Result<String, Failure> {
+    arguments.refuse_marks()?;
+    arguments.refuse_turn()?;
+    arguments.refuse_boresight()?;
+    let request = arguments.scenario.as_deref().map(|path| {
+        slew::read(&input::read(path)?).map_err(|problems| Failure::Invalid {
+            name: input::name(path),
+            problems,
+        })
+    });
+    let request = request.transpose()?;
+    let craft = request
+        .as_ref()
+        .map(|it| it.manoeuvre.scenario().spacecraft());
+    plot::slew(answer, craft).map_err(wrong("DOCUMENT"))
+}
+
+fn draw_flight(flight: &WrittenFlight, arguments: &Arguments) -> Result<String, Failure> {
+    arguments.refuse_marks()?;
+    arguments.refuse_boresight()?;
+    let scenario = arguments.scenario()?;
+    let craft = scenario.as_ref().map(Scenario::spacecraft);
+    plot::flight(flight, craft).map_err(wrong("DOCUMENT"))
+}
+
+fn draw_comparison(study: &WrittenComparison, arguments: &Arguments) -> Result<String, Failure> {
+    arguments.refuse_marks()?;
+    arguments.refuse_turn()?;
+    arguments.refuse_boresight()?;
+    arguments.refuse_scenario()?;
+    plot::comparison(study).map_err(wrong("DOCUMENT"))
+}
+
+fn draw_envelopes(study: &WrittenEnvelopes, arguments: &Arguments) -> Result<String, Failure> {
+    arguments.refuse_marks()?;
+    arguments.refuse_boresight()?;
+    arguments.refuse_scenario()?;
+    plot::envelopes(study, arguments.turn.unwrap_or(0)).map_err(wrong("--turn"))
+}
+
+fn trade(documents: Vec<Document>, arguments: &Arguments) -> Result<String, Failure> {
+    arguments.refuse_turn()?;
+    arguments.refuse_boresight()?;
+    arguments.refuse_scenario()?;
+    let answers: Option<Vec<WrittenSlews>> = documents
+        .into_iter()
+        .map(|document| match document {
+            Document::Slews(answer) => Some(answer),
+            _ => None,
+        })
+        .collect();
+    let together = "only answers to slews with a sweep can be drawn together";
+    let answers = answers.ok_or_else(|| wrong("DOCUMENT")(together.to_owned()))?;
+    let marks = Marks {
+        swept: arguments.mark.clone(),
+        cost: arguments.level.clone(),
+    };
+    plot::trade(&answers, &marks).map_err(wrong("DOCUMENT"))
+}
+
+impl Arguments {
+    fn scenario(&self) -> Result<Option<Scenario>, Failure> {
+        let path = self.scenario.as_deref();
+        path.map(|path| Ok(input::scenario(path, None)?.scenario))
+            .transpose()
+    }
+
+    fn refuse_marks(&self) -> Result<(), Failure> {
+        if self.mark.is_empty() && self.level.is_empty() {
+            return Ok(());
+        }
+        Err(wrong("--mark and --level")(
+            "only trade curves have marks".to_owned(),
+        ))
+    }
+
+    fn refuse_turn(&self) -> Result<(), Failure> {
+        match self.turn {
+            None => Ok(()),
+            Some(_) => Err(wrong("--turn")(
+                "only a study of envelopes has turns".to_owned(),
+            )),
+        }
+    }
+
+    fn refuse_scenario(&self) -> Result<(), Failure> {
+        match self.scenario {
+            None => Ok(()),
+            Some(_) => Err(wrong("--scenario")(
+                "this picture has no limits to draw".to_owned(),
+            )),
+        }
+    }
+
+    fn refuse_boresight(&self) -> Result<(), Failure> {
+        match self.boresight {
+            None => Ok(()),
+            Some(_) => Err(wrong("--boresight")(
+                "only the picture of a plan has a sphere".to_owned(),
+            )),
+        }
+    }
 }

@@ -61,9 +61,8 @@ fn rule(method: &Method, route: &str) -> Option<Rule> {
         "/metrics" | "/v1/legs" | "/v1/legs/import" | "/v1/legs/{key}" => {
             Some(Rule::Needs(Scope::Operate))
         }
-        "/v1/legs/query" | "/v1/verify" | "/v1/slews" | "/v1/studies/authority" => {
-            Some(Rule::Needs(Scope::Write))
-        }
+        "/v1/legs/query" | "/v1/verify" | "/v1/slews" => Some(Rule::Needs(Scope::Write)),
+        _ if route.starts_with("/v1/studies/") => Some(Rule::Needs(Scope::Write)),
         _ if route.starts_with("/v1/plans") || route.starts_with("/v1/spacecraft/") => {
             Some(Rule::Needs(if reads { Scope::Read } else { Scope::Write }))
         }

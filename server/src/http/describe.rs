@@ -12,8 +12,8 @@ mod slews;
 mod studies;
 
 pub(super) use examples::{
-    authority_study, effort_sweep, experiment_a, leg_file, leg_matrix, leg_pair, quarter_slew,
-    spacecraft, two_targets, verify_request,
+    authority_study, comparison_study, effort_sweep, envelope_study, experiment_a, flight_study,
+    leg_file, leg_matrix, leg_pair, quarter_slew, spacecraft, two_targets, verify_request,
 };
 pub(super) use inputs::{LegQueryBody, Scenario, Spacecraft, VerifyBody};
 pub(super) use leg_file::LegFileBody;
@@ -21,4 +21,4 @@ pub(super) use outcomes::{
     BodyErrors, Conflict, NotFound, ParameterErrors, QuotaErrors, ServerErrors,
 };
 pub(super) use slews::SlewBody;
-pub(super) use studies::AuthorityBody;
+pub(super) use studies::{AuthorityBody, ComparisonBody, EnvelopeBody, FlightBody};

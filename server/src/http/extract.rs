@@ -67,8 +67,9 @@ async fn read(request: Request, limit: usize) -> Result<Bytes, ApiError> {
     if announced.is_some_and(|length| length > limit) {
         return Err(too_large());
     }
-    // One buffer from the beginning: collecting pieces and joining them would take twice as much.
-    let mut bytes = Vec::with_capacity(announced.unwrap_or(0));
+    // One buffer from the beginning: pieces that are joined, or a buffer that grows, would take twice
+    // as much. Of what is reserved, only what is written to takes memory.
+    let mut bytes = Vec::with_capacity(announced.unwrap_or(limit));
     let mut body = request.into_body();
     while let Some(frame) = body.frame().await {
         let frame = frame.map_err(|error| broken(&error))?;
@@ -80,6 +81,7 @@ async fn read(request: Request, limit: usize) -> Result<Bytes, ApiError> {
         }
         bytes.extend_from_slice(&data);
     }
+    bytes.shrink_to_fit();
     Ok(bytes.into())
 }
 

@@ -30,8 +30,8 @@ const FOLDER_MARK: &str = "{{files}}";
 #[folder = "page/"]
 struct Files;
 
-/// The scenarios that the page offers, under `examples/`.
-const EXAMPLES: [(&str, &str); 5] = [
+/// What the page offers to begin with, under `examples/`: scenarios, slews and studies.
+const EXAMPLES: [(&str, &str); 13] = [
     (
         "examples/two-targets.json",
         include_str!("../../../tests/fixtures/two-targets.json"),
@@ -51,6 +51,38 @@ const EXAMPLES: [(&str, &str); 5] = [
     (
         "examples/pyramid-momentum-bias.json",
         include_str!("../../../tests/fixtures/pyramid-momentum-bias.json"),
+    ),
+    (
+        "examples/quarter-turn.json",
+        include_str!("../../../tests/fixtures/slews/quarter-turn.json"),
+    ),
+    (
+        "examples/olrac-four-wheels.json",
+        include_str!("../../../tests/fixtures/slews/olrac-four-wheels.json"),
+    ),
+    (
+        "examples/biros-sampled.json",
+        include_str!("../../../tests/fixtures/slews/biros-sampled.json"),
+    ),
+    (
+        "examples/lro-least-bill.json",
+        include_str!("../../../tests/fixtures/slews/lro-least-bill.json"),
+    ),
+    (
+        "examples/study-authority.json",
+        include_str!("../../../tests/fixtures/studies/authority.json"),
+    ),
+    (
+        "examples/study-envelopes.json",
+        include_str!("../../../tests/fixtures/studies/pyramid-envelopes.json"),
+    ),
+    (
+        "examples/study-comparison.json",
+        include_str!("../../../tests/fixtures/studies/comparison.json"),
+    ),
+    (
+        "examples/study-flight.json",
+        include_str!("../../../tests/fixtures/studies/flight.json"),
     ),
 ];
 

@@ -28,7 +28,7 @@ use utoipa_swagger_ui::SwaggerUi;
         (name = "plans", description = "Planning jobs"),
         (name = "legs", description = "Leg times"),
         (name = "slews", description = "Single manoeuvres with a choice of objective and command"),
-        (name = "studies", description = "What the choice of an option leads to"),
+        (name = "studies", description = "What the choice of an option leads to, and what wheels can do together"),
         (name = "spacecraft", description = "Stored spacecraft"),
         (name = "verify", description = "Independent verification"),
         (name = "operations", description = "Running the service"),
@@ -51,6 +51,9 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(legs::get::handler))
         .routes(routes!(slews::handler))
         .routes(routes!(studies::authority::handler))
+        .routes(routes!(studies::envelopes::handler))
+        .routes(routes!(studies::comparison::handler))
+        .routes(routes!(studies::flight::handler))
         .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
         .routes(routes!(verify::handler))
         .routes(routes!(page::handler))

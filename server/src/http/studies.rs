@@ -1,3 +1,33 @@
-//! What the choice of an option leads to.
+//! What the choice of an option leads to, and what wheels can do together.
 
 pub(super) mod authority;
+pub(super) mod comparison;
+pub(super) mod envelopes;
+pub(super) mod flight;
+
+use super::access::Caller;
+use super::error::{ApiError, ErrorCode};
+use super::{App, stored};
+use crate::wire::document::Node;
+
+/// Refuses more targets than the service plans.
+fn check_targets(app: &App, targets: usize) -> Result<(), ApiError> {
+    let limit = app.limits().targets;
+    if targets <= limit {
+        return Ok(());
+    }
+    let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
+    Err(ApiError::new(ErrorCode::TooManyTargets, detail))
+}
+
+/// The study with the spacecraft of its scenario written out.
+async fn with_spacecraft(app: &App, caller: &Caller, node: Node) -> Result<Node, ApiError> {
+    let Node::Object(mut members) = node else {
+        return Ok(node);
+    };
+    if let Some((_, scenario)) = members.iter_mut().find(|(name, _)| name == "scenario") {
+        let given = std::mem::replace(scenario, Node::Null);
+        (*scenario, _) = stored::write_out(app, caller, given, "/scenario").await?;
+    }
+    Ok(Node::Object(members))
+}

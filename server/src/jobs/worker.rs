@@ -149,8 +149,7 @@ impl Bench {
             .runtime
             .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
         let heart = Attendant(heart.abort_handle());
-        let segments =
-            SegmentCache::new(self.jobs.store().clone(), self.runtime.clone(), job.clone());
+        let segments = SegmentCache::new(self.jobs.store().clone(), &self.runtime, job.clone());
         let writing = self.runtime.spawn(segments.writing());
         let writing = Attendant(writing.abort_handle());
         let memory = MemoryGuard::watch(&self.runtime, self.jobs.memory_limit(), stop.clone());

@@ -1,5 +1,6 @@
 //! Shapes and text as SVG.
 
+use super::scale::Scale;
 use std::fmt::Write;
 
 /// Colours that people with any colour vision tell apart (Okabe and Ito).
@@ -18,6 +19,13 @@ pub(super) struct Frame {
     pub(super) top: f64,
     pub(super) width: f64,
     pub(super) height: f64,
+}
+
+impl Frame {
+    /// The time axis of what takes so long, s, along the frame.
+    pub(super) fn times(&self, duration: f64) -> Scale {
+        Scale::linear((0.0, duration), (self.left, self.left + self.width))
+    }
 }
 
 /// How text looks.

@@ -1,6 +1,6 @@
 //! What a picture shows, without looking at it.
 
-use super::{Boresight, WrittenPlan, svg};
+use super::{Boresight, WrittenPlan, plan as svg};
 use crate::report::sample;
 use crate::wire;
 use serde_json::{Value, json};

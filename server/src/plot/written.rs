@@ -66,6 +66,16 @@ pub(super) struct Verification {
     pub(super) passed: bool,
 }
 
+/// What is drawn over time.
+#[derive(Debug)]
+pub(super) struct Record<'a> {
+    pub(super) total_time_s: f64,
+    pub(super) states: &'a [State],
+    /// Times (s) and torques (N m), one list per wheel.
+    pub(super) torques: Vec<Vec<(f64, f64)>>,
+    pub(super) passages: &'a [Passage],
+}
+
 impl State {
     /// The attitude; body axes along the reference axes when the numbers are none.
     pub(super) fn attitude(&self) -> Attitude {
@@ -96,6 +106,24 @@ impl WrittenPlan {
             Ok(plan)
         } else {
             Err("the lists of wheel speeds and torques differ in length".to_owned())
+        }
+    }
+
+    /// What is drawn over time.
+    pub(super) fn record(&self) -> Record<'_> {
+        let controls = &self.trajectory.controls;
+        let torque = |wheel: usize| {
+            controls.iter().flat_map(move |control| {
+                let value = control.wheel_torque_nm[wheel];
+                let end = control.start_s + control.duration_s;
+                [(control.start_s, value), (end, value)]
+            })
+        };
+        Record {
+            total_time_s: self.total_time_s,
+            states: &self.trajectory.states,
+            torques: (0..self.wheels()).map(|i| torque(i).collect()).collect(),
+            passages: &self.passages,
         }
     }
 

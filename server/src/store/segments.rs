@@ -18,29 +18,14 @@ pub(crate) struct SegmentRow {
 }
 
 impl Store {
-    /// Bytes of the motions that are remembered of a job.
-    pub(crate) async fn segment_bytes(&self, job: i64) -> Result<i64, StoreError> {
-        let sum = "SELECT coalesce(sum(length(motion)), 0) FROM segments WHERE job = ?";
-        Ok(sqlx::query_scalar(sum)
-            .bind(job)
-            .fetch_one(&self.readers)
-            .await?)
-    }
-
-    /// A segment that this version of the solver would solve the same.
-    pub(crate) async fn segment(
-        &self,
-        job: i64,
-        name: &str,
-    ) -> Result<Option<SegmentRow>, StoreError> {
+    /// What this version of the solver has solved of a job and would solve the same.
+    pub(crate) async fn segments(&self, job: i64) -> Result<Vec<SegmentRow>, StoreError> {
         Ok(sqlx::query_as(
-            "SELECT name, intervals, motion FROM segments \
-             WHERE job = ? AND name = ? AND solver_version = ?",
+            "SELECT name, intervals, motion FROM segments WHERE job = ? AND solver_version = ?",
         )
         .bind(job)
-        .bind(name)
         .bind(SOLVER_VERSION)
-        .fetch_optional(&self.readers)
+        .fetch_all(&self.readers)
         .await?)
     }
 

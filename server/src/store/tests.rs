@@ -159,15 +159,16 @@ fn what_was_solved_is_there_for_the_next_attempt_and_gone_after_the_last() {
             ..segment.clone()
         }];
         assert!(!store.put_segments(&lost, &late).await.expect("tried"));
-        let found = store.segment(second.sequence, &segment.name).await;
-        assert_eq!(found.expect("read"), Some(segment.clone()));
-        let other = store.segment(second.sequence + 1, &segment.name).await;
-        assert_eq!(other.expect("read"), None);
+        let found = store.segments(second.sequence).await;
+        assert_eq!(found.expect("read"), kept);
+        let other = store.segments(second.sequence + 1).await;
+        assert_eq!(other.expect("read"), []);
         assert_eq!(store.forget_segments(9).await.expect("tried"), 0);
         let end = ended(JobState::Stopped, Some(plan(20.0)));
         assert!(store.finish(&second, &end, 4).await.expect("written"));
         assert_eq!(store.forget_segments(9).await.expect("done"), 1);
-        assert_eq!(store.segment_bytes(second.sequence).await.expect("read"), 0);
+        let left = store.segments(second.sequence).await;
+        assert_eq!(left.expect("read"), []);
     });
 }
 

@@ -4,7 +4,7 @@ use super::{Store, StoreError};
 use sqlx::{Sqlite, SqliteConnection, Transaction};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
-use tokio::sync::watch;
+use tokio::sync::{Notify, watch};
 
 /// Told when the operating system could not bring a commit to the disk.
 ///
@@ -21,7 +21,7 @@ impl Default for Alarm {
 }
 
 impl Alarm {
-    fn heed(&self, error: StoreError) -> StoreError {
+    pub(super) fn heed(&self, error: StoreError) -> StoreError {
         if error.is_failed_sync() {
             self.0.send_replace(true);
         }
@@ -39,6 +39,7 @@ impl Alarm {
 pub(super) struct Writing {
     transaction: Transaction<'static, Sqlite>,
     alarm: Alarm,
+    written: Arc<Notify>,
 }
 
 impl Writing {
@@ -46,7 +47,9 @@ impl Writing {
     pub(super) async fn commit(self) -> Result<(), StoreError> {
         let alarm = self.alarm;
         let committed = self.transaction.commit().await;
-        committed.map_err(|error| alarm.heed(error.into()))
+        committed.map_err(|error| alarm.heed(error.into()))?;
+        self.written.notify_one();
+        Ok(())
     }
 }
 
@@ -71,6 +74,7 @@ impl Store {
         Ok(Writing {
             transaction: begun.map_err(|error| self.alarm.heed(error.into()))?,
             alarm: self.alarm.clone(),
+            written: Arc::clone(&self.written),
         })
     }
 

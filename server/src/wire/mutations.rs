@@ -6,6 +6,7 @@
 //! flown as far as it can be. `SLEWPLAN_MUTATIONS` says how many documents of each kind there are,
 //! `SLEWPLAN_SEED` begins elsewhere.
 
+use super::study::envelopes::{self, EnvelopeAnswerDocument};
 use super::{flight, plan, scenario, slew};
 use fastrand::Rng;
 use serde_json::json;
@@ -176,6 +177,31 @@ fn slews_that_are_almost_right_are_read_or_refused() {
             |_| true,
         )
     });
+}
+
+#[test]
+fn studies_of_envelopes_that_are_almost_right_are_answered_or_refused() {
+    let pool = SolverPool::new(None).expect("threads");
+    let stop = StopSignal::new();
+    // Envelopes and eigenaxis slews only.
+    stop.cancel();
+    read_many(
+        "studies of envelopes",
+        &fixtures("fixtures/studies"),
+        |text| match envelopes::read(text) {
+            Ok(request) => {
+                let report = request.study.conduct(&pool, &stop);
+                let answer = EnvelopeAnswerDocument::new(&request, &report);
+                let written = serde_json::to_vec(&answer);
+                assert!(written.is_ok(), "{written:?}");
+                true
+            }
+            Err(problems) => {
+                assert!(!problems.is_empty(), "refused without a reason");
+                false
+            }
+        },
+    );
 }
 
 /// The plan of a scenario as it is written, as far as it is flown.

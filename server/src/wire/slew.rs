@@ -12,6 +12,7 @@ use super::reader::{Cursor, Fields, Sink};
 use super::{drives, scenario, spacecraft};
 use slewplan_solver::manoeuvre::{
     Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Sweep,
+    WheelAllocation,
 };
 use slewplan_solver::problem::{Code, Problem};
 use slewplan_solver::spec::{AttitudeEquivalence, SpacecraftSpec};
@@ -26,6 +27,8 @@ const USUAL_INTERVALS: usize = 24;
 /// A valid request for one slew or several.
 #[derive(Debug)]
 pub(crate) struct SlewRequest {
+    /// A label, which nothing depends on.
+    pub(crate) name: Option<String>,
     /// What is flown.
     pub(crate) manoeuvre: Manoeuvre,
     /// Values along which it is solved again and again.
@@ -40,6 +43,7 @@ pub(crate) struct SlewRequest {
 
 /// What a document says beside the manoeuvre.
 struct Read {
+    name: Option<String>,
     spec: ManoeuvreSpec,
     sweep: Option<Sweep>,
     evidence: bool,
@@ -70,6 +74,7 @@ pub(crate) fn read_node(node: &Node) -> Result<SlewRequest, Vec<Problem>> {
     };
     let valid = Manoeuvre::try_new(&read.spec)?;
     Ok(SlewRequest {
+        name: read.name,
         manoeuvre: valid.manoeuvre,
         warnings: valid.warnings,
         sweep: read.sweep,
@@ -88,12 +93,13 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
         "final_wheels",
         "objective",
         "command",
+        "allocation",
         "sweep",
         "evidence",
         "options",
     ])?;
-    // A label, which nothing depends on.
-    fields.optional("name").and_then(|name| name.text());
+    let name = fields.optional("name");
+    let name = name.and_then(|name| name.text()).map(str::to_owned);
     let sweep = fields.optional("sweep");
     let sweep = sweep.map(|cursor| read_sweep(&cursor));
     let swept = sweep.as_ref().and_then(Option::as_ref);
@@ -124,25 +130,41 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
             .unwrap_or(Command::Free {
                 intervals: USUAL_INTERVALS,
             }),
+        allocation: allocation(&fields),
         ..ManoeuvreSpec::default()
     };
     let options = fields.optional("options");
     let time_limit_s = options.map_or(Some(USUAL_LIMIT_S), |it| read_options(&it, &mut spec));
     let asked = fields.optional("evidence");
     let evidence = asked.as_ref().and_then(Cursor::boolean).unwrap_or(false);
-    if let (true, Some(asked), Some(_)) = (evidence, asked, &sweep) {
+    if let Some(asked) = asked.filter(|_| evidence) {
+        check_evidence(&asked, &spec, sweep.is_some());
+    }
+    Some(Read {
+        name,
+        spec,
+        sweep: sweep.flatten(),
+        evidence,
+        time_limit_s,
+    })
+}
+
+/// Evidence is of one slew, with torques free of each other.
+fn check_evidence(asked: &Cursor<'_>, spec: &ManoeuvreSpec, swept: bool) {
+    if swept {
         asked.report(
             Code::ConflictingFields,
             "evidence is given for a single slew only",
             "ask for the evidence of the slew that is of interest, without the sweep",
         );
     }
-    Some(Read {
-        spec,
-        sweep: sweep.flatten(),
-        evidence,
-        time_limit_s,
-    })
+    if spec.allocation != WheelAllocation::Free {
+        asked.report(
+            Code::ConflictingFields,
+            "evidence is given only for torques that are free of each other",
+            "leave the evidence out, or the allocation",
+        );
+    }
 }
 
 fn final_wheels(fields: &Fields<'_>) -> FinalWheels {
@@ -152,6 +174,12 @@ fn final_wheels(fields: &Fields<'_>) -> FinalWheels {
         ("null_space_of_start", FinalWheels::NullSpaceOfStart),
     ];
     let asked = fields.optional("final_wheels");
+    asked.and_then(|it| it.choice(&choices)).unwrap_or_default()
+}
+
+fn allocation(fields: &Fields<'_>) -> WheelAllocation {
+    let choices = WheelAllocation::ALL.map(|allocation| (allocation.as_str(), allocation));
+    let asked = fields.optional("allocation");
     asked.and_then(|it| it.choice(&choices)).unwrap_or_default()
 }
 

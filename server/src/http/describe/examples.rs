@@ -80,14 +80,43 @@ pub(in crate::http) fn authority_study() -> Value {
     })
 }
 
-/// A quarter turn.
-pub(in crate::http) fn quarter_slew() -> Value {
+/// A quarter turn in all its ways, and a torque that only two wheels of three are for.
+pub(in crate::http) fn envelope_study() -> Value {
     json!({
         "spacecraft": spacecraft(),
-        "start": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 0]}},
-        "end": {"attitude": {"roll_pitch_yaw_deg": [0, 0, 90]}},
-        "evidence": true,
+        "turns": [{
+            "from": {"roll_pitch_yaw_deg": [0, 0, 0]},
+            "to": {"roll_pitch_yaw_deg": [0, 0, 90]},
+        }],
+        "demands_nm": [[0.01, 0.005, 0.0]],
+        "time_optimal": true,
     })
+}
+
+/// The published study for one size, in few slews and coarse surfaces.
+pub(in crate::http) fn comparison_study() -> Value {
+    json!({
+        "momenta_nms": [0.01],
+        "angles_rad": [0.1, 0.5, 1.0, 2.0, 3.0],
+        "radii": {"kind": "computed"},
+        "surface_rows": 4,
+    })
+}
+
+/// A flight with an inertia that is not quite as believed.
+pub(in crate::http) fn flight_study() -> Value {
+    json!({
+        "scenario": two_targets(),
+        "simulation": {"errors": {"inertia_3_sigma": 0.02}, "seed": 1},
+        "keep_every": 10,
+    })
+}
+
+/// A quarter turn.
+pub(in crate::http) fn quarter_slew() -> Value {
+    parsed(include_str!(
+        "../../../../tests/fixtures/slews/quarter-turn.json"
+    ))
 }
 
 /// A quarter turn for time and effort.

@@ -352,7 +352,7 @@ pub(in crate::http) struct LegQueryBody {
 
 #[derive(Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-struct PairBody {
+pub(super) struct PairBody {
     from: Attitude,
     to: Attitude,
 }
@@ -384,7 +384,7 @@ pub(in crate::http) struct VerifyBody {
 
 /// What is read of a plan; anything else in it is not looked at.
 #[derive(Serialize, ToSchema)]
-struct ForeignPlan {
+pub(super) struct ForeignPlan {
     total_time_s: f64,
     /// Identifiers in visiting order.
     sequence: Vec<String>,

@@ -27,6 +27,9 @@ pub(in crate::http) struct SlewBody {
     /// Constant torques on 24 intervals of any length without it.
     #[schema(required = false)]
     command: Option<SlewCommand>,
+    /// How torque is shared out among the wheels; `free` without it.
+    #[schema(required = false)]
+    allocation: Option<Allocation>,
     /// Values for which the slew is solved one after the other; the objective's own is not used.
     #[schema(required = false)]
     sweep: Option<Sweep>,
@@ -90,6 +93,18 @@ enum FinalWheels {
     Free,
     Given,
     NullSpaceOfStart,
+}
+
+/// `free`: in any way within the limits. `pseudo_inverse`: by the pseudo-inverse of the wheel axes, so
+/// that null-space momentum stays what it is at the start; neither with `given` final wheels nor with
+/// evidence.
+#[derive(Serialize, ToSchema)]
+#[schema(as = SlewAllocation)]
+#[serde(rename_all = "snake_case")]
+#[expect(dead_code, reason = "only describes the input")]
+enum Allocation {
+    Free,
+    PseudoInverse,
 }
 
 /// What is minimised.

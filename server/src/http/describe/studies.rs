@@ -1,6 +1,12 @@
 //! The documents that describe a study.
 
-use super::inputs::{Scenario, Vector};
+mod comparison;
+mod flight;
+
+pub(in crate::http) use comparison::ComparisonBody;
+pub(in crate::http) use flight::FlightBody;
+
+use super::inputs::{PairBody, Scenario, SpacecraftOrReference, Vector};
 use super::slews::Drive;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -26,6 +32,39 @@ struct Authorities {
     torque_authority: f64,
     #[schema(exclusive_minimum = 0, maximum = 1)]
     momentum_authority: f64,
+}
+
+/// What the wheels of a spacecraft can do together.
+#[derive(Serialize, ToSchema)]
+#[schema(as = EnvelopeStudy)]
+#[serde(deny_unknown_fields)]
+pub(in crate::http) struct EnvelopeBody {
+    /// Free text.
+    #[schema(required = false)]
+    name: Option<String>,
+    spacecraft: SpacecraftOrReference,
+    /// From rest to rest, the shorter way round.
+    #[schema(required = false, max_items = 100)]
+    turns: Option<Vec<PairBody>>,
+    /// Torques that the wheels are to take up together, body axes; the body gets the opposite.
+    #[schema(required = false, max_items = 1000)]
+    demands_nm: Option<Vec<Vector>>,
+    /// Whether the turns are wanted in minimum time too.
+    #[schema(required = false, default = false)]
+    time_optimal: Option<bool>,
+    #[schema(required = false)]
+    options: Option<EnvelopeOptions>,
+}
+
+#[derive(Serialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct EnvelopeOptions {
+    /// Share of every torque limit that may be used.
+    #[schema(required = false, exclusive_minimum = 0, maximum = 1, default = 1.0)]
+    torque_authority: Option<f64>,
+    /// Share of every wheel speed limit that may be used.
+    #[schema(required = false, exclusive_minimum = 0, maximum = 1, default = 1.0)]
+    momentum_authority: Option<f64>,
 }
 
 /// A flight in closed loop, many times over.

@@ -4,9 +4,9 @@ use super::super::access::Caller;
 use super::super::describe::{self, AuthorityBody, BodyErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
-use super::super::{App, computing, stored};
-use crate::wire::document::Node;
-use crate::wire::study::{self, AuthorityAnswerDocument, AuthorityStudy};
+use super::super::{App, computing};
+use super::{check_targets, with_spacecraft};
+use crate::wire::study::authority::{self, AuthorityAnswerDocument, AuthorityStudy};
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -37,29 +37,12 @@ pub(in crate::http) async fn handler(
     body: JsonBody,
 ) -> Result<Response, ApiError> {
     let node = with_spacecraft(&app, &caller, body.node).await?;
-    let study = study::read_node(&node).map_err(ApiError::input)?;
-    let targets = study.targets();
-    let limit = app.limits().targets;
-    if targets > limit {
-        let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
-        return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
-    }
+    let study = authority::read_node(&node).map_err(ApiError::input)?;
+    check_targets(&app, study.targets())?;
     let pool = Arc::clone(&app.0.pool);
     let work = move |stop: &StopSignal| answer(&study, &pool, stop);
     let json = computing::in_turn(&app, computing::LONGEST, work).await??;
     Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
-}
-
-/// The study with the spacecraft of its scenario written out.
-async fn with_spacecraft(app: &App, caller: &Caller, node: Node) -> Result<Node, ApiError> {
-    let Node::Object(mut members) = node else {
-        return Ok(node);
-    };
-    if let Some((_, scenario)) = members.iter_mut().find(|(name, _)| name == "scenario") {
-        let given = std::mem::replace(scenario, Node::Null);
-        (*scenario, _) = stored::write_out(app, caller, given, "/scenario").await?;
-    }
-    Ok(Node::Object(members))
 }
 
 fn answer(

@@ -14,6 +14,10 @@ use utoipa::ToSchema;
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = SlewAnswer)]
 pub(crate) struct SlewAnswerDocument<'a> {
+    /// As in the request.
+    name: Option<&'a str>,
+    /// The list that the sweep runs through: `weights`, `durations_s` or `energies_j`.
+    sweep: Option<&'static str>,
     /// Whether all are there: false when time ran out, or nobody waited any longer.
     complete: bool,
     slews: Vec<SlewDocument<'a>>,
@@ -138,6 +142,12 @@ impl<'a> SlewAnswerDocument<'a> {
             SlewDocument::new(request, swept, outcome)
         });
         Self {
+            name: request.name.as_deref(),
+            sweep: request.sweep.as_ref().map(|sweep| match sweep {
+                Sweep::Weights(_) => "weights",
+                Sweep::Durations(_) => "durations_s",
+                Sweep::Energies(_) => "energies_j",
+            }),
             complete,
             slews: slews.collect(),
             warnings: documents(warnings),

@@ -1,14 +1,13 @@
 //! Which shares of torque and speed a plan should leave to feedback: the request and its answer.
 
-use super::simulation;
 use super::spread::SpreadDocument;
+use super::{plan_status, simulation};
 use crate::wire::document::{self, Node};
 use crate::wire::number::Number;
 use crate::wire::problems::{ProblemDocument, documents};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::scenario;
 use serde::Serialize;
-use slewplan_solver::plan::Optimality;
 use slewplan_solver::planner::Run;
 use slewplan_solver::problem::Problem;
 use slewplan_solver::simulation::{
@@ -171,10 +170,7 @@ impl<'a> From<&'a AuthorityRow> for RowDocument<'a> {
             } => Self {
                 status: "flown",
                 total_time_s: Some(Number(*total_time_s)),
-                plan_status: Some(match optimality {
-                    Optimality::Optimal => "optimal",
-                    Optimality::Feasible => "feasible",
-                }),
+                plan_status: Some(plan_status(*optimality)),
                 sequence,
                 flights: Some((&**spread).into()),
                 ..nothing

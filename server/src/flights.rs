@@ -1,0 +1,82 @@
+//! One flight of a plan in closed loop, for the command line and the service alike.
+
+use crate::wire::study::flight::FlightStudy;
+use slewplan_solver::plan::{self, Flight, Optimality};
+use slewplan_solver::planner::{self, Run};
+use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::simulation::{SimulatedFlight, Simulation};
+
+/// States that are kept when nothing is said about it, and at most.
+const USUAL_STATES: usize = 2_000;
+const MOST_STATES: usize = 10_000;
+
+/// What came of a request.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// A flight.
+    Flown(Box<FlownOnce>),
+    /// No plan to fly, for these reasons.
+    NoPlan(Vec<Problem>),
+    /// Stopped before there was a plan.
+    Stopped,
+}
+
+/// A plan and its flight.
+#[derive(Debug)]
+pub(crate) struct FlownOnce {
+    /// The plan; with its optimality when it was made for the flight.
+    pub(crate) plan: Flight,
+    pub(crate) optimality: Option<Optimality>,
+    pub(crate) simulated: SimulatedFlight,
+    /// Every so many samples of the on-board computer a state was kept.
+    pub(crate) keep_every: usize,
+    pub(crate) sample_s: f64,
+    pub(crate) flight_time_s: f64,
+    pub(crate) tolerance_rad: f64,
+}
+
+/// Plans, unless a plan is given, and flies once.
+///
+/// # Errors
+///
+/// Problems that are only known of with the plan.
+pub(crate) fn fly(study: &FlightStudy, run: Run<'_>) -> Result<Outcome, Vec<Problem>> {
+    let (plan, optimality) = match &study.plan {
+        Some(flight) => (flight.clone(), None),
+        None => match planner::solve(&study.scenario, run) {
+            plan::Outcome::Planned(plan) => (plan.flight, Some(plan.optimality)),
+            plan::Outcome::Infeasible(reasons) | plan::Outcome::Failed(reasons) => {
+                return Ok(Outcome::NoPlan(reasons));
+            }
+            plan::Outcome::StoppedEmpty => return Ok(Outcome::Stopped),
+        },
+    };
+    let simulation = Simulation::try_new(&study.scenario, &plan, &study.simulation, "/simulation")?;
+    let keep_every = keep_every(study, simulation.samples())?;
+    let simulated = simulation.fly(study.number, Some(keep_every));
+    Ok(Outcome::Flown(Box::new(FlownOnce {
+        keep_every,
+        simulated,
+        sample_s: simulation.sample_s(),
+        flight_time_s: simulation.flight_time_s(),
+        tolerance_rad: simulation.tolerance_rad(),
+        optimality,
+        plan,
+    })))
+}
+
+/// Which samples are kept: as asked for, or so many that a picture does not need more.
+fn keep_every(study: &FlightStudy, samples: usize) -> Result<usize, Vec<Problem>> {
+    let Some(asked) = study.keep_every else {
+        return Ok(samples.div_ceil(USUAL_STATES).max(1));
+    };
+    if samples / asked <= MOST_STATES {
+        return Ok(asked);
+    }
+    Err(vec![Problem::new(
+        "/keep_every",
+        Code::OutOfRange,
+        format!("the flight has {samples} samples, at most {MOST_STATES} can be kept"),
+        format!("give at least {}", samples.div_ceil(MOST_STATES)),
+    )])
+}

@@ -1,0 +1,54 @@
+//! `POST /v1/studies/envelopes`: what the wheels can do together.
+
+use super::super::access::Caller;
+use super::super::describe::{self, BodyErrors, EnvelopeBody, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::JsonBody;
+use super::super::{App, computing, stored};
+use crate::wire::study::envelopes::{self, EnvelopeAnswerDocument, EnvelopeRequest};
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::stop::StopSignal;
+use std::sync::Arc;
+
+/// Envelopes of the wheels, and slews within them
+///
+/// The envelopes of torque and momentum, full and limited by the pseudo-inverse; for each turn the
+/// slews about the eigenaxis under each limit and, with `time_optimal`, the fastest ones, with their
+/// ways through the envelopes; and demands shared out among the wheels. What is not done within a
+/// minute is left out, and `complete` is false.
+#[utoipa::path(
+    post, path = "/v1/studies/envelopes", tag = "studies", operation_id = "study_envelopes",
+    request_body(content = EnvelopeBody, example = json!(describe::envelope_study())),
+    responses(
+        (status = 200, description = "Envelopes, slews and allocations",
+            body = EnvelopeAnswerDocument<'static>),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
+    let request = envelopes::read_node(&node).map_err(ApiError::input)?;
+    let pool = Arc::clone(&app.0.pool);
+    let work = move |stop: &StopSignal| answer(&request, &pool, stop);
+    let json = computing::in_turn(&app, computing::LONGEST, work).await??;
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+}
+
+fn answer(
+    request: &EnvelopeRequest,
+    pool: &SolverPool,
+    stop: &StopSignal,
+) -> Result<Vec<u8>, ApiError> {
+    let report = request.study.conduct(pool, stop);
+    serde_json::to_vec(&EnvelopeAnswerDocument::new(request, &report)).map_err(|error| {
+        tracing::error!(%error, "a study cannot be written");
+        ApiError::new(ErrorCode::Internal, "the study cannot be written")
+    })
+}

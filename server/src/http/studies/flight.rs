@@ -1,0 +1,62 @@
+//! `POST /v1/studies/flight`: a plan flown once in closed loop.
+
+use super::super::access::Caller;
+use super::super::describe::{self, BodyErrors, FlightBody, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::JsonBody;
+use super::super::{App, computing};
+use super::{check_targets, with_spacecraft};
+use crate::flights;
+use crate::wire::study::flight::{self, FlightAnswerDocument, FlightStudy};
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use slewplan_solver::legs::NoStore;
+use slewplan_solver::planner::Run;
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::progress::Silent;
+use slewplan_solver::stop::StopSignal;
+use std::sync::Arc;
+
+/// Fly a plan once in closed loop
+///
+/// The plan that is given, or else one that is made for it, with inertia, alignment, friction, sensors
+/// and disturbances off by what the seed and the number of the flight draw. The answer has errors,
+/// commanded torques and limits that were met over time. A plan has a minute to be found.
+#[utoipa::path(
+    post, path = "/v1/studies/flight", tag = "studies", operation_id = "study_flight",
+    request_body(content = FlightBody, example = json!(describe::flight_study())),
+    responses(
+        (status = 200, description = "The flight, or why there is none",
+            body = FlightAnswerDocument<'static>),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(in crate::http) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let node = with_spacecraft(&app, &caller, body.node).await?;
+    let study = flight::read_node(&node).map_err(ApiError::input)?;
+    check_targets(&app, study.targets())?;
+    let pool = Arc::clone(&app.0.pool);
+    let work = move |stop: &StopSignal| answer(&study, &pool, stop);
+    let json = computing::in_turn(&app, computing::LONGEST, work).await??;
+    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+}
+
+fn answer(study: &FlightStudy, pool: &SolverPool, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
+    let run = Run {
+        pool,
+        stop,
+        observer: &Silent,
+        legs: &NoStore,
+        segments: &NoStore,
+    };
+    let flown = flights::fly(study, run).map_err(ApiError::input)?;
+    serde_json::to_vec(&FlightAnswerDocument::new(study, &flown)).map_err(|error| {
+        tracing::error!(%error, "a flight cannot be written");
+        ApiError::new(ErrorCode::Internal, "the flight cannot be written")
+    })
+}

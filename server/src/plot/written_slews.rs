@@ -1,0 +1,83 @@
+//! Slews as they were written, as far as a picture shows them.
+
+use super::written::{Record, State};
+use serde::Deserialize;
+
+/// What is read of the answer to a slew.
+#[derive(Debug, Deserialize)]
+pub(crate) struct WrittenSlews {
+    pub(super) name: Option<String>,
+    /// The list of the sweep; none of a single slew.
+    pub(super) sweep: Option<Swept>,
+    pub(super) slews: Vec<WrittenSlew>,
+}
+
+/// What is different from slew to slew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Swept {
+    Weights,
+    DurationsS,
+    EnergiesJ,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct WrittenSlew {
+    pub(super) swept: Option<f64>,
+    pub(super) solved: bool,
+    pub(super) time_s: f64,
+    pub(super) effort_nm2_s: f64,
+    pub(super) energy_proxy_j: Option<f64>,
+    pub(super) energy_bill_j: Option<f64>,
+    trajectory: Trajectory,
+}
+
+#[derive(Debug, Deserialize)]
+struct Trajectory {
+    controls: Vec<Ramp>,
+    states: Vec<State>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Ramp {
+    start_s: f64,
+    duration_s: f64,
+    wheel_torque_begin_nm: Vec<f64>,
+    wheel_torque_end_nm: Vec<f64>,
+}
+
+impl WrittenSlew {
+    /// What is drawn over time.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, when there is nothing to draw or lists differ in length.
+    pub(super) fn record(&self) -> Result<Record<'_>, String> {
+        let Trajectory { controls, states } = &self.trajectory;
+        if states.len() < 2 || self.time_s <= 0.0 {
+            return Err("the slew has no trajectory".to_owned());
+        }
+        let wheels = states.first().map_or(0, |s| s.wheel_speed_rad_s.len());
+        let lists = states.iter().map(|s| &s.wheel_speed_rad_s);
+        let begins = controls.iter().map(|c| &c.wheel_torque_begin_nm);
+        let ends = controls.iter().map(|c| &c.wheel_torque_end_nm);
+        if !lists.chain(begins).chain(ends).all(|l| l.len() == wheels) {
+            return Err("the lists of wheel speeds and torques differ in length".to_owned());
+        }
+        let torque = |wheel: usize| {
+            controls.iter().flat_map(move |control| {
+                let end = control.start_s + control.duration_s;
+                [
+                    (control.start_s, control.wheel_torque_begin_nm[wheel]),
+                    (end, control.wheel_torque_end_nm[wheel]),
+                ]
+            })
+        };
+        Ok(Record {
+            total_time_s: self.time_s,
+            states,
+            torques: (0..wheels).map(|i| torque(i).collect()).collect(),
+            passages: &[],
+        })
+    }
+}

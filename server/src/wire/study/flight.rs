@@ -1,0 +1,143 @@
+//! One flight of a plan in closed loop: the request.
+
+mod answer;
+
+pub(crate) use answer::FlightAnswerDocument;
+
+use super::simulation;
+use crate::wire::document::{self, Node};
+use crate::wire::reader::{Cursor, Sink};
+use crate::wire::{flight, scenario};
+use slewplan_solver::plan::Flight;
+use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::scenario::Scenario;
+use slewplan_solver::simulation::{self as flying, SimulationSpec};
+
+/// A valid request for a flight.
+#[derive(Debug)]
+pub(crate) struct FlightStudy {
+    /// What is flown.
+    pub(crate) scenario: Scenario,
+    /// The plan; made for the flight when there is none.
+    pub(crate) plan: Option<Flight>,
+    /// How it is flown.
+    pub(crate) simulation: SimulationSpec,
+    /// Which of the flights of the seed: other numbers draw other errors.
+    pub(crate) number: u64,
+    /// Every so many samples a state is wanted.
+    pub(crate) keep_every: Option<usize>,
+    /// Doubts that do not stand in the way.
+    pub(crate) warnings: Vec<Problem>,
+}
+
+/// What a document says beside scenario and plan, which are read on their own.
+struct Shape {
+    simulation: SimulationSpec,
+    number: u64,
+    keep_every: Option<usize>,
+}
+
+/// Reads and validates a request.
+///
+/// # Errors
+///
+/// Everything that is wrong with it.
+pub(crate) fn read(bytes: &[u8]) -> Result<FlightStudy, Vec<Problem>> {
+    let node = document::parse(bytes).map_err(|problem| vec![problem])?;
+    read_node(&node)
+}
+
+/// Reads and validates a request that has been parsed.
+///
+/// # Errors
+///
+/// Everything that is wrong with it.
+pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
+    let sink = Sink::default();
+    let shape = decode(&Cursor::root(node, &sink));
+    let mut problems = sink.into_problems();
+    let Some(shape) = shape else {
+        return Err(problems);
+    };
+    let mut noted = |place: &str, found: Vec<Problem>| {
+        problems.extend(found.into_iter().map(|problem| Problem {
+            pointer: format!("{place}{}", problem.pointer),
+            ..problem
+        }));
+    };
+    let valid = member(node, "scenario").and_then(|node| {
+        scenario::read_node(node, None)
+            .map_err(|found| noted("/scenario", found))
+            .ok()
+    });
+    let plan = member(node, "plan").filter(|node| **node != Node::Null);
+    let plan = plan.zip(valid.as_ref()).and_then(|(node, valid)| {
+        flight::read_node(node, &valid.scenario)
+            .map_err(|found| noted("/plan", found))
+            .ok()
+    });
+    if let Some(valid) = &valid {
+        let found = flying::check(
+            &shape.simulation,
+            valid.scenario.spacecraft(),
+            "/simulation",
+        );
+        noted("", found);
+    }
+    let Some(valid) = valid.filter(|_| problems.is_empty()) else {
+        return Err(problems);
+    };
+    Ok(FlightStudy {
+        scenario: valid.scenario,
+        plan,
+        simulation: shape.simulation,
+        number: shape.number,
+        keep_every: shape.keep_every,
+        warnings: valid.warnings,
+    })
+}
+
+/// A member of a document; the first one when it is there twice.
+fn member<'a>(node: &'a Node, name: &str) -> Option<&'a Node> {
+    let Node::Object(members) = node else {
+        return None;
+    };
+    let found = members.iter().find(|(key, _)| key == name);
+    found.map(|(_, node)| node)
+}
+
+fn decode(cursor: &Cursor<'_>) -> Option<Shape> {
+    let known = &["scenario", "plan", "simulation", "flight", "keep_every"];
+    let fields = cursor.object(known)?;
+    // Told when it is missing; its meaning is for others.
+    fields.required("scenario");
+    let number = fields.optional("flight").and_then(|it| it.integer());
+    Some(Shape {
+        simulation: fields
+            .optional("simulation")
+            .map(|it| simulation::read(&it))
+            .unwrap_or_default(),
+        number: number.unwrap_or(0),
+        keep_every: fields.optional("keep_every").and_then(|it| keep_every(&it)),
+    })
+}
+
+fn keep_every(cursor: &Cursor<'_>) -> Option<usize> {
+    let every = usize::try_from(cursor.integer()?).unwrap_or(usize::MAX);
+    if every == 0 {
+        cursor.report(
+            Code::OutOfRange,
+            "every 0th sample is none",
+            "give a whole number of at least 1, or leave it out",
+        );
+        return None;
+    }
+    Some(every)
+}
+
+impl FlightStudy {
+    /// Number of targets of the scenario.
+    pub(crate) fn targets(&self) -> usize {
+        self.scenario.targets().len()
+    }
+}

@@ -47,6 +47,8 @@ def closed_after(service, *parts, pause=0.0, patience=45.0):
     return None
 
 
+# Memory that an idle service may keep of what it has been through, KiB.
+KEPT = 20 * 1024
 # Time after which a client has noticed that its connection is closed, s: it looks once a second.
 NOTICED = 1.5
 
@@ -80,8 +82,8 @@ def slow_clients_are_cut_off(scale):
         for name, (_, _, goal) in cases.items():
             took = results[name]
             rows.append(Row("H1", f"{name} is closed after", seconds(took), f"{goal:.0f} s", took is not None and took <= goal + NOTICED))
-        job = running.submit(long_running())
         idle = resident_kib(running.process.pid)
+        job = running.submit(long_running())
         crowd, waits = [], []
         parts = [b"", b"GET / HTTP/1.1\r\nHo", head + b"{", f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: a\r\n\r\n".encode()]
 
@@ -105,16 +107,19 @@ def slow_clients_are_cut_off(scale):
         descriptors = len(os.listdir(f"/proc/{running.process.pid}/fd"))
         for connection in crowd:
             connection.close()
-        time.sleep(1.0)
-        after = resident_kib(running.process.pid)
         running.request("POST", f"/v1/plans/{job}/cancel")
+        begin, after = time.monotonic(), resident_kib(running.process.pid)
+        while after > idle + KEPT and time.monotonic() - begin < 60.0:
+            time.sleep(0.2)
+            after = min(after, resident_kib(running.process.pid))
+        took = time.monotonic() - begin
     slow = percentile(waits, 0.99)
     rows += [
         Row("H1", f"p99 of a good client beside {count} slow ones", f"{1e3 * slow:.0f} ms", "100 ms", slow <= 0.1, timed=True),
         Row("H2", "files open under attack", str(descriptors), f"{most} + 64", descriptors <= most + 64),
-        Row("H2", "memory with one solve", f"{idle / 1024:.0f} MB", "60 MB", idle <= 60 * 1024),
+        Row("H2", "memory of the idle service", f"{idle / 1024:.0f} MB", "60 MB", idle <= 60 * 1024),
         Row("H2", "peak memory under attack", f"{peak / 1024:.0f} MB", "200 MB", peak <= 200 * 1024),
-        Row("H2", "memory kept after it", f"{(after - idle) / 1024:+.0f} MB", "+20 MB", after - idle <= 20 * 1024),
+        Row("H2", f"memory kept {took:.1f} s after it and the solve (60)", f"{(after - idle) / 1024:+.0f} MB", f"{KEPT / 1024:+.0f} MB", after - idle <= KEPT),
     ]
     return rows
 

@@ -1,7 +1,7 @@
 // Slews and studies: what is answered at once.
 
 import { readFileSync } from "node:fs";
-import { check, findings, fixture, openPage, picture } from "./harness.mjs";
+import { check, eventually, findings, fixture, openPage, picture } from "./harness.mjs";
 
 /** The loading of an answer that the service refuses, which the browser itself reports. */
 const REFUSED = [/^console: Failed to load resource.* 422 /];
@@ -48,7 +48,7 @@ async function quarterTurn({ browser, service, must }) {
     await page.keyboard.press("Enter");
     const result = page.getByRole("region", { name: "Result" });
     await result.waitFor();
-    check(await result.evaluate((node) => node === document.activeElement), "the focus is on the result");
+    await eventually(async () => check(await result.evaluate((node) => node === document.activeElement), "the focus is not on the result"));
     const shown = Number.parseFloat(await figure(page, "Duration").textContent());
     ({ slews: [slew] } = (await downloaded(page)).document);
     check(slew.solved && close(shown, slew.time_s, 5e-4), `${shown} s beside ${slew.time_s} s`);
@@ -61,9 +61,13 @@ async function quarterTurn({ browser, service, must }) {
     check(["Hamiltonian", "Switching functions"].every((title) => titles.some((text) => text.startsWith(title))), titles.join());
     await page.getByLabel("Moment").focus();
     await page.keyboard.press("End");
-    const values = await page.locator(".chart", { hasText: "Switching functions" }).locator(".key .value").allTextContents();
     const last = slew.evidence.intervals.at(-1).switching_end;
-    check(values.every((value, wheel) => close(Number(value.replace("−", "-")), last[wheel], 6e-4)), values.join());
+    const values = await eventually(async () => {
+      const texts = await page.locator(".chart", { hasText: "Switching functions" }).locator(".key .value").allTextContents();
+      check(texts.length === last.length, `${texts.length} values`);
+      check(texts.every((text, wheel) => close(Number(text.replace("−", "-")), last[wheel], 6e-4)), texts.join());
+      return texts;
+    });
     await page.getByRole("button", { name: "Show a shorter time" }).click();
     const lines = await page.locator(".timelines .u-cursor-x").evaluateAll((all) => all.map((line) => line.getBoundingClientRect().right));
     check(lines.length === 5, `${lines.length} plots`);
@@ -74,8 +78,11 @@ async function quarterTurn({ browser, service, must }) {
       await page.locator("summary", { hasText: `${name} as a table` }).click();
     }
     const rows = (name) => page.getByRole("region", { name }).locator("tbody tr").count();
-    check(await rows("Samples of the trajectory") === slew.trajectory.states.length, "samples");
-    check(await rows("Switching functions on the intervals") === slew.evidence.intervals.length, "switching functions");
+    // A table is filled when it is opened, which the page is told after the click.
+    await eventually(async () => {
+      check(await rows("Samples of the trajectory") === slew.trajectory.states.length, "samples");
+      check(await rows("Switching functions on the intervals") === slew.evidence.intervals.length, "switching functions");
+    });
     check(await page.locator(".chip.good", { hasText: "Passed" }).count() === 1, "passed");
     const found = await findings(page);
     check(found.length === 0, found.join("\n"));
@@ -100,20 +107,24 @@ async function tradeCurve({ browser, service, must }) {
     await sent(page, service, { view: "slew", example: "olrac-four-wheels", verb: "Solve" });
     const { slews } = (await downloaded(page)).document;
     const points = page.getByRole("radiogroup", { name: /^Duration/ }).getByRole("radio");
-    check(await points.count() === slews.length && await points.first().isChecked(), "points");
+    await eventually(async () => check(await points.count() === slews.length && await points.first().isChecked(), "points"));
     const seen = [];
     for (let index = 0; index < slews.length; index += 1) {
       if (index === 0) await points.first().focus();
       else await page.keyboard.press("ArrowRight");
       await page.getByText(`Below: weight ${slews[index].swept}`).waitFor();
-      const shown = Number.parseFloat(await figure(page, "Duration").textContent());
-      check(close(shown, slews[index].time_s, 5e-4), `${shown} s beside ${slews[index].time_s} s`);
-      seen.push(`${shown} s`);
+      seen.push(await eventually(async () => {
+        const shown = Number.parseFloat(await figure(page, "Duration").textContent());
+        check(close(shown, slews[index].time_s, 5e-4), `${shown} s beside ${slews[index].time_s} s`);
+        return `${shown} s`;
+      }));
     }
     await page.getByRole("radiogroup", { name: /^Effort/ }).getByRole("radio").nth(1).click();
-    check(await points.nth(1).isChecked(), "the curves choose together");
-    const shown = Number.parseFloat(await figure(page, "Duration").textContent());
-    check(close(shown, slews[1].time_s, 5e-4), `${shown} s`);
+    await eventually(async () => {
+      check(await points.nth(1).isChecked(), "the curves choose together");
+      const shown = Number.parseFloat(await figure(page, "Duration").textContent());
+      check(close(shown, slews[1].time_s, 5e-4), `${shown} s`);
+    });
     return seen.join(", ");
   });
   await must("the points are where their values are", async () => {
@@ -126,10 +137,11 @@ async function tradeCurve({ browser, service, must }) {
     check(places.every(([, y], index) => index === 0 || y < places[index - 1][1]), "longer slews are higher");
     await page.locator("summary", { hasText: "Points as a table" }).click();
     const rows = page.getByRole("region", { name: "Slews along the sweep" }).locator("tbody tr");
-    await rows.first().waitFor();
-    const classes = await rows.evaluateAll((all) => all.map((row) => row.className));
     const expected = weights.map((_, index) => (index === 1 ? "chosen" : ""));
-    check(classes.join() === expected.join(), `rows ${classes.join()}`);
+    await eventually(async () => {
+      const classes = await rows.evaluateAll((all) => all.map((row) => row.className));
+      check(classes.join() === expected.join(), `rows ${classes.join()}`);
+    });
     return `${decades[0].toFixed(1)} px for a decade`;
   });
   await must("no error of the console with a sweep", () => check(complaints.length === 0, complaints.join("\n")));
@@ -149,8 +161,10 @@ async function wrongAndGivenUp({ browser, service, must }) {
     const pointers = await page.locator(".failure .pointer").allTextContents();
     check(pointers.includes("/objective/kind") && pointers.includes("/start/attitude"), pointers.join());
     await page.getByRole("button", { name: "/objective/kind" }).click();
-    const chosen = await page.locator("#slew").evaluate((field) => field.value.slice(field.selectionStart, field.selectionEnd));
-    check(chosen === '"fastest"', `selected ${chosen}`);
+    await eventually(async () => {
+      const chosen = await page.locator("#slew").evaluate((field) => field.value.slice(field.selectionStart, field.selectionEnd));
+      check(chosen === '"fastest"', `selected ${chosen}`);
+    });
     await picture(page, "problems-desktop-light");
     return pointers.join(" ");
   });
@@ -160,13 +174,13 @@ async function wrongAndGivenUp({ browser, service, must }) {
     await page.locator("#slew").fill(JSON.stringify(slew));
     await page.getByRole("button", { name: "Solve" }).click();
     await page.locator(".chip.goes", { hasText: "Computing" }).waitFor();
-    check(await page.getByRole("button", { name: "Solve" }).isDisabled(), "one at a time");
+    await eventually(async () => check(await page.getByRole("button", { name: "Solve" }).isDisabled(), "not one at a time"));
     const found = await findings(page);
     check(found.length === 0, found.join("\n"));
     await picture(page, "computing-desktop-light");
     await page.getByRole("button", { name: "Cancel" }).click();
     await page.locator(".chip.ended", { hasText: "Cancelled" }).waitFor();
-    check(await page.getByRole("button", { name: "Cancel" }).isHidden(), "nothing to cancel");
+    await page.getByRole("button", { name: "Cancel" }).waitFor({ state: "hidden" });
     const begun = Date.now();
     await sent(page, service, { view: "slew", example: "quarter-turn", verb: "Solve" });
     check(Date.now() - begun < SOON_MS, "the next one waits");
@@ -185,11 +199,11 @@ async function study({ browser, service, must }) {
     await sent(page, service, { view: "studies/authority", example: "study-authority", verb: "Run" });
     const { document: { rows } } = await downloaded(page);
     const table = page.getByRole("region", { name: "Plans and flights" }).locator("tbody tr");
-    check(await table.count() === rows.length, `${await table.count()} rows`);
+    await eventually(async () => check(await table.count() === rows.length, `${await table.count()} rows`));
     const cells = await table.first().locator("td").allTextContents();
     const share = `${(100 * rows[0].flights.share_within).toFixed(1)} %`;
     check(cells.includes(rows[0].total_time_s.toFixed(2)) && cells.includes(share), cells.join());
-    check(await page.locator(".curves .uplot").count() === 3, "three plots");
+    await eventually(async () => check(await page.locator(".curves .uplot").count() === 3, "three plots"));
     await page.locator("summary", { hasText: "Targets and wheels" }).first().click();
     const found = await findings(page);
     check(found.length === 0, found.join("\n"));
@@ -201,7 +215,7 @@ async function study({ browser, service, must }) {
     await page.locator("#study").fill(JSON.stringify(wrong));
     await page.getByRole("button", { name: "Run" }).click();
     await page.locator(".failure .pointer", { hasText: "/authorities/1/torque_authority" }).waitFor();
-    check(await page.getByRole("region", { name: "Result" }).isHidden(), "no result");
+    await page.getByRole("region", { name: "Result" }).waitFor({ state: "hidden" });
   });
   await must("no other error of the console with a study", () => check(complaints.length === 0, complaints.join("\n")));
   await leave();

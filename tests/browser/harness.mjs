@@ -22,6 +22,22 @@ export function check(holds, message) {
   if (!holds) throw new Error(message);
 }
 
+/** Until when a page must show what it was told to, ms. */
+const PATIENCE_MS = 30_000;
+
+/** Looks again until a look throws nothing: what it throws last, if that takes too long. */
+export async function eventually(look) {
+  const until = Date.now() + PATIENCE_MS;
+  for (;;) {
+    try {
+      return await look();
+    } catch (error) {
+      if (Date.now() > until) throw error;
+      await new Promise((resolve) => { setTimeout(resolve, 50); });
+    }
+  }
+}
+
 /** `slewplan serve` on a free port and a fresh database; with a key if asked for. */
 export async function startService({ withKey = false } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "slewplan-browser-"));
@@ -65,7 +81,7 @@ export async function openPage(browser, service, options = {}) {
   const { expected = [], ...context } = options;
   const opened = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...context });
   const page = await opened.newPage();
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(120_000);
   const complaints = [];
   const note = (text) => expected.some((pattern) => pattern.test(text)) || complaints.push(text);
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && note(`console: ${message.text()}`));

@@ -1,7 +1,7 @@
 // What a planner does on the page, from the first scenario to the files.
 
 import { readFileSync } from "node:fs";
-import { check, fixture, openPage, startService } from "./harness.mjs";
+import { check, eventually, fixture, openPage, startService } from "./harness.mjs";
 
 /** Duration of the best plan for experiment A, s. */
 const BEST_A = 467.71;
@@ -42,7 +42,7 @@ async function fromExampleToFiles({ browser, service, must }) {
     const legs = await page.locator("section", { has: page.getByRole("heading", { name: "Legs", exact: true }) })
       .locator("tbody th").allTextContents();
     check(legs.length === plan.legs.length && legs[0] === `start → ${order[0]}`, legs.join());
-    check(await page.locator(".sphere .stop").count() === order.length, "numbers on the sphere");
+    await eventually(async () => check(await page.locator(".sphere .stop").count() === order.length, "numbers on the sphere"));
     return order.join(" ");
   });
   await must("the sphere turns by dragging and by keys", async () => {
@@ -59,7 +59,7 @@ async function fromExampleToFiles({ browser, service, must }) {
     await page.mouse.up();
     await page.waitForFunction((old) => document.querySelector(".sphere").dataset.pose !== old, before[0]);
     const dragged = await pose();
-    check(await place() !== before[1], "the targets moved");
+    await eventually(async () => check(await place() !== before[1], "the targets have not moved"));
     await sphere.focus();
     await page.keyboard.press("ArrowRight");
     await page.keyboard.press("+");
@@ -81,18 +81,23 @@ async function fromExampleToFiles({ browser, service, must }) {
     const box = await plot.boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.waitForFunction(() => !document.querySelector(".moment").textContent.startsWith("0.0 s"));
-    const text = await page.locator(".moment").textContent();
-    const time = Number.parseFloat(text);
-    check(Math.abs(time - plan.total_time_s / 2) < 0.02 * plan.total_time_s, text);
     const slider = page.getByLabel("Moment");
-    check(Math.abs(Number(await slider.inputValue()) - time) < 1, "the slider follows");
+    const text = await eventually(async () => {
+      const shown = await page.locator(".moment").textContent();
+      const time = Number.parseFloat(shown);
+      check(Math.abs(time - plan.total_time_s / 2) < 0.02 * plan.total_time_s, shown);
+      check(Math.abs(Number(await slider.inputValue()) - time) < 1, "the slider follows");
+      return shown;
+    });
     await page.mouse.move(5, 5);
     const shown = await page.locator(".sphere .now").evaluate((dot) => `${dot.getAttribute("cx")} ${dot.getAttribute("cy")}`);
     await slider.focus();
     await page.keyboard.press("End");
-    const values = await page.locator(".chart .key .value").allTextContents();
     const last = plan.trajectory.states.at(-1).wheel_speed_rad_s[0].toFixed(1);
-    check(values.some((value) => Math.abs(Number(value.replace("−", "-")) - Number(last)) < 0.06), values.join());
+    await eventually(async () => {
+      const values = await page.locator(".chart .key .value").allTextContents();
+      check(values.some((value) => Math.abs(Number(value.replace("−", "-")) - Number(last)) < 0.06), values.join());
+    });
     await page.waitForFunction((old) => {
       const dot = document.querySelector(".sphere .now");
       return `${dot.getAttribute("cx")} ${dot.getAttribute("cy")}` !== old;
@@ -101,11 +106,12 @@ async function fromExampleToFiles({ browser, service, must }) {
   });
   await must("a target leads to the moment of its arrival", async () => {
     await page.getByRole("button", { name: new RegExp(`^${plan.sequence[2]} `) }).click();
-    const text = await page.locator(".moment").textContent();
-    check(text.startsWith(`${plan.passages[2].time_s.toFixed(1)} s`), text);
-    await page.locator(".sphere .stop.reached").nth(2).waitFor();
-    check(await page.locator(".sphere .stop.reached").count() === 3, "three targets are reached");
-    return text;
+    return eventually(async () => {
+      const text = await page.locator(".moment").textContent();
+      check(text.startsWith(`${plan.passages[2].time_s.toFixed(1)} s`), text);
+      check(await page.locator(".sphere .stop.reached").count() === 3, "three targets are reached");
+      return text;
+    });
   });
   await must("a part of the flight is looked at closely, in all plots", async () => {
     const bars = () => page.locator(".bar.slew:visible").count();
@@ -126,8 +132,8 @@ async function fromExampleToFiles({ browser, service, must }) {
       await page.locator("summary", { hasText: `${name} as a table` }).click();
     }
     const samples = page.getByRole("region", { name: "Samples of the trajectory" }).locator("tbody tr");
-    check(await samples.count() === plan.trajectory.states.length, `${await samples.count()} samples`);
-    check(await page.getByRole("region", { name: "Progress of the search" }).locator("tbody tr").count() > 0, "progress");
+    await eventually(async () => check(await samples.count() === plan.trajectory.states.length, `${await samples.count()} samples`));
+    await page.getByRole("region", { name: "Progress of the search" }).locator("tbody tr").first().waitFor();
     return `${await samples.count()} samples`;
   });
   await must("missing legs of the matrix can be computed", async () => {
@@ -181,8 +187,10 @@ async function invalidScenario({ browser, service, must }) {
     const pointers = await places.allTextContents();
     check(pointers.includes("/targets/2/id") && pointers.includes("/spacecraft/wheels/1/max_torque_nm"), pointers.join());
     await page.getByRole("button", { name: "/spacecraft/wheels/1/max_torque_nm" }).click();
-    const chosen = await page.locator("#scenario").evaluate((field) => field.value.slice(field.selectionStart, field.selectionEnd));
-    check(chosen === "-1", `selected ${chosen}`);
+    await eventually(async () => {
+      const chosen = await page.locator("#scenario").evaluate((field) => field.value.slice(field.selectionStart, field.selectionEnd));
+      check(chosen === "-1", `selected ${chosen}`);
+    });
     check(complaints.length === 0, complaints.join("\n"));
     return pointers.join(" ");
   });
@@ -219,7 +227,7 @@ async function stoppedSearch({ browser, service, must }) {
     await page.getByRole("button", { name: "Stop with best so far" }).click();
     await page.locator(".chip.good", { hasText: "Best so far" }).waitFor();
     await page.locator(".cards .search").waitFor();
-    check(await page.locator(".order li").count() === 60, "sixty stops");
+    await eventually(async () => check(await page.locator(".order li").count() === 60, "sixty stops"));
     return `gap ${gap} when it was stopped`;
   });
   await must("a job is cancelled, and deleted", async () => {

@@ -18,8 +18,8 @@ pub(super) struct Arguments {
     /// of wheels, or answers to slews with a sweep, which are drawn as trade curves in one picture
     #[arg(required = true, value_name = "DOCUMENT")]
     documents: Vec<PathBuf>,
-    /// The scenario of the plan or flight, which knows the limits, the keep-out cones and the boresights; of
-    /// a single slew the document that asked for it
+    /// The scenario of the plan or flight, which knows the limits, the keep-out cones and the
+    /// boresights; of a single slew the document that asked for it
     #[arg(long, value_name = "SCENARIO")]
     scenario: Option<PathBuf>,
     /// What to follow on the sphere of a plan: a boresight of the scenario, x, y, z, -x, -y or -z
@@ -99,6 +99,7 @@ fn draw_slew(answer: &WrittenSlews, arguments: &Arguments) -> Result<String, Fai
 
 fn draw_flight(flight: &WrittenFlight, arguments: &Arguments) -> Result<String, Failure> {
     arguments.refuse_marks()?;
+    arguments.refuse_turn()?;
     arguments.refuse_boresight()?;
     let scenario = arguments.scenario()?;
     let craft = scenario.as_ref().map(Scenario::spacecraft);

@@ -1,13 +1,14 @@
 //! Answers that several routes give.
 
 use super::App;
-use super::error::ApiError;
+use super::error::{ApiError, ErrorCode};
 use crate::store::{JobRow, StoreError};
 use crate::wire::jobs::JobDocument;
 use axum::Json;
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use serde::Serialize;
 use std::time::Duration;
 use tokio::time::Instant;
 
@@ -47,6 +48,19 @@ pub(super) async fn await_end(
             () = shutdown.begun() => return Ok(job),
         }
     }
+}
+
+/// A document as JSON; `what` names it should that fail.
+pub(super) fn written(document: &impl Serialize, what: &str) -> Result<Vec<u8>, ApiError> {
+    serde_json::to_vec(document).map_err(|error| {
+        tracing::error!(%error, "the {what} cannot be written");
+        ApiError::new(ErrorCode::Internal, format!("the {what} cannot be written"))
+    })
+}
+
+/// A document that was [written].
+pub(super) fn json(document: Vec<u8>) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], document).into_response()
 }
 
 /// A content of a media type with the tag that belongs to it.

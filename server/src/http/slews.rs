@@ -4,12 +4,11 @@ use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, SlewBody};
 use super::error::{ApiError, ErrorCode};
 use super::extract::JsonBody;
-use super::{App, computing, stored};
+use super::{App, computing, respond, stored};
 use crate::slews;
 use crate::wire::slew::{self, SlewAnswerDocument, SlewRequest};
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
 use std::time::Duration;
@@ -46,7 +45,7 @@ pub(super) async fn handler(
     let answered = computing::in_turn(&app, computing::LONGEST, work).await?;
     let json =
         answered.ok_or_else(|| ApiError::new(ErrorCode::Internal, "no answer was made"))??;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    Ok(respond::json(json))
 }
 
 fn answer(request: &SlewRequest, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
@@ -56,8 +55,5 @@ fn answer(request: &SlewRequest, stop: &StopSignal) -> Result<Vec<u8>, ApiError>
     };
     let solved = slews::solve(request, &stop).map_err(ApiError::input)?;
     let document = SlewAnswerDocument::new(request, &solved.outcomes, solved.complete);
-    serde_json::to_vec(&document).map_err(|error| {
-        tracing::error!(%error, "a slew cannot be written");
-        ApiError::new(ErrorCode::Internal, "the slew cannot be written")
-    })
+    respond::written(&document, "slew")
 }

@@ -9,6 +9,11 @@ use super::access::Caller;
 use super::error::{ApiError, ErrorCode};
 use super::{App, stored};
 use crate::wire::document::Node;
+use slewplan_solver::legs::NoStore;
+use slewplan_solver::planner::Run;
+use slewplan_solver::pool::SolverPool;
+use slewplan_solver::progress::Silent;
+use slewplan_solver::stop::StopSignal;
 
 /// Refuses more targets than the service plans.
 fn check_targets(app: &App, targets: usize) -> Result<(), ApiError> {
@@ -30,4 +35,15 @@ async fn with_spacecraft(app: &App, caller: &Caller, node: Node) -> Result<Node,
         (*scenario, _) = stored::write_out(app, caller, given, "/scenario").await?;
     }
     Ok(Node::Object(members))
+}
+
+/// Planning for a study, which tells nobody how far it is and keeps no legs.
+fn quiet_run<'a>(pool: &'a SolverPool, stop: &'a StopSignal) -> Run<'a> {
+    Run {
+        pool,
+        stop,
+        observer: &Silent,
+        legs: &NoStore,
+        segments: &NoStore,
+    }
 }

@@ -4,14 +4,13 @@ use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
 use super::error::{ApiError, ErrorCode};
 use super::extract::JsonBody;
-use super::{App, stored};
+use super::{App, respond, stored};
 use crate::wire;
 use crate::wire::document::Node;
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::verification::ReportDocument;
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use slewplan_solver::checker;
 use slewplan_solver::problem::Problem;
 use std::time::Duration;
@@ -50,7 +49,7 @@ pub(super) async fn handler(
             "the verification could not be finished",
         )
     })??;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    Ok(respond::json(json))
 }
 
 fn parts(node: Node) -> Result<(Node, Node), ApiError> {
@@ -88,10 +87,7 @@ fn verify(scenario: &Node, plan: &Node) -> Result<Vec<u8>, ApiError> {
         .chain(under("/scenario", found.keep_out))
         .collect();
     let report = ReportDocument::new(&found.verification, &found.margins, &warnings);
-    serde_json::to_vec(&report).map_err(|error| {
-        tracing::error!(%error, "a verification cannot be written");
-        ApiError::new(ErrorCode::Internal, "the verification cannot be written")
-    })
+    respond::written(&report, "verification")
 }
 
 fn under(place: &str, problems: Vec<Problem>) -> Vec<Problem> {

@@ -224,11 +224,6 @@ fn read_options(cursor: &Cursor<'_>, spec: &mut ManoeuvreSpec) -> Option<f64> {
     Some(seconds)
 }
 
-/// A member `kind` among choices; it must be there.
-fn kind<T: Copy>(cursor: &Cursor<'_>, choices: &[(&str, T)]) -> Option<T> {
-    cursor.open_object()?.required("kind")?.choice(choices)
-}
-
 /// Reads an objective; along a sweep its own value may be left out.
 fn objective(cursor: &Cursor<'_>, sweep: Option<&Sweep>) -> Option<Objective> {
     const KINDS: [(&str, &[&str]); 4] = [
@@ -242,7 +237,7 @@ fn objective(cursor: &Cursor<'_>, sweep: Option<&Sweep>) -> Option<Objective> {
         .enumerate()
         .map(|(i, (name, _))| (*name, i))
         .collect();
-    let kind = kind(cursor, &numbered)?;
+    let kind = cursor.kind(&numbered)?;
     let fields = cursor.object(KINDS[kind].1)?;
     let value = |name, swept: Option<f64>| match swept {
         Some(first) if fields.raw(name).is_none() => Some(first),
@@ -305,7 +300,7 @@ fn command(cursor: &Cursor<'_>) -> Option<Command> {
         .enumerate()
         .map(|(i, (name, _))| (*name, i))
         .collect();
-    let kind = kind(cursor, &numbered)?;
+    let kind = cursor.kind(&numbered)?;
     let fields = cursor.object(KINDS[kind].1)?;
     if kind == 3 {
         let holds = [("constant", Hold::Constant), ("linear", Hold::Linear)];

@@ -28,7 +28,7 @@ pub(in crate::http) struct Scenario {
     end: Option<State>,
     /// Visited each once, in any order that keeps their `position` and `after`.
     targets: Vec<Target>,
-    #[schema(required = false)]
+    #[schema(required = false, max_items = 1000)]
     keep_out: Option<Vec<KeepOut>>,
     #[schema(required = false)]
     options: Option<Options>,
@@ -69,9 +69,9 @@ pub(in crate::http) struct Spacecraft {
     #[schema(required = false, exclusive_minimum = 0)]
     max_body_rate_norm_rad_s: Option<f64>,
     /// At least three enabled ones that span space.
-    #[schema(min_items = 3)]
+    #[schema(min_items = 3, max_items = 100)]
     wheels: Vec<Wheel>,
-    #[schema(required = false)]
+    #[schema(required = false, max_items = 100)]
     boresights: Option<Vec<Boresight>>,
 }
 

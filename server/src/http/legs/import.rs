@@ -3,12 +3,11 @@
 use super::super::describe::{self, BodyErrors, LegFileBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
-use super::super::{App, computing};
+use super::super::{App, computing, respond};
 use crate::leg_import;
 use crate::wire::leg_import::LegImportDocument;
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
 
@@ -44,9 +43,6 @@ pub(in crate::http) async fn handler(
         judged.ok_or_else(|| ApiError::new(ErrorCode::NotReady, "the service is about to end"))?;
     let counts = judged.store(app.store()).await?;
     let document = LegImportDocument::new(counts, &judged.refused);
-    let json = serde_json::to_vec(&document).map_err(|error| {
-        tracing::error!(%error, "the answer to an import cannot be written");
-        ApiError::new(ErrorCode::Internal, "the answer cannot be written")
-    })?;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    let json = respond::written(&document, "answer")?;
+    Ok(respond::json(json))
 }

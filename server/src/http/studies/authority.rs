@@ -2,18 +2,14 @@
 
 use super::super::access::Caller;
 use super::super::describe::{self, AuthorityBody, BodyErrors, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::extract::JsonBody;
-use super::super::{App, computing};
-use super::{check_targets, with_spacecraft};
+use super::super::{App, computing, respond};
+use super::{check_targets, quiet_run, with_spacecraft};
 use crate::wire::study::authority::{self, AuthorityAnswerDocument, AuthorityStudy};
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
-use slewplan_solver::legs::NoStore;
-use slewplan_solver::planner::Run;
+use axum::response::Response;
 use slewplan_solver::pool::SolverPool;
-use slewplan_solver::progress::Silent;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
 
@@ -42,7 +38,7 @@ pub(in crate::http) async fn handler(
     let pool = Arc::clone(&app.0.pool);
     let work = move |stop: &StopSignal| answer(&study, &pool, stop);
     let json = computing::in_turn(&app, computing::LONGEST, work).await??;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    Ok(respond::json(json))
 }
 
 fn answer(
@@ -50,16 +46,8 @@ fn answer(
     pool: &SolverPool,
     stop: &StopSignal,
 ) -> Result<Vec<u8>, ApiError> {
-    let run = Run {
-        pool,
-        stop,
-        observer: &Silent,
-        legs: &NoStore,
-        segments: &NoStore,
-    };
-    let rows = study.conduct(run).map_err(ApiError::input)?;
-    serde_json::to_vec(&AuthorityAnswerDocument::new(&rows)).map_err(|error| {
-        tracing::error!(%error, "a study cannot be written");
-        ApiError::new(ErrorCode::Internal, "the study cannot be written")
-    })
+    let rows = study
+        .conduct(quiet_run(pool, stop))
+        .map_err(ApiError::input)?;
+    respond::written(&AuthorityAnswerDocument::new(&rows), "study")
 }

@@ -3,11 +3,10 @@
 use super::super::describe::{self, BodyErrors, ComparisonBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
-use super::super::{App, computing};
+use super::super::{App, computing, respond};
 use crate::wire::study::comparison::{self, ComparisonAnswerDocument};
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use slewplan_solver::comparison::{Study, StudySpec};
 use slewplan_solver::stop::StopSignal;
 
@@ -32,15 +31,12 @@ pub(in crate::http) async fn handler(
     let spec = comparison::read_node(&body.node).map_err(ApiError::input)?;
     let work = move |_: &StopSignal| answer(spec);
     let json = computing::in_turn(&app, computing::LONGEST, work).await??;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    Ok(respond::json(json))
 }
 
 fn answer(spec: StudySpec) -> Result<Vec<u8>, ApiError> {
     let study = Study::of(spec).map_err(ApiError::input)?;
-    let unwritten = || ApiError::new(ErrorCode::Internal, "the comparison cannot be written");
-    let study = study.ok_or_else(unwritten)?;
-    serde_json::to_vec(&ComparisonAnswerDocument::new(&study)).map_err(|error| {
-        tracing::error!(%error, "a comparison cannot be written");
-        unwritten()
-    })
+    let missing = || ApiError::new(ErrorCode::Internal, "the comparison cannot be made");
+    let study = study.ok_or_else(missing)?;
+    respond::written(&ComparisonAnswerDocument::new(&study), "comparison")
 }

@@ -2,13 +2,12 @@
 
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, EnvelopeBody, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::extract::JsonBody;
-use super::super::{App, computing, stored};
+use super::super::{App, computing, respond, stored};
 use crate::wire::study::envelopes::{self, EnvelopeAnswerDocument, EnvelopeRequest};
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use slewplan_solver::pool::SolverPool;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
@@ -38,7 +37,7 @@ pub(in crate::http) async fn handler(
     let pool = Arc::clone(&app.0.pool);
     let work = move |stop: &StopSignal| answer(&request, &pool, stop);
     let json = computing::in_turn(&app, computing::LONGEST, work).await??;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    Ok(respond::json(json))
 }
 
 fn answer(
@@ -47,8 +46,5 @@ fn answer(
     stop: &StopSignal,
 ) -> Result<Vec<u8>, ApiError> {
     let report = request.study.conduct(pool, stop);
-    serde_json::to_vec(&EnvelopeAnswerDocument::new(request, &report)).map_err(|error| {
-        tracing::error!(%error, "a study cannot be written");
-        ApiError::new(ErrorCode::Internal, "the study cannot be written")
-    })
+    respond::written(&EnvelopeAnswerDocument::new(request, &report), "study")
 }

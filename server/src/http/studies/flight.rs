@@ -2,19 +2,15 @@
 
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, FlightBody, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::extract::JsonBody;
-use super::super::{App, computing};
-use super::{check_targets, with_spacecraft};
+use super::super::{App, computing, respond};
+use super::{check_targets, quiet_run, with_spacecraft};
 use crate::flights;
 use crate::wire::study::flight::{self, FlightAnswerDocument, FlightStudy};
 use axum::extract::State;
-use axum::http::header;
-use axum::response::{IntoResponse, Response};
-use slewplan_solver::legs::NoStore;
-use slewplan_solver::planner::Run;
+use axum::response::Response;
 use slewplan_solver::pool::SolverPool;
-use slewplan_solver::progress::Silent;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
 
@@ -43,20 +39,10 @@ pub(in crate::http) async fn handler(
     let pool = Arc::clone(&app.0.pool);
     let work = move |stop: &StopSignal| answer(&study, &pool, stop);
     let json = computing::in_turn(&app, computing::LONGEST, work).await??;
-    Ok(([(header::CONTENT_TYPE, "application/json")], json).into_response())
+    Ok(respond::json(json))
 }
 
 fn answer(study: &FlightStudy, pool: &SolverPool, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
-    let run = Run {
-        pool,
-        stop,
-        observer: &Silent,
-        legs: &NoStore,
-        segments: &NoStore,
-    };
-    let flown = flights::fly(study, run).map_err(ApiError::input)?;
-    serde_json::to_vec(&FlightAnswerDocument::new(study, &flown)).map_err(|error| {
-        tracing::error!(%error, "a flight cannot be written");
-        ApiError::new(ErrorCode::Internal, "the flight cannot be written")
-    })
+    let flown = flights::fly(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
+    respond::written(&FlightAnswerDocument::new(study, &flown), "flight")
 }

@@ -64,11 +64,6 @@ pub(super) fn read(cursor: &Cursor<'_>) -> SimulationSpec {
     }
 }
 
-/// A member `kind` among choices; it must be there.
-fn kind(cursor: &Cursor<'_>, choices: &[(&str, usize)]) -> Option<usize> {
-    cursor.open_object()?.required("kind")?.choice(choices)
-}
-
 fn controller(cursor: &Cursor<'_>) -> Option<ControllerSpec> {
     const KINDS: [(&str, usize); 4] = [
         ("feed_forward", 0),
@@ -76,7 +71,7 @@ fn controller(cursor: &Cursor<'_>) -> Option<ControllerSpec> {
         ("step_input", 2),
         ("geometric_pid", 3),
     ];
-    let kind = kind(cursor, &KINDS)?;
+    let kind = cursor.kind(&KINDS)?;
     let known: &[&str] = match kind {
         0 => &["kind"],
         3 => &["kind", "gains"],
@@ -103,7 +98,7 @@ fn controller(cursor: &Cursor<'_>) -> Option<ControllerSpec> {
 
 fn gains(cursor: &Cursor<'_>) -> Option<GainsSpec> {
     let kinds = [("bandwidth", 0), ("settling_time", 1), ("given", 2)];
-    match kind(cursor, &kinds)? {
+    match cursor.kind(&kinds)? {
         0 => {
             let fields = cursor.object(&["kind", "bandwidth_rad_s", "damping"])?;
             Some(GainsSpec::Bandwidth {
@@ -132,7 +127,7 @@ fn gains(cursor: &Cursor<'_>) -> Option<GainsSpec> {
 
 fn pid_gains(cursor: &Cursor<'_>) -> Option<PidGainsSpec> {
     let kinds = [("bandwidth", 0), ("given", 1)];
-    if kind(cursor, &kinds)? == 0 {
+    if cursor.kind(&kinds)? == 0 {
         let known = &["kind", "bandwidth_rad_s", "damping", "integral_rad_s"];
         let fields = cursor.object(known)?;
         let integral = fields.optional("integral_rad_s").map(|it| it.number());

@@ -1,0 +1,38 @@
+//! The document of a study, and where the answer goes.
+
+use crate::cli::failure::Failure;
+use crate::cli::input;
+use crate::cli::output::Destination;
+use slewplan_solver::problem::Problem;
+use std::path::PathBuf;
+
+/// What is read and what is written.
+#[derive(Debug, clap::Args)]
+pub(super) struct Given {
+    /// The document of the study, - for standard input
+    study: PathBuf,
+    /// Write the answer to this file instead of standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+}
+
+impl Given {
+    /// The output, which is opened before anything is computed, and the document as `read`.
+    pub(super) fn open<T>(
+        &self,
+        read: impl FnOnce(&[u8]) -> Result<T, Vec<Problem>>,
+    ) -> Result<(Destination, T), Failure> {
+        let destination = Destination::open(&self.output)?;
+        let bytes = input::read(&self.study)?;
+        let study = read(&bytes).map_err(|problems| self.invalid(problems))?;
+        Ok((destination, study))
+    }
+
+    /// What is wrong with the document.
+    pub(super) fn invalid(&self, problems: Vec<Problem>) -> Failure {
+        Failure::Invalid {
+            name: input::name(&self.study),
+            problems,
+        }
+    }
+}

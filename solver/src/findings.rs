@@ -3,7 +3,7 @@
 //! A reader takes the findings by mutable reference, notes what it dislikes and returns `None` for
 //! a value that it cannot use, so that one fault neither hides nor invents another.
 
-use crate::problem::{Code, Problem};
+use crate::problem::{Code, MOST_KEPT, Problem};
 use nalgebra::{Matrix3, Vector3};
 
 /// Problems and warnings, in the order in which they were found.
@@ -22,8 +22,10 @@ impl Findings {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) {
-        self.problems
-            .push(Problem::new(pointer, code, message, hint));
+        if self.problems.len() < MOST_KEPT {
+            let problem = Problem::new(pointer, code, message, hint);
+            self.problems.push(problem);
+        }
     }
 
     /// Notes a doubt that does not stand in the way.
@@ -34,8 +36,10 @@ impl Findings {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) {
-        self.warnings
-            .push(Problem::new(pointer, code, message, hint));
+        if self.warnings.len() < MOST_KEPT {
+            let warning = Problem::new(pointer, code, message, hint);
+            self.warnings.push(warning);
+        }
     }
 
     /// Takes over the problems that another reader has found.
@@ -57,6 +61,19 @@ impl Findings {
                 Err(self.problems)
             }
         }
+    }
+
+    /// Whether a list has at most so many entries, beyond which it is not read at all.
+    pub(crate) fn at_most(&mut self, pointer: &str, entries: usize, most: usize) -> bool {
+        if entries > most {
+            self.refuse(
+                pointer,
+                Code::WrongLength,
+                format!("the list has {entries} entries, it may have {most}"),
+                format!("list at most {most}"),
+            );
+        }
+        entries <= most
     }
 
     /// A finite number.
@@ -172,6 +189,17 @@ mod tests {
         let problems = findings.conclude::<()>(None).unwrap_err();
         let pointers: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
         assert_eq!(pointers, ["/v/0", "/v/2"]);
+    }
+
+    #[test]
+    fn of_many_problems_the_first_are_kept() {
+        let mut findings = Findings::default();
+        for i in 0..2 * MOST_KEPT {
+            findings.finite(&format!("/v/{i}"), f64::NAN);
+        }
+        let problems = findings.conclude::<()>(None).unwrap_err();
+        assert_eq!(problems.len(), MOST_KEPT);
+        assert_eq!(problems[MOST_KEPT - 1].pointer, "/v/999");
     }
 
     #[test]

@@ -2,6 +2,12 @@
 
 use std::fmt;
 
+/// Most problems of one input that are kept: more help nobody, and each takes memory.
+pub const MOST_KEPT: usize = 1000;
+/// Most names that a hint lists, and most characters of each.
+const NAMES_IN_A_HINT: usize = 10;
+const CHARACTERS_OF_A_NAME: usize = 40;
+
 /// One thing that is wrong, or doubtful, with an input.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
@@ -45,6 +51,20 @@ impl fmt::Display for Problem {
         }
         Ok(())
     }
+}
+
+/// The first of many names in quotation marks for a hint, which stays short whatever they are.
+pub(crate) fn quoted<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    let more = names.len().saturating_sub(NAMES_IN_A_HINT);
+    let quote = |name: &str| match name.char_indices().nth(CHARACTERS_OF_A_NAME) {
+        Some((end, _)) => format!("\"{}...\"", &name[..end]),
+        None => format!("\"{name}\""),
+    };
+    let mut listed: Vec<String> = names.take(NAMES_IN_A_HINT).map(quote).collect();
+    if more > 0 {
+        listed.push(format!("or {more} others"));
+    }
+    listed.join(", ")
 }
 
 macro_rules! codes {

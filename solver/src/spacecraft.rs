@@ -23,6 +23,9 @@ use crate::spec::{BoresightSpec, SpacecraftSpec};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 
+/// Most boresights of a spacecraft.
+const MOST_BORESIGHTS: usize = 100;
+
 /// A valid wheel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wheel {
@@ -202,6 +205,9 @@ fn boresights(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<Vec<Boresight>> {
+    if !findings.at_most(pointer, specs.len(), MOST_BORESIGHTS) {
+        return None;
+    }
     let mut names = HashSet::new();
     // Read one by one first: collecting straight into an option would stop at the first fault.
     let read: Vec<_> = specs

@@ -212,6 +212,11 @@ fn wrong_queries_are_refused_with_pointers() {
             .expect("text")
             .contains("max_leg_pairs")
     );
+    // All pairs of these would not fit into memory.
+    let query = json!({"spacecraft": spacecraft, "attitudes": vec![attitude(1.0, 0.0); 30_000]});
+    service
+        .post("/v1/legs/query", &query)
+        .expect_problem(413, "too_many_pairs");
     service
         .get("/v1/legs/unknown")
         .expect_problem(404, "not_found");

@@ -152,8 +152,8 @@ def hostile_bodies():
     good = json.dumps(fixture("two-targets")).encode()
     cases = []
 
-    def case(name, body, *headers, statuses=(400, 413, 415, 422)):
-        cases.append((name, post(body, "/v1/plans", *headers), statuses))
+    def case(name, body, *headers, statuses=(400, 413, 415, 422), path="/v1/plans"):
+        cases.append((name, post(body, path, *headers), statuses))
 
     megabytes = 5 << 20
     case("oversize", b"[" + b"0," * (megabytes // 2) + b"0]", statuses=(413,))
@@ -199,6 +199,17 @@ def hostile_bodies():
     wide = json.loads(text)
     wide["spacecraft"]["wheels"] = wide["spacecraft"]["wheels"] * 3000
     case("9000 wheels", json.dumps(wide).encode(), statuses=(413, 422))
+    cones = json.loads(text)
+    cones["spacecraft"]["boresights"] = [{"name": f"{number}" * 100, "axis": [0, 0, 1]} for number in range(100)]
+    cones["keep_out"] = [{"boresight": "x", "direction": [0, 0, 0], "half_angle_deg": 0}] * 1000
+    case("1000 cones of unknown boresights", json.dumps(cones).encode(), statuses=(422,))
+    cones["keep_out"] = [{}] * 50_000
+    case("50000 empty cones", json.dumps(cones).encode(), statuses=(422,))
+    legs = {"spacecraft": document["spacecraft"], "attitudes": [1] * 30_000}
+    case("legs between 30000 attitudes", json.dumps(legs).encode(), statuses=(413, 422), path="/v1/legs/query")
+    flight = {"scenario": document, "plan": {"total_time_s": 1, "sequence": [], "trajectory": {"controls": []}}}
+    flight["plan"]["passages"] = [{"target": "x", "time_s": 0}] * 20_000
+    case("20000 unknown passages", json.dumps(flight).encode(), statuses=(422,), path="/v1/verify")
     for form in ("text/plain", "application/xml", "", "multipart/form-data; boundary=x", "application/json5"):
         case(f"form {form!r}", good, f"Content-Type: {form}", statuses=(415,))
     return cases

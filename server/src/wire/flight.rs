@@ -111,18 +111,26 @@ fn passage(cursor: &Cursor<'_>) -> Option<Passage> {
 fn check_targets(cursor: &Cursor<'_>, passages: &[Passage], scenario: &Scenario) {
     let known: HashSet<&str> = scenario.targets().iter().map(|t| t.id.as_str()).collect();
     let mut visited = HashSet::new();
+    let entries = cursor.list().unwrap_or_default();
+    let report_at = |index: usize, code, message: &str| {
+        if let Some(entry) = entries.get(index) {
+            entry.report(
+                code,
+                message,
+                "list exactly one passage for every target of the scenario",
+            );
+        }
+    };
     for (index, passage) in passages.iter().enumerate() {
         let target = passage.target.as_str();
         if !known.contains(target) {
             report_at(
-                cursor,
                 index,
                 Code::UnknownReference,
                 &format!("{target:?} is no target of the scenario"),
             );
         } else if !visited.insert(target) {
             report_at(
-                cursor,
                 index,
                 Code::DuplicateId,
                 &format!("{target:?} is visited again"),
@@ -140,16 +148,6 @@ fn check_targets(cursor: &Cursor<'_>, passages: &[Passage], scenario: &Scenario)
             Code::WrongLength,
             format!("not visited: {}", missing.join(", ")),
             "list one passage for every target of the scenario",
-        );
-    }
-}
-
-fn report_at(cursor: &Cursor<'_>, index: usize, code: Code, message: &str) {
-    if let Some(entry) = cursor.list().as_ref().and_then(|items| items.get(index)) {
-        entry.report(
-            code,
-            message,
-            "list exactly one passage for every target of the scenario",
         );
     }
 }

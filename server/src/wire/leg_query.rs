@@ -42,8 +42,32 @@ pub(crate) struct Pair {
 struct Places {
     targets: Vec<TargetSpec>,
     pointers: Vec<String>,
-    pairs: Vec<(usize, usize)>,
-    listed: bool,
+    /// Whether every ordered pair is asked for, or each attitude with an even index with its
+    /// successor.
+    all_pairs: bool,
+}
+
+impl Places {
+    /// Number of legs that are asked for.
+    fn legs(&self) -> usize {
+        let count = self.targets.len();
+        if self.all_pairs {
+            count.saturating_mul(count.saturating_sub(1))
+        } else {
+            count / 2
+        }
+    }
+
+    /// Indices of the targets at the begin and the end of each leg.
+    fn pairs(&self) -> Vec<(usize, usize)> {
+        let count = self.targets.len();
+        if self.all_pairs {
+            let from_each = (0..count).flat_map(|from| (0..count).map(move |to| (from, to)));
+            from_each.filter(|(from, to)| from != to).collect()
+        } else {
+            (0..count / 2).map(|leg| (2 * leg, 2 * leg + 1)).collect()
+        }
+    }
 }
 
 /// Reads a query for at most so many legs.
@@ -76,11 +100,13 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
         Some((base, Some(places), modes)) if problems.is_empty() => (base, places, modes),
         _ => return Err(Refusal::Invalid(problems)),
     };
-    if places.pairs.len() > most {
-        return Err(Refusal::TooMany(places.pairs.len()));
+    // Counted before they are listed, since a short list of attitudes has many pairs.
+    if places.legs() > most {
+        return Err(Refusal::TooMany(places.legs()));
     }
     let scenario = check(&base, &places).map_err(Refusal::Invalid)?;
-    let pairs = places.pairs.iter().enumerate().map(|(index, &(from, to))| {
+    let pairs = places.pairs();
+    let pairs = pairs.into_iter().enumerate().map(|(index, (from, to))| {
         let between = (from, to);
         let targets = vec![places.targets[from].clone(), places.targets[to].clone()];
         let spec = ScenarioSpec {
@@ -88,7 +114,7 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
             ..base.clone()
         };
         let valid = Scenario::try_new(&spec).map_err(Refusal::Invalid)?;
-        let (from, to) = if places.listed {
+        let (from, to) = if places.all_pairs {
             (from, to)
         } else {
             (index, index)
@@ -156,25 +182,10 @@ fn read_places(fields: &Fields<'_>) -> Option<Places> {
         zero_rate_axes: axes,
         ..TargetSpec::default()
     };
-    let (attitudes, pointers, pairs, listed) =
+    let ((attitudes, pointers), all_pairs) =
         match (fields.optional("attitudes"), fields.optional("pairs")) {
-            (Some(list), None) => {
-                let (attitudes, pointers) = read_list(&list)?;
-                let count = attitudes.len();
-                let from_each = (0..count).flat_map(|from| (0..count).map(move |to| (from, to)));
-                (
-                    attitudes,
-                    pointers,
-                    from_each.filter(|(from, to)| from != to).collect(),
-                    true,
-                )
-            }
-            (None, Some(list)) => {
-                let (attitudes, pointers) = read_pairs(&list)?;
-                let pairs = (0..attitudes.len() / 2).map(|pair| (2 * pair, 2 * pair + 1));
-                let pairs: Vec<_> = pairs.collect();
-                (attitudes, pointers, pairs, false)
-            }
+            (Some(list), None) => (read_list(&list)?, true),
+            (None, Some(list)) => (read_pairs(&list)?, false),
             (Some(both), Some(_)) => {
                 both.report(
                     Code::ConflictingFields,
@@ -192,8 +203,7 @@ fn read_places(fields: &Fields<'_>) -> Option<Places> {
     Some(Places {
         targets,
         pointers,
-        pairs,
-        listed,
+        all_pairs,
     })
 }
 

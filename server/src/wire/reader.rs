@@ -4,7 +4,7 @@
 //! substitute, so that one pass finds everything that is wrong.
 
 use super::document::Node;
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::problem::{Code, MOST_KEPT, Problem};
 use std::cell::RefCell;
 
 mod spelling;
@@ -14,9 +14,12 @@ mod spelling;
 pub(crate) struct Sink(RefCell<Vec<Problem>>);
 
 impl Sink {
-    /// Records a problem.
+    /// Records a problem, unless there are very many.
     pub(crate) fn push(&self, problem: Problem) {
-        self.0.borrow_mut().push(problem);
+        let mut problems = self.0.borrow_mut();
+        if problems.len() < MOST_KEPT {
+            problems.push(problem);
+        }
     }
 
     /// All problems in the order of their discovery.
@@ -184,6 +187,11 @@ impl<'a> Cursor<'a> {
             );
         }
         found.map(|(_, value)| *value)
+    }
+
+    /// The member `kind` of an object, among choices; other members are looked at later.
+    pub(crate) fn kind<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        self.open_object()?.required("kind")?.choice(choices)
     }
 
     /// A list of exactly `N` numbers.

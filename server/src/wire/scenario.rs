@@ -3,7 +3,7 @@
 use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, spacecraft};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::problem::{Code, MOST_KEPT, Problem};
 use slewplan_solver::scenario::{Scenario, Validated};
 use slewplan_solver::spec::{
     Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
@@ -32,10 +32,13 @@ pub(crate) fn read_node(node: &Node, time_limit_s: Option<f64>) -> Result<Valida
     match Scenario::try_new(&spec) {
         Ok(validated) if problems.is_empty() => Ok(validated),
         Ok(_) => Err(problems),
+        // What was replaced is not known in full.
+        Err(_) if problems.len() >= MOST_KEPT => Err(problems),
         Err(found) => {
+            let replaced = replaced(&problems);
             let independent: Vec<Problem> = found
                 .into_iter()
-                .filter(|problem| !follows_from_a_substitute(problem, &problems))
+                .filter(|problem| !follows_from_a_substitute(problem, &replaced))
                 .collect();
             problems.extend(independent);
             Err(problems)
@@ -43,17 +46,21 @@ pub(crate) fn read_node(node: &Node, time_limit_s: Option<f64>) -> Result<Valida
     }
 }
 
-/// Whether a problem may only be there because something unreadable was replaced.
-fn follows_from_a_substitute(found: &Problem, shape: &[Problem]) -> bool {
+/// The places where a substitute stands for something that could not be read.
+fn replaced(shape: &[Problem]) -> Vec<String> {
     // Unknown and repeated fields are reported, but nothing stands in for them.
-    let replaced: Vec<&str> = shape
+    shape
         .iter()
         .filter(|p| !matches!(p.code, Code::UnknownField | Code::DuplicateField))
         .map(|p| match p.pointer.as_str() {
-            "/spacecraft/ref" => "/spacecraft",
-            pointer => pointer,
+            "/spacecraft/ref" => "/spacecraft".to_owned(),
+            pointer => pointer.to_owned(),
         })
-        .collect();
+        .collect()
+}
+
+/// Whether a problem may only be there because something unreadable was replaced.
+fn follows_from_a_substitute(found: &Problem, replaced: &[String]) -> bool {
     let any_related = |place| {
         replaced
             .iter()

@@ -2,11 +2,17 @@
 
 use super::KeepOut;
 use crate::findings::{Findings, unit};
-use crate::problem::Code;
+use crate::problem::{self, Code};
 use crate::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
 use nalgebra::Vector3;
 
+/// Most cones of a scenario.
+const MOST_CONES: usize = 1000;
+
 pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
+    if !findings.at_most("/keep_out", spec.keep_out.len(), MOST_CONES) {
+        return None;
+    }
     // Read one by one first: collecting straight into an option would stop at the first fault.
     let cones: Vec<_> = spec
         .keep_out
@@ -33,20 +39,14 @@ fn read(
     // Sought in the description, where a name is known even if its axis is refused.
     let boresight = boresights.iter().find(|known| known.name == spec.boresight);
     if boresight.is_none() {
-        let known: Vec<_> = boresights
-            .iter()
-            .map(|b| format!("\"{}\"", b.name))
-            .collect();
+        let known = problem::quoted(boresights.iter().map(|b| b.name.as_str()));
         findings.refuse(
             format!("{pointer}/boresight"),
             Code::UnknownReference,
             format!("no boresight is named \"{}\"", spec.boresight),
-            match known.as_slice() {
-                [] => "declare it in spacecraft.boresights".to_owned(),
-                known => format!(
-                    "declare it in spacecraft.boresights, or use {}",
-                    known.join(", ")
-                ),
+            match known.as_str() {
+                "" => "declare it in spacecraft.boresights".to_owned(),
+                known => format!("declare it in spacecraft.boresights, or use {known}"),
             },
         );
     }

@@ -249,6 +249,28 @@ fn faults_of_targets_are_found() {
 }
 
 #[test]
+fn the_hint_for_an_unknown_boresight_stays_short() {
+    let mut spec = valid();
+    spec.keep_out[0].boresight = "kamera".to_owned();
+    let long = |number: usize| BoresightSpec {
+        name: format!("{number}-{}", "ä".repeat(1000)),
+        axis: [0.0, 0.0, 1.0],
+    };
+    spec.spacecraft.boresights = (0..100).map(long).collect();
+    let problems = Scenario::try_new(&spec).unwrap_err();
+    let hint = &problems[0].hint;
+    assert!(
+        hint.contains("\"0-ä") && hint.ends_with("or 90 others"),
+        "{hint}"
+    );
+    assert!(hint.chars().count() < 1000, "{hint}");
+    spec.spacecraft.boresights = (0..101).map(long).collect();
+    let problems = Scenario::try_new(&spec).unwrap_err();
+    assert_eq!(problems[0].pointer, "/spacecraft/boresights");
+    assert_eq!(problems[0].code, Code::WrongLength);
+}
+
+#[test]
 fn faults_of_cones_and_options_are_found() {
     expect_faults(&[
         (
@@ -270,6 +292,11 @@ fn faults_of_cones_and_options_are_found() {
             |s| s.keep_out[0].half_angle_deg = f64::NAN,
             Code::NotFinite,
             "/keep_out/0/half_angle_deg",
+        ),
+        (
+            |s| s.keep_out = vec![s.keep_out[0].clone(); 1001],
+            Code::WrongLength,
+            "/keep_out",
         ),
         (
             |s| s.options.time_limit_s = Some(0.0),

@@ -14,12 +14,18 @@ const COPLANARITY_THRESHOLD: f64 = 1e-6;
 /// the interval's length.
 const MOST_ENABLED: usize = MAX_CONTROLS - 1;
 
+/// Most wheels, enabled or not.
+const MOST_LISTED: usize = 100;
+
 /// Reads the wheels and checks that the enabled ones span space.
 pub(super) fn read(
     specs: &[WheelSpec],
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<Vec<Wheel>> {
+    if !findings.at_most(pointer, specs.len(), MOST_LISTED) {
+        return None;
+    }
     // Read one by one first: collecting straight into an option would stop at the first fault.
     let wheels: Vec<_> = specs
         .iter()

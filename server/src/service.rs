@@ -1,12 +1,11 @@
 //! The service put together: database, worker, routes, and their end.
 
-use crate::cli::{Exit, Failure};
 use crate::connections;
 use crate::http::{self, Access, App, Limits};
 use crate::jobs::{Jobs, Worker, retention, segments};
 use crate::lifecycle::{GRACE, Shutdown};
 use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
-use slewplan_solver::pool::SolverPool;
+use slewplan_solver::pool::{PoolError, SolverPool};
 use std::io;
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
@@ -56,6 +55,15 @@ pub(crate) enum ServiceError {
     /// The database.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// An address for others, and nothing that keeps them out.
+    #[error(
+        "--listen: {0} can be reached from other machines, and there are no keys; make one with \
+         slewplan keys create, or let everybody in with --no-keys"
+    )]
+    Exposed(SocketAddr),
+    /// The operating system refused threads.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
     /// What was acknowledged can no longer be kept.
     #[error(
         "the disk did not keep what was written; start again when it works: nothing that was \
@@ -83,15 +91,21 @@ fn system(what: impl Into<String>) -> impl FnOnce(io::Error) -> ServiceError {
 }
 
 /// Serves until a signal ends it. The address is told when requests are taken.
-pub(crate) fn run(
+///
+/// # Errors
+///
+/// What kept it from running, or from telling.
+pub(crate) fn run<E: From<ServiceError>>(
     settings: &Settings,
-    tell: impl FnOnce(SocketAddr) -> Result<(), Failure>,
-) -> Result<Exit, Failure> {
+    tell: impl FnOnce(SocketAddr) -> Result<(), E>,
+) -> Result<(), E> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
     let pools = [
-        Arc::new(SolverPool::prepared(threads, step_back)?),
-        Arc::new(SolverPool::new(NonZeroUsize::new(1))?),
+        SolverPool::prepared(threads, step_back),
+        SolverPool::new(NonZeroUsize::new(1)),
     ];
+    let [solver, lookups] = pools.map(|pool| pool.map(Arc::new).map_err(ServiceError::from));
+    let pools = [solver?, lookups?];
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(REQUEST_THREADS)
         .enable_all()
@@ -106,16 +120,16 @@ pub(crate) fn run(
         // gone before that.
         std::mem::forget(runtime);
     }
-    served.map(|()| Exit::Complete)
+    served
 }
 
 /// Whether keys are asked for: always once there is one. Without keys only this machine is served.
-async fn access(settings: &Settings, store: &Store) -> Result<Access, Failure> {
+async fn access(settings: &Settings, store: &Store) -> Result<Access, ServiceError> {
     if settings.no_keys {
         tracing::warn!("no keys are asked for: whoever reaches the service can do everything");
         return Ok(Access::new(false));
     }
-    let keys = store.keys().await.map_err(ServiceError::from)?;
+    let keys = store.keys().await?;
     if !keys.is_empty() {
         return Ok(Access::new(true));
     }
@@ -124,14 +138,7 @@ async fn access(settings: &Settings, store: &Store) -> Result<Access, Failure> {
         tokio::spawn(await_first_key(store.clone(), open.clone()));
         return Ok(open);
     }
-    Err(Failure::Setting {
-        name: "--listen",
-        what: format!(
-            "{} can be reached from other machines, and there are no keys; make one with slewplan \
-             keys create, or let everybody in with --no-keys",
-            settings.listen
-        ),
-    })
+    Err(ServiceError::Exposed(settings.listen))
 }
 
 /// Asks for keys as soon as there is one.
@@ -156,11 +163,11 @@ fn step_back() {
     }
 }
 
-async fn serve(
+async fn serve<E: From<ServiceError>>(
     settings: &Settings,
     pools: [Arc<SolverPool>; 2],
-    tell: impl FnOnce(SocketAddr) -> Result<(), Failure>,
-) -> Result<(), Failure> {
+    tell: impl FnOnce(SocketAddr) -> Result<(), E>,
+) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let _lock = DatabaseLock::take(&settings.database).map_err(ServiceError::from)?;
     let store = Store::open(&settings.database)

@@ -109,9 +109,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         no_keys: arguments.no_keys,
         connections: arguments.max_connections.into(),
     };
-    service::run(&settings, |address| {
+    service::run::<Failure>(&settings, |address| {
         output::print(&format!("listening on http://{address}\n"))
-    })
+    })?;
+    Ok(Exit::Complete)
 }
 
 fn start_log(arguments: &Arguments) -> Result<(), Failure> {

@@ -95,6 +95,7 @@ pub mod manoeuvre;
 pub mod market;
 mod multiphase;
 mod nlp;
+pub mod order_rules;
 pub mod plan;
 pub mod planner;
 pub mod pool;

@@ -57,5 +57,5 @@ pub(crate) use iterate::{Iterate, Layout};
 pub(crate) use model::models_of;
 pub(crate) use model::values_of;
 pub(crate) use model::{LinkModel, LinkValues};
-pub(crate) use riccati::MAX_CONTROLS;
+pub(crate) use riccati::{MAX_CONTROLS, MAX_STATES};
 pub(crate) use settings::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity, Settings};

@@ -13,8 +13,8 @@ mod target;
 
 use crate::attitude::Attitude;
 use crate::findings::Findings;
+use crate::order_rules::OrderRules;
 use crate::problem::Problem;
-use crate::sequence::OrderRules;
 use crate::spacecraft::Spacecraft;
 use crate::spec::{OptionsSpec, ScenarioSpec};
 use limits::Limits;

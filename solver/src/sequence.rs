@@ -58,7 +58,6 @@ mod incumbents;
 mod node;
 pub mod priced;
 pub mod remainder;
-mod rules;
 mod search;
 mod table;
 #[cfg(test)]
@@ -66,11 +65,10 @@ mod tests;
 
 pub use exhaustive::exhaustive;
 pub use heuristics::short_order;
-pub(crate) use rules::DeadEnd;
-pub use rules::OrderRules;
 pub use search::search;
 pub use table::PairTable;
 
+use crate::order_rules::OrderRules;
 use crate::progress::Progress;
 use crate::stop::StopReason;
 

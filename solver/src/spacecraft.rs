@@ -17,6 +17,8 @@
 mod inertia;
 mod wheels;
 
+pub(crate) use wheels::MOST_ENABLED;
+
 use crate::findings::Findings;
 use crate::problem::{Code, Problem};
 use crate::spec::{BoresightSpec, SpacecraftSpec};

@@ -34,10 +34,16 @@ pub(crate) use scales::Scales;
 
 use crate::dynamics::Dynamics;
 use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product, rotate_back};
-use crate::nlp::{Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues};
+use crate::nlp::{
+    Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues, MAX_CONTROLS, MAX_STATES,
+};
+use crate::spacecraft::MOST_ENABLED;
 use nalgebra::Vector3;
 use nodes::Node;
 use rows::LimitRow;
+
+/// The engine holds what the table above lists for as many wheels as a spacecraft may have.
+const _: () = assert!(3 + MOST_ENABLED <= MAX_STATES && MOST_ENABLED < MAX_CONTROLS);
 
 /// The quaternion of no turn.
 const NO_TURN: Quat = [0.0, 0.0, 0.0, 1.0];

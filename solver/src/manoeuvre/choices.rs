@@ -2,15 +2,13 @@
 
 use super::spec::{Command, FinalWheels, Hold, ManoeuvreSpec, Measure, Objective, WheelAllocation};
 use crate::findings::Findings;
-use crate::nlp::MAX_CONTROLS;
+use crate::nlp::{MAX_CONTROLS, MAX_STATES};
 use crate::problem::Code;
 
 /// Most intervals of a manoeuvre.
 pub(super) const MOST_INTERVALS: usize = 2000;
 /// Relative error of a duration as a multiple of the sampling period that is rounding.
 const MULTIPLE_TOLERANCE: f64 = 1e-9;
-/// States that the engine admits beyond the number of controls.
-const STATES_ABOVE: usize = 2;
 
 /// Checks all choices; `false` after a fault.
 pub(super) fn check(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
@@ -149,7 +147,7 @@ fn check_size(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
     );
     let controls = wheels * (1 + usize::from(billed)) + 1;
     let states = 3 + wheels * (1 + usize::from(ramps)) + 2;
-    let valid = controls <= MAX_CONTROLS && states <= MAX_CONTROLS + STATES_ABOVE;
+    let valid = controls <= MAX_CONTROLS && states <= MAX_STATES;
     if !valid {
         findings.refuse(
             "/spacecraft/wheels",

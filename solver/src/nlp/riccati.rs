@@ -85,7 +85,7 @@ pub(super) trait NewtonSystem: Send {
 ///
 /// # Panics
 ///
-/// When no size does, more than [`MAX_CONTROLS`] controls or two states above that.
+/// When no size does, more than [`MAX_CONTROLS`] controls or [`MAX_STATES`] states.
 pub(super) fn system_for(layout: &Layout) -> Box<dyn NewtonSystem> {
     match (layout.states, layout.controls) {
         (..=3, ..=2) => Box::new(Riccati::<3, 2>::new(layout)),
@@ -94,14 +94,16 @@ pub(super) fn system_for(layout: &Layout) -> Box<dyn NewtonSystem> {
         (..=9, ..=7) => Box::new(Riccati::<9, 7>::new(layout)),
         (..=12, ..=10) => Box::new(Riccati::<12, 10>::new(layout)),
         (states, controls) => {
-            assert!(controls <= MAX_CONTROLS && states <= MAX_CONTROLS + 2);
-            Box::new(Riccati::<{ MAX_CONTROLS + 2 }, MAX_CONTROLS>::new(layout))
+            assert!(controls <= MAX_CONTROLS && states <= MAX_STATES);
+            Box::new(Riccati::<MAX_STATES, MAX_CONTROLS>::new(layout))
         }
     }
 }
 
-/// Most controls of an interval; the states are two more.
+/// Most controls of an interval.
 pub(crate) const MAX_CONTROLS: usize = 18;
+/// Most states of a node.
+pub(crate) const MAX_STATES: usize = 20;
 
 /// The factorised Newton system of `N` states and `M` controls.
 struct Riccati<const N: usize, const M: usize> {

@@ -1,7 +1,8 @@
 //! Tours whose slews take times of their own, whatever comes before and after them.
 
 use super::places::Places;
-use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
+use crate::order_rules::OrderRules;
+use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 
 /// Tours over slews of given durations, s, with settle and dwell.
 pub(super) struct SummedTours<'a, F> {

@@ -1,8 +1,8 @@
 //! What the description says about the order of the targets.
 
 use crate::findings::Findings;
+use crate::order_rules::{DeadEnd, OrderRules};
 use crate::problem::Code;
-use crate::sequence::{DeadEnd, OrderRules};
 use crate::spec::{ScenarioSpec, TargetSpec};
 use std::collections::{HashMap, HashSet};
 

@@ -10,7 +10,8 @@ mod tests;
 
 use super::charges::Charges;
 use super::remainder::Remainder;
-use super::{OrderRules, PairTable, TourModel};
+use super::{PairTable, TourModel};
+use crate::order_rules::OrderRules;
 use crate::stop::StopSignal;
 use iterated::IteratedSearch;
 use local_search::OrderTask;

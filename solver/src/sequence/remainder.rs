@@ -7,7 +7,8 @@ pub(super) mod subsets;
 pub use spanning_tree::SpanningTrees;
 pub use subsets::SubsetTable;
 
-use super::{OrderRules, PairTable};
+use super::PairTable;
+use crate::order_rules::OrderRules;
 use crate::stop::StopSignal;
 
 /// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 160 MiB and a quarter

@@ -1,6 +1,7 @@
 //! The table of pair bounds, and which orders it is for.
 
-use super::{OrderRules, Place, TourModel};
+use super::{Place, TourModel};
+use crate::order_rules::OrderRules;
 
 /// Lower bounds of all legs, s, between places numbered: targets `0..n`, then start, then end.
 ///

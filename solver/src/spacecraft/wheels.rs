@@ -3,16 +3,14 @@
 use super::Wheel;
 use super::inertia::positive_definite_inverse;
 use crate::findings::{Findings, unit};
-use crate::nlp::MAX_CONTROLS;
 use crate::problem::Code;
 use crate::spec::WheelSpec;
 use nalgebra::{DMatrix, Matrix3};
 
 /// Smallest over largest singular value of the unit axes below which they lie in a plane.
 const COPLANARITY_THRESHOLD: f64 = 1e-6;
-/// Most enabled wheels: the controls of an interval are a change of momentum for each of them and
-/// the interval's length.
-const MOST_ENABLED: usize = MAX_CONTROLS - 1;
+/// Most enabled wheels.
+pub(crate) const MOST_ENABLED: usize = 17;
 
 /// Most wheels, enabled or not.
 const MOST_LISTED: usize = 100;

@@ -2,7 +2,7 @@
 
 use super::Charges;
 use super::choice::Part;
-use crate::sequence::OrderRules;
+use crate::order_rules::OrderRules;
 use crate::sequence::remainder::{LegCosts, SubsetTable};
 use crate::stop::StopSignal;
 

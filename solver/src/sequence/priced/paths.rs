@@ -1,8 +1,8 @@
 //! The shortest orders by priced legs: dynamic programming over subsets with two places remembered.
 
 use super::PricedLegs;
+use crate::order_rules::OrderRules;
 use crate::pool::SolverPool;
-use crate::sequence::OrderRules;
 use crate::sequence::remainder::EXACT_TARGETS;
 use crate::sequence::remainder::subsets::{Admitted, least_sum, mask, members};
 use crate::stop::StopSignal;

@@ -5,7 +5,7 @@
 //! is none.
 
 use super::{EXACT_TARGETS, LegCosts};
-use crate::sequence::OrderRules;
+use crate::order_rules::OrderRules;
 use crate::stop::StopSignal;
 
 /// Sets between two looks at the stop signal: about a millisecond.

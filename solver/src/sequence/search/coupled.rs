@@ -6,12 +6,13 @@
 //! told, and they tell which orders are worth flying.
 
 use super::Search;
+use crate::order_rules::OrderRules;
 use crate::pool::SolverPool;
 use crate::sequence::charges::{ChargedSubsets, Charges, Effort};
 use crate::sequence::heuristics::SearchEffort;
 use crate::sequence::priced::PricedPaths;
 use crate::sequence::remainder::{EXACT_TARGETS, SpanningTrees};
-use crate::sequence::{OrderRules, PairTable, SearchEnd, TourModel};
+use crate::sequence::{PairTable, SearchEnd, TourModel};
 use crate::stop::StopSignal;
 
 /// Steps of an ascent at most.

@@ -1,6 +1,7 @@
 //! The search tree: what is open, what is flown, what was given up and why.
 
 use super::coupled::Couplings;
+use crate::order_rules::OrderRules;
 use crate::pool::SolverPool;
 use crate::sequence::charges::Charges;
 use crate::sequence::frontier::Frontier;
@@ -9,7 +10,7 @@ use crate::sequence::incumbents::Incumbents;
 use crate::sequence::node::Node;
 use crate::sequence::remainder::Remainder;
 use crate::sequence::{
-    FlownOrder, OrderRules, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
+    FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
 };
 use crate::stop::StopSignal;
 use std::collections::BTreeMap;

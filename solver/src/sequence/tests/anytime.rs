@@ -1,10 +1,11 @@
 //! What the search says when it cannot finish.
 
 use super::{RandomModel, alternatives, pool, run};
+use crate::order_rules::OrderRules;
 use crate::progress::{Progress, Silent, Stage};
 use crate::sequence::{
-    Evaluation, FlownOrder, Incumbent, OrderRules, Place, SearchEnd, SearchObserver,
-    SearchSettings, TourEvaluation, TourModel, exhaustive, search,
+    Evaluation, FlownOrder, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings,
+    TourEvaluation, TourModel, exhaustive, search,
 };
 use crate::stop::{StopReason, StopSignal};
 use std::sync::Mutex;

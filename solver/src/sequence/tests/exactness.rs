@@ -1,10 +1,11 @@
 //! Same answers as exhaustive enumeration, whatever the number of threads.
 
 use super::{RandomModel, alternatives, pool, run};
+use crate::order_rules::OrderRules;
 use crate::progress::Silent;
 use crate::sequence::{
-    Evaluation, FlownOrder, OrderRules, Place, SearchEnd, SearchResult, SearchSettings,
-    TourEvaluation, TourModel, exhaustive, search,
+    Evaluation, FlownOrder, Place, SearchEnd, SearchResult, SearchSettings, TourEvaluation,
+    TourModel, exhaustive, search,
 };
 use crate::stop::StopSignal;
 use std::collections::BTreeMap;

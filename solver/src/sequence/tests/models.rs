@@ -1,7 +1,8 @@
 //! Cost models in place of slews.
 
+use crate::order_rules::OrderRules;
 pub(super) use crate::random::SplitMix;
-use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
+use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 
 /// A number in `[0, 1)`.
 pub(in crate::sequence) fn unit(random: &mut SplitMix) -> f64 {

@@ -1,10 +1,9 @@
 //! Bounds from prices, on legs that want to meet in different states.
 
 use super::{SplitMix, alternatives, pool, run, unit};
+use crate::order_rules::OrderRules;
 use crate::sequence::priced::{PricedLegs, PricedPaths};
-use crate::sequence::{
-    Evaluation, OrderRules, PairTable, Place, Price, TourEvaluation, TourModel, exhaustive,
-};
+use crate::sequence::{Evaluation, PairTable, Place, Price, TourEvaluation, TourModel, exhaustive};
 use crate::stop::StopSignal;
 
 /// Legs that would begin and end in states of their own, in `[-1, 1]`, and pay for what they miss them

@@ -2,10 +2,11 @@
 
 use super::models::SplitMix;
 use super::{RandomModel, alternatives, pool, run};
+use crate::order_rules::OrderRules;
 use crate::sequence::exhaustive::permutations;
 use crate::sequence::heuristics::{candidates, complete};
 use crate::sequence::remainder::{Remainder, SpanningTrees, SubsetTable};
-use crate::sequence::{OrderRules, PairTable, SearchEnd, SearchSettings, exhaustive};
+use crate::sequence::{PairTable, SearchEnd, SearchSettings, exhaustive};
 use crate::stop::StopSignal;
 
 /// Any rules at all, feasible or not.

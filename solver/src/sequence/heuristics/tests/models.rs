@@ -1,9 +1,10 @@
 //! Costs of orders in place of slews.
 
+use crate::order_rules::OrderRules;
 use crate::random::SplitMix;
 use crate::sequence::heuristics::cost::OrderCost;
 use crate::sequence::tests::unit;
-use crate::sequence::{Evaluation, OrderRules, Place, TourEvaluation, TourModel};
+use crate::sequence::{Evaluation, Place, TourEvaluation, TourModel};
 
 /// What a cost is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! The database: all SQL of the program, and nothing else.
 //!
-//! One connection writes, a few read. Every write transaction begins IMMEDIATE, so that it never
-//! finds out at its end that somebody else wrote meanwhile; no transaction is open while anything
-//! is computed or sent.
+//! One connection writes, a few read, one folds the write-ahead log. Every write transaction begins
+//! IMMEDIATE, so that it never finds out at its end that somebody else wrote meanwhile; no
+//! transaction is open while anything is computed or sent.
 
 mod backup;
 mod claims;
@@ -34,6 +34,7 @@ pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
 pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
+use folding::Folding;
 use recent::Recent;
 use sqlx::Connection as _;
 use sqlx::sqlite::{
@@ -63,6 +64,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 pub(crate) struct Store {
     writer: SqlitePool,
     readers: SqlitePool,
+    folder: SqlitePool,
     alarm: Alarm,
     /// Told after every commit.
     written: Arc<Notify>,
@@ -132,17 +134,19 @@ impl Store {
             .await?;
         check_version(&writer).await?;
         MIGRATOR.run(&writer).await?;
+        let folding = Folding::new(options.clone(), writer.clone());
+        let folder = folding.own();
         let readers = SqlitePoolOptions::new()
             .max_connections(READERS)
             .acquire_timeout(PATIENCE)
             .connect_with(options.read_only(true).create_if_missing(false))
             .await?;
         let (alarm, written) = (Alarm::default(), Arc::default());
-        let folded = folding::keep_small(writer.clone(), alarm.clone(), Arc::clone(&written));
-        tokio::spawn(folded);
+        tokio::spawn(folding.keep_small(alarm.clone(), Arc::clone(&written)));
         Ok(Self {
             writer,
             readers,
+            folder,
             alarm,
             written,
             recent: Recent::default(),
@@ -153,6 +157,7 @@ impl Store {
     /// Closes all connections, which folds the write-ahead log into the database.
     pub(crate) async fn close(&self) {
         self.readers.close().await;
+        self.folder.close().await;
         self.writer.close().await;
     }
 

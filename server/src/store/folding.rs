@@ -5,42 +5,97 @@
 
 use super::StoreError;
 use super::writing::Alarm;
-use sqlx::sqlite::{SqliteConnection, SqlitePool};
+use sqlx::sqlite::{SqliteConnectOptions, SqlitePool, SqlitePoolOptions};
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::Notify;
 
-/// Pages in the log from which on it is folded, as many as SQLite's own choice: some 4 MB.
-const PAGES: i64 = 1000;
+/// Pages by which the log grows before it is folded, as many as SQLite's own choice: some 4 MB.
+const STEP: i64 = 1000;
+/// Pages in the log from which on writers wait, so that it can begin anew.
+const LONG: i64 = 2 * STEP;
+/// Longest wait for readers before the log begins anew, while nobody can write. Who reads longer
+/// makes a copy; then the log grows until that is finished.
+const READERS: Duration = Duration::from_millis(20);
 
-/// Folds the log whenever it has grown, until the database is closed.
-///
-/// On the connection that writes, whose queue is fair: who writes more than can be folded waits.
-pub(super) async fn keep_small(writer: SqlitePool, alarm: Alarm, written: Arc<Notify>) {
-    loop {
-        match writer.acquire().await {
-            Ok(mut connection) => {
-                if let Err(error) = fold(&mut connection).await {
+/// Folds the log on a connection of its own, beside those who write and read.
+#[derive(Debug)]
+pub(super) struct Folding {
+    /// One connection.
+    own: SqlitePool,
+    writer: SqlitePool,
+    /// Pages in the log when it was last folded.
+    folded_at: i64,
+}
+
+impl Folding {
+    /// Folding for a database that this writer writes.
+    pub(super) fn new(options: SqliteConnectOptions, writer: SqlitePool) -> Self {
+        let own = SqlitePoolOptions::new()
+            .max_connections(1)
+            .connect_lazy_with(options.busy_timeout(READERS));
+        Self {
+            own,
+            writer,
+            folded_at: 0,
+        }
+    }
+
+    /// The connection, to be closed with the database.
+    pub(super) fn own(&self) -> SqlitePool {
+        self.own.clone()
+    }
+
+    /// Folds the log whenever it has grown, until the database is closed.
+    pub(super) async fn keep_small(mut self, alarm: Alarm, written: Arc<Notify>) {
+        loop {
+            match self.fold().await {
+                Ok(()) => {}
+                Err(StoreError::Database(sqlx::Error::PoolClosed)) => return,
+                Err(error) => {
                     let error = alarm.heed(error);
                     // The log keeps everything, and the next write tries again.
                     tracing::warn!(%error, "the log is not folded into the database");
                 }
             }
-            Err(sqlx::Error::PoolClosed) => return,
-            Err(error) => tracing::debug!(%error, "the log is folded later"),
+            // A notification that came meanwhile is kept.
+            written.notified().await;
         }
-        // A notification that came meanwhile is kept.
-        written.notified().await;
+    }
+
+    async fn fold(&mut self) -> Result<(), StoreError> {
+        let Log { pages, .. } = self.checkpoint("PRAGMA wal_checkpoint(NOOP)").await?;
+        if pages < self.folded_at {
+            // It has begun anew.
+            self.folded_at = 0;
+        }
+        if pages < self.folded_at + STEP {
+            return Ok(());
+        }
+        // Most of the work, while others write.
+        let log = self.checkpoint("PRAGMA wal_checkpoint(PASSIVE)").await?;
+        // As long as others write, there is always something left, and the log never begins anew.
+        // The queue for the writer is fair: who writes more than can be folded waits. Nobody waits
+        // while a copy is made, which keeps more from being folded than was written just now.
+        if log.pages >= LONG && log.pages - log.folded < STEP {
+            let _turn = self.writer.acquire().await?;
+            self.checkpoint("PRAGMA wal_checkpoint(RESTART)").await?;
+        }
+        // After a failure too little is remembered, so that the next write tries again.
+        self.folded_at = log.pages;
+        Ok(())
+    }
+
+    /// The log after some kind of folding, which readers may keep from being complete.
+    async fn checkpoint(&self, kind: &'static str) -> Result<Log, StoreError> {
+        let (_, pages, folded): (i64, i64, i64) = sqlx::query_as(kind).fetch_one(&self.own).await?;
+        Ok(Log { pages, folded })
     }
 }
 
-async fn fold(connection: &mut SqliteConnection) -> Result<(), StoreError> {
-    // Asks only: whether somebody else folds, pages in the log, and those of them already folded.
-    let look = "PRAGMA wal_checkpoint(NOOP)";
-    let (_, pages, _): (i64, i64, i64) = sqlx::query_as(look).fetch_one(&mut *connection).await?;
-    if pages >= PAGES {
-        sqlx::query("PRAGMA wal_checkpoint(PASSIVE)")
-            .execute(connection)
-            .await?;
-    }
-    Ok(())
+/// How long the log is, pages.
+struct Log {
+    pages: i64,
+    /// Those of them that are in the database.
+    folded: i64,
 }

@@ -220,7 +220,7 @@ def hostile_bodies_are_cheap_to_refuse(scale):
     cases = hostile_bodies()
     if scale.short:
         cases = cases[::4]
-    wrong, slow, no_pointer, worst_memory = [], [], [], 0
+    wrong, slow, no_pointer, extra = [], [], [], {}
     with service(scale.database("h7")) as running:
         for _ in range(20):
             exchange(running, post(json.dumps(fixture("olivares-c")).encode(), "/v1/plans?validate_only=true"))
@@ -230,7 +230,7 @@ def hostile_bodies_are_cheap_to_refuse(scale):
             # The highest mark begins anew at what there is now.
             Path(f"/proc/{process}/clear_refs").write_text("5")
             took, answer = timed(lambda: exchange(running, request))
-            worst_memory = max(worst_memory, resident_kib(process, "VmHWM") - before)
+            extra[name] = resident_kib(process, "VmHWM") - before
             status = int(answer[9:12]) if answer.startswith(b"HTTP/1.1 ") else 0
             if status not in statuses:
                 wrong.append(f"{name}: {status}")
@@ -240,10 +240,11 @@ def hostile_bodies_are_cheap_to_refuse(scale):
                 no_pointer.append(name)
     for line in wrong + slow + no_pointer:
         print(f"    {line}")
+    worst = max(extra, key=extra.get)
     return [
         Row("H7", f"hostile bodies not refused, of {len(cases)}", str(len(wrong)), "0", not wrong),
         Row("H7", "without a JSON pointer", str(len(no_pointer)), "0", not no_pointer),
         Row("H7", "slower than 50 ms", str(len(slow)), "0", not slow, timed=True),
-        Row("H7", "extra memory for one of them, most", f"{worst_memory / 1024:.1f} MB", "8 MB", worst_memory <= 8 * 1024),
+        Row("H7", f"extra memory for one of them, most ({worst})", f"{extra[worst] / 1024:.1f} MB", "8 MB", extra[worst] <= 8 * 1024),
     ]
 

@@ -1,6 +1,8 @@
 //! A JSON document as a tree that keeps what `serde_json::Value` would drop: the order of the
 //! members and duplicate keys.
 
+mod numbers;
+
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use slewplan_solver::problem::{Code, Problem};
@@ -58,6 +60,7 @@ fn shortened(text: &str) -> String {
 pub(crate) fn parse(bytes: &[u8]) -> Result<Node, Problem> {
     // A byte order mark is no part of JSON, but some editors write one.
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    numbers::check(text)?;
     serde_json::from_slice(text).map_err(|error| malformed(text, &error))
 }
 
@@ -74,10 +77,10 @@ fn malformed(text: &[u8], error: &serde_json::Error) -> Problem {
 }
 
 fn malformed_hint(text: &[u8], error: &serde_json::Error, what: &str) -> &'static str {
+    // As bytes: what is no text would take three times its size to become one.
     let line = text
         .split(|byte| *byte == b'\n')
         .nth(error.line().saturating_sub(1))
-        .map(String::from_utf8_lossy)
         .unwrap_or_default();
     if text.iter().all(u8::is_ascii_whitespace) {
         "the document is empty; write one JSON object"
@@ -91,12 +94,16 @@ fn malformed_hint(text: &[u8], error: &serde_json::Error, what: &str) -> &'stati
         "remove the comma before the closing bracket"
     } else if ["NaN", "nan", "Inf", "inf"]
         .iter()
-        .any(|word| line.contains(word))
+        .any(|word| contains(line, word.as_bytes()))
     {
         "JSON has no NaN and no infinity; write a finite number, or null where no limit is meant"
     } else {
         "correct the JSON syntax there"
     }
+}
+
+fn contains(line: &[u8], word: &[u8]) -> bool {
+    line.windows(word.len()).any(|part| part == word)
 }
 
 impl Node {

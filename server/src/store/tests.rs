@@ -1,6 +1,8 @@
 //! What a claim that was lost must not do, what is kept for its successor, and what failures of
 //! the disk must not do.
 
+mod fence;
+mod queue;
 mod races;
 
 use super::{
@@ -44,17 +46,23 @@ fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
     }
 }
 
-async fn submitted(store: &Store) {
-    let submission = Submission {
+fn submission() -> Submission {
+    Submission {
         id: ID.into(),
         name: None,
         scenario: b"{}".into(),
         targets: 1,
         client: None,
         key: None,
-    };
+    }
+}
+
+async fn submitted(store: &Store) {
     let limits = QueueLimits { all: 1, client: 1 };
-    let queued = store.submit(&submission, limits, 1).await.expect("stored");
+    let queued = store
+        .submit(&submission(), limits, 1)
+        .await
+        .expect("stored");
     assert!(matches!(queued, Submitted::New(_)));
 }
 
@@ -169,6 +177,22 @@ fn what_was_solved_is_there_for_the_next_attempt_and_gone_after_the_last() {
         assert_eq!(store.forget_segments(9).await.expect("done"), 1);
         let left = store.segments(second.sequence).await;
         assert_eq!(left.expect("read"), []);
+    });
+}
+
+/// That this setting has the effect, a test with a recorded disk shows.
+#[test]
+fn every_connection_that_writes_waits_for_the_disk_with_its_commits() {
+    on_a_store(|store| async move {
+        const FULL: i64 = 2;
+        for _ in 0..2 {
+            let mut writer = store.writer.acquire().await.expect("a connection");
+            let setting = sqlx::query_scalar::<_, i64>("PRAGMA synchronous");
+            let setting = setting.fetch_one(&mut *writer).await.expect("read");
+            assert_eq!(setting, FULL);
+            // The next one is new, as after a failure.
+            writer.close().await.expect("closed");
+        }
     });
 }
 

@@ -1,0 +1,60 @@
+//! How many jobs may wait.
+
+use super::{claim, on_a_store, submission};
+use crate::store::{QueueLimits, Store, Submission, Submitted};
+
+/// What became of the submission of a job of this number.
+async fn submit(store: &Store, number: u8, client: &str, limits: QueueLimits) -> Submitted {
+    let job = Submission {
+        id: format!("00000000-0000-7000-8000-0000000000{number:02}"),
+        client: Some(client.into()),
+        ..submission()
+    };
+    store.submit(&job, limits, 1).await.expect("answered")
+}
+
+#[test]
+fn a_queue_takes_exactly_as_many_as_may_wait() {
+    let limits = QueueLimits { all: 3, client: 9 };
+    on_a_store(|store| async move {
+        for number in 0..3 {
+            let answer = submit(&store, number, "a", limits).await;
+            assert!(matches!(answer, Submitted::New(_)), "{number}: {answer:?}");
+        }
+        for number in 3..5 {
+            let answer = submit(&store, number, "b", limits).await;
+            assert!(matches!(answer, Submitted::QueueFull), "{answer:?}");
+        }
+        // A job that runs waits no longer.
+        claim(&store, "worker").await;
+        let answer = submit(&store, 5, "b", limits).await;
+        assert!(matches!(answer, Submitted::New(_)), "{answer:?}");
+        let answer = submit(&store, 6, "b", limits).await;
+        assert!(matches!(answer, Submitted::QueueFull), "{answer:?}");
+        assert_eq!(store.waiting().await.expect("counted"), 3);
+    });
+}
+
+#[test]
+fn a_client_at_its_limit_leaves_room_for_others() {
+    let limits = QueueLimits { all: 9, client: 2 };
+    on_a_store(|store| async move {
+        for number in 0..2 {
+            let answer = submit(&store, number, "a", limits).await;
+            assert!(matches!(answer, Submitted::New(_)), "{number}: {answer:?}");
+        }
+        let answer = submit(&store, 2, "a", limits).await;
+        assert!(matches!(answer, Submitted::QuotaExceeded), "{answer:?}");
+        let answer = submit(&store, 3, "b", limits).await;
+        assert!(matches!(answer, Submitted::New(_)), "{answer:?}");
+    });
+}
+
+#[test]
+fn a_queue_without_room_takes_nothing() {
+    on_a_store(|store| async move {
+        let answer = submit(&store, 0, "a", QueueLimits { all: 0, client: 9 }).await;
+        assert!(matches!(answer, Submitted::QueueFull), "{answer:?}");
+        assert_eq!(store.waiting().await.expect("counted"), 0);
+    });
+}

@@ -4,6 +4,7 @@ import math
 import random
 import re
 import signal
+import sqlite3
 import subprocess
 import threading
 import time
@@ -250,15 +251,62 @@ def a_one_shot_job_writes_everything_or_nothing(scale):
     return [Row("J11", f"torn or missing outputs (exit codes {text})", str(torn), "0", torn == 0 and allowed)]
 
 
+def record(database, job):
+    """Everything that is stored of a job."""
+    tables = ["SELECT * FROM jobs WHERE id = ?"]
+    tables += [
+        f"SELECT t.* FROM {name} t JOIN jobs j ON t.job = j.sequence WHERE j.id = ? ORDER BY t.rowid"
+        for name in ("incumbents", "results", "segments")
+    ]
+    tables.append("SELECT e.* FROM events e JOIN jobs j ON e.job = j.sequence WHERE j.id = ? ORDER BY e.id")
+    return [rows_of(database, query, job) for query in tables]
+
+
+def worker_that_slept(scale):
+    """A worker is stopped in the middle of a solve, another one takes its job, and it goes on: whether it
+    wrote nothing more, how long until it took the next job, and how often it was tried."""
+    database, random_state = scale.database("j3"), random.Random(3)
+    untouched, waits, rounds = 0, [], scale.of(10, 1)
+    with service(database) as running:
+        for number in range(rounds):
+            job = running.submit(long_running(number))
+            running.wait(job, lambda job: job["stage"] == "search")
+            time.sleep(random_state.uniform(0.0, 1.0))
+            after = running.submit(variant(number))
+            connection = sqlite3.connect(database, timeout=10.0, isolation_level=None)
+            # Nobody is stopped while he writes: that would be a lock that is never given back.
+            connection.execute("BEGIN IMMEDIATE")
+            running.process.send_signal(signal.SIGSTOP)
+            connection.execute(
+                "UPDATE jobs SET fence = fence + 1, attempt = attempt + 1, boot_id = 'another' WHERE id = ?", (job,)
+            )
+            connection.execute("COMMIT")
+            connection.close()
+            before = record(database, job)
+            begin = time.monotonic()
+            running.process.send_signal(signal.SIGCONT)
+            running.wait_end(after)
+            waits.append(time.monotonic() - begin)
+            untouched += record(database, job) == before
+            running.request("DELETE", f"/v1/plans/{job}")
+    return untouched, max(waits), rounds
+
+
 @gate("J3")
 def one_end_per_job(scale):
-    """Two processes that both take themselves for the owner of a job end it at the same time."""
+    """Two processes that both take themselves for the owner of a job end it at the same time; and one that
+    has lost its job without having noticed."""
     count = scale.of(1000, 40)
     told = unit_test("a_job_that_two_workers_end_has_one_end", SLEWPLAN_RACES=count)
     won = re.search(r"(\d+) races, (\d+) won by the rescuer", told)
     measured = f"{won[2]} rescued" if won else "failed"
     holds = bool(won) and int(won[1]) == count and 0 < int(won[2]) < count
-    return [Row("J3", f"races with other than one end, of {count} ({measured})", "0" if won else "some", "0", holds)]
+    untouched, wait, rounds = worker_that_slept(scale)
+    return [
+        Row("J3", f"races with other than one end, of {count} ({measured})", "0" if won else "some", "0", holds),
+        Row("J3", f"jobs to which a worker wrote that had lost them, of {rounds}", str(rounds - untouched), "0", untouched == rounds),
+        Row("J3", "until it does the next job, slowest", f"{wait:.1f} s", "15 s", wait <= 15.0, timed=True),
+    ]
 
 
 @gate("H9")

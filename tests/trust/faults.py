@@ -5,9 +5,7 @@ import os
 import random
 import re
 import shutil
-import statistics
 import subprocess
-import time
 from pathlib import Path
 
 from harness import ROOT, Row, exchange, fixture, gate, long_running, resident_kib, rows_of, service, strip, variant
@@ -135,56 +133,4 @@ def poison_ends_dead(scale):
     return [
         Row("J4", f"a job that aborts its process ends {state} after attempts", str(attempts), "3", state == "dead" and attempts == 3),
         Row("J4", f"starts until the job behind it has {end}", str(starts), "4", starts == 4 and end == "succeeded"),
-    ]
-
-
-def processor_s(pid):
-    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-@gate("J5")
-def rescued_work_is_reused(scale):
-    """Killed at half of its processor time, a job needs less for its second attempt."""
-    shares, same, rounds = [], 0, scale.of(20, 1)
-    for number in range(rounds):
-        scenario = strip(scale.of(18, 14), 0.01 * number)
-
-        def finish(running, job):
-            running.wait_end(job, patience=600.0)
-            plan = running.request("GET", f"/v1/plans/{job}/result")[1]
-            plan.pop("statistics")
-            return processor_s(running.process.pid), plan
-
-        def uninterrupted(name):
-            with service(scale.database(f"j5-{name}-{number}")) as running:
-                return finish(running, running.submit(scenario))
-
-        before, plan = uninterrupted("before")
-        database = scale.database(f"j5-{number}")
-        with service(database) as running:
-            job = running.submit(scenario)
-            while processor_s(running.process.pid) < 0.5 * before:
-                time.sleep(0.01)
-            running.kill()
-        with service(database) as running:
-            second, again = finish(running, job)
-        # The same work takes a tenth more or less of the processor's time from one moment to the next.
-        after, _ = uninterrupted("after")
-        shares.append(2.0 * second / (before + after))
-        same += again == plan
-    worst = max(shares)
-    database = scale.database("j5-legs")
-    with service(database) as running:
-        job = running.submit(long_running())
-        running.wait(job, lambda job: job["stage"] == "search")
-        running.kill()
-    with service(database) as running:
-        running.wait(job, lambda job: job["attempt"] == 2 and job["stage"] == "search")
-        figures = running.request("GET", "/metrics")[1].decode()
-        misses = int(next(line.split()[-1] for line in figures.splitlines() if 'outcome="miss"' in line))
-    return [
-        Row("J5", "legs solved again after a kill during the search", str(misses), "0", misses == 0),
-        Row("J5", f"processor time of the second attempt, of a cold one, most (median {100 * statistics.median(shares):.0f} %)", f"{100 * worst:.0f} %", "60 %", worst <= 0.6),
-        Row("J5", f"plans equal to those never interrupted, of {rounds}", str(same), str(rounds), same == rounds),
     ]

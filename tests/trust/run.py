@@ -23,6 +23,7 @@ import generated  # noqa: F401
 import jobs  # noqa: F401
 import load  # noqa: F401
 import power  # noqa: F401
+import resumed  # noqa: F401
 import safety  # noqa: F401
 import web  # noqa: F401
 from harness import GATES, Row, Scale

@@ -50,6 +50,8 @@ def killed(database, scenario, half):
     with service(database) as running:
         job = running.submit(scenario)
         while kept(database) < half:
+            if running.job(job)["finished_at"] is not None:
+                raise RuntimeError(f"job {job} ended before half of it was kept")
             time.sleep(0.01)
         spent = processor_s(running.process.pid)
         running.kill()
@@ -116,18 +118,19 @@ def rescued_work_is_reused(scale):
         for part in scale.work.glob("j5-*"):
             part.unlink()
 
-    def row(promise, shares, judged=True, timed=True):
+    def row(promise, shares, judged=False):
         worst, median = 100 * max(shares), 100 * statistics.median(shares)
         holds = worst <= 60.0 if judged else None
-        return Row("J5", f"{promise}, most of {len(shares)} (median {median:.0f} %)", f"{worst:.0f} %", "60 %", holds, timed)
+        return Row("J5", f"{promise}, most of {len(shares)} (median {median:.0f} %)", f"{worst:.0f} %", "60 %", holds, timed=True)
 
     misses = legs_solved_again(scale)
     return [
         Row("J5", "legs solved again after a kill during the search", str(misses), "0", misses == 0),
-        row("programs of the second attempt", programs, timed=False),
-        row("processor time of the second attempt, least of 3", least),
+        row("processor time of the second attempt, least of 3", least, judged=True),
         # With what the neighbours of the machine add: shown, so that the difference is no secret.
-        row("each time, of the mean of 3 cold ones", every, judged=False),
+        row("each time, of the mean of 3 cold ones", every),
+        # The same every time, but early programs are short ones: their number is not the work.
+        row("programs of the second attempt", programs),
         Row("J5", f"processor time until the kill, least (median {100 * statistics.median(firsts):.0f} %)", f"{100 * min(firsts):.0f} %", "-", None),
         Row("J5", f"plans equal to those never interrupted, of {plans}", str(same), str(plans), same == plans),
     ]

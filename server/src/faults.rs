@@ -34,6 +34,15 @@ pub(crate) fn strike(name: Option<&str>, pool: &SolverPool, stop: &StopSignal) {
     }
 }
 
+/// Fails when the search is over, with whatever plans it has found.
+///
+/// # Panics
+///
+/// For scenarios of the name `fault:late`.
+pub(crate) fn strike_late(name: Option<&str>) {
+    assert!(name != Some("fault:late"), "a late fault on purpose");
+}
+
 struct FailsToDrop;
 
 impl Drop for FailsToDrop {

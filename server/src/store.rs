@@ -6,6 +6,7 @@
 
 mod backup;
 mod claims;
+mod ends;
 mod error;
 mod events;
 mod folding;
@@ -24,13 +25,14 @@ mod writing;
 
 pub(crate) use backup::backup;
 pub(crate) use claims::Claim;
+pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
 pub(crate) use events::EventRow;
 pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey};
 pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
 pub(crate) use results::{NewIncumbent, ResultRow};
-pub(crate) use rows::{Counts, Ended, JobRow, JobState, ProgressRow};
+pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow};
 pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 

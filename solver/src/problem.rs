@@ -213,6 +213,12 @@ codes! {
     SlewNotSolved = "slew_not_solved",
         "Check that the wheels can hold the stored momentum along the way, or relax the conditions \
          at the ends.";
+    /// The solve was stopped, by its time limit or on request, before there was a first plan.
+    StoppedWithoutPlan = "stopped_without_plan",
+        "Allow more time, or plan fewer targets at once.";
+    /// The solve needed more memory than a job of the service may take before there was a first plan.
+    MemoryLimit = "memory_limit",
+        "Plan fewer targets at once, or raise --job-memory of the service.";
     /// The finished plan failed its independent verification.
     VerificationFailed = "verification_failed",
         "Report it with the scenario: the plan is not one to fly.";

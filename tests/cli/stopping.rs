@@ -103,7 +103,10 @@ fn a_node_limit_ends_with_the_best_so_far() {
 fn a_time_limit_that_allows_nothing_is_a_failure_with_its_reason() {
     let path = fixture("olivares-c.json");
     let ended = slewplan(&["solve", &path, "--time-limit", "1e-6"]).expect_code(1);
-    assert_eq!(ended.json()["status"], "failed");
+    let plan = ended.json();
+    assert_eq!(plan["status"], "failed");
+    assert_eq!(plan["reasons"][0]["pointer"], "/options/time_limit_s");
+    assert_eq!(plan["reasons"][0]["code"], "stopped_without_plan");
     assert!(
         ended.stderr.contains("stopped before a first plan"),
         "{ended:?}"

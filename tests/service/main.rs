@@ -7,6 +7,8 @@ mod durability;
 mod events;
 mod examples;
 mod export;
+#[cfg(feature = "faults")]
+mod faults;
 mod health;
 mod idempotency;
 mod imports;

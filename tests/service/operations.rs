@@ -76,6 +76,8 @@ fn the_index_of_errors_is_where_problems_point_to() {
         "queue_full",
         "input-momentum_exceeds_envelope",
         "input-leg_refused",
+        "input-stopped_without_plan",
+        "end-process_died",
     ] {
         assert!(index.contains(&format!("id=\"{anchor}\"")), "{anchor}");
     }

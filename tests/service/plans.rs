@@ -104,6 +104,23 @@ fn an_impossible_scenario_ends_infeasible_with_its_reasons() {
 }
 
 #[test]
+fn a_time_limit_that_allows_nothing_is_a_failure_with_its_reason() {
+    let service = Service::start();
+    let mut scenario = small();
+    scenario["options"] = json!({"time_limit_s": 1e-6});
+    let id = service.submit(&scenario);
+    let job = service.wait_end(&id);
+    assert_eq!(
+        (&job["state"], &job["code"]),
+        (&json!("failed"), &json!("stopped_without_plan"))
+    );
+    let plan = service.get(&format!("/v1/plans/{id}/result")).expect(200);
+    let reason = &plan.json()["reasons"][0];
+    assert_eq!(reason["code"], "stopped_without_plan");
+    assert_eq!(reason["pointer"], "/options/time_limit_s");
+}
+
+#[test]
 fn a_list_is_filtered_and_paged() {
     let service = Service::start();
     let ids: Vec<String> = (0..3)

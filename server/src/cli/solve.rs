@@ -9,6 +9,7 @@ use crate::progress::{self, ProgressMode};
 use crate::report;
 use crate::signals::{self, Received};
 use crate::wire;
+use crate::wire::plan::Interruption;
 use slewplan_solver::legs::{LegStore, NoStore};
 use slewplan_solver::plan::{Optimality, Outcome};
 use slewplan_solver::planner::{self, Run};
@@ -174,7 +175,10 @@ impl Outlets {
         if let Some((destination, form)) = &self.plan {
             match (form, outcome) {
                 (PlanForm::Json, _) => {
-                    destination.write(&output::json(&wire::plan::document(outcome, doubts))?)?;
+                    // After a signal nothing is written.
+                    let stopped = [Interruption::TimeLimit.reason()];
+                    let document = wire::plan::document(outcome, &stopped, doubts);
+                    destination.write(&output::json(&document)?)?;
                 }
                 (PlanForm::Export(format), Outcome::Planned(plan)) => {
                     let flight = (scenario, &plan.flight);

@@ -1,6 +1,5 @@
 //! What a job may take of the memory, watched while it runs.
 
-use crate::store::{Ended, JobState};
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,20 +40,10 @@ impl MemoryGuard {
         }
     }
 
-    /// The end of the solve: without a plan, it is the memory that was missing.
-    pub(super) fn judge(&self, ended: Ended) -> Ended {
-        if ended.state != JobState::Failed || !self.exceeded.load(Ordering::SeqCst) {
-            return ended;
-        }
-        let limit_mib = self.limit >> 20;
-        Ended {
-            cause: "memory_limit",
-            detail: Some(format!(
-                "the solve needed more than {limit_mib} MiB of memory before there was a plan; ask \
-                 for fewer targets"
-            )),
-            ..ended
-        }
+    /// The limit, bytes, once the process has grown beyond it.
+    pub(super) fn exceeded(&self) -> Option<u64> {
+        let exceeded = self.exceeded.load(Ordering::SeqCst);
+        exceeded.then_some(self.limit)
     }
 }
 
@@ -100,8 +89,6 @@ mod tests {
             ballast.iter().map(|byte| usize::from(*byte)).sum::<usize>(),
             ballast.len()
         );
-        let failed = super::super::solve::broken;
-        assert_eq!(tight.judge(failed()).cause, "memory_limit");
-        assert_eq!(wide.judge(failed()).cause, "internal_error");
+        assert_eq!((tight.exceeded(), wide.exceeded()), (Some(16 << 20), None));
     }
 }

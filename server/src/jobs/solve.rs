@@ -1,8 +1,10 @@
 //! One job from its scenario to how it ended.
 
+use super::memory::MemoryGuard;
 use super::progress::Reporter;
-use crate::store::{Ended, JobState};
+use crate::store::{EndCode, Ended, JobState};
 use crate::wire;
+use crate::wire::plan::Interruption;
 use slewplan_solver::legs::{LegStore, SegmentStore};
 use slewplan_solver::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::planner::{self, Run};
@@ -11,6 +13,7 @@ use slewplan_solver::problem::Problem;
 use slewplan_solver::scenario::Validated;
 use slewplan_solver::stop::{StopReason, StopSignal};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::slice;
 
 /// What a job is solved with.
 pub(super) struct Means<'a> {
@@ -24,6 +27,20 @@ pub(super) struct Means<'a> {
     pub(super) legs: &'a dyn LegStore,
     /// What an earlier attempt has solved.
     pub(super) segments: &'a dyn SegmentStore,
+    /// Stops the solve when there is not enough of it.
+    pub(super) memory: &'a MemoryGuard,
+}
+
+impl Means<'_> {
+    /// What has stopped the solve.
+    fn interruption(&self) -> Interruption {
+        match self.memory.exceeded() {
+            Some(limit) => Interruption::Memory { limit },
+            // The time limit is not a request.
+            None if self.stop.is_set() => Interruption::Request,
+            None => Interruption::TimeLimit,
+        }
+    }
 }
 
 /// Solves a scenario as stored. A panic costs this job and no other.
@@ -35,7 +52,7 @@ pub(super) fn solve(scenario: &[u8], means: &Means<'_>) -> Ended {
 pub(super) fn broken() -> Ended {
     without_plan(
         JobState::Failed,
-        "internal_error",
+        Some(EndCode::Internal),
         "an internal error ended the solve; please report the scenario",
     )
 }
@@ -57,35 +74,38 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
         segments: means.segments,
     };
     let outcome = planner::solve(&scenario, run);
+    #[cfg(feature = "faults")]
+    crate::faults::strike_late(scenario.name());
     if run.stop.reason() == Some(StopReason::Cancelled) {
-        return without_plan(JobState::Cancelled, "cancelled", "abandoned on request");
+        return without_plan(JobState::Cancelled, None, "abandoned on request");
     }
-    match serde_json::to_vec(&wire::plan::document(&outcome, &warnings)) {
+    let stopped = means.interruption().reason();
+    let document = wire::plan::document(&outcome, slice::from_ref(&stopped), &warnings);
+    match serde_json::to_vec(&document) {
         Ok(document) => Ended {
             document: Some(document),
-            ..described(&outcome)
+            ..described(&outcome, &stopped)
         },
         Err(error) => without_plan(
             JobState::Failed,
-            "internal_error",
+            Some(EndCode::Internal),
             &format!("the plan cannot be written: {error}"),
         ),
     }
 }
 
-fn described(outcome: &Outcome) -> Ended {
+fn described(outcome: &Outcome, stopped: &Problem) -> Ended {
     match outcome {
         Outcome::Planned(plan) => planned(plan),
         Outcome::Infeasible(reasons) => refused(JobState::Infeasible, reasons),
         Outcome::Failed(reasons) => refused(JobState::Failed, reasons),
-        Outcome::StoppedEmpty => Ended {
-            early: true,
-            ..without_plan(
-                JobState::Failed,
-                "stopped_without_plan",
-                "stopped before a first plan was found",
-            )
-        },
+        Outcome::StoppedEmpty => {
+            let code = Some(EndCode::Problem(stopped.code));
+            Ended {
+                early: true,
+                ..without_plan(JobState::Failed, code, &stopped.message)
+            }
+        }
     }
 }
 
@@ -99,28 +119,26 @@ fn planned(plan: &Plan) -> Ended {
         incumbent_s: Some(plan.total_time_s),
         lower_bound_s: Some(plan.lower_bound_s),
         detail: None,
-        cause: "",
+        code: None,
         early: plan.optimality == Optimality::Feasible,
     }
 }
 
-fn without_plan(state: JobState, cause: &'static str, detail: &str) -> Ended {
+fn without_plan(state: JobState, code: Option<EndCode>, detail: &str) -> Ended {
     Ended {
         state,
         document: None,
         incumbent_s: None,
         lower_bound_s: None,
         detail: Some(detail.to_owned()),
-        cause,
+        code,
         early: false,
     }
 }
 
 fn refused(state: JobState, problems: &[Problem]) -> Ended {
-    let cause = problems
-        .first()
-        .map_or("unknown", |first| first.code.as_str());
-    without_plan(state, cause, &sentence(problems))
+    let first = problems.first().map(|first| EndCode::Problem(first.code));
+    without_plan(state, first, &sentence(problems))
 }
 
 fn sentence(problems: &[Problem]) -> String {

@@ -1,7 +1,7 @@
 //! What is known about the jobs that this process has worked on.
 
 use crate::figures::{Histogram, head, sample};
-use crate::store::{Ended, JobRow, JobState};
+use crate::store::{EndCode, Ended, JobRow, JobState};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -55,7 +55,8 @@ impl JobTally {
             counts.gaps.count(((total - bound) / total).max(0.0));
         }
         if matches!(ended.state, JobState::Failed | JobState::Infeasible) {
-            *counts.failures.entry(ended.cause).or_default() += 1;
+            let cause = ended.code.map_or("unknown", EndCode::as_str);
+            *counts.failures.entry(cause).or_default() += 1;
         }
     }
 

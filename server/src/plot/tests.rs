@@ -9,7 +9,7 @@ use slewplan_solver::scenario::Scenario;
 
 fn written() -> Vec<u8> {
     let outcome = Outcome::Planned(Box::new(sample::plan()));
-    serde_json::to_vec(&wire::plan::document(&outcome, &[])).unwrap()
+    serde_json::to_vec(&wire::plan::document(&outcome, &[], &[])).unwrap()
 }
 
 fn scenario() -> Scenario {

@@ -5,7 +5,7 @@
 
 use super::rows::job_columns;
 use super::{
-    Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
+    EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
 };
 use sqlx::query::Query;
 use sqlx::sqlite::SqliteArguments;
@@ -13,6 +13,18 @@ use sqlx::{Row, Sqlite, SqliteConnection};
 
 /// Attempts after which a job whose process dies each time is given up.
 const MOST_ATTEMPTS: i64 = 3;
+
+/// The bound of a job that is told of another one (`?5`, or none): it never falls, unless the plan
+/// of such a duration contradicts it.
+macro_rules! bound_beside {
+    ($incumbent:literal) => {
+        concat!(
+            "min(max(coalesce(lower_bound_s, ?5), coalesce(?5, lower_bound_s)), coalesce(",
+            $incumbent,
+            ", 9e999))"
+        )
+    };
+}
 
 /// A job that this process works on.
 #[derive(Debug)]
@@ -46,8 +58,8 @@ impl Store {
         let row = sqlx::query(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, \
              boot_id = ?, lease_until_us = ?, started_us = ?, stage = NULL, done = NULL, \
-             total = NULL, (incumbent_s, lower_bound_s) = \
-             (SELECT total_time_s, lower_bound_s FROM incumbents WHERE job = sequence) \
+             total = NULL, \
+             incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = sequence) \
              WHERE sequence = \
              (SELECT sequence FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1) \
              RETURNING scenario, ",
@@ -104,9 +116,9 @@ impl Store {
         let mut transaction = self.begin().await?;
         let update = sqlx::query(concat!(
             "UPDATE jobs SET stage = ?, done = ?, total = ?, \
-             incumbent_s = coalesce(min(incumbent_s, ?4), ?4, incumbent_s), \
-             lower_bound_s = coalesce(max(lower_bound_s, ?5), ?5, lower_bound_s) \
-             WHERE sequence = ?6 AND fence = ?7 AND state = 'running' RETURNING ",
+             incumbent_s = coalesce(min(incumbent_s, ?4), ?4, incumbent_s), lower_bound_s = ",
+            bound_beside!("min(incumbent_s, ?4), ?4, incumbent_s"),
+            " WHERE sequence = ?6 AND fence = ?7 AND state = 'running' RETURNING ",
             job_columns!()
         ))
         .bind(progress.stage)
@@ -129,7 +141,8 @@ impl Store {
     /// Records the end of a claim: state, result and event together; `false` when it has been lost.
     ///
     /// A cancellation that was acknowledged meanwhile wins. Of an end that came early, the better
-    /// plan of an earlier attempt is the result.
+    /// plan of an earlier attempt is the result. An end without a plan takes nothing away: the best
+    /// plan so far can be read as before.
     pub(crate) async fn finish(
         &self,
         claim: &JobRow,
@@ -144,26 +157,31 @@ impl Store {
         };
         let ended = kept.as_ref().unwrap_or(ended);
         let update = sqlx::query(concat!(
-            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN ? ELSE 'cancelled' \
-             END, incumbent_s = coalesce(?, incumbent_s), \
-             lower_bound_s = coalesce(?, lower_bound_s), detail = ?, finished_us = ?, \
-             boot_id = NULL, lease_until_us = NULL \
-             WHERE sequence = ? AND fence = ? AND state = 'running' RETURNING ",
+            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN ?1 \
+             ELSE 'cancelled' END, \
+             code = CASE WHEN cancel_requested_us IS NULL THEN ?2 END, detail = ?3, \
+             incumbent_s = coalesce(?4, incumbent_s), lower_bound_s = ",
+            bound_beside!("?4, incumbent_s"),
+            ", finished_us = ?6, boot_id = NULL, lease_until_us = NULL \
+             WHERE sequence = ?7 AND fence = ?8 AND state = 'running' RETURNING ",
             job_columns!()
         ))
         .bind(ended.state.as_str())
+        .bind(ended.code.map(EndCode::as_str))
+        .bind(&ended.detail)
         .bind(ended.incumbent_s)
         .bind(ended.lower_bound_s)
-        .bind(&ended.detail)
         .bind(now_us)
         .bind(claim.sequence)
         .bind(claim.fence);
         let Some(job) = changed(&mut transaction, update, "state", now_us).await? else {
             return Ok(false);
         };
-        let document = ended.document.as_ref();
-        let result = document.filter(|_| !matches!(job.state(), Ok(JobState::Cancelled)));
-        results::conclude(&mut transaction, claim.sequence, result.map(Vec::as_slice)).await?;
+        if job.state()? == JobState::Cancelled {
+            results::forget(&mut transaction, claim.sequence).await?;
+        } else {
+            results::conclude(&mut transaction, claim.sequence, ended).await?;
+        }
         transaction.commit().await?;
         Ok(true)
     }
@@ -199,6 +217,7 @@ impl Store {
              ELSE ?2 END, \
              detail = CASE WHEN cancel_requested_us IS NULL AND attempt >= ?1 THEN \
              'its process ended unexpectedly at every attempt' END, \
+             code = CASE WHEN cancel_requested_us IS NULL AND attempt >= ?1 THEN ?4 END, \
              boot_id = NULL, lease_until_us = NULL \
              WHERE state = 'running' AND (boot_id <> ?3 OR lease_until_us < ?2) RETURNING ",
             job_columns!()
@@ -206,6 +225,7 @@ impl Store {
         .bind(MOST_ATTEMPTS)
         .bind(now_us)
         .bind(boot_id)
+        .bind(EndCode::ProcessDied.as_str())
         .fetch_all(&mut *transaction)
         .await?;
         let mut recovered = Recovered::default();
@@ -213,7 +233,10 @@ impl Store {
             let job = JobRow::of(row)?;
             match job.state()? {
                 JobState::Queued => recovered.queued += 1,
-                JobState::Cancelled => recovered.cancelled += 1,
+                JobState::Cancelled => {
+                    recovered.cancelled += 1;
+                    results::forget(&mut transaction, job.sequence).await?;
+                }
                 _ => recovered.dead += 1,
             }
             events::append(&mut transaction, "state", &job, now_us).await?;

@@ -2,7 +2,7 @@
 
 use super::rows::job_columns;
 use super::writing::Writing;
-use super::{Counts, JobRow, JobState, Store, StoreError, events};
+use super::{Counts, JobRow, JobState, Store, StoreError, events, results};
 use sqlx::{FromRow, Row, SqliteConnection};
 
 /// A job to be queued.
@@ -156,7 +156,10 @@ impl Store {
         .fetch_optional(&mut *transaction)
         .await?;
         if let Some(row) = ended {
-            events::append(&mut transaction, "state", &JobRow::of(&row)?, now_us).await?;
+            let job = JobRow::of(&row)?;
+            events::append(&mut transaction, "state", &job, now_us).await?;
+            // It may have been begun before.
+            results::forget(&mut transaction, job.sequence).await?;
         }
         let note = "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
              WHERE id = ? AND state = 'running'";

@@ -1,4 +1,4 @@
-//! Plans: the best so far of jobs that go on, and those that jobs ended with.
+//! Plans: the best so far of jobs that go on or ended without one, and those that jobs ended with.
 //!
 //! The best so far is kept here rather than in memory: what was read once can be read again until
 //! something better replaces it, through a restart too. It is written together with the progress
@@ -81,29 +81,41 @@ pub(super) async fn better(
         incumbent_s: Some(total_time_s),
         lower_bound_s: Some(lower_bound_s),
         detail: None,
-        cause: "",
+        code: None,
         early: true,
     }))
 }
 
-/// Replaces the kept plan by the one that the job ends with in the same transaction, if any.
+/// Replaces the kept plan by the one that the job ends with in the same transaction. Reasons for
+/// which there is none replace no plan.
 pub(super) async fn conclude(
     connection: &mut SqliteConnection,
     job: i64,
-    document: Option<&[u8]>,
+    ended: &Ended,
 ) -> Result<(), StoreError> {
+    if ended.incumbent_s.is_some() {
+        forget(connection, job).await?;
+    }
+    if let Some(document) = &ended.document {
+        sqlx::query(
+            "INSERT INTO results (job, document, digest) SELECT ?1, ?2, ?3 \
+             WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = ?1)",
+        )
+        .bind(job)
+        .bind(document)
+        .bind(crate::digest::hex(document))
+        .execute(connection)
+        .await?;
+    }
+    Ok(())
+}
+
+/// Forgets the kept plan of a job that is abandoned, or ends with another.
+pub(super) async fn forget(connection: &mut SqliteConnection, job: i64) -> Result<(), StoreError> {
     sqlx::query("DELETE FROM incumbents WHERE job = ?")
         .bind(job)
-        .execute(&mut *connection)
+        .execute(connection)
         .await?;
-    if let Some(document) = document {
-        sqlx::query("INSERT INTO results (job, document, digest) VALUES (?, ?, ?)")
-            .bind(job)
-            .bind(document)
-            .bind(crate::digest::hex(document))
-            .execute(connection)
-            .await?;
-    }
     Ok(())
 }
 

@@ -94,8 +94,10 @@ pub(crate) struct JobRow {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
-    /// Why there is no plan.
+    /// Why it ended without a plan.
     pub(crate) detail: Option<String>,
+    /// The same as a stable code.
+    pub(crate) code: Option<String>,
     /// How often it has been begun.
     pub(crate) attempt: i64,
     /// Number of its newest claim.
@@ -116,7 +118,7 @@ pub(crate) struct JobRow {
 macro_rules! job_columns {
     () => {
         "sequence, id, state, name, targets, stage, done, total, incumbent_s, lower_bound_s, \
-         detail, attempt, fence, stop_requested_us, cancel_requested_us, submitted_us, \
+         detail, code, attempt, fence, stop_requested_us, cancel_requested_us, submitted_us, \
          started_us, finished_us"
     };
 }
@@ -146,25 +148,6 @@ pub(crate) struct ProgressRow {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
-}
-
-/// How a job ended.
-#[derive(Debug, Clone)]
-pub(crate) struct Ended {
-    /// One of the final states.
-    pub(crate) state: JobState,
-    /// The plan as JSON, when there is an answer.
-    pub(crate) document: Option<Vec<u8>>,
-    /// Duration of the plan, s.
-    pub(crate) incumbent_s: Option<f64>,
-    /// Lower bound on the duration, s.
-    pub(crate) lower_bound_s: Option<f64>,
-    /// Why there is no plan.
-    pub(crate) detail: Option<String>,
-    /// The same as a stable code; empty with a plan.
-    pub(crate) cause: &'static str,
-    /// Whether it ended before it was done: a better plan of an earlier attempt still counts.
-    pub(crate) early: bool,
 }
 
 /// Number of jobs in a state.

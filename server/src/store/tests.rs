@@ -1,6 +1,7 @@
 //! What a claim that was lost must not do, what is kept for its successor, and what failures of
 //! the disk must not do.
 
+mod ends;
 mod fence;
 mod queue;
 mod races;
@@ -41,7 +42,7 @@ fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
         lower_bound_s: plan.as_ref().map(|plan| plan.lower_bound_s),
         document: plan.map(|plan| plan.document),
         detail: None,
-        cause: "",
+        code: None,
         early: true,
     }
 }

@@ -26,8 +26,11 @@ pub(crate) struct JobDocument {
     stop_requested: bool,
     /// Whether the job was abandoned.
     cancel_requested: bool,
-    /// Why there is no plan.
+    /// Why the job ended without a plan of its own; the best plan before that can still be read.
     detail: Option<String>,
+    /// The same as a stable code of the error index: `memory_limit`, `internal_error` and
+    /// `process_died` among others.
+    code: Option<String>,
     /// When the job was submitted.
     #[schema(format = "date-time")]
     submitted_at: String,
@@ -94,6 +97,7 @@ impl JobDocument {
             stop_requested: job.stop_requested_us.is_some(),
             cancel_requested: job.cancel_requested_us.is_some(),
             detail: job.detail.clone(),
+            code: job.code.clone(),
             submitted_at: rfc3339(job.submitted_us),
             started_at: job.started_us.map(rfc3339),
             finished_at: job.finished_us.map(rfc3339),
@@ -114,8 +118,10 @@ pub(crate) struct EventDocument {
     state: JobState,
     #[serde(flatten)]
     standing: Standing,
-    /// Why there is no plan.
+    /// Why the job ended without a plan of its own.
     detail: Option<String>,
+    /// The same as a stable code of the error index.
+    code: Option<String>,
     /// Time since the begin of the attempt, s.
     elapsed_s: Option<Number>,
     /// When it happened.
@@ -134,6 +140,7 @@ impl EventDocument {
             state: job.state()?,
             standing: Standing::of(job),
             detail: job.detail.clone(),
+            code: job.code.clone(),
             elapsed_s: between(job.started_us, Some(now_us)),
             at: rfc3339(now_us),
         })

@@ -217,7 +217,7 @@ fn written(scenario: &Scenario) -> Vec<u8> {
             segments: &NoStore,
         },
     );
-    let document = serde_json::to_value(plan::document(&outcome, &[])).expect("a plan");
+    let document = serde_json::to_value(plan::document(&outcome, &[], &[])).expect("a plan");
     let parts = ["total_time_s", "sequence", "passages"].map(|name| (name, &document[name]));
     let controls = json!({"controls": &document["trajectory"]["controls"]});
     let flown: HashMap<_, _> = parts

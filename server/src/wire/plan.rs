@@ -7,9 +7,11 @@ use slewplan_solver::plan::{Alternative, Optimality, Outcome, Plan, State};
 use slewplan_solver::problem::Problem;
 use utoipa::ToSchema;
 
+mod interruption;
 mod parts;
 mod statistics;
 
+pub(crate) use interruption::Interruption;
 pub(crate) use parts::{
     ControlDocument, MarginsDocument, QuaternionDocument, StateDocument, VerificationDocument,
 };
@@ -65,13 +67,18 @@ impl<'a> From<&'a Alternative> for AlternativeDocument<'a> {
     }
 }
 
-/// The document of an outcome, with the doubts about its scenario.
-pub(crate) fn document<'a>(outcome: &'a Outcome, doubts: &'a [Problem]) -> PlanDocument<'a> {
+/// The document of an outcome, with the doubts about its scenario; `stopped` are the reasons of a
+/// solve that was stopped before there was a plan.
+pub(crate) fn document<'a>(
+    outcome: &'a Outcome,
+    stopped: &'a [Problem],
+    doubts: &'a [Problem],
+) -> PlanDocument<'a> {
     let mut document = match outcome {
         Outcome::Planned(found) => return plan(found, doubts),
         Outcome::Infeasible(reasons) => without_plan("infeasible", reasons),
         Outcome::Failed(reasons) => without_plan("failed", reasons),
-        Outcome::StoppedEmpty => without_plan("failed", &[]),
+        Outcome::StoppedEmpty => without_plan("failed", stopped),
     };
     document.warnings = documents(doubts);
     document
@@ -158,7 +165,7 @@ mod tests {
     use serde_json::Value;
 
     fn written(outcome: &Outcome) -> Value {
-        serde_json::to_value(document(outcome, &[])).unwrap()
+        serde_json::to_value(document(outcome, &[], &[])).unwrap()
     }
 
     #[test]
@@ -208,11 +215,35 @@ mod tests {
     }
 
     #[test]
+    fn a_solve_that_was_stopped_without_a_plan_says_what_stopped_it() {
+        let limit = 64 << 20;
+        for (interruption, code, pointer) in [
+            (
+                Interruption::TimeLimit,
+                "stopped_without_plan",
+                "/options/time_limit_s",
+            ),
+            (Interruption::Request, "stopped_without_plan", ""),
+            (Interruption::Memory { limit }, "memory_limit", "/targets"),
+        ] {
+            let reasons = [interruption.reason()];
+            let document = document(&Outcome::StoppedEmpty, &reasons, &[]);
+            let value = serde_json::to_value(document).unwrap();
+            assert_eq!(value["status"], "failed");
+            let reason = &value["reasons"][0];
+            assert_eq!(
+                (&reason["code"], &reason["pointer"]),
+                (&code.into(), &pointer.into())
+            );
+        }
+    }
+
+    #[test]
     fn numbers_that_are_not_finite_are_never_written() {
         let mut plan = sample::plan();
         plan.states[0].body_rate_rad_s.x = f64::NAN;
         let outcome = Outcome::Planned(Box::new(plan));
-        assert!(serde_json::to_string(&document(&outcome, &[])).is_err());
+        assert!(serde_json::to_string(&document(&outcome, &[], &[])).is_err());
     }
 
     #[test]
@@ -229,7 +260,7 @@ mod tests {
         plan.warnings = vec![at("/keep_out/0")];
         let doubts = [at("/start")];
         let outcome = Outcome::Planned(Box::new(plan));
-        let value = serde_json::to_value(document(&outcome, &doubts)).unwrap();
+        let value = serde_json::to_value(document(&outcome, &[], &doubts)).unwrap();
         assert_eq!(value["warnings"][0]["pointer"], "/start");
         assert_eq!(value["warnings"][1]["pointer"], "/keep_out/0");
     }

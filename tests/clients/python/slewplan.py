@@ -43,6 +43,7 @@ class Job(TypedDict):
     incumbent_s: NotRequired[float | None]
     lower_bound_s: NotRequired[float | None]
     detail: NotRequired[str | None]
+    code: NotRequired[str | None]
     submitted_at: str
 
 

@@ -24,6 +24,7 @@ export function result(job, plan, scenario, beside, signal) {
   return el(
     "div",
     { class: "result" },
+    job.detail ? el("p", { class: "quiet so-far" }, `The search ended without a plan of its own: ${job.detail}. The best before that:`) : null,
     isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
     order(plan, cursor),
     el("div", { class: "flight" }, sphere(flight, cursor, signal), timelines(flight, cursor, signal)),

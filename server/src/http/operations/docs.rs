@@ -2,6 +2,7 @@
 
 use super::super::error::ErrorCode;
 use super::super::router;
+use crate::store::EndCode;
 use axum::http::{HeaderName, header};
 use axum::response::Html;
 use slewplan_solver::problem::Code;
@@ -43,7 +44,8 @@ pub(in crate::http) async fn errors() -> Html<String> {
          <a href=\"#inputs\">Problems of inputs</a> are the <code>code</code> of an entry of \
          <code>errors</code>, <code>warnings</code>, <code>reasons</code> or <code>refused</code>, \
          and stand in brackets where a command lists them; each comes with a pointer to its place \
-         (RFC 6901), a message and a hint.</p>\
+         (RFC 6901), a message and a hint. The <code>code</code> of a job that ended without a plan \
+         is that of the first reason, or one of the <a href=\"#ends\">ends of jobs</a>.</p>\
          <h2 id=\"requests\">Errors of requests</h2>\
          <table><tr><th>Code<th>Status<th>Meaning<th>What to do"
     );
@@ -64,6 +66,17 @@ pub(in crate::http) async fn errors() -> Html<String> {
         let _ = write!(
             page,
             "<tr id=\"input-{code}\"><td><code>{code}</code><td>{meaning}<td>{remedy}"
+        );
+    }
+    page.push_str(
+        "</table><h2 id=\"ends\">Ends of jobs</h2>\
+         <table><tr><th>Code<th>Meaning<th>What to do",
+    );
+    for code in EndCode::OWN {
+        let (name, meaning, remedy) = (code.as_str(), code.meaning(), code.remedy());
+        let _ = write!(
+            page,
+            "<tr id=\"end-{name}\"><td><code>{name}</code><td>{meaning}<td>{remedy}"
         );
     }
     page.push_str("</table></html>\n");

@@ -99,7 +99,8 @@ impl Query {
 /// While a job goes on this is the best plan that it has found: complete, verified, `feasible`,
 /// with the bound of the moment when it was found (the job has the newest). Every better plan has
 /// another `ETag`, and so has the one that the job ends with. `Job-State` tells whether it has
-/// ended. After a restart of the service the best plan so far stays until there is a better one.
+/// ended. After a restart of the service the best plan so far stays until there is a better one,
+/// and so it does when the job ends without one (`failed`, `dead`): its `detail` and `code` say why.
 ///
 /// In the formats of other tools the flight is sampled; all choices but `format` are for these.
 #[utoipa::path(

@@ -1,0 +1,69 @@
+//! How jobs end.
+
+use super::JobState;
+use slewplan_solver::problem::Code;
+
+/// How a job ended.
+#[derive(Debug, Clone)]
+pub(crate) struct Ended {
+    /// One of the final states.
+    pub(crate) state: JobState,
+    /// The answer as JSON, when there is one: a plan, or why there is none.
+    pub(crate) document: Option<Vec<u8>>,
+    /// Duration of the plan, s; `None` without one.
+    pub(crate) incumbent_s: Option<f64>,
+    /// Lower bound on the duration, s.
+    pub(crate) lower_bound_s: Option<f64>,
+    /// Why it ended without a plan.
+    pub(crate) detail: Option<String>,
+    /// The same as a stable code.
+    pub(crate) code: Option<EndCode>,
+    /// Whether it ended before it was done: a better plan of an earlier attempt still counts.
+    pub(crate) early: bool,
+}
+
+/// Why a job ended without a plan, as a stable code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EndCode {
+    /// The scenario, or what the solver met with it.
+    Problem(Code),
+    /// An error of ours.
+    Internal,
+    /// The process ended at every attempt.
+    ProcessDied,
+}
+
+impl EndCode {
+    /// The codes that no input and no plan has, for the error index.
+    pub(crate) const OWN: [Self; 2] = [Self::Internal, Self::ProcessDied];
+
+    /// The stable text of the code.
+    pub(crate) const fn as_str(self) -> &'static str {
+        match self {
+            Self::Problem(code) => code.as_str(),
+            Self::Internal => "internal_error",
+            Self::ProcessDied => "process_died",
+        }
+    }
+
+    /// What it says about the job, as a sentence.
+    pub(crate) fn meaning(self) -> &'static str {
+        match self {
+            Self::Problem(code) => code.meaning(),
+            Self::Internal => "An error of the program ended the solve.",
+            Self::ProcessDied => "The process of the service ended unexpectedly at every attempt.",
+        }
+    }
+
+    /// What to do about it, as a sentence.
+    pub(crate) const fn remedy(self) -> &'static str {
+        match self {
+            Self::Problem(code) => code.remedy(),
+            Self::Internal => "Report it with the scenario.",
+            Self::ProcessDied => {
+                "Look into the logs of service and machine, at the memory first; report it with \
+                 the scenario."
+            }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! What the end of a job leaves: plans, bounds and codes.
+
+use super::{ID, claim, ended, improve, on_a_store, plan, result, submitted};
+use crate::store::{EndCode, Ended, JobRow, JobState, ProgressRow, Store};
+
+async fn job(store: &Store) -> JobRow {
+    let found = store.job(ID).await.expect("read");
+    found.expect("the job is there")
+}
+
+/// An end without a plan, with the reasons for that.
+fn failed() -> Ended {
+    Ended {
+        document: Some(b"{\"status\":\"failed\"}".into()),
+        detail: Some("why".into()),
+        code: Some(EndCode::Internal),
+        early: false,
+        ..ended(JobState::Failed, None)
+    }
+}
+
+/// Tells of a bound beside an incumbent.
+async fn bounded(store: &Store, claim: &JobRow, incumbent_s: f64, lower_bound_s: f64) {
+    let progress = ProgressRow {
+        stage: "search",
+        done: 1,
+        total: None,
+        incumbent_s: Some(incumbent_s),
+        lower_bound_s: Some(lower_bound_s),
+    };
+    let written = store.progress(claim, &progress, None, 3).await;
+    assert!(written.expect("tried"));
+}
+
+async fn kept_plans(store: &Store) -> i64 {
+    let count = sqlx::query_scalar("SELECT count(*) FROM incumbents");
+    count.fetch_one(&store.readers).await.expect("counted")
+}
+
+#[test]
+fn a_failure_takes_no_plan_away() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let claim = claim(&store, "first").await.job;
+        assert!(improve(&store, &claim, 20.0).await);
+        let before = result(&store).await.1.expect("a plan");
+        assert!(store.finish(&claim, &failed(), 4).await.expect("written"));
+        let (state, kept) = result(&store).await;
+        let kept = kept.expect("the plan is still there");
+        assert_eq!((state, kept.is_final), (JobState::Failed, false));
+        assert_eq!(kept.digest, before.digest);
+        let job = job(&store).await;
+        assert_eq!(job.incumbent_s, Some(20.0));
+        assert_eq!(job.code.as_deref(), Some("internal_error"));
+    });
+}
+
+#[test]
+fn without_a_plan_the_reasons_are_the_result() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let claim = claim(&store, "first").await.job;
+        assert!(store.finish(&claim, &failed(), 4).await.expect("written"));
+        let (state, reasons) = result(&store).await;
+        let reasons = reasons.expect("reasons");
+        assert_eq!((state, reasons.is_final), (JobState::Failed, true));
+        assert_eq!(reasons.document, failed().document.expect("reasons"));
+    });
+}
+
+#[test]
+fn a_bound_falls_neither_at_the_end_nor_with_another_attempt() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let first = claim(&store, "first").await.job;
+        assert!(improve(&store, &first, 20.0).await);
+        bounded(&store, &first, 20.0, 15.0).await;
+        store.recover("second", 4).await.expect("recovered");
+        let second = claim(&store, "second").await.job;
+        assert_eq!(second.lower_bound_s, Some(15.0));
+        bounded(&store, &second, 30.0, 11.0).await;
+        assert_eq!(job(&store).await.lower_bound_s, Some(15.0));
+        // Its own bound is 10.
+        let end = ended(JobState::Succeeded, Some(plan(18.0)));
+        assert!(store.finish(&second, &end, 6).await.expect("written"));
+        let job = job(&store).await;
+        let known = (job.incumbent_s, job.lower_bound_s);
+        assert_eq!(known, (Some(18.0), Some(15.0)));
+    });
+}
+
+#[test]
+fn no_bound_is_above_the_plan() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let claim = claim(&store, "first").await.job;
+        bounded(&store, &claim, 20.0, 21.0).await;
+        assert_eq!(job(&store).await.lower_bound_s, Some(20.0));
+        let end = ended(JobState::Stopped, Some(plan(12.0)));
+        assert!(store.finish(&claim, &end, 4).await.expect("written"));
+        assert_eq!(job(&store).await.lower_bound_s, Some(12.0));
+    });
+}
+
+#[test]
+fn a_job_without_a_bound_ends_without_one() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let claim = claim(&store, "first").await.job;
+        assert!(store.finish(&claim, &failed(), 4).await.expect("written"));
+        let job = job(&store).await;
+        assert_eq!((job.incumbent_s, job.lower_bound_s), (None, None));
+    });
+}
+
+#[test]
+fn a_job_that_is_given_up_keeps_its_plan_and_says_why() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        for (boot, next) in [("a", "b"), ("b", "c"), ("c", "d")] {
+            let claim = claim(&store, boot).await.job;
+            assert!(improve(&store, &claim, 20.0).await);
+            store.recover(next, 4).await.expect("recovered");
+        }
+        let (state, kept) = result(&store).await;
+        assert_eq!(state, JobState::Dead);
+        assert_eq!(kept.expect("a plan").document, plan(20.0).document);
+        let code = job(&store).await.code;
+        assert_eq!(code.as_deref(), Some("process_died"));
+        let events = store.events_after(1, 0).await.expect("read");
+        let last = events.last().expect("an event");
+        assert!(last.data.contains("\"code\":\"process_died\""), "{last:?}");
+    });
+}
+
+#[test]
+fn what_is_abandoned_leaves_no_plan_behind() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let first = claim(&store, "first").await.job;
+        assert!(improve(&store, &first, 20.0).await);
+        assert!(store.release(&first, 4).await.expect("released"));
+        assert_eq!(kept_plans(&store).await, 1);
+        store.request_cancel(ID, 5).await.expect("cancelled");
+        assert_eq!(kept_plans(&store).await, 0);
+        assert!(store.delete(ID).await.expect("deleted"));
+
+        submitted(&store).await;
+        let running = claim(&store, "first").await.job;
+        assert!(improve(&store, &running, 20.0).await);
+        store.request_cancel(ID, 6).await.expect("noted");
+        // The process ends before its worker has noticed.
+        store.recover("second", 7).await.expect("recovered");
+        assert_eq!(kept_plans(&store).await, 0);
+        assert_eq!(job(&store).await.code, None);
+    });
+}

@@ -126,6 +126,10 @@ impl Jobs {
         let job = self.store().request_cancel(id, now_us()).await?;
         // It may have begun in between.
         self.with_active(id, StopSignal::cancel);
+        if job.as_ref().is_some_and(|job| job.finished_us.is_some()) {
+            // A job that waited for another attempt leaves what the last one has solved.
+            tokio::spawn(segments::forget(self.store().clone()));
+        }
         self.changed();
         Ok(job)
     }

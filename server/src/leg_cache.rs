@@ -1,5 +1,7 @@
 //! Legs remembered in the database, as the solver's threads see them.
 
+pub(crate) mod upkeep;
+
 use crate::clock::now_us;
 use crate::store::{LegTrajectory, NewLeg, Store};
 use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};

@@ -3,6 +3,7 @@
 use crate::connections;
 use crate::http::{self, Access, App, Limits};
 use crate::jobs::{Jobs, Worker, retention, segments};
+use crate::leg_cache::upkeep;
 use crate::lifecycle::{GRACE, Shutdown};
 use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
 use slewplan_solver::pool::{PoolError, SolverPool};
@@ -36,6 +37,8 @@ pub(crate) struct Settings {
     pub(crate) no_keys: bool,
     /// Time after their end for which jobs are kept; for ever without it.
     pub(crate) retain: Option<Duration>,
+    /// Most legs that are remembered.
+    pub(crate) legs: u64,
     /// Most connections at once.
     pub(crate) connections: usize,
 }
@@ -190,6 +193,7 @@ async fn serve<E: From<ServiceError>>(
         tokio::spawn(retention::keep_for(store.clone(), time));
     }
     tokio::spawn(segments::forget(store.clone()));
+    tokio::spawn(upkeep::keep_within(store.clone(), settings.legs));
     let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
     let worker = Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id)
         .map_err(system("cannot start the worker"))?;

@@ -66,6 +66,10 @@ pub(super) struct Arguments {
     #[arg(long, env = "SLEWPLAN_RETAIN", value_name = "DAYS",
         value_parser = clap::value_parser!(u32).range(1..=36_500))]
     retain: Option<u32>,
+    /// Most solved legs that are remembered for other jobs; those that were stored first go first
+    #[arg(long, env = "SLEWPLAN_LEG_CACHE", value_name = "N", default_value_t = 1_000_000,
+        value_parser = clap::value_parser!(u32).range(1..))]
+    leg_cache: u32,
     /// Most connections at once
     #[arg(long, env = "SLEWPLAN_MAX_CONNECTIONS", value_name = "N", default_value_t = 512,
         value_parser = clap::value_parser!(u16).range(1..))]
@@ -107,6 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         retain: arguments.retain.map(|days| DAY * days),
         job_memory: u64::from(arguments.job_memory) << 20,
         no_keys: arguments.no_keys,
+        legs: arguments.leg_cache.into(),
         connections: arguments.max_connections.into(),
     };
     service::run::<Failure>(&settings, |address| {

@@ -1,10 +1,13 @@
 //! Solved legs.
 
+mod upkeep;
+
 use super::{Store, StoreError};
 use serde::{Deserialize, Serialize};
 use sqlx::{FromRow, Row, SqliteConnection};
 
-/// Legs of other versions of the solver are not found, and replaced when they are solved again.
+/// Legs of other versions of the solver are not found, replaced when they are solved again, and
+/// forgotten when the service starts.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Far above the rounding of the product of two unit quaternions; as an angle less than 1e-6 rad.

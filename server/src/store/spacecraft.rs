@@ -1,7 +1,11 @@
-//! Spacecraft stored by name, every version of them.
+//! Spacecraft stored by name, with their newest versions.
 
 use super::{Store, StoreError};
 use sqlx::FromRow;
+
+/// Versions that are kept of each name. No job needs them: its scenario has the spacecraft written
+/// out.
+pub(super) const KEPT_VERSIONS: i64 = 100;
 
 /// A version of a stored spacecraft.
 #[derive(Debug, Clone, FromRow)]
@@ -15,7 +19,8 @@ pub(crate) struct SpacecraftRow {
 }
 
 impl Store {
-    /// Stores a spacecraft as the newest version; the same document again is no new version.
+    /// Stores a spacecraft as the newest version; the same document again is no new version. The
+    /// oldest beyond [`KEPT_VERSIONS`] are forgotten.
     pub(crate) async fn put_spacecraft(
         &self,
         name: &str,
@@ -44,6 +49,11 @@ impl Store {
         .bind(now_us)
         .execute(&mut *transaction)
         .await?;
+        sqlx::query("DELETE FROM spacecraft WHERE name = ? AND version <= ?")
+            .bind(name)
+            .bind(version - KEPT_VERSIONS)
+            .execute(&mut *transaction)
+            .await?;
         transaction.commit().await?;
         Ok(SpacecraftRow {
             version,

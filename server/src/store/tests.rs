@@ -1,6 +1,7 @@
 //! What a claim that was lost must not do, what is kept for its successor, and what failures of
 //! the disk must not do.
 
+mod bounds;
 mod ends;
 mod fence;
 mod queue;

@@ -16,8 +16,8 @@ const LONGEST_NAME: usize = 64;
 
 /// Store a spacecraft under a name
 ///
-/// A document that differs from the newest version becomes the next version. Jobs keep the
-/// version that was the newest when they were submitted.
+/// A document that differs from the newest version becomes the next version; the newest 100 are
+/// kept. Jobs keep the version that was the newest when they were submitted.
 #[utoipa::path(
     put, path = "/v1/spacecraft/{name}", tag = "spacecraft", operation_id = "put_spacecraft",
     params(("name" = String, Path, pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$",

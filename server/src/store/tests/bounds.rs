@@ -1,0 +1,96 @@
+//! What grows with every request and not with the jobs stays within bounds.
+
+use super::on_a_store;
+use crate::store::spacecraft::KEPT_VERSIONS;
+use crate::store::{LegFilter, LegTrajectory, NewLeg, Store};
+
+fn leg(number: u8, spacecraft: &str) -> NewLeg {
+    NewLeg {
+        identity: format!("leg {number}"),
+        spacecraft: spacecraft.to_owned(),
+        kind: "rest_to_rest",
+        turn_xyzw: [0.0, 0.0, 0.0, 1.0],
+        momentum: [0.0; 3],
+        reversible: false,
+        duration_s: number.into(),
+        certified_lower_bound_s: None,
+        solve_time_s: 0.1,
+        status: "converged".into(),
+        trajectory: LegTrajectory {
+            attitudes_xyzw: Vec::new(),
+            wheel_momenta_nms: Vec::new(),
+            lengths_s: Vec::new(),
+        },
+    }
+}
+
+/// The durations of all remembered legs, s, and the number of spacecraft.
+async fn remembered(store: &Store) -> (Vec<f64>, i64) {
+    let all = LegFilter {
+        spacecraft: None,
+        turn: None,
+        after: None,
+        limit: 100,
+    };
+    let legs = store.legs(&all).await.expect("read");
+    let count = sqlx::query_scalar("SELECT count(*) FROM leg_spacecraft");
+    let spacecraft = count.fetch_one(&store.readers).await.expect("counted");
+    (legs.iter().map(|leg| leg.duration_s).collect(), spacecraft)
+}
+
+/// Makes a leg one of another version of the solver.
+async fn age(store: &Store, identity: &str, version: &str) {
+    sqlx::query("UPDATE legs SET solver_version = ? WHERE identity = ?")
+        .bind(version)
+        .bind(identity)
+        .execute(&store.writer)
+        .await
+        .expect("changed");
+}
+
+#[test]
+fn legs_of_other_versions_are_forgotten_some_at_a_time() {
+    on_a_store(|store| async move {
+        let legs = [leg(1, "a"), leg(2, "b"), leg(3, "b"), leg(4, "c")];
+        store.put_legs(&legs, 1).await.expect("stored");
+        age(&store, "leg 1", "0.0.0").await;
+        age(&store, "leg 2", "0.0.0").await;
+        age(&store, "leg 4", "9999").await;
+        assert_eq!(store.forget_foreign_legs(2).await.expect("tried"), 2);
+        assert_eq!(store.forget_foreign_legs(2).await.expect("tried"), 1);
+        assert_eq!(store.forget_foreign_legs(2).await.expect("tried"), 0);
+        assert_eq!(remembered(&store).await, (vec![3.0], 1));
+    });
+}
+
+#[test]
+fn the_legs_that_were_stored_first_are_forgotten_first() {
+    on_a_store(|store| async move {
+        let legs = [leg(1, "a"), leg(2, "b"), leg(3, "a")];
+        store.put_legs(&legs, 1).await.expect("stored");
+        assert_eq!(store.forget_oldest_legs(1).await.expect("tried"), 1);
+        assert_eq!(remembered(&store).await, (vec![2.0, 3.0], 2));
+        assert_eq!(store.forget_oldest_legs(9).await.expect("tried"), 2);
+        assert_eq!(remembered(&store).await, (vec![], 0));
+        assert_eq!(store.put_legs(&legs, 2).await.expect("stored again"), 3);
+    });
+}
+
+#[test]
+fn only_the_newest_versions_of_a_spacecraft_are_kept() {
+    on_a_store(|store| async move {
+        let other = store.put_spacecraft("other", "{}", 1).await;
+        assert_eq!(other.expect("stored").version, 1);
+        for version in 1..=KEPT_VERSIONS + 2 {
+            let document = format!("{{\"version\":{version}}}");
+            let stored = store.put_spacecraft("sat", &document, 1).await;
+            assert_eq!(stored.expect("stored").version, version);
+        }
+        for (version, there) in [(1, false), (2, false), (3, true), (KEPT_VERSIONS + 2, true)] {
+            let found = store.spacecraft("sat", Some(version)).await;
+            assert_eq!(found.expect("read").is_some(), there, "{version}");
+        }
+        let other = store.spacecraft("other", Some(1)).await;
+        assert!(other.expect("read").is_some());
+    });
+}

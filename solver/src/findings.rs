@@ -3,7 +3,7 @@
 //! A reader takes the findings by mutable reference, notes what it dislikes and returns `None` for
 //! a value that it cannot use, so that one fault neither hides nor invents another.
 
-use crate::problem::{Code, MOST_KEPT, Problem};
+use crate::problem::{Code, Faults, MOST_KEPT, Problem};
 use nalgebra::{Matrix3, Vector3};
 
 /// Problems and warnings, in the order in which they were found.
@@ -51,6 +51,11 @@ impl Findings {
     ///
     /// Whoever returns `None` has noted why, so the two always agree.
     pub(crate) fn conclude<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Vec<Problem>> {
+        self.judge(value).map_err(|faults| faults.problems)
+    }
+
+    /// The value with its warnings, or all the problems with all the warnings.
+    pub(crate) fn judge<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Faults> {
         match value {
             Some(value) if self.problems.is_empty() => Ok((value, self.warnings)),
             _ => {
@@ -58,7 +63,10 @@ impl Findings {
                     !self.problems.is_empty(),
                     "a value is missing without a reason"
                 );
-                Err(self.problems)
+                Err(Faults {
+                    problems: self.problems,
+                    warnings: self.warnings,
+                })
             }
         }
     }

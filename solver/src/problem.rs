@@ -38,6 +38,15 @@ impl Problem {
     }
 }
 
+/// Everything that was found in an input that is refused.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// Why it is refused.
+    pub problems: Vec<Problem>,
+    /// What is doubtful, but would not stand in the way.
+    pub warnings: Vec<Problem>,
+}
+
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pointer = if self.pointer.is_empty() {

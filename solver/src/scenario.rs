@@ -14,7 +14,7 @@ mod target;
 use crate::attitude::Attitude;
 use crate::findings::Findings;
 use crate::order_rules::OrderRules;
-use crate::problem::Problem;
+use crate::problem::{Faults, Problem};
 use crate::spacecraft::Spacecraft;
 use crate::spec::{OptionsSpec, ScenarioSpec};
 use limits::Limits;
@@ -104,9 +104,19 @@ impl Scenario {
     ///
     /// All problems at once, in the order of the document.
     pub fn try_new(spec: &ScenarioSpec) -> Result<Validated, Vec<Problem>> {
+        Self::examine(spec).map_err(|faults| faults.problems)
+    }
+
+    /// Validates a description like [`Scenario::try_new`], and has all warnings also of one that is
+    /// refused.
+    ///
+    /// # Errors
+    ///
+    /// All problems and warnings at once, both in the order of the document.
+    pub fn examine(spec: &ScenarioSpec) -> Result<Validated, Faults> {
         let mut findings = Findings::default();
         let scenario = Self::read(spec, &mut findings);
-        let (scenario, warnings) = findings.conclude(scenario)?;
+        let (scenario, warnings) = findings.judge(scenario)?;
         Ok(Validated { scenario, warnings })
     }
 

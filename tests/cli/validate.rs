@@ -48,6 +48,33 @@ fn a_quaternion_that_is_off_by_little_is_a_warning() {
     );
 }
 
+#[test]
+fn warnings_are_told_with_the_errors() {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["targets"][0]["attitude"] =
+        json!({"quaternion": {"x": 0, "y": 0, "z": 0.0, "w": 1.0005}});
+    scenario["targets"][1]["id"] = json!("a");
+    scenario["comment"] = json!("?");
+    let text = scenario.to_string();
+    let document = slewplan_fed(&["validate", "-", "--format", "json"], text.as_bytes())
+        .expect_code(2)
+        .json();
+    assert_eq!(document["errors"].as_array().map(Vec::len), Some(2));
+    assert_eq!(document["warnings"].as_array().map(Vec::len), Some(1));
+    assert_eq!(document["warnings"][0]["code"], "attitude_normalized");
+    let told = slewplan_fed(&["validate", "-"], text.as_bytes())
+        .expect_code(2)
+        .stdout;
+    assert!(
+        told.contains("2 problems")
+            && told.contains(
+                "1 warning
+"
+            ),
+        "{told}"
+    );
+}
+
 /// Momentum along x that the x wheel holds at the start, but no wheel alone across the target.
 fn too_much_momentum() -> String {
     let mut scenario = fixture_json("two-targets.json");

@@ -77,19 +77,39 @@ fn validation_alone_queues_nothing() {
     let problem = service.post("/v1/plans?validate_only=true", &wrong);
     let problem = problem.expect_problem(422, "invalid_input");
     assert_eq!(problem["errors"][0]["pointer"], "/targets/1/id");
+    assert_eq!(problem["warnings"], json!([]));
+    let off = json!({"quaternion": {"x": 0, "y": 0, "z": 0, "w": 1.0005}});
+    wrong["targets"][0]["attitude"] = off.clone();
+    for path in ["/v1/plans?validate_only=true", "/v1/plans"] {
+        let problem = service.post(path, &wrong);
+        let problem = problem.expect_problem(422, "invalid_input");
+        assert_eq!(problem["errors"].as_array().map(Vec::len), Some(1));
+        assert_eq!(problem["warnings"][0]["code"], "attitude_normalized");
+    }
+    let mut impossible = too_much_momentum();
+    impossible["targets"][0]["attitude"] = off;
+    let problem = service.post("/v1/plans?validate_only=true", &impossible);
+    let problem = problem.expect_problem(422, "invalid_input");
+    assert_eq!(problem["errors"][0]["code"], "momentum_exceeds_envelope");
+    assert_eq!(problem["warnings"][0]["code"], "attitude_normalized");
     assert_eq!(
         service.get("/v1/plans").expect(200).json()["plans"],
         json!([])
     );
 }
 
-#[test]
-fn an_impossible_scenario_ends_infeasible_with_its_reasons() {
-    let service = Service::start();
+/// A scenario with momentum that the wheels cannot hold at rest.
+fn too_much_momentum() -> Value {
     let mut scenario = small();
     scenario["start"]["wheel_speed_rad_s"] = json!([700, 700, 700]);
     scenario["options"] = json!({"momentum_authority": 1.0});
-    let id = service.submit(&scenario);
+    scenario
+}
+
+#[test]
+fn an_impossible_scenario_ends_infeasible_with_its_reasons() {
+    let service = Service::start();
+    let id = service.submit(&too_much_momentum());
     let job = service.wait_end(&id);
     assert_eq!(job["state"], "infeasible", "{job}");
     let plan = service

@@ -10,6 +10,7 @@ export class Problem extends Error {
     this.code = document.code;
     this.title = document.title;
     this.errors = document.errors ?? [];
+    this.warnings = document.warnings ?? [];
   }
 }
 

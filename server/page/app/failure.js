@@ -6,12 +6,15 @@ import { count } from "./format.js";
 /** A message for a failed request, with all problems of an input; `locate` shows the place of one. */
 export function failure(error, locate) {
   const items = (error.errors ?? []).map((problem) => item(problem, locate));
+  const doubts = (error.warnings ?? []).map((problem) => item(problem, locate));
   return el(
     "div",
     { class: "failure", role: "alert" },
     el("p", { class: "failure-title" }, error.title ?? "Something went wrong"),
     items.length ? null : el("p", {}, error.message),
     items.length ? el("ul", {}, items) : null,
+    doubts.length ? el("p", {}, count(doubts.length, "warning")) : null,
+    doubts.length ? el("ul", {}, doubts) : null,
   );
 }
 

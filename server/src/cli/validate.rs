@@ -6,7 +6,7 @@ use crate::wire;
 use crate::wire::problems::ValidationDocument;
 use clap::ValueEnum;
 use slewplan_solver::planner;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::problem::{Faults, Problem};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -29,12 +29,19 @@ enum Format {
 /// Prints the findings on standard output.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let name = input::name(&arguments.scenario);
-    let (errors, warnings) = match wire::scenario::read(&input::read(&arguments.scenario)?, None) {
+    let malformed = |problem| Faults {
+        problems: vec![problem],
+        ..Faults::default()
+    };
+    let found = wire::document::parse(&input::read(&arguments.scenario)?)
+        .map_err(malformed)
+        .and_then(|node| wire::scenario::examine(&node, None));
+    let (errors, warnings) = match found {
         Ok(valid) => (
             planner::feasibility_problems(&valid.scenario),
             valid.warnings,
         ),
-        Err(errors) => (errors, Vec::new()),
+        Err(faults) => (faults.problems, faults.warnings),
     };
     output::print(&match arguments.format {
         Format::Text => text(&name, &errors, &warnings),

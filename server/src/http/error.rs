@@ -110,6 +110,7 @@ pub(super) struct ApiError {
     code: ErrorCode,
     detail: String,
     problems: Vec<Problem>,
+    warnings: Vec<Problem>,
     retry_after_s: Option<u32>,
 }
 
@@ -128,6 +129,8 @@ pub(super) struct ErrorDocument<'a> {
     code: &'static str,
     /// What is wrong with the input, each with its place.
     errors: Vec<ProblemDocument<'a>>,
+    /// What is doubtful with the scenario that was submitted, besides.
+    warnings: Vec<ProblemDocument<'a>>,
 }
 
 impl ApiError {
@@ -137,6 +140,7 @@ impl ApiError {
             code,
             detail: detail.into(),
             problems: Vec::new(),
+            warnings: Vec::new(),
             retry_after_s: None,
         }
     }
@@ -176,6 +180,11 @@ impl ApiError {
         }
     }
 
+    /// Says what is doubtful with the input besides.
+    pub(super) fn with_warnings(self, warnings: Vec<Problem>) -> Self {
+        Self { warnings, ..self }
+    }
+
     /// The error that stands for a bare status.
     pub(super) fn of_status(status: StatusCode) -> Self {
         let code = ErrorCode::ALL.iter().copied().find(|code| match status {
@@ -189,6 +198,11 @@ impl ApiError {
         });
         Self::new(code, code.title())
     }
+}
+
+fn listed(problems: &[Problem]) -> Vec<ProblemDocument<'_>> {
+    let first = problems.iter().take(MOST_PROBLEMS);
+    first.map(ProblemDocument::from).collect()
 }
 
 fn place(problem: &Problem) -> &str {
@@ -227,12 +241,8 @@ impl IntoResponse for ApiError {
             status: status.as_u16(),
             detail: &self.detail,
             code: self.code.as_str(),
-            errors: self
-                .problems
-                .iter()
-                .take(MOST_PROBLEMS)
-                .map(ProblemDocument::from)
-                .collect(),
+            errors: listed(&self.problems),
+            warnings: listed(&self.warnings),
         };
         let body = serde_json::to_vec(&document).unwrap_or_default();
         let form = HeaderValue::from_static(PROBLEM_JSON);

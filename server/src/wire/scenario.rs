@@ -3,7 +3,7 @@
 use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, spacecraft};
-use slewplan_solver::problem::{Code, MOST_KEPT, Problem};
+use slewplan_solver::problem::{Code, Faults, MOST_KEPT, Problem};
 use slewplan_solver::scenario::{Scenario, Validated};
 use slewplan_solver::spec::{
     Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
@@ -25,25 +25,39 @@ pub(crate) fn read(bytes: &[u8], time_limit_s: Option<f64>) -> Result<Validated,
 ///
 /// Everything that is wrong with it.
 pub(crate) fn read_node(node: &Node, time_limit_s: Option<f64>) -> Result<Validated, Vec<Problem>> {
+    examine(node, time_limit_s).map_err(|faults| faults.problems)
+}
+
+/// Reads and validates a scenario that has been parsed, and has the warnings also of one that is
+/// refused.
+///
+/// # Errors
+///
+/// Everything that is wrong or doubtful with it.
+pub(crate) fn examine(node: &Node, time_limit_s: Option<f64>) -> Result<Validated, Faults> {
     let (mut spec, mut problems) = decode(node);
     if time_limit_s.is_some() {
         spec.options.time_limit_s = time_limit_s;
     }
-    match Scenario::try_new(&spec) {
-        Ok(validated) if problems.is_empty() => Ok(validated),
-        Ok(_) => Err(problems),
+    let found = match Scenario::examine(&spec) {
+        Ok(validated) if problems.is_empty() => return Ok(validated),
+        Ok(validated) => Faults {
+            problems: Vec::new(),
+            warnings: validated.warnings,
+        },
         // What was replaced is not known in full.
-        Err(_) if problems.len() >= MOST_KEPT => Err(problems),
-        Err(found) => {
-            let replaced = replaced(&problems);
-            let independent: Vec<Problem> = found
-                .into_iter()
-                .filter(|problem| !follows_from_a_substitute(problem, &replaced))
-                .collect();
-            problems.extend(independent);
-            Err(problems)
-        }
-    }
+        Err(_) if problems.len() >= MOST_KEPT => Faults::default(),
+        Err(faults) => faults,
+    };
+    let replaced = replaced(&problems);
+    let independent = |found: Vec<Problem>| {
+        let kept = found.into_iter();
+        kept.filter(|problem| !follows_from_a_substitute(problem, &replaced))
+            .collect::<Vec<_>>()
+    };
+    let (further, warnings) = (independent(found.problems), independent(found.warnings));
+    problems.extend(further);
+    Err(Faults { problems, warnings })
 }
 
 /// The places where a substitute stands for something that could not be read.

@@ -380,6 +380,18 @@ fn rounded_quaternions_warn_at_their_place() {
 }
 
 #[test]
+fn warnings_come_with_the_problems() {
+    let mut spec = valid();
+    spec.targets[0].attitude = AttitudeSpec::Quaternion([0.13, 0.01137, 0.08641, 0.9877]);
+    spec.options.alternatives = 1000;
+    let faults = Scenario::examine(&spec).unwrap_err();
+    assert_eq!(faults.problems.len(), 1);
+    assert_eq!(faults.warnings.len(), 1);
+    assert_eq!(faults.warnings[0].code, Code::AttitudeNormalized);
+    assert_eq!(Scenario::try_new(&spec).unwrap_err(), faults.problems);
+}
+
+#[test]
 fn quaternion_equivalence_needs_signs_everywhere() {
     let unsigned = AttitudeSpec::Matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     let mut spec = valid();

@@ -99,7 +99,8 @@ pub(in crate::http) async fn handler(
         check_room(&app).await?;
     }
     let (node, written_out) = stored::write_out(&app, &caller, body.node, "").await?;
-    let valid = wire::scenario::read_node(&node, None).map_err(ApiError::input)?;
+    let valid = wire::scenario::examine(&node, None)
+        .map_err(|faults| ApiError::input(faults.problems).with_warnings(faults.warnings))?;
     let targets = valid.scenario.targets().len();
     if query.validate_only {
         return validation(&valid);
@@ -190,7 +191,7 @@ enum Finished {
 fn validation(valid: &Validated) -> Result<Response, ApiError> {
     let obstacles = planner::feasibility_problems(&valid.scenario);
     if !obstacles.is_empty() {
-        return Err(ApiError::input(obstacles));
+        return Err(ApiError::input(obstacles).with_warnings(valid.warnings.clone()));
     }
     Ok(Json(ValidationDocument::new(&[], &valid.warnings)).into_response())
 }

@@ -17,7 +17,7 @@ pub(crate) enum Outcome {
     Flown(Box<FlownOnce>),
     /// No plan to fly, for these reasons.
     NoPlan(Vec<Problem>),
-    /// Stopped before there was a plan.
+    /// Stopped before there was a plan, or cancelled before it was flown.
     Stopped,
 }
 
@@ -53,7 +53,11 @@ pub(crate) fn fly(study: &FlightStudy, run: Run<'_>) -> Result<Outcome, Vec<Prob
     };
     let simulation = Simulation::try_new(&study.scenario, &plan, &study.simulation, "/simulation")?;
     let keep_every = keep_every(study, simulation.samples())?;
-    let simulated = simulation.fly(study.number, Some(keep_every));
+    // Whoever wants the best so far wants this flight: half of it would be worth nothing.
+    let cancelled = || run.stop.is_cancelled();
+    let Some(simulated) = simulation.fly(study.number, Some(keep_every), &cancelled) else {
+        return Ok(Outcome::Stopped);
+    };
     Ok(Outcome::Flown(Box::new(FlownOnce {
         keep_every,
         simulated,

@@ -80,6 +80,7 @@ pub mod certify;
 pub mod checker;
 pub mod cmg;
 pub mod comparison;
+mod cone;
 mod convex;
 pub mod drive;
 mod dynamics;

@@ -21,6 +21,7 @@ mod controller;
 mod course;
 mod draws;
 mod gains;
+mod lookout;
 mod monte_carlo;
 mod outcome;
 mod settings;
@@ -45,6 +46,7 @@ use crate::spacecraft::Spacecraft;
 use controller::{Controller, Measured};
 use course::{Course, Sample};
 use draws::{Drawn, draw, normals};
+use lookout::Lookout;
 use nalgebra::Vector3;
 use outcome::Log;
 use settings::Settings;
@@ -128,9 +130,17 @@ impl<'a> Simulation<'a> {
 
     /// Flies the plan with the errors of one flight: the same whatever else is flown.
     ///
-    /// States are kept at every `keep_every`-th sample of the on-board computer, if any.
+    /// States are kept at every `keep_every`-th sample of the on-board computer, if any. `give_up` is
+    /// asked before the flight and every few hundred steps of the integration: `None` when it says so,
+    /// since half a flight tells nothing.
     #[must_use]
-    pub fn fly(&self, number: u64, keep_every: Option<usize>) -> SimulatedFlight {
+    pub fn fly(
+        &self,
+        number: u64,
+        keep_every: Option<usize>,
+        give_up: &dyn Fn() -> bool,
+    ) -> Option<SimulatedFlight> {
+        let mut lookout = Lookout::new(give_up)?;
         let wheels = self.scenario.spacecraft().wheels().len();
         let Drawn {
             truth,
@@ -143,6 +153,7 @@ impl<'a> Simulation<'a> {
             truth: &truth,
             speed: vec![0.0; wheels],
             motor: vec![0.0; wheels],
+            missing: vec![0.0; wheels],
         };
         let mut computer = OnBoard {
             controller: Controller::new(&self.settings, self.scenario.spacecraft()),
@@ -161,7 +172,7 @@ impl<'a> Simulation<'a> {
                 break;
             };
             craft.read_speeds();
-            self.compute(&mut computer, (attitude, rate), sample, &craft.speed);
+            self.compute(&mut computer, (attitude, rate), sample, &craft);
             // Gains beyond all numbers ask for a torque that is none.
             if !computer.feedback.iter().all(|torque| torque.is_finite()) {
                 log.break_off();
@@ -181,9 +192,10 @@ impl<'a> Simulation<'a> {
                     error,
                 });
             }
-            self.advance(&mut craft, sample, &computer.feedback, &mut log);
+            let steering = (&*computer.feedback, &mut lookout);
+            self.advance(&mut craft, sample, steering, &mut log)?;
         }
-        log.close()
+        Some(log.close())
     }
 
     /// Number of samples of the on-board computer.
@@ -216,7 +228,7 @@ impl<'a> Simulation<'a> {
         computer: &mut OnBoard<'_>,
         (attitude, rate): (Attitude, Vector3<f64>),
         sample: &Sample,
-        wheel_speed: &[f64],
+        craft: &Craft<'_>,
     ) {
         let errors = &self.settings.errors;
         let off = normals(&mut computer.noise) * errors.attitude_noise;
@@ -224,16 +236,24 @@ impl<'a> Simulation<'a> {
         let measured = Measured {
             attitude: attitude.retract(off),
             rate: rate + rate_off,
-            wheel_speed,
+            wheel_speed: &craft.speed,
+            missing: &craft.missing,
         };
         computer
             .controller
             .sample(&measured, &sample.desired, &mut computer.feedback);
     }
 
-    /// Flies until the next sample.
-    fn advance(&self, craft: &mut Craft<'_>, sample: &Sample, feedback: &[f64], log: &mut Log) {
+    /// Flies until the next sample; `None` when the flight is given up.
+    fn advance(
+        &self,
+        craft: &mut Craft<'_>,
+        sample: &Sample,
+        (feedback, lookout): (&[f64], &mut Lookout<'_>),
+        log: &mut Log,
+    ) -> Option<()> {
         let wheels = self.scenario.spacecraft().wheels();
+        craft.missing.fill(0.0);
         for piece in &self.course.pieces[sample.pieces.clone()] {
             craft.read_speeds();
             let forward = self.course.torques(piece);
@@ -245,9 +265,11 @@ impl<'a> Simulation<'a> {
                     wheel_loop::cycle(wheel, drive, command, craft.speed[index], piece.seconds);
                 cycle.torque_limited |= cut;
                 craft.motor[index] = cycle.motor_torque;
+                let refused = if cut { wanted - command } else { 0.0 };
+                craft.missing[index] += (refused + cycle.missing) * piece.seconds;
                 log.wheel(index, &cycle, piece.seconds);
             }
-            let steps = (piece.seconds, piece.steps);
+            let step = piece.seconds / piece.steps as f64;
             let Craft {
                 truth,
                 state,
@@ -255,11 +277,14 @@ impl<'a> Simulation<'a> {
                 scratch,
                 ..
             } = craft;
-            truth.advance(state, motor, steps, scratch);
+            lookout.over(piece.steps, |steps| {
+                truth.advance(state, motor, (step, steps), scratch);
+            })?;
             let pose = craft.pose();
             let pose = pose.as_ref().map(|(attitude, rate)| (attitude, rate));
             log.reach(&self.course, piece.end_s, pose);
         }
+        Some(())
     }
 
     /// Commanded torques at a sample, N m, before the limits.
@@ -287,6 +312,8 @@ struct Craft<'a> {
     speed: Vec<f64>,
     /// Of every motor, N m.
     motor: Vec<f64>,
+    /// What each wheel was asked for beyond its limits since the last sample, N m s.
+    missing: Vec<f64>,
     scratch: Scratch,
 }
 

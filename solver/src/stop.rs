@@ -70,6 +70,12 @@ impl StopSignal {
         }
     }
 
+    /// Whether nobody wants an answer any more, not even the best so far.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.flag.load(Ordering::Relaxed) == CANCELLED
+    }
+
     /// Whether to stop now.
     #[must_use]
     pub fn is_set(&self) -> bool {
@@ -86,8 +92,11 @@ mod tests {
         let signal = StopSignal::new();
         let worker = signal.with_time_limit(Duration::from_hours(1));
         assert!(!worker.is_set());
+        signal.request();
+        assert!(worker.is_set() && !worker.is_cancelled());
         signal.cancel();
         signal.request();
+        assert!(worker.is_cancelled());
         assert_eq!(worker.reason(), Some(StopReason::Cancelled));
     }
 

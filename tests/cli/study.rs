@@ -9,7 +9,7 @@ fn a_study_answers_for_every_pair() {
         "scenario": fixture_json("two-targets.json"),
         "simulation": {
             "controller": {"kind": "geometric_pid", "gains": {"kind": "bandwidth",
-                "bandwidth_rad_s": 0.1, "integral_rad_s": 0.01}},
+                "bandwidth_rad_s": 0.1, "integral_rad_s": 0.01}, "anti_windup": true},
             "errors": {"inertia_3_sigma": 0.02},
             "runs": 5,
         },

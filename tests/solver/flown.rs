@@ -98,7 +98,10 @@ fn a_plan_for_a_pyramid_is_followed_to_its_target() {
             ..SimulationSpec::default()
         };
         let simulation = Simulation::try_new(&scenario, &plan.flight, &spec, "");
-        simulation.expect("a valid simulation").fly(0, None)
+        simulation
+            .expect("a valid simulation")
+            .fly(0, None, &|| false)
+            .expect("nobody gives up")
     };
     let open = fly(ControllerSpec::FeedForward);
     let gains = GainsSpec::Bandwidth {

@@ -1,5 +1,6 @@
 //! From a torque on the body to torques of the wheels.
 
+use crate::cone;
 use crate::drive::Drive;
 use crate::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
@@ -47,6 +48,19 @@ impl Allocation {
     pub(super) fn wheel_torque(&self, wheel: usize, on_body: &Vector3<f64>) -> f64 {
         -self.rows[wheel].dot(on_body)
     }
+
+    /// The nearest to a change of what the wheels are to do together, N m, that asks no wheel for more
+    /// of what it was `missing`, of any unit and with its sign.
+    pub(super) fn relieved(&self, change: &Vector3<f64>, missing: &[f64]) -> Vector3<f64> {
+        let wheels = self.rows.iter().zip(missing);
+        let at_limits =
+            wheels.filter(|(row, missing)| **missing != 0.0 && **row != Vector3::zeros());
+        let asking: Vec<_> = at_limits
+            .map(|(row, missing)| row * missing.signum())
+            .collect();
+        // What is left of the nearest point of a cone is the nearest point of its polar cone (Moreau).
+        change - cone::nearest(&asking, change)
+    }
 }
 
 #[cfg(test)]
@@ -83,6 +97,31 @@ mod tests {
         // Nothing along the null space (1, -1, 1, -1) of the pyramid, nothing for a locked wheel.
         assert!((torques[0] - torques[1] + torques[2] - torques[3]).abs() < 1e-15);
         assert!(torques[4].abs() <= 0.0);
+    }
+
+    #[test]
+    fn what_is_relieved_asks_no_wheel_at_a_limit_for_more() {
+        let wheels = [
+            wheel([0.8, 0.0, 0.6], true),
+            wheel([0.0, 0.8, 0.6], true),
+            wheel([-0.8, 0.0, 0.6], true),
+            wheel([0.0, -0.8, 0.6], true),
+        ];
+        let allocation = Allocation::new(&wheels, &[Drive::IDEAL; 4]).unwrap();
+        let change = Vector3::new(0.3, -0.2, 0.5);
+        let more = |change: &Vector3<f64>, wheel| -allocation.wheel_torque(wheel, change);
+        let relieved = |missing: [f64; 4]| allocation.relieved(&change, &missing);
+        assert_eq!(relieved([0.0; 4]), change);
+        // The first wheel is asked for more of one sign and less of the other.
+        assert!(more(&change, 0) > 0.0);
+        assert_eq!(relieved([-1e-3, 0.0, 0.0, 0.0]), change);
+        let one = relieved([1e-3, 0.0, 0.0, 0.0]);
+        assert!(more(&one, 0).abs() < 1e-15 && one.y.abs() > 0.19, "{one}");
+        let both = relieved([1e-3, 0.0, -1e-3, 0.0]);
+        assert!(more(&both, 0) < 1e-15 && more(&both, 2) > -1e-15, "{both}");
+        // Opposite wheels at opposite limits turn about x only, and that is what is left out.
+        let about_x = allocation.relieved(&Vector3::x(), &[1.0, 0.0, -1.0, 0.0]);
+        assert!(about_x.norm() < 1e-15, "{about_x}");
     }
 
     #[test]

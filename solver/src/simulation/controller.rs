@@ -13,6 +13,20 @@
 //!   e_I  = t_s sum of (e_w + k_p e_R) over the samples before      BIROS (24)
 //! ```
 //!
+//! While a wheel is at a limit of torque or speed an integral of what it cannot take away grows in
+//! vain and has to be undone afterwards: it *winds up*. The remedy is conditional integration (Astrom
+//! and Hagglund, PID Controllers, 1995, section 3.5; Visioli, IEE Proc. Control Theory Appl. 150,
+//! 2003), here with a direction: with `b_i` the rows of the pseudo-inverse and `s_i` the sign of what
+//! wheel `i` could not give since the last sample, a term `d = k_I t_s (e_w + k_p e_R)` of the integral
+//! changes the demands on the wheels by `b_i . d`. What is added is the nearest to it that asks no
+//! wheel at a limit for more,
+//!
+//! ```text
+//!   minimise |d' - d|   subject to   s_i b_i . d' <= 0    for all wheels at a limit
+//! ```
+//!
+//! so that the integral still learns about the axes that have torque left, and is free to unwind.
+//!
 //! The thesis writes `w x J w` where the momentum of the wheels is dealt with elsewhere. Here `H_b`
 //! is that of body and wheels, and what the plan's torques already contain is left out: `H_d` is the
 //! plan's momentum.
@@ -40,6 +54,8 @@ pub(super) struct Measured<'a> {
     pub(super) rate: Vector3<f64>,
     /// One per wheel, rad/s.
     pub(super) wheel_speed: &'a [f64],
+    /// What each wheel was asked for beyond its limits since the last sample, N m s.
+    pub(super) missing: &'a [f64],
 }
 
 /// A control law with its memory.
@@ -47,8 +63,10 @@ pub(super) struct Measured<'a> {
 pub(super) struct Controller<'a> {
     settings: &'a Settings,
     spacecraft: &'a Spacecraft,
-    /// `e_I`, rad.
+    /// `k_I e_I`, N m.
     integral: Vector3<f64>,
+    /// What comes to it from the last sample, N m.
+    pending: Vector3<f64>,
     /// Torques that are not yet applied, N m, oldest first.
     late: VecDeque<Vector3<f64>>,
 }
@@ -59,6 +77,7 @@ impl<'a> Controller<'a> {
             settings,
             spacecraft,
             integral: Vector3::zeros(),
+            pending: Vector3::zeros(),
             late: std::iter::repeat_n(Vector3::zeros(), settings.delay).collect(),
         }
     }
@@ -91,14 +110,22 @@ impl<'a> Controller<'a> {
                 }
                 (body_torque, allocation)
             }
-            Law::Pid { gains, allocation } => {
+            Law::Pid {
+                gains,
+                anti_windup,
+                allocation,
+            } => {
                 let (turn, rate_error) = errors(measured, desired);
                 let attitude_error = turn.vector * (2.0 * turn.scalar);
-                let body_torque = -(gains.attitude * attitude_error
-                    + gains.rate * rate_error
-                    + gains.integral * self.integral);
-                self.integral +=
-                    (rate_error + attitude_error * gains.attitude_weight) * self.settings.sample_s;
+                self.integral += if *anti_windup {
+                    allocation.relieved(&self.pending, measured.missing)
+                } else {
+                    self.pending
+                };
+                let body_torque =
+                    -(gains.attitude * attitude_error + gains.rate * rate_error + self.integral);
+                let slope = rate_error + attitude_error * gains.attitude_weight;
+                self.pending = gains.integral * slope * self.settings.sample_s;
                 (body_torque, allocation)
             }
         };
@@ -150,6 +177,7 @@ mod tests {
             attitude,
             rate: Vector3::new(-0.02, 0.04, 0.01),
             wheel_speed: &[],
+            missing: &[],
         };
         let (turn, rate_error) = errors(&measured, &desired);
         let (r, d) = (attitude.matrix(), desired.attitude.matrix());

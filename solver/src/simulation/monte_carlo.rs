@@ -74,12 +74,12 @@ pub struct Spread {
 impl Simulation<'_> {
     /// Flies as many times as the description says, and sums up. The flights are those of
     /// [`Simulation::fly`] with the numbers from 0 on, for any number of threads; when the signal is
-    /// given, those that have been flown by then.
+    /// given, those that have been flown to their end by then.
     #[must_use]
     pub fn monte_carlo(&self, pool: &SolverPool, stop: &StopSignal) -> Spread {
         let numbers: Vec<u64> = (0..self.settings.runs as u64).collect();
         let flown = pool.map(&numbers, |&number| {
-            (!stop.is_set()).then(|| self.fly(number, None))
+            self.fly(number, None, &|| stop.is_set())
         });
         let flown: Vec<SimulatedFlight> = flown.into_iter().flatten().collect();
         self.spread(&flown)

@@ -64,6 +64,7 @@ pub(super) enum Law {
     /// The geometric PID.
     Pid {
         gains: Box<PidGains>,
+        anti_windup: bool,
         allocation: Allocation,
     },
 }
@@ -192,11 +193,12 @@ fn law(
                 allocation: allocation?,
             })
         }
-        ControllerSpec::GeometricPid { gains } => {
+        ControllerSpec::GeometricPid { gains, anti_windup } => {
             let gains = PidGains::read(gains, spacecraft.inertia(), &at, findings);
             let allocation = allocation(findings);
             Some(Law::Pid {
                 gains: Box::new(gains?),
+                anti_windup: *anti_windup,
                 allocation: allocation?,
             })
         }

@@ -71,6 +71,9 @@ pub enum ControllerSpec {
     GeometricPid {
         /// Its gains.
         gains: PidGainsSpec,
+        /// Whether the integral leaves out what would ask more of a wheel that is at a limit; without
+        /// it, as published, it winds up.
+        anti_windup: bool,
     },
 }
 

@@ -4,4 +4,6 @@ mod build;
 mod control;
 mod flying;
 mod random;
+mod stopping;
 mod validation;
+mod winding;

@@ -179,15 +179,14 @@ impl Truth {
         )
     }
 
-    /// Advances a state by steps of equal length over a time, s, with constant motor torques, N m.
+    /// Advances a state by so many steps of a length, s, with constant motor torques, N m.
     pub(super) fn advance(
         &self,
         state: &mut State,
         motor: &[f64],
-        (seconds, steps): (f64, usize),
+        (step, steps): (f64, usize),
         scratch: &mut Scratch,
     ) {
-        let step = seconds / steps as f64;
         for _ in 0..steps {
             self.step(state, motor, step, scratch);
         }

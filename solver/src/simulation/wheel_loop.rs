@@ -23,6 +23,8 @@ pub(super) struct Cycle {
     pub(super) motor_torque: f64,
     pub(super) torque_limited: bool,
     pub(super) speed_limited: bool,
+    /// What was asked for beyond the motor's torque, N m; zero where no limit was met.
+    pub(super) missing: f64,
 }
 
 /// Sets the torque of a wheel's motor for a cycle of this length, s, from a command (N m) and the
@@ -44,10 +46,17 @@ pub(super) fn cycle(wheel: &Wheel, drive: &Drive, command: f64, speed: f64, leng
     let least = wheel.inertia * (-most_speed - speed) / length + friction;
     let slow_enough = demand.min(most).max(least);
     let motor_torque = slow_enough.min(wheel.max_torque).max(wheel.min_torque);
+    let torque_limited = (motor_torque - slow_enough).abs() > rounding;
+    let speed_limited = (slow_enough - demand).abs() > rounding;
     Cycle {
         motor_torque,
-        torque_limited: (motor_torque - slow_enough).abs() > rounding,
-        speed_limited: (slow_enough - demand).abs() > rounding,
+        torque_limited,
+        speed_limited,
+        missing: if torque_limited || speed_limited {
+            demand - motor_torque
+        } else {
+            0.0
+        },
     }
 }
 

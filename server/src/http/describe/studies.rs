@@ -136,7 +136,12 @@ enum Controller {
         gyroscopic: Option<bool>,
     },
     /// With the geometric PID on rotations.
-    GeometricPid { gains: PidGains },
+    GeometricPid {
+        gains: PidGains,
+        /// Whether the integral leaves out what would ask more of a wheel that is at a limit.
+        #[schema(required = false, default = true)]
+        anti_windup: Option<bool>,
+    },
 }
 
 /// Gains of quaternion feedback `-k J q_e - c J w_e`.

@@ -74,7 +74,7 @@ fn controller(cursor: &Cursor<'_>) -> Option<ControllerSpec> {
     let kind = cursor.kind(&KINDS)?;
     let known: &[&str] = match kind {
         0 => &["kind"],
-        3 => &["kind", "gains"],
+        3 => &["kind", "gains", "anti_windup"],
         _ => &["kind", "gains", "gyroscopic"],
     };
     let fields = cursor.object(known)?;
@@ -92,6 +92,10 @@ fn controller(cursor: &Cursor<'_>) -> Option<ControllerSpec> {
         },
         _ => ControllerSpec::GeometricPid {
             gains: pid_gains(&fields.required("gains")?)?,
+            anti_windup: fields
+                .optional("anti_windup")
+                .and_then(|it| it.boolean())
+                .unwrap_or(true),
         },
     })
 }

@@ -126,5 +126,6 @@ pub(super) fn pid(integral_rad_s: f64) -> ControllerSpec {
             damping: 0.7,
             integral_rad_s,
         },
+        anti_windup: true,
     }
 }

@@ -20,7 +20,9 @@ fn off(controller: ControllerSpec) -> SimulationSpec {
 
 fn flown(spec: &SimulationSpec, seconds: f64) -> SimulatedFlight {
     let (scenario, flight) = (calm_scenario(), idle(seconds));
-    simulation(&scenario, &flight, spec).fly(1, Some(1))
+    simulation(&scenario, &flight, spec)
+        .fly(1, Some(1), &|| false)
+        .expect("nobody gives up")
 }
 
 #[test]
@@ -148,7 +150,9 @@ fn gyroscopic_torque_is_made_up_for_when_nothing_else_does() {
             settle_s: None,
             ..SimulationSpec::default()
         };
-        let flown = simulation(&scenario, &flight, &spec).fly(0, Some(1));
+        let flown = simulation(&scenario, &flight, &spec)
+            .fly(0, Some(1), &|| false)
+            .expect("nobody gives up");
         let first = flown.states[0].attitude;
         let axis = |state: &super::super::SimulatedState| {
             first.signed_turn_to(&state.attitude).try_normalize(1e-3)
@@ -170,7 +174,9 @@ fn feedback_flies_the_plan_and_does_not_disturb_it() {
             controller,
             ..SimulationSpec::default()
         };
-        let flown = simulation(&scenario, &flight, &spec).fly(0, None);
+        let flown = simulation(&scenario, &flight, &spec)
+            .fly(0, None, &|| false)
+            .expect("nobody gives up");
         assert!(flown.end.attitude_rad < 1.5e-4, "{flown:?}");
         assert!(flown.peak.attitude_rad < 3e-4, "{flown:?}");
     }

@@ -21,7 +21,9 @@ fn open(feed_forward: FeedForward) -> SimulationSpec {
 #[test]
 fn without_errors_the_flight_is_the_plan() {
     let (scenario, flight) = (scenario(), lively());
-    let flown = simulation(&scenario, &flight, &open(FeedForward::TimeTagged)).fly(0, None);
+    let flown = simulation(&scenario, &flight, &open(FeedForward::TimeTagged))
+        .fly(0, None, &|| false)
+        .expect("nobody gives up");
     assert!(flown.end.attitude_rad < 1e-9, "{flown:?}");
     assert!(flown.end.rate_rad_s < 1e-10, "{flown:?}");
     assert!(flown.passages[0].error.attitude_rad < 1e-9, "{flown:?}");
@@ -42,7 +44,9 @@ fn errors_fall_with_the_fourth_power_of_the_step() {
             max_step_s: Some(max_step_s),
             ..open(FeedForward::TimeTagged)
         };
-        let flown = simulation(&scenario, &flight, &spec).fly(0, None);
+        let flown = simulation(&scenario, &flight, &spec)
+            .fly(0, None, &|| false)
+            .expect("nobody gives up");
         flown.end.attitude_rad
     };
     let (coarse, fine) = (error(0.5), error(0.25));
@@ -54,7 +58,9 @@ fn errors_fall_with_the_fourth_power_of_the_step() {
 #[test]
 fn mean_torques_keep_the_rate_and_nearly_the_attitude() {
     let (scenario, flight) = (scenario(), lively());
-    let flown = simulation(&scenario, &flight, &open(FeedForward::Averaged)).fly(0, None);
+    let flown = simulation(&scenario, &flight, &open(FeedForward::Averaged))
+        .fly(0, None, &|| false)
+        .expect("nobody gives up");
     // Largest change of acceleration 0.04 rad/s2, an eighth of its product with 0.1 s squared at a
     // switch, and three switches.
     assert!(flown.end.attitude_rad < 1.5e-4, "{flown:?}");
@@ -88,7 +94,7 @@ fn momentum_change(disturbance: Vector3<f64>, seconds: f64) -> (Vector3<f64>, f6
     };
     let (begin, truth) = (state.clone(), &drawn.truth);
     let motor = [0.03, -0.02, 0.04, 0.01, 0.0];
-    truth.advance(&mut state, &motor, (seconds, 1000), &mut scratch);
+    truth.advance(&mut state, &motor, (seconds / 1000.0, 1000), &mut scratch);
     let momentum = |state: &State| attitude(state).to_reference(truth.body_momentum(state));
     let turn = attitude(&begin).angle_to(&attitude(&state));
     (momentum(&state) - momentum(&begin), turn)
@@ -134,7 +140,8 @@ fn the_wheel_loop_takes_friction_away() {
             ..open(FeedForward::TimeTagged)
         };
         simulation(&scenario, &flight, &spec)
-            .fly(0, None)
+            .fly(0, None, &|| false)
+            .expect("nobody gives up")
             .end
             .attitude_rad
     };
@@ -156,7 +163,9 @@ fn a_wheel_with_a_law_comes_to_its_speed() {
         controller: quaternion(BANDWIDTH),
         ..SimulationSpec::default()
     };
-    let flown = simulation(&scenario, &flight, &spec).fly(0, Some(1));
+    let flown = simulation(&scenario, &flight, &spec)
+        .fly(0, Some(1), &|| false)
+        .expect("nobody gives up");
     let last = flown.states.last().unwrap();
     assert!((last.wheel_speed_rad_s[3] - 25.0).abs() < 0.01, "{last:?}");
     // The others take up its momentum, without a command for it.
@@ -172,7 +181,9 @@ fn drives_stay_within_torque_and_speed() {
     for control in &mut flight.controls {
         control.wheel_torque_nm = vec![2.0 * MAX_TORQUE, 0.0, 0.0, 0.0, 0.0];
     }
-    let flown = simulation(&scenario, &flight, &open(FeedForward::Averaged)).fly(0, Some(1));
+    let flown = simulation(&scenario, &flight, &open(FeedForward::Averaged))
+        .fly(0, Some(1), &|| false)
+        .expect("nobody gives up");
     let speeds = flown.states.iter().map(|state| state.wheel_speed_rad_s[0]);
     let fastest = speeds.fold(0.0, f64::max);
     assert!((fastest - 400.0).abs() < 1e-2, "{fastest}");
@@ -189,7 +200,7 @@ fn drives_stay_within_torque_and_speed() {
 fn kept_states_tell_which_limits_are_met_until_the_next() {
     let (scenario, flight) = (scenario(), lively());
     let calm = simulation(&scenario, &flight, &open(FeedForward::TimeTagged));
-    let flown = calm.fly(0, Some(1));
+    let flown = calm.fly(0, Some(1), &|| false).expect("nobody gives up");
     assert_eq!(flown.states.len(), calm.samples());
     let met = |flags: &[bool]| flags.contains(&true);
     assert!(
@@ -211,7 +222,10 @@ fn kept_states_tell_which_limits_are_met_until_the_next() {
         ..SimulationSpec::default()
     };
     let stiff = simulation(&scenario, &flight, &stiff);
-    let (all, few) = (stiff.fly(0, Some(1)), stiff.fly(0, Some(10)));
+    let (all, few) = (
+        stiff.fly(0, Some(1), &|| false).expect("nobody gives up"),
+        stiff.fly(0, Some(10), &|| false).expect("nobody gives up"),
+    );
     for (wheel, share) in all.saturation.iter().enumerate() {
         let limited = all
             .states

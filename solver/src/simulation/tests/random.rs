@@ -56,7 +56,13 @@ fn one_flight_is_the_same_as_among_many() {
     let (scenario, flight) = (scenario(), lively());
     let simulation = simulation(&scenario, &flight, &every_error());
     let alone: Vec<f64> = (0..24)
-        .map(|number| simulation.fly(number, None).end.attitude_rad)
+        .map(|number| {
+            simulation
+                .fly(number, None, &|| false)
+                .expect("nobody gives up")
+                .end
+                .attitude_rad
+        })
         .collect();
     let largest = alone.iter().copied().fold(0.0, f64::max);
     let spread = spread(&every_error(), 2, &StopSignal::new());
@@ -91,7 +97,9 @@ fn noise_jitters_as_much_as_the_loop_lets_through() {
         },
         ..SimulationSpec::default()
     };
-    let flown = simulation(&scenario, &flight, &spec).fly(0, Some(10));
+    let flown = simulation(&scenario, &flight, &spec)
+        .fly(0, Some(10), &|| false)
+        .expect("nobody gives up");
     let squares = flown.states.iter().map(|s| s.error.attitude_rad.powi(2));
     let rms = (squares.sum::<f64>() / flown.states.len() as f64).sqrt();
     // White noise of density s^2 T through w^2 / (s^2 + 2 z w s + w^2): variance s^2 T w / (4 z)

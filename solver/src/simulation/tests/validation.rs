@@ -101,6 +101,7 @@ fn gains_are_checked_in_every_form() {
             damping: 0.0,
             integral_rad_s: -0.1,
         },
+        anti_windup: true,
     };
     let pid = ControllerSpec::GeometricPid {
         gains: PidGainsSpec::Given {
@@ -109,6 +110,7 @@ fn gains_are_checked_in_every_form() {
             integral_nm: -1.0,
             attitude_weight_per_s: f64::NAN,
         },
+        anti_windup: false,
     };
     for (controller, names) in [
         (settling, &["settling_time_s", "damping"][..]),

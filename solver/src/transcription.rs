@@ -29,11 +29,11 @@ mod tests;
 
 pub(crate) use nodes::{Waypoint, WheelCondition};
 pub(crate) use reserves::Reserves;
-pub(crate) use rows::{Row, StateView};
+pub(crate) use rows::{Drift, Row};
 pub(crate) use scales::Scales;
 
 use crate::dynamics::Dynamics;
-use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product, rotate_back};
+use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product};
 use crate::nlp::{
     Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues, MAX_CONTROLS, MAX_STATES,
 };
@@ -73,8 +73,6 @@ pub(crate) struct Transcription {
     rates: [Row; 3],
     /// Reserve kept from every limit at every node.
     reserves: Reserves,
-    /// By how much the locked wheels' momentum exceeds that of `dynamics` at every node, N m s.
-    drift: Vec<Vector3<f64>>,
     nodes: Vec<Node>,
 }
 
@@ -114,7 +112,6 @@ impl Transcription {
             limits: Vec::new(),
             rates: Default::default(),
             reserves: Reserves::none(dynamics, intervals.iter().sum()),
-            drift: vec![Vector3::zeros(); intervals.iter().sum::<usize>() + 1],
             nodes: Vec::new(),
             dynamics: dynamics.clone(),
         };
@@ -172,11 +169,6 @@ impl Transcription {
         2.0 * imaginary(&change).norm()
     }
 
-    /// Takes over by how much the locked wheels' momentum has changed at every node, N m s.
-    pub(crate) fn drift_by(&mut self, drift: Vec<Vector3<f64>>) {
-        self.drift = drift;
-    }
-
     /// Goes on with a finer map of the turn from now on.
     pub(crate) fn use_finer_map(&mut self) {
         self.turn_map = self.turn_map.finer(self.dynamics.inertia_inverse);
@@ -191,15 +183,6 @@ impl Transcription {
 
     fn wheels(&self) -> usize {
         self.dynamics.wheel_count()
-    }
-
-    /// The state at a node as rows see it.
-    pub(crate) fn view<'a>(&self, node: usize, point: &'a [f64]) -> StateView<'a> {
-        StateView {
-            momentum: rotate_back(&quaternion_of(point), &self.dynamics.momentum),
-            drift: self.drift[node],
-            wheels: &point[4..],
-        }
     }
 
     /// `offset + gain h`: minus the scaled rate that the wheels make.
@@ -238,11 +221,11 @@ impl Transcription {
     pub(crate) fn write_state_values(
         &self,
         at: usize,
-        point: &[f64],
+        (point, drift): (&[f64], Drift),
         out: &mut LinkValues,
     ) -> usize {
         let (node, reserves) = (&self.nodes[at], self.reserves.at(at));
-        let state = self.view(at, point);
+        let state = self.view(point, drift);
         let mut equalities = out.equality.as_mut_slice();
         if let Some(target) = &node.attitude {
             let relative = product(&conjugate(target), &quaternion_of(point));
@@ -270,19 +253,19 @@ impl Transcription {
         count
     }
 
-    /// Writes their derivatives; returns how many inequalities.
+    /// Writes their derivatives by so many directions of a state; returns how many inequalities.
     pub(crate) fn write_state_derivatives(
         &self,
         link: &Link<'_>,
+        (drift, states): (Drift, usize),
         duals: &LinkMultipliers<'_>,
         out: &mut LinkModel,
     ) -> usize {
         let node = &self.nodes[link.node];
-        let state = self.view(link.node, link.point);
-        let states = self.state_dim();
+        let state = self.view(link.point, drift);
         let mut offset = 0;
         if let Some(target) = &node.attitude {
-            self.write_attitude_rows(target, link.point, duals.equality, out);
+            self.write_attitude_rows(target, link.point, (duals.equality, states), out);
             offset = 3;
         }
         let mut curvature = Vector3::zeros();
@@ -301,7 +284,8 @@ impl Transcription {
         if self.has_norm_row(node) {
             let (stride, z) = (out.vars, duals.inequality[count]);
             let row = &mut out.inequality_jacobian[count * stride..(count + 1) * stride];
-            curvature += self.write_norm_row(&state, z, row, &mut out.hessian, stride);
+            let size = (states, stride);
+            curvature += self.write_norm_row(&state, z, row, &mut out.hessian, size);
             count += 1;
         }
         self.add_momentum_curvature(&curvature, &state, out);
@@ -354,7 +338,7 @@ impl Chain for Transcription {
     }
 
     fn values(&self, link: &Link<'_>, out: &mut LinkValues) {
-        let count = self.write_state_values(link.node, link.point, out);
+        let count = self.write_state_values(link.node, (link.point, Drift::default()), out);
         out.cost = self.price_of(link);
         if link.has_interval() {
             let tau = link.control[self.wheels()];
@@ -372,7 +356,8 @@ impl Chain for Transcription {
 
     fn derivatives(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
         let node = &self.nodes[link.node];
-        let count = self.write_state_derivatives(link, duals, out);
+        let still = (Drift::default(), self.state_dim());
+        let count = self.write_state_derivatives(link, still, duals, out);
         out.gradient[3..][..node.prices.len()].copy_from_slice(&node.prices);
         if !link.has_interval() {
             return;

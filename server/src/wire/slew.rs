@@ -137,8 +137,12 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
     let time_limit_s = options.map_or(Some(USUAL_LIMIT_S), |it| read_options(&it, &mut spec));
     let asked = fields.optional("evidence");
     let evidence = asked.as_ref().and_then(Cursor::boolean).unwrap_or(false);
-    if let Some(asked) = asked.filter(|_| evidence) {
-        check_evidence(&asked, &spec, sweep.is_some());
+    if let Some(asked) = asked.filter(|_| evidence && sweep.is_some()) {
+        asked.report(
+            Code::ConflictingFields,
+            "evidence is given for a single slew only",
+            "ask for the evidence of the slew that is of interest, without the sweep",
+        );
     }
     Some(Read {
         name,
@@ -147,24 +151,6 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
         evidence,
         time_limit_s,
     })
-}
-
-/// Evidence is of one slew, with torques free of each other.
-fn check_evidence(asked: &Cursor<'_>, spec: &ManoeuvreSpec, swept: bool) {
-    if swept {
-        asked.report(
-            Code::ConflictingFields,
-            "evidence is given for a single slew only",
-            "ask for the evidence of the slew that is of interest, without the sweep",
-        );
-    }
-    if spec.allocation != WheelAllocation::Free {
-        asked.report(
-            Code::ConflictingFields,
-            "evidence is given only for torques that are free of each other",
-            "leave the evidence out, or the allocation",
-        );
-    }
 }
 
 fn final_wheels(fields: &Fields<'_>) -> FinalWheels {

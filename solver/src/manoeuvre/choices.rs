@@ -146,7 +146,7 @@ fn check_size(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
             }
     );
     let controls = wheels * (1 + usize::from(billed)) + 1;
-    let states = 3 + wheels * (1 + usize::from(ramps)) + 2;
+    let states = 3 + wheels * (1 + usize::from(ramps)) + 2 + usize::from(drifts(spec));
     let valid = controls <= MAX_CONTROLS && states <= MAX_STATES;
     if !valid {
         findings.refuse(
@@ -172,13 +172,7 @@ fn check_final_wheels(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
         );
         return false;
     }
-    let start = spec.start.wheel_speed_rad_s.as_deref().unwrap_or(&[]);
-    let moving = spec.drives.iter().enumerate().any(|(i, drive)| {
-        drive.speed_law.as_ref().is_some_and(|law| {
-            let speed = start.get(i).copied().unwrap_or(0.0);
-            law.rate_per_s > 0.0 && (law.speed_rad_s - speed).abs() > 0.0
-        })
-    });
+    let moving = drifts(spec);
     if moving {
         findings.refuse(
             "/end/wheel_speed_rad_s",
@@ -188,6 +182,17 @@ fn check_final_wheels(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
         );
     }
     !moving
+}
+
+/// Whether a speed law moves any wheel.
+fn drifts(spec: &ManoeuvreSpec) -> bool {
+    let start = spec.start.wheel_speed_rad_s.as_deref().unwrap_or(&[]);
+    spec.drives.iter().enumerate().any(|(i, drive)| {
+        drive.speed_law.as_ref().is_some_and(|law| {
+            let speed = start.get(i).copied().unwrap_or(0.0);
+            law.rate_per_s > 0.0 && (law.speed_rad_s - speed).abs() > 0.0
+        })
+    })
 }
 
 /// A wheel that is out of order follows no law.

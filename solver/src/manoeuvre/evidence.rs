@@ -1,53 +1,73 @@
 //! Evidence of optimality: the conditions of the minimum principle, along a solution.
 //!
 //! The multipliers of the program's links are the costates at the ends of its intervals: `p` of a
-//! turn in body axes, `r` of the wheels' momenta. With the running cost `l` the Hamiltonian and the
-//! costates between the nodes are
+//! turn in body axes, `r` of the wheels' momenta, `p_t` of time where a speed law moves a wheel's
+//! momentum `d(t)`, on which the body rate depends: `w = Ji (R^T H_total - h_locked - d - A h)`. With
+//! the running cost `l` the Hamiltonian and the costates between the nodes are
 //!
 //! ```text
-//!   H  = l(u, W) + p . w + r . u                          constant; zero when the duration is free
-//!   p' = -w x p + (R^T H_total) x (Ji p) - (dl/dq)^T      s/rad per s
-//!   r' = A^T Ji p - (dl/dh)^T                             per N m s per s
+//!   H   = l(u, W) + p . w + r . u
+//!   H + p_t                                                constant; zero when the duration is free
+//!   p'   = -w x p + (R^T H_total) x (Ji y)                 s/rad per s
+//!   r'   = A^T Ji y - (dl/dW / I)^T                        per N m s per s
+//!   p_t' = -dH/dt = (Ji y) . d'                            per s per s
+//!   y    = p - A (dl/dW)^T
 //! ```
 //!
-//! and the torques minimise `H` at every moment: where `l` has no torque in it, every torque is at
-//! the limit whose sign is that of minus the *switching function* `dH/du_i = r_i`. An active limit of
-//! speed or rate makes the costates jump at nodes, by its multipliers.
+//! A drift makes `H` change along an optimum by what depends on time explicitly, `dH/dt`; `p_t` is what
+//! it has still to change by, the integral of that to the end, and what the objective would change by
+//! for a law that is a second ahead. It has a value at the end where the conditions there depend on
+//! time, as a rate does that wheels of other speeds would not leave at rest. (Where time is a state,
+//! this is the minimum principle of a system that does not depend on it.)
+//!
+//! The torques minimise `H` at every moment (`controls`): torques free of each other each for itself,
+//! those of the pseudo-inverse together. Where `l` has no torque in it, they are at limits. An active
+//! limit of speed or rate makes the costates jump at nodes, by its multipliers. Of momenta that the
+//! pseudo-inverse moves, only three combinations can change: their costates are `(A^+)^T r`.
 //!
 //! Nothing here asks the program anything but its multipliers at the nodes: costates are integrated
 //! from there by these equations, and what is left of a jump that no multiplier explains is the
 //! [`Evidence::costate_defect`].
 
+mod controls;
+mod cost;
+mod costate;
+
 use super::flow::Sample;
-use super::ingredients::Ingredients;
 use super::program::Program;
 use super::solving::Solved;
-use super::{Manoeuvre, Measure, Outcome, WheelAllocation, interruption};
+use super::{Manoeuvre, Outcome, WheelAllocation, interruption};
 use crate::nlp::{Chain, Layout};
 use crate::stop::StopSignal;
-use nalgebra::{DVector, Vector3};
-
-/// Steps of the costates' integration per interval; as many moments are looked at.
-const PARTS: usize = 8;
+use controls::Controls;
+use cost::Running;
+use costate::{Costate, PARTS};
+use nalgebra::Vector3;
 
 /// The conditions along a solution.
 #[derive(Debug, Clone)]
 pub struct Evidence {
     /// Every interval that takes time.
     pub intervals: Vec<IntervalEvidence>,
-    /// Mean of the Hamiltonian over the time: zero when the duration is free, else what a second
-    /// more would add to the objective.
+    /// What is controlled: the torques of all wheels, or with [`WheelAllocation::PseudoInverse`] the
+    /// torque on all wheels together, in body axes.
+    pub controls: WheelAllocation,
+    /// Mean of `H + p_t` over the time: zero when the duration is free, else what a second more would
+    /// add to the objective.
     pub hamiltonian: f64,
     /// What its differences are measured by: the mean size of `p . w + r . u`, one for minimum time.
     pub scale: f64,
-    /// Greatest difference of an interval's average from the mean, in the scale.
+    /// Greatest difference of an interval's average of `H + p_t` from the mean, in the scale.
     pub average_spread: f64,
-    /// Greatest difference of the Hamiltonian at any moment from the mean, in the scale.
+    /// Greatest difference of `H + p_t` at any moment from the mean, in the scale.
     pub pointwise_spread: f64,
+    /// Greatest difference of `H` alone at any moment from its mean, in the scale: what drifting wheels
+    /// change it by, and no more than the spread without any.
+    pub variation: f64,
     /// Mean over the time by how much the torques could lower the Hamiltonian, in the scale.
     pub principle_gap: f64,
-    /// Greatest jump of a momentum costate at a node where no limit is active, relative to the
-    /// costates' size.
+    /// Greatest jump at a node where no limit is active, of a momentum costate relative to the size of
+    /// these or of `p_t` in the scale.
     pub costate_defect: f64,
     /// Greatest product of a limit's slack and its multiplier, in the unit of the objective.
     pub complementarity: f64,
@@ -56,7 +76,8 @@ pub struct Evidence {
     pub switching_agreement: f64,
 }
 
-/// The conditions on one interval.
+/// The conditions on one interval. Lists have one entry per control: the commanded wheels, or three
+/// body axes where the pseudo-inverse shares torques out.
 #[derive(Debug, Clone)]
 pub struct IntervalEvidence {
     /// Begin, s.
@@ -65,37 +86,22 @@ pub struct IntervalEvidence {
     pub duration_s: f64,
     /// Costate of the attitude in body axes at begin and end, unit of the objective per rad.
     pub attitude_costate: [Vector3<f64>; 2],
-    /// Costates of the commanded wheels' momenta at begin and end, per N m s.
+    /// Costates of the momenta that the controls move at begin and end, per N m s.
     pub momentum_costate: [Vec<f64>; 2],
-    /// `dH/du` of each commanded wheel at begin and end, per N m s.
+    /// `p_t` at begin and end, per s; zero where no speed law moves a wheel.
+    pub time_costate: [f64; 2],
+    /// Derivatives of `H` by the controls at begin and end, per N m s.
     pub switching: [Vec<f64>; 2],
-    /// Average of the Hamiltonian, and its least and greatest value.
+    /// Average of `H + p_t`, and its least and greatest value.
     pub hamiltonian: [f64; 3],
 }
 
-/// The costates at a moment.
-#[derive(Debug, Clone)]
-struct Costate {
-    attitude: Vector3<f64>,
-    momenta: DVector<f64>,
-}
-
-impl Costate {
-    fn moved(&self, by: f64, slope: &Self) -> Self {
-        Self {
-            attitude: self.attitude + slope.attitude * by,
-            momenta: &self.momenta + &slope.momenta * by,
-        }
-    }
-}
-
-/// The evidence for an outcome; `None` when it is not solved, the stop signal comes first, or the
-/// pseudo-inverse shares torques out: the equations above are those of torques free of each other.
+/// The evidence for an outcome; `None` when it is not solved or the stop signal comes first.
 ///
 /// The solution is polished before, which takes a few iterations more.
 #[must_use]
 pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option<Evidence> {
-    if !outcome.solved || manoeuvre.allocation() != WheelAllocation::Free {
+    if !outcome.solved {
         return None;
     }
     let polished = outcome
@@ -104,8 +110,10 @@ pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option
     if stop.is_set() || !polished.converged() {
         return None;
     }
+    let plain = Running::new(manoeuvre.vehicle(), &polished.program.ingredients, 0.0);
     let witness = Witness {
         manoeuvre,
+        controls: Controls::new(manoeuvre.allocation(), &plain),
         solved: &polished,
         layout: Layout::of(&polished.program),
     };
@@ -114,13 +122,31 @@ pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option
 
 struct Witness<'a> {
     manoeuvre: &'a Manoeuvre,
+    controls: Controls,
     solved: &'a Solved,
     layout: Layout,
+}
+
+/// An interval with its samples, twice as many as steps: a step of the fourth order asks for its
+/// middle too.
+struct Stretch<'a> {
+    samples: Vec<Sample>,
+    costates: Vec<Costate>,
+    running: Running<'a>,
+}
+
+impl Stretch<'_> {
+    /// The moments that are looked at.
+    fn moments(&self) -> impl Iterator<Item = (&Costate, &Sample)> {
+        self.costates.iter().zip(self.samples.iter().step_by(2))
+    }
 }
 
 /// What an interval adds to the whole.
 struct Tested {
     evidence: IntervalEvidence,
+    /// Average, least and greatest value of the Hamiltonian alone.
+    alone: [f64; 3],
     /// Integral of the size of `p . w + r . u`.
     motion: f64,
     /// Integral of what the torques could lower the Hamiltonian by.
@@ -136,46 +162,32 @@ impl Witness<'_> {
     }
 
     fn evidence(&self) -> Evidence {
-        let times = self.solved.motion.times();
         let total = self.solved.motion.duration();
         let tested: Vec<Tested> = (0..self.program().intervals())
             .filter(|k| self.solved.motion.lengths[*k] > SHORTEST * total)
-            .map(|k| self.test(k, times[k]))
+            .map(|k| self.test(k))
             .collect();
         let time: f64 = tested.iter().map(|t| t.evidence.duration_s).sum();
         let sum = |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).sum::<f64>();
-        let hamiltonian = sum(&|t| t.evidence.hamiltonian[0] * t.evidence.duration_s) / time;
+        let mean = |of: &dyn Fn(&Tested) -> f64| sum(&|t| of(t) * t.evidence.duration_s) / time;
+        let hamiltonian = mean(&|t| t.evidence.hamiltonian[0]);
+        let alone = mean(&|t| t.alone[0]);
         let scale = sum(&|t| t.motion) / time;
-        let spread = |of: &dyn Fn(&[f64; 3]) -> f64| {
-            let values = tested.iter().map(|t| of(&t.evidence.hamiltonian));
-            values.fold(0.0, f64::max) / scale
-        };
+        let spread =
+            |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).fold(0.0, f64::max) / scale;
         let (limited, right) = (sum(&|t| t.limited[0]), sum(&|t| t.limited[1]));
         Evidence {
-            average_spread: spread(&|[average, ..]| (average - hamiltonian).abs()),
-            pointwise_spread: spread(&|[_, least, greatest]| {
-                (greatest - hamiltonian).max(hamiltonian - least)
-            }),
+            controls: self.manoeuvre.allocation(),
+            average_spread: spread(&|t| (t.evidence.hamiltonian[0] - hamiltonian).abs()),
+            pointwise_spread: spread(&|t| furthest(t.evidence.hamiltonian, hamiltonian)),
+            variation: spread(&|t| furthest(t.alone, alone)),
             principle_gap: sum(&|t| t.gap) / time / scale,
-            costate_defect: self.costate_defect(),
+            costate_defect: self.costate_defect(scale),
             complementarity: self.complementarity(),
             switching_agreement: if limited > 0.0 { right / limited } else { 1.0 },
             intervals: tested.into_iter().map(|t| t.evidence).collect(),
             hamiltonian,
             scale,
-        }
-    }
-
-    /// The costates at the end of an interval, as the links' multipliers have them.
-    fn end_costate(&self, k: usize) -> Costate {
-        let program = self.program();
-        let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
-        let unit = program.units.cost;
-        let wheels = program.shape.wheels;
-        Costate {
-            attitude: Vector3::from_column_slice(&lambda[..3]) * (unit / program.scales.angle),
-            momenta: DVector::from_column_slice(&lambda[3..3 + wheels])
-                * (unit / program.scales.momentum),
         }
     }
 
@@ -192,251 +204,81 @@ impl Witness<'_> {
         program.ingredients.energy + spent
     }
 
-    fn test(&self, k: usize, begin: f64) -> Tested {
+    fn stretch(&self, k: usize) -> Stretch<'_> {
         let vehicle = self.manoeuvre.vehicle();
-        let length = self.solved.motion.lengths[k];
+        let motion = &self.solved.motion;
         let price = self.energy_price(k);
-        // Twice as many samples as steps: a step of the fourth order asks for its middle too.
-        let samples = vehicle.samples(&self.solved.motion, k, begin, 2 * PARTS);
-        let costates = self.costates(k, &samples, price);
-        let nodes = || costates.iter().zip(samples.iter().step_by(2));
-        let values: Vec<f64> = nodes()
-            .map(|(p, at)| self.hamiltonian(p, at, price))
-            .collect();
-        let average = trapezoid(&values);
-        let moving: Vec<f64> = nodes()
-            .map(|(p, at)| (p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques)).abs())
-            .collect();
-        let gaps: Vec<f64> = nodes().map(|(p, at)| self.gap(p, at, price)).collect();
-        let switching = |i: usize| -> Vec<f64> {
-            let at = &samples[2 * i];
-            let wheels = 0..at.speeds.len();
-            wheels
-                .map(|w| self.switching(w, &costates[i], at, price))
-                .collect()
+        let running = Running::new(vehicle, &self.program().ingredients, price);
+        let begin: f64 = motion.lengths[..k].iter().sum();
+        let samples = vehicle.samples(motion, k, begin, 2 * PARTS);
+        Stretch {
+            costates: self.costates(k, &samples, &running),
+            samples,
+            running,
+        }
+    }
+
+    fn test(&self, k: usize) -> Tested {
+        let length = self.solved.motion.lengths[k];
+        let stretch = self.stretch(k);
+        let (running, controls) = (&stretch.running, &self.controls);
+        let integral = |of: &dyn Fn(&Costate, &Sample) -> f64| {
+            let values: Vec<f64> = stretch.moments().map(|(p, at)| of(p, at)).collect();
+            trapezoid(&values) * length
         };
+        let moving =
+            |p: &Costate, at: &Sample| p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques);
+        let hamiltonian = |p: &Costate, at: &Sample| running.value(at) + moving(p, at);
+        let alone: Vec<f64> = stretch
+            .moments()
+            .map(|(p, at)| hamiltonian(p, at))
+            .collect();
+        let times = stretch.costates.iter().map(|p| p.time);
+        let constant: Vec<f64> = alone.iter().zip(times).map(|(h, p)| h + p).collect();
+        let ends = [0, PARTS].map(|i| (&stretch.costates[i], &stretch.samples[2 * i]));
         let mut limited = [0.0; 2];
-        for (p, at) in nodes() {
-            for (agrees, size) in self.limited_torques(p, at, price) {
-                limited[0] += size * length;
-                limited[1] += if agrees { size * length } else { 0.0 };
+        for (p, at) in stretch.moments() {
+            for (sum, size) in limited.iter_mut().zip(controls.limited(p, at, running)) {
+                *sum += size * length;
             }
         }
-        let ends = [&costates[0], &costates[PARTS]];
         Tested {
             evidence: IntervalEvidence {
-                start_s: begin,
+                start_s: self.solved.motion.lengths[..k].iter().sum(),
                 duration_s: length,
-                attitude_costate: ends.map(|p| p.attitude),
-                momentum_costate: ends.map(|p| p.momenta.iter().copied().collect()),
-                switching: [switching(0), switching(PARTS)],
-                hamiltonian: [
-                    average,
-                    values.iter().copied().fold(f64::INFINITY, f64::min),
-                    values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-                ],
+                attitude_costate: ends.map(|(p, _)| p.attitude),
+                momentum_costate: ends.map(|(p, _)| controls.pulled(p.momenta.iter().copied())),
+                time_costate: ends.map(|(p, _)| p.time),
+                switching: ends.map(|(p, at)| controls.switching(p, at, running)),
+                hamiltonian: course(&constant),
             },
-            motion: trapezoid(&moving) * length,
-            gap: trapezoid(&gaps) * length,
+            alone: course(&alone),
+            motion: integral(&|p, at| moving(p, at).abs()),
+            gap: integral(&|p, at| controls.gap(p, at, running)),
             limited,
         }
     }
 
-    /// Costates at the ends of equal parts of an interval, integrated backwards from its end.
-    fn costates(&self, k: usize, samples: &[Sample], price: f64) -> Vec<Costate> {
-        let step = -self.solved.motion.lengths[k] / PARTS as f64;
-        let mut costates = vec![self.end_costate(k)];
-        for part in (0..PARTS).rev() {
-            let from = costates[costates.len() - 1].clone();
-            let [first, middle, last] = [2, 1, 0].map(|i| &samples[2 * part + i]);
-            let a = self.slope(&from, first, price);
-            let b = self.slope(&from.moved(0.5 * step, &a), middle, price);
-            let c = self.slope(&from.moved(0.5 * step, &b), middle, price);
-            let d = self.slope(&from.moved(step, &c), last, price);
-            let next = from
-                .moved(step / 6.0, &a)
-                .moved(step / 3.0, &b)
-                .moved(step / 3.0, &c)
-                .moved(step / 6.0, &d);
-            costates.push(next);
-        }
-        costates.reverse();
-        costates
-    }
-
-    /// The costates' equations.
-    fn slope(&self, p: &Costate, at: &Sample, price: f64) -> Costate {
-        let dynamics = &self.manoeuvre.vehicle().dynamics;
-        // The running cost depends on attitude and momenta through the wheels' speeds.
-        let by_speed = self.cost_by_speed(at, price);
-        let mut lever = p.attitude;
-        for (wheel, slope) in dynamics.actuators.iter().zip(&by_speed) {
-            lever -= wheel.axis * *slope;
-        }
-        let pulled = dynamics.inertia_inverse.tr_mul(&lever);
-        let momenta = dynamics.actuators.iter().zip(&by_speed);
-        Costate {
-            attitude: at.stored.cross(&pulled) - at.rate.cross(&p.attitude),
-            momenta: DVector::from_iterator(
-                by_speed.len(),
-                momenta.map(|(wheel, slope)| wheel.axis.dot(&pulled) - slope / wheel.inertia),
-            ),
-        }
-    }
-
-    /// Whether a wheel's energy counts in the running cost at a moment.
-    fn counts(&self, power: f64) -> bool {
-        self.ingredients().measure == Measure::Proxy || power > 0.0
-    }
-
-    fn ingredients(&self) -> &Ingredients {
-        &self.program().ingredients
-    }
-
-    /// `dl / dW` of every wheel.
-    fn cost_by_speed(&self, at: &Sample, price: f64) -> Vec<f64> {
-        let drives = &self.manoeuvre.vehicle().drives;
-        let wheels = drives.iter().zip(&at.speeds).zip(at.torques.iter());
-        wheels
-            .map(|((drive, speed), torque)| {
-                let Some(motor) = drive.motor.filter(|_| price != 0.0) else {
-                    return 0.0;
-                };
-                let given = drive.motor_torque(*torque, *speed);
-                let viscous = if drive.friction_compensated {
-                    drive.viscous_friction
-                } else {
-                    0.0
-                };
-                let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
-                if self.counts(motor.power(given, *speed)) {
-                    let share = self.ingredients().share(motor.efficiency);
-                    price * share * (heat * viscous + given + viscous * speed)
-                } else {
-                    0.0
-                }
-            })
-            .collect()
-    }
-
-    /// The running cost of one wheel as a function of its torque, N m.
-    fn wheel_cost(&self, wheel: usize, torque: f64, at: &Sample, price: f64) -> f64 {
-        let drive = &self.manoeuvre.vehicle().drives[wheel];
-        let effort = self.ingredients().effort * torque * torque;
-        let Some(motor) = drive.motor.filter(|_| price != 0.0) else {
-            return effort;
-        };
-        let speed = at.speeds[wheel];
-        let power = motor.power(drive.motor_torque(torque, speed), speed);
-        let share = self.ingredients().share(motor.efficiency);
-        effort
-            + if self.counts(power) {
-                price * share * power
-            } else {
-                0.0
-            }
-    }
-
-    fn hamiltonian(&self, p: &Costate, at: &Sample, price: f64) -> f64 {
-        let wheels = 0..at.speeds.len();
-        let cost: f64 = wheels
-            .map(|w| self.wheel_cost(w, at.torques[w], at, price))
-            .sum();
-        self.ingredients().time + cost + p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques)
-    }
-
-    /// `dH / du` of a wheel.
-    fn switching(&self, wheel: usize, p: &Costate, at: &Sample, price: f64) -> f64 {
-        let drive = &self.manoeuvre.vehicle().drives[wheel];
-        let (torque, speed) = (at.torques[wheel], at.speeds[wheel]);
-        let effort = 2.0 * self.ingredients().effort * torque;
-        let motor = drive.motor.filter(|_| price != 0.0).map_or(0.0, |motor| {
-            let given = drive.motor_torque(torque, speed);
-            let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
-            let share = self.ingredients().share(motor.efficiency);
-            if self.counts(motor.power(given, speed)) {
-                price * share * (heat + speed)
-            } else {
-                0.0
-            }
-        });
-        p.momenta[wheel] + effort + motor
-    }
-
-    /// The range of commanded torques that the motor's limits leave, N m.
-    fn range(&self, wheel: usize, at: &Sample) -> [f64; 2] {
-        let vehicle = self.manoeuvre.vehicle();
-        let actuator = &vehicle.dynamics.actuators[wheel];
-        let friction = vehicle.drives[wheel].motor_torque(0.0, at.speeds[wheel]);
-        [
-            actuator.min_torque - friction,
-            actuator.max_torque - friction,
-        ]
-    }
-
-    /// By how much other torques could lower the Hamiltonian, wheels at a speed limit left out.
-    fn gap(&self, p: &Costate, at: &Sample, price: f64) -> f64 {
-        let wheels = (0..at.speeds.len()).filter(|w| !self.held(*w, at));
-        wheels
-            .map(|wheel| {
-                let [least, most] = self.range(wheel, at);
-                let value = |u: f64| self.wheel_cost(wheel, u, at, price) + p.momenta[wheel] * u;
-                let trials =
-                    (0..=TRIALS).map(|i| least + (most - least) * i as f64 / TRIALS as f64);
-                let best = trials.map(value).fold(f64::INFINITY, f64::min);
-                (value(at.torques[wheel]) - best).max(0.0)
-            })
-            .sum()
-    }
-
-    /// Whether a limit of speed or rate keeps a wheel from following its switching function.
-    fn held(&self, wheel: usize, at: &Sample) -> bool {
-        let dynamics = &self.manoeuvre.vehicle().dynamics;
-        let mut shares = dynamics.limit_shares(&at.rate, &at.momenta);
-        let own = shares.nth(wheel).is_some_and(|share| share.abs() > NEAR);
-        // The rates' limits hold all wheels together.
-        let rates = shares.skip(dynamics.wheel_count() - wheel - 1);
-        own || rates.into_iter().any(|share| share.abs() > NEAR)
-    }
-
-    /// Of every wheel whose torque is at a limit whether its sign is right, and the size of its
-    /// switching function.
-    fn limited_torques(&self, p: &Costate, at: &Sample, price: f64) -> Vec<(bool, f64)> {
-        (0..at.speeds.len())
-            .filter(|wheel| !self.held(*wheel, at))
-            .filter_map(|wheel| {
-                let ([least, most], torque) = (self.range(wheel, at), at.torques[wheel]);
-                let slack = (1.0 - NEAR) * (most - least);
-                let wanted = self.switching(wheel, p, at, price);
-                let agrees = if torque >= most - slack {
-                    wanted <= 0.0
-                } else if torque <= least + slack {
-                    wanted >= 0.0
-                } else {
-                    return None;
-                };
-                Some((agrees, wanted.abs()))
-            })
-            .collect()
-    }
-
-    /// Greatest jump of the momentum costates between two intervals that no limit explains.
-    fn costate_defect(&self) -> f64 {
-        let vehicle = self.manoeuvre.vehicle();
-        let motion = &self.solved.motion;
-        let times = motion.times();
-        let (mut worst, mut size) = (0.0_f64, 0.0_f64);
+    /// Greatest jump of the costates between two intervals that no limit explains.
+    fn costate_defect(&self, scale: f64) -> f64 {
+        let (mut worst, mut size, mut late) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let momenta = |p: &Costate| self.controls.pulled(p.momenta.iter().copied());
         for k in 1..self.program().intervals() {
-            let samples = vehicle.samples(motion, k, times[k], 2 * PARTS);
-            let after = self.costates(k, &samples, self.energy_price(k));
-            let before = self.end_costate(k - 1);
-            size = size.max(before.momenta.amax());
-            let free = (0..samples[0].speeds.len()).all(|w| !self.held(w, &samples[0]));
-            if free {
-                worst = worst.max((&after[0].momenta - &before.momenta).amax());
+            let stretch = self.stretch(k);
+            let (before, after) = (self.end_costate(k - 1), &stretch.costates[0]);
+            let pairs: Vec<_> = momenta(&before).into_iter().zip(momenta(after)).collect();
+            size = pairs.iter().map(|(own, _)| own.abs()).fold(size, f64::max);
+            if !stretch.running.held(&stretch.samples[0]).contains(&true) {
+                let jumps = pairs.iter().map(|(from, to)| (to - from).abs());
+                worst = jumps.fold(worst, f64::max);
+                late = late.max((after.time - before.time).abs());
             }
         }
-        if size > 0.0 { worst / size } else { 0.0 }
+        if size > 0.0 {
+            (worst / size).max(late / scale)
+        } else {
+            0.0
+        }
     }
 
     fn complementarity(&self) -> f64 {
@@ -452,13 +294,21 @@ impl Witness<'_> {
 
 /// Intervals shorter than this share of the whole have shrunk to nothing.
 const SHORTEST: f64 = 1e-4;
-/// Torques tried for a lower Hamiltonian.
-const TRIALS: usize = 64;
-/// Share of a limit from which on it counts as active.
-const NEAR: f64 = 0.999;
 
 /// Mean of values at equal distances.
 fn trapezoid(values: &[f64]) -> f64 {
     let sums = values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
     sums.sum::<f64>() / (values.len() - 1) as f64
+}
+
+/// Mean, least and greatest of values at equal distances.
+fn course(values: &[f64]) -> [f64; 3] {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    [trapezoid(values), least, greatest]
+}
+
+/// How far a course goes from a value.
+fn furthest([_, least, greatest]: [f64; 3], from: f64) -> f64 {
+    (greatest - from).max(from - least)
 }

@@ -3,8 +3,7 @@
 //!
 //! A wheel under a speed law is no control. Relative to the body its speed is a known function of
 //! time, `W(t) = speed + (W(0) - speed) exp(-rate t)`, so it is a locked wheel whose momentum
-//! drifts. The program takes the drift at the times of its last iterate as known, and is corrected
-//! until it no longer changes: what it ends with flies exactly.
+//! drifts. The program has a clock for it among its states.
 
 use super::motion::Motion;
 use crate::attitude::Attitude;
@@ -37,12 +36,17 @@ impl Followers {
         self.0.push(Follower { spin, law, start });
     }
 
-    /// Change of the locked momentum since the start, N m s.
-    pub(super) fn drift(&self, time: f64) -> Vector3<f64> {
-        self.0
-            .iter()
-            .map(|f| f.spin * ((f.start - f.law.speed) * (-f.law.rate * time).exp_m1()))
-            .sum()
+    /// Change of the locked momentum since the start, N m s, and its first two derivatives by time.
+    pub(super) fn drift(&self, time: f64) -> [Vector3<f64>; 3] {
+        let mut drift = [Vector3::zeros(); 3];
+        for Follower { spin, law, start } in &self.0 {
+            let excess = spin * (start - law.speed);
+            let left = (-law.rate * time).exp();
+            drift[0] += excess * (-law.rate * time).exp_m1();
+            drift[1] -= excess * (law.rate * left);
+            drift[2] += excess * (law.rate * law.rate * left);
+        }
+        drift
     }
 
     /// Whether any wheel's speed changes.
@@ -78,15 +82,11 @@ pub(super) struct Sample {
     pub(super) speeds: Vec<f64>,
     /// Their commanded torques, N m.
     pub(super) torques: DVector<f64>,
+    /// By how much the momentum of wheels with laws of their own changes, body axes, N m.
+    pub(super) drift_rate: Vector3<f64>,
 }
 
 impl Vehicle {
-    /// Change of the locked momentum at the nodes of a motion, N m s.
-    pub(super) fn drift(&self, motion: &Motion) -> Vec<Vector3<f64>> {
-        let times = motion.times().into_iter();
-        times.map(|time| self.followers.drift(time)).collect()
-    }
-
     /// Wheel momenta on an interval at a share `s` of it, N m s.
     fn momenta(motion: &Motion, k: usize, s: f64) -> DVector<f64> {
         let length = motion.lengths[k];
@@ -97,7 +97,7 @@ impl Vehicle {
     /// Body rate, rad/s, with `momentum` that in body axes, N m s.
     fn rate(&self, momentum: &Vector3<f64>, wheels: &DVector<f64>, time: f64) -> Vector3<f64> {
         let dynamics = &self.dynamics;
-        let held = dynamics.locked_momentum + self.followers.drift(time);
+        let held = dynamics.locked_momentum + self.followers.drift(time)[0];
         dynamics.inertia_inverse * (momentum - held - &dynamics.axes * wheels)
     }
 
@@ -153,6 +153,7 @@ impl Vehicle {
             samples.push(Sample {
                 speeds: speeds.collect(),
                 torques: &motion.begin[k] * (1.0 - s) + &motion.end[k] * s,
+                drift_rate: self.followers.drift(begin + motion.lengths[k] * s)[1],
                 stored,
                 rate,
                 momenta,

@@ -11,17 +11,16 @@ mod allocation;
 mod chain;
 mod listing;
 
-use super::flow::Vehicle;
+use super::flow::{Followers, Vehicle};
 use super::ingredients::Ingredients;
 use super::jet::Jet;
 use super::shape::{Course, Lengths, Shape};
 use super::terms::{BEGIN, DrivenWheel, END, LENGTH, SPEED, TURN, TURN_END, WheelState};
-use crate::dynamics::Dynamics;
 use crate::kinematics::Quat;
 use crate::nlp::{Chain, Iterate, Layout, Link};
-use crate::transcription::{Row, Scales, Transcription, Waypoint};
+use crate::transcription::{Drift, Row, Scales, Transcription, Waypoint};
 use allocation::Kept;
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::DMatrix;
 
 /// Weight of the penalty that draws interval lengths together, and to which lengths.
 #[derive(Debug, Clone)]
@@ -57,9 +56,10 @@ pub(super) struct Program {
     /// What the electronics of all motors take, W.
     quiescent_power: f64,
     pub(super) penalty: LengthPenalty,
-    /// What the locked wheels' momentum changes by, as momenta of the enabled wheels that do the
-    /// same to the body, scaled: at every node.
-    drift: Vec<DVector<f64>>,
+    /// Wheels whose momentum is a function of the clock.
+    followers: Followers,
+    /// Momenta of the enabled wheels, scaled, that do the same to the body as a momentum, per N m s.
+    equivalent: DMatrix<f64>,
     /// Reserve kept from the torque limits on every interval, relative.
     pub(super) torque_reserve: Vec<f64>,
     /// What the momenta keep where the pseudo-inverse shares torques out.
@@ -134,7 +134,8 @@ impl Program {
                 weight: 0.0,
                 lengths: vec![1.0; intervals],
             },
-            drift: vec![DVector::zeros(actuators.len()); intervals + 1],
+            followers: vehicle.followers.clone(),
+            equivalent: &dynamics.axes_inverse / scales.momentum,
             torque_reserve: vec![0.0; intervals + 1],
             kept: vehicle.kept.as_ref().map(|momenta| Kept {
                 null_space: dynamics.null_space.clone(),
@@ -148,19 +149,23 @@ impl Program {
         }
     }
 
-    /// Takes over by how much the locked wheels' momentum has changed at every node, N m s. Returns
-    /// the greatest change of that, scaled.
-    pub(super) fn drift_by(&mut self, dynamics: &Dynamics, drift: Vec<Vector3<f64>>) -> f64 {
-        let equivalent =
-            |change: &Vector3<f64>| &dynamics.axes_inverse * change / self.scales.momentum;
-        let equivalents: Vec<_> = drift.iter().map(equivalent).collect();
-        let pairs = equivalents.iter().zip(&self.drift);
-        let change = pairs
-            .map(|(new, old)| (new - old).amax())
-            .fold(0.0, f64::max);
-        self.drift = equivalents;
-        self.base.drift_by(drift);
-        change
+    /// What the locked wheels have taken of the momentum at a point.
+    fn drift(&self, point: &[f64]) -> Drift {
+        self.drift_after(point, 0.0)
+    }
+
+    /// The same a while later, of which the clock is part, scaled.
+    fn drift_after(&self, point: &[f64], length: f64) -> Drift {
+        let clock = self.shape.clock_at();
+        if !self.followers.move_at_all() {
+            return Drift::default();
+        }
+        let unit = self.scales.time;
+        let [taken, slope, bend] = self.followers.drift((point[1 + clock] + length) * unit);
+        Drift {
+            taken: [taken, slope * unit, bend * (unit * unit)],
+            clock: Some(clock),
+        }
     }
 
     /// Makes the turn of one interval exact; the angle, rad, by which the correction changes.
@@ -246,7 +251,7 @@ impl Program {
     /// The features of a wheel; at the last node those of the node alone.
     fn wheel_state(&self, wheel: usize, link: &Link<'_>) -> WheelState {
         let (shape, unit) = (&self.shape, self.torque_unit());
-        let view = self.base.view(link.node, link.point);
+        let view = self.base.view(link.point, self.drift(link.point));
         let mut features = [0.0; super::jet::FEATURES];
         features[SPEED] = self.speeds[wheel].value(&view);
         let couplings = self.speed_per_momentum.row(wheel);
@@ -293,10 +298,11 @@ impl Program {
         };
         match (feature, shape.course) {
             (SPEED, _) => {
-                let mut row = vec![0.0; 3 + shape.wheels];
-                let view = self.base.view(link.node, link.point);
+                let mut row = vec![0.0; shape.states()];
+                let view = self.base.view(link.point, self.drift(link.point));
                 self.base.write_row(&self.speeds[wheel], &view, &mut row);
-                row.into_iter().enumerate().collect()
+                let entries = row.into_iter().enumerate();
+                entries.filter(|(_, slope)| *slope != 0.0).collect()
             }
             (TURN, Course::Steps) => coupled(controls, self.scales.momentum),
             (TURN, Course::Ramps) => coupled(torques, unit),

@@ -5,7 +5,7 @@
 //! | attitude (three steps), wheel momenta `h` | always |
 //! | torques `u` at the node | torque is linear on intervals |
 //! | length of the intervals | all intervals have the same unknown length |
-//! | clock | the duration is prescribed and lengths are unknown |
+//! | clock | the duration is prescribed and lengths are unknown, or a speed law moves a wheel |
 //! | account | the energy is prescribed |
 //!
 //! | part of the controls | when |

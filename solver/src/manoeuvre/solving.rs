@@ -64,11 +64,6 @@ const BILLED_PENALTY: f64 = 0.1;
 const MAX_ROUNDS: usize = 15;
 /// Rounds that keep a reserve only where a limit was exceeded; then everywhere.
 const LOCAL_ROUNDS: usize = 6;
-/// Rounds in which lengths may follow the drift of wheels with laws of their own, and the penalty
-/// that holds them from then on: a drift that follows lengths only as exact as the engine's
-/// tolerance would not settle.
-const DRIFTING_ROUNDS: usize = 3;
-const HOLDING_PENALTY: f64 = 1e2;
 /// Reserve per excess: a little more than is missing.
 const RESERVE_FACTOR: f64 = 1.1;
 /// Angle, rad, by which a flight may miss its end as the optimiser sees it.
@@ -77,8 +72,6 @@ const MISS_TOLERANCE: f64 = 3e-9;
 const LARGE_MISS: f64 = 1e-3;
 /// Relative excess over a limit between nodes that is not worth another round.
 const LIMIT_TOLERANCE: f64 = 1e-7;
-/// Relative change of the locked momentum that counts as none.
-const DRIFT_TOLERANCE: f64 = 1e-12;
 /// The cost of a guess in the unit of the program's cost.
 const COST_OF_GUESS: f64 = 5.0;
 
@@ -197,9 +190,6 @@ impl Task<'_> {
         if cost > 0.0 {
             program.units.cost = cost / COST_OF_GUESS;
         }
-        if self.vehicle.followers.move_at_all() {
-            program.drift_by(dynamics, self.vehicle.drift(guess));
-        }
         program
     }
 }
@@ -245,9 +235,6 @@ impl Run<'_> {
             if excess > LIMIT_TOLERANCE {
                 self.keep_reserves(round, &mut reserves, (&shares, &torques));
             }
-            if round == DRIFTING_ROUNDS && self.vehicle.followers.move_at_all() {
-                self.draw_lengths(HOLDING_PENALTY);
-            }
             if !self.converges(stop) {
                 return;
             }
@@ -264,7 +251,7 @@ impl Run<'_> {
         self.solved.program.penalty = LengthPenalty { weight, lengths };
     }
 
-    /// Makes turns and drifts exact where the iterate is; the angle, rad, by which it missed.
+    /// Makes turns exact where the iterate is; the angle, rad, by which it missed.
     fn correct(&mut self) -> f64 {
         let Solved {
             program,
@@ -273,14 +260,6 @@ impl Run<'_> {
             ..
         } = &mut self.solved;
         let mut missed = 0.0;
-        if self.vehicle.followers.move_at_all() {
-            let drift = self.vehicle.drift(motion);
-            let change = program.drift_by(&self.vehicle.dynamics, drift);
-            if change > DRIFT_TOLERANCE {
-                // In the unit of angles: what a changed rate would turn the body by.
-                missed += change;
-            }
-        }
         let layout = Layout::of(program);
         for (node, exact) in self.vehicle.turns(motion).iter().enumerate() {
             missed += program.correct_turn(&iterate.link(&layout, node), exact);

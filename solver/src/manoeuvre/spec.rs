@@ -368,7 +368,8 @@ impl Manoeuvre {
         Shape {
             wheels: self.vehicle.dynamics.wheel_count(),
             course,
-            clock: of.duration.is_some() && lengths == Lengths::Own,
+            clock: self.vehicle.followers.move_at_all()
+                || of.duration.is_some() && lengths == Lengths::Own,
             lengths,
             account: of.budget.is_some(),
             slacks: of.bills(),

@@ -3,6 +3,7 @@
 mod allocation;
 mod craft;
 mod derivatives;
+mod drifting;
 mod effort;
 mod energy;
 mod evidence;

@@ -216,15 +216,14 @@ impl Transcription {
         out.hessian[length_row + 3 + 2 * wheels] += along;
     }
 
-    /// Rows of `2 vec(target* q) = 0`.
+    /// Rows of `2 vec(target* q) = 0` by so many directions of a state.
     pub(super) fn write_attitude_rows(
         &self,
         target: &Quat,
         point: &[f64],
-        nu: &[f64],
+        (nu, states): (&[f64], usize),
         out: &mut LinkModel,
     ) {
-        let states = 3 + self.wheels();
         let relative = product(&conjugate(target), &quaternion_of(point));
         for column in 0..3 {
             let moved = product(&relative, &quat(&Vector3::ith(column, 1.0), 0.0));

@@ -8,8 +8,12 @@
 //! ```text
 //!   eta(d) = eta + eta x d + 1/2 d x (d x eta)
 //! ```
+//!
+//! Of what locked wheels take of the momentum in the course of time ([`Drift`]) every row has its
+//! share: `p . (eta - drift)`.
 
-use super::Transcription;
+use super::{Transcription, quaternion_of};
+use crate::kinematics::rotate_back;
 use crate::nlp::LinkModel;
 use nalgebra::{Matrix3, Vector3};
 
@@ -35,12 +39,20 @@ pub(super) struct LimitRow {
     pub(super) share: usize,
 }
 
+/// What the locked wheels have taken of the momentum since the beginning, as a function of a clock.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Drift {
+    /// N m s, and its first two derivatives by the clock.
+    pub(crate) taken: [Vector3<f64>; 3],
+    /// The clock among the directions of a state; none where nothing drifts.
+    pub(crate) clock: Option<usize>,
+}
+
 /// A state as rows see it.
 pub(crate) struct StateView<'a> {
     /// `R(q)^T H`, N m s.
     pub(super) momentum: Vector3<f64>,
-    /// What the locked wheels have taken of it since the beginning, N m s.
-    pub(super) drift: Vector3<f64>,
+    pub(super) drift: Drift,
     /// Scaled wheel momenta, and what else there is in the state.
     pub(super) wheels: &'a [f64],
 }
@@ -49,7 +61,7 @@ impl Row {
     pub(crate) fn value(&self, state: &StateView<'_>) -> f64 {
         let wheels = self.wheels.iter().zip(state.wheels);
         let by_wheels: f64 = wheels.map(|(g, h)| g * h).sum();
-        self.constant + self.momentum.dot(&(state.momentum - state.drift)) + by_wheels
+        self.constant + self.momentum.dot(&(state.momentum - state.drift.taken[0])) + by_wheels
     }
 }
 
@@ -70,6 +82,15 @@ impl Transcription {
         row
     }
 
+    /// The state at a node as rows see it.
+    pub(crate) fn view<'a>(&self, point: &'a [f64], drift: Drift) -> StateView<'a> {
+        StateView {
+            momentum: rotate_back(&quaternion_of(point), &self.dynamics.momentum),
+            drift,
+            wheels: &point[4..],
+        }
+    }
+
     /// Writes a row's derivative with respect to the state.
     pub(crate) fn write_row(&self, row: &Row, state: &StateView<'_>, out: &mut [f64]) {
         if self.dynamics.has_momentum() {
@@ -79,9 +100,12 @@ impl Transcription {
         for (out, g) in out[3..].iter_mut().zip(&row.wheels) {
             *out = *g;
         }
+        if let Some(clock) = state.drift.clock {
+            out[clock] = -row.momentum.dot(&state.drift.taken[1]);
+        }
     }
 
-    /// Adds the curvature of `p . eta(d)` in the attitude to a Hessian.
+    /// Adds the curvature of `p . (eta - drift)` in attitude and clock to a Hessian.
     pub(crate) fn add_momentum_curvature(
         &self,
         p: &Vector3<f64>,
@@ -92,6 +116,9 @@ impl Transcription {
             let curvature = double_cross_curvature(p, &state.momentum);
             add_attitude_block(out, &(curvature * self.scales.angle.powi(2)));
         }
+        if let Some(clock) = state.drift.clock {
+            out.hessian[clock * out.vars + clock] -= p.dot(&state.drift.taken[2]);
+        }
     }
 
     /// Value of the norm limit `(1 - reserve)^2 - |w|^2 / limit^2`.
@@ -101,17 +128,16 @@ impl Transcription {
     }
 
     /// Writes the norm limit's derivative and adds its curvature times `-z`, but for that of the
-    /// rates, which is returned as a covector on the momentum.
+    /// rates, which is returned as a covector on the momentum. `states` is the number of directions.
     pub(super) fn write_norm_row(
         &self,
         state: &StateView<'_>,
         z: f64,
         row: &mut [f64],
         hessian: &mut [f64],
-        stride: usize,
+        (states, stride): (usize, usize),
     ) -> Vector3<f64> {
         let scale = self.dynamics.max_rate_norm.powi(2).recip();
-        let states = 3 + self.dynamics.wheel_count();
         let mut pull = Vector3::zeros();
         let mut gradient = [0.0; MOST_STATES];
         for component in &self.rates {

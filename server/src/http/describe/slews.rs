@@ -96,8 +96,7 @@ enum FinalWheels {
 }
 
 /// `free`: in any way within the limits. `pseudo_inverse`: by the pseudo-inverse of the wheel axes, so
-/// that null-space momentum stays what it is at the start; neither with `given` final wheels nor with
-/// evidence.
+/// that null-space momentum stays what it is at the start; not with `given` final wheels.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SlewAllocation)]
 #[serde(rename_all = "snake_case")]

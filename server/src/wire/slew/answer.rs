@@ -6,7 +6,9 @@ use crate::wire::plan::StateDocument;
 use crate::wire::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::manoeuvre::evidence::{Evidence, IntervalEvidence};
-use slewplan_solver::manoeuvre::{Energies, Flown, Objective, Outcome, Piece, Sweep};
+use slewplan_solver::manoeuvre::{
+    Energies, Flown, Objective, Outcome, Piece, Sweep, WheelAllocation,
+};
 use slewplan_solver::problem::Problem;
 use utoipa::ToSchema;
 
@@ -89,7 +91,10 @@ struct RampDocument {
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = OptimalityEvidence)]
 struct EvidenceDocument {
-    /// Mean of the Hamiltonian: zero when the duration is free.
+    /// What lists have an entry for: `wheels`, those that are commanded, or `body_axes`, where the
+    /// pseudo-inverse shares out the torque on all wheels together.
+    controls: &'static str,
+    /// Mean of the Hamiltonian with the costate of time: zero when the duration is free.
     hamiltonian: Number,
     /// What its differences are measured by.
     scale: Number,
@@ -97,9 +102,12 @@ struct EvidenceDocument {
     average_spread: Number,
     /// Greatest difference at any moment, in the scale.
     pointwise_spread: Number,
+    /// Greatest difference of the Hamiltonian alone from its mean, in the scale: more than the spread
+    /// where a speed law moves a wheel.
+    variation: Number,
     /// Mean by how much the torques could lower the Hamiltonian, in the scale.
     principle_gap: Number,
-    /// Greatest jump of a momentum costate where no limit is active, relative.
+    /// Greatest jump of a costate where no limit is active, relative.
     costate_defect: Number,
     /// Greatest product of a limit's slack and its multiplier.
     complementarity: Number,
@@ -117,8 +125,12 @@ struct IntervalDocument {
     attitude_costate_end: [Number; 3],
     momentum_costate_begin: Vec<Number>,
     momentum_costate_end: Vec<Number>,
+    /// By how much the Hamiltonian alone has still to change; zero where no speed law moves a wheel.
+    time_costate_begin: Number,
+    time_costate_end: Number,
     switching_begin: Vec<Number>,
     switching_end: Vec<Number>,
+    /// With the costate of time.
     hamiltonian_mean: Number,
     hamiltonian_min: Number,
     hamiltonian_max: Number,
@@ -222,10 +234,15 @@ impl From<&Piece> for RampDocument {
 impl From<&Evidence> for EvidenceDocument {
     fn from(evidence: &Evidence) -> Self {
         Self {
+            controls: match evidence.controls {
+                WheelAllocation::Free => "wheels",
+                WheelAllocation::PseudoInverse => "body_axes",
+            },
             hamiltonian: Number(evidence.hamiltonian),
             scale: Number(evidence.scale),
             average_spread: Number(evidence.average_spread),
             pointwise_spread: Number(evidence.pointwise_spread),
+            variation: Number(evidence.variation),
             principle_gap: Number(evidence.principle_gap),
             costate_defect: Number(evidence.costate_defect),
             complementarity: Number(evidence.complementarity),
@@ -244,6 +261,7 @@ impl From<&IntervalEvidence> for IntervalDocument {
         let [attitude_begin, attitude_end] = interval.attitude_costate;
         let [momenta_begin, momenta_end] = &interval.momentum_costate;
         let [switching_begin, switching_end] = &interval.switching;
+        let [time_begin, time_end] = interval.time_costate.map(Number);
         let [mean, min, max] = interval.hamiltonian.map(Number);
         Self {
             start_s: Number(interval.start_s),
@@ -252,6 +270,8 @@ impl From<&IntervalEvidence> for IntervalDocument {
             attitude_costate_end: <[f64; 3]>::from(attitude_end).map(Number),
             momentum_costate_begin: Number::all(momenta_begin),
             momentum_costate_end: Number::all(momenta_end),
+            time_costate_begin: time_begin,
+            time_costate_end: time_end,
             switching_begin: Number::all(switching_begin),
             switching_end: Number::all(switching_end),
             hamiltonian_mean: mean,

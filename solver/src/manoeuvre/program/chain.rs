@@ -2,6 +2,7 @@
 
 use super::{Local, Place, Program};
 use crate::nlp::{Chain, Link, LinkModel, LinkMultipliers, LinkValues};
+use nalgebra::DVector;
 
 /// The variables of a link in which the attitude link is posed, with the storage for it.
 pub(super) struct BaseLink {
@@ -30,7 +31,7 @@ impl Program {
             control: vec![0.0; wheels + 1],
         };
         let unit = self.scales.momentum;
-        let (from, to) = (&self.drift[link.node], &self.drift[link.node + 1]);
+        let [from, to] = self.drifts(link).map(|[taken, ..]| taken);
         for i in 0..wheels {
             let state = self.wheel_state(i, link);
             base.point[4 + i] += state.bulge().value / unit + from[i];
@@ -38,6 +39,15 @@ impl Program {
         }
         base.control[wheels] = self.length(link);
         base
+    }
+
+    /// What the locked wheels have taken at the begin and the end of an interval, as momenta of the
+    /// enabled wheels that do the same to the body, scaled, with its derivatives by the clock.
+    fn drifts(&self, link: &Link<'_>) -> [[DVector<f64>; 3]; 2] {
+        [0.0, self.length(link)].map(|length| {
+            let drift = self.drift_after(link.point, length);
+            drift.taken.map(|taken| &self.equivalent * taken)
+        })
     }
 
     /// The variables of the attitude link as functions of those of the program.
@@ -60,7 +70,32 @@ impl Program {
         }
         let length = self.shape.length_variable();
         locals.push(length.map_or_else(Local::default, itself));
+        if self.followers.move_at_all() {
+            self.add_drifts(link, &mut locals);
+        }
         locals
+    }
+
+    /// Adds how the drift moves the variables of the attitude link with the clock and the length.
+    fn add_drifts(&self, link: &Link<'_>, locals: &mut [Local]) {
+        let wheels = self.shape.wheels;
+        let [[_, from, from_bend], [_, to, to_bend]] = self.drifts(link);
+        let clock = self.shape.clock_at();
+        for i in 0..wheels {
+            let momentum = &mut locals[3 + i];
+            momentum.gradient.push((clock, from[i]));
+            momentum.hessian.push((clock, clock, from_bend[i]));
+            let change = &mut locals[3 + wheels + i];
+            change.gradient.push((clock, to[i] - from[i]));
+            let bend = to_bend[i] - from_bend[i];
+            change.hessian.push((clock, clock, bend));
+            if let Some(length) = self.shape.length_variable() {
+                change.gradient.push((length, to[i]));
+                change.hessian.push((length, length, to_bend[i]));
+                let (row, column) = (length.max(clock), length.min(clock));
+                change.hessian.push((row, column, to_bend[i]));
+            }
+        }
     }
 
     /// Pulls the derivatives of the attitude link back; `base` has them in its own variables.
@@ -108,7 +143,8 @@ impl Program {
         // The speed of the wheel bends with the attitude where momentum is stored.
         let by_speed = weight * term.jet.gradient[super::SPEED];
         let pull = self.speeds[term.wheel].momentum * by_speed;
-        let view = self.base.view(term.link.node, term.link.point);
+        let drift = self.drift(term.link.point);
+        let view = self.base.view(term.link.point, drift);
         self.base.add_momentum_curvature(&pull, &view, out);
     }
 
@@ -119,35 +155,33 @@ impl Program {
             next: &[],
             ..*link
         };
-        let mut base = LinkModel::for_node(&self.base, link.node);
-        let (states, ours) = (self.base.state_dim(), self.shape.states());
-        let count = self.base.write_state_derivatives(&node, duals, &mut base);
-        for row in 0..self.base.equalities(link.node) {
-            let from = &base.equality_jacobian[row * states..(row + 1) * states];
-            out.equality_jacobian[row * ours..row * ours + states].copy_from_slice(from);
-        }
-        for row in 0..count {
-            let from = &base.inequality_jacobian[row * base.vars..row * base.vars + states];
-            let to = row * out.vars;
-            out.inequality_jacobian[to..to + states].copy_from_slice(from);
-        }
-        for i in 0..states {
-            for j in 0..=i {
-                out.hessian[i * out.vars + j] += base.hessian[i * base.vars + j];
-            }
-        }
+        let extended = (self.drift(link.point), self.shape.states());
+        self.base
+            .write_state_derivatives(&node, extended, duals, out);
     }
 
     /// Parts of the state that begin or end with a given value: `(index, value)`.
     fn fixed_parts(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
         let (first, last) = (node == 0, node == self.base.intervals());
-        let total = self.ingredients.duration.unwrap_or(0.0) / self.scales.time;
-        let clock = self.shape.clock.then(|| {
-            let at = self.shape.clock_at();
-            first.then_some((at, 0.0)).or(last.then_some((at, total)))
-        });
+        let at = self.shape.clock_at();
+        let begin = (first && self.shape.clock).then_some((at, 0.0));
+        let total = self.clocked_duration().filter(|_| last);
+        let end = total.map(|total| (at, total / self.scales.time));
+        let clock = begin.or(end);
         let account = (self.shape.account && first).then(|| (self.shape.account_at(), 0.0));
-        clock.flatten().into_iter().chain(account)
+        clock.into_iter().chain(account)
+    }
+
+    /// The duration, s, where it is a condition: lengths that are given sum up to it anyway.
+    fn clocked_duration(&self) -> Option<f64> {
+        let free = self.shape.clock && self.shape.length_variable().is_some();
+        self.ingredients.duration.filter(|_| free)
+    }
+
+    /// The equality at the last node that prescribes the duration, if one does.
+    pub(in crate::manoeuvre) fn clock_end_row(&self) -> Option<usize> {
+        self.clocked_duration()
+            .map(|_| self.base.equalities(self.base.intervals()))
     }
 
     /// How far a length is from the one to which it is drawn.
@@ -211,7 +245,9 @@ impl Chain for Program {
     }
 
     fn values(&self, link: &Link<'_>, out: &mut LinkValues) {
-        let count = self.base.write_state_values(link.node, link.point, out);
+        let count =
+            self.base
+                .write_state_values(link.node, (link.point, self.drift(link.point)), out);
         out.inequality[count..].fill(0.0);
         let fixed = self.base.equalities(link.node);
         let parts = self.fixed_parts(link.node);

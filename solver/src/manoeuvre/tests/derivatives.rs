@@ -134,7 +134,6 @@ impl Fixture {
             weight: 0.3,
             lengths: vec![0.6; 2],
         };
-        program.drift_by(&vehicle.dynamics, vehicle.drift(&motion));
         program.torque_reserve = vec![0.01, 0.02, 0.03];
         let iterate = motion.iterate(&program);
         let weights = |n: usize, seed: f64| (0..n).map(|i| (seed + i as f64).sin()).collect();

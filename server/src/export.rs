@@ -14,6 +14,7 @@ mod aem;
 mod basilisk;
 mod calendar;
 mod csv;
+mod form;
 mod open_mct;
 mod sampling;
 mod stk;
@@ -22,6 +23,7 @@ mod tests;
 mod trajectory;
 mod wheel_rpm;
 
+pub(crate) use form::Form;
 use sampling::Sampling;
 pub(crate) use sampling::Spacing;
 use trajectory::Trajectory;
@@ -176,13 +178,13 @@ pub(crate) enum ExportError {
 ///
 /// # Errors
 ///
-/// What keeps the flight from being flown or written so.
+/// What [`check`] finds, and what keeps the flight from being flown or sampled.
 pub(crate) fn write(
     format: Format,
     (scenario, flight): (&Scenario, &Flight),
     options: &Options,
 ) -> Result<String, ExportError> {
-    check(format, options)?;
+    check(format, scenario, options)?;
     let motion =
         || Motion::of(scenario, flight).map_err(|why| ExportError::NotFlown(why.join("; ")));
     let spacing = options.spacing.unwrap_or(Spacing::Tolerance(TOLERANCE));
@@ -202,8 +204,28 @@ pub(crate) fn write(
     }
 }
 
+/// Whether plans of a scenario can be written so, as far as that is known without a plan.
+///
+/// # Errors
+///
+/// A choice that the format does not leave, or a label of the scenario that it cannot say.
+pub(crate) fn check(
+    format: Format,
+    scenario: &Scenario,
+    options: &Options,
+) -> Result<(), ExportError> {
+    check_choices(format, options)?;
+    match format {
+        Format::Csv | Format::Basilisk => Ok(()),
+        Format::AemKvn | Format::AemXml => calendar::epoch(scenario).map(drop),
+        Format::OpenMct => open_mct::epoch(scenario).map(drop),
+        Format::Stk => stk::labels(scenario).map(drop),
+        Format::WheelRpm => wheel_rpm::check_wheel(scenario, options.wheel),
+    }
+}
+
 /// Choices that a format does not leave are refused: whoever makes them expects something else.
-fn check(format: Format, options: &Options) -> Result<(), ExportError> {
+fn check_choices(format: Format, options: &Options) -> Result<(), ExportError> {
     use Format::{AemKvn, AemXml, OpenMct, Stk, WheelRpm};
     let message = matches!(format, AemKvn | AemXml);
     let refused = [

@@ -1,6 +1,6 @@
 //! `slewplan export` and `solve --format`.
 
-use crate::run::{Ended, fixture, slewplan, slewplan_fed};
+use crate::run::{Ended, fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::json;
 
 /// The plan of a fixture and its export.
@@ -91,6 +91,39 @@ fn choices_are_checked_against_the_format() {
     );
     let fed_twice = slewplan_fed(&["export", "-", "-", "--format", "csv"], b"{}");
     fed_twice.expect_code(2);
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_before_the_solve() {
+    let refused = |label: (&str, &str), choices: &[&str]| {
+        let mut scenario = fixture_json("two-targets.json");
+        scenario[label.0] = json!(label.1);
+        // A solve would fail within this time.
+        let line = ["solve", "-", "--time-limit", "1e-6", "--format"];
+        let line = [&line, choices].concat();
+        let ended = slewplan_fed(&line, scenario.to_string().as_bytes()).expect_code(2);
+        assert_eq!(ended.stdout, "");
+        ended.stderr
+    };
+    let plain = ("name", "two-targets");
+    for choices in [&["csv", "--wheel", "1"][..], &["wheel-rpm", "--wheel", "3"]] {
+        let told = refused(plain, choices);
+        assert!(told.contains("wheel"), "{told}");
+    }
+    for (label, value, formats) in [
+        (
+            "epoch",
+            "yesterday",
+            &["aem-kvn", "aem-xml", "stk", "open-mct"][..],
+        ),
+        ("time_system", "TAI", &["stk", "open-mct"]),
+        ("reference_frame", "LVLH", &["stk"]),
+    ] {
+        for format in formats {
+            let told = refused((label, value), &[format]);
+            assert!(told.contains(&format!("/{label}")), "{told}");
+        }
+    }
 }
 
 #[test]

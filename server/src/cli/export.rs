@@ -31,6 +31,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let destination = Destination::open(&arguments.output)?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
+    arguments.choices.check(arguments.format, &scenario)?;
     let flight = input::of_plan(&arguments.plan, &scenario, wire::flight::read)?;
     // A plan beside the wrong scenario makes files that look well and point elsewhere.
     let found = checker::verify(&scenario, &flight).verification;

@@ -1,39 +1,22 @@
 //! The form in which a command writes a plan.
 
 use super::failure::Failure;
-use crate::export::{self, ExportError, Format, Options, PERIOD_S, Spacing, TOLERANCE};
+use crate::export::{self, ExportError, Form, Format, Options, PERIOD_S, Spacing, TOLERANCE};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use slewplan_solver::plan::Flight;
 use slewplan_solver::scenario::Scenario;
-use std::sync::LazyLock;
 
 /// Most samples of a file: a week at three per second.
 const MOST_SAMPLES: usize = 2_000_000;
 
-/// What `solve` can write.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PlanForm {
-    /// The whole plan.
-    Json,
-    /// One of the formats of other tools.
-    Export(Format),
-}
-
-impl ValueEnum for PlanForm {
+impl ValueEnum for Form {
     fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<PlanForm>> = LazyLock::new(|| {
-            let formats = Format::ALL.into_iter().map(PlanForm::Export);
-            std::iter::once(PlanForm::Json).chain(formats).collect()
-        });
-        &ALL
+        &Self::ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self {
-            Self::Json => Some(PossibleValue::new("json").help("The whole plan")),
-            Self::Export(format) => format.to_possible_value(),
-        }
+        Some(PossibleValue::new(self.name()).help(self.summary()))
     }
 }
 
@@ -94,28 +77,40 @@ impl Choices {
             && self.object_id.is_none()
     }
 
+    /// Whether plans of a scenario can be written so, before there is one.
+    pub(super) fn check(&self, format: Format, scenario: &Scenario) -> Result<(), Failure> {
+        export::check(format, scenario, &self.options()).map_err(failed(format))
+    }
+
     /// A flight in a format with these choices.
     pub(super) fn write(
         &self,
         format: Format,
         of: (&Scenario, &Flight),
     ) -> Result<String, Failure> {
+        export::write(format, of, &self.options()).map_err(failed(format))
+    }
+
+    fn options(&self) -> Options {
         let step = self.step.map(Spacing::Step);
-        let options = Options {
+        Options {
             spacing: step.or(self.tolerance.map(Spacing::Tolerance)),
             rates: !self.no_rates,
             wheel: self.wheel,
             object_name: self.object_name.clone(),
             object_id: self.object_id.clone(),
             ..Options::new(MOST_SAMPLES)
-        };
-        export::write(format, of, &options).map_err(|error| match error {
-            ExportError::NotFinite => Failure::Unspeakable(error.to_string()),
-            _ => Failure::Setting {
-                name: format.name(),
-                what: error.to_string(),
-            },
-        })
+        }
+    }
+}
+
+fn failed(format: Format) -> impl Fn(ExportError) -> Failure {
+    move |error| match error {
+        ExportError::NotFinite => Failure::Unspeakable(error.to_string()),
+        _ => Failure::Setting {
+            name: format.name(),
+            what: error.to_string(),
+        },
     }
 }
 

@@ -1,10 +1,11 @@
 //! `slewplan solve`: one scenario in, one plan out.
 
 use super::failure::Failure;
-use super::form::{Choices, PlanForm};
+use super::form::Choices;
 use super::output::{self, Destination};
 use super::remembered::RememberedLegs;
 use super::{Exit, input};
+use crate::export::Form;
 use crate::progress::{self, ProgressMode};
 use crate::report;
 use crate::signals::{self, Received};
@@ -31,7 +32,7 @@ pub(super) struct Arguments {
     output: Option<PathBuf>,
     /// Form of the plan [default: json]
     #[arg(long, value_enum)]
-    format: Option<PlanForm>,
+    format: Option<Form>,
     /// Print a summary for people, as on a terminal
     #[arg(long)]
     summary: bool,
@@ -79,6 +80,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let outlets = Outlets::open(arguments)?;
     let Validated { scenario, warnings } =
         input::scenario(&arguments.scenario, arguments.time_limit)?;
+    outlets.check(arguments, &scenario)?;
     let (outcome, received) = solve(arguments, &scenario)?;
     if let (Outcome::StoppedEmpty, Some(code)) = (&outcome, received.exit_code()) {
         output::complain("stopped before a first plan was found");
@@ -123,7 +125,7 @@ fn exit(outcome: &Outcome) -> Exit {
 
 /// Where plan and summary go.
 struct Outlets {
-    plan: Option<(Destination, PlanForm)>,
+    plan: Option<(Destination, Form)>,
     summary: Summary,
 }
 
@@ -140,8 +142,8 @@ impl Outlets {
     /// was asked for; the summary goes where a person reads.
     fn open(arguments: &Arguments) -> Result<Self, Failure> {
         let person = stdout().is_terminal();
-        let format = arguments.format.unwrap_or(PlanForm::Json);
-        if format == PlanForm::Json && !arguments.choices.are_default() {
+        let format = arguments.format.unwrap_or(Form::Json);
+        if format == Form::Json && !arguments.choices.are_default() {
             return Err(Failure::Setting {
                 name: "--format",
                 what: "json leaves no choice of samples, rates, wheel or object".into(),
@@ -166,6 +168,14 @@ impl Outlets {
         })
     }
 
+    /// Finds out before the solve whether its plan can be written.
+    fn check(&self, arguments: &Arguments, scenario: &Scenario) -> Result<(), Failure> {
+        match &self.plan {
+            Some((_, Form::Export(format))) => arguments.choices.check(*format, scenario),
+            _ => Ok(()),
+        }
+    }
+
     fn write(
         &self,
         arguments: &Arguments,
@@ -174,18 +184,18 @@ impl Outlets {
     ) -> Result<(), Failure> {
         if let Some((destination, form)) = &self.plan {
             match (form, outcome) {
-                (PlanForm::Json, _) => {
+                (Form::Json, _) => {
                     // After a signal nothing is written.
                     let stopped = [Interruption::TimeLimit.reason()];
                     let document = wire::plan::document(outcome, &stopped, doubts);
                     destination.write(&output::json(&document)?)?;
                 }
-                (PlanForm::Export(format), Outcome::Planned(plan)) => {
+                (Form::Export(format), Outcome::Planned(plan)) => {
                     let flight = (scenario, &plan.flight);
                     destination.write(&arguments.choices.write(*format, flight)?)?;
                 }
                 // There is nothing to export; the reasons go to standard error below.
-                (PlanForm::Export(_), _) => {}
+                (Form::Export(_), _) => {}
             }
         }
         let text = report::outcome(outcome, doubts, scenario);

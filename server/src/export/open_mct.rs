@@ -1,7 +1,8 @@
 //! The schedule as a plan of Open MCT: groups of activities, times in milliseconds since 1970.
 
+use super::ExportError;
+use super::calendar::{self, Moment};
 use super::trajectory::{Kind, pieces};
-use super::{ExportError, calendar};
 use serde::Serialize;
 use slewplan_solver::plan::Flight;
 use slewplan_solver::scenario::Scenario;
@@ -26,9 +27,14 @@ struct Activity {
     text_color: &'static str,
 }
 
+/// The moment that times count from.
+pub(super) fn epoch(scenario: &Scenario) -> Result<Moment, ExportError> {
+    calendar::utc_epoch(scenario, "Open MCT")
+}
+
 /// The plan; targets that are passed without a rest begin and end at one moment.
 pub(super) fn plan(scenario: &Scenario, flight: &Flight) -> Result<String, ExportError> {
-    let epoch = calendar::utc_epoch(scenario, "Open MCT")?;
+    let epoch = epoch(scenario)?;
     let activity = |name, (begin, end): (f64, f64), group, color| -> Result<_, ExportError> {
         Ok(Activity {
             name,

@@ -1,10 +1,18 @@
 //! An attitude file of STK (`.a`): quaternions from the reference axes to the body axes, scalar
 //! last, with angular velocities in degrees per second about the body axes.
 
+use super::ExportError;
+use super::calendar::{self, Moment};
 use super::trajectory::Trajectory;
-use super::{ExportError, calendar};
 use slewplan_solver::scenario::Scenario;
 use std::fmt::Write;
+
+/// Epoch and axes.
+pub(super) fn labels(scenario: &Scenario) -> Result<(Moment, &'static str), ExportError> {
+    let epoch = calendar::utc_epoch(scenario, "STK")?;
+    let axes = axes(scenario.reference_frame().unwrap_or("EME2000"))?;
+    Ok((epoch, axes))
+}
 
 /// The file; the first line is the version that the format has had longest.
 pub(super) fn attitude_file(
@@ -12,8 +20,8 @@ pub(super) fn attitude_file(
     trajectory: &Trajectory<'_>,
     rates: bool,
 ) -> Result<String, ExportError> {
-    let epoch = calendar::utc_epoch(scenario, "STK")?.gregorian();
-    let axes = axes(scenario.reference_frame().unwrap_or("EME2000"))?;
+    let (epoch, axes) = labels(scenario)?;
+    let epoch = epoch.gregorian();
     let kind = if rates {
         "AttitudeTimeQuatAngVels"
     } else {

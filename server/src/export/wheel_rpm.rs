@@ -6,6 +6,7 @@
 
 use super::{ExportError, Options, PERIOD_S, Spacing};
 use slewplan_solver::checker::Motion;
+use slewplan_solver::scenario::Scenario;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -33,13 +34,14 @@ pub(super) fn commands(
     let (mut number, mut time) = (0_u32, 0.0);
     loop {
         let state = motion.state(time).ok_or(ExportError::NotFinite)?;
-        let speeds = chosen(&state.wheel_speed_rad_s, options.wheel)?;
-        if !speeds.iter().all(|speed| speed.is_finite()) {
-            return Err(ExportError::NotFinite);
-        }
+        let speeds = state.wheel_speed_rad_s.iter().enumerate();
+        let chosen = speeds.filter(|(wheel, _)| options.wheel.is_none_or(|one| one == *wheel));
         // Writing into a text cannot fail.
         let _ = write!(text, "{number}");
-        for speed in speeds {
+        for (_, speed) in chosen {
+            if !speed.is_finite() {
+                return Err(ExportError::NotFinite);
+            }
             let _ = write!(text, "\t{:.6}", rpm(*speed));
         }
         text.push('\n');
@@ -51,14 +53,13 @@ pub(super) fn commands(
     }
 }
 
-fn chosen(speeds: &[f64], wheel: Option<usize>) -> Result<&[f64], ExportError> {
-    let Some(index) = wheel else {
-        return Ok(speeds);
-    };
-    speeds.get(index..=index).ok_or_else(|| {
-        let count = speeds.len();
-        ExportError::Choice(format!(
+/// Whether there is such a wheel.
+pub(super) fn check_wheel(scenario: &Scenario, wheel: Option<usize>) -> Result<(), ExportError> {
+    let count = scenario.spacecraft().wheels().len();
+    match wheel {
+        Some(index) if index >= count => Err(ExportError::Choice(format!(
             "there is no wheel {index}: the spacecraft has {count}, counted from 0"
-        ))
-    })
+        ))),
+        _ => Ok(()),
+    }
 }

@@ -1,48 +1,16 @@
 //! The forms of a result, and which of them a request asks for.
 
-use crate::export::Format;
+use crate::export::Form;
 use axum::http::{HeaderMap, header};
 use serde::{Deserialize, Deserializer};
 use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
 
-/// The form of a plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::http) enum Form {
-    /// The whole plan.
-    Json,
-    /// One of the formats of other tools.
-    Export(Format),
-}
-
-impl Form {
-    /// All forms, the ones liked better among equals first.
-    pub(super) fn all() -> impl Iterator<Item = Self> {
-        let formats = Format::ALL.into_iter().map(Self::Export);
-        std::iter::once(Self::Json).chain(formats)
-    }
-
-    /// Its name in queries.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Json => "json",
-            Self::Export(format) => format.name(),
-        }
-    }
-
-    /// Its media type.
-    pub(super) const fn media_type(self) -> &'static str {
-        match self {
-            Self::Json => "application/json",
-            Self::Export(format) => format.media_type(),
-        }
-    }
-}
-
 impl<'de> Deserialize<'de> for Form {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
-        let names = || Self::all().map(Self::name).collect::<Vec<_>>().join(", ");
-        Self::all()
+        let names = || Self::ALL.map(Self::name).join(", ");
+        Self::ALL
+            .into_iter()
             .find(|form| form.name() == name)
             .ok_or_else(|| serde::de::Error::custom(format!("format is one of {}", names())))
     }
@@ -52,7 +20,7 @@ impl<'de> Deserialize<'de> for Form {
 pub(super) fn described() -> ObjectBuilder {
     ObjectBuilder::new()
         .schema_type(SchemaType::Type(Type::String))
-        .enum_values(Some(Form::all().map(Form::name)))
+        .enum_values(Some(Form::ALL.map(Form::name)))
 }
 
 /// The form that `Accept` likes best, the first among equals; `None` when it likes none.
@@ -77,7 +45,8 @@ pub(super) fn accepted(headers: &HeaderMap) -> Option<Form> {
             .find_map(|name| ranges.iter().find(|(range, _)| range == name))
             .map_or(0.0, |(_, weight)| *weight)
     };
-    Form::all()
+    Form::ALL
+        .into_iter()
         .map(|form| (form, liking(form)))
         .filter(|(_, liking)| *liking > 0.0)
         .reduce(|best, next| if next.1 > best.1 { next } else { best })
@@ -96,6 +65,7 @@ fn range(text: &str) -> (String, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::export::Format;
     use axum::http::HeaderValue;
 
     #[test]
@@ -123,15 +93,5 @@ mod tests {
             assert_eq!(accepted(&headers), expected, "{accept}");
         }
         assert_eq!(accepted(&HeaderMap::new()), Some(Form::Json));
-    }
-
-    #[test]
-    fn every_form_has_a_name_and_a_media_type_of_its_own() {
-        let distinct = |text: fn(Form) -> &'static str| {
-            let texts: std::collections::HashSet<_> = Form::all().map(text).collect();
-            texts.len()
-        };
-        assert_eq!(distinct(Form::name), Form::all().count());
-        assert_eq!(distinct(Form::media_type), Form::all().count());
     }
 }

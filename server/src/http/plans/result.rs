@@ -5,9 +5,9 @@ use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::extract::{Named, Parameters, header_text};
 use super::super::respond;
-use super::forms::{self, Form, accepted};
+use super::forms::{self, accepted};
 use crate::digest;
-use crate::export::{self, ExportError, Format, Options, Spacing};
+use crate::export::{self, ExportError, Form, Format, Options, Spacing};
 use crate::store::{JobState, ResultRow};
 use crate::wire;
 use crate::wire::plan::PlanDocument;
@@ -149,8 +149,7 @@ pub(in crate::http) async fn handler(
     let found = app.store().result(&id).await?;
     let (state, result) = found.ok_or_else(|| ApiError::not_found("plan", &id))?;
     let form = query.format.or_else(|| accepted(&headers)).ok_or_else(|| {
-        let types: Vec<&str> = Form::all().map(Form::media_type).collect();
-        let detail = format!("there is {}", types.join(", "));
+        let detail = format!("there is {}", Form::ALL.map(Form::media_type).join(", "));
         ApiError::new(ErrorCode::NotAcceptable, detail)
     })?;
     let options = query.options()?;

@@ -26,13 +26,11 @@ pub(crate) use router::{openapi, router};
 use crate::jobs::Jobs;
 use crate::lifecycle::Shutdown;
 use crate::store::Store;
+use computing::Turns;
 use metrics::Metrics;
 use slewplan_solver::pool::SolverPool;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
-
-/// Verifications at once: there are not more cores to spare beside the solver.
-const VERIFICATIONS: usize = 2;
 
 /// What every handler can reach.
 #[derive(Clone)]
@@ -52,10 +50,10 @@ struct Parts {
     pool: Arc<SolverPool>,
     /// Where legs are looked up, so that this never waits for a solve.
     lookups: Arc<SolverPool>,
-    /// Queries that compute take turns.
-    computing: Semaphore,
-    /// Verifications, of which few are made at once.
-    verifying: Semaphore,
+    /// Requests that compute take turns.
+    solving: Turns,
+    /// So do those that integrate flights.
+    flying: Turns,
     /// Streams of events that are open: a part of all connections.
     streams: Arc<Semaphore>,
     /// Whether work can be taken, as found lately.
@@ -92,8 +90,8 @@ impl App {
             shutdown,
             pool,
             lookups,
-            computing: Semaphore::new(1),
-            verifying: Semaphore::new(VERIFICATIONS),
+            solving: computing::solving(),
+            flying: computing::flying(),
             streams: Arc::new(Semaphore::new(limits.streams)),
             readiness: operations::health::Readiness::default(),
             metrics: Metrics::default(),

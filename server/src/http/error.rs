@@ -10,6 +10,8 @@ use utoipa::ToSchema;
 
 /// Most problems of one input that are listed.
 const MOST_PROBLEMS: usize = 100;
+/// When to come again, s, if the error itself does not know better.
+const RETRY_S: u32 = 10;
 /// The media type of every error.
 pub(super) const PROBLEM_JSON: &str = "application/problem+json";
 
@@ -145,7 +147,7 @@ impl ApiError {
         }
     }
 
-    /// Says when to come again.
+    /// Says when to come again, if that is not what [`RETRY_S`] says.
     pub(super) fn retry_after(self, seconds: u32) -> Self {
         Self {
             retry_after_s: Some(seconds),
@@ -253,11 +255,34 @@ impl IntoResponse for ApiError {
                 .headers_mut()
                 .insert(header::WWW_AUTHENTICATE, scheme);
         }
-        if let Some(seconds) = self.retry_after_s {
+        let later = [
+            StatusCode::TOO_MANY_REQUESTS,
+            StatusCode::SERVICE_UNAVAILABLE,
+        ];
+        let retry = self.retry_after_s;
+        if let Some(seconds) = retry.or_else(|| later.contains(&status).then_some(RETRY_S)) {
             response
                 .headers_mut()
                 .insert(header::RETRY_AFTER, seconds.into());
         }
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_shall_come_again_is_told_when() {
+        for code in ErrorCode::ALL {
+            let response = ApiError::new(*code, "").into_response();
+            let told = response.headers().contains_key(header::RETRY_AFTER);
+            let temporary = [429, 503].contains(&code.status().as_u16());
+            assert_eq!(told, temporary, "{}", code.as_str());
+        }
+        let sooner = ApiError::new(ErrorCode::Busy, "").retry_after(1);
+        let response = sooner.into_response();
+        assert_eq!(response.headers()[header::RETRY_AFTER], "1");
     }
 }

@@ -4,7 +4,7 @@ use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
 use super::error::{ApiError, ErrorCode};
 use super::extract::JsonBody;
-use super::{App, respond, stored};
+use super::{App, computing, respond, stored};
 use crate::wire;
 use crate::wire::document::Node;
 use crate::wire::reader::{Cursor, Sink};
@@ -13,11 +13,6 @@ use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::checker;
 use slewplan_solver::problem::Problem;
-use std::time::Duration;
-
-/// Longest wait for a turn, and time after which another try is worth it.
-const PATIENCE: Duration = Duration::from_secs(10);
-const RETRY_S: u32 = 10;
 
 /// Fly a plan again and test every limit
 #[utoipa::path(
@@ -35,20 +30,8 @@ pub(super) async fn handler(
 ) -> Result<Response, ApiError> {
     let (scenario, plan) = parts(body.node)?;
     let (scenario, _) = stored::write_out(&app, &caller, scenario, "/scenario").await?;
-    let turn = tokio::time::timeout(PATIENCE, app.0.verifying.acquire()).await;
-    let Ok(Ok(_turn)) = turn else {
-        let error = ApiError::new(ErrorCode::Busy, "other plans are being verified");
-        return Err(error.retry_after(RETRY_S));
-    };
     // Integrating a long flight takes long, and the answer borrows from what it integrates.
-    let work = tokio::task::spawn_blocking(move || verify(&scenario, &plan));
-    let json = work.await.map_err(|error| {
-        tracing::error!(%error, "a verification failed");
-        ApiError::new(
-            ErrorCode::Internal,
-            "the verification could not be finished",
-        )
-    })??;
+    let json = computing::flown(&app.0.flying, move || verify(&scenario, &plan)).await??;
     Ok(respond::json(json))
 }
 

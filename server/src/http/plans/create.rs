@@ -26,8 +26,6 @@ use uuid::Uuid;
 
 /// Longest wait of a request for its plan, s.
 pub(in crate::http) const LONGEST_WAIT_S: u64 = 60;
-/// Time after which a full queue is worth another try, s.
-const RETRY_FULL_S: u32 = 10;
 const LONGEST_KEY: usize = 255;
 
 /// Parameters of a submission.
@@ -141,7 +139,7 @@ async fn check_room(app: &App) -> Result<(), ApiError> {
 fn queue_full(app: &App) -> ApiError {
     let limit = app.jobs().queue_limits().all;
     let detail = format!("{limit} jobs wait already (queue_limit)");
-    ApiError::new(ErrorCode::QueueFull, detail).retry_after(RETRY_FULL_S)
+    ApiError::new(ErrorCode::QueueFull, detail)
 }
 
 /// Refuses what would take long to read in full, before it is read in full.
@@ -198,8 +196,8 @@ fn validation(valid: &Validated) -> Result<Response, ApiError> {
 
 async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), ApiError> {
     if app.shutdown().has_begun() {
-        let error = ApiError::new(ErrorCode::NotReady, "the service is about to end");
-        return Err(error.retry_after(RETRY_FULL_S));
+        let detail = "the service is about to end";
+        return Err(ApiError::new(ErrorCode::NotReady, detail));
     }
     match app.jobs().submit(submission).await? {
         Submitted::New(job) => {
@@ -215,7 +213,7 @@ async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), Ap
         Submitted::QuotaExceeded => {
             let limit = app.jobs().queue_limits().client;
             let detail = format!("{limit} jobs of this client wait already (client_queue_limit)");
-            Err(ApiError::new(ErrorCode::QuotaExceeded, detail).retry_after(RETRY_FULL_S))
+            Err(ApiError::new(ErrorCode::QuotaExceeded, detail))
         }
     }
 }

@@ -23,8 +23,6 @@ const LIFE: Duration = Duration::from_hours(1);
 const FAREWELL: Duration = Duration::from_secs(2);
 /// Time after which a client shall connect again.
 const AGAIN: Duration = Duration::from_secs(2);
-/// Time after which another stream may be free, s.
-const RETRY_S: u32 = 10;
 
 /// Follow a job
 ///
@@ -56,8 +54,8 @@ pub(in crate::http) async fn handler(
         .map_or(0, i64::from);
     let job = super::find(&app, &id).await?;
     let Ok(place) = Arc::clone(&app.0.streams).try_acquire_owned() else {
-        let error = ApiError::new(ErrorCode::Busy, "too many streams are open");
-        return Err(error.retry_after(RETRY_S));
+        let detail = "too many streams are open";
+        return Err(ApiError::new(ErrorCode::Busy, detail));
     };
     let tail = Tail {
         changes: app.jobs().changes(),

@@ -1,10 +1,9 @@
 //! `GET /v1/plans/{id}/result`: the plan.
 
-use super::super::App;
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::extract::{Named, Parameters, header_text};
-use super::super::respond;
+use super::super::{App, computing, respond};
 use super::forms::{self, accepted};
 use crate::digest;
 use crate::export::{self, ExportError, Form, Format, Options, Spacing};
@@ -15,15 +14,11 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 use axum::response::Response;
 use serde::Deserialize;
-use std::time::Duration;
 use utoipa::IntoParams;
 
 const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
 /// Time after which a first plan is worth asking for again, s.
 const RETRY_S: u32 = 1;
-/// Longest wait for a turn to integrate a flight, and time after which another try is worth it.
-const PATIENCE: Duration = Duration::from_secs(10);
-const RETRY_BUSY_S: u32 = 10;
 /// Most samples of an answer: some 80 MB of XML.
 const MOST_SAMPLES: usize = 200_000;
 
@@ -197,15 +192,10 @@ async fn exported(
         created_us,
         ..options
     };
-    let turn = tokio::time::timeout(PATIENCE, app.0.verifying.acquire()).await;
-    let Ok(Ok(_turn)) = turn else {
-        let error = ApiError::new(ErrorCode::Busy, "other flights are being integrated");
-        return Err(error.retry_after(RETRY_BUSY_S));
-    };
     let document = result.document.clone();
     // Integrating a long flight takes long.
-    let work = tokio::task::spawn_blocking(move || write(format, (&scenario, &document), &options));
-    let text = work.await.map_err(|error| unreadable(&error))??;
+    let work = move || write(format, (&scenario, &document), &options);
+    let text = computing::flown(&app.0.flying, work).await??;
     let kind = format.media_type();
     // What is XML or JSON says so itself.
     let kind = match format {

@@ -1,6 +1,7 @@
 //! HTTP: routes, what they take and what they answer. No SQL and no solving here.
 
 mod access;
+mod admission;
 mod computing;
 mod describe;
 mod error;

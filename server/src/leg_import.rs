@@ -56,7 +56,7 @@ pub(crate) fn read(node: &Node) -> Result<Import, Vec<Problem>> {
                 Err(obstacles)
             }
         });
-        read.map_err(|found| problems.extend(found.into_iter().map(in_scenario)))
+        read.map_err(|found| problems.extend(Problem::all_under("/scenario", found)))
             .ok()
     });
     match (scenario, table.motions) {
@@ -66,13 +66,6 @@ pub(crate) fn read(node: &Node) -> Result<Import, Vec<Problem>> {
             motions,
         }),
         _ => Err(problems),
-    }
-}
-
-fn in_scenario(problem: Problem) -> Problem {
-    Problem {
-        pointer: format!("/scenario{}", problem.pointer),
-        ..problem
     }
 }
 

@@ -5,6 +5,7 @@ use slewplan_solver::manoeuvre::evidence::{self, Evidence};
 use slewplan_solver::manoeuvre::{self, Outcome};
 use slewplan_solver::problem::Problem;
 use slewplan_solver::stop::StopSignal;
+use std::time::Duration;
 
 /// What came of a request.
 pub(crate) struct Solved {
@@ -14,13 +15,17 @@ pub(crate) struct Solved {
     pub(crate) complete: bool,
 }
 
-/// Solves the slew, or those along the sweep.
+/// Solves the slew, or those along the sweep, within the time that the request has.
 ///
 /// # Errors
 ///
 /// Problems with the values of the sweep.
 pub(crate) fn solve(request: &SlewRequest, stop: &StopSignal) -> Result<Solved, Vec<Problem>> {
     let manoeuvre = &request.manoeuvre;
+    let stop = &match request.time_limit_s {
+        Some(seconds) => stop.with_time_limit(Duration::from_secs_f64(seconds)),
+        None => stop.clone(),
+    };
     let outcomes = match &request.sweep {
         Some(sweep) => manoeuvre::trade_curve(manoeuvre, sweep, stop)?,
         None => vec![manoeuvre::solve(manoeuvre, stop)],

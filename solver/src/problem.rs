@@ -36,6 +36,20 @@ impl Problem {
             hint: hint.into(),
         }
     }
+
+    /// The same of a document that is a part of another, at this pointer there.
+    #[must_use]
+    pub fn under(mut self, place: &str) -> Self {
+        self.pointer.insert_str(0, place);
+        self
+    }
+
+    /// All problems of such a document.
+    #[must_use]
+    pub fn all_under(place: &str, problems: Vec<Self>) -> Vec<Self> {
+        let moved = |problem: Self| problem.under(place);
+        problems.into_iter().map(moved).collect()
+    }
 }
 
 /// Everything that was found in an input that is refused.

@@ -2,6 +2,7 @@
 
 use crate::client::Request;
 use crate::running::{Service, large, small};
+use serde_json::{Value, json};
 
 #[test]
 fn what_is_no_request_is_refused_in_one_form() {
@@ -53,14 +54,17 @@ fn what_is_no_request_is_refused_in_one_form() {
 #[test]
 fn a_limit_that_is_exceeded_is_named() {
     let service = Service::start_with(&["--max-targets", "3"]);
-    let problem = service
-        .post("/v1/plans", &large())
-        .expect_problem(413, "too_many_targets");
-    assert!(
-        problem["detail"]
-            .as_str()
-            .is_some_and(|detail| detail.contains("max_targets"))
-    );
+    for (path, body) in [
+        ("plans", large()),
+        ("verify", json!({"scenario": large(), "plan": {}})),
+        ("studies/flight", json!({"scenario": large()})),
+        ("studies/authority", authorities_of(&large())),
+    ] {
+        let answer = service.post(&format!("/v1/{path}"), &body);
+        let problem = answer.expect_problem(413, "too_many_targets");
+        let detail = problem["detail"].as_str().expect("a text");
+        assert!(detail.contains("max_targets"), "{detail}");
+    }
     assert_eq!(
         service.get("/v1/limits").expect(200).json()["max_targets"],
         3
@@ -71,11 +75,22 @@ fn a_limit_that_is_exceeded_is_named() {
 fn a_job_that_would_need_too_much_memory_is_refused() {
     let service = Service::start_with(&["--job-memory", "16"]);
     service.submit(&small());
-    let problem = service
-        .post("/v1/plans", &large())
-        .expect_problem(413, "too_much_memory");
-    let detail = problem["detail"].as_str().expect("a text");
-    assert!(detail.contains("job_memory_bytes"), "{detail}");
+    for (path, body) in [
+        ("plans", large()),
+        ("studies/flight", json!({"scenario": large()})),
+        ("studies/authority", authorities_of(&large())),
+    ] {
+        let answer = service.post(&format!("/v1/{path}"), &body);
+        let problem = answer.expect_problem(413, "too_much_memory");
+        let detail = problem["detail"].as_str().expect("a text");
+        assert!(detail.contains("job_memory_bytes"), "{detail}");
+    }
+}
+
+/// A study of a scenario with one pair of shares.
+fn authorities_of(scenario: &Value) -> Value {
+    let shares = json!({"torque_authority": 1.0, "momentum_authority": 1.0});
+    json!({"scenario": scenario, "authorities": [shares]})
 }
 
 #[test]

@@ -8,7 +8,6 @@ use crate::slews::{self, Solved};
 use crate::wire::slew::{self, SlewAnswerDocument};
 use slewplan_solver::stop::StopSignal;
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// What `slew` takes.
 #[derive(Debug, clap::Args)]
@@ -31,10 +30,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let request = slew::read(&bytes).map_err(invalid)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let stop = match request.time_limit_s {
-        Some(seconds) => stop.with_time_limit(Duration::from_secs_f64(seconds)),
-        None => stop,
-    };
     let solved = slews::solve(&request, &stop).map_err(invalid)?;
     if let (true, Some(code)) = (solved.outcomes.is_empty(), received.exit_code()) {
         return Ok(Exit::Signalled(code));

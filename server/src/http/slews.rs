@@ -11,7 +11,6 @@ use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Solve one slew
 ///
@@ -49,11 +48,7 @@ pub(super) async fn handler(
 }
 
 fn answer(request: &SlewRequest, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
-    let stop = match request.time_limit_s {
-        Some(seconds) => stop.with_time_limit(Duration::from_secs_f64(seconds)),
-        None => stop.clone(),
-    };
-    let solved = slews::solve(request, &stop).map_err(ApiError::input)?;
+    let solved = slews::solve(request, stop).map_err(ApiError::input)?;
     let document = SlewAnswerDocument::new(request, &solved.outcomes, solved.complete);
     respond::written(&document, "slew")
 }

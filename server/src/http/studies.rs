@@ -6,8 +6,8 @@ pub(super) mod envelopes;
 pub(super) mod flight;
 
 use super::access::Caller;
-use super::error::{ApiError, ErrorCode};
-use super::{App, stored};
+use super::error::ApiError;
+use super::{App, admission, stored};
 use crate::wire::document::Node;
 use slewplan_solver::legs::NoStore;
 use slewplan_solver::planner::Run;
@@ -15,22 +15,13 @@ use slewplan_solver::pool::SolverPool;
 use slewplan_solver::progress::Silent;
 use slewplan_solver::stop::StopSignal;
 
-/// Refuses more targets than the service plans.
-fn check_targets(app: &App, targets: usize) -> Result<(), ApiError> {
-    let limit = app.limits().targets;
-    if targets <= limit {
-        return Ok(());
-    }
-    let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
-    Err(ApiError::new(ErrorCode::TooManyTargets, detail))
-}
-
-/// The study with the spacecraft of its scenario written out.
-async fn with_spacecraft(app: &App, caller: &Caller, node: Node) -> Result<Node, ApiError> {
+/// The study with the spacecraft of its scenario written out, if it is not too large.
+async fn with_scenario(app: &App, caller: &Caller, node: Node) -> Result<Node, ApiError> {
     let Node::Object(mut members) = node else {
         return Ok(node);
     };
     if let Some((_, scenario)) = members.iter_mut().find(|(name, _)| name == "scenario") {
+        admission::check_size(app, scenario)?;
         let given = std::mem::replace(scenario, Node::Null);
         (*scenario, _) = stored::write_out(app, caller, given, "/scenario").await?;
     }

@@ -4,7 +4,7 @@ use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
 use super::error::{ApiError, ErrorCode};
 use super::extract::JsonBody;
-use super::{App, computing, respond, stored};
+use super::{App, admission, computing, respond, stored};
 use crate::wire;
 use crate::wire::document::Node;
 use crate::wire::reader::{Cursor, Sink};
@@ -29,6 +29,7 @@ pub(super) async fn handler(
     body: JsonBody,
 ) -> Result<Response, ApiError> {
     let (scenario, plan) = parts(body.node)?;
+    admission::check_size(&app, &scenario)?;
     let (scenario, _) = stored::write_out(&app, &caller, scenario, "/scenario").await?;
     // Integrating a long flight takes long, and the answer borrows from what it integrates.
     let json = computing::flown(&app.0.flying, move || verify(&scenario, &plan)).await??;
@@ -61,22 +62,12 @@ fn parts(node: Node) -> Result<(Node, Node), ApiError> {
 
 fn verify(scenario: &Node, plan: &Node) -> Result<Vec<u8>, ApiError> {
     let valid = wire::scenario::read_node(scenario, None)
-        .map_err(|problems| ApiError::input(under("/scenario", problems)))?;
+        .map_err(|problems| ApiError::input(Problem::all_under("/scenario", problems)))?;
     let flight = wire::flight::read_node(plan, &valid.scenario)
-        .map_err(|problems| ApiError::input(under("/plan", problems)))?;
+        .map_err(|problems| ApiError::input(Problem::all_under("/plan", problems)))?;
     let found = checker::verify(&valid.scenario, &flight);
-    let warnings: Vec<Problem> = under("/scenario", valid.warnings)
-        .into_iter()
-        .chain(under("/scenario", found.keep_out))
-        .collect();
+    let warnings = valid.warnings.into_iter().chain(found.keep_out).collect();
+    let warnings = Problem::all_under("/scenario", warnings);
     let report = ReportDocument::new(&found.verification, &found.margins, &warnings);
     respond::written(&report, "verification")
-}
-
-fn under(place: &str, problems: Vec<Problem>) -> Vec<Problem> {
-    let moved = |problem: Problem| Problem {
-        pointer: format!("{place}{}", problem.pointer),
-        ..problem
-    };
-    problems.into_iter().map(moved).collect()
 }

@@ -3,7 +3,7 @@
 use super::super::describe::{self, BodyErrors, LegFileBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
-use super::super::{App, computing, respond};
+use super::super::{App, admission, computing, respond};
 use crate::leg_import;
 use crate::wire::leg_import::LegImportDocument;
 use axum::extract::State;
@@ -31,11 +31,7 @@ pub(in crate::http) async fn handler(
     body: JsonBody,
 ) -> Result<Response, ApiError> {
     let import = leg_import::read(&body.node).map_err(ApiError::input)?;
-    let (targets, limit) = (import.scenario.targets().len(), app.limits().targets);
-    if targets > limit {
-        let detail = format!("{targets} targets; the limit is {limit} (max_targets)");
-        return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
-    }
+    admission::check_targets(&app, import.scenario.targets().len())?;
     let pool = Arc::clone(&app.0.pool);
     let work = move |stop: &StopSignal| import.judge(&pool, stop);
     let judged = computing::in_turn(&app, computing::UNTIL_DONE, work).await?;

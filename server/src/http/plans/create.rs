@@ -5,11 +5,10 @@ use super::super::access::Caller;
 use super::super::describe::{BodyErrors, QuotaErrors, Scenario, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::{JsonBody, Parameters, header_text};
-use super::super::{respond, stored};
+use super::super::{admission, respond, stored};
 use crate::digest;
 use crate::store::{JobRow, Submission, Submitted};
 use crate::wire;
-use crate::wire::document::Node;
 use crate::wire::jobs::JobDocument;
 use crate::wire::plan::PlanDocument;
 use crate::wire::problems::ValidationDocument;
@@ -19,7 +18,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use slewplan_solver::planner;
-use slewplan_solver::scenario::{Scenario as ValidScenario, Validated};
+use slewplan_solver::scenario::Validated;
 use std::time::Duration;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -92,7 +91,7 @@ pub(in crate::http) async fn handler(
 ) -> Result<Response, ApiError> {
     let key = idempotency_key(&headers)?;
     let fingerprint = digest::hex(&body.bytes);
-    check_size(&app, &body.node)?;
+    admission::check_size(&app, &body.node)?;
     if key.is_none() && !query.validate_only {
         check_room(&app).await?;
     }
@@ -103,7 +102,7 @@ pub(in crate::http) async fn handler(
     if query.validate_only {
         return validation(&valid);
     }
-    check_memory(&app, &valid.scenario)?;
+    admission::check_memory(&app, &valid.scenario)?;
     let submission = Submission {
         id: Uuid::now_v7().to_string(),
         name: valid.scenario.name().map(str::to_owned),
@@ -140,39 +139,6 @@ fn queue_full(app: &App) -> ApiError {
     let limit = app.jobs().queue_limits().all;
     let detail = format!("{limit} jobs wait already (queue_limit)");
     ApiError::new(ErrorCode::QueueFull, detail)
-}
-
-/// Refuses what would take long to read in full, before it is read in full.
-fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
-    let limit = app.limits().targets;
-    let Node::Object(members) = scenario else {
-        return Ok(());
-    };
-    let Some((_, Node::List(targets))) = members.iter().find(|(name, _)| name == "targets") else {
-        return Ok(());
-    };
-    let count = targets.len();
-    if count > limit {
-        let detail = format!("{count} targets; the limit is {limit} (max_targets)");
-        return Err(ApiError::new(ErrorCode::TooManyTargets, detail));
-    }
-    Ok(())
-}
-
-/// Refuses what may need more memory than a job has.
-fn check_memory(app: &App, scenario: &ValidScenario) -> Result<(), ApiError> {
-    let (needed, given) = (
-        planner::memory_estimate(scenario),
-        app.jobs().memory_limit(),
-    );
-    if needed <= given {
-        return Ok(());
-    }
-    let count = scenario.targets().len();
-    let detail = format!(
-        "{count} targets may need {needed} bytes of memory; the limit is {given} (job_memory_bytes)"
-    );
-    Err(ApiError::new(ErrorCode::TooMuchMemory, detail))
 }
 
 /// What a finished request answers.

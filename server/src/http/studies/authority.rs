@@ -4,8 +4,8 @@ use super::super::access::Caller;
 use super::super::describe::{self, AuthorityBody, BodyErrors, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::JsonBody;
-use super::super::{App, computing, respond};
-use super::{check_targets, quiet_run, with_spacecraft};
+use super::super::{App, admission, computing, respond};
+use super::{quiet_run, with_scenario};
 use crate::wire::study::authority::{self, AuthorityAnswerDocument, AuthorityStudy};
 use axum::extract::State;
 use axum::response::Response;
@@ -32,9 +32,12 @@ pub(in crate::http) async fn handler(
     caller: Caller,
     body: JsonBody,
 ) -> Result<Response, ApiError> {
-    let node = with_spacecraft(&app, &caller, body.node).await?;
+    let node = with_scenario(&app, &caller, body.node).await?;
     let study = authority::read_node(&node).map_err(ApiError::input)?;
-    check_targets(&app, study.targets())?;
+    // One plan at a time is made, all of them of the same targets.
+    if let Ok(valid) = study.scenario() {
+        admission::check_memory(&app, &valid)?;
+    }
     let pool = Arc::clone(&app.0.pool);
     let work = move |stop: &StopSignal| answer(&study, &pool, stop);
     let json = computing::in_turn(&app, computing::LONGEST, work).await??;

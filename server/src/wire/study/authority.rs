@@ -1,15 +1,17 @@
 //! Which shares of torque and speed a plan should leave to feedback: the request and its answer.
 
+use super::simulation;
 use super::spread::SpreadDocument;
-use super::{plan_status, simulation};
 use crate::wire::document::{self, Node};
 use crate::wire::number::Number;
+use crate::wire::plan;
 use crate::wire::problems::{ProblemDocument, documents};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::scenario;
 use serde::Serialize;
 use slewplan_solver::planner::Run;
 use slewplan_solver::problem::Problem;
+use slewplan_solver::scenario::Scenario;
 use slewplan_solver::simulation::{
     Authorities, AuthorityRow, AuthorityStudySpec, RowOutcome, study,
 };
@@ -79,9 +81,13 @@ fn authorities(cursor: &Cursor<'_>) -> Option<Authorities> {
 }
 
 impl AuthorityStudy {
-    /// Number of targets of the scenario.
-    pub(crate) fn targets(&self) -> usize {
-        self.scenario.targets.len()
+    /// What is planned, with the shares of the request itself.
+    ///
+    /// # Errors
+    ///
+    /// Everything that is wrong with the scenario.
+    pub(crate) fn scenario(&self) -> Result<Scenario, Vec<Problem>> {
+        Scenario::try_new(&self.scenario).map(|valid| valid.scenario)
     }
 
     /// Plans and flies.
@@ -90,12 +96,12 @@ impl AuthorityStudy {
     ///
     /// Everything that is wrong with the scenario and with the study.
     pub(crate) fn conduct(&self, run: Run<'_>) -> Result<Vec<AuthorityRow>, Vec<Problem>> {
-        let placed = |problem: Problem| Problem {
-            pointer: problem
-                .pointer
-                .strip_prefix(STUDY)
-                .map_or_else(|| format!("/scenario{}", problem.pointer), str::to_owned),
-            ..problem
+        let placed = |problem: Problem| match problem.pointer.strip_prefix(STUDY) {
+            Some(pointer) => Problem {
+                pointer: pointer.to_owned(),
+                ..problem
+            },
+            None => problem.under("/scenario"),
         };
         study(&self.scenario, &self.spec, STUDY, run)
             .map_err(|problems| problems.into_iter().map(placed).collect())
@@ -170,7 +176,7 @@ impl<'a> From<&'a AuthorityRow> for RowDocument<'a> {
             } => Self {
                 status: "flown",
                 total_time_s: Some(Number(*total_time_s)),
-                plan_status: Some(plan_status(*optimality)),
+                plan_status: Some(plan::status(*optimality)),
                 sequence,
                 flights: Some((&**spread).into()),
                 ..nothing

@@ -60,10 +60,7 @@ pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
         return Err(problems);
     };
     let mut noted = |place: &str, found: Vec<Problem>| {
-        problems.extend(found.into_iter().map(|problem| Problem {
-            pointer: format!("{place}{}", problem.pointer),
-            ..problem
-        }));
+        problems.extend(Problem::all_under(place, found));
     };
     let valid = member(node, "scenario").and_then(|node| {
         scenario::read_node(node, None)
@@ -133,11 +130,4 @@ fn keep_every(cursor: &Cursor<'_>) -> Option<usize> {
         return None;
     }
     Some(every)
-}
-
-impl FlightStudy {
-    /// Number of targets of the scenario.
-    pub(crate) fn targets(&self) -> usize {
-        self.scenario.targets().len()
-    }
 }

@@ -1,10 +1,9 @@
 //! One flight of a plan in closed loop: the answer.
 
-use super::super::plan_status;
 use super::FlightStudy;
 use crate::flights::{FlownOnce, Outcome};
 use crate::wire::number::Number;
-use crate::wire::plan::QuaternionDocument;
+use crate::wire::plan::{self, QuaternionDocument};
 use crate::wire::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::plan::Passage;
@@ -124,7 +123,7 @@ impl<'a> FlightDocument<'a> {
         };
         Self {
             number: study.number,
-            plan_status: flown.optimality.map(plan_status),
+            plan_status: flown.optimality.map(plan::status),
             total_time_s: Number(flown.plan.total_time_s),
             flight_time_s: Number(flown.flight_time_s),
             tolerance_rad: Number(flown.tolerance_rad),

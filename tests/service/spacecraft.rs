@@ -3,6 +3,9 @@
 use crate::client::Request;
 use crate::running::{Service, small};
 use serde_json::{Value, json};
+use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{ConnectOptions, Connection};
+use std::path::Path;
 
 #[test]
 fn a_spacecraft_is_stored_in_versions_and_used_by_name() {
@@ -62,4 +65,38 @@ fn wrong_spacecraft_and_unknown_names_are_refused() {
         .expect_problem(422, "invalid_input");
     assert_eq!(problem["errors"][0]["pointer"], "/spacecraft/ref");
     assert_eq!(problem["errors"][0]["code"], "unknown_reference");
+}
+
+#[test]
+fn a_damaged_spacecraft_is_no_fault_of_who_refers_to_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("damaged.db");
+    let mut service = Service::on(&database, &[]);
+    let put = Request::new("PUT", "/v1/spacecraft/sat").json(&small()["spacecraft"]);
+    service.send(&put).expect(201);
+    assert!(service.terminate());
+    damage(&database);
+    let service = Service::on(&database, &[]);
+    let mut scenario = small();
+    scenario["spacecraft"] = json!({"ref": "sat"});
+    for answer in [
+        service.get("/v1/spacecraft/sat"),
+        service.post("/v1/plans", &scenario),
+        service.post("/v1/verify", &json!({"scenario": scenario, "plan": {}})),
+    ] {
+        answer.expect_problem(500, "internal_error");
+    }
+}
+
+/// Cuts off the stored spacecraft.
+fn damage(database: &Path) {
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    runtime.block_on(async {
+        let options = SqliteConnectOptions::new().filename(database);
+        let mut connection = options.connect().await.expect("a database");
+        let cut = sqlx::query("UPDATE spacecraft SET document = substr(document, 1, 40)");
+        let cut = cut.execute(&mut connection).await.expect("changed");
+        assert_eq!(cut.rows_affected(), 1);
+        connection.close().await.expect("written");
+    });
 }

@@ -4,7 +4,7 @@ pub(super) mod get;
 pub(super) mod put;
 
 use crate::clock::rfc3339;
-use crate::store::SpacecraftRow;
+use crate::store::{SpacecraftRow, StoreError};
 use serde::Serialize;
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
@@ -25,12 +25,14 @@ pub(super) struct StoredSpacecraft {
 }
 
 impl StoredSpacecraft {
-    fn new(name: String, row: SpacecraftRow) -> Result<Self, serde_json::Error> {
+    /// What is stored, unless it is no JSON any more.
+    fn new(name: String, row: SpacecraftRow) -> Result<Self, StoreError> {
+        let damaged = |_| StoreError::Damaged { what: "spacecraft" };
         Ok(Self {
             name,
             version: row.version,
             created_at: rfc3339(row.created_us),
-            spacecraft: RawValue::from_string(row.document)?,
+            spacecraft: RawValue::from_string(row.document).map_err(damaged)?,
         })
     }
 }

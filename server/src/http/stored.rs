@@ -3,6 +3,7 @@
 use super::App;
 use super::access::Caller;
 use super::error::ApiError;
+use crate::store::StoreError;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
 use slewplan_solver::problem::{Code, Problem};
@@ -32,8 +33,9 @@ pub(super) async fn write_out(
             "store it with PUT /v1/spacecraft/{name}, or write it out in the scenario",
         )]));
     };
-    let stored = document::parse(row.document.as_bytes())
-        .map_err(|problem| ApiError::input(vec![problem]))?;
+    // Only JSON was stored: that it is none any more is no fault of the request.
+    let damaged = |_| StoreError::Damaged { what: "spacecraft" };
+    let stored = document::parse(row.document.as_bytes()).map_err(damaged)?;
     Ok((replaced(node, stored), true))
 }
 

@@ -51,8 +51,5 @@ pub(in crate::http) async fn handler(
         .spacecraft(&caller.own(&name), query.version.map(i64::from))
         .await?;
     let row = found.ok_or_else(|| ApiError::not_found("spacecraft", &name))?;
-    StoredSpacecraft::new(name, row).map(Json).map_err(|error| {
-        tracing::error!(%error, "a stored spacecraft is no JSON");
-        ApiError::new(ErrorCode::Internal, "the stored spacecraft cannot be read")
-    })
+    Ok(Json(StoredSpacecraft::new(name, row)?))
 }

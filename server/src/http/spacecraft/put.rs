@@ -46,18 +46,12 @@ pub(in crate::http) async fn handler(
         .put_spacecraft(&caller.own(&name), &body.node.to_json(), now)
         .await?;
     let first = row.version == 1 && row.created_us == now;
-    let stored = StoredSpacecraft::new(name, row).map_err(|error| {
-        tracing::error!(%error, "a stored spacecraft is no JSON");
-        ApiError::new(ErrorCode::Internal, "the stored spacecraft cannot be read")
-    })?;
-    Ok((
-        if first {
-            StatusCode::CREATED
-        } else {
-            StatusCode::OK
-        },
-        Json(stored),
-    ))
+    let status = if first {
+        StatusCode::CREATED
+    } else {
+        StatusCode::OK
+    };
+    Ok((status, Json(StoredSpacecraft::new(name, row)?)))
 }
 
 fn check_name(name: &str) -> Result<(), ApiError> {

@@ -47,6 +47,30 @@ export async function modules({ browser, service, must }) {
     const expected = ["1", '"x\\"}"', "[ ]", "null", '{"b/c": "x\\"}", "d": [ ]}', null];
     check(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
   });
+  await must("a stream that broke after the last event comes to its end", async () => {
+    const [known, events] = await inPage(async (folder) => {
+      const { follow } = await import(`${folder}/app/stream.js`);
+      const [known, events] = [[], []];
+      const pieces = ["id: 7\nevent: state\ndata: {\"state\": \"succeeded\"}\n\n"];
+      const body = () => new ReadableStream({
+        async pull(controller) {
+          if (pieces.length) return controller.enqueue(new TextEncoder().encode(pieces.pop()));
+          await new Promise((resolve) => setTimeout(resolve, 100));
+          controller.error(new Error("the connection broke"));
+        },
+      });
+      const fetch = window.fetch;
+      window.fetch = async (_, { headers }) => {
+        known.push(headers["Last-Event-ID"] ?? null);
+        return known.length === 1 ? new Response(body()) : new Response(null, { status: 204 });
+      };
+      await follow("any", (event) => events.push(event.state), new AbortController().signal);
+      window.fetch = fetch;
+      return [known, events];
+    });
+    check(JSON.stringify(known) === '[null,"7"]', JSON.stringify(known));
+    check(JSON.stringify(events) === '["succeeded"]', JSON.stringify(events));
+  });
   await must("any study is shown as tables, whatever is in it", async () => {
     const found = await inPage(async (folder) => {
       const { generic } = await import(`${folder}/app/studies/generic.js`);

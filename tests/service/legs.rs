@@ -231,9 +231,11 @@ fn wrong_queries_are_refused_with_pointers() {
             .get(&format!("/v1/legs?{wrong}"))
             .expect_problem(400, "invalid_parameter");
     }
-    service
+    let nowhere = service
         .get("/v1/legs?attitude=0,0,0,0")
         .expect_problem(422, "invalid_input");
+    assert_eq!(nowhere["errors"][0]["pointer"], "/attitude");
+    assert_eq!(nowhere["errors"][0]["code"], "zero_direction");
     let mut unknown = json!({"attitudes": [attitude(0.0, 0.0), attitude(1.0, 0.0)]});
     unknown["spacecraft"] = json!({"ref": "nowhere"});
     let problem = service

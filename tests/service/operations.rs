@@ -88,3 +88,16 @@ fn the_index_of_errors_is_where_problems_point_to() {
     let anchor = place.strip_prefix("/docs/errors#").expect("the index");
     assert!(index.contains(&format!("id=\"{anchor}\"")), "{anchor}");
 }
+
+#[test]
+fn who_knows_the_documents_of_this_build_is_told_that_they_are_the_same() {
+    let service = Service::start();
+    for path in ["/openapi.yaml", "/docs/errors"] {
+        let answer = service.get(path).expect(200);
+        let tag = answer.header("etag").expect("a tag");
+        let again = Request::new("GET", path).header("If-None-Match", tag);
+        assert_eq!(service.send(&again).expect(304).body, "");
+        let other = Request::new("GET", path).header("If-None-Match", "\"other\"");
+        assert_eq!(service.send(&other).expect(200).body, answer.body);
+    }
+}

@@ -244,6 +244,40 @@ fn cancel_frees_the_core_for_the_next_job() {
 }
 
 #[test]
+fn who_waits_for_a_job_that_is_cancelled_is_told_that_it_has_ended() {
+    let service = Service::start();
+    let first = service.submit(&large());
+    service.wait(&first, |job| job["state"] == "running");
+    let submission = Request::new("POST", "/v1/plans")
+        .header("Prefer", "wait=60")
+        .header("Idempotency-Key", "waited-for")
+        .json(&small());
+    std::thread::scope(|scope| {
+        let waiting = scope.spawn(|| service.send(&submission));
+        // Behind the one that runs.
+        let id = loop {
+            let queued = service.get("/v1/plans?state=queued").expect(200).json();
+            if let Some(id) = queued["plans"][0]["id"].as_str() {
+                break id.to_owned();
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        };
+        let cancel = Request::new("POST", &format!("/v1/plans/{id}/cancel"));
+        service.send(&cancel).expect(200);
+        let answer = waiting.join().expect("an answer").expect(200);
+        assert_eq!(answer.header("location"), Some(&*format!("/v1/plans/{id}")));
+        let job = answer.json();
+        assert_eq!(
+            (&job["id"], &job["state"]),
+            (&json!(id), &json!("cancelled"))
+        );
+    });
+    // The same request again has nothing to wait for.
+    let again = service.send(&submission).expect(200);
+    assert_eq!(again.json()["state"], "cancelled");
+}
+
+#[test]
 fn a_deleted_job_is_gone_and_a_running_one_is_abandoned() {
     let service = Service::start();
     let id = service.submit(&large());

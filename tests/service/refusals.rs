@@ -52,6 +52,25 @@ fn what_is_no_request_is_refused_in_one_form() {
 }
 
 #[test]
+fn more_problems_than_are_listed_are_counted() {
+    let service = Service::start();
+    let told = |count: usize| {
+        let mut scenario = small();
+        scenario["targets"] = (0..count).map(|_| json!(1)).collect();
+        let answer = service.post("/v1/plans", &scenario);
+        let problem = answer.expect_problem(422, "invalid_input");
+        let listed = problem["errors"].as_array().expect("a list").len();
+        (listed, problem["detail"].as_str().expect("text").to_owned())
+    };
+    assert_eq!(
+        told(100),
+        (100, "100 problems, listed in errors".to_owned())
+    );
+    let first = "101 problems, the first 100 of them listed in errors".to_owned();
+    assert_eq!(told(101), (100, first));
+}
+
+#[test]
 fn a_limit_that_is_exceeded_is_named() {
     let service = Service::start_with(&["--max-targets", "3"]);
     for (path, body) in [

@@ -11,6 +11,8 @@ export async function follow(id, onEvent, signal) {
     try {
       const headers = last === null ? {} : { "Last-Event-ID": last };
       const answer = await request(`/v1/plans/${id}/events`, { headers, signal });
+      // The job has ended, and there is nothing after what is known.
+      if (answer.status === 204) return;
       let closing = false;
       for await (const event of events(answer.body)) {
         if (event.id) last = event.id;

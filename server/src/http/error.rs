@@ -129,7 +129,7 @@ pub(super) struct ErrorDocument<'a> {
     detail: &'a str,
     /// Stable code.
     code: &'static str,
-    /// What is wrong with the input, each with its place.
+    /// What is wrong with the input, each with its place; at most the first 100.
     errors: Vec<ProblemDocument<'a>>,
     /// What is doubtful with the scenario that was submitted, besides.
     warnings: Vec<ProblemDocument<'a>>,
@@ -165,11 +165,13 @@ impl ApiError {
         let malformed = problems
             .iter()
             .any(|problem| problem.code == Code::MalformedJson);
-        let count = problems.len();
-        let plural = if count == 1 { "" } else { "s" };
-        let detail = match problems.first() {
-            Some(only) if count == 1 => format!("{}: {}", place(only), only.message),
-            _ => format!("{count} problem{plural}, listed in errors"),
+        let detail = match problems.as_slice() {
+            [only] => format!("{}: {}", place(only), only.message),
+            more if more.len() > MOST_PROBLEMS => {
+                let count = more.len();
+                format!("{count} problems, the first {MOST_PROBLEMS} of them listed in errors")
+            }
+            more => format!("{} problems, listed in errors", more.len()),
         };
         let code = if malformed {
             ErrorCode::MalformedJson

@@ -32,13 +32,17 @@ fn present(job: Option<JobRow>, id: &str) -> Result<JobRow, ApiError> {
 
 /// The answer for a job that has been asked to end: when it has ended, or after a while.
 async fn ending(app: &App, id: &str) -> Result<Response, ApiError> {
-    let job = present(respond::await_end(app, id, PATIENCE).await?, id)?;
+    standing(&present(respond::await_end(app, id, PATIENCE).await?, id)?)
+}
+
+/// A job that was waited for: accepted as long as it has not ended.
+fn standing(job: &JobRow) -> Result<Response, ApiError> {
     let status = if job.state()?.is_final() {
         StatusCode::OK
     } else {
         StatusCode::ACCEPTED
     };
-    respond::job(status, &job)
+    respond::job(status, job)
 }
 
 /// A request to end that came too late.

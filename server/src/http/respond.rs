@@ -66,7 +66,7 @@ pub(super) fn json(document: Vec<u8>) -> Response {
 /// A content of a media type with the tag that belongs to it.
 pub(super) fn tagged(form: &str, tag: &str, body: Bytes) -> Response {
     let mut response = ([(header::CONTENT_TYPE, form.to_owned())], body).into_response();
-    if let Ok(tag) = HeaderValue::from_str(&format!("\"{tag}\"")) {
+    if let Some(tag) = quoted(tag) {
         response.headers_mut().insert(header::ETAG, tag);
     }
     response
@@ -74,20 +74,26 @@ pub(super) fn tagged(form: &str, tag: &str, body: Bytes) -> Response {
 
 /// The response, or only its tag when that is one of those that `If-None-Match` lists.
 pub(super) fn unless_known(known: &str, response: Response) -> Response {
-    match response.headers().get(header::ETAG) {
-        Some(tag) if is_known(known, tag) => {
-            (StatusCode::NOT_MODIFIED, [(header::ETAG, tag.clone())]).into_response()
-        }
-        _ => response,
-    }
+    let tag = response.headers().get(header::ETAG);
+    let unchanged = tag.and_then(|tag| not_modified(known, tag));
+    unchanged.unwrap_or(response)
 }
 
-fn is_known(known: &str, tag: &HeaderValue) -> bool {
-    let tag = tag.to_str().map(bare);
-    known.trim() == "*"
-        || known
-            .split(',')
-            .any(|one| tag.as_ref().is_ok_and(|tag| bare(one) == *tag))
+/// The answer to whoever knows the content of a tag, if `If-None-Match` lists it: for contents that
+/// take long to make.
+pub(super) fn unless_made(known: &str, tag: &str) -> Option<Response> {
+    not_modified(known, &quoted(tag)?)
+}
+
+fn not_modified(known: &str, tag: &HeaderValue) -> Option<Response> {
+    let this = bare(tag.to_str().ok()?);
+    let listed = known.trim() == "*" || known.split(',').any(|one| bare(one) == this);
+    let headers = [(header::ETAG, tag.clone())];
+    listed.then(|| (StatusCode::NOT_MODIFIED, headers).into_response())
+}
+
+fn quoted(tag: &str) -> Option<HeaderValue> {
+    HeaderValue::from_str(&format!("\"{tag}\"")).ok()
 }
 
 /// A tag for the weak comparison that `If-None-Match` asks for.

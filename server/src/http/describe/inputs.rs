@@ -232,7 +232,7 @@ struct KeepOut {
     boresight: String,
     /// Axis of the cone in the reference frame, any length.
     direction: Vector,
-    #[schema(exclusive_minimum = 0, maximum = 180)]
+    #[schema(exclusive_minimum = 0, exclusive_maximum = 180)]
     half_angle_deg: f64,
 }
 

@@ -10,6 +10,7 @@ use axum::Json;
 use axum::extract::State;
 use serde::Deserialize;
 use slewplan_solver::attitude::Attitude;
+use slewplan_solver::problem::{Code, Problem};
 use utoipa::IntoParams;
 
 const DEFAULT_LIMIT: u16 = 50;
@@ -132,7 +133,12 @@ fn quaternion(name: &str, text: &str) -> Result<Attitude, ApiError> {
     let xyzw =
         xyzw.ok_or_else(|| wrong(format!("{name} is a quaternion x,y,z,w of four numbers")))?;
     Attitude::from_xyzw(xyzw).ok_or_else(|| {
-        let detail = format!("{name}={text} has no direction: its length is zero or not finite");
-        ApiError::new(ErrorCode::InvalidInput, detail)
+        ApiError::input(vec![Problem::new(
+            // A parameter has no place in a document; its name stands for one.
+            format!("/{name}"),
+            Code::ZeroDirection,
+            format!("{text} has no direction: its length is zero or not finite"),
+            "write a quaternion x,y,z,w of any finite length but zero",
+        )])
     })
 }

@@ -1,24 +1,73 @@
 //! `/openapi.yaml` and the index of errors.
 
-use super::super::error::ErrorCode;
-use super::super::router;
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::header_text;
+use super::super::{respond, router};
+use crate::digest;
 use crate::store::EndCode;
-use axum::http::{HeaderName, header};
-use axum::response::Html;
+use axum::body::Bytes;
+use axum::http::HeaderMap;
+use axum::response::Response;
 use slewplan_solver::problem::Code;
 use std::fmt::Write;
+use std::sync::LazyLock;
+
+/// A text of this build with its tag.
+struct Page {
+    form: &'static str,
+    tag: String,
+    text: Bytes,
+}
+
+impl Page {
+    fn new(form: &'static str, text: String) -> Self {
+        Self {
+            form,
+            tag: digest::hex(text.as_bytes()),
+            text: text.into(),
+        }
+    }
+
+    fn answer(&self, headers: &HeaderMap) -> Result<Response, ApiError> {
+        let known = header_text(headers, "if-none-match")?.unwrap_or("");
+        let response = respond::tagged(self.form, &self.tag, self.text.clone());
+        Ok(respond::unless_known(known, response))
+    }
+}
+
+static OPENAPI: LazyLock<Page> = LazyLock::new(|| Page::new("application/yaml", router::openapi()));
+static ERRORS: LazyLock<Page> = LazyLock::new(|| Page::new("text/html; charset=utf-8", index()));
 
 /// Read this description
 #[utoipa::path(
     get, path = "/openapi.yaml", tag = "operations", operation_id = "get_openapi",
-    responses((status = 200, description = "OpenAPI 3.1", body = serde_json::Value,
-        content_type = "application/yaml")),
+    params(("If-None-Match" = Option<String>, Header,
+        description = "Entity tags that are known already")),
+    responses(
+        (status = 200, description = "OpenAPI 3.1", body = serde_json::Value,
+            content_type = "application/yaml",
+            headers(("ETag" = String, description = "Hash of the content"))),
+        (status = 304, description = "Not changed"),
+    ),
 )]
-pub(in crate::http) async fn openapi() -> ([(HeaderName, &'static str); 1], String) {
-    (
-        [(header::CONTENT_TYPE, "application/yaml")],
-        router::openapi(),
-    )
+pub(in crate::http) async fn openapi(headers: HeaderMap) -> Result<Response, ApiError> {
+    OPENAPI.answer(&headers)
+}
+
+/// Read the index of errors
+#[utoipa::path(
+    get, path = "/docs/errors", tag = "operations", operation_id = "get_error_index",
+    params(("If-None-Match" = Option<String>, Header,
+        description = "Entity tags that are known already")),
+    responses(
+        (status = 200, description = "Every code and what it means", body = String,
+            content_type = "text/html",
+            headers(("ETag" = String, description = "Hash of the content"))),
+        (status = 304, description = "Not changed"),
+    ),
+)]
+pub(in crate::http) async fn errors(headers: HeaderMap) -> Result<Response, ApiError> {
+    ERRORS.answer(&headers)
 }
 
 /// Enough to read the tables by; nothing is loaded.
@@ -27,13 +76,7 @@ const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;mar
     th,td{text-align:left;vertical-align:top;padding:.35rem .75rem .35rem 0;\
     border-bottom:1px solid #8886}:target{background:#fc04}";
 
-/// Read the index of errors
-#[utoipa::path(
-    get, path = "/docs/errors", tag = "operations", operation_id = "get_error_index",
-    responses((status = 200, description = "Every code and what it means", body = String,
-        content_type = "text/html")),
-)]
-pub(in crate::http) async fn errors() -> Html<String> {
+fn index() -> String {
     let mut page = format!(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width\"><title>Errors of slewplan</title>\
@@ -80,5 +123,5 @@ pub(in crate::http) async fn errors() -> Html<String> {
         );
     }
     page.push_str("</table></html>\n");
-    Html(page)
+    page
 }

@@ -40,7 +40,8 @@ pub(in crate::http) struct Query {
 /// Submit a scenario
 ///
 /// Answers with a job, or, with `Prefer: wait=N`, with the finished plan when it is ready within
-/// N seconds (at most 60).
+/// N seconds (at most 60). A job that ends within that time without a plan, because it is cancelled
+/// or dies, is answered with 200 too; its `state` is final then.
 #[utoipa::path(
     post, path = "/v1/plans", tag = "plans", operation_id = "create_plan",
     params(
@@ -58,8 +59,8 @@ pub(in crate::http) struct Query {
             value = json!(super::super::describe::experiment_a()))),
     )),
     responses(
-        (status = 200, description = "The finished plan, or what validation says",
-            body = inline(Finished)),
+        (status = 200, description = "The finished plan, the job that ended without one, or what \
+            validation says", body = inline(Finished)),
         (status = 202, description = "The job, queued or already running",
             body = JobDocument,
             headers(("Location" = String, description = "Address of the job")),
@@ -148,6 +149,8 @@ fn queue_full(app: &App) -> ApiError {
 enum Finished {
     /// With `Prefer: wait`.
     Plan(Box<PlanDocument<'static>>),
+    /// With `Prefer: wait`, of a job that ended without a plan.
+    Job(Box<JobDocument>),
     /// With `validate_only`.
     Validation(ValidationDocument<'static>),
 }
@@ -186,18 +189,17 @@ async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), Ap
 
 /// The plan when it is ready in time, the job otherwise.
 async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
-    let mut job = job;
-    if let Some(patience) = wait {
-        let id = job.id.clone();
-        job = respond::await_end(app, &id, patience)
-            .await?
-            .ok_or_else(|| ApiError::not_found("plan", &id))?;
-        let result = app.store().result(&id).await?.and_then(|(_, plan)| plan);
-        if let Some(result) = result.filter(|result| result.is_final) {
-            return Ok(located(super::result::json(&result), &job));
-        }
-    }
-    Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job))
+    let Some(patience) = wait else {
+        return Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job));
+    };
+    let job = super::present(respond::await_end(app, &job.id, patience).await?, &job.id)?;
+    let found = app.store().result(&job.id).await?;
+    let result = found.and_then(|(_, plan)| plan);
+    Ok(match result.filter(|result| result.is_final) {
+        Some(result) => located(super::result::json(&result), &job),
+        // Without a plan nothing more may come: a job that was cancelled, for one.
+        None => located(super::standing(&job)?, &job),
+    })
 }
 
 fn located(mut response: Response, job: &JobRow) -> Response {

@@ -7,9 +7,10 @@ use super::super::extract::Named;
 use crate::lifecycle::Shutdown;
 use crate::store::{EventRow, JobState, StoreError};
 use axum::extract::State;
-use axum::http::HeaderMap;
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
-use futures_util::stream::{Stream, unfold};
+use axum::response::{IntoResponse, Response};
+use futures_util::stream::unfold;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -28,8 +29,9 @@ const AGAIN: Duration = Duration::from_secs(2);
 ///
 /// Server-sent events with ids that count from 1. Every event carries state, incumbent and bound.
 /// A stream ends after the last event of a job; one that broke is resumed with `Last-Event-ID`.
-/// When the service ends, and after an hour, a stream ends with `closing`, which has no id: connect
-/// again.
+/// Where nothing is left to tell of a job that has ended, the answer is 204, which keeps an
+/// `EventSource` from coming again. When the service ends, and after an hour, a stream ends with
+/// `closing`, which has no id: connect again.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/events", tag = "plans", operation_id = "follow_plan",
     params(
@@ -39,6 +41,8 @@ const AGAIN: Duration = Duration::from_secs(2);
     ),
     responses(
         (status = 200, description = "The events", body = Frame, content_type = "text/event-stream"),
+        (status = 204, description = "The job has ended, and there is no event after the last that \
+            is known"),
         NotFound, ServerErrors,
     ),
 )]
@@ -46,7 +50,7 @@ pub(in crate::http) async fn handler(
     State(app): State<App>,
     Named(id): Named,
     headers: HeaderMap,
-) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, ApiError> {
+) -> Result<Response, ApiError> {
     // An id that is none of ours is taken for none: the caller then sees everything.
     let known = headers
         .get("last-event-id")
@@ -57,7 +61,7 @@ pub(in crate::http) async fn handler(
         let detail = "too many streams are open";
         return Err(ApiError::new(ErrorCode::Busy, detail));
     };
-    let tail = Tail {
+    let mut tail = Tail {
         changes: app.jobs().changes(),
         known,
         sequence: job.sequence,
@@ -69,7 +73,14 @@ pub(in crate::http) async fn handler(
         closed: false,
         _place: place,
     };
-    Ok(Sse::new(unfold(tail, Tail::next)).keep_alive(KeepAlive::default()))
+    // Nobody follows a job that is gone since.
+    let state = tail.fetch().await?;
+    let state = state.ok_or_else(|| ApiError::not_found("plan", &tail.id))?;
+    if state.is_final() && tail.read.is_empty() {
+        return Ok(StatusCode::NO_CONTENT.into_response());
+    }
+    let stream = Sse::new(unfold(tail, Tail::next));
+    Ok(stream.keep_alive(KeepAlive::default()).into_response())
 }
 
 /// One server-sent event.

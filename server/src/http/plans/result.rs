@@ -55,8 +55,7 @@ impl Query {
         };
         let spacing = match (self.step_s, self.tolerance) {
             (Some(_), Some(_)) => {
-                let detail = "step_s and tolerance exclude each other";
-                return Err(ApiError::new(ErrorCode::NotAcceptable, detail));
+                return Err(wrong("step_s", "it and tolerance exclude each other"));
             }
             (Some(step), None) => {
                 let step = Spacing::checked_step(step).map_err(|what| wrong("step_s", what))?;
@@ -126,8 +125,8 @@ impl Query {
                     description = "A name for the file, in the formats of other tools"),
             )),
         (status = 304, description = "Not changed"),
-        (status = 406, description = "No accepted form, none with these choices, or one that \
-            cannot say what the scenario's epoch, time system or frame is", body = ErrorDocument<'static>,
+        (status = 406, description = "No accepted form, or one that cannot say what the scenario's \
+            epoch, time system or frame is", body = ErrorDocument<'static>,
             content_type = "application/problem+json"),
         (status = 409, description = "No plan yet (`result_not_ready`), or none at all (`no_result`)",
             body = ErrorDocument<'static>, content_type = "application/problem+json",
@@ -150,7 +149,7 @@ pub(in crate::http) async fn handler(
     let options = query.options()?;
     if form == Form::Json && query.chooses() {
         let detail = "json leaves no choice of samples, rates, wheel or object";
-        return Err(ApiError::new(ErrorCode::NotAcceptable, detail));
+        return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
     }
     let Some(result) = result else {
         return Err(if state.is_final() {
@@ -161,12 +160,18 @@ pub(in crate::http) async fn handler(
             ApiError::new(ErrorCode::ResultNotReady, detail).retry_after(RETRY_S)
         });
     };
-    let mut response = match form {
-        Form::Json => json(&result),
-        Form::Export(format) => exported(&app, &id, &result, (format, options)).await?,
+    let tag = match form {
+        Form::Json => result.digest.clone(),
+        Form::Export(format) => format!("{}-{}", result.digest, choices(format, &options)),
     };
     let known = header_text(&headers, "if-none-match")?.unwrap_or("");
-    response = respond::unless_known(known, response);
+    let mut response = match (respond::unless_made(known, &tag), form) {
+        (Some(unchanged), _) => unchanged,
+        (None, Form::Json) => json(&result),
+        (None, Form::Export(format)) => {
+            exported(&app, (&id, &tag), &result, (format, options)).await?
+        }
+    };
     let state = HeaderValue::from_static(state.as_str());
     response.headers_mut().insert(JOB_STATE, state);
     Ok(response)
@@ -180,13 +185,12 @@ pub(super) fn json(result: &ResultRow) -> Response {
 /// The plan in the format of another tool.
 async fn exported(
     app: &App,
-    id: &str,
+    (id, tag): (&str, &str),
     result: &ResultRow,
     (format, options): (Format, Options),
 ) -> Result<Response, ApiError> {
     let found = app.store().scenario(id).await?;
     let (scenario, created_us) = found.ok_or_else(|| ApiError::not_found("plan", id))?;
-    let tag = format!("{}-{}", result.digest, choices(format, &options));
     // Not when this is asked for: the same plan has the same bytes, as its tag says.
     let options = Options {
         created_us,
@@ -202,7 +206,7 @@ async fn exported(
         Format::AemXml | Format::OpenMct => kind.to_owned(),
         _ => format!("{kind}; charset=utf-8"),
     };
-    let mut response = respond::tagged(&kind, &tag, text.into());
+    let mut response = respond::tagged(&kind, tag, text.into());
     let name = format!("attachment; filename=\"{id}.{}\"", format.extension());
     if let Ok(name) = HeaderValue::from_str(&name) {
         let headers = response.headers_mut();
@@ -240,9 +244,8 @@ fn write(
         return Err(ApiError::new(ErrorCode::NoResult, detail));
     };
     export::write(format, (scenario, &flight), options).map_err(|error| match error {
-        ExportError::Choice(_) | ExportError::Label { .. } => {
-            ApiError::new(ErrorCode::NotAcceptable, error.to_string())
-        }
+        ExportError::Choice(what) => ApiError::new(ErrorCode::InvalidParameter, what),
+        ExportError::Label { .. } => ApiError::new(ErrorCode::NotAcceptable, error.to_string()),
         ExportError::NotFlown(_) | ExportError::NotFinite => unreadable(&error),
     })
 }

@@ -5,8 +5,8 @@ use super::integrator::Interval;
 use super::order::misplaced;
 use super::wording::figure;
 use super::{
-    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, RATE_TOLERANCE, REST_TORQUE_TOLERANCE, SNAP,
-    TIME_TOLERANCE,
+    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, NOT_COMPUTED, RATE_TOLERANCE, REST_TORQUE_TOLERANCE,
+    SNAP, TIME_TOLERANCE,
 };
 use crate::plan::{Flight, Passage};
 use crate::scenario::{End, RateCondition, Scenario, Target};
@@ -52,12 +52,13 @@ pub(super) fn book<'a>(
         }
         let times = [passage.time_s, passage.departure_s];
         if times.iter().all(|t| t.is_finite()) {
-            earliest = passage.departure_s;
             let [arrival_s, departure_s] = times.map(|t| snapped(t, flight, intervals));
+            earliest = passage.departure_s.max(passage.time_s);
             visits.push(Visit {
                 target,
                 arrival_s,
-                departure_s,
+                // Rounding may order the ends of a stay of no length the other way round.
+                departure_s: departure_s.max(arrival_s),
             });
         }
     }
@@ -141,8 +142,12 @@ pub(super) fn inspect(scenario: &Scenario, visits: &[Visit<'_>], states: &[Snaps
     for visit in visits {
         let from = states.partition_point(|state| state.time_s < visit.arrival_s);
         let to = states.partition_point(|state| state.time_s <= visit.departure_s);
-        let stay = states.get(from..to).unwrap_or_default();
-        misses.at_target(visit, stay, scenario.options().attitude_equivalence);
+        match states.get(from..to) {
+            Some(stay) if !stay.is_empty() => {
+                misses.at_target(visit, stay, scenario.options().attitude_equivalence);
+            }
+            _ => misses.unseen(visit),
+        }
     }
     if let (Some(end), Some(state)) = (scenario.end(), states.last()) {
         misses.at_end(end, state, scenario);
@@ -165,6 +170,18 @@ impl Misses {
             rate = rate.max(rate_error(&state.rate, &conditions));
         }
         self.record(&format!("target '{}'", target.id), turn, rate);
+    }
+
+    /// Of a stay of which there is no state nothing is known, least of all that it is right.
+    fn unseen(&mut self, visit: &Visit<'_>) {
+        self.attitude_rad = NOT_COMPUTED;
+        self.rate_rad_s = NOT_COMPUTED;
+        self.failures.push(format!(
+            "target '{}' cannot be tested: there is no state from {} s to {} s",
+            visit.target.id,
+            figure(visit.arrival_s),
+            figure(visit.departure_s)
+        ));
     }
 
     fn at_end(&mut self, end: &End, state: &Snapshot, scenario: &Scenario) {

@@ -1,8 +1,9 @@
 //! Flights that are not flights of the scenario, each refused in words.
 
 use super::super::NOT_COMPUTED;
+use super::super::visits::{Visit, inspect};
 use super::build::{
-    HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target,
+    HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target, valid,
 };
 use crate::plan::Flight;
 use crate::spec::ScenarioSpec;
@@ -124,6 +125,34 @@ fn targets_out_of_order_are_refused() {
         &flight,
         "target 'b' is reached at 10 s, before the departure",
     );
+}
+
+#[test]
+fn a_target_left_before_it_is_reached_is_tested_all_the_same() {
+    let spec = scenario(vec![target("a", angle(HALF)), target("b", angle(HALF))]);
+    let end = 2.0 * HALF;
+    for early in [0.0, 1e-9, 1e-8] {
+        let mut flight = bang_bang();
+        flight.passages.push(passage("b", end, end));
+        flight.passages[0] = passage("a", end, end - early);
+        accepted(&spec, &flight);
+        flight.passages[0] = passage("a", HALF, HALF - early);
+        let report = refused(&spec, &flight, "target 'a' is missed by");
+        assert!(report.verification.max_attitude_error_rad > 0.1);
+    }
+}
+
+#[test]
+fn a_stay_of_which_there_is_no_state_is_refused() {
+    let scenario = valid(&spec());
+    let visit = Visit {
+        target: &scenario.targets()[0],
+        arrival_s: 1.0,
+        departure_s: 1.0,
+    };
+    let misses = inspect(&scenario, &[visit], &[]);
+    assert!(misses.attitude_rad >= NOT_COMPUTED && misses.rate_rad_s >= NOT_COMPUTED);
+    assert!(misses.failures[0].contains("target 'a' cannot be tested"));
 }
 
 #[test]

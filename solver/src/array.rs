@@ -28,15 +28,13 @@ pub use polytope::{Facet, Figures, Polytope};
 use crate::findings::Findings;
 use crate::problem::{Code, Problem};
 use crate::spacecraft::{Spacecraft, Wheel};
+use crate::wheel_axes;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-
-/// Smallest over largest singular value of the unit axes below which they lie in a plane.
-const COPLANARITY_THRESHOLD: f64 = 1e-6;
 
 /// What one wheel can give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WheelRange {
-    /// `a_i`: axis in body axes, of any length.
+    /// `a_i`: axis in body axes, of unit length or any other of the same order.
     pub axis: Vector3<f64>,
     /// Least amount, below zero.
     pub least: f64,
@@ -93,8 +91,13 @@ impl WheelArray {
             .map(|(i, range)| is_valid(range, &format!("{pointer}/{i}"), &mut findings))
             .collect();
         let array = valid.iter().all(|&valid| valid).then(|| {
-            let places = (0..ranges.len()).collect();
-            Self::of_ranges(ranges.to_vec(), places, ranges.len())
+            let axes: Vec<_> = ranges.iter().map(|range| range.axis).collect();
+            Some(Self {
+                ranges: ranges.to_vec(),
+                places: (0..ranges.len()).collect(),
+                wheels: ranges.len(),
+                inverse: wheel_axes::pseudo_inverse(&axes)?,
+            })
         });
         if array == Some(None) {
             findings.refuse(
@@ -115,11 +118,11 @@ impl WheelArray {
     /// An authority that is not in (0, 1]; the pointer is that of a scenario's option.
     pub fn torque(spacecraft: &Spacecraft, authority: f64) -> Result<Self, Vec<Problem>> {
         check_authority("/options/torque_authority", authority)?;
-        Self::of_wheels(spacecraft, |wheel| WheelRange {
+        Ok(Self::of_wheels(spacecraft, |wheel| WheelRange {
             axis: wheel.axis,
             least: wheel.min_torque * authority,
             most: wheel.max_torque * authority,
-        })
+        }))
     }
 
     /// The momenta relative to the body, N m s, that the enabled wheels hold; `authority` is the
@@ -146,45 +149,22 @@ impl WheelArray {
         if !unlimited.is_empty() {
             return Err(unlimited);
         }
-        Self::of_wheels(spacecraft, |wheel| {
+        Ok(Self::of_wheels(spacecraft, |wheel| {
             WheelRange::symmetric(wheel.axis, wheel.inertia * wheel.max_speed * authority)
-        })
+        }))
     }
 
-    fn of_wheels(
-        spacecraft: &Spacecraft,
-        range: impl Fn(&Wheel) -> WheelRange,
-    ) -> Result<Self, Vec<Problem>> {
+    fn of_wheels(spacecraft: &Spacecraft, range: impl Fn(&Wheel) -> WheelRange) -> Self {
         let (places, ranges) = spacecraft
             .enabled_wheels()
             .map(|(i, wheel)| (i, range(wheel)))
             .unzip();
-        Self::of_ranges(ranges, places, spacecraft.wheels().len()).ok_or_else(|| {
-            vec![Problem::new(
-                "/spacecraft/wheels",
-                Code::WheelAxesCoplanar,
-                "the axes of the enabled wheels do not span space",
-                "enable or add a wheel out of their plane",
-            )]
-        })
-    }
-
-    /// `None` when the axes do not span space.
-    fn of_ranges(ranges: Vec<WheelRange>, places: Vec<usize>, wheels: usize) -> Option<Self> {
-        if ranges.len() < 3 {
-            return None;
-        }
-        let units = DMatrix::from_fn(3, ranges.len(), |i, j| ranges[j].axis.normalize()[i]);
-        let singular = units.singular_values();
-        let spans = singular.min() >= COPLANARITY_THRESHOLD * singular.max();
-        let inverse = spans.then(|| columns(&ranges).pseudo_inverse(0.0).ok());
-        let inverse = inverse.flatten()?;
-        Some(Self {
+        Self {
             ranges,
             places,
-            wheels,
-            inverse,
-        })
+            wheels: spacecraft.wheels().len(),
+            inverse: spacecraft.axes_inverse().clone(),
+        }
     }
 
     /// What each wheel of the array can give.
@@ -232,11 +212,8 @@ impl WheelArray {
 
     /// Greatest share of its limit that any wheel of the array has; at most one within the limits.
     pub(crate) fn load(&self, amounts: &DVector<f64>) -> f64 {
-        self.ranges
-            .iter()
-            .zip(amounts.iter())
-            .map(|(range, &x)| x / if x < 0.0 { range.least } else { range.most })
-            .fold(0.0, f64::max)
+        let limits = self.ranges.iter();
+        wheel_axes::greatest_share(limits.map(|range| (range.least, range.most)), amounts)
     }
 
     /// The sets of all `y`, full and limited by the pseudo-inverse.
@@ -280,7 +257,7 @@ fn columns(ranges: &[WheelRange]) -> DMatrix<f64> {
 }
 
 fn is_valid(range: &WheelRange, pointer: &str, findings: &mut Findings) -> bool {
-    let axis = findings.nonzero(&format!("{pointer}/axis"), range.axis.into());
+    let axis = wheel_axes::read(&format!("{pointer}/axis"), range.axis.into(), findings);
     let mut side = |name: &str, value: f64, sign: f64| {
         let at = format!("{pointer}/{name}");
         let value = findings.finite(&at, value);

@@ -13,6 +13,7 @@
 
 use crate::attitude::Attitude;
 use crate::scenario::Scenario;
+use crate::wheel_axes::greatest_share;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
 /// An enabled wheel with the limits that a plan may use.
@@ -47,6 +48,8 @@ pub(crate) struct Dynamics {
     pub(crate) inertia: Matrix3<f64>,
     /// Its inverse.
     pub(crate) inertia_inverse: Matrix3<f64>,
+    /// `J^-1`, wheels locked, 1/(kg m²).
+    locked_inertia_inverse: Matrix3<f64>,
     /// Momentum of the locked wheels relative to the body, body axes, N m s.
     pub(crate) locked_momentum: Vector3<f64>,
     /// Total momentum in the reference frame, N m s.
@@ -84,7 +87,8 @@ impl Dynamics {
             .collect();
         let columns: Vec<_> = actuators.iter().map(|wheel| wheel.axis).collect();
         let axes = Matrix3xX::from_columns(&columns);
-        let (axes_inverse, null_space) = inverse_and_null_space(&axes);
+        let axes_inverse = spacecraft.axes_inverse().clone();
+        let null_space = null_space(&axes, &axes_inverse);
         let start = scenario.start();
         let spins = spacecraft.wheels().iter().zip(&start.wheel_speed);
         let (mut locked_momentum, mut turnover) = (Vector3::zeros(), 0.0);
@@ -107,6 +111,7 @@ impl Dynamics {
             null_space,
             inertia: *spacecraft.effective_inertia(),
             inertia_inverse: *spacecraft.effective_inertia_inverse(),
+            locked_inertia_inverse: *spacecraft.inertia_inverse(),
             locked_momentum,
             momentum,
             max_rate: spacecraft.max_rate(),
@@ -124,22 +129,10 @@ impl Dynamics {
         self.momentum != Vector3::zeros()
     }
 
-    /// `J^-1`, wheels locked. `None` never, for a valid spacecraft.
-    fn locked_inertia_inverse(&self) -> Option<Matrix3<f64>> {
-        let spin = self
-            .actuators
-            .iter()
-            .map(|wheel| wheel.axis * wheel.inertia * wheel.axis.transpose())
-            .sum::<Matrix3<f64>>();
-        (self.inertia + spin).try_inverse()
-    }
-
     /// The middle of the eigenvalues of `J^-1`, 1/(kg m²): what a sphere nearest to the body has.
     pub(crate) fn mean_inverse_inertia(&self) -> f64 {
-        self.locked_inertia_inverse().map_or(0.0, |inverse| {
-            let values = inverse.symmetric_eigenvalues();
-            0.5 * (values.min() + values.max())
-        })
+        let values = self.locked_inertia_inverse.symmetric_eigenvalues();
+        0.5 * (values.min() + values.max())
     }
 
     /// Greatest component of the body rate along a direction in body axes, rad/s times its length,
@@ -153,10 +146,7 @@ impl Dynamics {
     /// The same of the rate relative to axes that turn in space with a share of the momentum, in
     /// 1/(kg m²): of `w - share R(q)^T H`.
     pub(crate) fn reachable_relative_rate(&self, direction: &Vector3<f64>, share: f64) -> f64 {
-        let Some(inverse) = self.locked_inertia_inverse() else {
-            return f64::INFINITY;
-        };
-        let lever = inverse.tr_mul(direction);
+        let lever = self.locked_inertia_inverse.tr_mul(direction);
         let held = lever.dot(&self.locked_momentum).abs();
         let turned = (lever - direction * share).norm() * self.momentum.norm();
         self.actuators.iter().fold(held + turned, |sum, wheel| {
@@ -320,40 +310,28 @@ impl Dynamics {
 
     /// Greatest share of its limit that any wheel torque has.
     pub(crate) fn torque_usage(&self, torque: &DVector<f64>) -> f64 {
-        self.actuators
-            .iter()
-            .zip(torque.iter())
-            .fold(0.0, |worst, (wheel, u)| {
-                worst.max(
-                    u / if *u > 0.0 {
-                        wheel.max_torque
-                    } else {
-                        wheel.min_torque
-                    },
-                )
-            })
+        let limits = self.actuators.iter();
+        greatest_share(
+            limits.map(|wheel| (wheel.min_torque, wheel.max_torque)),
+            torque,
+        )
     }
 }
 
-fn inverse_and_null_space(axes: &Matrix3xX<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+/// Orthonormal columns that span the null space of axes with this pseudo-inverse.
+fn null_space(axes: &Matrix3xX<f64>, inverse: &DMatrix<f64>) -> DMatrix<f64> {
     let count = axes.ncols();
-    let gram = axes * axes.transpose();
-    // Axes that span space are part of a valid spacecraft.
-    let gram_inverse = gram.try_inverse().expect("enabled wheel axes span space");
-    let inverse =
-        DMatrix::from_iterator(count, 3, (axes.transpose() * gram_inverse).iter().copied());
     // The projector onto the null space has eigenvalues one (kept) and zero.
     let dense_axes = DMatrix::from_iterator(3, count, axes.iter().copied());
-    let projector = DMatrix::identity(count, count) - &inverse * dense_axes;
+    let projector = DMatrix::identity(count, count) - inverse * dense_axes;
     let eigen = ((&projector + projector.transpose()) * 0.5).symmetric_eigen();
     let columns: Vec<_> = (0..count)
         .filter(|&i| eigen.eigenvalues[i] > 0.5)
         .map(|i| eigen.eigenvectors.column(i).into_owned())
         .collect();
-    let null_space = if columns.is_empty() {
+    if columns.is_empty() {
         DMatrix::zeros(count, 0)
     } else {
         DMatrix::from_columns(&columns)
-    };
-    (inverse, null_space)
+    }
 }

@@ -114,3 +114,4 @@ pub mod spacecraft;
 pub mod spec;
 pub mod stop;
 mod transcription;
+mod wheel_axes;

@@ -22,7 +22,7 @@ pub(crate) use wheels::MOST_ENABLED;
 use crate::findings::Findings;
 use crate::problem::{Code, Problem};
 use crate::spec::{BoresightSpec, SpacecraftSpec};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use std::collections::HashSet;
 
 /// Most boresights of a spacecraft.
@@ -58,9 +58,11 @@ pub struct Boresight {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spacecraft {
     inertia: Matrix3<f64>,
+    inertia_inverse: Matrix3<f64>,
     effective_inertia: Matrix3<f64>,
     effective_inertia_inverse: Matrix3<f64>,
     wheels: Vec<Wheel>,
+    axes_inverse: DMatrix<f64>,
     max_rate: Vector3<f64>,
     max_rate_norm: f64,
     boresights: Vec<Boresight>,
@@ -94,7 +96,7 @@ impl Spacecraft {
         let wheels_pointer = format!("{pointer}/wheels");
         let wheels = wheels::read(&spec.wheels, &wheels_pointer, findings);
         let effective = match (&inertia, &wheels) {
-            (Some(inertia), Some(wheels)) => {
+            (Some((inertia, _)), Some((wheels, _))) => {
                 wheels::effective_inertia(inertia, wheels, &wheels_pointer, findings)
             }
             _ => None,
@@ -102,11 +104,15 @@ impl Spacecraft {
         let boresights_pointer = format!("{pointer}/boresights");
         let boresights = boresights(&spec.boresights, &boresights_pointer, findings);
         let (effective_inertia, effective_inertia_inverse) = effective?;
+        let (inertia, inertia_inverse) = inertia?;
+        let (wheels, axes_inverse) = wheels?;
         Some(Self {
-            inertia: inertia?,
+            inertia,
+            inertia_inverse,
             effective_inertia,
             effective_inertia_inverse,
-            wheels: wheels?,
+            wheels,
+            axes_inverse,
             max_rate: max_rate?,
             max_rate_norm: max_rate_norm?,
             boresights: boresights?,
@@ -117,6 +123,11 @@ impl Spacecraft {
     #[must_use]
     pub fn inertia(&self) -> &Matrix3<f64> {
         &self.inertia
+    }
+
+    /// Its inverse, 1/(kg m²).
+    pub(crate) fn inertia_inverse(&self) -> &Matrix3<f64> {
+        &self.inertia_inverse
     }
 
     /// `J_eff`, kg m².
@@ -140,6 +151,12 @@ impl Spacecraft {
     /// The enabled wheels with their index among all wheels.
     pub fn enabled_wheels(&self) -> impl Iterator<Item = (usize, &Wheel)> {
         self.wheels.iter().enumerate().filter(|(_, w)| w.enabled)
+    }
+
+    /// Pseudo-inverse of the axes of the enabled wheels as they enter the equations, as columns:
+    /// one row per enabled wheel.
+    pub(crate) fn axes_inverse(&self) -> &DMatrix<f64> {
+        &self.axes_inverse
     }
 
     /// Limit of each body rate component, rad/s; infinite where unlimited.

@@ -49,7 +49,8 @@ pub struct SpacecraftSpec {
 pub struct WheelSpec {
     /// Spin axis in body axes.
     pub axis: [f64; 3],
-    /// Whether `axis` is scaled to unit length (the default) or enters as given.
+    /// Whether `axis` is scaled to unit length (the default) or enters as given, between 0.001 and
+    /// 1000 long.
     pub normalize_axis: bool,
     /// Inertia about the spin axis, kg m².
     pub inertia_kg_m2: f64,

@@ -87,14 +87,6 @@ impl Polytope {
         direction.norm() / self.share(direction)
     }
 
-    /// Position in the list of facets of the one that a ray from the origin along a vector meets.
-    #[must_use]
-    pub fn facet_towards(&self, vector: &Vector3<f64>) -> Option<usize> {
-        let share = |facet: &Facet| facet.normal.dot(vector) / facet.distance;
-        (0..self.facets.len())
-            .max_by(|&a, &b| share(&self.facets[a]).total_cmp(&share(&self.facets[b])))
-    }
-
     /// Volume: pyramids from the origin over the facets, each a fan of triangles.
     #[must_use]
     pub fn volume(&self) -> f64 {

@@ -3,10 +3,8 @@
 use crate::cone;
 use crate::drive::Drive;
 use crate::spacecraft::Wheel;
-use nalgebra::{Matrix3, Vector3};
-
-/// Smallest over largest singular value of the axes below which a direction is out of reach.
-const REACH: f64 = 1e-6;
+use crate::wheel_axes::pseudo_inverse;
+use nalgebra::Vector3;
 
 /// The pseudo-inverse of the wheel axes: of all torques of the wheels that make a torque on the
 /// body it gives those with the least sum of squares (RW/CMG thesis, equation 158).
@@ -21,23 +19,17 @@ impl Allocation {
     pub(super) fn new(wheels: &[Wheel], drives: &[Drive]) -> Option<Self> {
         let commanded =
             |(wheel, drive): &(&Wheel, &Drive)| wheel.enabled && drive.speed_law.is_none();
-        let gram: Matrix3<f64> = wheels
+        let axes: Vec<_> = wheels
             .iter()
             .zip(drives)
             .filter(commanded)
-            .map(|(wheel, _)| wheel.axis * wheel.axis.transpose())
-            .sum();
-        let squares = gram.symmetric_eigenvalues();
-        if squares.min() <= REACH * REACH * squares.max() {
-            return None;
-        }
-        let inverse = gram.try_inverse()?;
+            .map(|(wheel, _)| wheel.axis)
+            .collect();
+        let inverse = pseudo_inverse(&axes)?;
+        let mut commanded_rows = inverse.row_iter();
         let rows = wheels.iter().zip(drives).map(|pair| {
-            if commanded(&pair) {
-                inverse * pair.0.axis
-            } else {
-                Vector3::zeros()
-            }
+            let row = commanded(&pair).then(|| commanded_rows.next()).flatten();
+            row.map_or_else(Vector3::zeros, |row| Vector3::new(row[0], row[1], row[2]))
         });
         Some(Self {
             rows: rows.collect(),

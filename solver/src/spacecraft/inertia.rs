@@ -12,16 +12,17 @@ const DEFINITENESS_THRESHOLD: f64 = 1e-9;
 /// plate meets the triangle inequality with equality.
 const TRIANGLE_TOLERANCE: f64 = 1e-6;
 
-/// Reads a symmetric, positive definite inertia whose principal moments a body can have.
+/// Reads a symmetric, positive definite inertia whose principal moments a body can have, with its
+/// inverse.
 pub(super) fn read(
     rows: &[[f64; 3]; 3],
     pointer: &str,
     findings: &mut Findings,
-) -> Option<Matrix3<f64>> {
+) -> Option<(Matrix3<f64>, Matrix3<f64>)> {
     let matrix = findings.matrix(pointer, rows)?;
     let symmetric = symmetrised(&matrix, pointer, findings)?;
     let [smallest, middle, largest] = principal_moments(&symmetric);
-    if smallest <= DEFINITENESS_THRESHOLD * largest.abs() {
+    let Some(inverse) = positive_definite_inverse(&symmetric) else {
         findings.refuse(
             pointer,
             Code::InertiaNotPositive,
@@ -29,7 +30,7 @@ pub(super) fn read(
             "all principal moments must be above 0; check signs and products of inertia",
         );
         return None;
-    }
+    };
     if largest > (smallest + middle) * (1.0 + TRIANGLE_TOLERANCE) {
         findings.refuse(
             pointer,
@@ -42,7 +43,7 @@ pub(super) fn read(
         );
         return None;
     }
-    Some(symmetric)
+    Some((symmetric, inverse))
 }
 
 fn symmetrised(

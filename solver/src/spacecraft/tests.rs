@@ -41,6 +41,12 @@ fn a_valid_description_is_taken_over() {
     assert!(spacecraft.max_rate_norm().is_infinite());
 }
 
+/// Has an axis enter as it is, with another length.
+fn unscaled(wheel: &mut crate::spec::WheelSpec, length: f64) {
+    wheel.normalize_axis = false;
+    wheel.axis = wheel.axis.map(|component| component * length);
+}
+
 fn expect_faults(table: &[Fault]) {
     for (break_it, code, pointer) in table {
         let mut spec = valid();
@@ -103,6 +109,21 @@ fn faults_of_wheels_and_boresights_have_their_code_and_place() {
             |s| s.wheels[0].axis[2] = f64::INFINITY,
             Code::NotFinite,
             "/wheels/0/axis/2",
+        ),
+        (
+            |s| unscaled(&mut s.wheels[0], 1e-60),
+            Code::OutOfRange,
+            "/wheels/0/axis",
+        ),
+        (
+            |s| unscaled(&mut s.wheels[2], 1e-170),
+            Code::OutOfRange,
+            "/wheels/2/axis",
+        ),
+        (
+            |s| unscaled(&mut s.wheels[1], 1e4),
+            Code::OutOfRange,
+            "/wheels/1/axis",
         ),
         (
             |s| s.wheels[1].inertia_kg_m2 = 0.0,

@@ -5,22 +5,21 @@ use super::inertia::positive_definite_inverse;
 use crate::findings::{Findings, unit};
 use crate::problem::Code;
 use crate::spec::WheelSpec;
+use crate::wheel_axes;
 use nalgebra::{DMatrix, Matrix3};
 
-/// Smallest over largest singular value of the unit axes below which they lie in a plane.
-const COPLANARITY_THRESHOLD: f64 = 1e-6;
 /// Most enabled wheels.
 pub(crate) const MOST_ENABLED: usize = 17;
-
 /// Most wheels, enabled or not.
 const MOST_LISTED: usize = 100;
 
-/// Reads the wheels and checks that the enabled ones span space.
+/// Reads the wheels, of which the enabled ones must span space, with the pseudo-inverse of their
+/// axes.
 pub(super) fn read(
     specs: &[WheelSpec],
     pointer: &str,
     findings: &mut Findings,
-) -> Option<Vec<Wheel>> {
+) -> Option<(Vec<Wheel>, DMatrix<f64>)> {
     if !findings.at_most(pointer, specs.len(), MOST_LISTED) {
         return None;
     }
@@ -53,15 +52,16 @@ pub(super) fn read(
         return None;
     }
     let wheels: Vec<Wheel> = wheels.into_iter().collect::<Option<_>>()?;
-    spans_space(&wheels, pointer, findings).then_some(wheels)
+    let inverse = axes_inverse(&wheels, pointer, findings)?;
+    Some((wheels, inverse))
 }
 
 fn wheel(spec: &WheelSpec, pointer: &str, findings: &mut Findings) -> Option<Wheel> {
-    let axis = findings.nonzero(&format!("{pointer}/axis"), spec.axis);
+    let axis_pointer = format!("{pointer}/axis");
     let axis = if spec.normalize_axis {
-        axis.map(unit)
+        findings.nonzero(&axis_pointer, spec.axis).map(unit)
     } else {
-        axis
+        wheel_axes::read(&axis_pointer, spec.axis, findings)
     };
     let inertia = findings.positive(&format!("{pointer}/inertia_kg_m2"), spec.inertia_kg_m2);
     let torque = torque_limits(spec, pointer, findings);
@@ -114,30 +114,24 @@ fn torque_limits(spec: &WheelSpec, pointer: &str, findings: &mut Findings) -> Op
     Some((min?, max?))
 }
 
-fn spans_space(wheels: &[Wheel], pointer: &str, findings: &mut Findings) -> bool {
-    let axes: Vec<_> = wheels
-        .iter()
-        .filter(|w| w.enabled)
-        .map(|w| unit(w.axis))
-        .collect();
-    let singular = DMatrix::from_fn(3, axes.len(), |i, j| axes[j][i]).singular_values();
-    let ratio = singular.min() / singular.max();
-    if ratio < COPLANARITY_THRESHOLD {
+fn axes_inverse(wheels: &[Wheel], pointer: &str, findings: &mut Findings) -> Option<DMatrix<f64>> {
+    let enabled = wheels.iter().filter(|wheel| wheel.enabled);
+    let axes: Vec<_> = enabled.map(|wheel| wheel.axis).collect();
+    let inverse = wheel_axes::pseudo_inverse(&axes);
+    if inverse.is_none() {
+        let (least, greatest) = wheel_axes::singular_values(&axes);
         findings.refuse(
             pointer,
             Code::WheelAxesCoplanar,
             format!(
-                "the axes of the {} enabled wheels lie in a plane (singular values from {:.3e} \
-                 to {:.3e})",
-                axes.len(),
-                singular.min(),
-                singular.max()
+                "the axes of the {} enabled wheels lie in a plane (singular values from {least:.3e} \
+                 to {greatest:.3e})",
+                axes.len()
             ),
             "no torque can be made across that plane; enable or add a wheel out of it",
         );
-        return false;
     }
-    true
+    inverse
 }
 
 /// `J_eff` and its inverse.

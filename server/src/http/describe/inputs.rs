@@ -81,7 +81,7 @@ pub(in crate::http) struct Spacecraft {
 struct Wheel {
     /// Spin axis in body axes.
     axis: Vector,
-    /// Whether the axis is scaled to unit length; it enters as given otherwise.
+    /// Whether the axis is scaled to unit length; else it enters as given, 0.001 to 1000 long.
     #[schema(required = false, default = true)]
     normalize_axis: Option<bool>,
     /// Inertia about the spin axis.

@@ -115,17 +115,6 @@ impl OrderRules {
         self.due.iter().all(|due| *due == targets) && self.predecessors.iter().all(Vec::is_empty)
     }
 
-    /// Whether a target may come next after those that have been visited, of which it is none;
-    /// whether what remains can be completed then is not asked.
-    #[must_use]
-    pub fn admits_next(&self, visited: &[bool], next: usize) -> bool {
-        let place = visited.iter().filter(|visited| **visited).count();
-        self.admits_at(place, next)
-            && self.predecessors[next]
-                .iter()
-                .all(|&before| visited[before])
-    }
-
     /// Whether the fixed places and the due dates let a target take this place.
     pub(super) fn admits_at(&self, place: usize, target: usize) -> bool {
         let free = self.positions[target].is_none() && self.holders[place].is_none();

@@ -30,7 +30,7 @@ pub enum Measure {
 pub enum Objective {
     /// The duration.
     MinimumTime,
-    /// Duration plus `weight`, s/(N m)² per s, times the integral of the squared torques.
+    /// Duration plus `weight`, 1/(N m)², times the integral of the squared torques.
     TimeAndEffort {
         /// `rho`.
         weight: f64,

@@ -20,7 +20,7 @@ pub(crate) trait Chain {
     fn retract(&self, point: &[f64], step: &[f64], moved: &mut [f64]);
     /// Evaluates cost, gap, equalities and inequalities.
     fn values(&self, link: &Link<'_>, out: &mut LinkValues);
-    /// Evaluates first derivatives and the Hessian of the Lagrangian.
+    /// Evaluates first derivatives and the lower triangle of the Hessian of the Lagrangian.
     ///
     /// `out` arrives with the values and with zeroed matrices and vectors.
     fn derivatives(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel);

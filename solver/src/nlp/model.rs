@@ -31,7 +31,7 @@ pub(crate) struct LinkModel {
     pub(crate) equality_jacobian: Vec<f64>,
     /// One row per inequality.
     pub(crate) inequality_jacobian: Vec<f64>,
-    /// Hessian of the Lagrangian, both triangles.
+    /// Hessian of the Lagrangian: the lower triangle, the only one that is read.
     pub(crate) hessian: Vec<f64>,
 }
 

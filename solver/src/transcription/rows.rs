@@ -14,7 +14,7 @@
 
 use super::{Transcription, quaternion_of};
 use crate::kinematics::rotate_back;
-use crate::nlp::LinkModel;
+use crate::nlp::{LinkModel, MAX_STATES};
 use nalgebra::{Matrix3, Vector3};
 
 /// `c' + p . eta + g' . h`.
@@ -139,7 +139,7 @@ impl Transcription {
     ) -> Vector3<f64> {
         let scale = self.dynamics.max_rate_norm.powi(2).recip();
         let mut pull = Vector3::zeros();
-        let mut gradient = [0.0; MOST_STATES];
+        let mut gradient = [0.0; MAX_STATES];
         for component in &self.rates {
             let rate = component.value(state);
             self.write_row(component, state, &mut gradient[..states]);
@@ -156,9 +156,6 @@ impl Transcription {
         pull
     }
 }
-
-/// Room for the derivatives of one row.
-const MOST_STATES: usize = 32;
 
 /// Second derivative of `y . 1/2 d x (d x eta)` with respect to `d`.
 pub(super) fn double_cross_curvature(y: &Vector3<f64>, eta: &Vector3<f64>) -> Matrix3<f64> {

@@ -1,11 +1,14 @@
 //! Solved segments of tours, remembered within bounds.
 //!
+//! A route is solved in different ways as a part of different things, and the answers may differ, so
+//! a segment is both: what is found does not depend on what was asked for before.
+//!
 //! Two generations: when the younger one is full it becomes the older one, whose segments are
 //! forgotten unless they were asked for meanwhile. What is forgotten is solved again when it is
 //! needed, with the same result.
 
+use super::extent::Segment;
 use crate::multiphase::Flown;
-use crate::sequence::Place;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -14,8 +17,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// eight legs, 1 700 tours of two hundred.
 const GENERATION: usize = 1 << 18;
 
-/// Flights by their places.
-type Generation = HashMap<Vec<Place>, Arc<Flown>>;
+/// Flights by their segments.
+type Generation = HashMap<Segment, Arc<Flown>>;
 
 #[derive(Default)]
 struct Generations {
@@ -30,20 +33,20 @@ struct Generations {
 pub(super) struct Segments(Mutex<Generations>);
 
 impl Segments {
-    /// The flight through some places, when it is remembered.
-    pub(super) fn get(&self, route: &[Place]) -> Option<Arc<Flown>> {
+    /// The flight of a segment, when it is remembered.
+    pub(super) fn get(&self, segment: &Segment) -> Option<Arc<Flown>> {
         let mut generations = self.lock();
-        if let Some(flown) = generations.young.get(route) {
+        if let Some(flown) = generations.young.get(segment) {
             return Some(Arc::clone(flown));
         }
-        let (route, flown) = generations.old.remove_entry(route)?;
-        generations.insert(route, Arc::clone(&flown));
+        let (segment, flown) = generations.old.remove_entry(segment)?;
+        generations.insert(segment, Arc::clone(&flown));
         Some(flown)
     }
 
     /// Remembers a flight.
-    pub(super) fn put(&self, route: &[Place], flown: &Arc<Flown>) {
-        self.lock().insert(route.to_vec(), Arc::clone(flown));
+    pub(super) fn put(&self, segment: Segment, flown: &Arc<Flown>) {
+        self.lock().insert(segment, Arc::clone(flown));
     }
 
     fn lock(&self) -> MutexGuard<'_, Generations> {
@@ -53,21 +56,23 @@ impl Segments {
 }
 
 impl Generations {
-    fn insert(&mut self, route: Vec<Place>, flown: Arc<Flown>) {
+    fn insert(&mut self, segment: Segment, flown: Arc<Flown>) {
         if self.intervals >= GENERATION {
             self.old = std::mem::take(&mut self.young);
             self.intervals = 0;
         }
         self.intervals += flown.profile.intervals();
-        self.young.insert(route, flown);
+        self.young.insert(segment, flown);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::extent::Extent;
     use super::*;
     use crate::attitude::Attitude;
     use crate::profile::Profile;
+    use crate::sequence::Place;
     use nalgebra::DVector;
 
     #[test]
@@ -79,13 +84,13 @@ mod tests {
             ..Flown::nowhere()
         });
         let segments = Segments::default();
-        let route = |i| [Place::Start, Place::Target(i)];
+        let segment = |i| Segment::new(&[Place::Start, Place::Target(i)], Extent::Piece);
         for i in 0..16 {
-            segments.put(&route(i), &flown);
-            assert!(segments.get(&route(0)).is_some());
+            segments.put(segment(i), &flown);
+            assert!(segments.get(&segment(0)).is_some());
         }
-        assert!(segments.get(&route(1)).is_none());
-        assert!(segments.get(&route(15)).is_some());
+        assert!(segments.get(&segment(1)).is_none());
+        assert!(segments.get(&segment(15)).is_some());
         let generations = segments.lock();
         assert!(generations.young.len() + generations.old.len() <= 9);
     }

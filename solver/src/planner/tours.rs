@@ -6,6 +6,7 @@
 //! segment without its last place: what it comes to follows from its places alone, whether that
 //! flight is still remembered or has to be solved again.
 
+use super::extent::{Extent, SHORT, Segment};
 use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
@@ -38,39 +39,12 @@ enum Start {
 }
 
 /// The starts of a segment, and how many are tried when all goes well: a short segment has local
-/// minima that longer ones inherit.
+/// minima that longer ones inherit. A tour is a piece of itself, and is flown from rest to rest where
+/// that piece finds no flight.
 const STARTS: [Start; 2] = [Start::Eigenaxes, Start::Extremals];
 const STARTS_OF_LONGER: [Start; 3] = [Start::Shorter, Start::Eigenaxes, Start::Extremals];
-const STARTS_OF_TOURS: [Start; 3] = [Start::Eigenaxes, Start::Extremals, Start::AtRest];
-const SHORT: usize = 3;
+const START_OF_TOURS: [Start; 1] = [Start::AtRest];
 const USUAL_STARTS_OF_SHORT: usize = 2;
-
-/// What a segment is part of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Extent {
-    /// The beginning of longer ones, free where it ends: its duration is a bound.
-    Beginning,
-    /// A piece of a tour: its duration is a bound.
-    Piece,
-    /// A tour: any flight is better than none.
-    Tour,
-}
-
-/// The name of a segment in a store: what it is part of, and its places.
-fn name_of(route: &[Place], extent: Extent) -> String {
-    let kind = match extent {
-        Extent::Beginning => "beginning",
-        Extent::Piece => "piece",
-        Extent::Tour => "tour",
-    };
-    let places = route.iter().map(|place| match place {
-        Place::Start => "start".to_owned(),
-        Place::Target(index) => index.to_string(),
-        Place::End => "end".to_owned(),
-    });
-    let words: Vec<_> = std::iter::once(kind.to_owned()).chain(places).collect();
-    words.join(" ")
-}
 
 /// Tours over legs.
 pub(super) struct Tours<'a> {
@@ -199,30 +173,36 @@ impl<'a> Tours<'a> {
         segments
     }
 
+    /// The flight of a segment: of a whole tour the one that it has as a piece, if there is one.
     fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
         }
-        self.segments.get(route).unwrap_or_else(|| {
-            let flown = Arc::new(self.recall_or_solve(route, extent));
-            if flown.duration().is_some() {
-                self.segments.put(route, &flown);
+        let segment = Segment::new(route, extent);
+        if let Some(flown) = self.segments.get(&segment) {
+            return flown;
+        }
+        if extent == Extent::Tour {
+            let piece = self.segment(route, Extent::Piece);
+            if piece.duration().is_some() || piece.status.is_interrupted() {
+                return piece;
             }
-            flown
-        })
+        }
+        let flown = Arc::new(self.recall_or_solve(&segment));
+        if flown.duration().is_some() {
+            self.segments.put(segment, &flown);
+        }
+        flown
     }
 
     /// A segment that an earlier attempt at the same scenario has solved, or else solved now.
-    ///
-    /// The same route is another problem as a part of something else, and has another name then: a
-    /// search that goes on finds what it would have found alone.
-    fn recall_or_solve(&self, route: &[Place], extent: Extent) -> Flown {
-        let (store, name) = (self.legs.segments(), name_of(route, extent));
-        let intervals = self.intervals() * (route.len() - 1);
+    fn recall_or_solve(&self, segment: &Segment) -> Flown {
+        let (store, name) = (self.legs.segments(), segment.name());
+        let intervals = self.intervals() * (segment.route.len() - 1);
         let known = store.get(&name);
         let known = known.and_then(|known| recalled_segment(known, intervals));
         known.unwrap_or_else(|| {
-            let fresh = self.solve_segment(route, extent);
+            let fresh = self.solve_segment(segment);
             // When stopped perhaps not all starts have been tried.
             if fresh.duration().is_some() && !self.stop.is_set() {
                 store.put(&name, stored_segment(&fresh));
@@ -242,8 +222,8 @@ impl<'a> Tours<'a> {
 
     /// Solves a segment; places that coincide are one waypoint of it, since a flight that meets the
     /// same conditions twice is never shorter than one that meets them once.
-    fn solve_segment(&self, route: &[Place], extent: Extent) -> Flown {
-        let intervals = self.intervals();
+    fn solve_segment(&self, segment: &Segment) -> Flown {
+        let (route, intervals) = (&segment.route, self.intervals());
         let repeats = |pair: &[Place]| self.places.coincide(pair[0], pair[1]);
         let fresh = route
             .windows(2)
@@ -253,7 +233,7 @@ impl<'a> Tours<'a> {
         let mut flown = if let [from, to] = distinct[..] {
             self.free_leg(from, to)
         } else {
-            self.solve_distinct(&distinct, extent)
+            self.solve_distinct(&distinct, segment.extent)
         };
         let solved = flown.duration().is_some();
         for (leg, pair) in route.windows(2).enumerate().filter(|_| solved) {
@@ -271,7 +251,7 @@ impl<'a> Tours<'a> {
         let starts = match extent {
             Extent::Beginning if !short => &STARTS_OF_LONGER[..],
             Extent::Beginning | Extent::Piece => &STARTS,
-            Extent::Tour => &STARTS_OF_TOURS,
+            Extent::Tour => &START_OF_TOURS,
         };
         let mut best = self.solve_from(route, starts[0]);
         for (tried, &start) in starts.iter().enumerate().skip(1) {
@@ -473,3 +453,6 @@ impl TourModel for Tours<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -87,7 +87,8 @@ impl<'a> Simulation<'a> {
         let mut findings = Findings::default();
         let settings = Settings::read(spec, scenario.spacecraft(), pointer, &mut findings);
         let motion = motion(scenario, flight, &mut findings);
-        let simulation = settings.zip(motion).and_then(|(settings, motion)| {
+        let simulation = settings.zip(motion).and_then(|(mut settings, motion)| {
+            settings.max_step_s = longest_step(scenario, &settings);
             fits(flight, &motion, &settings, pointer, &mut findings)
                 .then(|| Self::prepare(scenario, flight, settings, &motion, &mut findings))?
         });
@@ -99,11 +100,10 @@ impl<'a> Simulation<'a> {
     fn prepare(
         scenario: &'a Scenario,
         flight: &'a Flight,
-        mut settings: Settings,
+        settings: Settings,
         motion: &Motion,
         findings: &mut Findings,
     ) -> Option<Self> {
-        settings.max_step_s = longest_step(scenario, &settings);
         let course = Course::new(scenario, flight, motion, &settings);
         let nominal = Truth::new(
             scenario.spacecraft().inertia(),
@@ -382,7 +382,7 @@ fn fits(
             pointer,
             Code::OutOfRange,
             format!("{seconds:.0} s in steps of {step:.3e} s are more than {MAX_STEPS:.0e} steps"),
-            "lower wheel_loop_rate_hz or settle_s, or raise max_step_s",
+            "lower wheel_loop_rate_hz, settle_s or viscous_friction_nms, or raise max_step_s",
         );
     }
     let rate = motion

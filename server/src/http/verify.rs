@@ -2,7 +2,7 @@
 
 use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
-use super::error::{ApiError, ErrorCode};
+use super::error::ApiError;
 use super::extract::JsonBody;
 use super::{App, admission, computing, respond, stored};
 use crate::wire;

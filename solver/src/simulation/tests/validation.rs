@@ -80,6 +80,19 @@ fn every_fault_is_found_at_once() {
 }
 
 #[test]
+fn friction_that_asks_for_too_short_steps_is_refused() {
+    let drive = DriveSpec {
+        viscous_friction_nms: Some(1e6),
+        ..DriveSpec::default()
+    };
+    let spec = SimulationSpec {
+        drives: vec![drive; spec().spacecraft.wheels.len()],
+        ..SimulationSpec::default()
+    };
+    assert_eq!(refused(&lively(), &spec), [at(Code::OutOfRange, "")]);
+}
+
+#[test]
 fn gains_are_checked_in_every_form() {
     let settling = ControllerSpec::StepInput {
         gains: GainsSpec::SettlingTime {

@@ -13,7 +13,7 @@ use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
 use crate::profile::Profile;
-use crate::transcription::{Reserves, Scales, Transcription, Waypoint};
+use crate::transcription::{LEAST_TURN, Reserves, Scales, Transcription, Waypoint};
 use between_nodes::excess_between_nodes;
 pub(crate) use between_nodes::excess_inside;
 pub(crate) use extended::fly_on;
@@ -194,7 +194,8 @@ impl<'a> Flight<'a> {
         guess: &Profile,
     ) -> Self {
         let leg = guess.duration() / intervals.len() as f64;
-        let scales = Scales::for_legs(dynamics, typical_angle(waypoints), leg);
+        let leg = leg.max(dynamics.least_duration());
+        let scales = Scales::for_legs(dynamics, typical_angle(dynamics, waypoints), leg);
         let chain = Transcription::new(dynamics, scales, waypoints, intervals);
         Self {
             dynamics,
@@ -295,14 +296,20 @@ fn arrivals(intervals: &[usize]) -> Vec<usize> {
     ends.collect()
 }
 
-/// The middle one of the legs' turns, rad.
-fn typical_angle(waypoints: &[Waypoint]) -> f64 {
+/// The middle one of the legs' turns, rad, or of what takes as long as the changes that their ends
+/// ask for; legs on which nothing happens do not count.
+fn typical_angle(dynamics: &Dynamics, waypoints: &[Waypoint]) -> f64 {
     let mut angles: Vec<f64> = waypoints
         .windows(2)
-        .map(|pair| pair[0].attitude.signed_turn_to(&pair[1].attitude).norm())
+        .map(|pair| {
+            let turn = pair[0].attitude.signed_turn_to(&pair[1].attitude).norm();
+            let change = pair[0].change_time(&pair[1], dynamics);
+            turn.max(dynamics.turn_within(change))
+        })
+        .filter(|angle| *angle > LEAST_TURN)
         .collect();
     angles.sort_by(f64::total_cmp);
-    angles.get(angles.len() / 2).copied().unwrap_or(1.0)
+    angles.get(angles.len() / 2).copied().unwrap_or(LEAST_TURN)
 }
 
 fn scaled(profile: &Profile, scales: &Scales) -> Iterate {

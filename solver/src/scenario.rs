@@ -31,6 +31,17 @@ pub enum RateCondition {
     Within(f64, f64),
 }
 
+impl RateCondition {
+    /// The least and the greatest rate that meet it, rad/s; infinite where open.
+    pub(crate) fn range(self) -> [f64; 2] {
+        match self {
+            Self::Free => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Fixed(value) => [value; 2],
+            Self::Within(low, high) => [low, high],
+        }
+    }
+}
+
 /// The fully known state at time zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {

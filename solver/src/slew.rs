@@ -3,6 +3,7 @@
 pub(crate) mod arrival;
 pub(crate) mod eigenaxis;
 pub(crate) mod extremal;
+pub(crate) mod standstill;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +18,7 @@ use arrival::Arrival;
 use eigenaxis::{EigenaxisSlew, Side};
 use extremal::KinematicExtremals;
 use nalgebra::{DVector, Vector3};
+use standstill::standstill;
 
 /// How finely slews are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,6 +107,9 @@ pub(crate) fn solve(
     bound: Option<f64>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Slew {
+    if let Some(flown) = standstill(slew) {
+        return Slew { flown, solves: 0 };
+    }
     let extremal = slew.extremal();
     let bowed = [Side::Far, Side::Near].into_iter();
     let bowed = bowed.map(|side| slew.bowed(side));
@@ -224,7 +229,15 @@ impl SlewProblem<'_> {
     /// A guess from the slew about the eigenaxis, bowed to one side.
     pub(crate) fn bowed(&self, side: Side) -> Profile {
         let intervals = self.resolution.intervals;
-        self.eigenaxis().guess(self.dynamics, intervals, side)
+        let slew = self.eigenaxis().lasting(self.least_duration());
+        slew.guess(self.dynamics, intervals, side)
+    }
+
+    /// No guess is shorter, s: what the ends ask for beside the turn takes its time, and even where
+    /// nothing is asked for a guess has to take some.
+    fn least_duration(&self) -> f64 {
+        let change = self.from.change_time(self.to, self.dynamics);
+        change.max(self.dynamics.least_duration())
     }
 
     /// The slew about the eigenaxis, the short way round unless the sign says otherwise.

@@ -20,6 +20,7 @@
 //! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of [`crate::kinematics`].
 
 mod attitude_link;
+mod demands;
 mod nodes;
 mod reserves;
 mod rows;
@@ -30,7 +31,7 @@ mod tests;
 pub(crate) use nodes::{Waypoint, WheelCondition};
 pub(crate) use reserves::Reserves;
 pub(crate) use rows::{Drift, Row};
-pub(crate) use scales::Scales;
+pub(crate) use scales::{LEAST_TURN, Scales};
 
 use crate::dynamics::Dynamics;
 use crate::kinematics::{Quat, TurnMap, conjugate, exact_turn, imaginary, product};

@@ -15,6 +15,7 @@ mod published;
 mod pyramid;
 mod random_suite;
 mod resumed;
+mod standing;
 mod stopping;
 mod structure;
 mod tight;

@@ -64,7 +64,7 @@ impl Leg {
         let eigenaxis =
             EigenaxisSlew::fastest(&self.dynamics, &from.attitude, &to.attitude, &self.null);
         let guess = eigenaxis.guess(&self.dynamics, INTERVALS, Side::Near);
-        let angle = typical_angle(&self.ends);
+        let angle = typical_angle(&self.dynamics, &self.ends);
         let scales = Scales::for_legs(&self.dynamics, angle, guess.duration());
         let mut chain = Transcription::new(&self.dynamics, scales, &self.ends, &[INTERVALS]);
         let guess = scaled(&guess, &scales);

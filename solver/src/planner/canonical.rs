@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it: stored legs of another are not
 /// found.
-const VERSION: &str = "leg-4";
+const VERSION: &str = "leg-5";
 /// Turns and momenta are rounded to this many units of their own scale, far below every tolerance
 /// and far above the rounding of the caller's conversions.
 const RESOLUTION: f64 = 1e13;

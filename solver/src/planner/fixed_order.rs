@@ -104,13 +104,15 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
 }
 
 /// The legs between neighbours of a route, also between those that become neighbours because places
-/// that coincide are flown as one.
+/// that are one stop are flown as one.
 fn legs_of(places: &Places<'_>, route: &[Place]) -> Vec<(Place, Place)> {
     let mut legs = Vec::new();
     for (i, from) in route.iter().enumerate() {
-        for to in &route[i + 1..] {
+        for (j, to) in route.iter().enumerate().skip(i + 1) {
             legs.push((*from, *to));
-            if !places.coincide(*from, *to) {
+            let next = route.get(j + 1);
+            let joined = next.is_some_and(|next| places.are_one_stop(*to, *next));
+            if !joined && !places.are_one_stop(*from, *to) {
                 break;
             }
         }

@@ -4,7 +4,7 @@
 //! in a table, between tables of one solve, and, through the store, between solves.
 
 use super::canonical::CanonicalLeg;
-use super::places::{Places, SAME_ATTITUDE};
+use super::places::Places;
 use super::recall::{attitudes_of, momenta_of, recalled};
 use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
 use super::verified::flies;
@@ -12,14 +12,11 @@ use super::{Run, interruption};
 use crate::legs::{LegKind, SegmentStore, StoredLeg};
 use crate::multiphase::Flown;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
-use crate::profile::Profile;
 use crate::progress::{Progress, Stage};
-use crate::scenario::RateCondition;
 use crate::sequence::Place;
 use crate::slew;
 use crate::stop::{StopReason, StopSignal};
 use crate::transcription::Waypoint;
-use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -314,10 +311,7 @@ fn solve(
         .unwrap_or_else(|| certify(places, leg))
         .lower_bound;
     let problem = leg.problem(&places.extremals);
-    let mut solved = standstill(&problem).map_or_else(
-        || slew::solve(&problem, certified, &|| interruption(stop)),
-        |flown| slew::Slew { flown, solves: 0 },
-    );
+    let mut solved = slew::solve(&problem, certified, &|| interruption(stop));
     let converged = solved.flown.status == NlpStatus::Converged;
     if converged && !flies(places, leg, &solved.flown.profile) {
         solved.flown.status = NlpStatus::NumericalError(Breakdown {
@@ -331,29 +325,6 @@ fn solve(
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
     }
-}
-
-/// The leg between two equal rests: nothing moves and no time passes.
-fn standstill(leg: &slew::SlewProblem<'_>) -> Option<Flown> {
-    let (from, to) = (leg.from, leg.to);
-    let turn = leg.arrival.turn(&from.attitude, &to.attitude);
-    let same = turn <= SAME_ATTITUDE && from.rate == to.rate && from.wheels == to.wheels;
-    let still = from
-        .rate
-        .iter()
-        .all(|rate| *rate == RateCondition::Fixed(0.0));
-    (still && same && from.is_fixed(leg.dynamics)).then(|| {
-        let wheels = leg
-            .dynamics
-            .wheels_at(&from.attitude, &Vector3::zeros(), leg.null);
-        Flown {
-            status: NlpStatus::Converged,
-            profile: Profile::standstill(from.attitude, wheels, leg.resolution.intervals),
-            iterations: 0,
-            infeasibility: 0.0,
-            passing_prices: Vec::new(),
-        }
-    })
 }
 
 /// A solved leg to be stored.

@@ -8,7 +8,7 @@
 use super::all_pairs;
 use super::canonical::CanonicalLeg;
 use super::legs::{certify, end_of, stored};
-use super::places::{Places, SAME_ATTITUDE};
+use super::places::Places;
 use super::recall::recalled;
 use super::tables::SolvedLeg;
 use super::verified::{flight_faults, node_faults};
@@ -18,6 +18,7 @@ use crate::multiphase::Flown;
 use crate::pool::SolverPool;
 use crate::profile::Profile;
 use crate::scenario::{RateCondition, Scenario};
+use crate::slew::standstill::SAME_ATTITUDE;
 use crate::stop::StopSignal;
 use crate::transcription::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};

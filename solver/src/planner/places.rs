@@ -6,13 +6,11 @@ use crate::scenario::{RateCondition, Scenario};
 use crate::sequence::Place;
 use crate::slew::arrival::Arrival;
 use crate::slew::extremal::KinematicExtremals;
+use crate::slew::standstill::SAME_ATTITUDE;
 use crate::slew::{Resolution, SlewProblem};
 use crate::spec::AttitudeEquivalence;
 use crate::transcription::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
-
-/// Attitudes closer than this are the same, rad.
-pub(super) const SAME_ATTITUDE: f64 = 1e-11;
 
 /// The places of a scenario, seen by the slew solver.
 pub(super) struct Places<'a> {
@@ -164,11 +162,23 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether two places are one waypoint: the same attitude under the same conditions.
-    pub(super) fn coincide(&self, one: Place, other: Place) -> bool {
+    /// Whether whoever passes one place has passed the other one with it: the same attitude under
+    /// conditions that imply those of the other.
+    pub(super) fn covers(&self, one: Place, other: Place) -> bool {
         let (one, other) = (self.waypoint(one), self.waypoint(other));
         let turn = self.arrival.turn(&one.attitude, &other.attitude);
-        turn <= SAME_ATTITUDE && one.rate == other.rate && one.wheels == other.wheels
+        let implied = |axis: usize| {
+            let ([low, high], [least, greatest]) =
+                (one.rate[axis].range(), other.rate[axis].range());
+            least <= low && high <= greatest
+        };
+        let held = other.wheels == WheelCondition::Free || one.wheels == other.wheels;
+        turn <= SAME_ATTITUDE && (0..3).all(implied) && held
+    }
+
+    /// Whether one of two places covers the other.
+    pub(super) fn are_one_stop(&self, one: Place, other: Place) -> bool {
+        self.covers(one, other) || self.covers(other, one)
     }
 
     /// Whether every tour may be flown backwards as a tour of the same targets: it begins and ends in

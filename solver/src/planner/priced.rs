@@ -47,7 +47,9 @@ impl Tours<'_> {
         };
         let service = self.places.service_time(to);
         let [begin, end] = prices.map(|price| price.map(DVector::from_column_slice));
-        for motion in [free.profile, self.bowed(leg)] {
+        // What takes no time says nothing of how to use some.
+        let motions = [free.profile, self.bowed(leg)].into_iter();
+        for motion in motions.filter(|motion| motion.duration() > 0.0) {
             let (mut waypoints, intervals) = self.program(&leg, &motion);
             waypoints[0].price = begin.as_ref().map(|price| -price);
             waypoints[1].price.clone_from(&end);

@@ -220,24 +220,44 @@ impl<'a> Tours<'a> {
         )
     }
 
-    /// Solves a segment; places that coincide are one waypoint of it, since a flight that meets the
-    /// same conditions twice is never shorter than one that meets them once.
+    /// Solves a segment. Of neighbours of which one covers the other only that one is a waypoint of
+    /// it: a flight that passes both, one after the other, passes the one already when it passes the
+    /// stricter one, and is never shorter than a flight that does so once. A program with both would
+    /// have a leg of no length, which no torque can change.
     fn solve_segment(&self, segment: &Segment) -> Flown {
         let (route, intervals) = (&segment.route, self.intervals());
-        let repeats = |pair: &[Place]| self.places.coincide(pair[0], pair[1]);
-        let fresh = route
-            .windows(2)
-            .filter(|pair| !repeats(pair))
-            .map(|pair| pair[1]);
-        let distinct: Vec<Place> = std::iter::once(route[0]).chain(fresh).collect();
-        let mut flown = if let [from, to] = distinct[..] {
-            self.free_leg(from, to)
-        } else {
-            self.solve_distinct(&distinct, segment.extent)
+        let mut distinct: Vec<Place> = Vec::new();
+        // The legs that lead to them, and those that lead nowhere.
+        let mut legs: Vec<Option<usize>> = Vec::new();
+        let mut pauses = Vec::new();
+        for (i, &next) in route.iter().enumerate() {
+            let mut leg = i.checked_sub(1);
+            if let Some(&last) = distinct.last()
+                && self.places.covers(last, next)
+            {
+                pauses.extend(leg);
+                continue;
+            }
+            while let Some(&last) = distinct.last()
+                && self.places.covers(next, last)
+            {
+                pauses.extend(leg);
+                distinct.pop();
+                leg = legs.pop().flatten();
+            }
+            distinct.push(next);
+            legs.push(leg);
+        }
+        pauses.sort_unstable();
+        let mut flown = match distinct[..] {
+            [place] => self.free_leg(place, place),
+            [from, to] => self.free_leg(from, to),
+            _ => self.solve_distinct(&distinct, segment.extent),
         };
-        let solved = flown.duration().is_some();
-        for (leg, pair) in route.windows(2).enumerate().filter(|_| solved) {
-            if repeats(pair) {
+        if flown.duration().is_some() {
+            // All of them at one place: the leg itself is the first pause.
+            let first = usize::from(distinct.len() == 1);
+            for leg in &pauses[first..] {
                 flown.profile.pause_at(leg * intervals, intervals);
             }
         }
@@ -412,7 +432,7 @@ impl TourModel for Tours<'_> {
     fn path_bound(&self, path: &[Place]) -> Evaluation {
         let legs = || path.windows(2);
         // Staying is no slew that another could couple with.
-        if legs().any(|leg| self.places.coincide(leg[0], leg[1])) {
+        if legs().any(|leg| self.places.are_one_stop(leg[0], leg[1])) {
             return Evaluation::Value(legs().map(|leg| self.pair_bound(leg[0], leg[1])).sum());
         }
         // Backwards it is the same flight: it is remembered under one route.

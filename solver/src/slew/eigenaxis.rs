@@ -71,6 +71,16 @@ impl Trapezoid {
         }
     }
 
+    /// One of the same angle, which may be zero, that takes this long without a coast.
+    fn lasting(angle: f64, duration: f64) -> Self {
+        Self {
+            angle,
+            acceleration: 4.0 * angle / duration.powi(2),
+            ramp: 0.5 * duration,
+            duration,
+        }
+    }
+
     /// Times that cut it into intervals, s: the ramps into [`RAMP_INTERVALS`] each where that cuts
     /// them finer than equal intervals would.
     fn node_times(&self, intervals: usize) -> Vec<f64> {
@@ -165,6 +175,17 @@ impl EigenaxisSlew {
         at_factor(slow)
     }
 
+    /// The same slew, slower where it takes less than a time, s, that is not zero.
+    pub(crate) fn lasting(self, least: f64) -> Self {
+        if self.trapezoid.duration >= least {
+            return self;
+        }
+        Self {
+            trapezoid: Trapezoid::lasting(self.trapezoid.angle, least),
+            ..self
+        }
+    }
+
     fn state(&self, dynamics: &Dynamics, time: f64) -> (Attitude, Vector3<f64>, DVector<f64>) {
         let (angle, rate, _) = self.trapezoid.at(time);
         let attitude = self.from.retract(self.axis * angle);
@@ -237,7 +258,7 @@ impl EigenaxisSlew {
         across.normalize()
     }
 
-    /// The slew sampled at its nodes, as a starting guess.
+    /// The slew sampled at its nodes, as a starting guess; it has to take some time.
     ///
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
     /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.

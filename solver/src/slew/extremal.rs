@@ -64,7 +64,8 @@ impl KinematicExtremals {
     /// there is none: no turn at all, or extreme rates.
     pub(super) fn guess(&self, slew: &SlewProblem<'_>) -> Option<Profile> {
         let turn = slew.from.attitude.relative_to(&slew.to.attitude);
-        let guess = self.ramped(&turn)?.sampled(slew);
+        let guess = self.ramped(&turn)?.lasting(slew.least_duration());
+        let guess = guess.sampled(slew);
         let last = guess.attitudes.last()?;
         let arrived = slew.arrival.turn(last, &slew.to.attitude) < OTHER_SIGN;
         arrived.then_some(guess)
@@ -94,6 +95,20 @@ impl KinematicExtremals {
 }
 
 impl Ramped {
+    /// The same motion, slower where it takes less than a time, s.
+    fn lasting(mut self, least: f64) -> Self {
+        let arcs: f64 = self.arcs.iter().map(|arc| arc.duration_s).sum();
+        let slower = least / (arcs + self.ramp);
+        if slower > 1.0 {
+            self.ramp *= slower;
+            for arc in &mut self.arcs {
+                arc.duration_s *= slower;
+                arc.rate_rad_s /= slower;
+            }
+        }
+        self
+    }
+
     /// The motion at its nodes.
     fn sampled(&self, slew: &SlewProblem<'_>) -> Profile {
         let times = self.node_times(slew.resolution.intervals);

@@ -8,6 +8,9 @@ const INTERVAL_SHARE: f64 = 0.2;
 /// Peak rate of a slew in units of its mean rate, between one (a long coast) and two (none).
 const PEAK_SHARE: f64 = 1.5;
 
+/// Turns, rad, below which there is none worth a unit.
+pub(crate) const LEAST_TURN: f64 = 1e-9;
+
 /// Units of the scaled variables.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scales {
@@ -24,7 +27,7 @@ pub(crate) struct Scales {
 impl Scales {
     /// Units for legs that turn by a typical angle, rad, in a typical duration, s.
     pub(crate) fn for_legs(dynamics: &Dynamics, angle: f64, duration: f64) -> Self {
-        let angle = angle.clamp(1e-9, std::f64::consts::PI);
+        let angle = angle.clamp(LEAST_TURN, std::f64::consts::PI);
         let rate = PEAK_SHARE * angle / duration;
         // Greatest momentum of a wheel per unit of rate about any axis.
         let per_rate = (&dynamics.axes_inverse * dynamics.inertia)
@@ -41,6 +44,17 @@ impl Scales {
 }
 
 impl Dynamics {
+    /// Time, s, that a guess takes at least: that of a turn which counts as none.
+    pub(crate) fn least_duration(&self) -> f64 {
+        2.0 * (LEAST_TURN / self.axis_acceleration(&Vector3::x())).sqrt()
+    }
+
+    /// The turn, rad, that a bang-bang in a time, s, makes: what a change of rates or momenta that
+    /// takes so long is measured in where nothing turns.
+    pub(crate) fn turn_within(&self, duration: f64) -> f64 {
+        0.25 * self.axis_acceleration(&Vector3::x()) * duration.powi(2)
+    }
+
     /// Greatest acceleration about a body axis from zero momentum, rad/s², wheels allocated by
     /// the pseudo-inverse.
     pub(crate) fn axis_acceleration(&self, axis: &Vector3<f64>) -> f64 {

@@ -63,6 +63,7 @@ fn the_pseudo_inverse_has_evidence_and_excludes_given_speeds() {
     let service = Service::start();
     let mut slew = quarter();
     slew["allocation"] = json!("pseudo_inverse");
+    slew["evidence"] = json!(true);
     let answer = service.post("/v1/slews", &slew).expect(200).json();
     let found = &answer["slews"][0];
     assert_eq!(found["solved"], true);

@@ -126,7 +126,7 @@ fn every_problem_is_named_with_its_place() {
         "/turns/1",
         "/turns/2/to/mrp/0",
         "/demands_nm",
-        "/demands_nm/1000/1",
+        "/demands_nm/900/1",
     ] {
         assert!(
             found.contains(&place),

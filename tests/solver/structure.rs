@@ -111,6 +111,7 @@ fn a_simulated_flight_uses_nothing_of_the_optimiser() {
     let given = [
         "attitude",
         "checker",
+        "cone",
         "drive",
         "findings",
         "plan",

@@ -1,14 +1,31 @@
 //! One flight of a plan in closed loop, for the command line and the service alike.
 
-use crate::wire::study::flight::FlightStudy;
 use slewplan_solver::plan::{self, Flight, Optimality};
 use slewplan_solver::planner::{self, Run};
 use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::simulation::{SimulatedFlight, Simulation};
+use slewplan_solver::scenario::Scenario;
+use slewplan_solver::simulation::{SimulatedFlight, Simulation, SimulationSpec};
 
 /// States that are kept when nothing is said about it, and at most.
 const USUAL_STATES: usize = 2_000;
 const MOST_STATES: usize = 10_000;
+
+/// A valid request for a flight.
+#[derive(Debug)]
+pub(crate) struct FlightStudy {
+    /// What is flown.
+    pub(crate) scenario: Scenario,
+    /// The plan; made for the flight when there is none.
+    pub(crate) plan: Option<Flight>,
+    /// How it is flown.
+    pub(crate) simulation: SimulationSpec,
+    /// Which of the flights of the seed: other numbers draw other errors.
+    pub(crate) number: u64,
+    /// Every so many samples a state is wanted.
+    pub(crate) keep_every: Option<usize>,
+    /// Doubts that do not stand in the way.
+    pub(crate) warnings: Vec<Problem>,
+}
 
 /// What came of a request.
 #[derive(Debug)]

@@ -93,7 +93,7 @@ impl Attitude {
 
     /// The turn from `self` to `other` in body axes of `self`: `self* other`, sign kept.
     #[must_use]
-    pub fn relative_to(&self, other: &Self) -> Self {
+    pub fn turn_to(&self, other: &Self) -> Self {
         Self(self.0.inverse() * other.0)
     }
 

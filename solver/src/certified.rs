@@ -108,7 +108,7 @@ impl CertifiedBounds {
         to: &Waypoint,
         momentum: &Vector3<f64>,
     ) -> Option<f64> {
-        let turn = from.attitude.relative_to(&to.attitude);
+        let turn = from.attitude.turn_to(&to.attitude);
         let ends = [most(from), most(to)];
         if let Some(bounds) = &self.momentum {
             let held = [from, to].map(|end| end.attitude.to_body(*momentum));
@@ -123,7 +123,7 @@ impl CertifiedBounds {
     /// The claim of [`Self::leg`] with all that a second proof needs; `None` where nothing is
     /// proved, and with momentum, for which there is no second proof.
     pub(crate) fn certificate(&self, from: &Waypoint, to: &Waypoint) -> Option<Certificate> {
-        let turn = from.attitude.relative_to(&to.attitude);
+        let turn = from.attitude.turn_to(&to.attitude);
         let prepared = self.prepared_for([most(from), most(to)])?;
         self.seen(&turn, &prepared)
             .map(|(bound, turn)| bound.certificate(&[turn], TOLERANCE))

@@ -122,6 +122,7 @@ fn a_simulated_flight_uses_nothing_of_the_optimiser() {
         "simulation",
         "spacecraft",
         "stop",
+        "wheel_axes",
     ];
     // The study plans anew for every choice of authorities, and tests plan too.
     let flies = |name: &str| name != "simulation/study.rs" && !name.starts_with("simulation/tests");

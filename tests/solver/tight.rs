@@ -59,7 +59,7 @@ fn turned(spec: &ScenarioSpec, turn: &Attitude) -> ScenarioSpec {
     for wheel in &mut spec.spacecraft.wheels {
         wheel.axis = turn.to_reference(wheel.axis.into()).into();
     }
-    let back = turn.relative_to(&Attitude::identity());
+    let back = turn.turn_to(&Attitude::identity());
     let attitude =
         |attitude: &Attitude| AttitudeSpec::Quaternion(attitude.then_in_body(&back).xyzw());
     spec.start.attitude = attitude(&scenario.start().attitude);

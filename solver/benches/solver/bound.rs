@@ -29,7 +29,7 @@ fn turns() -> Vec<Attitude> {
         .collect();
     let pairs = places.iter().enumerate();
     pairs
-        .flat_map(|(i, from)| places[i + 1..].iter().map(|to| to.relative_to(from)))
+        .flat_map(|(i, from)| places[i + 1..].iter().map(|to| to.turn_to(from)))
         .collect()
 }
 

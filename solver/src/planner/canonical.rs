@@ -59,7 +59,7 @@ impl CanonicalLeg {
 
     fn directed(places: &Places<'_>, from: &Waypoint, to: &Waypoint, mirrored: bool) -> Self {
         let reversible = places.reversible([from, to]);
-        let mut turn = rounded(&from.attitude.relative_to(&to.attitude));
+        let mut turn = rounded(&from.attitude.turn_to(&to.attitude));
         if places.arrival == Arrival::Rotation {
             turn = upper_hemisphere(&turn);
         }

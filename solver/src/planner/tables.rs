@@ -48,7 +48,7 @@ impl TabledLeg {
         };
         if let Some(first) = profile.attitudes.first().copied() {
             for attitude in &mut profile.attitudes {
-                *attitude = begin.then_in_body(&first.relative_to(attitude));
+                *attitude = begin.then_in_body(&first.turn_to(attitude));
             }
         }
         Flown {

@@ -145,7 +145,7 @@ struct ErrorQuaternion {
 
 /// Errors of attitude and rate, the latter in rad/s.
 fn errors(measured: &Measured<'_>, desired: &Desired) -> (ErrorQuaternion, Vector3<f64>) {
-    let turn = desired.attitude.relative_to(&measured.attitude);
+    let turn = desired.attitude.turn_to(&measured.attitude);
     let rate_error = measured.rate - turn.to_body(desired.rate);
     let [x, y, z, w] = turn.nearest_sign(&Attitude::identity()).xyzw();
     let error = ErrorQuaternion {

@@ -85,7 +85,7 @@ impl TrackingError {
     };
 
     pub(super) fn of(attitude: &Attitude, rate: &Vector3<f64>, desired: &Desired) -> Self {
-        let turn = desired.attitude.relative_to(attitude);
+        let turn = desired.attitude.turn_to(attitude);
         let finite = |value: f64| {
             if value.is_finite() {
                 value

@@ -63,7 +63,7 @@ impl KinematicExtremals {
     /// The guess for a slew; `None` where the extremal leads to the other sign of the quaternion, or
     /// there is none: no turn at all, or extreme rates.
     pub(super) fn guess(&self, slew: &SlewProblem<'_>) -> Option<Profile> {
-        let turn = slew.from.attitude.relative_to(&slew.to.attitude);
+        let turn = slew.from.attitude.turn_to(&slew.to.attitude);
         let guess = self.ramped(&turn)?.lasting(slew.least_duration());
         let guess = guess.sampled(slew);
         let last = guess.attitudes.last()?;

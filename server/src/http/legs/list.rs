@@ -120,7 +120,7 @@ fn turn(from: Option<&str>, to: Option<&str>) -> Result<Option<[f64; 4]>, ApiErr
         text.map_or(Ok(Attitude::identity()), |text| quaternion(name, text))
     };
     let (from, to) = (attitude("from", from)?, attitude("attitude", to)?);
-    Ok(Some(from.relative_to(&to).xyzw()))
+    Ok(Some(from.turn_to(&to).xyzw()))
 }
 
 /// A quaternion of any length but zero.

@@ -5,30 +5,12 @@ mod answer;
 pub(crate) use answer::FlightAnswerDocument;
 
 use super::simulation;
+use crate::flights::FlightStudy;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::{flight, scenario};
-use slewplan_solver::plan::Flight;
 use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
 use slewplan_solver::simulation::{self as flying, SimulationSpec};
-
-/// A valid request for a flight.
-#[derive(Debug)]
-pub(crate) struct FlightStudy {
-    /// What is flown.
-    pub(crate) scenario: Scenario,
-    /// The plan; made for the flight when there is none.
-    pub(crate) plan: Option<Flight>,
-    /// How it is flown.
-    pub(crate) simulation: SimulationSpec,
-    /// Which of the flights of the seed: other numbers draw other errors.
-    pub(crate) number: u64,
-    /// Every so many samples a state is wanted.
-    pub(crate) keep_every: Option<usize>,
-    /// Doubts that do not stand in the way.
-    pub(crate) warnings: Vec<Problem>,
-}
 
 /// What a document says beside scenario and plan, which are read on their own.
 struct Shape {

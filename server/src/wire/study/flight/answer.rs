@@ -1,7 +1,6 @@
 //! One flight of a plan in closed loop: the answer.
 
-use super::FlightStudy;
-use crate::flights::{FlownOnce, Outcome};
+use crate::flights::{FlightStudy, FlownOnce, Outcome};
 use crate::wire::number::Number;
 use crate::wire::plan::{self, QuaternionDocument};
 use crate::wire::problems::{ProblemDocument, documents};

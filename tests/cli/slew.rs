@@ -168,3 +168,14 @@ fn problems_are_listed_with_their_places() {
         assert!(ended.stderr.contains(place), "{ended:?}");
     }
 }
+
+#[test]
+fn limits_that_are_hardly_numbers_are_exceeded_by_a_number() {
+    let mut slew = fixture_json("slews/quarter-turn.json");
+    // No time to find out that nothing can turn so.
+    slew["options"] = json!({"momentum_authority": 5e-324, "time_limit_s": 5e-324});
+    let stopped = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes());
+    let stopped = stopped.expect_code(4).json();
+    assert_eq!(stopped["slews"][0]["solved"], false);
+    assert!(number(&stopped["slews"][0], "/flight/wheel_speed_excess") > 1e300);
+}

@@ -136,8 +136,14 @@ pub(super) fn fly(manoeuvre: &Manoeuvre, motion: &Motion) -> Flown {
     flown
 }
 
+/// The excess over 1, or 0; finite even for limits that are almost nothing, and the greatest where
+/// there is no usage to tell.
 fn excess(usage: f64) -> f64 {
-    (usage - 1.0).max(0.0)
+    if usage.is_nan() {
+        f64::MAX
+    } else {
+        (usage - 1.0).clamp(0.0, f64::MAX)
+    }
 }
 
 /// Sentences about the end and the torques; speeds and rates have their own.

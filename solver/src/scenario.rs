@@ -11,6 +11,8 @@ mod order;
 mod state;
 mod target;
 
+pub use keep_out::MOST_CONES;
+
 use crate::attitude::Attitude;
 use crate::findings::Findings;
 use crate::order_rules::OrderRules;

@@ -18,6 +18,7 @@ mod inertia;
 mod wheels;
 
 pub(crate) use wheels::MOST_ENABLED;
+pub use wheels::MOST_WHEELS;
 
 use crate::findings::Findings;
 use crate::problem::{Code, Problem};
@@ -26,7 +27,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use std::collections::HashSet;
 
 /// Most boresights of a spacecraft.
-const MOST_BORESIGHTS: usize = 100;
+pub const MOST_BORESIGHTS: usize = 100;
 
 /// A valid wheel.
 #[derive(Debug, Clone, PartialEq)]

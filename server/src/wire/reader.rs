@@ -106,29 +106,51 @@ impl<'a> Cursor<'a> {
 
     /// The entries of a list.
     pub(crate) fn list(&self) -> Option<Vec<Cursor<'a>>> {
-        let Node::List(items) = self.node else {
-            self.wrong_type("a list", "write [..] with one entry for each");
+        self.entries().map(|entries| self.places(entries))
+    }
+
+    /// The entries of a list; a longer one is not looked into.
+    pub(crate) fn list_of_at_most(&self, most: usize) -> Option<Vec<Cursor<'a>>> {
+        let entries = self.entries()?;
+        if entries.len() > most {
+            self.report(
+                Code::WrongLength,
+                format!("the list has {} entries, it may have {most}", entries.len()),
+                format!("list at most {most}"),
+            );
             return None;
-        };
-        let entry = |(index, node)| Cursor {
-            node,
-            pointer: format!("{}/{index}", self.pointer),
-            sink: self.sink,
-        };
-        Some(items.iter().enumerate().map(entry).collect())
+        }
+        Some(self.places(entries))
     }
 
     fn list_of_length(&self, length: usize) -> Option<Vec<Cursor<'a>>> {
-        let items = self.list()?;
-        if items.len() != length {
+        let entries = self.entries()?;
+        if entries.len() != length {
             self.report(
                 Code::WrongLength,
-                format!("expected {length} entries, found {}", items.len()),
+                format!("expected {length} entries, found {}", entries.len()),
                 format!("write exactly {length} entries"),
             );
             return None;
         }
-        Some(items)
+        Some(self.places(entries))
+    }
+
+    fn entries(&self) -> Option<&'a [Node]> {
+        let Node::List(entries) = self.node else {
+            self.wrong_type("a list", "write [..] with one entry for each");
+            return None;
+        };
+        Some(entries)
+    }
+
+    fn places(&self, entries: &'a [Node]) -> Vec<Cursor<'a>> {
+        let place = |(index, node)| Cursor {
+            node,
+            pointer: format!("{}/{index}", self.pointer),
+            sink: self.sink,
+        };
+        entries.iter().enumerate().map(place).collect()
     }
 
     /// A number.

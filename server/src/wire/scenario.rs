@@ -4,7 +4,7 @@ use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, spacecraft};
 use slewplan_solver::problem::{Code, Faults, MOST_KEPT, Problem};
-use slewplan_solver::scenario::{Scenario, Validated};
+use slewplan_solver::scenario::{MOST_CONES, Scenario, Validated};
 use slewplan_solver::spec::{
     Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
@@ -181,7 +181,7 @@ fn scenario(fields: &Fields<'_>) -> ScenarioSpec {
             .map_or_else(Vec::new, |targets| targets.iter().map(target).collect()),
         keep_out: fields
             .optional("keep_out")
-            .and_then(|cones| cones.list())
+            .and_then(|cones| cones.list_of_at_most(MOST_CONES))
             .map_or_else(Vec::new, |cones| cones.iter().map(keep_out).collect()),
         options: fields
             .optional("options")

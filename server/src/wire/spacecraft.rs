@@ -4,6 +4,7 @@ use super::document::Node;
 use super::reader::{Cursor, Fields, Sink};
 use slewplan_solver::problem::{Code, Problem};
 use slewplan_solver::scenario::Scenario;
+use slewplan_solver::spacecraft::{MOST_BORESIGHTS, MOST_WHEELS};
 use slewplan_solver::spec::{BoresightSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
 
 /// Stands in where the inertia cannot be read: larger than that of any wheel.
@@ -98,13 +99,13 @@ fn try_read(cursor: &Cursor<'_>) -> Option<SpacecraftSpec> {
             .and_then(|rate| rate.number()),
         wheels: fields
             .required("wheels")
-            .and_then(|wheels| wheels.list())
+            .and_then(|wheels| wheels.list_of_at_most(MOST_WHEELS))
             .map_or_else(substitute_wheels, |wheels| {
                 wheels.iter().map(wheel).collect()
             }),
         boresights: fields
             .optional("boresights")
-            .and_then(|boresights| boresights.list())
+            .and_then(|boresights| boresights.list_of_at_most(MOST_BORESIGHTS))
             .map_or_else(Vec::new, |boresights| {
                 boresights.iter().map(boresight).collect()
             }),

@@ -6,8 +6,8 @@ use crate::problem::{self, Code};
 use crate::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
 use nalgebra::Vector3;
 
-/// Most cones of a scenario.
-const MOST_CONES: usize = 1000;
+/// Most keep-out cones of a scenario.
+pub const MOST_CONES: usize = 1000;
 
 pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
     if !findings.at_most("/keep_out", spec.keep_out.len(), MOST_CONES) {

@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, Matrix3};
 
 /// Most enabled wheels.
 pub(crate) const MOST_ENABLED: usize = 17;
-/// Most wheels, enabled or not.
-const MOST_LISTED: usize = 100;
+/// Most wheels of a spacecraft, enabled or not.
+pub const MOST_WHEELS: usize = 100;
 
 /// Reads the wheels, of which the enabled ones must span space, with the pseudo-inverse of their
 /// axes.
@@ -20,7 +20,7 @@ pub(super) fn read(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<(Vec<Wheel>, DMatrix<f64>)> {
-    if !findings.at_most(pointer, specs.len(), MOST_LISTED) {
+    if !findings.at_most(pointer, specs.len(), MOST_WHEELS) {
         return None;
     }
     // Read one by one first: collecting straight into an option would stop at the first fault.

@@ -74,12 +74,7 @@ impl Findings {
     /// Whether a list has at most so many entries, beyond which it is not read at all.
     pub(crate) fn at_most(&mut self, pointer: &str, entries: usize, most: usize) -> bool {
         if entries > most {
-            self.refuse(
-                pointer,
-                Code::WrongLength,
-                format!("the list has {entries} entries, it may have {most}"),
-                format!("list at most {most}"),
-            );
+            self.include(vec![Problem::too_long(pointer, entries, most)]);
         }
         entries <= most
     }

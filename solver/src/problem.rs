@@ -37,6 +37,17 @@ impl Problem {
         }
     }
 
+    /// A list at a pointer that has more entries than it may have.
+    #[must_use]
+    pub fn too_long(pointer: &str, entries: usize, most: usize) -> Self {
+        Self::new(
+            pointer,
+            Code::WrongLength,
+            format!("the list has {entries} entries, it may have {most}"),
+            format!("list at most {most}"),
+        )
+    }
+
     /// The same of a document that is a part of another, at this pointer there.
     #[must_use]
     pub fn under(mut self, place: &str) -> Self {

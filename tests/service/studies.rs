@@ -14,6 +14,13 @@ fn study(shares: &[(f64, f64)]) -> Value {
     })
 }
 
+/// Where the problems of a refused request are.
+fn places(problem: &Value) -> Vec<&str> {
+    let errors = problem["errors"].as_array().expect("a list");
+    let pointers = errors.iter().filter_map(|error| error["pointer"].as_str());
+    pointers.collect()
+}
+
 #[test]
 fn smaller_shares_take_longer_and_are_flown_as_often_as_asked() {
     let service = Service::start();
@@ -44,11 +51,7 @@ fn problems_of_scenario_and_study_have_their_places() {
     body["scenario"]["spacecraft"]["wheels"][0]["max_torque_nm"] = json!(-1);
     let problem = service.post("/v1/studies/authority", &body);
     let problem = problem.expect_problem(422, "invalid_input");
-    let errors = problem["errors"].as_array().expect("a list");
-    let places: Vec<&str> = errors
-        .iter()
-        .filter_map(|error| error["pointer"].as_str())
-        .collect();
+    let places = places(&problem);
     for place in [
         "/scenario/spacecraft/wheels/0/max_torque_nm",
         "/authorities/0/torque_authority",
@@ -117,11 +120,7 @@ fn the_published_comparison_is_repeated_over_http() {
     let wrong = json!({"laws": {"kind": "given", "wheel": {"factor": -1, "exponent": 9}}});
     let problem = service.post("/v1/studies/comparison", &wrong);
     let problem = problem.expect_problem(422, "invalid_input");
-    let errors = problem["errors"].as_array().expect("a list");
-    let places: Vec<_> = errors
-        .iter()
-        .filter_map(|e| e["pointer"].as_str())
-        .collect();
+    let places = places(&problem);
     assert_eq!(places, ["/laws/wheel/exponent", "/laws/wheel/factor"]);
 }
 
@@ -146,11 +145,7 @@ fn a_flight_is_flown_over_http() {
     body["simulation"]["settle_s"] = json!(-5);
     let problem = service.post("/v1/studies/flight", &body);
     let problem = problem.expect_problem(422, "invalid_input");
-    let errors = problem["errors"].as_array().expect("a list");
-    let places: Vec<_> = errors
-        .iter()
-        .filter_map(|e| e["pointer"].as_str())
-        .collect();
+    let places = places(&problem);
     assert_eq!(places, ["/keep_every", "/simulation/settle_s"]);
 }
 

@@ -211,23 +211,27 @@ class Background:
             thread.join()
 
 
+def interposed(work, name):
+    """One of the C sources here as a library that comes between a service and the system; built once."""
+    library = work / f"{name}.so"
+    if not library.exists():
+        subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, HERE / f"{name}.c", "-ldl"], check=True)
+    return library
+
+
 class Faults:
     """Makes the writes and syncs of a service's database fail."""
 
     FAULT = struct.Struct("iiii")
 
     def __init__(self, work, database):
-        self.library = work / "shim.so"
-        if not self.library.exists():
-            subprocess.run(
-                ["cc", "-shared", "-fPIC", "-O1", "-o", self.library, HERE / "shim.c", "-ldl"], check=True
-            )
+        library = interposed(work, "shim")
         self.requests = work / f"{database.name}.faults"
         self.requests.write_bytes(bytes(2 * self.FAULT.size))
         self.file = open(self.requests, "r+b")
         self.map = mmap.mmap(self.file.fileno(), 0)
         self.environment = {
-            "LD_PRELOAD": str(self.library),
+            "LD_PRELOAD": str(library),
             "TRUST_SHIM": str(self.requests),
             "TRUST_MATCH": database.name,
         }

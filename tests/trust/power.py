@@ -4,11 +4,10 @@ asked to do."""
 import random
 import sqlite3
 import struct
-import subprocess
 import threading
 from dataclasses import dataclass
 
-from harness import HERE, Row, gate, service, variant
+from harness import Row, gate, interposed, service, variant
 
 RECORD = struct.Struct("=IIQQ")
 WRITE, TRUNCATE, SYNC = 1, 2, 3
@@ -20,15 +19,11 @@ class Recorder:
     """Records what a service asks of the disk for its database."""
 
     def __init__(self, work, database):
-        self.library = work / "recorder.so"
-        if not self.library.exists():
-            subprocess.run(
-                ["cc", "-shared", "-fPIC", "-O1", "-o", self.library, HERE / "recorder.c", "-ldl"], check=True
-            )
+        library = interposed(work, "recorder")
         self.log = work / f"{database.name}.record"
         self.log.touch()
         self.environment = {
-            "LD_PRELOAD": str(self.library),
+            "LD_PRELOAD": str(library),
             "RECORDER_DATABASE": str(database),
             "RECORDER_LOG": str(self.log),
         }

@@ -113,11 +113,8 @@ impl<'a> Cursor<'a> {
     pub(crate) fn list_of_at_most(&self, most: usize) -> Option<Vec<Cursor<'a>>> {
         let entries = self.entries()?;
         if entries.len() > most {
-            self.report(
-                Code::WrongLength,
-                format!("the list has {} entries, it may have {most}", entries.len()),
-                format!("list at most {most}"),
-            );
+            let problem = Problem::too_long(&self.pointer, entries.len(), most);
+            self.sink.push(problem);
             return None;
         }
         Some(self.places(entries))

@@ -302,17 +302,18 @@ fn size(spec: &ComparisonSpec, momentum: f64) -> SizeComparison {
 }
 
 fn check_list(name: &str, values: &[f64], findings: &mut Findings) {
-    let count = values.len();
-    if count == 0 || count > MOST_ENTRIES {
+    let pointer = format!("/{name}");
+    if values.is_empty() {
         findings.refuse(
-            format!("/{name}"),
+            &pointer,
             Code::WrongLength,
-            format!("there are {count} numbers"),
-            format!("give one to {MOST_ENTRIES} numbers"),
+            "the list is empty",
+            "give at least one number",
         );
     }
+    findings.at_most(&pointer, values.len(), MOST_ENTRIES);
     for (i, &value) in values.iter().enumerate() {
-        findings.positive(&format!("/{name}/{i}"), value);
+        findings.positive(&format!("{pointer}/{i}"), value);
     }
 }
 

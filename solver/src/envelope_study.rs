@@ -143,13 +143,8 @@ impl EnvelopeStudy {
         let baselines = baselines
             .map_err(|problems| findings.include(problems))
             .ok();
-        check_count("/turns", spec.turns.len(), MOST_TURNS, &mut findings);
-        check_count(
-            "/demands_nm",
-            spec.demands_nm.len(),
-            MOST_DEMANDS,
-            &mut findings,
-        );
+        findings.at_most("/turns", spec.turns.len(), MOST_TURNS);
+        findings.at_most("/demands_nm", spec.demands_nm.len(), MOST_DEMANDS);
         let vectors: Vec<_> = spec
             .turns
             .iter()
@@ -305,17 +300,6 @@ fn beyond_numbers(
 
 fn is_finite(allocation: &Allocation) -> bool {
     allocation.load.is_finite() && allocation.wheels.iter().all(|wheel| wheel.is_finite())
-}
-
-fn check_count(pointer: &str, count: usize, most: usize, findings: &mut Findings) {
-    if count > most {
-        findings.refuse(
-            pointer,
-            Code::WrongLength,
-            format!("there are {count} entries, there may be {most}"),
-            "spread them over several studies",
-        );
-    }
 }
 
 /// The rotation vector of a turn, rad.

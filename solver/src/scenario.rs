@@ -12,6 +12,7 @@ mod state;
 mod target;
 
 pub use keep_out::MOST_CONES;
+pub use target::MOST_TARGETS;
 
 use crate::attitude::Attitude;
 use crate::findings::Findings;

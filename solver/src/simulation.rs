@@ -34,7 +34,9 @@ pub use gains::Gains;
 pub use monte_carlo::{PassageSpread, Percentiles, SaturationSpread, Spread};
 pub use outcome::{PassageError, Saturation, SimulatedFlight, SimulatedState, TrackingError};
 pub use spec::{ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, PidGainsSpec, SimulationSpec};
-pub use study::{Authorities, AuthorityRow, AuthorityStudySpec, RowOutcome, study};
+pub use study::{
+    Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
+};
 
 use crate::attitude::Attitude;
 use crate::checker::Motion;

@@ -5,8 +5,7 @@ use slewplan_solver::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 
 /// Reads one drive per wheel; ideal ones stand in where they cannot be read.
 pub(crate) fn read(cursor: &Cursor<'_>) -> Vec<DriveSpec> {
-    let drives = cursor.list().unwrap_or_default();
-    drives.iter().map(drive).collect()
+    cursor.each(drive).unwrap_or_default()
 }
 
 fn drive(cursor: &Cursor<'_>) -> DriveSpec {

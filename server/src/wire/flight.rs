@@ -82,13 +82,11 @@ fn decode(node: &Node, scenario: &Scenario, sink: &Sink) -> Option<Flight> {
 }
 
 fn sequence<'a>(cursor: &Cursor<'a>) -> Option<Vec<&'a str>> {
-    let read: Vec<Option<&str>> = cursor.list()?.iter().map(Cursor::text).collect();
-    read.into_iter().collect()
+    cursor.all(Cursor::text)
 }
 
 fn passages(cursor: &Cursor<'_>) -> Option<Vec<Passage>> {
-    let read: Vec<Option<Passage>> = cursor.list()?.iter().map(passage).collect();
-    read.into_iter().collect()
+    cursor.all(passage)
 }
 
 fn passage(cursor: &Cursor<'_>) -> Option<Passage> {
@@ -111,9 +109,8 @@ fn passage(cursor: &Cursor<'_>) -> Option<Passage> {
 fn check_targets(cursor: &Cursor<'_>, passages: &[Passage], scenario: &Scenario) {
     let known: HashSet<&str> = scenario.targets().iter().map(|t| t.id.as_str()).collect();
     let mut visited = HashSet::new();
-    let entries = cursor.list().unwrap_or_default();
     let report_at = |index: usize, code, message: &str| {
-        if let Some(entry) = entries.get(index) {
+        if let Some(entry) = cursor.entry(index) {
             entry.report(
                 code,
                 message,
@@ -172,12 +169,7 @@ fn check_sequence(cursor: &Cursor<'_>, sequence: &[&str], passages: &[Passage]) 
 
 fn controls(cursor: &Cursor<'_>, scenario: &Scenario) -> Option<Vec<Control>> {
     let wheels = scenario.spacecraft().wheels().len();
-    let read: Vec<Option<Control>> = cursor
-        .list()?
-        .iter()
-        .map(|item| control(item, wheels))
-        .collect();
-    read.into_iter().collect()
+    cursor.all(|item| control(item, wheels))
 }
 
 fn control(cursor: &Cursor<'_>, wheels: usize) -> Option<Control> {

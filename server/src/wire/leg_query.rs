@@ -48,16 +48,6 @@ struct Places {
 }
 
 impl Places {
-    /// Number of legs that are asked for.
-    fn legs(&self) -> usize {
-        let count = self.targets.len();
-        if self.all_pairs {
-            count.saturating_mul(count.saturating_sub(1))
-        } else {
-            count / 2
-        }
-    }
-
     /// Indices of the targets at the begin and the end of each leg.
     fn pairs(&self) -> Vec<(usize, usize)> {
         let count = self.targets.len();
@@ -88,6 +78,11 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
         "options",
     ];
     let fields = Cursor::root(node, &sink).object(known);
+    // Counted before they are read, since a short list of attitudes has many pairs.
+    let count = fields.as_ref().map_or(0, legs_asked_for);
+    if count > most {
+        return Err(Refusal::TooMany(count));
+    }
     let read = fields.map(|fields| {
         (
             read_base(&fields),
@@ -100,10 +95,6 @@ pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
         Some((base, Some(places), modes)) if problems.is_empty() => (base, places, modes),
         _ => return Err(Refusal::Invalid(problems)),
     };
-    // Counted before they are listed, since a short list of attitudes has many pairs.
-    if places.legs() > most {
-        return Err(Refusal::TooMany(places.legs()));
-    }
     let scenario = check(&base, &places).map_err(Refusal::Invalid)?;
     let pairs = places.pairs();
     let pairs = pairs.into_iter().enumerate().map(|(index, (from, to))| {
@@ -141,6 +132,14 @@ pub(crate) enum Refusal {
     Invalid(Vec<Problem>),
     /// It asks for so many legs.
     TooMany(usize),
+}
+
+/// Number of legs that a query asks for, whatever they are.
+fn legs_asked_for(fields: &Fields<'_>) -> usize {
+    let length = |name| fields.raw(name).and_then(|list| list.length()).unwrap_or(0);
+    let attitudes = length("attitudes");
+    let matrix = attitudes.saturating_mul(attitudes.saturating_sub(1));
+    matrix.max(length("pairs"))
 }
 
 fn read_base(fields: &Fields<'_>) -> ScenarioSpec {
@@ -208,26 +207,16 @@ fn read_places(fields: &Fields<'_>) -> Option<Places> {
 }
 
 fn read_list(list: &Cursor<'_>) -> Option<(Vec<AttitudeSpec>, Vec<String>)> {
-    let items = list.list()?;
+    let items = list.each(|place| (attitude::read(place), place.pointer().to_owned()))?;
     if items.len() < 2 {
         let message = format!("{} attitudes have no leg between them", items.len());
         list.report(Code::WrongLength, message, "list at least two attitudes");
         return None;
     }
-    let place = |cursor: &Cursor<'_>| (attitude::read(cursor), cursor.pointer().to_owned());
-    Some(items.iter().map(place).unzip())
+    Some(items.into_iter().unzip())
 }
 
 fn read_pairs(list: &Cursor<'_>) -> Option<(Vec<AttitudeSpec>, Vec<String>)> {
-    let items = list.list()?;
-    if items.is_empty() {
-        list.report(
-            Code::WrongLength,
-            "there is no pair",
-            "list at least one pair",
-        );
-        return None;
-    }
     let ends = |pair: &Cursor<'_>| {
         let fields = pair.object(&["from", "to"]);
         ["from", "to"].map(|name| {
@@ -239,7 +228,16 @@ fn read_pairs(list: &Cursor<'_>) -> Option<(Vec<AttitudeSpec>, Vec<String>)> {
             )
         })
     };
-    Some(items.iter().flat_map(ends).unzip())
+    let pairs = list.each(ends)?;
+    if pairs.is_empty() {
+        list.report(
+            Code::WrongLength,
+            "there is no pair",
+            "list at least one pair",
+        );
+        return None;
+    }
+    Some(pairs.into_iter().flatten().unzip())
 }
 
 /// A scenario with all attitudes as targets, or what is wrong with spacecraft and attitudes, or keeps

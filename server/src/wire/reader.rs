@@ -16,10 +16,14 @@ pub(crate) struct Sink(RefCell<Vec<Problem>>);
 impl Sink {
     /// Records a problem, unless there are very many.
     pub(crate) fn push(&self, problem: Problem) {
-        let mut problems = self.0.borrow_mut();
-        if problems.len() < MOST_KEPT {
-            problems.push(problem);
+        if !self.is_full() {
+            self.0.borrow_mut().push(problem);
         }
+    }
+
+    /// Whether there are very many.
+    fn is_full(&self) -> bool {
+        self.0.borrow().len() >= MOST_KEPT
     }
 
     /// All problems in the order of their discovery.
@@ -104,33 +108,48 @@ impl<'a> Cursor<'a> {
         .raw(name)
     }
 
-    /// The entries of a list.
-    pub(crate) fn list(&self) -> Option<Vec<Cursor<'a>>> {
-        self.entries().map(|entries| self.places(entries))
+    /// What is read of every entry of a list.
+    pub(crate) fn each<T>(&self, read: impl Fn(&Cursor<'a>) -> T) -> Option<Vec<T>> {
+        let entries = self.entries()?.iter().enumerate();
+        // One place at a time: all of them would take more memory than what they say.
+        Some(entries.map(|entry| read(&self.place(entry))).collect())
     }
 
-    /// The entries of a list; a longer one is not looked into.
-    pub(crate) fn list_of_at_most(&self, most: usize) -> Option<Vec<Cursor<'a>>> {
-        let entries = self.entries()?;
-        if entries.len() > most {
-            let problem = Problem::too_long(&self.pointer, entries.len(), most);
-            self.sink.push(problem);
+    /// What is read of every entry of a list; a longer one is not looked into.
+    pub(crate) fn each_of_at_most<T>(
+        &self,
+        most: usize,
+        read: impl Fn(&Cursor<'a>) -> T,
+    ) -> Option<Vec<T>> {
+        let length = self.entries()?.len();
+        if length > most {
+            self.sink
+                .push(Problem::too_long(&self.pointer, length, most));
             return None;
         }
-        Some(self.places(entries))
+        self.each(read)
     }
 
-    fn list_of_length(&self, length: usize) -> Option<Vec<Cursor<'a>>> {
-        let entries = self.entries()?;
-        if entries.len() != length {
-            self.report(
-                Code::WrongLength,
-                format!("expected {length} entries, found {}", entries.len()),
-                format!("write exactly {length} entries"),
-            );
+    /// All values of a list or nothing, but never before every entry has been read and its problems
+    /// recorded.
+    pub(crate) fn all<T>(&self, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<Vec<T>> {
+        self.each(read)?.into_iter().collect()
+    }
+
+    /// One entry of a list; `None` when there is none, without a problem.
+    pub(crate) fn entry(&self, index: usize) -> Option<Cursor<'a>> {
+        let Node::List(entries) = self.node else {
             return None;
+        };
+        Some(self.place((index, entries.get(index)?)))
+    }
+
+    /// Number of entries of a list; `None` for anything else, without a problem.
+    pub(crate) fn length(&self) -> Option<usize> {
+        match self.node {
+            Node::List(entries) => Some(entries.len()),
+            _ => None,
         }
-        Some(self.places(entries))
     }
 
     fn entries(&self) -> Option<&'a [Node]> {
@@ -141,13 +160,12 @@ impl<'a> Cursor<'a> {
         Some(entries)
     }
 
-    fn places(&self, entries: &'a [Node]) -> Vec<Cursor<'a>> {
-        let place = |(index, node)| Cursor {
+    fn place(&self, (index, node): (usize, &'a Node)) -> Cursor<'a> {
+        Cursor {
             node,
             pointer: format!("{}/{index}", self.pointer),
             sink: self.sink,
-        };
-        entries.iter().enumerate().map(place).collect()
+        }
     }
 
     /// A number.
@@ -233,25 +251,26 @@ impl<'a> Cursor<'a> {
 
     /// A list of numbers of any length.
     pub(crate) fn any_numbers(&self) -> Option<Vec<f64>> {
-        collect_all(self.list()?.iter().map(Cursor::number))
+        self.all(Cursor::number)
     }
 
     /// A list of texts of any length.
     pub(crate) fn texts(&self) -> Option<Vec<String>> {
-        let text = |entry: &Cursor<'a>| entry.text().map(str::to_owned);
-        collect_all(self.list()?.iter().map(text))
+        self.all(|entry| entry.text().map(str::to_owned))
     }
 
     fn array<T, const N: usize>(&self, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<[T; N]> {
-        let items = self.list_of_length(N)?;
-        collect_all(items.iter().map(read))?.try_into().ok()
+        let length = self.entries()?.len();
+        if length != N {
+            self.report(
+                Code::WrongLength,
+                format!("expected {N} entries, found {length}"),
+                format!("write exactly {N} entries"),
+            );
+            return None;
+        }
+        self.all(read)?.try_into().ok()
     }
-}
-
-/// All values or nothing, but never before every entry has been read and its problems recorded.
-fn collect_all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
-    let read: Vec<Option<T>> = values.collect();
-    read.into_iter().collect()
 }
 
 /// The members of an object.
@@ -299,6 +318,9 @@ impl<'a> Fields<'a> {
 
     fn report_unknown(&self, known: &[&str]) {
         for (name, _) in self.members {
+            if self.place.sink.is_full() {
+                return;
+            }
             if !known.contains(&name.as_str()) {
                 self.place.sink.push(Problem::new(
                     self.pointer_to(name),
@@ -384,7 +406,7 @@ mod tests {
     #[test]
     fn integers_are_not_rounded() {
         let found = problems_of("[0, 1.5, -1, 18446744073709551615]", |root| {
-            let read: Vec<_> = root.list().unwrap().iter().map(Cursor::integer).collect();
+            let read = root.each(Cursor::integer).unwrap();
             assert_eq!(read, [Some(0), None, None, Some(u64::MAX)]);
         });
         assert_eq!(found.len(), 2);

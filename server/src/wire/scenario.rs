@@ -4,7 +4,7 @@ use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, spacecraft};
 use slewplan_solver::problem::{Code, Faults, MOST_KEPT, Problem};
-use slewplan_solver::scenario::{MOST_CONES, Scenario, Validated};
+use slewplan_solver::scenario::{MOST_CONES, MOST_TARGETS, Scenario, Validated};
 use slewplan_solver::spec::{
     Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
@@ -177,12 +177,12 @@ fn scenario(fields: &Fields<'_>) -> ScenarioSpec {
         end: fields.optional("end").map(|cursor| state(&cursor)),
         targets: fields
             .required("targets")
-            .and_then(|targets| targets.list())
-            .map_or_else(Vec::new, |targets| targets.iter().map(target).collect()),
+            .and_then(|targets| targets.each_of_at_most(MOST_TARGETS, target))
+            .unwrap_or_default(),
         keep_out: fields
             .optional("keep_out")
-            .and_then(|cones| cones.list_of_at_most(MOST_CONES))
-            .map_or_else(Vec::new, |cones| cones.iter().map(keep_out).collect()),
+            .and_then(|cones| cones.each_of_at_most(MOST_CONES, keep_out))
+            .unwrap_or_default(),
         options: fields
             .optional("options")
             .map(|cursor| options(&cursor))
@@ -273,13 +273,8 @@ fn target(cursor: &Cursor<'_>) -> TargetSpec {
 }
 
 pub(super) fn zero_rate_axes(cursor: &Cursor<'_>) -> Option<[bool; 3]> {
-    let mut axes = [false; 3];
-    for name in cursor.list()? {
-        if let Some(axis) = name.choice(&[("x", 0), ("y", 1), ("z", 2)]) {
-            axes[axis] = true;
-        }
-    }
-    Some(axes)
+    let named = cursor.each(|name| name.choice(&[("x", 0), ("y", 1), ("z", 2)]))?;
+    Some([0, 1, 2].map(|axis| named.contains(&Some(axis))))
 }
 
 fn keep_out(cursor: &Cursor<'_>) -> KeepOutSpec {

@@ -99,16 +99,12 @@ fn try_read(cursor: &Cursor<'_>) -> Option<SpacecraftSpec> {
             .and_then(|rate| rate.number()),
         wheels: fields
             .required("wheels")
-            .and_then(|wheels| wheels.list_of_at_most(MOST_WHEELS))
-            .map_or_else(substitute_wheels, |wheels| {
-                wheels.iter().map(wheel).collect()
-            }),
+            .and_then(|wheels| wheels.each_of_at_most(MOST_WHEELS, wheel))
+            .unwrap_or_else(substitute_wheels),
         boresights: fields
             .optional("boresights")
-            .and_then(|boresights| boresights.list_of_at_most(MOST_BORESIGHTS))
-            .map_or_else(Vec::new, |boresights| {
-                boresights.iter().map(boresight).collect()
-            }),
+            .and_then(|boresights| boresights.each_of_at_most(MOST_BORESIGHTS, boresight))
+            .unwrap_or_default(),
     })
 }
 

@@ -8,6 +8,9 @@ use crate::problem::Code;
 use crate::spec::{ScenarioSpec, TargetSpec};
 use std::collections::HashSet;
 
+/// Most targets of a scenario: legs between all of them are more than any disk holds. What can be
+/// planned ends far below.
+pub const MOST_TARGETS: usize = 10_000;
 /// Names by which legs call the ends of the tour.
 const RESERVED: [&str; 2] = ["start", "end"];
 
@@ -23,6 +26,9 @@ pub(super) fn read_all(
             "there are 0 targets and no end, so there is nothing to plan",
             "give at least one target, or an end",
         );
+        return None;
+    }
+    if !findings.at_most("/targets", spec.targets.len(), MOST_TARGETS) {
         return None;
     }
     let mut ids = HashSet::new();

@@ -16,7 +16,7 @@ use crate::scenario::Scenario;
 use crate::spec::ScenarioSpec;
 
 /// Most pairs of shares of one study: each is a plan and as many flights as asked for.
-const MOST_ROWS: usize = 200;
+pub const MOST_AUTHORITIES: usize = 200;
 
 /// Shares of every torque and speed limit that a plan may use.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,15 +100,14 @@ pub fn study(
 }
 
 fn check_shares(authorities: &[Authorities], pointer: &str, findings: &mut Findings) -> bool {
-    let mut valid = (1..=MOST_ROWS).contains(&authorities.len());
-    if !valid {
+    let pointer = format!("{pointer}/authorities");
+    let mut valid = findings.at_most(&pointer, authorities.len(), MOST_AUTHORITIES);
+    if authorities.is_empty() {
+        valid = false;
         findings.refuse(
-            format!("{pointer}/authorities"),
+            &pointer,
             Code::WrongLength,
-            format!(
-                "there are {} pairs, there must be from 1 to {MOST_ROWS}",
-                authorities.len()
-            ),
+            "the list is empty",
             "list the pairs of shares to compare",
         );
     }
@@ -117,7 +116,7 @@ fn check_shares(authorities: &[Authorities], pointer: &str, findings: &mut Findi
             ("torque_authority", pair.torque),
             ("momentum_authority", pair.momentum),
         ] {
-            let at = format!("{pointer}/authorities/{index}/{name}");
+            let at = format!("{pointer}/{index}/{name}");
             let share = findings.positive(&at, share);
             valid &= share.is_some_and(|share| share <= 1.0);
             if let Some(share) = share.filter(|&share| share > 1.0) {

@@ -67,9 +67,9 @@ fn decode(fields: &Fields<'_>) -> Option<LegTable> {
         .required("shard")
         .and_then(|shard| self::shard(&shard));
     let complete = fields.required("complete").and_then(|flag| flag.boolean());
-    let rows = fields.required("legs").and_then(|list| all(&list, row));
+    let rows = fields.required("legs").and_then(|list| list.all(row));
     let motions = match fields.optional("trajectories") {
-        Some(list) => Some(all(&list, motion)?),
+        Some(list) => Some(list.all(motion)?),
         None => None,
     };
     Some(LegTable {
@@ -82,12 +82,6 @@ fn decode(fields: &Fields<'_>) -> Option<LegTable> {
         rows: rows?,
         motions,
     })
-}
-
-/// All entries of a list, when each can be read.
-fn all<'a, T>(list: &Cursor<'a>, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<Vec<T>> {
-    let entries: Vec<Option<T>> = list.list()?.iter().map(read).collect();
-    entries.into_iter().collect()
 }
 
 fn kind(cursor: &Cursor<'_>) -> Option<LegKind> {
@@ -167,9 +161,9 @@ fn motion(cursor: &Cursor<'_>) -> Option<KeyedLeg> {
     let solve_time_s = fields.required("solve_time_s").and_then(|t| time(&t));
     let lengths_s = fields.required("lengths_s").and_then(|l| l.any_numbers());
     let attitudes = fields.required("attitudes_xyzw");
-    let attitudes_xyzw = attitudes.and_then(|list| all(&list, Cursor::numbers));
+    let attitudes_xyzw = attitudes.and_then(|list| list.all(Cursor::numbers));
     let momenta = fields.required("wheel_momenta_nms");
-    let wheel_momenta_nms = momenta.and_then(|list| all(&list, Cursor::any_numbers));
+    let wheel_momenta_nms = momenta.and_then(|list| list.all(Cursor::any_numbers));
     Some(KeyedLeg {
         key: key?,
         leg: OfferedLeg {

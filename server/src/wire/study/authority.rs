@@ -13,7 +13,7 @@ use slewplan_solver::planner::Run;
 use slewplan_solver::problem::Problem;
 use slewplan_solver::scenario::Scenario;
 use slewplan_solver::simulation::{
-    Authorities, AuthorityRow, AuthorityStudySpec, RowOutcome, study,
+    Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
 };
 use slewplan_solver::spec::ScenarioSpec;
 use utoipa::ToSchema;
@@ -59,11 +59,9 @@ pub(crate) fn read_node(node: &Node) -> Result<AuthorityStudy, Vec<Problem>> {
                 .unwrap_or_default(),
             authorities: fields
                 .required("authorities")
-                .and_then(|it| it.list())
-                .unwrap_or_default()
-                .iter()
-                .filter_map(authorities)
-                .collect(),
+                .and_then(|pairs| pairs.each_of_at_most(MOST_AUTHORITIES, authorities))
+                .map(|pairs| pairs.into_iter().flatten().collect())
+                .unwrap_or_default(),
         },
     });
     let problems = sink.into_problems();

@@ -79,17 +79,10 @@ fn number(fields: &Fields<'_>, name: &str) -> Option<f64> {
 }
 
 fn list(fields: &Fields<'_>, name: &str) -> Option<Vec<f64>> {
-    let cursor = fields.optional(name)?;
-    let values = cursor.any_numbers()?;
-    if values.len() > MOST_ENTRIES {
-        cursor.report(
-            Code::WrongLength,
-            format!("there are {} numbers", values.len()),
-            format!("give at most {MOST_ENTRIES} numbers"),
-        );
-        return None;
-    }
-    Some(values)
+    let read = fields
+        .optional(name)?
+        .each_of_at_most(MOST_ENTRIES, Cursor::number)?;
+    read.into_iter().collect()
 }
 
 fn rows(cursor: &Cursor<'_>) -> Option<usize> {

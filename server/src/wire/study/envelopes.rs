@@ -7,7 +7,9 @@ pub(crate) use answer::EnvelopeAnswerDocument;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::{attitude, spacecraft};
-use slewplan_solver::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
+use slewplan_solver::envelope_study::{
+    EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, MOST_TURNS, TurnSpec,
+};
 use slewplan_solver::problem::Problem;
 
 /// A valid study with what the caller should know about it.
@@ -58,10 +60,6 @@ fn decode(cursor: &Cursor<'_>) -> Option<EnvelopeStudySpec> {
     let fields = cursor.object(known)?;
     // A label, which nothing depends on.
     fields.optional("name").and_then(|name| name.text());
-    let list = |name| {
-        let list = fields.optional(name).and_then(|it| it.list());
-        list.unwrap_or_default()
-    };
     let [torque_authority, momentum_authority] = authorities(fields.optional("options"));
     Some(EnvelopeStudySpec {
         spacecraft: fields
@@ -69,11 +67,14 @@ fn decode(cursor: &Cursor<'_>) -> Option<EnvelopeStudySpec> {
             .map_or_else(spacecraft::substitute, |it| spacecraft::read(&it)),
         torque_authority,
         momentum_authority,
-        turns: list("turns").iter().map(turn).collect(),
-        demands_nm: list("demands_nm")
-            .iter()
-            .filter_map(Cursor::numbers)
-            .collect(),
+        turns: fields
+            .optional("turns")
+            .and_then(|turns| turns.each_of_at_most(MOST_TURNS, turn))
+            .unwrap_or_default(),
+        demands_nm: fields
+            .optional("demands_nm")
+            .and_then(|demands| demands.each_of_at_most(MOST_DEMANDS, demand))
+            .unwrap_or_default(),
         time_optimal: fields
             .optional("time_optimal")
             .and_then(|it| it.boolean())
@@ -88,6 +89,11 @@ fn authorities(options: Option<Cursor<'_>>) -> [f64; 2] {
         let share = fields.as_ref().and_then(|fields| fields.optional(name));
         share.and_then(|it| it.number()).unwrap_or(1.0)
     })
+}
+
+/// A torque; that which cannot be read is reported.
+fn demand(cursor: &Cursor<'_>) -> [f64; 3] {
+    cursor.numbers().unwrap_or_default()
 }
 
 fn turn(cursor: &Cursor<'_>) -> TurnSpec {

@@ -74,6 +74,19 @@ pub(crate) struct Limits {
     pub(crate) streams: usize,
 }
 
+/// Bytes of the largest body for each of its values and names. Plans and files of legs have some 15 for
+/// each, so that half of the largest body can be full of them; in memory they take about 32 bytes.
+const BYTES_PER_VALUE: usize = 32;
+/// Values and names that every body may have, however small the largest body is.
+const LEAST_VALUES: usize = 1 << 16;
+
+impl Limits {
+    /// Most values in a body, those in lists and objects included, and names of members.
+    pub(crate) fn body_values(self) -> usize {
+        (self.body_bytes / BYTES_PER_VALUE).max(LEAST_VALUES)
+    }
+}
+
 impl App {
     /// The state of a service: its queue, limits, doors, end, and the pools for solving and for
     /// looking up.

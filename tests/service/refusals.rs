@@ -52,6 +52,30 @@ fn what_is_no_request_is_refused_in_one_form() {
 }
 
 #[test]
+fn a_body_of_too_many_values_is_refused_before_it_is_read() {
+    let service = Service::start();
+    let limits = service.get("/v1/limits").expect(200).json();
+    let most = limits["max_body_values"].as_u64().expect("a number");
+    // With the list itself there are as many values as there may be, then one more.
+    let zeros = |count: u64| format!("[{}0]", "0,".repeat(usize::try_from(count).unwrap() - 2));
+    for (values, status, code) in [
+        (most, 422, "invalid_input"),
+        (most + 1, 413, "body_too_large"),
+    ] {
+        let request = Request::new("POST", "/v1/plans")
+            .header("Content-Type", "application/json")
+            .body(zeros(values));
+        let problem = service.send(&request).expect_problem(status, code);
+        let detail = problem["detail"].as_str().expect("text");
+        assert_eq!(
+            detail.contains("max_body_values"),
+            values > most,
+            "{detail}"
+        );
+    }
+}
+
+#[test]
 fn more_problems_than_are_listed_are_counted() {
     let service = Service::start();
     let told = |count: usize| {

@@ -156,6 +156,17 @@ def hostile_bodies():
         cases.append((name, post(body, path, *headers), statuses))
 
     megabytes = 5 << 20
+    members = b"{" + b",".join([b'"":0'] * 900) + b"}"
+    # To the last byte, and to the last value, that is read.
+    for count in 4 << 20, 1 << 17:
+        def filled(entry, values, opening=b"[", closing=b"]"):
+            times = min((count - 2) // values, ((4 << 20) - 2) // (len(entry) + 1))
+            return opening + b",".join([entry] * times) + closing
+
+        case(f"numbers, at most {count}", filled(b"0", 1))
+        case(f"texts, at most {count}", filled(b'"a"', 1))
+        case(f"fields, at most {count}", filled(b'"":0', 2, b"{", b"}"))
+        case(f"objects of fields, at most {count}", filled(members, 2 * 900 + 1))
     case("oversize", b"[" + b"0," * (megabytes // 2) + b"0]", statuses=(413,))
     chunk = b"%x\r\n" % (1 << 16) + b" " * (1 << 16) + b"\r\n"
     head = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nConnection: close\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
@@ -196,6 +207,8 @@ def hostile_bodies():
     many = json.loads(text)
     many["targets"] = [dict(document["targets"][0], id=f"t{number}") for number in range(5000)]
     case("5000 targets", json.dumps(many).encode(), statuses=(413, 422))
+    many["targets"] = [1] * 200_000
+    case("200000 numbers as targets", json.dumps(many).encode(), statuses=(413, 422))
     wide = json.loads(text)
     wide["spacecraft"]["wheels"] = wide["spacecraft"]["wheels"] * 3000
     case("9000 wheels", json.dumps(wide).encode(), statuses=(413, 422))

@@ -26,6 +26,14 @@ impl FromRequest<App> for JsonBody {
     async fn from_request(request: Request, app: &App) -> Result<Self, ApiError> {
         check_form(request.headers())?;
         let bytes = read(request, app.limits().body_bytes).await?;
+        let (count, most) = (
+            document::values_and_names(&bytes),
+            app.limits().body_values(),
+        );
+        if count > most {
+            let detail = format!("{count} values and names; the limit is {most} (max_body_values)");
+            return Err(ApiError::new(ErrorCode::BodyTooLarge, detail));
+        }
         let node = document::parse(&bytes).map_err(|problem| ApiError::input(vec![problem]))?;
         Ok(Self { bytes, node })
     }

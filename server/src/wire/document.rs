@@ -2,11 +2,18 @@
 //! members and duplicate keys.
 
 mod numbers;
+mod size;
 
-use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+pub(crate) use size::values_and_names;
+
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use slewplan_solver::problem::{Code, Problem};
 use std::fmt;
+
+/// Most members of an object: far more than any form has, few enough to look for each name in all of
+/// them.
+const MOST_MEMBERS: usize = 1000;
 
 /// One JSON value.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +97,8 @@ fn malformed_hint(text: &[u8], error: &serde_json::Error, what: &str) -> &'stati
         "the number does not fit a 64-bit float; write a finite value, or null where no limit is meant"
     } else if what.contains("recursion limit") {
         "the document is nested too deeply; no scenario or plan needs more than ten levels"
+    } else if what.contains("members") {
+        "no object of a document for this has more than some twenty members"
     } else if what.contains("trailing comma") {
         "remove the comma before the closing bracket"
     } else if ["NaN", "nan", "Inf", "inf"]
@@ -187,6 +196,10 @@ impl<'de> Visitor<'de> for NodeVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Node, A::Error> {
         let mut members = Vec::new();
         while let Some(member) = entries.next_entry()? {
+            if members.len() == MOST_MEMBERS {
+                let message = format!("an object of more than {MOST_MEMBERS} members");
+                return Err(A::Error::custom(message));
+            }
             members.push(member);
         }
         Ok(Node::Object(members))
@@ -216,7 +229,9 @@ mod tests {
 
     #[test]
     fn syntax_errors_name_line_column_and_cause() {
-        let cases: [(&[u8], &str, &str); 6] = [
+        let many = format!("{{{}", r#""a": 0, "#.repeat(MOST_MEMBERS + 1));
+        let cases: [(&[u8], &str, &str); 7] = [
+            (many.as_bytes(), "line 1, column 80", "twenty members"),
             (b"", "line 1, column 0", "empty"),
             (b"{\n \"a\": NaN}", "line 2, column 7", "no NaN"),
             (b"[-Infinity]", "line 1, column 3", "no infinity"),

@@ -13,6 +13,8 @@ use utoipa::ToSchema;
 pub(in crate::http) struct Document {
     /// Largest body, bytes.
     max_body_bytes: usize,
+    /// Most values in a body, those in lists and objects included, and names of members.
+    max_body_values: usize,
     /// Most targets of a scenario.
     max_targets: usize,
     /// Memory that one job may take, bytes.
@@ -39,6 +41,7 @@ pub(in crate::http) struct Document {
 pub(in crate::http) async fn handler(State(app): State<App>) -> Json<Document> {
     Json(Document {
         max_body_bytes: app.limits().body_bytes,
+        max_body_values: app.limits().body_values(),
         max_targets: app.limits().targets,
         job_memory_bytes: app.jobs().memory_limit(),
         queue_limit: app.jobs().queue_limits().all,

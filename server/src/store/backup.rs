@@ -6,7 +6,12 @@ use sqlx::{ConnectOptions, Connection};
 use std::fs::File;
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
 use tempfile::NamedTempFile;
+
+/// How often what has been copied so far is brought to the disk.
+const PACE: Duration = Duration::from_millis(50);
 
 /// Copies a database as it is at one moment. The copy appears complete, tested and on the disk, or
 /// not at all; the service can go on meanwhile.
@@ -31,10 +36,15 @@ pub(crate) async fn backup(database: &Path, copy: &Path) -> Result<(), StoreErro
         .read_only(true)
         .connect()
         .await?;
-    sqlx::query("VACUUM INTO ?")
-        .bind(partial.path().to_string_lossy().as_ref())
-        .execute(&mut source)
-        .await?;
+    let path = partial.path().to_string_lossy();
+    let copying = sqlx::query("VACUUM INTO ?")
+        .bind(path.as_ref())
+        .execute(&mut source);
+    let written = partial.reopen().map_err(failed)?;
+    tokio::select! {
+        copied = copying => copied.map(drop)?,
+        error = bring_to_disk(written) => return Err(failed(error)),
+    }
     source.close().await?;
     let mut copied = options.filename(partial.path()).connect().await?;
     let verdict: String = sqlx::query_scalar("PRAGMA integrity_check")
@@ -49,4 +59,18 @@ pub(crate) async fn backup(database: &Path, copy: &Path) -> Result<(), StoreErro
     File::open(folder)
         .and_then(|folder| folder.sync_all())
         .map_err(failed)
+}
+
+/// Brings a file that is being written to the disk, piece by piece, until that fails. All of it at
+/// the end would hold up every other sync on the disk, those of the service before all.
+async fn bring_to_disk(file: File) -> io::Error {
+    let file = Arc::new(file);
+    loop {
+        tokio::time::sleep(PACE).await;
+        let file = Arc::clone(&file);
+        let synced = tokio::task::spawn_blocking(move || file.sync_data()).await;
+        if let Err(error) = synced.unwrap_or_else(|error| Err(io::Error::other(error))) {
+            return error;
+        }
+    }
 }

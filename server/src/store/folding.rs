@@ -14,9 +14,12 @@ use tokio::sync::Notify;
 const STEP: i64 = 1000;
 /// Pages in the log from which on writers wait, so that it can begin anew.
 const LONG: i64 = 2 * STEP;
-/// Longest wait for readers before the log begins anew, while nobody can write. Who reads longer
-/// makes a copy; then the log grows until that is finished.
-const READERS: Duration = Duration::from_millis(20);
+/// Pages from which on they wait after every write, whoever reads: some 32 MB. So the log grows slowly
+/// while a copy is made, and begins anew right after that.
+const TOO_LONG: i64 = 8 * STEP;
+/// Longest wait for readers before the log begins anew, while nobody can write. Who reads longer makes
+/// a copy.
+const READERS: Duration = Duration::from_millis(50);
 
 /// Folds the log on a connection of its own, beside those who write and read.
 #[derive(Debug)]
@@ -69,15 +72,16 @@ impl Folding {
             // It has begun anew.
             self.folded_at = 0;
         }
-        if pages < self.folded_at + STEP {
+        let too_long = pages >= TOO_LONG;
+        if pages < self.folded_at + STEP && !too_long {
             return Ok(());
         }
         // Most of the work, while others write.
         let log = self.checkpoint("PRAGMA wal_checkpoint(PASSIVE)").await?;
         // As long as others write, there is always something left, and the log never begins anew.
-        // The queue for the writer is fair: who writes more than can be folded waits. Nobody waits
-        // while a copy is made, which keeps more from being folded than was written just now.
-        if log.pages >= LONG && log.pages - log.folded < STEP {
+        // The queue for the writer is fair: who writes more than can be folded waits. At first nobody
+        // waits while a copy is made, which keeps more from being folded than was written just now.
+        if log.pages >= LONG && (log.pages - log.folded < STEP || too_long) {
             let _turn = self.writer.acquire().await?;
             self.checkpoint("PRAGMA wal_checkpoint(RESTART)").await?;
         }

@@ -213,7 +213,7 @@ fn wrong_queries_are_refused_with_pointers() {
             .contains("max_leg_pairs")
     );
     // All pairs of these would not fit into memory.
-    let query = json!({"spacecraft": spacecraft, "attitudes": vec![attitude(1.0, 0.0); 30_000]});
+    let query = json!({"spacecraft": spacecraft, "attitudes": vec![attitude(1.0, 0.0); 20_000]});
     service
         .post("/v1/legs/query", &query)
         .expect_problem(413, "too_many_pairs");

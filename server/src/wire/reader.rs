@@ -7,7 +7,11 @@ use super::document::Node;
 use slewplan_solver::problem::{Code, MOST_KEPT, Problem};
 use std::cell::RefCell;
 
+mod fields;
+mod lists;
 mod spelling;
+
+pub(crate) use fields::Fields;
 
 /// Collects problems while cursors walk a document.
 #[derive(Debug, Default)]
@@ -88,10 +92,7 @@ impl<'a> Cursor<'a> {
             self.wrong_type("an object", "write {\"name\": value, ...}");
             return None;
         };
-        let fields = Fields {
-            members,
-            place: self.clone(),
-        };
+        let fields = Fields::of(members, self.clone());
         fields.report_duplicates();
         Some(fields)
     }
@@ -101,71 +102,7 @@ impl<'a> Cursor<'a> {
         let Node::Object(members) = self.node else {
             return None;
         };
-        Fields {
-            members,
-            place: self.clone(),
-        }
-        .raw(name)
-    }
-
-    /// What is read of every entry of a list.
-    pub(crate) fn each<T>(&self, read: impl Fn(&Cursor<'a>) -> T) -> Option<Vec<T>> {
-        let entries = self.entries()?.iter().enumerate();
-        // One place at a time: all of them would take more memory than what they say.
-        Some(entries.map(|entry| read(&self.place(entry))).collect())
-    }
-
-    /// What is read of every entry of a list; a longer one is not looked into.
-    pub(crate) fn each_of_at_most<T>(
-        &self,
-        most: usize,
-        read: impl Fn(&Cursor<'a>) -> T,
-    ) -> Option<Vec<T>> {
-        let length = self.entries()?.len();
-        if length > most {
-            self.sink
-                .push(Problem::too_long(&self.pointer, length, most));
-            return None;
-        }
-        self.each(read)
-    }
-
-    /// All values of a list or nothing, but never before every entry has been read and its problems
-    /// recorded.
-    pub(crate) fn all<T>(&self, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<Vec<T>> {
-        self.each(read)?.into_iter().collect()
-    }
-
-    /// One entry of a list; `None` when there is none, without a problem.
-    pub(crate) fn entry(&self, index: usize) -> Option<Cursor<'a>> {
-        let Node::List(entries) = self.node else {
-            return None;
-        };
-        Some(self.place((index, entries.get(index)?)))
-    }
-
-    /// Number of entries of a list; `None` for anything else, without a problem.
-    pub(crate) fn length(&self) -> Option<usize> {
-        match self.node {
-            Node::List(entries) => Some(entries.len()),
-            _ => None,
-        }
-    }
-
-    fn entries(&self) -> Option<&'a [Node]> {
-        let Node::List(entries) = self.node else {
-            self.wrong_type("a list", "write [..] with one entry for each");
-            return None;
-        };
-        Some(entries)
-    }
-
-    fn place(&self, (index, node): (usize, &'a Node)) -> Cursor<'a> {
-        Cursor {
-            node,
-            pointer: format!("{}/{index}", self.pointer),
-            sink: self.sink,
-        }
+        Fields::of(members, self.clone()).raw(name)
     }
 
     /// A number.
@@ -229,125 +166,6 @@ impl<'a> Cursor<'a> {
     /// The member `kind` of an object, among choices; other members are looked at later.
     pub(crate) fn kind<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
         self.open_object()?.required("kind")?.choice(choices)
-    }
-
-    /// A list of exactly `N` numbers.
-    pub(crate) fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
-        self.array(Cursor::number)
-    }
-
-    /// A list of exactly `N` numbers, each of which may be `null`.
-    pub(crate) fn nullable_numbers<const N: usize>(&self) -> Option<[Option<f64>; N]> {
-        self.array(|entry| match entry.node {
-            Node::Null => Some(None),
-            _ => entry.number().map(Some),
-        })
-    }
-
-    /// Three rows of three numbers.
-    pub(crate) fn matrix(&self) -> Option<[[f64; 3]; 3]> {
-        self.array(Cursor::numbers::<3>)
-    }
-
-    /// A list of numbers of any length.
-    pub(crate) fn any_numbers(&self) -> Option<Vec<f64>> {
-        self.all(Cursor::number)
-    }
-
-    /// A list of texts of any length.
-    pub(crate) fn texts(&self) -> Option<Vec<String>> {
-        self.all(|entry| entry.text().map(str::to_owned))
-    }
-
-    fn array<T, const N: usize>(&self, read: impl Fn(&Cursor<'a>) -> Option<T>) -> Option<[T; N]> {
-        let length = self.entries()?.len();
-        if length != N {
-            self.report(
-                Code::WrongLength,
-                format!("expected {N} entries, found {length}"),
-                format!("write exactly {N} entries"),
-            );
-            return None;
-        }
-        self.all(read)?.try_into().ok()
-    }
-}
-
-/// The members of an object.
-#[derive(Debug, Clone)]
-pub(crate) struct Fields<'a> {
-    members: &'a [(String, Node)],
-    place: Cursor<'a>,
-}
-
-impl<'a> Fields<'a> {
-    /// A member as written, `null` included; the first one when it is there twice.
-    pub(crate) fn raw(&self, name: &str) -> Option<Cursor<'a>> {
-        let (_, node) = self.members.iter().find(|(key, _)| key == name)?;
-        Some(Cursor {
-            node,
-            pointer: self.pointer_to(name),
-            sink: self.place.sink,
-        })
-    }
-
-    /// A member that may be left out or `null`.
-    pub(crate) fn optional(&self, name: &str) -> Option<Cursor<'a>> {
-        self.raw(name).filter(|cursor| *cursor.node != Node::Null)
-    }
-
-    /// A member that must be there.
-    pub(crate) fn required(&self, name: &str) -> Option<Cursor<'a>> {
-        let found = self.raw(name);
-        if found.is_none() {
-            self.place.sink.push(Problem::new(
-                self.pointer_to(name),
-                Code::MissingField,
-                format!("the required field {name:?} is missing"),
-                format!("add {name:?} to this object"),
-            ));
-        }
-        found
-    }
-
-    fn pointer_to(&self, name: &str) -> String {
-        // RFC 6901: first the escape character itself, then the separator.
-        let escaped = name.replace('~', "~0").replace('/', "~1");
-        format!("{}/{escaped}", self.place.pointer)
-    }
-
-    fn report_unknown(&self, known: &[&str]) {
-        for (name, _) in self.members {
-            if self.place.sink.is_full() {
-                return;
-            }
-            if !known.contains(&name.as_str()) {
-                self.place.sink.push(Problem::new(
-                    self.pointer_to(name),
-                    Code::UnknownField,
-                    format!("{name:?} is not a field of this object"),
-                    spelling::hint(name, known),
-                ));
-            }
-        }
-    }
-
-    fn report_duplicates(&self) {
-        // Sorted, so that an object of a million members costs no million squared.
-        let mut names: Vec<&str> = self.members.iter().map(|(name, _)| name.as_str()).collect();
-        names.sort_unstable();
-        let mut reported = None;
-        for pair in names.windows(2).filter(|pair| pair[0] == pair[1]) {
-            if reported != Some(pair[0]) {
-                reported = Some(pair[0]);
-                self.place.sink.push(Problem::new(
-                    self.pointer_to(pair[0]),
-                    Code::DuplicateField,
-                    format!("the field {:?} is there more than once", pair[0]),
-                    "keep the one that is meant",
-                ));
-            }
-        }
     }
 }
 

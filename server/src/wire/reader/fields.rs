@@ -1,0 +1,88 @@
+//! Reading objects: members by their names, and what is wrong with the names.
+
+use super::{Cursor, spelling};
+use crate::wire::document::Node;
+use slewplan_solver::problem::{Code, Problem};
+
+/// The members of an object.
+#[derive(Debug, Clone)]
+pub(crate) struct Fields<'a> {
+    members: &'a [(String, Node)],
+    place: Cursor<'a>,
+}
+
+impl<'a> Fields<'a> {
+    /// The members of the object at a place.
+    pub(super) fn of(members: &'a [(String, Node)], place: Cursor<'a>) -> Self {
+        Self { members, place }
+    }
+
+    /// A member as written, `null` included; the first one when it is there twice.
+    pub(crate) fn raw(&self, name: &str) -> Option<Cursor<'a>> {
+        let (_, node) = self.members.iter().find(|(key, _)| key == name)?;
+        Some(Cursor {
+            node,
+            pointer: self.pointer_to(name),
+            sink: self.place.sink,
+        })
+    }
+
+    /// A member that may be left out or `null`.
+    pub(crate) fn optional(&self, name: &str) -> Option<Cursor<'a>> {
+        self.raw(name).filter(|cursor| *cursor.node != Node::Null)
+    }
+
+    /// A member that must be there.
+    pub(crate) fn required(&self, name: &str) -> Option<Cursor<'a>> {
+        let found = self.raw(name);
+        if found.is_none() {
+            self.place.sink.push(Problem::new(
+                self.pointer_to(name),
+                Code::MissingField,
+                format!("the required field {name:?} is missing"),
+                format!("add {name:?} to this object"),
+            ));
+        }
+        found
+    }
+
+    fn pointer_to(&self, name: &str) -> String {
+        // RFC 6901: first the escape character itself, then the separator.
+        let escaped = name.replace('~', "~0").replace('/', "~1");
+        format!("{}/{escaped}", self.place.pointer)
+    }
+
+    pub(super) fn report_unknown(&self, known: &[&str]) {
+        for (name, _) in self.members {
+            if self.place.sink.is_full() {
+                return;
+            }
+            if !known.contains(&name.as_str()) {
+                self.place.sink.push(Problem::new(
+                    self.pointer_to(name),
+                    Code::UnknownField,
+                    format!("{name:?} is not a field of this object"),
+                    spelling::hint(name, known),
+                ));
+            }
+        }
+    }
+
+    pub(super) fn report_duplicates(&self) {
+        // Sorted, so that an object of a million members costs no million squared.
+        let mut names: Vec<&str> = self.members.iter().map(|(name, _)| name.as_str()).collect();
+        names.sort_unstable();
+        let mut reported = None;
+        for pair in names.windows(2).filter(|pair| pair[0] == pair[1]) {
+            if reported != Some(pair[0]) {
+                reported = Some(pair[0]);
+                self.place.sink.push(Problem::new(
+                    self.pointer_to(pair[0]),
+                    Code::DuplicateField,
+                    format!("the field {:?} is there more than once", pair[0]),
+                    "keep the one that is meant",
+                ));
+            }
+        }
+    }
+}

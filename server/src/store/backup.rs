@@ -11,7 +11,7 @@ use std::time::Duration;
 use tempfile::NamedTempFile;
 
 /// How often what has been copied so far is brought to the disk.
-const PACE: Duration = Duration::from_millis(50);
+const PACE: Duration = Duration::from_millis(10);
 
 /// Copies a database as it is at one moment. The copy appears complete, tested and on the disk, or
 /// not at all; the service can go on meanwhile.

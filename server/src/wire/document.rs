@@ -2,6 +2,7 @@
 //! members and duplicate keys.
 
 mod numbers;
+mod outside;
 mod size;
 
 pub(crate) use size::values_and_names;

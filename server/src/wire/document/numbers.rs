@@ -3,6 +3,7 @@
 //! The parser of JSON gathers all digits of a number, however many, in a buffer that doubles: a body
 //! of nothing but digits would take three times its size.
 
+use super::outside::outside_texts;
 use slewplan_solver::problem::{Code, Problem};
 
 /// Longest number, bytes: more than the exact decimal form of any 64-bit float has digits.
@@ -15,17 +16,14 @@ const LONGEST: usize = 1100;
 /// One problem with line and column of where the first such number ends.
 pub(super) fn check(text: &[u8]) -> Result<(), Problem> {
     let mut length = 0;
-    let (mut in_text, mut escaped) = (false, false);
-    for (place, byte) in text.iter().enumerate() {
-        if in_text {
-            (in_text, escaped) = (escaped || *byte != b'"', !escaped && *byte == b'\\');
-        } else if matches!(byte, b'0'..=b'9' | b'.' | b'e' | b'E' | b'+' | b'-') {
+    for (place, byte) in outside_texts(text) {
+        if matches!(byte, b'0'..=b'9' | b'.' | b'e' | b'E' | b'+' | b'-') {
             length += 1;
             if length > LONGEST {
                 return Err(too_long(&text[..=place]));
             }
         } else {
-            (in_text, length) = (*byte == b'"', 0);
+            length = 0;
         }
     }
     Ok(())

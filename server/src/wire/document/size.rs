@@ -4,24 +4,20 @@
 //! zeros would take far more than its own size, and a member of an object takes almost twice as much
 //! again. So they are counted before there is a tree of them.
 
+use super::outside::outside_texts;
+
 /// Number of values in a document, those in lists and objects included, and of names of members.
 pub(crate) fn values_and_names(text: &[u8]) -> usize {
     // The document itself, then what follows a comma or a colon, and the first of what a bracket opens.
     let mut values = 1;
-    let (mut in_text, mut escaped) = (false, false);
     let mut opened = false;
-    for byte in text {
-        if in_text {
-            (in_text, escaped) = (escaped || *byte != b'"', !escaped && *byte == b'\\');
-            continue;
-        }
+    for (_, byte) in outside_texts(text) {
         match byte {
             b' ' | b'\t' | b'\r' | b'\n' => continue,
             b',' | b':' => values += 1,
             b']' | b'}' => {}
             _ => values += usize::from(opened),
         }
-        in_text = *byte == b'"';
         opened = matches!(byte, b'[' | b'{');
     }
     values

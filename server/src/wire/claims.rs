@@ -29,14 +29,14 @@ fn decode(root: &Cursor<'_>, scenario: &Scenario) -> Option<PlanClaims> {
     let fields = root.open_object()?;
     let legs = fields
         .required("legs")
-        .map(|list| list.all(|leg| read_leg(leg, scenario)));
+        .and_then(|list| list.all(|leg| read_leg(leg, scenario)));
     let proved = number(&fields, "certified_lower_bound_s");
     let kind = fields.optional("lower_bound_kind");
     let kind = kind.and_then(|kind| kind.text());
     let bound = number(&fields, "lower_bound_s")
         .filter(|_| kind == Some(LowerBoundKind::Certified.as_str()));
     Some(PlanClaims {
-        legs: legs??,
+        legs: legs?,
         // Where both are claimed to be proved, so is the larger.
         lower_bound_s: proved.into_iter().chain(bound).reduce(f64::max),
         total_time_s: number(&fields, "total_time_s"),

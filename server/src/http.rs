@@ -75,7 +75,7 @@ pub(crate) struct Limits {
 }
 
 /// Bytes of the largest body for each of its values and names. Plans and files of legs have some 15 for
-/// each, so that half of the largest body can be full of them; in memory they take about 32 bytes.
+/// each, so that half of the largest body can be full of them; in memory they take about 24 bytes.
 const BYTES_PER_VALUE: usize = 32;
 /// Values and names that every body may have, however small the largest body is.
 const LEAST_VALUES: usize = 1 << 16;

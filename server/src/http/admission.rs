@@ -18,11 +18,8 @@ pub(super) fn check_targets(app: &App, count: usize) -> Result<(), ApiError> {
 
 /// The same before the scenario is read in full, which takes long with many targets.
 pub(super) fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
-    let Node::Object(members) = scenario else {
-        return Ok(());
-    };
-    match members.iter().find(|(name, _)| name == "targets") {
-        Some((_, Node::List(targets))) => check_targets(app, targets.len()),
+    match scenario.member("targets") {
+        Some(Node::List(targets)) => check_targets(app, targets.len()),
         _ => Ok(()),
     }
 }

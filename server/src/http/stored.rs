@@ -14,7 +14,7 @@ use slewplan_solver::problem::{Code, Problem};
 pub(super) async fn write_out(
     app: &App,
     caller: &Caller,
-    node: Node,
+    mut node: Node,
     place: &str,
 ) -> Result<(Node, bool), ApiError> {
     let Some((name, version)) = reference(&node, place)? else {
@@ -36,7 +36,10 @@ pub(super) async fn write_out(
     // Only JSON was stored: that it is none any more is no fault of the request.
     let damaged = |_| StoreError::Damaged { what: "spacecraft" };
     let stored = document::parse(row.document.as_bytes()).map_err(damaged)?;
-    Ok((replaced(node, stored), true))
+    if let Some(spacecraft) = node.member_mut("spacecraft") {
+        *spacecraft = stored;
+    }
+    Ok((node, true))
 }
 
 fn reference(node: &Node, place: &str) -> Result<Option<(String, Option<i64>)>, ApiError> {
@@ -59,14 +62,4 @@ fn reference(node: &Node, place: &str) -> Result<Option<(String, Option<i64>)>, 
     } else {
         Err(ApiError::input(problems))
     }
-}
-
-fn replaced(node: Node, stored: Node) -> Node {
-    let Node::Object(mut members) = node else {
-        return node;
-    };
-    if let Some((_, spacecraft)) = members.iter_mut().find(|(name, _)| name == "spacecraft") {
-        *spacecraft = stored;
-    }
-    Node::Object(members)
 }

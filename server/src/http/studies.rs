@@ -16,16 +16,13 @@ use slewplan_solver::progress::Silent;
 use slewplan_solver::stop::StopSignal;
 
 /// The study with the spacecraft of its scenario written out, if it is not too large.
-async fn with_scenario(app: &App, caller: &Caller, node: Node) -> Result<Node, ApiError> {
-    let Node::Object(mut members) = node else {
-        return Ok(node);
-    };
-    if let Some((_, scenario)) = members.iter_mut().find(|(name, _)| name == "scenario") {
+async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Node, ApiError> {
+    if let Some(scenario) = node.member_mut("scenario") {
         admission::check_size(app, scenario)?;
-        let given = std::mem::replace(scenario, Node::Null);
+        let given = std::mem::take(scenario);
         (*scenario, _) = stored::write_out(app, caller, given, "/scenario").await?;
     }
-    Ok(Node::Object(members))
+    Ok(node)
 }
 
 /// Planning for a study, which tells nobody how far it is and keeps no legs.

@@ -36,28 +36,18 @@ pub(super) async fn handler(
     Ok(respond::json(json))
 }
 
-fn parts(node: Node) -> Result<(Node, Node), ApiError> {
+fn parts(mut node: Node) -> Result<(Node, Node), ApiError> {
     let sink = Sink::default();
     if let Some(fields) = Cursor::root(&node, &sink).object(&["scenario", "plan"]) {
         fields.required("scenario");
         fields.required("plan");
     }
     let problems = sink.into_problems();
-    let Node::Object(members) = node else {
-        return Err(ApiError::input(problems));
-    };
     if !problems.is_empty() {
         return Err(ApiError::input(problems));
     }
-    let (mut scenario, mut plan) = (Node::Null, Node::Null);
-    for (name, value) in members {
-        *(if name == "scenario" {
-            &mut scenario
-        } else {
-            &mut plan
-        }) = value;
-    }
-    Ok((scenario, plan))
+    let mut part = |name| node.member_mut(name).map_or(Node::Null, std::mem::take);
+    Ok((part("scenario"), part("plan")))
 }
 
 fn verify(scenario: &Node, plan: &Node) -> Result<Vec<u8>, ApiError> {

@@ -16,10 +16,14 @@ use std::fmt;
 /// them.
 const MOST_MEMBERS: usize = 1000;
 
-/// One JSON value.
-#[derive(Debug, Clone, PartialEq)]
+/// A name of an object and its value.
+pub(crate) type Member = (Box<str>, Node);
+
+/// One JSON value, in no more memory than it needs once it is read.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) enum Node {
     /// `null`.
+    #[default]
     Null,
     /// `true` or `false`.
     Bool(bool),
@@ -28,14 +32,32 @@ pub(crate) enum Node {
     /// Any other number.
     Number(f64),
     /// A text.
-    Text(String),
+    Text(Box<str>),
     /// A list.
-    List(Vec<Node>),
+    List(Box<[Node]>),
     /// An object, members in the order of the document, duplicates included.
-    Object(Vec<(String, Node)>),
+    Object(Box<[Member]>),
 }
 
 impl Node {
+    /// A member of an object, the first one when it is there twice; `None` for anything else.
+    pub(crate) fn member(&self, name: &str) -> Option<&Self> {
+        let Self::Object(members) = self else {
+            return None;
+        };
+        let (_, value) = members.iter().find(|(key, _)| **key == *name)?;
+        Some(value)
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn member_mut(&mut self, name: &str) -> Option<&mut Self> {
+        let Self::Object(members) = self else {
+            return None;
+        };
+        let (_, value) = members.iter_mut().find(|(key, _)| **key == *name)?;
+        Some(value)
+    }
+
     /// What the value is, for messages: `the text "NaN"`.
     pub(crate) fn description(&self) -> String {
         match self {
@@ -183,7 +205,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
     }
 
     fn visit_string<E>(self, value: String) -> Result<Node, E> {
-        Ok(Node::Text(value))
+        Ok(Node::Text(value.into()))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Node, A::Error> {
@@ -191,7 +213,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
         while let Some(item) = items.next_element()? {
             list.push(item);
         }
-        Ok(Node::List(list))
+        Ok(Node::List(list.into()))
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Node, A::Error> {
@@ -203,7 +225,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
             }
             members.push(member);
         }
-        Ok(Node::Object(members))
+        Ok(Node::Object(members.into()))
     }
 }
 
@@ -214,12 +236,12 @@ mod tests {
     #[test]
     fn duplicate_keys_and_large_integers_survive() {
         let node = parse(br#"{"a": 1, "a": 18446744073709551615, "b": -2}"#).unwrap();
-        let expected = vec![
-            ("a".to_owned(), Node::Integer(1)),
-            ("a".to_owned(), Node::Integer(u64::MAX)),
-            ("b".to_owned(), Node::Number(-2.0)),
+        let expected = [
+            ("a".into(), Node::Integer(1)),
+            ("a".into(), Node::Integer(u64::MAX)),
+            ("b".into(), Node::Number(-2.0)),
         ];
-        assert_eq!(node, Node::Object(expected));
+        assert_eq!(node, Node::Object(expected.into()));
     }
 
     #[test]

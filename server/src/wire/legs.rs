@@ -1,7 +1,7 @@
 //! The table of leg times as JSON: what it is a table of, its rows and, where they are asked for,
 //! the motions behind them.
 
-use super::document::Node;
+use super::document::{Member, Node};
 use super::number::Number;
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
@@ -61,10 +61,10 @@ fn canonical(node: &Node) -> Node {
         Node::Number(value) => Node::Number(value + 0.0),
         Node::List(items) => Node::List(items.iter().map(canonical).collect()),
         Node::Object(members) => {
-            let member = |(name, value): &(String, Node)| (name.clone(), canonical(value));
+            let member = |(name, value): &Member| (name.clone(), canonical(value));
             let mut members: Vec<_> = members.iter().map(member).collect();
             members.sort_by(|one, other| one.0.cmp(&other.0));
-            Node::Object(members)
+            Node::Object(members.into())
         }
         Node::Null | Node::Bool(_) | Node::Text(_) => node.clone(),
     }

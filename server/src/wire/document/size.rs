@@ -1,8 +1,8 @@
 //! How large the tree of a document becomes.
 //!
-//! A value takes sixteen times the memory of its shortest text, `0,`, so that a body of nothing but
-//! zeros would take far more than its own size, and a member of an object takes almost twice as much
-//! again. So they are counted before there is a tree of them.
+//! A value takes twelve times the memory of its shortest text, `0,`, and twice that while a list of
+//! them grows, so that a body of nothing but zeros would take far more than its own size; the name of
+//! a member takes almost as much as a value. So they are counted before there is a tree of them.
 
 use super::outside::outside_texts;
 

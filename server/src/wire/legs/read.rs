@@ -49,11 +49,8 @@ pub(crate) fn read(node: &Node) -> Result<LegTable, Vec<Problem>> {
 
 /// The scenario as it stands in a table; `null` is none.
 fn scenario_of(node: &Node) -> Option<Node> {
-    let Node::Object(members) = node else {
-        return None;
-    };
-    let (_, scenario) = members.iter().find(|(name, _)| name == "scenario")?;
-    (*scenario != Node::Null).then(|| scenario.clone())
+    let scenario = node.member("scenario");
+    scenario.filter(|node| **node != Node::Null).cloned()
 }
 
 /// All fields but the scenario, which is looked into only where it matters.

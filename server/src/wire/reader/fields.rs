@@ -1,25 +1,25 @@
 //! Reading objects: members by their names, and what is wrong with the names.
 
 use super::{Cursor, spelling};
-use crate::wire::document::Node;
+use crate::wire::document::{Member, Node};
 use slewplan_solver::problem::{Code, Problem};
 
 /// The members of an object.
 #[derive(Debug, Clone)]
 pub(crate) struct Fields<'a> {
-    members: &'a [(String, Node)],
+    members: &'a [Member],
     place: Cursor<'a>,
 }
 
 impl<'a> Fields<'a> {
     /// The members of the object at a place.
-    pub(super) fn of(members: &'a [(String, Node)], place: Cursor<'a>) -> Self {
+    pub(super) fn of(members: &'a [Member], place: Cursor<'a>) -> Self {
         Self { members, place }
     }
 
     /// A member as written, `null` included; the first one when it is there twice.
     pub(crate) fn raw(&self, name: &str) -> Option<Cursor<'a>> {
-        let (_, node) = self.members.iter().find(|(key, _)| key == name)?;
+        let (_, node) = self.members.iter().find(|(key, _)| **key == *name)?;
         Some(Cursor {
             node,
             pointer: self.pointer_to(name),
@@ -57,7 +57,7 @@ impl<'a> Fields<'a> {
             if self.place.sink.is_full() {
                 return;
             }
-            if !known.contains(&name.as_str()) {
+            if !known.contains(&&**name) {
                 self.place.sink.push(Problem::new(
                     self.pointer_to(name),
                     Code::UnknownField,
@@ -70,7 +70,7 @@ impl<'a> Fields<'a> {
 
     pub(super) fn report_duplicates(&self) {
         // Sorted, so that an object of a million members costs no million squared.
-        let mut names: Vec<&str> = self.members.iter().map(|(name, _)| name.as_str()).collect();
+        let mut names: Vec<&str> = self.members.iter().map(|(name, _)| &**name).collect();
         names.sort_unstable();
         let mut reported = None;
         for pair in names.windows(2).filter(|pair| pair[0] == pair[1]) {

@@ -44,12 +44,12 @@ pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
     let mut noted = |place: &str, found: Vec<Problem>| {
         problems.extend(Problem::all_under(place, found));
     };
-    let valid = member(node, "scenario").and_then(|node| {
+    let valid = node.member("scenario").and_then(|node| {
         scenario::read_node(node, None)
             .map_err(|found| noted("/scenario", found))
             .ok()
     });
-    let plan = member(node, "plan").filter(|node| **node != Node::Null);
+    let plan = node.member("plan").filter(|node| **node != Node::Null);
     let plan = plan.zip(valid.as_ref()).and_then(|(node, valid)| {
         flight::read_node(node, &valid.scenario)
             .map_err(|found| noted("/plan", found))
@@ -74,15 +74,6 @@ pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
         keep_every: shape.keep_every,
         warnings: valid.warnings,
     })
-}
-
-/// A member of a document; the first one when it is there twice.
-fn member<'a>(node: &'a Node, name: &str) -> Option<&'a Node> {
-    let Node::Object(members) = node else {
-        return None;
-    };
-    let found = members.iter().find(|(key, _)| key == name);
-    found.map(|(_, node)| node)
 }
 
 fn decode(cursor: &Cursor<'_>) -> Option<Shape> {

@@ -14,9 +14,14 @@ use tokio::sync::Notify;
 const STEP: i64 = 1000;
 /// Pages in the log from which on writers wait, so that it can begin anew.
 const LONG: i64 = 2 * STEP;
-/// Pages from which on they wait after every write, whoever reads: some 32 MB. So the log grows slowly
-/// while a copy is made, and begins anew right after that.
+/// Pages from which on they wait after every write while somebody makes a copy, which keeps the log
+/// from beginning anew: some 32 MB.
 const TOO_LONG: i64 = 8 * STEP;
+/// How long they wait then, twice as long with each step: hardly at first, so that most copies are
+/// made before anybody notices, and half a second where the log has 64 MB.
+const PAUSE: Duration = Duration::from_millis(2);
+/// Steps after which the wait is long enough.
+const MOST_STEPS: i64 = 8;
 /// Longest wait for readers before the log begins anew, while nobody can write. Who reads longer makes
 /// a copy.
 const READERS: Duration = Duration::from_millis(50);
@@ -72,16 +77,19 @@ impl Folding {
             // It has begun anew.
             self.folded_at = 0;
         }
-        let too_long = pages >= TOO_LONG;
-        if pages < self.folded_at + STEP && !too_long {
+        if pages < self.folded_at + STEP && pages < TOO_LONG {
             return Ok(());
         }
         // Most of the work, while others write.
         let log = self.checkpoint("PRAGMA wal_checkpoint(PASSIVE)").await?;
         // As long as others write, there is always something left, and the log never begins anew.
-        // The queue for the writer is fair: who writes more than can be folded waits. At first nobody
-        // waits while a copy is made, which keeps more from being folded than was written just now.
-        if log.pages >= LONG && (log.pages - log.folded < STEP || too_long) {
+        // The queue for the writer is fair: who writes more than can be folded waits. A copy keeps more
+        // from being folded than was written just now.
+        let copied = log.pages - log.folded >= STEP;
+        if copied && log.pages >= TOO_LONG {
+            let _turn = self.writer.acquire().await?;
+            tokio::time::sleep(pause(log.pages)).await;
+        } else if !copied && log.pages >= LONG {
             let _turn = self.writer.acquire().await?;
             self.checkpoint("PRAGMA wal_checkpoint(RESTART)").await?;
         }
@@ -97,9 +105,29 @@ impl Folding {
     }
 }
 
+/// How long writers wait while a copy is made and the log has so many pages.
+fn pause(pages: i64) -> Duration {
+    let steps = ((pages - TOO_LONG) / STEP).clamp(0, MOST_STEPS);
+    PAUSE * (1 << steps)
+}
+
 /// How long the log is, pages.
 struct Log {
     pages: i64,
     /// Those of them that are in the database.
     folded: i64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longer_the_log_the_longer_the_wait() {
+        let megabytes = |count: i64| count * (1 << 20) / 4096;
+        assert_eq!(pause(megabytes(32)), PAUSE);
+        assert!(pause(megabytes(40)) <= Duration::from_millis(10));
+        assert!(pause(megabytes(64)) >= Duration::from_millis(500));
+        assert_eq!(pause(megabytes(6400)), pause(megabytes(65)));
+    }
 }

@@ -3,7 +3,7 @@
 use super::Jobs;
 use crate::clock::now_us;
 use crate::leg_cache::Unwritten;
-use crate::store::{JobRow, NewIncumbent, ProgressRow};
+use crate::store::{JobRow, NewIncumbent, PackedPlan, ProgressRow};
 use crate::wire;
 use slewplan_solver::plan::Plan;
 use slewplan_solver::problem::Problem;
@@ -54,7 +54,7 @@ impl Observer for Watch<'_> {
 
     fn incumbent(&self, plan: &Plan) {
         let document = match serde_json::to_vec(&wire::plan::plan(plan, self.doubts)) {
-            Ok(document) => document,
+            Ok(document) => PackedPlan::of(&document),
             Err(error) => return tracing::error!(%error, "the best plan so far cannot be written"),
         };
         let incumbent = Arc::new(NewIncumbent {

@@ -2,7 +2,7 @@
 
 use super::memory::MemoryGuard;
 use super::progress::Reporter;
-use crate::store::{EndCode, Ended, JobState};
+use crate::store::{EndCode, Ended, JobState, PackedPlan};
 use crate::wire;
 use crate::wire::plan::Interruption;
 use slewplan_solver::legs::{LegStore, SegmentStore};
@@ -83,7 +83,7 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
     let document = wire::plan::document(&outcome, slice::from_ref(&stopped), &warnings);
     match serde_json::to_vec(&document) {
         Ok(document) => Ended {
-            document: Some(document),
+            document: Some(PackedPlan::of(&document)),
             ..described(&outcome, &stopped)
         },
         Err(error) => without_plan(

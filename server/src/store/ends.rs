@@ -1,6 +1,6 @@
 //! How jobs end.
 
-use super::JobState;
+use super::{JobState, PackedPlan};
 use slewplan_solver::problem::Code;
 
 /// How a job ended.
@@ -8,8 +8,8 @@ use slewplan_solver::problem::Code;
 pub(crate) struct Ended {
     /// One of the final states.
     pub(crate) state: JobState,
-    /// The answer as JSON, when there is one: a plan, or why there is none.
-    pub(crate) document: Option<Vec<u8>>,
+    /// The answer, when there is one: a plan, or why there is none.
+    pub(crate) document: Option<PackedPlan>,
     /// Duration of the plan, s; `None` without one.
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.

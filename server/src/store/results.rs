@@ -5,9 +5,9 @@
 //! that tells of it, at most as often as that, and never by the solver's threads. It is a table of
 //! its own, so that a plan of an attempt that was cut off cannot pass for the end of a job.
 
-use super::{Ended, JobState, Store, StoreError};
+use super::{Ended, JobState, PackedPlan, Store, StoreError};
 use bytes::Bytes;
-use sqlx::{Row, SqliteConnection};
+use sqlx::{FromRow, Row, SqliteConnection};
 
 /// A plan that can be read.
 #[derive(Debug, Clone)]
@@ -23,8 +23,8 @@ pub(crate) struct ResultRow {
 /// The plan of a better order, found while a job goes on.
 #[derive(Debug, Clone)]
 pub(crate) struct NewIncumbent {
-    /// The plan as JSON.
-    pub(crate) document: Vec<u8>,
+    /// The plan.
+    pub(crate) document: PackedPlan,
     /// Its duration, s.
     pub(crate) total_time_s: f64,
     /// Lower bound on the duration when it was found, s.
@@ -45,17 +45,18 @@ pub(super) async fn keep(
     incumbent: &NewIncumbent,
 ) -> Result<(), StoreError> {
     sqlx::query(
-        "INSERT INTO incumbents (job, total_time_s, lower_bound_s, document, digest) \
-         VALUES (?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
+        "INSERT INTO incumbents (job, total_time_s, lower_bound_s, document, packed, digest) \
+         VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
          total_time_s = excluded.total_time_s, lower_bound_s = excluded.lower_bound_s, \
-         document = excluded.document, digest = excluded.digest \
+         document = excluded.document, packed = excluded.packed, digest = excluded.digest \
          WHERE excluded.total_time_s < total_time_s",
     )
     .bind(job)
     .bind(incumbent.total_time_s)
     .bind(incumbent.lower_bound_s)
-    .bind(&incumbent.document)
-    .bind(crate::digest::hex(&incumbent.document))
+    .bind(&incumbent.document.bytes)
+    .bind(incumbent.document.packed)
+    .bind(&incumbent.document.digest)
     .execute(connection)
     .await?;
     Ok(())
@@ -67,19 +68,22 @@ pub(super) async fn better(
     job: i64,
     ended: &Ended,
 ) -> Result<Option<Ended>, StoreError> {
-    let kept: Option<(Vec<u8>, f64, f64)> = sqlx::query_as(
-        "SELECT document, total_time_s, lower_bound_s FROM incumbents \
+    let kept = sqlx::query(
+        "SELECT document, packed, digest, total_time_s, lower_bound_s FROM incumbents \
          WHERE job = ?1 AND (?2 IS NULL OR total_time_s < ?2)",
     )
     .bind(job)
     .bind(ended.incumbent_s)
     .fetch_optional(connection)
     .await?;
-    Ok(kept.map(|(document, total_time_s, lower_bound_s)| Ended {
+    let Some(row) = kept else {
+        return Ok(None);
+    };
+    Ok(Some(Ended {
         state: JobState::Stopped,
-        document: Some(document),
-        incumbent_s: Some(total_time_s),
-        lower_bound_s: Some(lower_bound_s),
+        document: Some(PackedPlan::from_row(&row)?),
+        incumbent_s: row.try_get("total_time_s")?,
+        lower_bound_s: row.try_get("lower_bound_s")?,
         detail: None,
         code: None,
         early: true,
@@ -98,12 +102,13 @@ pub(super) async fn conclude(
     }
     if let Some(document) = &ended.document {
         sqlx::query(
-            "INSERT INTO results (job, document, digest) SELECT ?1, ?2, ?3 \
+            "INSERT INTO results (job, document, packed, digest) SELECT ?1, ?2, ?3, ?4 \
              WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = ?1)",
         )
         .bind(job)
-        .bind(document)
-        .bind(crate::digest::hex(document))
+        .bind(&document.bytes)
+        .bind(document.packed)
+        .bind(&document.digest)
         .execute(connection)
         .await?;
     }
@@ -168,7 +173,8 @@ impl Store {
         // One statement, so that state and plan are of one moment.
         let row = sqlx::query(concat!(
             "SELECT state, coalesce(r.document, i.document) AS document, \
-             coalesce(r.digest, i.digest) AS digest, r.job IS NOT NULL AS is_final",
+             coalesce(r.packed, i.packed) AS packed, coalesce(r.digest, i.digest) AS digest, \
+             r.job IS NOT NULL AS is_final",
             results_of_job!()
         ))
         .bind(id)
@@ -181,11 +187,7 @@ impl Store {
         let Some(digest) = row.try_get::<Option<String>, _>("digest")? else {
             return Ok(Some((state, None)));
         };
-        let document: Vec<u8> = row.try_get("document")?;
-        if crate::digest::hex(&document) != digest {
-            return Err(StoreError::Damaged { what: "plan" });
-        }
-        let document = Bytes::from(document);
+        let document = Bytes::from(PackedPlan::from_row(&row)?.unpacked()?);
         self.recent.keep(&digest, &document);
         let plan = ResultRow {
             document,

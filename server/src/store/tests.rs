@@ -8,15 +8,19 @@ mod queue;
 mod races;
 
 use super::{
-    Claim, Ended, JobRow, JobState, NewIncumbent, ProgressRow, QueueLimits, ResultRow, SegmentRow,
-    Store, StoreError, Submission, Submitted,
+    Claim, Ended, JobRow, JobState, NewIncumbent, PackedPlan, ProgressRow, QueueLimits, ResultRow,
+    SegmentRow, Store, StoreError, Submission, Submitted,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
 
+fn json(total_time_s: f64) -> String {
+    format!("{{\"total_time_s\":{total_time_s}}}")
+}
+
 fn plan(total_time_s: f64) -> NewIncumbent {
     NewIncumbent {
-        document: format!("{{\"total_time_s\":{total_time_s}}}").into(),
+        document: PackedPlan::of(json(total_time_s).as_bytes()),
         total_time_s,
         lower_bound_s: 10.0,
     }
@@ -106,7 +110,7 @@ fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
         let (state, kept) = result(&store).await;
         let kept = kept.expect("a plan");
         assert_eq!((state, kept.is_final), (JobState::Running, false));
-        assert_eq!(kept.document, plan(30.0).document);
+        assert_eq!(kept.document, json(30.0));
     });
 }
 
@@ -125,14 +129,14 @@ fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
         let (state, kept) = result(&store).await;
         let kept = kept.expect("a plan");
         assert_eq!((state, kept.is_final), (JobState::Running, false));
-        assert_eq!(kept.document, plan(20.0).document);
+        assert_eq!(kept.document, json(20.0));
         // Stopped before it had any plan of its own.
         let end = ended(JobState::Failed, None);
         assert!(store.finish(&second, &end, 6).await.expect("written"));
         let (state, last) = result(&store).await;
         let last = last.expect("a plan");
         assert_eq!((state, last.is_final), (JobState::Stopped, true));
-        assert_eq!(last.document, plan(20.0).document);
+        assert_eq!(last.document, json(20.0));
     });
 }
 

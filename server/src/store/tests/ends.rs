@@ -1,17 +1,19 @@
 //! What the end of a job leaves: plans, bounds and codes.
 
-use super::{ID, claim, ended, improve, on_a_store, plan, result, submitted};
-use crate::store::{EndCode, Ended, JobRow, JobState, ProgressRow, Store};
+use super::{ID, claim, ended, improve, json, on_a_store, plan, result, submitted};
+use crate::store::{EndCode, Ended, JobRow, JobState, PackedPlan, ProgressRow, Store};
 
 async fn job(store: &Store) -> JobRow {
     let found = store.job(ID).await.expect("read");
     found.expect("the job is there")
 }
 
+const REASONS: &str = r#"{"status":"failed"}"#;
+
 /// An end without a plan, with the reasons for that.
 fn failed() -> Ended {
     Ended {
-        document: Some(b"{\"status\":\"failed\"}".into()),
+        document: Some(PackedPlan::of(REASONS.as_bytes())),
         detail: Some("why".into()),
         code: Some(EndCode::Internal),
         early: false,
@@ -64,7 +66,7 @@ fn without_a_plan_the_reasons_are_the_result() {
         let (state, reasons) = result(&store).await;
         let reasons = reasons.expect("reasons");
         assert_eq!((state, reasons.is_final), (JobState::Failed, true));
-        assert_eq!(reasons.document, failed().document.expect("reasons"));
+        assert_eq!(reasons.document, REASONS);
     });
 }
 
@@ -124,7 +126,7 @@ fn a_job_that_is_given_up_keeps_its_plan_and_says_why() {
         }
         let (state, kept) = result(&store).await;
         assert_eq!(state, JobState::Dead);
-        assert_eq!(kept.expect("a plan").document, plan(20.0).document);
+        assert_eq!(kept.expect("a plan").document, json(20.0));
         let code = job(&store).await.code;
         assert_eq!(code.as_deref(), Some("process_died"));
         let events = store.events_after(1, 0).await.expect("read");

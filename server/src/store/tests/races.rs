@@ -2,7 +2,7 @@
 //!
 //! `SLEWPLAN_RACES` says how many races there are.
 
-use super::{ID, claim, ended, plan, result, submitted};
+use super::{ID, claim, ended, json, plan, result, submitted};
 use crate::store::{JobState, Store};
 use std::time::Duration;
 
@@ -71,7 +71,7 @@ fn a_job_that_two_workers_end_has_one_end() {
             };
             assert_eq!(
                 (state, kept.document),
-                (expected.0, plan(expected.1).document.into())
+                (expected.0, json(expected.1).into())
             );
             assert_eq!(ends_told(&rescuer).await, 1);
             assert!(rescuer.delete(ID).await.expect("deleted"));

@@ -1,0 +1,103 @@
+//! Plans as they are kept: compressed, beside the hash of what they say.
+//!
+//! The JSON of a plan is mostly digits, and compressed it takes less than half of its size. So the
+//! log grows slower while a copy is made, and the copy is made sooner. Plans are packed by those who
+//! write them, before a transaction keeps others from writing.
+
+use super::StoreError;
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+use sqlx::FromRow;
+use std::io::{Read, Write};
+
+/// A plan, or why there is none, ready to be stored.
+#[derive(Debug, Clone, PartialEq, FromRow)]
+pub(crate) struct PackedPlan {
+    /// The JSON, compressed or as it is.
+    #[sqlx(rename = "document")]
+    pub(super) bytes: Vec<u8>,
+    /// Whether it is compressed. Plans of older versions are not.
+    pub(super) packed: bool,
+    /// SHA-256 of the JSON, hex.
+    pub(super) digest: String,
+}
+
+impl PackedPlan {
+    /// Packs the JSON of a plan.
+    pub(crate) fn of(json: &[u8]) -> Self {
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
+        let written = encoder.write_all(json).and_then(|()| encoder.finish());
+        Self {
+            bytes: written.expect("writing to memory cannot fail"),
+            packed: true,
+            digest: crate::digest::hex(json),
+        }
+    }
+
+    /// The JSON again.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError::Damaged`] when it is not what was stored.
+    pub(super) fn unpacked(self) -> Result<Vec<u8>, StoreError> {
+        let json = if self.packed {
+            inflated(&self.bytes).ok()
+        } else {
+            Some(self.bytes)
+        };
+        json.filter(|json| crate::digest::hex(json) == self.digest)
+            .ok_or(StoreError::Damaged { what: "plan" })
+    }
+}
+
+fn inflated(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut json = Vec::new();
+    ZlibDecoder::new(bytes).read_to_end(&mut json)?;
+    Ok(json)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const JSON: &str = r#"{"duration_s": 18.413264448308386}"#;
+
+    #[test]
+    fn what_is_packed_is_the_same_again() {
+        for text in [String::new(), JSON.into(), JSON.repeat(10_000)] {
+            let packed = PackedPlan::of(text.as_bytes());
+            assert_eq!(packed.unpacked().expect("intact"), text.as_bytes());
+        }
+        assert!(PackedPlan::of(JSON.repeat(100).as_bytes()).bytes.len() < 10 * JSON.len());
+    }
+
+    #[test]
+    fn plans_of_older_versions_are_read() {
+        let old = PackedPlan {
+            bytes: JSON.into(),
+            packed: false,
+            digest: crate::digest::hex(JSON.as_bytes()),
+        };
+        assert_eq!(old.unpacked().expect("intact"), JSON.as_bytes());
+    }
+
+    #[test]
+    fn no_damage_goes_unnoticed() {
+        let sound = PackedPlan::of(JSON.as_bytes());
+        for (place, bit) in (0..sound.bytes.len()).flat_map(|place| (0..8).map(move |b| (place, b)))
+        {
+            let mut damaged = sound.clone();
+            damaged.bytes[place] ^= 1 << bit;
+            // Some bits mean nothing: what comes of it is the same, or not served.
+            if let Ok(json) = damaged.unpacked() {
+                assert_eq!(json, JSON.as_bytes());
+            }
+        }
+        let short = PackedPlan {
+            bytes: sound.bytes[..sound.bytes.len() / 2].into(),
+            ..sound
+        };
+        short.unpacked().expect_err("half of it");
+    }
+}

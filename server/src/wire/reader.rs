@@ -99,10 +99,17 @@ impl<'a> Cursor<'a> {
 
     /// A member of an object; `None` for anything else, without a problem.
     pub(crate) fn member(&self, name: &str) -> Option<Cursor<'a>> {
-        let Node::Object(members) = self.node else {
-            return None;
-        };
-        Fields::of(members, self.clone()).raw(name)
+        Some(Cursor {
+            node: self.node.member(name)?,
+            pointer: self.pointer_to(name),
+            sink: self.sink,
+        })
+    }
+
+    fn pointer_to(&self, name: &str) -> String {
+        // RFC 6901: first the escape character itself, then the separator.
+        let escaped = name.replace('~', "~0").replace('/', "~1");
+        format!("{}/{escaped}", self.pointer)
     }
 
     /// A number.

@@ -19,12 +19,7 @@ impl<'a> Fields<'a> {
 
     /// A member as written, `null` included; the first one when it is there twice.
     pub(crate) fn raw(&self, name: &str) -> Option<Cursor<'a>> {
-        let (_, node) = self.members.iter().find(|(key, _)| **key == *name)?;
-        Some(Cursor {
-            node,
-            pointer: self.pointer_to(name),
-            sink: self.place.sink,
-        })
+        self.place.member(name)
     }
 
     /// A member that may be left out or `null`.
@@ -37,19 +32,13 @@ impl<'a> Fields<'a> {
         let found = self.raw(name);
         if found.is_none() {
             self.place.sink.push(Problem::new(
-                self.pointer_to(name),
+                self.place.pointer_to(name),
                 Code::MissingField,
                 format!("the required field {name:?} is missing"),
                 format!("add {name:?} to this object"),
             ));
         }
         found
-    }
-
-    fn pointer_to(&self, name: &str) -> String {
-        // RFC 6901: first the escape character itself, then the separator.
-        let escaped = name.replace('~', "~0").replace('/', "~1");
-        format!("{}/{escaped}", self.place.pointer)
     }
 
     pub(super) fn report_unknown(&self, known: &[&str]) {
@@ -59,7 +48,7 @@ impl<'a> Fields<'a> {
             }
             if !known.contains(&&**name) {
                 self.place.sink.push(Problem::new(
-                    self.pointer_to(name),
+                    self.place.pointer_to(name),
                     Code::UnknownField,
                     format!("{name:?} is not a field of this object"),
                     spelling::hint(name, known),
@@ -69,7 +58,7 @@ impl<'a> Fields<'a> {
     }
 
     pub(super) fn report_duplicates(&self) {
-        // Sorted, so that an object of a million members costs no million squared.
+        // Sorted: to compare each name with each takes a million steps in the largest object.
         let mut names: Vec<&str> = self.members.iter().map(|(name, _)| &**name).collect();
         names.sort_unstable();
         let mut reported = None;
@@ -77,7 +66,7 @@ impl<'a> Fields<'a> {
             if reported != Some(pair[0]) {
                 reported = Some(pair[0]);
                 self.place.sink.push(Problem::new(
-                    self.pointer_to(pair[0]),
+                    self.place.pointer_to(pair[0]),
                     Code::DuplicateField,
                     format!("the field {:?} is there more than once", pair[0]),
                     "keep the one that is meant",

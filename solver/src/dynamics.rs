@@ -188,6 +188,18 @@ impl Dynamics {
         by_norm.min(by_corner) * self.momentum.norm()
     }
 
+    /// How far a rate on its limit strays from it under constant torque while the body turns by a
+    /// small angle, relative to the limit and per eighth of the angle's square: the stored momentum
+    /// turns in body axes. The largest of all limits that can be reached; zero where there is none.
+    pub(crate) fn straying(&self) -> f64 {
+        let reachable = self.reachable_rates();
+        let by_axis = (0..3).filter(|axis| self.max_rate[*axis] <= reachable[*axis]);
+        let by_axis =
+            by_axis.map(|axis| self.inertia_inverse.row(axis).norm() / self.max_rate[axis]);
+        let by_norm = self.inertia_inverse.norm() / self.max_rate_norm;
+        by_axis.fold(by_norm, f64::max) * self.momentum.norm()
+    }
+
     /// Greatest rate about each body axis, rad/s, see [`Self::reachable_rate`].
     pub(crate) fn reachable_rates(&self) -> Vector3<f64> {
         Vector3::from_fn(|axis, _| self.reachable_rate(&Vector3::ith(axis, 1.0)))

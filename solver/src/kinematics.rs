@@ -12,13 +12,14 @@
 //! make them, `Ji` is the inverse of `J_eff`, and `zeta` is the total momentum at the beginning
 //! times the length. With zero momentum only `a` and `c` remain. The inputs are `z = (a, c, zeta)`.
 //!
-//! Two maps: [`magnus`] for zero momentum, fast and good to about 1e-5 rad, and [`runge_kutta`],
-//! with momentum too and as exact as its substeps make it. The derivatives of both are exact
-//! derivatives of the discrete map.
+//! Three maps: [`magnus`] for zero momentum, fast and good to about 1e-5 rad, [`taylor`] for stored
+//! momentum, as good on short intervals, and [`runge_kutta`] with and without momentum, as exact as
+//! its substeps make it. The derivatives of all are exact derivatives of the discrete map.
 
 mod magnus;
 mod quaternion;
 mod runge_kutta;
+mod taylor;
 #[cfg(test)]
 mod tests;
 
@@ -52,8 +53,10 @@ pub(crate) struct TurnDerivatives {
     pub(crate) turn: Quat,
     /// `dp / dz_j`.
     pub(crate) first: [Quat; INPUTS],
-    /// `sum_i mu_i d2 p_i / dz dz`, both triangles.
+    /// `sum_i mu_i d2 p_i / dz dz` and the same of the rate in the middle, both triangles.
     pub(crate) second: [[f64; INPUTS]; INPUTS],
+    /// The rate inside the interval; zero without momentum, where rates are linear.
+    pub(crate) middle: [Vector3<f64>; INPUTS],
 }
 
 /// Difference between two turns, the second with half the step, at which the second is exact: its
@@ -95,6 +98,8 @@ pub(crate) fn exact_flow(rate: impl Fn(f64, &Quat) -> Vector3<f64>) -> Quat {
 pub(crate) enum TurnMap {
     /// One Magnus step of order six.
     Magnus,
+    /// A Taylor expansion of the rate, for this inverse of `J_eff`.
+    Taylor(Matrix3<f64>),
     /// Runge-Kutta of order six.
     RungeKutta(RungeKutta),
 }
@@ -103,7 +108,7 @@ impl TurnMap {
     /// The map to iterate with; `inertia_inverse` is that of `J_eff` in matching units.
     pub(crate) fn fast(inertia_inverse: Matrix3<f64>, with_momentum: bool) -> Self {
         if with_momentum {
-            Self::RungeKutta(RungeKutta::new(inertia_inverse, true, FAST_SUBSTEPS))
+            Self::Taylor(inertia_inverse)
         } else {
             Self::Magnus
         }
@@ -113,6 +118,7 @@ impl TurnMap {
     pub(crate) fn finer(&self, inertia_inverse: Matrix3<f64>) -> Self {
         Self::RungeKutta(match self {
             Self::Magnus => RungeKutta::new(inertia_inverse, false, FAST_SUBSTEPS),
+            Self::Taylor(_) => RungeKutta::new(inertia_inverse, true, FAST_SUBSTEPS),
             Self::RungeKutta(map) => map.finer(),
         })
     }
@@ -121,6 +127,7 @@ impl TurnMap {
     pub(crate) fn inputs(&self) -> usize {
         match self {
             Self::Magnus => INPUTS_WITHOUT_MOMENTUM,
+            Self::Taylor(_) => INPUTS,
             Self::RungeKutta(map) => map.inputs(),
         }
     }
@@ -129,14 +136,43 @@ impl TurnMap {
     pub(crate) fn turn(&self, z: &TurnInputs) -> Quat {
         match self {
             Self::Magnus => magnus::turn(z),
+            Self::Taylor(inverse) => taylor::turn(z, inverse),
             Self::RungeKutta(map) => map.turn(z),
         }
     }
 
-    /// The turn with derivatives, the second ones weighted by `mu`.
-    pub(crate) fn derivatives(&self, z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
+    /// The rate in the middle of the interval, times its length, by the expansion.
+    pub(crate) fn middle(&self, z: &TurnInputs) -> Vector3<f64> {
+        match self {
+            Self::Magnus => (z.begin + z.end) * 0.5,
+            Self::Taylor(inverse) => taylor::middle(z, inverse),
+            Self::RungeKutta(map) => taylor::middle(z, map.inertia_inverse()),
+        }
+    }
+
+    /// The turn with derivatives, and the rate in the middle with momentum; the second ones weighted by `mu`
+    /// and `pull`.
+    pub(crate) fn derivatives(
+        &self,
+        z: &TurnInputs,
+        mu: &Quat,
+        pull: &Vector3<f64>,
+    ) -> TurnDerivatives {
         match self {
             Self::Magnus => magnus::derivatives(z, mu),
+            Self::Taylor(inverse) => taylor::derivatives(z, inverse, mu, pull),
+            Self::RungeKutta(map) if map.inputs() == INPUTS => {
+                let mut turn = map.derivatives(z, mu);
+                let inverse = map.inertia_inverse();
+                let middle = taylor::derivatives(z, inverse, &[0.0; 4], pull);
+                for (row, more) in turn.second.iter_mut().zip(&middle.second) {
+                    for (out, more) in row.iter_mut().zip(more) {
+                        *out += more;
+                    }
+                }
+                turn.middle = middle.middle;
+                turn
+            }
             Self::RungeKutta(map) => map.derivatives(z, mu),
         }
     }

@@ -188,7 +188,10 @@ impl Plain {
     fn of(manoeuvre: &Manoeuvre) -> Self {
         let ingredients = manoeuvre.ingredients();
         let (course, own, intervals) = match manoeuvre.command() {
-            Command::Free { intervals } => (Course::Steps, true, intervals),
+            Command::Free { intervals } => {
+                let needed = manoeuvre.intervals_of_fastest();
+                (Course::Steps, true, intervals.max(needed))
+            }
             Command::Uniform { intervals } => (Course::Steps, false, intervals),
             Command::Smooth { intervals } => (Course::Ramps, false, intervals),
             // In continuous time, as free as can be.

@@ -85,6 +85,20 @@ pub struct Plan {
     pub warnings: Vec<Problem>,
 }
 
+impl Plan {
+    /// The largest share of a leg's duration that its certified bound leaves open: how much of it a
+    /// better local minimum might save. One where a leg has no bound; `None` without slews.
+    #[must_use]
+    pub fn largest_open_share(&self) -> Option<f64> {
+        let slews = self.legs.iter().filter(|leg| leg.duration_s > 0.0);
+        let open = slews.map(|leg| {
+            let proved = leg.certified_lower_bound_s.unwrap_or(0.0);
+            (1.0 - proved / leg.duration_s).max(0.0)
+        });
+        open.reduce(f64::max)
+    }
+}
+
 /// The part of a plan that can be flown and checked: when to be where, and the torques.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {

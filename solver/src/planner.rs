@@ -15,6 +15,7 @@ mod places;
 mod priced;
 mod recall;
 mod segments;
+mod starts;
 mod summed;
 mod tables;
 mod torques;
@@ -23,7 +24,7 @@ mod verified;
 mod work;
 
 use crate::legs::{LegKind, LegStore, SegmentStore};
-use crate::nlp::{Interruption, NlpStatus};
+use crate::nlp::Interruption;
 use crate::plan::Outcome;
 use crate::pool::SolverPool;
 use crate::problem::{Code, Problem};
@@ -33,7 +34,7 @@ use crate::sequence::{FlownOrder, Place, SearchSettings, exhaustive, search};
 use crate::stop::{StopReason, StopSignal};
 use certified::tour_bound;
 use conclude::Conclusions;
-use first::first_tour;
+use first::{first_order, first_tour};
 use legs::LegSolver;
 use places::Places;
 use std::time::{Duration, Instant};
@@ -114,12 +115,19 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         tours.prove(bounds);
         certified
     };
+    let order = first_order(&tours, &stop);
+    if let Some(order) = order.clone()
+        && places.dynamics.has_momentum()
+    {
+        // With momentum a first tour may take its time, or find no end.
+        conclusions.construct(order);
+    }
     // Whichever is sooner done.
     let few = scenario.targets().len() <= FEW;
     if few {
         conclusions.prove(prove());
     }
-    let first = first_tour(&tours, &stop);
+    let first = order.and_then(|order| first_tour(&tours, order));
     if let Some(first) = &first {
         conclusions.announce(first);
         solver.tell(Some(first.duration_s), conclusions.proved());
@@ -142,8 +150,13 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
             conclusions.compare_with_rest(best);
             conclusions.outcome(best, &found)
         }
-        None if stop.is_set() => Outcome::StoppedEmpty,
-        None => Outcome::Failed(unsolved(&tours)),
+        None => conclusions.constructed().unwrap_or_else(|| {
+            if stop.is_set() {
+                Outcome::StoppedEmpty
+            } else {
+                Outcome::Failed(unsolved(&tours))
+            }
+        }),
     }
 }
 
@@ -290,7 +303,7 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .flat_map(|from| all.iter().map(move |to| (*from, *to)))
         .filter_map(|(from, to)| {
             let leg = &tours.free()?.get(from, to)?.leg;
-            (leg.flown.status != NlpStatus::Converged).then(|| {
+            leg.flown.duration().is_none().then(|| {
                 let message = format!(
                     "the slew from {} to {} ended with status {} after {} iterations, its \
                      conditions violated by {:.1e} (scaled)",

@@ -1,9 +1,11 @@
 //! One slew between two waypoints: guesses, solves, the best of them.
 
 pub(crate) mod arrival;
+mod centred;
 pub(crate) mod eigenaxis;
 pub(crate) mod extremal;
 pub(crate) mod standstill;
+mod steered;
 #[cfg(test)]
 mod tests;
 
@@ -19,6 +21,7 @@ use eigenaxis::{EigenaxisSlew, Side};
 use extremal::KinematicExtremals;
 use nalgebra::{DVector, Vector3};
 use standstill::standstill;
+use steered::steered;
 
 /// How finely slews are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +54,29 @@ impl Resolution {
     }
 }
 
+impl Resolution {
+    /// Intervals of a leg that turns by an angle, rad: more where a rate on its limit would stray
+    /// from it, under a torque that does not turn with the stored momentum.
+    pub(crate) fn intervals_of(&self, dynamics: &Dynamics, turn: f64) -> usize {
+        let stray = if self.polished {
+            0.5 * MOST_STRAY
+        } else {
+            MOST_STRAY
+        };
+        let longest = (8.0 * stray / dynamics.straying()).sqrt();
+        self.intervals + parts_of(DETOUR * turn, longest, MOST_ALONG_LIMITS)
+    }
+}
+
+/// Into how many parts a turn is cut, none longer than this; at most so many.
+fn parts_of(turn: f64, longest: f64, most: usize) -> usize {
+    if longest == f64::INFINITY {
+        return 0;
+    }
+    let enough = |parts: &usize| *parts as f64 * longest >= turn - SAME_TURN;
+    (0..most).find(enough).unwrap_or(most)
+}
+
 /// Intervals of a leg with three wheels and without momentum: with more the measured durations of
 /// 171 legs gain less than 1e-4.
 const LEAST_INTERVALS: usize = 12;
@@ -60,6 +86,15 @@ const LEAST_INTERVALS: usize = 12;
 /// and 0.24 % above the tight durations, four leave none more than 0.03 %.
 const PER_SPARE_WHEEL: usize = 4;
 const WITH_MOMENTUM: usize = 6;
+/// How far a rate on its limit may stray from it on an interval, relative: the program takes it off,
+/// so that a third of it is lost at most.
+const MOST_STRAY: f64 = 1.5e-2;
+/// How much farther than about the eigenaxis the fastest slew turns, about.
+const DETOUR: f64 = 1.3;
+/// Turn, rad, that rounding may add without adding a part.
+const SAME_TURN: f64 = 1e-9;
+/// Most intervals for rate limits; with more momentum than these resolve, limits are kept by reserves.
+const MOST_ALONG_LIMITS: usize = 240;
 /// Guesses that are tried: a second one where a bound does not settle the first.
 const STARTS: usize = 2;
 
@@ -67,6 +102,8 @@ const STARTS: usize = 2;
 /// experiment C the certified bound is 0 to 2.1 % below the best known durations, in the median 0.2 %;
 /// the local minimum that traps solvers there is 2.4 % above the best.
 const UNDOUBTED: f64 = 0.005;
+/// The same with momentum, of which the bound knows little.
+const UNDOUBTED_WITH_MOMENTUM: f64 = 0.03;
 /// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
 const EIGENAXIS_TOLERANCE: f64 = 1e-6;
 /// Relative difference below which wheel momenta are the same.
@@ -122,9 +159,14 @@ pub(crate) fn solve(
         if best.as_ref().is_none_or(|best| flown.improves(best)) {
             best = Some(flown);
         }
+        let undoubted = if slew.dynamics.has_momentum() {
+            UNDOUBTED_WITH_MOMENTUM
+        } else {
+            UNDOUBTED
+        };
         let settled = bound
             .zip(duration)
-            .is_some_and(|(bound, duration)| duration <= (1.0 + UNDOUBTED) * bound);
+            .is_some_and(|(bound, duration)| duration <= (1.0 + undoubted) * bound);
         if settled || stop().is_some() {
             break;
         }
@@ -136,30 +178,54 @@ pub(crate) fn solve(
         flown = better;
         solves += 1;
     }
+    if flown.duration().is_none()
+        && stop() != Some(Interruption::Cancelled)
+        && let Some(constructed) = slew.constructed()
+    {
+        flown = constructed;
+        if flown.profile.intervals() > 0 {
+            let improved = slew.fly_in(&flown.intervals, &flown.profile, stop);
+            solves += 1;
+            if improved.improves(&flown) {
+                flown = improved;
+            }
+        }
+    }
     if slew.resolution.polished {
         let waypoints = slew.waypoints(&flown.profile);
-        flown = polish(
-            slew.dynamics,
-            &waypoints,
-            &[slew.resolution.intervals],
-            flown,
-            stop,
-        );
+        let intervals = flown.intervals.clone();
+        flown = polish(slew.dynamics, &waypoints, &intervals, flown, stop);
     }
     Slew { flown, solves }
 }
 
 impl SlewProblem<'_> {
+    /// Intervals of the slew.
+    pub(crate) fn intervals(&self) -> usize {
+        let turn = self.arrival.turn(&self.from.attitude, &self.to.attitude);
+        self.resolution.intervals_of(self.dynamics, turn)
+    }
+
+    /// A flight that no program has made shorter: slowly about the eigenaxis. `None` where the wheels
+    /// cannot hold the momentum along the way.
+    pub(crate) fn constructed(&self) -> Option<Flown> {
+        steered(self)
+    }
+
     /// Flies from a guess.
     fn fly(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> Flown {
+        self.fly_in(&[self.intervals()], guess, stop)
+    }
+
+    /// Flies from a guess of so many intervals.
+    fn fly_in(
+        &self,
+        intervals: &[usize],
+        guess: &Profile,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Flown {
         let waypoints = self.waypoints(guess);
-        fly(
-            self.dynamics,
-            &waypoints,
-            &[self.resolution.intervals],
-            guess,
-            stop,
-        )
+        fly(self.dynamics, &waypoints, intervals, guess, stop)
     }
 
     /// A flight that takes no longer than the slew about the eigenaxis, where that can be flown and
@@ -175,7 +241,7 @@ impl SlewProblem<'_> {
         if fast(flown) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
             return None;
         }
-        let exact = eigenaxis.exact(self.dynamics, self.resolution.intervals);
+        let exact = eigenaxis.exact(self.dynamics, self.intervals());
         let solved = self.fly(&exact, stop);
         if fast(&solved) || self.dynamics.has_momentum() {
             // With momentum its torque is not piecewise constant.
@@ -184,6 +250,7 @@ impl SlewProblem<'_> {
         Some(Flown {
             status: NlpStatus::Converged,
             profile: exact,
+            intervals: vec![self.intervals()],
             iterations: solved.iterations,
             infeasibility: 0.0,
             passing_prices: Vec::new(),
@@ -228,7 +295,7 @@ impl SlewProblem<'_> {
 
     /// A guess from the slew about the eigenaxis, bowed to one side.
     pub(crate) fn bowed(&self, side: Side) -> Profile {
-        let intervals = self.resolution.intervals;
+        let intervals = self.intervals();
         let slew = self.eigenaxis().lasting(self.least_duration());
         slew.guess(self.dynamics, intervals, side)
     }

@@ -15,12 +15,14 @@
 //! `h_{k+1} = h_k + m_k`, `min_torque tau <= m <= max_torque tau` (which implies `tau >= 0`), and
 //! an interval may shrink to nothing without any variable losing its meaning. Speed and rate
 //! limits hold at nodes; between nodes `h` is linear, so without total momentum they hold there
-//! too, and with it what is found between nodes tightens them ([`Reserves`]).
+//! too. With it rate limits hold in the middle of intervals as well ([`middle`]), and what is found
+//! between nodes tightens all limits ([`Reserves`]).
 //!
 //! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of [`crate::kinematics`].
 
 mod attitude_link;
 mod demands;
+mod middle;
 mod nodes;
 mod reserves;
 mod rows;
@@ -39,12 +41,32 @@ use crate::nlp::{
     Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues, MAX_CONTROLS, MAX_STATES,
 };
 use crate::spacecraft::MOST_ENABLED;
+use middle::MiddleRow;
 use nalgebra::Vector3;
 use nodes::Node;
 use rows::LimitRow;
 
 /// The engine holds what the table above lists for as many wheels as a spacecraft may have.
 const _: () = assert!(3 + MOST_ENABLED <= MAX_STATES && MOST_ENABLED < MAX_CONTROLS);
+
+/// Weights of a penalty on controls, half of the square of how far they are from given ones.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ControlPenalty {
+    /// On the lengths of intervals.
+    pub(crate) length: f64,
+    /// On the changes of wheel momenta over them.
+    pub(crate) change: f64,
+}
+
+impl ControlPenalty {
+    /// On lengths alone.
+    pub(crate) const fn of_lengths(length: f64) -> Self {
+        Self {
+            length,
+            change: 0.0,
+        }
+    }
+}
 
 /// The quaternion of no turn.
 const NO_TURN: Quat = [0.0, 0.0, 0.0, 1.0];
@@ -63,13 +85,15 @@ pub(crate) struct Transcription {
     rate_gain: Vec<Vector3<f64>>,
     /// Greatest and least `m` per unit of `tau`.
     momentum_per_time: Vec<(f64, f64)>,
-    /// Lengths, scaled, to which a penalty draws the intervals, and its weight. Where torque does
-    /// not change from one interval to the next the cost is flat in the node between them; the
+    /// Controls, scaled, to which a penalty draws those of the intervals, and its weights. Where torque
+    /// does not change from one interval to the next the cost is flat in the node between them; the
     /// penalty settles it.
-    reference_lengths: Vec<f64>,
-    length_penalty: f64,
+    reference_controls: Vec<f64>,
+    penalty: ControlPenalty,
     /// Limits that hold at every node whose state is not fixed.
     limits: Vec<LimitRow>,
+    /// Rate limits that hold in the middle of every interval.
+    middle_rows: Vec<MiddleRow>,
     /// The components of the body rate, rad/s.
     rates: [Row; 3],
     /// Reserve kept from every limit at every node.
@@ -108,9 +132,13 @@ impl Transcription {
                     )
                 })
                 .collect(),
-            reference_lengths: vec![1.0; intervals.iter().sum()],
-            length_penalty: 0.0,
+            reference_controls: vec![
+                0.0;
+                intervals.iter().sum::<usize>() * (dynamics.wheel_count() + 1)
+            ],
+            penalty: ControlPenalty::default(),
             limits: Vec::new(),
+            middle_rows: Vec::new(),
             rates: Default::default(),
             reserves: Reserves::none(dynamics, intervals.iter().sum()),
             nodes: Vec::new(),
@@ -119,6 +147,7 @@ impl Transcription {
         transcription.rates =
             std::array::from_fn(|axis| transcription.row(0.0, Vector3::ith(axis, 1.0), &[]));
         transcription.limits = transcription.limit_rows();
+        transcription.middle_rows = transcription.middle_rows_of(&transcription.limits);
         transcription.nodes = transcription.lay_out(waypoints, intervals);
         transcription
     }
@@ -128,13 +157,10 @@ impl Transcription {
         self.reserves.clone_from(reserves);
     }
 
-    /// Draws the intervals to the lengths of an iterate from now on, with a penalty of this weight.
-    pub(crate) fn draw_lengths_to(&mut self, iterate: &Iterate, weight: f64) {
-        let controls = iterate.controls.chunks_exact(self.control_dim());
-        for (reference, control) in self.reference_lengths.iter_mut().zip(controls) {
-            *reference = control[control.len() - 1];
-        }
-        self.length_penalty = weight;
+    /// Draws the controls to those of an iterate from now on.
+    pub(crate) fn draw_controls_to(&mut self, iterate: &Iterate, penalty: ControlPenalty) {
+        self.reference_controls.clone_from(&iterate.controls);
+        self.penalty = penalty;
     }
 
     /// Makes the turn map exact where an iterate is: a fixed turn `e_k = p_k* p_exact` follows the
@@ -207,6 +233,24 @@ impl Transcription {
             .iter()
             .zip(control)
             .flat_map(move |((max, min), m)| [tau - m / max, tau - m / min])
+    }
+
+    /// The weight of every control's penalty, and how far the control is from its reference.
+    fn away_from_reference<'a>(
+        &'a self,
+        link: &'a Link<'_>,
+    ) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let wheels = self.wheels();
+        let references = &self.reference_controls[link.node * (wheels + 1)..];
+        let controls = link.control.iter().zip(references).enumerate();
+        controls.map(move |(i, (control, reference))| {
+            let weight = if i == wheels {
+                self.penalty.length
+            } else {
+                self.penalty.change
+            };
+            (weight, control - reference)
+        })
     }
 
     /// What the wheel momenta at a node cost, scaled.
@@ -318,7 +362,7 @@ impl Chain for Transcription {
 
     fn inequalities(&self, node: usize) -> usize {
         let of_interval = if node < self.intervals() {
-            2 * self.wheels()
+            2 * self.wheels() + self.middle_limits()
         } else {
             0
         };
@@ -342,14 +386,20 @@ impl Chain for Transcription {
         let count = self.write_state_values(link.node, (link.point, Drift::default()), out);
         out.cost = self.price_of(link);
         if link.has_interval() {
-            let tau = link.control[self.wheels()];
-            let away = tau - self.reference_lengths[link.node];
-            out.cost += tau + 0.5 * self.length_penalty * away.powi(2);
+            out.cost += link.control[self.wheels()];
+            for (weight, away) in self.away_from_reference(link) {
+                out.cost += 0.5 * weight * away.powi(2);
+            }
             self.write_gap(link, &mut out.gap);
             for (out, margin) in out.inequality[count..]
                 .iter_mut()
                 .zip(self.torque_margins(link.control))
             {
+                *out = margin;
+            }
+            let count = count + 2 * self.wheels();
+            let margins = self.middle_margins(link);
+            for (out, margin) in out.inequality[count..].iter_mut().zip(margins) {
                 *out = margin;
             }
         }
@@ -365,11 +415,15 @@ impl Chain for Transcription {
         }
         let (wheels, states) = (self.wheels(), self.state_dim());
         let tau = states + wheels;
-        let length = link.control[wheels];
-        out.gradient[tau] =
-            1.0 + self.length_penalty * (length - self.reference_lengths[link.node]);
-        out.hessian[tau * out.vars + tau] += self.length_penalty;
-        self.write_attitude_link(link, duals.gap, out);
+        out.gradient[tau] = 1.0;
+        for (i, (weight, away)) in self.away_from_reference(link).enumerate() {
+            let at = states + i;
+            out.gradient[at] += weight * away;
+            out.hessian[at * out.vars + at] += weight;
+        }
+        let middle = count + 2 * wheels;
+        let z = &duals.inequality[middle..middle + self.middle_limits()];
+        self.write_attitude_link(link, duals.gap, (middle, z), out);
         for i in 0..wheels {
             let row = (3 + i) * out.vars;
             out.link_jacobian[row + 3 + i] = 1.0;

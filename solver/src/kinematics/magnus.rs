@@ -17,36 +17,25 @@ use nalgebra::{Matrix3, Vector3};
 /// The turn over the interval.
 pub(super) fn turn(z: &TurnInputs) -> Quat {
     let (u, v) = integral_and_change(z);
-    Exponential::of(&rotation_vector(&u, &v)).turn()
+    MagnusTurn::of(&u, &v).turn()
 }
 
 /// The turn with derivatives, the second ones weighted by `mu`.
 pub(super) fn derivatives(z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
     let (u, v) = integral_and_change(z);
-    let exponential = Exponential::of(&rotation_vector(&u, &v));
-    let [by_u, by_v] = rotation_jacobians(&u, &v);
+    let magnus = MagnusTurn::of(&u, &v);
     // u = (a + c) / 2 and v = c - a.
-    let by_input = [by_u * 0.5 - by_v, by_u * 0.5 + by_v];
-    let by_omega = exponential.jacobian();
-    let (gradient, hessian) = exponential.weighted(mu);
-    let [uu, uv, vv] = rotation_curvature(&u, &v, &gradient);
+    let [by_u, by_v] = magnus.jacobians();
+    let [uu, uv, vv] = magnus.weighted(mu).curvature;
     let (quarter, skew, sum) = (uu * 0.25, (uv - uv.transpose()) * 0.5, uv + uv.transpose());
     let even = quarter + vv;
-    let own = [even - sum * 0.5, even + sum * 0.5];
+    let blocks = [even - sum * 0.5, quarter - vv + skew, even + sum * 0.5];
     let mut first = [[0.0; 4]; INPUTS];
     let mut second = [[0.0; INPUTS]; INPUTS];
-    let image = by_input.map(|by| hessian * by);
-    let blocks = [
-        by_input[0].tr_mul(&image[0]) + own[0],
-        by_input[0].tr_mul(&image[1]) + quarter - vv + skew,
-        by_input[1].tr_mul(&image[1]) + own[1],
-    ];
     for j in 0..3 {
-        for side in 0..2 {
-            let column = by_input[side].column(j);
-            for (out, row) in first[3 * side + j].iter_mut().zip(&by_omega) {
-                *out = row.dot(&column);
-            }
+        for i in 0..4 {
+            first[j][i] = by_u[i][j] * 0.5 - by_v[i][j];
+            first[3 + j][i] = by_u[i][j] * 0.5 + by_v[i][j];
         }
         for i in 0..3 {
             second[i][j] = blocks[0][(i, j)];
@@ -56,9 +45,60 @@ pub(super) fn derivatives(z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
         }
     }
     TurnDerivatives {
-        turn: exponential.turn(),
+        turn: magnus.turn(),
         first,
         second,
+        middle: [Vector3::zeros(); INPUTS],
+    }
+}
+
+/// The turn as a function of the integral `u` of the rate and of `v`, its change or, where the rate
+/// is not linear, twelve times its first moment about the middle.
+pub(super) struct MagnusTurn {
+    u: Vector3<f64>,
+    v: Vector3<f64>,
+    exponential: Exponential,
+}
+
+/// Derivatives of `mu . turn` by `u` and `v`.
+pub(super) struct Weighted {
+    pub(super) gradient: [Vector3<f64>; 2],
+    /// Blocks `uu`, `uv` and `vv`.
+    pub(super) curvature: [Matrix3<f64>; 3],
+}
+
+impl MagnusTurn {
+    pub(super) fn of(u: &Vector3<f64>, v: &Vector3<f64>) -> Self {
+        Self {
+            u: *u,
+            v: *v,
+            exponential: Exponential::of(&rotation_vector(u, v)),
+        }
+    }
+
+    pub(super) fn turn(&self) -> Quat {
+        self.exponential.turn()
+    }
+
+    /// Rows of the derivatives by `u` and by `v`.
+    pub(super) fn jacobians(&self) -> [[Vector3<f64>; 4]; 2] {
+        let rows = self.exponential.jacobian();
+        rotation_jacobians(&self.u, &self.v).map(|by| rows.map(|row| by.tr_mul(&row)))
+    }
+
+    pub(super) fn weighted(&self, mu: &Quat) -> Weighted {
+        let [by_u, by_v] = rotation_jacobians(&self.u, &self.v);
+        let (gradient, hessian) = self.exponential.weighted(mu);
+        let [uu, uv, vv] = rotation_curvature(&self.u, &self.v, &gradient);
+        let (image_u, image_v) = (hessian * by_u, hessian * by_v);
+        Weighted {
+            gradient: [by_u.tr_mul(&gradient), by_v.tr_mul(&gradient)],
+            curvature: [
+                by_u.tr_mul(&image_u) + uu,
+                by_u.tr_mul(&image_v) + uv,
+                by_v.tr_mul(&image_v) + vv,
+            ],
+        }
     }
 }
 

@@ -126,6 +126,11 @@ impl RungeKutta {
         Self::new(self.inertia_inverse, self.with_momentum, 2 * self.substeps)
     }
 
+    /// The inverse of `J_eff`.
+    pub(super) fn inertia_inverse(&self) -> &Matrix3<f64> {
+        &self.inertia_inverse
+    }
+
     /// Number of inputs with non-zero derivatives.
     pub(super) fn inputs(&self) -> usize {
         if self.with_momentum {
@@ -186,6 +191,7 @@ impl RungeKutta {
             turn: flow.p,
             first: flow.first,
             second,
+            middle: [Vector3::zeros(); INPUTS],
         }
     }
 

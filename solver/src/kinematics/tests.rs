@@ -89,15 +89,69 @@ fn the_fast_map_without_momentum_has_order_six_too() {
 }
 
 #[test]
+fn the_expansion_with_momentum_is_the_turn_of_short_intervals() {
+    let error = |length: f64| {
+        let z = inputs(&Z);
+        let z = TurnInputs {
+            begin: z.begin * length,
+            end: (z.begin + (z.end - z.begin) * length) * length,
+            momentum: z.momentum * length,
+        };
+        let exact = map(true, 32).turn(&z);
+        let expanded = TurnMap::fast(inverse(), true).turn(&z);
+        let off = expanded.iter().zip(&exact).map(|(a, b)| (a - b).abs());
+        off.fold(0.0, f64::max)
+    };
+    let order = (error(0.8) / error(0.4)).log2();
+    assert!(order > 5.5, "observed order {order}");
+    assert!(error(0.2) < 1e-6);
+}
+
+#[test]
+fn the_rate_in_the_middle_is_that_after_half_the_interval() {
+    let error = |length: f64| {
+        let z = inputs(&Z);
+        let (begin, end) = (
+            z.begin * length,
+            (z.begin + (z.end - z.begin) * length) * length,
+        );
+        let momentum = z.momentum * length;
+        let wheels = (begin + end) * 0.5;
+        // The same motion over the first half.
+        let half = TurnInputs {
+            begin: begin * 0.5,
+            end: wheels * 0.5,
+            momentum: momentum * 0.5,
+        };
+        let rate = wheels + inverse() * rotate_back(&map(true, 32).turn(&half), &momentum);
+        let z = TurnInputs {
+            begin,
+            end,
+            momentum,
+        };
+        (rate - TurnMap::fast(inverse(), true).middle(&z)).norm()
+    };
+    let order = (error(0.8) / error(0.4)).log2();
+    assert!(order > 5.5, "observed order {order}");
+    assert!(error(0.2) < 1e-6);
+}
+
+#[test]
 fn derivatives_match_finite_differences() {
-    let fast = TurnMap::fast(Matrix3::identity(), false);
-    for map in [map(false, 2), map(true, 2), map(true, 3), fast] {
+    let fast = [false, true].map(|momentum| TurnMap::fast(inverse(), momentum));
+    let [without, with] = fast;
+    for map in [map(false, 2), map(true, 2), map(true, 3), without, with] {
         let weights = [0.7, -0.3, 0.9, 0.4];
-        let exact = map.derivatives(&inputs(&Z), &weights);
+        let pull = if map.inputs() == INPUTS {
+            Vector3::new(0.4, -0.8, 0.5)
+        } else {
+            Vector3::zeros()
+        };
+        let exact = map.derivatives(&inputs(&Z), &weights, &pull);
         let at = |index: usize, by: f64| {
             let mut z = Z;
             z[index] += by;
-            map.derivatives(&inputs(&z), &weights)
+            map.derivatives(&inputs(&z), &weights, &pull)
         };
         let by = 1e-5;
         for j in 0..map.inputs() {
@@ -106,9 +160,20 @@ fn derivatives_match_finite_differences() {
                 let first = (plus.turn[i] - minus.turn[i]) / (2.0 * by);
                 assert!((first - exact.first[j][i]).abs() < 1e-9, "first {j} {i}");
             }
+            let middle = |by: f64| {
+                let mut z = Z;
+                z[j] += by;
+                map.middle(&inputs(&z))
+            };
+            let middle = (middle(by) - middle(-by)) / (2.0 * by);
+            if map.inputs() == INPUTS {
+                assert!((middle - exact.middle[j]).norm() < 1e-9, "middle {j}");
+            }
             for i in 0..map.inputs() {
-                let change = dot4(&weights, &plus.first[i]) - dot4(&weights, &minus.first[i]);
-                let second = change / (2.0 * by);
+                let change = |one: &TurnDerivatives| {
+                    dot4(&weights, &one.first[i]) + pull.dot(&one.middle[i])
+                };
+                let second = (change(&plus) - change(&minus)) / (2.0 * by);
                 assert!((second - exact.second[i][j]).abs() < 1e-8, "second {i} {j}");
             }
         }

@@ -5,6 +5,7 @@ use super::ingredients::Ingredients;
 use super::motion::Motion;
 use super::program::{LengthPenalty, Program, Units};
 use super::shape::{Lengths, Shape};
+use crate::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
 use crate::nlp::{
     Chain, InteriorPoint, Interruption, Iterate, Layout, NlpReport, NlpStatus, Settings, values_of,
 };
@@ -36,6 +37,16 @@ const WITH_LENGTHS: [Phase; 2] = [
         length_penalty: 1e-3,
     },
 ];
+/// The same with momentum, from the fastest motion: the first phase would lead far away from it.
+const NEARBY: [Phase; 1] = [Phase {
+    settings: Settings {
+        initial_barrier: 3e-5,
+        initial_slack: 3e-5,
+        max_iterations: 400,
+        ..Settings::COLD
+    },
+    length_penalty: 0.02,
+}];
 const WITHOUT_LENGTHS: [Phase; 1] = [Phase {
     settings: Settings {
         max_iterations: 400,
@@ -136,6 +147,25 @@ impl Solved {
 impl Task<'_> {
     /// Solves from a guess with as many intervals as the program is to have.
     pub(super) fn solve(&self, guess: &Motion, stop: &dyn Fn() -> Option<Interruption>) -> Solved {
+        let own = self.shape.lengths == Lengths::Own;
+        if !own {
+            return self.solve_in(&WITHOUT_LENGTHS, guess, stop);
+        }
+        if self.vehicle.dynamics.has_momentum() {
+            let nearby = self.solve_in(&NEARBY, guess, stop);
+            if nearby.converged() || stop().is_some() {
+                return nearby;
+            }
+        }
+        self.solve_in(&WITH_LENGTHS, guess, stop)
+    }
+
+    fn solve_in(
+        &self,
+        phases: &[Phase],
+        guess: &Motion,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Solved {
         let program = self.program(guess);
         let mut run = Run {
             engine: InteriorPoint::new(&program, Settings::COLD),
@@ -149,7 +179,7 @@ impl Task<'_> {
             },
             vehicle: self.vehicle,
         };
-        run.pass(stop);
+        run.pass(phases, stop);
         run.solved
     }
 
@@ -202,11 +232,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn pass(&mut self, stop: &dyn Fn() -> Option<Interruption>) {
-        let phases: &[Phase] = match self.solved.program.shape.lengths {
-            Lengths::Own => &WITH_LENGTHS,
-            _ => &WITHOUT_LENGTHS,
-        };
+    fn pass(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) {
         for phase in phases {
             let penalty = if self.solved.program.ingredients.bills() {
                 BILLED_PENALTY
@@ -292,9 +318,14 @@ impl Run<'_> {
                 .for_each(|r| *r += most(torques));
         }
         program.base.keep(reserves);
-        // Slacks belong to the old limits.
-        self.forget_multipliers();
-        self.engine.settings.initial_barrier = Settings::COLD.initial_barrier;
+        if most(shares).max(most(torques)) <= NEAR_EXCESS {
+            self.solved.iterate.recentre(NEAR_BARRIER);
+            self.engine.settings.initial_barrier = NEAR_BARRIER;
+        } else {
+            // Slacks belong to the old limits.
+            self.forget_multipliers();
+            self.engine.settings.initial_barrier = Settings::COLD.initial_barrier;
+        }
     }
 
     /// Begins again from the primal point alone.

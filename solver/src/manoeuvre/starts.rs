@@ -47,6 +47,16 @@ pub(super) fn of(
 impl Manoeuvre {
     /// Intervals that resolve a motion in minimum time.
     pub(super) fn usual_intervals(&self) -> usize {
-        2 * Resolution::of(Accuracy::Standard, &self.vehicle().dynamics).intervals
+        let resolution = Resolution::of(Accuracy::Standard, &self.vehicle().dynamics);
+        resolution.intervals + self.intervals_of_fastest()
+    }
+
+    /// Intervals of the fastest motion, which needs more of them where stored momentum turns under
+    /// a rate limit.
+    pub(super) fn intervals_of_fastest(&self) -> usize {
+        let dynamics = &self.vehicle().dynamics;
+        let [from, to] = self.ends();
+        let turn = self.arrival().turn(&from.attitude, &to.attitude);
+        Resolution::of(Accuracy::Standard, dynamics).intervals_of(dynamics, turn)
     }
 }

@@ -1,11 +1,18 @@
 //! Limits inside intervals, where the program imposes them at the nodes only.
 
+use super::LIMIT_TOLERANCE;
 use crate::dynamics::Dynamics;
 use crate::profile::Profile;
 
 /// Parts of an interval at whose ends the limits are looked at: a long interval may turn by a
 /// radian, and the stored momentum with it.
 const SAMPLES: usize = 16;
+
+/// Whether no limit is exceeded between the nodes of a motion.
+pub(crate) fn keeps_limits_inside(dynamics: &Dynamics, profile: &Profile) -> bool {
+    let excesses = excess_between_nodes(dynamics, profile);
+    excesses.iter().all(|excess| *excess <= LIMIT_TOLERANCE)
+}
 
 /// Relative excess over every speed and rate limit inside every interval, in the order of
 /// [`Dynamics::limit_shares`]; nothing without momentum. Wheel momenta are linear there, but the

@@ -7,7 +7,7 @@
 //! minima that are as good: those of the former flight's, which were the best of several starts.
 
 use super::rolling::fly_from_windows;
-use super::{FROM_A_GUESS, Flight, Flown, fly};
+use super::{Flight, Flown, fly, from_a_guess};
 use crate::dynamics::Dynamics;
 use crate::nlp::Interruption;
 use crate::profile::Profile;
@@ -34,7 +34,7 @@ pub(crate) fn fly_on(
         through[0] = through[0].passed_with(&tail.wheels[0]);
     }
     let mut flight = Flight::new(dynamics, &through, &intervals[held..], &tail);
-    if flight.passes(&FROM_A_GUESS, stop) {
+    if flight.passes(from_a_guess(dynamics), stop) {
         let mut joined = motion.part(0..begin);
         joined.append(&flight.flown.profile);
         if let Some(flown) = fly_from_windows(dynamics, waypoints, intervals, &joined, stop) {

@@ -8,11 +8,11 @@
 //! in flights of 10 legs, 55 in flights of 100, instead of 37 and 80. Durations are as good, and the
 //! longer ones a little better.
 
-use super::{FROM_A_GUESS, Flight, Flown, Phase, fly};
+use super::{Flight, Flown, Phase, fly, from_a_guess};
 use crate::dynamics::Dynamics;
 use crate::nlp::{Interruption, NlpStatus, Settings};
 use crate::profile::Profile;
-use crate::transcription::Waypoint;
+use crate::transcription::{ControlPenalty, Waypoint};
 
 /// Legs of a window, and of a flight that is better solved at once.
 const WINDOW: usize = 8;
@@ -27,7 +27,7 @@ const FROM_WINDOWS: [Phase; 1] = [Phase {
         initial_slack: 3e-5,
         ..Settings::COLD
     },
-    length_penalty: 0.02,
+    penalty: ControlPenalty::of_lengths(0.02),
 }];
 
 /// Flies through waypoints from a guess as [`fly`] does, window by window first.
@@ -85,7 +85,7 @@ fn roll(
         let begin = node_of(first);
         ahead.append(&guess.part(begin + ahead.intervals()..node_of(last)));
         let mut flight = Flight::new(dynamics, &through, &intervals[first..last], &ahead);
-        if !flight.passes(&FROM_A_GUESS, stop) {
+        if !flight.passes(from_a_guess(dynamics), stop) {
             return None;
         }
         let flown = flight.flown.profile;

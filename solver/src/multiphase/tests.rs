@@ -68,7 +68,7 @@ impl Leg {
         let scales = Scales::for_legs(&self.dynamics, angle, guess.duration());
         let mut chain = Transcription::new(&self.dynamics, scales, &self.ends, &[INTERVALS]);
         let guess = scaled(&guess, &scales);
-        chain.draw_lengths_to(&guess, LENGTH_PENALTY);
+        chain.draw_controls_to(&guess, ControlPenalty::of_lengths(LENGTH_PENALTY));
         Posed { chain, guess }
     }
 }

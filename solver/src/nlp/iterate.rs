@@ -31,6 +31,22 @@ pub(crate) struct Layout {
     inequality_start: Vec<usize>,
 }
 
+impl Iterate {
+    /// Moves slacks and multipliers of active and inactive inequalities so far apart from zero that
+    /// their products are no less than a barrier parameter: from a solution to a start near it.
+    pub(crate) fn recentre(&mut self, barrier: f64) {
+        for (slack, z) in self.slack.iter_mut().zip(&mut self.z) {
+            if *slack * *z < barrier {
+                if *z > *slack {
+                    *slack = barrier / *z;
+                } else {
+                    *z = barrier / *slack;
+                }
+            }
+        }
+    }
+}
+
 impl Layout {
     /// The layout of a chain's variables.
     pub(crate) fn of<C: Chain>(chain: &C) -> Self {

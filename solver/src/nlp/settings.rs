@@ -34,6 +34,8 @@ impl Settings {
 pub(crate) enum NlpStatus {
     /// A local minimum within the tolerance.
     Converged,
+    /// No minimum was found; what there is satisfies all conditions.
+    Constructed,
     /// No further progress towards feasibility: probably there is none nearby.
     InfeasibleSuspected,
     /// Out of iterations.
@@ -90,6 +92,7 @@ impl NlpStatus {
     pub(crate) const fn as_str(self) -> &'static str {
         match self {
             Self::Converged => "converged",
+            Self::Constructed => "constructed",
             Self::InfeasibleSuspected => "infeasible_suspected",
             Self::IterationLimit => "iteration_limit",
             Self::TimeLimit => "time_limit",

@@ -33,9 +33,10 @@ pub(super) fn assemble(
         legs: Vec::new(),
     };
     for (places, flown) in tours.split(route).iter().zip(segments) {
-        for (leg, pair) in places.windows(2).enumerate() {
-            let begin = leg * tours.intervals();
-            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + tours.intervals());
+        let mut begin = 0;
+        for (pair, intervals) in places.windows(2).zip(&flown.intervals) {
+            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + intervals);
+            begin += intervals;
             assembly.visit(pair[1]);
         }
     }

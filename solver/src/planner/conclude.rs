@@ -7,6 +7,7 @@ use super::tours::Tours;
 use super::work::{History, search_work};
 use crate::checker;
 use crate::legs::LegKind;
+use crate::multiphase::Flown;
 use crate::plan::{
     Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Statistics,
 };
@@ -16,7 +17,7 @@ use crate::sequence::{
     FlownOrder, Incumbent, Place, SearchObserver, SearchResult, SearchStatistics,
 };
 use std::sync::atomic::Ordering;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 /// What the order of additions does to a duration.
@@ -34,6 +35,8 @@ pub(super) struct Conclusions<'a> {
     /// The order whose flight was verified last, with that flight: a search that is stopped has its
     /// plan at once.
     last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
+    /// A tour that was flown without a program, for want of a better one.
+    constructed: Option<(FlownOrder, VerifiedFlight)>,
     /// The legs of the final order from rest to rest.
     rest: Option<LegTable>,
     history: History,
@@ -56,6 +59,7 @@ impl<'a> Conclusions<'a> {
             run,
             begin,
             last: Mutex::default(),
+            constructed: None,
             rest: None,
             history: History::since(begin),
         }
@@ -69,6 +73,38 @@ impl<'a> Conclusions<'a> {
     /// That bound, when there is one.
     pub(super) fn proved(&self) -> Option<f64> {
         self.certified
+    }
+
+    /// Constructs a flight of an order, leg by leg, and tells of it; nothing where a leg cannot be
+    /// constructed.
+    pub(super) fn construct(&mut self, order: Vec<usize>) {
+        let route = self.tours.places.route(&order, true);
+        let flown = self.tours.constructed(&route);
+        let Some(flight) = flown.and_then(|flown| self.checked(&route, &flown).ok()) else {
+            return;
+        };
+        let best = FlownOrder {
+            duration_s: flight.flight.total_time_s,
+            order,
+        };
+        self.remember(&best.order, &flight);
+        self.announce(&best);
+        self.forget();
+        self.constructed = Some((best, flight));
+    }
+
+    /// The plan of the constructed flight, for a search that has ended with none.
+    pub(super) fn constructed(&self) -> Option<Outcome> {
+        let (best, flight) = self.constructed.as_ref()?;
+        self.remember(&best.order, flight);
+        let only = Incumbent {
+            best,
+            alternatives: &[],
+            lower_bound_s: 0.0,
+            statistics: SearchStatistics::default(),
+        };
+        let kind = LowerBoundKind::NlpRelaxation;
+        Some(outcome(self.plan(&only, Optimality::Feasible, kind)))
     }
 
     /// Tells of a first tour, before anything is known of others.
@@ -131,28 +167,44 @@ impl<'a> Conclusions<'a> {
 
     /// The flight of an order, verified.
     fn verified(&self, order: &[usize]) -> Result<VerifiedFlight, Problem> {
-        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((known, flight)) = last.as_ref()
+        if let Some((known, flight)) = self.last().as_ref()
             && known == order
         {
             return Ok(flight.clone());
         }
         let route = self.tours.places.route(order, true);
         // Every segment is remembered from its evaluation: nothing is solved here.
-        let (flight, legs) = assemble(self.tours, &route, &self.tours.fly_route(&route));
+        let flight = self.checked(&route, &self.tours.fly_route(&route))?;
+        self.remember(order, &flight);
+        Ok(flight)
+    }
+
+    fn last(&self) -> MutexGuard<'_, Option<(Vec<usize>, VerifiedFlight)>> {
+        self.last.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn remember(&self, order: &[usize], flight: &VerifiedFlight) {
+        *self.last() = Some((order.to_vec(), flight.clone()));
+    }
+
+    fn forget(&self) {
+        *self.last() = None;
+    }
+
+    /// The flight of solved segments, when the checker agrees with it.
+    fn checked(&self, route: &[Place], flown: &[Arc<Flown>]) -> Result<VerifiedFlight, Problem> {
+        let (flight, legs) = assemble(self.tours, route, flown);
         let report = checker::verify(self.tours.places.scenario, &flight);
         if !report.verification.passed {
             let message = report.verification.failures.join("; ");
             let hint = "report the scenario: a plan that does not fly is a defect of the solver";
             return Err(Problem::new("", Code::VerificationFailed, message, hint));
         }
-        let flight = VerifiedFlight {
+        Ok(VerifiedFlight {
             flight,
             legs,
             report,
-        };
-        *last = Some((order.to_vec(), flight.clone()));
-        Ok(flight)
+        })
     }
 
     /// The plan of an order.

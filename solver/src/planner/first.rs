@@ -5,14 +5,19 @@ use super::tours::Tours;
 use crate::sequence::{FlownOrder, TourEvaluation, TourModel, short_order};
 use crate::stop::StopSignal;
 
-/// Flies one tour; none when it does not converge or the solve is stopped.
-pub(super) fn first_tour(tours: &Tours<'_>, stop: &StopSignal) -> Option<FlownOrder> {
+/// An order that is short in the durations of slews about the eigenaxis; none when the solve is
+/// stopped.
+pub(super) fn first_order(tours: &Tours<'_>, stop: &StopSignal) -> Option<Vec<usize>> {
     let places = tours.places;
     let eigenaxes = SummedTours::new(places, |from, to| {
         let (begin, end) = (places.waypoint(from), places.waypoint(to));
         places.slew(&begin, &end).eigenaxis().trapezoid.duration
     });
-    let order = short_order(&eigenaxes, stop)?;
+    short_order(&eigenaxes, stop)
+}
+
+/// Flies the tour of an order; none when it does not converge or the solve is stopped.
+pub(super) fn first_tour(tours: &Tours<'_>, order: Vec<usize>) -> Option<FlownOrder> {
     match tours.tour(&order) {
         TourEvaluation::Flown(duration_s) => Some(FlownOrder { order, duration_s }),
         TourEvaluation::Unresolved | TourEvaluation::Stopped => None,

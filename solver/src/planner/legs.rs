@@ -232,7 +232,7 @@ impl<'a> LegSolver<'a> {
     /// A leg from the store.
     fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let stored = self.run.legs.get(&leg.identity)?;
-        recall(stored, leg.resolution.intervals)
+        recall(stored, leg.intervals())
     }
 
     /// Solves a leg, and stores it.
@@ -312,8 +312,7 @@ fn solve(
         .lower_bound;
     let problem = leg.problem(&places.extremals);
     let mut solved = slew::solve(&problem, certified, &|| interruption(stop));
-    let converged = solved.flown.status == NlpStatus::Converged;
-    if converged && !flies(places, leg, &solved.flown.profile) {
+    if solved.flown.duration().is_some() && !flies(places, leg, &solved.flown.profile) {
         solved.flown.status = NlpStatus::NumericalError(Breakdown {
             stage: solved.flown.profile.intervals(),
             quantity: Quantity::Flight,
@@ -352,7 +351,7 @@ fn recall(stored: StoredLeg, intervals: usize) -> Option<SolvedLeg> {
         &stored.attitudes_xyzw,
         stored.wheel_momenta_nms,
         stored.lengths_s,
-        intervals,
+        vec![intervals],
     )?;
     Some(SolvedLeg {
         flown,

@@ -4,9 +4,12 @@
 //! there are few, and, where rates at targets are left free, the segments and nodes that a search
 //! goes on remembering until their bounds are reached.
 
+use crate::dynamics::Dynamics;
 use crate::scenario::{RateCondition, Scenario, Target};
 use crate::sequence::priced::{PRICED_TARGETS, PricedPaths};
 use crate::sequence::remainder::EXACT_TARGETS;
+use crate::slew::Resolution;
+use std::f64::consts::FRAC_PI_2;
 
 /// What the smallest solve takes with its plan, what each pair of places adds, and what a search
 /// remembers for each target at most within a minute on two cores. Measured as growth of the
@@ -14,6 +17,8 @@ use crate::sequence::remainder::EXACT_TARGETS;
 const LEAST: u64 = 3 << 20;
 const PAIR: u64 = 5 << 10;
 const SEARCHED: u64 = 1280 << 10;
+/// Intervals of the legs of which that was measured; of more they take more.
+const MEASURED_INTERVALS: u64 = 18;
 /// Segments and nodes are bounded, bytes.
 const MOST_SEARCHED: u64 = 144 << 20;
 
@@ -52,5 +57,9 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     } else {
         0
     };
-    LEAST + places * places * PAIR + subsets + searched + priced
+    let dynamics = Dynamics::of(scenario);
+    let resolution = Resolution::of(scenario.options().accuracy, &dynamics);
+    let intervals = resolution.intervals_of(&dynamics, FRAC_PI_2) as u64;
+    let pair = PAIR * intervals.max(MEASURED_INTERVALS) / MEASURED_INTERVALS;
+    LEAST + places * places * pair + subsets + searched + priced
 }

@@ -165,12 +165,12 @@ fn motion(leg: &CanonicalLeg, offered: OfferedLeg) -> Result<Flown, Vec<String>>
     if !offered.lengths_s.iter().all(is_time) {
         faults.push("a time between nodes is negative or not finite".into());
     }
-    let intervals = leg.resolution.intervals;
+    let intervals = leg.intervals();
     let flown = recalled(
         &offered.attitudes_xyzw,
         offered.wheel_momenta_nms,
         offered.lengths_s,
-        intervals,
+        vec![intervals],
     );
     if flown.is_none() {
         let nodes = intervals + 1;

@@ -42,15 +42,16 @@ impl Tours<'_> {
     pub(super) fn price_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
         let [from, to] = leg;
         let free = self.free_leg(from, to);
-        let Some(free_s) = free.duration() else {
+        let Some(free_s) = free.least_duration() else {
             return Evaluation::Unresolved;
         };
         let service = self.places.service_time(to);
         let [begin, end] = prices.map(|price| price.map(DVector::from_column_slice));
         // What takes no time says nothing of how to use some.
-        let motions = [free.profile, self.bowed(leg)].into_iter();
-        for motion in motions.filter(|motion| motion.duration() > 0.0) {
-            let (mut waypoints, intervals) = self.program(&leg, &motion);
+        let bowed = (self.bowed(leg), self.intervals(&leg));
+        let motions = [(free.profile, free.intervals), bowed].into_iter();
+        for (motion, intervals) in motions.filter(|(motion, _)| motion.duration() > 0.0) {
+            let mut waypoints = self.program(&leg, &motion, &intervals);
             waypoints[0].price = begin.as_ref().map(|price| -price);
             waypoints[1].price.clone_from(&end);
             self.legs.count_solve();

@@ -31,7 +31,7 @@ pub(super) fn stored_segment(flown: &Flown) -> StoredSegment {
 }
 
 /// The flight of a stored segment, as it was solved; `None` when its numbers do not fit together.
-pub(super) fn recalled_segment(stored: StoredSegment, intervals: usize) -> Option<Flown> {
+pub(super) fn recalled_segment(stored: StoredSegment, intervals: Vec<usize>) -> Option<Flown> {
     let (wheels, lengths) = (stored.wheel_momenta_nms, stored.lengths_s);
     let prices = stored.passing_prices_s_per_nms.into_iter();
     Some(Flown {
@@ -45,7 +45,7 @@ pub(super) fn recalled(
     attitudes_xyzw: &[[f64; 4]],
     wheel_momenta_nms: Vec<Vec<f64>>,
     lengths_s: Vec<f64>,
-    intervals: usize,
+    intervals: Vec<usize>,
 ) -> Option<Flown> {
     let attitudes: Option<Vec<_>> = attitudes_xyzw
         .iter()
@@ -57,13 +57,14 @@ pub(super) fn recalled(
         wheels: wheels.collect(),
         lengths: lengths_s,
     };
-    let nodes = intervals + 1;
-    let fits = profile.attitudes.len() == nodes
-        && profile.wheels.len() == nodes
-        && profile.intervals() == intervals;
+    let all: usize = intervals.iter().sum();
+    let fits = profile.attitudes.len() == all + 1
+        && profile.wheels.len() == all + 1
+        && profile.intervals() == all;
     fits.then_some(Flown {
         status: NlpStatus::Converged,
         profile,
+        intervals,
         iterations: 0,
         infeasibility: 0.0,
         passing_prices: Vec::new(),

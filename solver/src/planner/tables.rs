@@ -53,6 +53,7 @@ impl TabledLeg {
         }
         Flown {
             profile,
+            intervals: solution.intervals.clone(),
             passing_prices: Vec::new(),
             ..*solution
         }
@@ -73,7 +74,8 @@ pub(super) type CertifiedTable = Table<CertifiedLeg>;
 impl LegTable {
     /// Minimum time of the leg between two places, s, where it is solved.
     pub(super) fn duration(&self, from: Place, to: Place) -> Option<f64> {
-        self.get(from, to).and_then(|leg| leg.leg.flown.duration())
+        self.get(from, to)
+            .and_then(|leg| leg.leg.flown.least_duration())
     }
 }
 

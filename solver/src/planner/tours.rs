@@ -12,6 +12,7 @@ use super::legs::LegSolver;
 use super::places::Places;
 use super::recall::{recalled_segment, stored_segment};
 use super::segments::Segments;
+use super::starts::Start;
 use super::tables::{CertifiedTable, LegTable};
 use crate::legs::LegKind;
 use crate::multiphase::{Flown, fly, fly_on, fly_rolling, polish};
@@ -19,24 +20,10 @@ use crate::nlp::NlpStatus;
 use crate::order_rules::OrderRules;
 use crate::profile::Profile;
 use crate::sequence::{Evaluation, Place, Price, TourEvaluation, TourModel};
-use crate::slew::eigenaxis::Side;
 use crate::stop::StopSignal;
 use crate::transcription::Waypoint;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
-
-/// What a segment starts from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Start {
-    /// The flight without the last leg.
-    Shorter,
-    /// Slews about the eigenaxis.
-    Eigenaxes,
-    /// Extremals of the kinematic problem.
-    Extremals,
-    /// Legs from rest to rest: where all of it admits rest, that is a flight already.
-    AtRest,
-}
 
 /// The starts of a segment, and how many are tried when all goes well: a short segment has local
 /// minima that longer ones inherit. A tour is a piece of itself, and is flown from rest to rest where
@@ -100,9 +87,13 @@ impl<'a> Tours<'a> {
         self.free.get()
     }
 
-    /// Intervals of every leg.
-    pub(super) fn intervals(&self) -> usize {
-        self.places.resolution.intervals
+    /// Intervals of every leg of a route.
+    pub(super) fn intervals(&self, route: &[Place]) -> Vec<usize> {
+        let legs = route.windows(2).map(|leg| {
+            let ends = [leg[0], leg[1]].map(|place| self.places.waypoint(place));
+            self.places.slew(&ends[0], &ends[1]).intervals()
+        });
+        legs.collect()
     }
 
     /// The segments of a whole route, each solved; shorter than the route when one did not converge
@@ -150,9 +141,9 @@ impl<'a> Tours<'a> {
                 _ => extent,
             };
             let solved = self.segment(segment, extent);
-            let status = solved.status;
+            let flies = solved.duration().is_some();
             flown.push(solved);
-            if status != NlpStatus::Converged {
+            if !flies {
                 break;
             }
         }
@@ -174,7 +165,7 @@ impl<'a> Tours<'a> {
     }
 
     /// The flight of a segment: of a whole tour the one that it has as a piece, if there is one.
-    fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
+    pub(super) fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
         }
@@ -198,13 +189,14 @@ impl<'a> Tours<'a> {
     /// A segment that an earlier attempt at the same scenario has solved, or else solved now.
     fn recall_or_solve(&self, segment: &Segment) -> Flown {
         let (store, name) = (self.legs.segments(), segment.name());
-        let intervals = self.intervals() * (segment.route.len() - 1);
+        let intervals = self.intervals(&segment.route);
         let known = store.get(&name);
         let known = known.and_then(|known| recalled_segment(known, intervals));
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(segment);
             // When stopped perhaps not all starts have been tried.
-            if fresh.duration().is_some() && !self.stop.is_set() {
+            let usual = fresh.intervals == self.intervals(&segment.route);
+            if fresh.status == NlpStatus::Converged && usual && !self.stop.is_set() {
                 store.put(&name, stored_segment(&fresh));
             }
             fresh
@@ -225,7 +217,7 @@ impl<'a> Tours<'a> {
     /// stricter one, and is never shorter than a flight that does so once. A program with both would
     /// have a leg of no length, which no torque can change.
     fn solve_segment(&self, segment: &Segment) -> Flown {
-        let (route, intervals) = (&segment.route, self.intervals());
+        let route = &segment.route;
         let mut distinct: Vec<Place> = Vec::new();
         // The legs that lead to them, and those that lead nowhere.
         let mut legs: Vec<Option<usize>> = Vec::new();
@@ -258,7 +250,10 @@ impl<'a> Tours<'a> {
             // All of them at one place: the leg itself is the first pause.
             let first = usize::from(distinct.len() == 1);
             for leg in &pauses[first..] {
-                flown.profile.pause_at(leg * intervals, intervals);
+                let intervals = self.places.resolution.intervals;
+                let node = flown.intervals[..*leg].iter().sum();
+                flown.profile.pause_at(node, intervals);
+                flown.intervals.insert(*leg, intervals);
             }
         }
         flown
@@ -286,7 +281,8 @@ impl<'a> Tours<'a> {
         }
         if self.places.resolution.polished {
             let dynamics = &self.places.dynamics;
-            let (waypoints, intervals) = self.program(route, &best.profile);
+            let intervals = best.intervals.clone();
+            let waypoints = self.program(route, &best.profile, &intervals);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
                 interruption(self.stop)
             });
@@ -295,12 +291,12 @@ impl<'a> Tours<'a> {
     }
 
     fn solve_from(&self, route: &[Place], start: Start) -> Flown {
-        let Some(guess) = self.guess(route, start) else {
+        let Some((guess, intervals)) = self.guess(route, start) else {
             return Flown::nowhere();
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
-        let (waypoints, intervals) = self.program(route, &guess);
+        let waypoints = self.program(route, &guess, &intervals);
         let fly = match start {
             Start::Shorter => fly_on,
             Start::Eigenaxes => fly_rolling,
@@ -312,8 +308,9 @@ impl<'a> Tours<'a> {
         let failed = flown.duration().is_none() && !flown.status.is_interrupted();
         if start == Start::AtRest && failed && self.admits_rest(route) {
             return Flown {
-                status: NlpStatus::Converged,
+                status: NlpStatus::Constructed,
                 profile: guess,
+                intervals,
                 passing_prices: Vec::new(),
                 ..flown
             };
@@ -321,55 +318,24 @@ impl<'a> Tours<'a> {
         flown
     }
 
-    /// Whether a route may be flown from rest to rest at all of its places.
-    fn admits_rest(&self, route: &[Place]) -> bool {
-        route.windows(2).all(|pair| {
-            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-            self.places.slew(&from, &to).begins_and_ends_at_rest()
-        })
-    }
-
-    /// A motion to start a segment from: legs joined end to end. `None` where there is none.
-    fn guess(&self, route: &[Place], start: Start) -> Option<Profile> {
-        if let (Start::Shorter, [before @ .., _]) = (start, route) {
-            let shorter = self.segment(before, Extent::Beginning);
-            shorter.duration()?;
-            let mut guess = shorter.profile.clone();
-            guess.append(&self.guess(&route[before.len() - 1..], Start::Eigenaxes)?);
-            return Some(guess);
-        }
-        let mut guess = Profile::empty();
-        for pair in route.windows(2) {
-            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-            let slew = self.places.slew(&from, &to);
-            let bowed = || slew.bowed(Side::Near);
-            guess.append(&match start {
-                Start::Shorter | Start::Eigenaxes => bowed(),
-                Start::Extremals => slew.extremal().unwrap_or_else(|| slew.bowed(Side::Far)),
-                Start::AtRest => {
-                    let leg = self.legs.lone(LegKind::RestToRest, pair[0], pair[1]);
-                    leg.duration()?;
-                    leg.profile
-                }
-            });
-        }
-        Some(guess)
-    }
-
-    /// The waypoints of a route, with the signs at which a motion passes them, and the intervals
-    /// between them.
-    pub(super) fn program(&self, route: &[Place], motion: &Profile) -> (Vec<Waypoint>, Vec<usize>) {
+    /// The waypoints of a route, with the signs at which a motion of so many intervals between them
+    /// passes them.
+    pub(super) fn program(
+        &self,
+        route: &[Place],
+        motion: &Profile,
+        intervals: &[usize],
+    ) -> Vec<Waypoint> {
         let signed = |(i, place): (usize, &Place)| {
             let mut waypoint = self.places.waypoint(*place);
             if i > 0
-                && let Some(there) = motion.attitudes.get(i * self.intervals())
+                && let Some(there) = motion.attitudes.get(intervals[..i].iter().sum::<usize>())
             {
                 waypoint.attitude = self.places.arrival.signed(&waypoint.attitude, there);
             }
             waypoint
         };
-        let waypoints = route.iter().enumerate().map(signed).collect();
-        (waypoints, vec![self.intervals(); route.len() - 1])
+        route.iter().enumerate().map(signed).collect()
     }
 
     /// Whether a leg flown backwards is the leg between its ends exchanged.
@@ -390,8 +356,14 @@ impl<'a> Tours<'a> {
         Ok(total)
     }
 
-    /// The duration as a bound.
+    /// The duration as a bound, which a flight that is no minimum does not give.
     fn evaluation(&self, route: &[Place], segments: &[Arc<Flown>]) -> Evaluation {
+        if segments
+            .iter()
+            .any(|flown| flown.status == NlpStatus::Constructed)
+        {
+            return Evaluation::Unresolved;
+        }
         match self.duration(route, segments) {
             Ok(duration) => Evaluation::Value(duration),
             Err(status) if status.is_interrupted() => Evaluation::Stopped,

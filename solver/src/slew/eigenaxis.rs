@@ -71,6 +71,12 @@ impl Trapezoid {
         }
     }
 
+    /// Durations of its ramps and of the coast between them, s.
+    pub(crate) fn parts(&self) -> [f64; 3] {
+        let coast = (self.duration - 2.0 * self.ramp).max(0.0);
+        [self.ramp, coast, self.ramp]
+    }
+
     /// One of the same angle, which may be zero, that takes this long without a coast.
     fn lasting(angle: f64, duration: f64) -> Self {
         Self {

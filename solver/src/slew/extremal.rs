@@ -111,7 +111,7 @@ impl Ramped {
 
     /// The motion at its nodes.
     fn sampled(&self, slew: &SlewProblem<'_>) -> Profile {
-        let times = self.node_times(slew.resolution.intervals);
+        let times = self.node_times(slew.intervals());
         let mut profile = Profile::empty();
         for time in &times {
             let rate = (self.turned(*time) - self.turned(time - self.ramp)) / self.ramp;

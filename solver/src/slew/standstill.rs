@@ -31,7 +31,8 @@ pub(super) fn standstill(slew: &SlewProblem<'_>) -> Option<Flown> {
         || slew.dynamics.speed_usage(&rate, &wheels) <= 1.0;
     (within && ends.iter().all(met)).then(|| Flown {
         status: NlpStatus::Converged,
-        profile: Profile::standstill(slew.from.attitude, wheels, slew.resolution.intervals),
+        profile: Profile::standstill(slew.from.attitude, wheels, slew.intervals()),
+        intervals: vec![slew.intervals()],
         iterations: 0,
         infeasibility: 0.0,
         passing_prices: Vec::new(),

@@ -1,5 +1,7 @@
 //! Slews with known answers.
 
+mod steered;
+
 use super::*;
 use crate::attitude::Attitude;
 use crate::scenario::{RateCondition, Scenario};
@@ -128,7 +130,8 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
     let eigenaxis = slew.eigenaxis();
     let failed = Flown {
         status: NlpStatus::IterationLimit,
-        profile: eigenaxis.exact(&dynamics, slew.resolution.intervals),
+        profile: eigenaxis.exact(&dynamics, slew.intervals()),
+        intervals: vec![slew.intervals()],
         iterations: 0,
         infeasibility: 1.0,
         passing_prices: Vec::new(),

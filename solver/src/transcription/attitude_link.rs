@@ -19,20 +19,24 @@ use crate::nlp::{Link, LinkModel};
 use nalgebra::{Matrix3, Vector3};
 
 /// What the derivatives of one link are made of.
-struct LinkTerms<'a> {
+pub(super) struct LinkTerms<'a> {
     /// Length of the interval.
-    tau: f64,
+    pub(super) tau: f64,
     /// Minus the rate that the wheels make, at the beginning and at the end, per unit of time.
-    begin: Vector3<f64>,
-    end: Vector3<f64>,
+    pub(super) begin: Vector3<f64>,
+    pub(super) end: Vector3<f64>,
     /// `ts R(q)^T H`.
-    momentum: Vector3<f64>,
+    pub(super) momentum: Vector3<f64>,
     /// Slopes of the gap, three numbers, by the turn's inputs.
     slopes: [Matrix3<f64>; 3],
     /// Mixed second derivatives: rows an attitude step, columns an input.
     mixed: [Matrix3<f64>; 3],
     /// Gradient of the weighted turn by its inputs.
     gradient: [Vector3<f64>; 3],
+    /// Slopes of the rate in the middle by the turn's inputs.
+    pub(super) middle: [Matrix3<f64>; 3],
+    /// That rate, where it is limited.
+    pub(super) middle_rate: Vector3<f64>,
     turn: &'a TurnDerivatives,
 }
 
@@ -75,13 +79,28 @@ impl Transcription {
     }
 
     /// Writes the attitude rows of the link Jacobian and the link's share of the Hessian.
-    pub(crate) fn write_attitude_link(&self, link: &Link<'_>, lambda: &[f64], out: &mut LinkModel) {
+    ///
+    /// `first` is the first of the rows of the rates in the middle, if they are to be written too.
+    pub(crate) fn write_attitude_link(
+        &self,
+        link: &Link<'_>,
+        lambda: &[f64],
+        (first, z): (usize, &[f64]),
+        out: &mut LinkModel,
+    ) {
         let angle = self.scales.angle;
         let relative = relative_attitude(link);
         let covector = Vector3::new(lambda[0], lambda[1], lambda[2]) * (2.0 / angle);
         let mu = product(&conjugate(&relative), &quat(&covector, 0.0));
-        let turn = self.corrected_turn(link, &mu);
-        let terms = self.terms(link, &relative, &mu, &turn);
+        let rate = if z.is_empty() {
+            Vector3::zeros()
+        } else {
+            self.middle_rate(link)
+        };
+        let pull = self.middle_pull(&rate, z);
+        let turn = self.corrected_turn(link, &mu, &pull);
+        let mut terms = self.terms(link, &relative, (&mu, &pull), &turn);
+        terms.middle_rate = rate;
         for column in 0..3 {
             // The unit of the step cancels the unit of the gap.
             let unit = quat(&Vector3::ith(column, 1.0), 0.0);
@@ -94,6 +113,7 @@ impl Transcription {
         self.add_wheel_curvature(&terms, out);
         if self.dynamics.has_momentum() {
             self.add_momentum_terms(&terms, out);
+            self.write_middle_rows(&terms, (link.node, first), z, out);
         }
         let bend = -0.25 * angle * angle * dot4(&mu, &turn.turn);
         add_attitude_block(out, &(Matrix3::identity() * bend));
@@ -103,7 +123,7 @@ impl Transcription {
         &self,
         link: &Link<'_>,
         relative: &Quat,
-        mu: &Quat,
+        (mu, pull): (&Quat, &Vector3<f64>),
         turn: &'a TurnDerivatives,
     ) -> LinkTerms<'a> {
         let factor = 2.0 / self.scales.angle;
@@ -121,6 +141,8 @@ impl Transcription {
             slopes: [Matrix3::zeros(); 3],
             mixed: [Matrix3::zeros(); 3],
             gradient: [Vector3::zeros(); 3],
+            middle: [Matrix3::zeros(); 3],
+            middle_rate: Vector3::zeros(),
             turn,
         };
         terms.end = terms.begin;
@@ -137,16 +159,19 @@ impl Transcription {
             for row in 0..3 {
                 terms.mixed[input][(row, axis)] = dot4(&half_units[row], first);
             }
-            terms.gradient[input][axis] = dot4(mu, first);
+            let middle = &turn.middle[j];
+            terms.middle[input].set_column(axis, middle);
+            terms.gradient[input][axis] = dot4(mu, first) + middle.dot(pull);
         }
         terms
     }
 
     /// The turn with its correction `e` and derivatives; `mu . (d p e) = (mu e*) . (d p)`.
-    fn corrected_turn(&self, link: &Link<'_>, mu: &Quat) -> TurnDerivatives {
+    fn corrected_turn(&self, link: &Link<'_>, mu: &Quat, pull: &Vector3<f64>) -> TurnDerivatives {
         let correction = &self.corrections[link.node];
         let pulled = product(mu, &conjugate(correction));
-        let mut turn = self.turn_map.derivatives(&self.turn_inputs(link), &pulled);
+        let inputs = self.turn_inputs(link);
+        let mut turn = self.turn_map.derivatives(&inputs, &pulled, pull);
         turn.turn = product(&turn.turn, correction);
         for first in turn.first.iter_mut().take(self.turn_map.inputs()) {
             *first = product(first, correction);

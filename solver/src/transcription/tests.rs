@@ -78,7 +78,11 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
     // Larger than any that a solution needs.
     let correction = Attitude::from_rotation_vector(Vector3::new(0.01, -0.02, 0.015));
     chain.corrections.fill(correction.xyzw());
-    chain.draw_lengths_to(&Iterate::cold(Vec::new(), [0.6; 10].into()), 0.3);
+    let penalty = ControlPenalty {
+        length: 0.3,
+        change: 0.2,
+    };
+    chain.draw_controls_to(&Iterate::cold(Vec::new(), [0.6; 10].into()), penalty);
     chain
 }
 

@@ -99,8 +99,15 @@ impl Program {
     }
 
     /// Pulls the derivatives of the attitude link back; `base` has them in its own variables.
-    fn pull_back(&self, base: &LinkModel, weights: &[f64], link: &Link<'_>, out: &mut LinkModel) {
+    fn pull_back(
+        &self,
+        base: &LinkModel,
+        (weights, z): (&[f64], &[f64]),
+        link: &Link<'_>,
+        out: &mut LinkModel,
+    ) {
         let locals = self.base_locals(link);
+        let middle = self.middle_rows_at(link.node);
         for (a, local) in locals.iter().enumerate() {
             let mut weighted = 0.0;
             for row in 0..3 {
@@ -108,6 +115,13 @@ impl Program {
                 weighted += weights[row] * slope;
                 for (at, c) in &local.gradient {
                     out.link_jacobian[row * out.vars + at] += slope * c;
+                }
+            }
+            for (row, z) in z.iter().enumerate() {
+                let slope = base.inequality_jacobian[row * base.vars + a];
+                weighted -= z * slope;
+                for (at, c) in &local.gradient {
+                    out.inequality_jacobian[(middle + row) * out.vars + at] += slope * c;
                 }
             }
             for (i, j, bend) in &local.hessian {
@@ -262,6 +276,11 @@ impl Chain for Program {
             let base = self.base_link(link);
             let gap = self.base.attitude_gap(&base.link(link, self.shape.wheels));
             out.gap[..3].copy_from_slice(gap.as_slice());
+            let middle = &mut out.inequality[self.middle_rows_at(link.node)..];
+            let base = base.link(link, self.shape.wheels);
+            for (out, margin) in middle.iter_mut().zip(self.base.middle_margins(&base)) {
+                *out = margin;
+            }
             for (gap, next) in out.gap[3..].iter_mut().zip(&link.next[4..]) {
                 *gap = -next;
             }
@@ -302,9 +321,10 @@ impl Chain for Program {
             let mut base = LinkModel::for_node(&self.base, link.node);
             let inner = self.base_link(link);
             let inner = inner.link(link, self.shape.wheels);
+            let z = &duals.inequality[self.middle_rows_at(link.node)..];
             self.base
-                .write_attitude_link(&inner, &duals.gap[..3], &mut base);
-            self.pull_back(&base, duals.gap, link, out);
+                .write_attitude_link(&inner, &duals.gap[..3], (0, z), &mut base);
+            self.pull_back(&base, (&duals.gap[..3], z), link, out);
             if let Some(at) = self
                 .shape
                 .length_variable()

@@ -1,7 +1,8 @@
 //! The list of a program's terms: which wheel adds what to the cost, the links and the limits.
 //!
 //! Inequalities of a node come in this order: the conditions on the state, those of each wheel
-//! (torque, then energy against its slack), the length or the budget, the slacks.
+//! (torque, then energy against its slack), the length or the budget, the slacks, the rates in the
+//! middle.
 
 use super::{Place, Program, Term};
 use crate::manoeuvre::jet::Jet;
@@ -98,6 +99,16 @@ impl Program {
 
     /// Number of inequalities of a node and its interval.
     pub(super) fn rows(&self, node: usize) -> usize {
+        let middle = if node == self.base.intervals() {
+            0
+        } else {
+            self.base.middle_limits()
+        };
+        self.middle_rows_at(node) + middle
+    }
+
+    /// Where the rows of the rates in the middle of an interval begin.
+    pub(super) fn middle_rows_at(&self, node: usize) -> usize {
         let plain = if node == self.base.intervals() {
             usize::from(self.ingredients.budget.is_some())
         } else {

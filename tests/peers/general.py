@@ -64,8 +64,8 @@ class Craft:
 class Model:
     """The nonlinear program of slews of one spacecraft from rest to rest."""
 
-    def __init__(self, craft, angle):
-        self.craft, count = craft, len(craft.spin)
+    def __init__(self, craft, angle, intervals=INTERVALS):
+        self.craft, count, self.intervals = craft, len(craft.spin), intervals
         self.time, self.rate = craft.units(angle)
         self.momentum = craft.spin * craft.speed
         step = self.integrator(count)
@@ -80,12 +80,12 @@ class Model:
             most.extend(np.broadcast_to(upper, value.shape[0]))
 
         state = start
-        for k in range(INTERVALS):
+        for k in range(intervals):
             torque = ca.MX.sym(f"torque{k}", count)
             variables.append(torque)
             low += [-1.0] * count
             high += [1.0] * count
-            arrived = step(state, torque, duration / INTERVALS)
+            arrived = step(state, torque, duration / intervals)
             state = ca.MX.sym(f"state{k}", 7 + count)
             variables.append(state)
             caps = craft.caps / self.rate
@@ -142,10 +142,10 @@ class Model:
         along = craft.axes.T @ (state[4:7] * self.rate)
         return (state[7:] * self.momentum / craft.spin - along) / craft.speed
 
-    def best(self, start, goal, angle, generator):
+    def best(self, start, goal, angle, generator, starts=STARTS):
         """Shortest duration, s, of all starts; none when no start converges."""
         found = []
-        for attempt in range(STARTS):
+        for attempt in range(starts):
             wild = 0.12 * attempt
             # Every other disturbed start of a long slew goes the other way round.
             toward = -goal if attempt in (2, 4) and angle > 2.0 else goal
@@ -161,8 +161,8 @@ class Model:
         cosine = np.clip(from_q @ goal, -1.0, 1.0)
         arc = np.arccos(cosine)
         guess = [1.0]
-        for k in range(1, INTERVALS + 1):
-            share = k / INTERVALS
+        for k in range(1, self.intervals + 1):
+            share = k / self.intervals
             if arc < 1e-9:
                 q = goal.copy()
             else:
@@ -181,18 +181,25 @@ def quaternion(attitude):
     return q / np.linalg.norm(q)
 
 
-def by_peer(leg):
+def posed(leg, intervals=INTERVALS):
+    """The program of a leg, and what its solver is asked: start, goal, angle."""
     craft = Craft(leg["spacecraft"])
     start, goal = quaternion(leg["start"]["attitude"]), quaternion(leg["targets"][0]["attitude"])
     goal = goal if start @ goal >= 0 else -goal
     # The vector part is exact where the arc cosine of the scalar product is not.
     turn = np.array(product(conjugate(ca.DM(start)), ca.DM(goal))).ravel()
     angle = 2 * np.arctan2(np.linalg.norm(turn[:3]), turn[3])
-    model = Model(craft, angle)
+    model = Model(craft, angle, intervals)
     speeds = np.array(leg["start"]["wheel_speed_rad_s"])
     state = np.concatenate([start, np.zeros(3), craft.spin * speeds / model.momentum])
+    return model, (state, goal, angle)
+
+
+def by_peer(leg, intervals=INTERVALS, starts=STARTS):
+    """Shortest duration, s, and the time of all starts, s."""
+    model, asked = posed(leg, intervals)
     begin = time.perf_counter()
-    duration = model.best(state, goal, angle, np.random.default_rng(0))
+    duration = model.best(*asked, np.random.default_rng(0), starts)
     return duration, time.perf_counter() - begin
 
 

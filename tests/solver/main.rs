@@ -11,6 +11,7 @@ mod invariance;
 mod offered;
 mod oracle;
 mod order_rules;
+mod ordinary;
 mod published;
 mod pyramid;
 mod random_suite;

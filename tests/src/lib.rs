@@ -6,6 +6,7 @@
 
 pub mod motions;
 pub mod orders;
+pub mod ordinary;
 pub mod random;
 pub mod schedules;
 pub mod solving;

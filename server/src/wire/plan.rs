@@ -31,6 +31,10 @@ pub(crate) struct PlanDocument<'a> {
     /// `certified_lower_bound_s` of legs through all targets, with settle and dwell. `null` where no
     /// leg has such a bound.
     certified_lower_bound_s: Option<Number>,
+    /// The largest share of a leg's `duration_s` that lies above its `certified_lower_bound_s`, 1 where
+    /// a leg has no such bound. `optimal` assumes that slews were solved globally: this is how much of
+    /// a leg a better solution might save at most.
+    largest_open_share: Option<Number>,
     sequence: Vec<&'a str>,
     alternatives: Vec<AlternativeDocument<'a>>,
     legs: Vec<LegDocument<'a>>,
@@ -116,6 +120,7 @@ fn planned(plan: &Plan) -> PlanDocument<'_> {
         relative_gap: Some(Number(plan.relative_gap)),
         lower_bound_kind: Some(plan.lower_bound_kind.as_str()),
         certified_lower_bound_s: plan.certified_lower_bound_s.map(Number),
+        largest_open_share: plan.largest_open_share().map(Number),
         sequence: flight
             .passages
             .iter()

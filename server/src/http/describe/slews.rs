@@ -149,7 +149,7 @@ enum Measure {
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 #[expect(dead_code, reason = "only describes the input")]
 enum SlewCommand {
-    /// Constant on intervals of any length.
+    /// Constant on intervals of any length; more of them where momentum turns under a rate limit.
     Free {
         #[schema(required = false, minimum = 2)]
         intervals: Option<u32>,

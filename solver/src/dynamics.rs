@@ -192,6 +192,9 @@ impl Dynamics {
     /// small angle, relative to the limit and per eighth of the angle's square: the stored momentum
     /// turns in body axes. The largest of all limits that can be reached; zero where there is none.
     pub(crate) fn straying(&self) -> f64 {
+        if !self.has_momentum() {
+            return 0.0;
+        }
         let reachable = self.reachable_rates();
         let by_axis = (0..3).filter(|axis| self.max_rate[*axis] <= reachable[*axis]);
         let by_axis =

@@ -55,7 +55,8 @@ pub(crate) struct TurnDerivatives {
     pub(crate) first: [Quat; INPUTS],
     /// `sum_i mu_i d2 p_i / dz dz` and the same of the rate in the middle, both triangles.
     pub(crate) second: [[f64; INPUTS]; INPUTS],
-    /// The rate inside the interval; zero without momentum, where rates are linear.
+    /// Derivatives of the rate in the middle of the interval, times its length; zero without
+    /// momentum, where rates are linear.
     pub(crate) middle: [Vector3<f64>; INPUTS],
 }
 
@@ -150,8 +151,8 @@ impl TurnMap {
         }
     }
 
-    /// The turn with derivatives, and the rate in the middle with momentum; the second ones weighted by `mu`
-    /// and `pull`.
+    /// The turn with derivatives, and with momentum those of the rate in the middle; the second ones
+    /// weighted by `mu` and `pull`.
     pub(crate) fn derivatives(
         &self,
         z: &TurnInputs,

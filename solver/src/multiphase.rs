@@ -40,9 +40,9 @@ const FROM_A_GUESS: [Phase; 2] = [
         penalty: ControlPenalty::of_lengths(0.02),
     },
 ];
-/// The same with momentum under a rate limit: there are more intervals than switches, so a torque may move from one to
-/// its neighbour at no cost. Penalties that settle it save a third of the iterations for less than
-/// 1e-5 of the duration (measured on 40 slews with rate limits).
+/// The same with momentum under a rate limit: there are more intervals than switches, so a torque
+/// may move from one to its neighbour at no cost. Penalties that settle it save a third of the
+/// iterations for less than 1e-5 of the duration (measured on 40 slews with rate limits).
 const ALONG_LIMITS: [Phase; 2] = [
     ROUGHLY,
     Phase {

@@ -191,11 +191,11 @@ impl<'a> Tours<'a> {
         let (store, name) = (self.legs.segments(), segment.name());
         let intervals = self.intervals(&segment.route);
         let known = store.get(&name);
-        let known = known.and_then(|known| recalled_segment(known, intervals));
+        let known = known.and_then(|known| recalled_segment(known, intervals.clone()));
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(segment);
             // When stopped perhaps not all starts have been tried.
-            let usual = fresh.intervals == self.intervals(&segment.route);
+            let usual = fresh.intervals == intervals;
             if fresh.status == NlpStatus::Converged && usual && !self.stop.is_set() {
                 store.put(&name, stored_segment(&fresh));
             }

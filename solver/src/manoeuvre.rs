@@ -67,6 +67,9 @@ const BUDGET_ROUNDS: usize = 8;
 const BUDGET_ACCURACY: f64 = 1e-5;
 /// Relative excess over an energy that is no failure.
 const BUDGET_TOLERANCE: f64 = 1e-4;
+/// Shares of effort in the objectives of programs that lead to the fastest motion where it is not
+/// found directly.
+const EFFORT_SHARES: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 /// What came of a manoeuvre.
 #[derive(Debug, Clone)]
@@ -217,12 +220,26 @@ impl Plain {
             measure: Measure::Proxy,
             ..self.ingredients
         };
-        billed.then(|| Self {
+        billed.then(|| self.with(manoeuvre, ingredients))
+    }
+
+    /// The same program where effort counts too, this share of what time counts for on a motion.
+    fn with_effort(&self, manoeuvre: &Manoeuvre, share: f64, motion: &Motion) -> Self {
+        let ingredients = Ingredients {
+            effort: share * motion.duration() / flown::effort(motion),
+            ..self.ingredients
+        };
+        self.with(manoeuvre, ingredients)
+    }
+
+    /// The same program with other ingredients.
+    fn with(&self, manoeuvre: &Manoeuvre, ingredients: Ingredients) -> Self {
+        Self {
             shape: manoeuvre.shape(self.shape.course, self.shape.lengths.clone(), &ingredients),
             ingredients,
             intervals: self.intervals,
             lasting: self.lasting,
-        })
+        }
     }
 
     /// A guess on the nodes of the program.
@@ -281,10 +298,19 @@ fn direct(
             .into_iter()
             .collect();
         guesses.extend(starts::of(manoeuvre, plain.ingredients, stop));
-        for guess in guesses {
-            attempt(&guess);
+        let mut found = false;
+        for guess in &guesses {
+            found |= attempt(guess);
             if stop().is_some() {
                 break;
+            }
+        }
+        if !found && plain.ingredients.hurries() && stop().is_none() {
+            let gentle = eased(manoeuvre, plain, &guesses[0], stop);
+            if let Some(gentle) = gentle
+                && !attempt(&gentle.motion)
+            {
+                best = Some(gentle);
             }
         }
     }
@@ -295,6 +321,29 @@ fn direct(
         continuous_time: None,
         refusal: None,
     }
+}
+
+/// The fastest motion as the limit of programs in which effort counts less and less: where only time
+/// counts, some torques may make no difference, and effort tells them apart. The last program that
+/// converges takes longer than the fastest motion by its share of effort at most.
+fn eased(
+    manoeuvre: &Manoeuvre,
+    plain: &Plain,
+    guess: &Motion,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Option<Solved> {
+    let mut last: Option<Solved> = None;
+    for share in EFFORT_SHARES {
+        let from = last.as_ref().map_or(guess, |last| &last.motion);
+        let gentle = plain.with_effort(manoeuvre, share, guess);
+        let solved = direct(manoeuvre, &gentle, Some(from), stop).solved;
+        if !solved.converged() {
+            break;
+        }
+        let cost = solved.motion.duration();
+        last = Some(Solved { cost, ..solved });
+    }
+    last
 }
 
 /// Solves for the time with a bill: the program's own bill is a little low, so that its budget is

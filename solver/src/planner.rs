@@ -304,7 +304,7 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .filter_map(|(from, to)| {
             let leg = &tours.free()?.get(from, to)?.leg;
             leg.flown.duration().is_none().then(|| {
-                let message = format!(
+                let mut message = format!(
                     "the slew from {} to {} ended with status {} after {} iterations, its \
                      conditions violated by {:.1e} (scaled)",
                     tours.places.name(from),
@@ -313,6 +313,7 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
                     leg.flown.iterations,
                     leg.flown.infeasibility,
                 );
+                message.extend(unheld(tours, from, to));
                 Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)
             })
         })
@@ -327,6 +328,20 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         ));
     }
     problems
+}
+
+/// Where on the way between two places the wheels cannot hold the momentum, as the end of a sentence.
+fn unheld(tours: &Tours<'_>, from: Place, to: Place) -> Option<String> {
+    let [from, to] = [from, to].map(|place| tours.places.waypoint(place));
+    let unheld = tours.places.slew(&from, &to).unheld()?;
+    let [x, y, z, w] = unheld.attitude.xyzw();
+    Some(format!(
+        "; about the eigenaxis, at rest, the wheels cannot hold the momentum from {:.1} to {:.1} of \
+         {:.1} degrees, as at the attitude ({x:.4}, {y:.4}, {z:.4}, {w:.4})",
+        unheld.part.start().to_degrees(),
+        unheld.part.end().to_degrees(),
+        unheld.turn.to_degrees(),
+    ))
 }
 
 const SLEW_HINT: &str =

@@ -156,3 +156,23 @@ fn a_slew_that_no_motion_was_found_for_is_named_with_its_place() {
         assert!(problem.message.contains("iterations"), "{problem:?}");
     }
 }
+
+#[test]
+fn attitudes_on_the_way_that_the_wheels_cannot_hold_are_named() {
+    let mut spec = visits([target("beyond", [90.0, 0.0, 0.0])]);
+    spec.start.wheel_speed_rad_s = Some(vec![650.0; 3]);
+    // So slowly the body carries little of what two wheels had to share half way there.
+    spec.spacecraft.max_body_rate_rad_s = [Some(0.002); 3];
+    let outcome = outcome_of(&spec);
+    let Outcome::Failed(problems) = outcome else {
+        panic!("{outcome:?}");
+    };
+    let [problem] = &problems[..] else {
+        panic!("{problems:?}");
+    };
+    assert_eq!(problem.code, Code::SlewNotSolved);
+    assert_eq!(problem.pointer, "/targets/0");
+    // One wheel's share is 650 (sin + cos): above 710 from 5.57 to 84.43 degrees; steps are a quarter.
+    let told = "the wheels cannot hold the momentum from 5.8 to 84.2 of 90.0 degrees";
+    assert!(problem.message.contains(told), "{}", problem.message);
+}

@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it: stored legs of another are not
 /// found.
-const VERSION: &str = "leg-6";
+const VERSION: &str = "leg-7";
 /// Turns and momenta are rounded to this many units of their own scale, far below every tolerance
 /// and far above the rounding of the caller's conversions.
 const RESOLUTION: f64 = 1e13;
@@ -89,12 +89,6 @@ impl CanonicalLeg {
             null: places.null.clone(),
             resolution: places.resolution,
         }
-    }
-
-    /// Intervals of its solution.
-    pub(super) fn intervals(&self) -> usize {
-        let turn = self.arrival.turn(&self.from.attitude, &self.to.attitude);
-        self.resolution.intervals_of(&self.dynamics, turn)
     }
 
     /// The problem to solve, with the guesses for its spacecraft.

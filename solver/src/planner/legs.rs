@@ -5,7 +5,7 @@
 
 use super::canonical::CanonicalLeg;
 use super::places::Places;
-use super::recall::{attitudes_of, momenta_of, recalled};
+use super::recall::{attitudes_of, momenta_of, recalled_leg};
 use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
 use super::verified::flies;
 use super::{Run, interruption};
@@ -231,8 +231,7 @@ impl<'a> LegSolver<'a> {
 
     /// A leg from the store.
     fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
-        let stored = self.run.legs.get(&leg.identity)?;
-        recall(stored, leg.intervals())
+        recall(self.run.legs.get(&leg.identity)?)
     }
 
     /// Solves a leg, and stores it.
@@ -346,12 +345,11 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
-fn recall(stored: StoredLeg, intervals: usize) -> Option<SolvedLeg> {
-    let flown = recalled(
+fn recall(stored: StoredLeg) -> Option<SolvedLeg> {
+    let flown = recalled_leg(
         &stored.attitudes_xyzw,
         stored.wheel_momenta_nms,
         stored.lengths_s,
-        vec![intervals],
     )?;
     Some(SolvedLeg {
         flown,

@@ -9,7 +9,7 @@ use super::all_pairs;
 use super::canonical::CanonicalLeg;
 use super::legs::{certify, end_of, stored};
 use super::places::Places;
-use super::recall::recalled;
+use super::recall::recalled_leg;
 use super::tables::SolvedLeg;
 use super::verified::{flight_faults, node_faults};
 use crate::checker::{END_SPEED_TOLERANCE, RATE_TOLERANCE};
@@ -27,6 +27,9 @@ use std::collections::HashMap;
 /// How much longer than the slew about the eigenaxis a leg may take: several times what the solver
 /// allows itself.
 const EIGENAXIS_TOLERANCE: f64 = 1e-5;
+
+/// Most intervals of a leg: ten times what ordinary ones have.
+const MOST_INTERVALS: usize = 500;
 
 /// The motion of a leg, in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone, PartialEq)]
@@ -165,12 +168,14 @@ fn motion(leg: &CanonicalLeg, offered: OfferedLeg) -> Result<Flown, Vec<String>>
     if !offered.lengths_s.iter().all(is_time) {
         faults.push("a time between nodes is negative or not finite".into());
     }
-    let intervals = leg.intervals();
-    let flown = recalled(
+    let intervals = offered.lengths_s.len();
+    if intervals > MOST_INTERVALS {
+        faults.push(format!("it has more than {MOST_INTERVALS} intervals"));
+    }
+    let flown = recalled_leg(
         &offered.attitudes_xyzw,
         offered.wheel_momenta_nms,
         offered.lengths_s,
-        vec![intervals],
     );
     if flown.is_none() {
         let nodes = intervals + 1;

@@ -40,8 +40,18 @@ pub(super) fn recalled_segment(stored: StoredSegment, intervals: Vec<usize>) -> 
     })
 }
 
+/// The flight of one leg, with as many intervals as it was solved with.
+pub(super) fn recalled_leg(
+    attitudes_xyzw: &[[f64; 4]],
+    wheel_momenta_nms: Vec<Vec<f64>>,
+    lengths_s: Vec<f64>,
+) -> Option<Flown> {
+    let intervals = vec![lengths_s.len()];
+    recalled(attitudes_xyzw, wheel_momenta_nms, lengths_s, intervals)
+}
+
 /// The flight of stored numbers, as it was solved; `None` when they do not fit together.
-pub(super) fn recalled(
+fn recalled(
     attitudes_xyzw: &[[f64; 4]],
     wheel_momenta_nms: Vec<Vec<f64>>,
     lengths_s: Vec<f64>,

@@ -8,9 +8,10 @@
 //! the momenta at their ends are, those in their middle can be chosen such that the attitude at the
 //! second end is met exactly, three equations with three unknowns.
 
+use super::SlewProblem;
 use super::centred::centred;
 use super::eigenaxis::Trapezoid;
-use super::{SlewProblem, parts_of};
+use super::resolution::parts_of;
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
 use crate::kinematics::{TurnInputs, exact_turn};

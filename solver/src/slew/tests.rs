@@ -5,7 +5,7 @@ mod steered;
 use super::*;
 use crate::attitude::Attitude;
 use crate::scenario::{RateCondition, Scenario};
-use crate::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
+use crate::spec::{Accuracy, AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
 use crate::transcription::WheelCondition;
 use nalgebra::Vector3;
 

@@ -35,7 +35,7 @@ pub(super) struct LinkTerms<'a> {
     gradient: [Vector3<f64>; 3],
     /// Slopes of the rate in the middle by the turn's inputs.
     pub(super) middle: [Matrix3<f64>; 3],
-    /// That rate, where it is limited.
+    /// That rate, where its norm is limited.
     pub(super) middle_rate: Vector3<f64>,
     turn: &'a TurnDerivatives,
 }
@@ -92,10 +92,10 @@ impl Transcription {
         let relative = relative_attitude(link);
         let covector = Vector3::new(lambda[0], lambda[1], lambda[2]) * (2.0 / angle);
         let mu = product(&conjugate(&relative), &quat(&covector, 0.0));
-        let rate = if z.is_empty() {
-            Vector3::zeros()
-        } else {
+        let rate = if self.bends_in_the_middle() {
             self.middle_rate(link)
+        } else {
+            Vector3::zeros()
         };
         let pull = self.middle_pull(&rate, z);
         let turn = self.corrected_turn(link, &mu, &pull);

@@ -89,6 +89,12 @@ impl Transcription {
         limits.map(row).chain(norm).collect()
     }
 
+    /// Whether the derivatives of rows depend on the rate.
+    pub(super) fn bends_in_the_middle(&self) -> bool {
+        let mut rows = self.middle_rows.iter();
+        rows.any(|row| matches!(row.side, Side::Norm { .. }))
+    }
+
     /// The rate in the middle of an interval, times its length, where it is limited.
     pub(super) fn middle_rate(&self, link: &Link<'_>) -> Vector3<f64> {
         if self.middle_rows.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::multiphase::keeps_limits_inside;
-use crate::spec::{StateSpec, WheelSpec};
+use crate::spec::{Accuracy, StateSpec, WheelSpec};
 use proptest::prelude::*;
 
 /// Wheels of a pyramid whose spin axes rise by this angle, rad, from a plane.

@@ -3,6 +3,7 @@
 mod certify;
 mod export;
 mod files;
+mod gallery;
 mod importing;
 mod invalid;
 mod legs;

@@ -1,14 +1,22 @@
-//! Sixty random scenarios of four to seven targets: is the order that the search proves optimal the
+//! Ninety random scenarios of four to seven targets: is the order that the search proves optimal the
 //! best of all orders, each flown by the program of the whole tour? Takes some minutes.
 //!
 //! Rate conditions of every kind and mixed, with and without stored momentum, an end, a dwell and
-//! signed quaternions. Ends with a panic at the first that is not.
+//! signed quaternions; thirty are ordinary spacecraft, with rate limits and momentum, half of them with
+//! only the z rate vanishing at targets. Ends with a panic at the first that is not.
 
-use slewplan_tests::orders::{Case, assert_search_finds_the_best_order};
+use slewplan_tests::orders::{
+    Case, assert_search_finds_the_best_of, assert_search_finds_the_best_order,
+};
+use slewplan_tests::ordinary;
 use std::time::Instant;
 
 /// How many scenarios have so many targets.
 const SIZES: [(usize, usize); 4] = [(4, 24), (5, 20), (6, 12), (7, 4)];
+
+/// The same of ordinary spacecraft, the largest wheel of which is so many times as large as the smallest.
+const ORDINARY: [(usize, usize); 3] = [(4, 14), (5, 12), (6, 4)];
+const SPREAD: f64 = 3.0;
 
 /// A mixture, and each kind alone.
 const RATE_KINDS: [Option<usize>; 5] = [None, Some(0), Some(1), Some(2), Some(3)];
@@ -30,6 +38,19 @@ fn main() {
             let begin = Instant::now();
             assert_search_finds_the_best_order(&case);
             println!("{case:?}: the same, {:.1} s", begin.elapsed().as_secs_f64());
+        }
+    }
+    for (targets, count) in ORDINARY {
+        for number in 0..count {
+            seed += 1;
+            let mut spec = ordinary::scenario(seed, targets, SPREAD);
+            for target in &mut spec.targets {
+                target.zero_rate_axes = (number % 2 == 0).then_some([false, false, true]);
+                (target.rate_min_rad_s, target.rate_max_rad_s) = (None, None);
+            }
+            let (begin, name) = (Instant::now(), spec.name.clone().unwrap_or_default());
+            assert_search_finds_the_best_of(&spec, &name);
+            println!("{name}: the same, {:.1} s", begin.elapsed().as_secs_f64());
         }
     }
 }

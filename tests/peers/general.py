@@ -7,7 +7,7 @@ classical Runge-Kutta method, limits imposed at the nodes, the best of five star
 of what slewplan does: neither free interval lengths nor the elimination of momentum.
 
     cargo build --release -p slewplan-server
-    cargo run --release -p slewplan-tests --example random_legs -- 3 > legs.jsonl
+    cargo run --release -p slewplan-tests --example scenarios -- legs > legs.jsonl
     python3 -m venv peers && peers/bin/pip install casadi numpy
     peers/bin/python tests/peers/general.py target/release/slewplan legs.jsonl
 
@@ -21,6 +21,8 @@ import time
 
 import casadi as ca
 import numpy as np
+
+from rest_to_rest import quaternion
 
 INTERVALS = 40
 STARTS = 5
@@ -43,7 +45,8 @@ class Craft:
     def __init__(self, spec):
         wheels = spec["wheels"]
         axes = np.array([w["axis"] for w in wheels], float).T
-        self.axes = axes / np.linalg.norm(axes, axis=0)
+        scaled = [w.get("normalize_axis", True) for w in wheels]
+        self.axes = axes / np.where(scaled, np.linalg.norm(axes, axis=0), 1.0)
         self.spin = np.array([w["inertia_kg_m2"] for w in wheels])
         self.torque = np.array([w["max_torque_nm"] for w in wheels])
         self.speed = np.array([w["max_speed_rad_s"] for w in wheels])
@@ -51,6 +54,7 @@ class Craft:
         self.body = self.inertia - (self.axes * self.spin) @ self.axes.T
         caps = spec.get("max_body_rate_rad_s") or [None] * 3
         self.caps = np.array([np.inf if cap is None else cap for cap in caps])
+        self.norm = spec.get("max_body_rate_norm_rad_s") or np.inf
 
     def units(self, angle):
         """Time and rate of a turn by this angle when the weakest wheel does it alone."""
@@ -93,6 +97,8 @@ class Model:
             high += [np.inf] * 4 + list(caps) + [np.inf] * count
             require(arrived - state, 0.0, 0.0)
             require(self.wheel_speed(state), -1.0, 1.0)
+            if craft.norm < np.inf:
+                require(ca.sumsqr(state[4:7]), 0.0, (craft.norm / self.rate) ** 2)
         missed = product(conjugate(goal), state[:4])
         require(missed[:3], 0.0, 0.0)
         require(missed[3], 0.0, np.inf)
@@ -174,11 +180,6 @@ class Model:
             guess.extend([0.0] * 3)
             guess.extend(start[7:])
         return guess
-
-
-def quaternion(attitude):
-    q = np.array([attitude["quaternion"][c] for c in "xyzw"], float)
-    return q / np.linalg.norm(q)
 
 
 def posed(leg, intervals=INTERVALS):

@@ -3,14 +3,15 @@
 
 Four families (three orthogonal wheels, a pyramid, four large wheels on a body of tonnes, five wheels
 in random directions), limits of 0.1 to 1 degree a second, stored momentum of 5 to 70 % of what the
-wheels hold in every direction, rest to rest. Durations are compared with the peer of general.py on
+wheels hold in every direction, rest to rest; and the spacecraft of fixtures/gallery, from their start to
+each of their targets at rest. Durations are compared with the peer of general.py on
 100 intervals, the best of three starts; the time of a leg, with all its starts and its flight, with
 one start of the peer on 40 intervals.
 
     cargo build --release
     python3 tests/peers/ordinary.py [SLEWS-PER-CASE [SHARE]]
 
-SHARE n runs every nth slew. Prints a line for each slew and the figures of all; ends with code 1 when
+SHARE n runs every nth slew of the families. Prints a line for each slew and the figures of all; ends with code 1 when
 a slew is not solved or slower than the peer by more than 0.2 %.
 """
 
@@ -27,6 +28,7 @@ environment.enter()
 
 import numpy as np  # noqa: E402
 from general import by_peer, posed  # noqa: E402
+from slewplan import FIXTURES  # noqa: E402
 
 LIMITS_DEG_S = (0.1, 0.2, 0.5, 1.0)
 MOMENTA = (0.05, 0.15, 0.3, 0.5, 0.7)
@@ -105,6 +107,15 @@ def slews(per_case):
         }
 
 
+def gallery():
+    """The slews from the start of each spacecraft of the gallery to its targets."""
+    for path in sorted((FIXTURES / "gallery").glob("*.json")):
+        scenario = json.loads(path.read_text(encoding="utf-8"))
+        for target in scenario.pop("targets"):
+            resting = {"id": target["id"], "attitude": target["attitude"]}
+            yield {**scenario, "name": f"{path.stem}, {target['id']}", "targets": [resting]}
+
+
 def by_slewplan(binary, slew):
     """The leg from start to target with free wheels at its end, as the tables of a plan have it."""
     run = subprocess.run(
@@ -120,7 +131,8 @@ def by_slewplan(binary, slew):
 def main(per_case, share):
     binary = os.environ.get("SLEWPLAN", "target/release/slewplan")
     ratios, mine_ms, peer_ms, failed = [], [], [], 0
-    for slew in itertools.islice(slews(per_case), 0, None, share):
+    families = itertools.islice(slews(per_case), 0, None, share)
+    for slew in itertools.chain(families, gallery()):
         leg = by_slewplan(binary, slew)
         peer, _ = by_peer(slew, 100, 3)
         model, asked = posed(slew)

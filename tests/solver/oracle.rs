@@ -1,7 +1,10 @@
-//! Branch and bound against all orders, flown one by one; sixty more of these cases are in the program
+//! Branch and bound against all orders, flown one by one; ninety more of these cases are in the program
 //! `order_oracle`.
 
-use slewplan_tests::orders::{Case, PLAIN, assert_search_finds_the_best_order};
+use slewplan_tests::orders::{
+    Case, PLAIN, assert_search_finds_the_best_of, assert_search_finds_the_best_order,
+};
+use slewplan_tests::ordinary;
 
 /// The same for scenarios with one kind of rate condition at every target: seed, targets, stored
 /// momentum, end.
@@ -63,4 +66,12 @@ fn the_best_order_is_found_with_signed_quaternions() {
         signed: true,
         ..PLAIN
     });
+}
+
+#[test]
+fn the_best_order_is_found_on_ordinary_spacecraft() {
+    for seed in [1, 2, 3] {
+        let spec = ordinary::scenario(seed, 4, 3.0);
+        assert_search_finds_the_best_of(&spec, &format!("ordinary {seed}"));
+    }
 }

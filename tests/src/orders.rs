@@ -68,28 +68,35 @@ fn random_spec(case: &Case) -> ScenarioSpec {
     spec
 }
 
-/// Whether the search finds the best of all orders and proves it.
+/// Whether the search finds the best of all orders of a case and proves it.
 ///
 /// # Panics
 ///
 /// When it does not, with the seed.
 pub fn assert_search_finds_the_best_order(case: &Case) {
-    let spec = random_spec(case);
-    let plan = plan_of(&spec);
-    let scenario = scenario_of(&spec);
+    assert_search_finds_the_best_of(&random_spec(case), &format!("seed {}", case.seed));
+}
+
+/// The same of a scenario.
+///
+/// # Panics
+///
+/// When it does not, with the name.
+pub fn assert_search_finds_the_best_of(spec: &ScenarioSpec, name: &str) {
+    let plan = plan_of(spec);
+    let scenario = scenario_of(spec);
     let orders = on_threads(2, |run| every_order(&scenario, run));
-    let seed = case.seed;
-    let all: usize = (1..=case.targets).product();
-    assert_eq!(orders.len(), all, "seed {seed}: orders left unsolved");
+    let all: usize = (1..=spec.targets.len()).product();
+    assert_eq!(orders.len(), all, "{name}: orders left unsolved");
     let (found, best) = (plan.total_time_s, orders[0].duration_s);
     assert!(
         agree(found, best, 1e-6),
-        "seed {seed}: the search found {found} s, all orders {best} s"
+        "{name}: the search found {found} s, all orders {best} s"
     );
-    assert_eq!(plan.optimality, Optimality::Optimal, "seed {seed}");
+    assert_eq!(plan.optimality, Optimality::Optimal, "{name}");
     assert!(
         plan.lower_bound_s <= best * (1.0 + 1e-9),
-        "seed {seed}: bound {} s above the best order, {best} s",
+        "{name}: bound {} s above the best order, {best} s",
         plan.lower_bound_s
     );
 }

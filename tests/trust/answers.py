@@ -14,7 +14,7 @@ elsewhere("N5", "inertias and attitudes that cannot be are refused", "100 %", "c
 
 def random_legs(count):
     """Scenarios of the random suite, so many of each spacecraft."""
-    lines = subprocess.run([example("random_legs"), str(count)], capture_output=True, text=True, check=True)
+    lines = subprocess.run([example("scenarios"), "legs", str(count)], capture_output=True, text=True, check=True)
     return [json.loads(line) for line in lines.stdout.splitlines()]
 
 

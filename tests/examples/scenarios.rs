@@ -1,0 +1,109 @@
+//! Prints scenarios of the random suites, one JSON document per line.
+//!
+//! ```text
+//! scenarios legs [COUNT]                            so many of each spacecraft, 3 unless given
+//! scenarios ordinary FIRST END TARGETS SPREAD       seeds from FIRST to before END
+//! ```
+
+use serde_json::{Map, Value, json};
+use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
+use slewplan_tests::ordinary;
+use slewplan_tests::suite::{SPACECRAFT, leg};
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let number = |text: &str| text.parse::<u64>().expect("a whole number");
+    match arguments[..] {
+        ["legs"] => legs(3),
+        ["legs", count] => legs(number(count)),
+        ["ordinary", first, end, targets, spread] => {
+            let targets = targets.parse().expect("a number of targets");
+            let spread = spread.parse().expect("a ratio");
+            for seed in number(first)..number(end) {
+                println!("{}", document(&ordinary::scenario(seed, targets, spread)));
+            }
+        }
+        _ => panic!("legs [COUNT] | ordinary FIRST END TARGETS SPREAD"),
+    }
+}
+
+fn legs(count: u64) {
+    for spacecraft in 0..SPACECRAFT {
+        for number in 0..count {
+            println!("{}", document(&leg(spacecraft, number)));
+        }
+    }
+}
+
+/// What the suites use of a scenario; members that are absent stay absent.
+fn document(spec: &ScenarioSpec) -> Value {
+    let start = json!({
+        "attitude": attitude(&spec.start.attitude),
+        "wheel_speed_rad_s": spec.start.wheel_speed_rad_s,
+    });
+    json!({
+        "name": spec.name,
+        "spacecraft": spacecraft(&spec.spacecraft),
+        "start": start,
+        "targets": spec.targets.iter().map(target).collect::<Vec<_>>(),
+    })
+}
+
+fn spacecraft(spec: &SpacecraftSpec) -> Value {
+    let wheels: Vec<_> = spec.wheels.iter().map(wheel).collect();
+    let members = [
+        ("inertia_kg_m2", json!(spec.inertia_kg_m2)),
+        ("max_body_rate_rad_s", json!(spec.max_body_rate_rad_s)),
+        (
+            "max_body_rate_norm_rad_s",
+            json!(spec.max_body_rate_norm_rad_s),
+        ),
+        ("wheels", json!(wheels)),
+    ];
+    object(members)
+}
+
+fn wheel(spec: &WheelSpec) -> Value {
+    object([
+        ("axis", json!(spec.axis)),
+        ("inertia_kg_m2", json!(spec.inertia_kg_m2)),
+        ("max_torque_nm", json!(spec.max_torque_nm)),
+        ("min_torque_nm", json!(spec.min_torque_nm)),
+        ("max_speed_rad_s", json!(spec.max_speed_rad_s)),
+        ("enabled", json!(spec.enabled)),
+    ])
+}
+
+fn target(spec: &TargetSpec) -> Value {
+    let stopped = spec.zero_rate_axes.map(|stopped| {
+        let named = ["x", "y", "z"].into_iter().zip(stopped);
+        named
+            .filter_map(|(axis, zero)| zero.then_some(axis))
+            .collect::<Vec<_>>()
+    });
+    object([
+        ("id", json!(spec.id)),
+        ("attitude", attitude(&spec.attitude)),
+        ("zero_rate_axes", json!(stopped)),
+        ("rate_min_rad_s", json!(spec.rate_min_rad_s)),
+        ("rate_max_rad_s", json!(spec.rate_max_rad_s)),
+    ])
+}
+
+fn attitude(spec: &AttitudeSpec) -> Value {
+    let AttitudeSpec::Quaternion([x, y, z, w]) = spec else {
+        unreachable!("attitudes of the suites are quaternions");
+    };
+    json!({"quaternion": {"x": x, "y": y, "z": z, "w": w}})
+}
+
+/// An object of the members that are not null.
+fn object<const N: usize>(members: [(&str, Value); N]) -> Value {
+    let given = members.into_iter().filter(|(_, value)| !value.is_null());
+    Value::Object(
+        given
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect::<Map<_, _>>(),
+    )
+}

@@ -7,7 +7,7 @@ use std::path::Path;
 /// The scenarios of the gallery, named as fixtures.
 fn gallery() -> Vec<String> {
     let mut names = names_in(Path::new(&fixture("gallery")));
-    names.retain(|name| name.ends_with(".json"));
+    names.retain(|name| Path::new(name).extension() == Some("json".as_ref()));
     assert_eq!(names.len(), 8);
     names.iter().map(|name| format!("gallery/{name}")).collect()
 }

@@ -25,6 +25,9 @@ const WRAP: f64 = 1e-9;
 /// arrive. Should it not, its time is too low, which the lower value can bear: it is the least of all
 /// bounds and of this time.
 const ROUNDED_AWAY: f64 = 1e-15;
+/// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
+/// thousand times faster than another, words have thousands of flips and a query would take minutes.
+const MOST_CELLS: usize = 1_000_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
 
@@ -111,6 +114,25 @@ impl<'a> Search<'a> {
             }
             self.single(word, table.promising + index);
         }
+        if self.is_spent() {
+            // Of what was not looked at nothing else is known.
+            self.keep(self.swing_time().max(floor));
+        }
+    }
+
+    /// A time that no motion undercuts as none moves a body axis faster than the other two rates do.
+    fn swing_time(&self) -> f64 {
+        let c = &self.table.levels.c;
+        let time = |axis: usize| {
+            let (j, k) = others(axis);
+            let swing = 2.0 * self.q[j].hypot(self.q[k]).min(1.0).asin();
+            swing / c[j].hypot(c[k])
+        };
+        [0, 1, 2].map(time).into_iter().fold(0.0, f64::max)
+    }
+
+    fn is_spent(&self) -> bool {
+        self.cells >= MOST_CELLS
     }
 
     /// A time that no motion to the target undercuts.
@@ -230,7 +252,7 @@ impl<'a> Search<'a> {
     ) {
         let mut open = 1;
         self.stack[0] = (angle, half);
-        while open > 0 {
+        while open > 0 && !self.is_spent() {
             open -= 1;
             let (angle, half) = self.stack[open];
             let least = ((angle - half) / word.speed).max(word.range.0);
@@ -311,7 +333,7 @@ impl<'a> Search<'a> {
                 self.family_cells(family, [index, first, flips, image], range);
             }
             // More flips mean shorter arcs and a narrower cone: the bounds only rise.
-            if !any {
+            if !any || self.is_spent() {
                 return;
             }
         }
@@ -351,7 +373,7 @@ impl<'a> Search<'a> {
         let target = self.probes.of(image, first, last).target;
         self.stack[0] = range;
         let mut open = 1;
-        while open > 0 {
+        while open > 0 && !self.is_spent() {
             open -= 1;
             let (low, high) = self.stack[open];
             let high = high.min(self.upper / arcs);

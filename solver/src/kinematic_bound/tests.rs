@@ -241,3 +241,17 @@ proptest! {
         checked(rates, &table, &turn(vector.map(|x| x * 10.0_f64.powf(size))), 1e-5);
     }
 }
+
+#[test]
+fn rates_of_very_different_size_end_with_a_bound_too() {
+    for rates in [[1.0, 3e-4, 2e-4], [1.0, 2e-3, 1e-3]] {
+        let table = RateBox::new(Vector3::from(rates)).expect("valid rates");
+        for angle in [0.4, 1.7, 3.0] {
+            let turn = Vector3::new(0.6, -0.5, 0.62).normalize() * angle;
+            let answer = table.query(&Attitude::from_rotation_vector(turn), 1e-4);
+            assert!(answer.cells <= 1_000_000, "{} cells", answer.cells);
+            let share = answer.lower_s / answer.upper_s;
+            assert!((0.99..=1.0).contains(&share), "{rates:?}, {angle}: {share}");
+        }
+    }
+}

@@ -14,7 +14,14 @@ import sys
 
 from common import Environment, Files, Judge, binary
 
-SCENARIOS = ["olivares-a", "olivares-b", "pyramid-momentum-bias", "quarter-turn"]
+SCENARIOS = [
+    "olivares-a",
+    "olivares-b",
+    "pyramid-momentum-bias",
+    "quarter-turn",
+    "gallery/cubesat-6u",
+    "gallery/telescope-2t",
+]
 # Longest step of Basilisk's fourth-order Runge-Kutta integrator, ns.
 STEP_NS = 50_000_000
 # Times at which waypoints are compared.

@@ -27,7 +27,7 @@ const WRAP: f64 = 1e-9;
 const ROUNDED_AWAY: f64 = 1e-15;
 /// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
 /// thousand times faster than another, words have thousands of flips and a query would take minutes.
-const MOST_CELLS: usize = 1_000_000;
+const MOST_CELLS: usize = 100_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
 

@@ -254,7 +254,7 @@ impl<'a> Conclusions<'a> {
                 history,
                 ..self.statistics(&order.statistics)
             },
-            warnings: doubts(order).into_iter().chain(report.keep_out).collect(),
+            warnings: doubts(order, optimality).chain(report.keep_out).collect(),
         })
     }
 }
@@ -333,13 +333,22 @@ fn outcome(plan: Result<Plan, Problem>) -> Outcome {
 }
 
 /// What the search itself casts doubt on.
-fn doubts(order: &Incumbent<'_>) -> Option<Problem> {
-    let count = order.statistics.bounds_contradicted;
-    (count > 0).then(|| {
-        let message = format!("{count} orders were flown faster than a lower bound had allowed");
+fn doubts(order: &Incumbent<'_>, optimality: Optimality) -> impl Iterator<Item = Problem> + use<> {
+    let contradicted = order.statistics.bounds_contradicted;
+    let contradicted = (contradicted > 0).then(|| {
+        let message =
+            format!("{contradicted} orders were flown faster than a lower bound had allowed");
         let hint = "take the bound as an estimate: a relaxed problem ended in a local minimum";
         Problem::new("", Code::BoundContradicted, message, hint)
-    })
+    });
+    let unresolved = order.statistics.tours_unresolved;
+    let unresolved = (unresolved > 0 && optimality == Optimality::Feasible).then(|| {
+        let message = format!(
+            "for {unresolved} orders no program ended in a solution, so that they are not ruled out"
+        );
+        Problem::new("/targets", Code::SlewNotSolved, message, super::SLEW_HINT)
+    });
+    contradicted.into_iter().chain(unresolved)
 }
 
 #[cfg(test)]
@@ -347,23 +356,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn orders_that_were_faster_than_their_bounds_cast_doubt() {
+    fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
         let best = FlownOrder {
             order: vec![0],
             duration_s: 1.0,
         };
-        let with = |bounds_contradicted| Incumbent {
+        let with = |bounds_contradicted, tours_unresolved| Incumbent {
             best: &best,
             alternatives: &[],
             lower_bound_s: 1.0,
             statistics: SearchStatistics {
                 bounds_contradicted,
+                tours_unresolved,
                 ..SearchStatistics::default()
             },
         };
-        assert_eq!(doubts(&with(0)), None);
-        let doubt = doubts(&with(2)).expect("a doubt");
-        assert_eq!(doubt.code, Code::BoundContradicted);
-        assert!(doubt.message.starts_with("2 orders"), "{doubt:?}");
+        let told = |contradicted, unresolved, optimality| {
+            let doubts = doubts(&with(contradicted, unresolved), optimality);
+            doubts.map(|doubt| doubt.code).collect::<Vec<_>>()
+        };
+        assert_eq!(told(0, 0, Optimality::Feasible), []);
+        assert_eq!(told(2, 3, Optimality::Optimal), [Code::BoundContradicted]);
+        assert_eq!(told(0, 3, Optimality::Feasible), [Code::SlewNotSolved]);
     }
 }

@@ -366,8 +366,8 @@ mod tests {
             alternatives: &[],
             lower_bound_s: 1.0,
             statistics: SearchStatistics {
-                bounds_contradicted,
                 tours_unresolved,
+                bounds_contradicted,
                 ..SearchStatistics::default()
             },
         };

@@ -27,7 +27,7 @@ const WRAP: f64 = 1e-9;
 const ROUNDED_AWAY: f64 = 1e-15;
 /// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
 /// thousand times faster than another, words have thousands of flips and a query would take minutes.
-const MOST_CELLS: usize = 100_000;
+const MAX_CELLS: usize = 100_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
 
@@ -132,7 +132,7 @@ impl<'a> Search<'a> {
     }
 
     fn is_spent(&self) -> bool {
-        self.cells >= MOST_CELLS
+        self.cells >= MAX_CELLS
     }
 
     /// A time that no motion to the target undercuts.

@@ -29,7 +29,7 @@ use std::collections::HashMap;
 const EIGENAXIS_TOLERANCE: f64 = 1e-5;
 
 /// Most intervals of a leg: ten times what ordinary ones have.
-const MOST_INTERVALS: usize = 500;
+const MAX_INTERVALS: usize = 500;
 
 /// The motion of a leg, in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone, PartialEq)]
@@ -169,8 +169,8 @@ fn motion(leg: &CanonicalLeg, offered: OfferedLeg) -> Result<Flown, Vec<String>>
         faults.push("a time between nodes is negative or not finite".into());
     }
     let intervals = offered.lengths_s.len();
-    if intervals > MOST_INTERVALS {
-        faults.push(format!("it has more than {MOST_INTERVALS} intervals"));
+    if intervals > MAX_INTERVALS {
+        faults.push(format!("it has more than {MAX_INTERVALS} intervals"));
     }
     let flown = recalled_leg(
         &offered.attitudes_xyzw,

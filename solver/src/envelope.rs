@@ -4,6 +4,10 @@
 //! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels share this in many
 //! ways; the best is the one whose most loaded wheel is loaded least, which a linear program finds.
 
+mod turn;
+
+pub(crate) use turn::{OutsideEnvelope, outside_envelope};
+
 use crate::allocation;
 use crate::problem::{Code, Problem};
 use crate::scenario::{RateCondition, Scenario};

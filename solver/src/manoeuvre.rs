@@ -31,6 +31,7 @@
 //! motion, to rounding. The bill has many local minima, some per cent apart: it is minimised from the
 //! optimum of the proxy and from the usual guesses, and the flown bills are compared.
 
+mod attempts;
 mod choices;
 pub mod evidence;
 mod flow;
@@ -57,20 +58,17 @@ pub use spec::{
 
 use crate::nlp::{Interruption, NlpStatus};
 use crate::stop::{StopReason, StopSignal};
+use attempts::direct;
 use ingredients::Ingredients;
 use motion::Motion;
 use shape::{Course, Lengths, Shape};
-use solving::{Solved, Task};
+use solving::Solved;
 
 /// Rounds in which a budget is corrected, and the share of it that may be left.
 const BUDGET_ROUNDS: usize = 8;
 const BUDGET_ACCURACY: f64 = 1e-5;
 /// Relative excess over an energy that is no failure.
 const BUDGET_TOLERANCE: f64 = 1e-4;
-/// Shares of effort in the objectives of programs that lead to the fastest motion where it is not
-/// found directly.
-const EFFORT_SHARES: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
-
 /// What came of a manoeuvre.
 #[derive(Debug, Clone)]
 pub struct Outcome {
@@ -141,23 +139,39 @@ pub fn trade_curve(
 /// nowhere.
 fn solve_from(manoeuvre: &Manoeuvre, neighbour: Option<&Motion>, stop: &StopSignal) -> Outcome {
     let stop = &|| interruption(stop);
-    let found = match (manoeuvre.command(), manoeuvre.objective()) {
-        (Command::Sampled { period_s, hold }, _) => {
+    let found = match manoeuvre.command() {
+        Command::Sampled { period_s, hold } => {
             sampled::solve(manoeuvre, (period_s, hold), neighbour, stop)
         }
-        (
-            _,
-            Objective::MinimumTimeAtEnergy {
-                energy_j,
-                measure: Measure::Proxy,
-            },
-        ) => frugal::solve(manoeuvre, energy_j, neighbour, stop),
-        (_, Objective::MinimumTimeAtEnergy { energy_j, .. }) => {
-            billed(manoeuvre, energy_j, neighbour, stop)
-        }
-        _ => direct(manoeuvre, &Plain::of(manoeuvre), neighbour, stop),
+        _ => in_continuous_time(manoeuvre, neighbour, stop),
     };
     found.conclude(manoeuvre)
+}
+
+/// Solves without a clock.
+fn in_continuous_time(
+    manoeuvre: &Manoeuvre,
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let plain = Plain::of(manoeuvre);
+    let Objective::MinimumTimeAtEnergy { energy_j, measure } = manoeuvre.objective() else {
+        return direct(manoeuvre, &plain, neighbour, stop);
+    };
+    let fastest = plain.with(manoeuvre, Ingredients::TIME);
+    let fastest = direct(manoeuvre, &fastest, None, stop);
+    let bill = flown::fly(manoeuvre, &fastest.solved.motion)
+        .energies
+        .bill_j;
+    if fastest.solved.converged() && bill <= energy_j {
+        // The energy does not bind: multipliers of a program that keeps within it would vanish.
+        return fastest;
+    }
+    let found = match measure {
+        Measure::Proxy => frugal::solve(manoeuvre, energy_j, neighbour, stop),
+        Measure::Bill => billed(manoeuvre, energy_j, neighbour, stop),
+    };
+    found.after(&fastest)
 }
 
 fn interruption(stop: &StopSignal) -> Option<Interruption> {
@@ -258,94 +272,6 @@ impl Plain {
     }
 }
 
-/// Solves one program: from a neighbour, or from the best of the usual guesses.
-fn direct(
-    manoeuvre: &Manoeuvre,
-    plain: &Plain,
-    neighbour: Option<&Motion>,
-    stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    let mut best: Option<Solved> = None;
-    let (mut tried, mut iterations) = (0, 0);
-    let mut attempt = |guess: &Motion| {
-        let task = Task {
-            vehicle: manoeuvre.vehicle(),
-            ends: manoeuvre.ends_towards(guess),
-            shape: plain.shape.clone(),
-            ingredients: plain.ingredients,
-        };
-        let mut solved = task.solve(&plain.meshed(guess, manoeuvre), stop);
-        if plain.ingredients.bills() && plain.ingredients.budget.is_none() {
-            // The program's own bill is low by a different amount for every motion.
-            solved.cost = flown::fly(manoeuvre, &solved.motion).energies.bill_j;
-        }
-        tried += 1;
-        iterations += solved.iterations;
-        let converged = solved.converged();
-        if best.as_ref().is_none_or(|best| solved.improves(best)) {
-            best = Some(solved);
-        }
-        converged
-    };
-    let known = neighbour.is_some_and(&mut attempt);
-    if !known {
-        let proxy = plain
-            .proxy(manoeuvre)
-            .map(|proxy| direct(manoeuvre, &proxy, None, stop));
-        let smooth = proxy.filter(|proxy| proxy.solved.converged());
-        let mut guesses: Vec<_> = smooth
-            .map(|proxy| proxy.solved.motion)
-            .into_iter()
-            .collect();
-        guesses.extend(starts::of(manoeuvre, plain.ingredients, stop));
-        let mut found = false;
-        for guess in &guesses {
-            found |= attempt(guess);
-            if stop().is_some() {
-                break;
-            }
-        }
-        if !found && plain.ingredients.hurries() && stop().is_none() {
-            let gentle = eased(manoeuvre, plain, &guesses[0], stop);
-            if let Some(gentle) = gentle
-                && !attempt(&gentle.motion)
-            {
-                best = Some(gentle);
-            }
-        }
-    }
-    Found {
-        solved: best.expect("there is always a guess"),
-        starts: tried,
-        iterations,
-        continuous_time: None,
-        refusal: None,
-    }
-}
-
-/// The fastest motion as the limit of programs in which effort counts less and less: where only time
-/// counts, some torques may make no difference, and effort tells them apart. The last program that
-/// converges takes longer than the fastest motion by its share of effort at most.
-fn eased(
-    manoeuvre: &Manoeuvre,
-    plain: &Plain,
-    guess: &Motion,
-    stop: &dyn Fn() -> Option<Interruption>,
-) -> Option<Solved> {
-    let mut last: Option<Solved> = None;
-    for share in EFFORT_SHARES {
-        let from = last.as_ref().map_or(guess, |last| &last.motion);
-        let gentle = plain.with_effort(manoeuvre, share, guess);
-        let solved = direct(manoeuvre, &gentle, Some(from), stop).solved;
-        if !solved.converged() {
-            break;
-        }
-        let cost = solved.motion.duration();
-        last = Some(Solved { cost, ..solved });
-    }
-    last
-}
-
 /// Solves for the time with a bill: the program's own bill is a little low, so that its budget is
 /// lowered until the flight's keeps within the energy.
 fn billed(
@@ -368,16 +294,21 @@ fn billed(
         plain.ingredients.budget = Some(budget * energy / bill * (1.0 - 0.5 * BUDGET_ACCURACY));
         let guess = found.solved.motion.clone();
         let next = direct(manoeuvre, &plain, Some(&guess), stop);
-        found = Found {
-            starts: found.starts + next.starts,
-            iterations: found.iterations + next.iterations,
-            ..next
-        };
+        found = next.after(&found);
     }
     found
 }
 
 impl Found {
+    /// The same, which took another solution first.
+    fn after(self, before: &Self) -> Self {
+        Self {
+            starts: before.starts + self.starts,
+            iterations: before.iterations + self.iterations,
+            ..self
+        }
+    }
+
     /// Flies the solution and adds it all up.
     fn conclude(self, manoeuvre: &Manoeuvre) -> Outcome {
         let motion = &self.solved.motion;

@@ -23,6 +23,7 @@ mod tours;
 mod verified;
 mod work;
 
+use crate::envelope::{OutsideEnvelope, momentum_problems, outside_envelope};
 use crate::legs::{LegKind, LegStore, SegmentStore};
 use crate::nlp::Interruption;
 use crate::plan::Outcome;
@@ -150,13 +151,15 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
             conclusions.compare_with_rest(best);
             conclusions.outcome(best, &found)
         }
-        None => conclusions.constructed().unwrap_or_else(|| {
-            if stop.is_set() {
-                Outcome::StoppedEmpty
-            } else {
-                Outcome::Failed(unsolved(&tours))
-            }
-        }),
+        None => conclusions
+            .constructed(found.statistics)
+            .unwrap_or_else(|| {
+                if stop.is_set() {
+                    Outcome::StoppedEmpty
+                } else {
+                    Outcome::Failed(unsolved(&tours))
+                }
+            }),
     }
 }
 
@@ -255,7 +258,7 @@ fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Optio
 /// hold, for example.
 #[must_use]
 pub fn feasibility_problems(scenario: &Scenario) -> Vec<Problem> {
-    crate::envelope::momentum_problems(scenario)
+    momentum_problems(scenario)
 }
 
 /// The stop signal with the scenario's own time limit.
@@ -304,16 +307,17 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .filter_map(|(from, to)| {
             let leg = &tours.free()?.get(from, to)?.leg;
             leg.flown.duration().is_none().then(|| {
-                let mut message = format!(
+                let reason = outside(tours, from, to).map(|outside| format!("; {outside}"));
+                let message = format!(
                     "the slew from {} to {} ended with status {} after {} iterations, its \
-                     conditions violated by {:.1e} (scaled)",
+                     conditions violated by {:.1e} (scaled){}",
                     tours.places.name(from),
                     tours.places.name(to),
                     leg.flown.status,
                     leg.flown.iterations,
                     leg.flown.infeasibility,
+                    reason.unwrap_or_default(),
                 );
-                message.extend(unheld(tours, from, to));
                 Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)
             })
         })
@@ -330,18 +334,12 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
     problems
 }
 
-/// Where on the way between two places the wheels cannot hold the momentum, as the end of a sentence.
-fn unheld(tours: &Tours<'_>, from: Place, to: Place) -> Option<String> {
-    let [from, to] = [from, to].map(|place| tours.places.waypoint(place));
-    let unheld = tours.places.slew(&from, &to).unheld()?;
-    let [x, y, z, w] = unheld.attitude.xyzw();
-    Some(format!(
-        "; about the eigenaxis, at rest, the wheels cannot hold the momentum from {:.1} to {:.1} of \
-         {:.1} degrees, as at the attitude ({x:.4}, {y:.4}, {z:.4}, {w:.4})",
-        unheld.part.start().to_degrees(),
-        unheld.part.end().to_degrees(),
-        unheld.turn.to_degrees(),
-    ))
+/// Where on the turn between two places the momentum lies outside the envelope of the wheels.
+fn outside(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
+    let places = &tours.places;
+    let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);
+    let turn = from.signed_turn_to(&places.arrival.signed(&to, &from));
+    outside_envelope(places.scenario, &from, turn)
 }
 
 const SLEW_HINT: &str =

@@ -6,10 +6,10 @@ pub(crate) mod eigenaxis;
 pub(crate) mod extremal;
 mod resolution;
 pub(crate) mod standstill;
+mod starts;
 mod steered;
 #[cfg(test)]
 mod tests;
-mod unheld;
 
 use crate::dynamics::Dynamics;
 use crate::multiphase::{Flown, fly, polish};
@@ -21,28 +21,11 @@ use arrival::Arrival;
 use eigenaxis::{EigenaxisSlew, Side};
 use extremal::KinematicExtremals;
 use nalgebra::{DVector, Vector3};
-use resolution::DETOUR;
 pub(crate) use resolution::Resolution;
 use standstill::standstill;
+use starts::Starts;
 use steered::steered;
 
-/// Guesses that are tried: a second one where a bound does not settle the first. Of 560 legs of
-/// ordinary spacecraft the best of two and of the long way round is above the best of twenty by more
-/// than 0.2 % seven times, and by 0.72 % at most.
-const STARTS: usize = 2;
-/// How much longer the slew about the eigenaxis may take the long way round than the short way where
-/// that way is tried. Momentum pushes the body to one side: six of those legs are 0.7 to 25 % faster
-/// the long way round, where the slew about the eigenaxis takes 0.56 to 1.23 times as long.
-const LONG_WAY: f64 = 1.5;
-/// Ratio of the intervals that a flight needs to those that it has from which it is solved again.
-const CLEARLY_MORE: f64 = 1.1;
-
-/// Excess over a bound from below up to which a duration is not doubted. On the 171 legs of
-/// experiment C the certified bound is 0 to 2.1 % below the best known durations, in the median 0.2 %;
-/// the local minimum that traps solvers there is 2.4 % above the best.
-const UNDOUBTED: f64 = 0.005;
-/// The same with momentum, of which the bound knows little.
-const UNDOUBTED_WITH_MOMENTUM: f64 = 0.03;
 /// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
 const EIGENAXIS_TOLERANCE: f64 = 1e-6;
 /// Relative difference below which wheel momenta are the same.
@@ -76,39 +59,6 @@ pub(crate) struct Slew {
     pub(crate) solves: u64,
 }
 
-/// What has come of the guesses so far.
-struct Starts<'a> {
-    /// A duration, s, that no slew undercuts.
-    bound: Option<f64>,
-    stop: &'a dyn Fn() -> Option<Interruption>,
-    best: Option<Flown>,
-    solves: u64,
-}
-
-impl Starts<'_> {
-    fn fly(&mut self, slew: &SlewProblem<'_>, guess: &Profile) {
-        let flown = slew.fly(guess, self.stop);
-        self.solves += 1;
-        if self.best.as_ref().is_none_or(|best| flown.improves(best)) {
-            self.best = Some(flown);
-        }
-    }
-
-    /// Whether the best duration is so close to the bound that no other guess is worth its time, or
-    /// there is no time left.
-    fn are_enough(&self, slew: &SlewProblem<'_>) -> bool {
-        let undoubted = if slew.dynamics.has_momentum() {
-            UNDOUBTED_WITH_MOMENTUM
-        } else {
-            UNDOUBTED
-        };
-        let duration = self.best.as_ref().and_then(Flown::duration);
-        let both = self.bound.zip(duration);
-        both.is_some_and(|(bound, duration)| duration <= (1.0 + undoubted) * bound)
-            || (self.stop)().is_some()
-    }
-}
-
 /// Solves a slew from one guess after the other, until its duration is so close to a bound from
 /// below, s, that no other is worth its time.
 pub(crate) fn solve(
@@ -119,39 +69,7 @@ pub(crate) fn solve(
     if let Some(flown) = standstill(slew) {
         return Slew { flown, solves: 0 };
     }
-    let mut starts = Starts {
-        bound,
-        stop,
-        best: None,
-        solves: 0,
-    };
-    for guess in slew.guesses() {
-        starts.fly(slew, &guess);
-        if starts.are_enough(slew) {
-            break;
-        }
-    }
-    let finer = starts.best.as_ref().and_then(|best| slew.finer(best));
-    if let Some(finer) = finer
-        && stop().is_none()
-        && let Some(guess) = finer.guesses().next()
-    {
-        starts.fly(&finer, &guess);
-    }
-    if !starts.are_enough(slew)
-        && let Some(there) = slew.long_way_round()
-    {
-        let long = SlewProblem {
-            to: &there,
-            arrival: Arrival::Quaternion,
-            ..*slew
-        };
-        starts.fly(&long, &long.bowed(Side::Far));
-    }
-    let Starts {
-        best, mut solves, ..
-    } = starts;
-    let mut flown = best.expect("there is always the eigenaxis guess");
+    let (mut flown, mut solves) = Starts::new(slew, bound, stop).best();
     if stop().is_none()
         && let Some(better) = slew.eigenaxis_at_worst(&flown, stop)
     {
@@ -180,49 +98,6 @@ pub(crate) fn solve(
 }
 
 impl SlewProblem<'_> {
-    /// The first guesses, the most promising one first.
-    fn guesses(&self) -> impl Iterator<Item = Profile> + '_ {
-        let bowed = [Side::Far, Side::Near].into_iter();
-        let bowed = bowed.map(|side| self.bowed(side));
-        self.extremal().into_iter().chain(bowed).take(STARTS)
-    }
-
-    /// The same slew with the intervals that a flight turned out to need, where it has clearly
-    /// fewer: it turns farther than expected.
-    fn finer(&self, flown: &Flown) -> Option<Self> {
-        flown.duration()?;
-        let attitudes = flown.profile.attitudes.windows(2);
-        let turned: f64 = attitudes.map(|q| q[0].signed_turn_to(&q[1]).norm()).sum();
-        let needed = self.resolution.intervals_of(self.dynamics, turned / DETOUR);
-        let given = flown.profile.intervals();
-        (needed as f64 > CLEARLY_MORE * given as f64).then(|| Self {
-            resolution: Resolution {
-                intervals: self.resolution.intervals + needed - given,
-                ..self.resolution
-            },
-            ..*self
-        })
-    }
-
-    /// The end with the sign to which the turn is longer than half a turn, where either sign counts
-    /// and momentum may make that way the faster one.
-    fn long_way_round(&self) -> Option<Waypoint> {
-        if self.arrival != Arrival::Rotation || !self.dynamics.has_momentum() {
-            return None;
-        }
-        let short = self.arrival.signed(&self.to.attitude, &self.from.attitude);
-        let there = Waypoint {
-            attitude: short.negated(),
-            ..self.to.clone()
-        };
-        let duration = |target| {
-            let slew =
-                EigenaxisSlew::fastest(self.dynamics, &self.from.attitude, target, self.null);
-            slew.trapezoid.duration
-        };
-        (duration(&there.attitude) <= LONG_WAY * duration(&short)).then_some(there)
-    }
-
     /// Intervals of the slew.
     pub(crate) fn intervals(&self) -> usize {
         let turn = self.arrival.turn(&self.from.attitude, &self.to.attitude);

@@ -172,7 +172,7 @@ fn attitudes_on_the_way_that_the_wheels_cannot_hold_are_named() {
     };
     assert_eq!(problem.code, Code::SlewNotSolved);
     assert_eq!(problem.pointer, "/targets/0");
-    // One wheel's share is 650 (sin + cos): above 710 from 5.57 to 84.43 degrees; steps are a quarter.
-    let told = "the wheels cannot hold the momentum from 5.7 to 84.2 of 90.0 degrees";
+    // One wheel's share is 650 (sin + cos): above 710 from 5.57 to 84.43 degrees; steps are half a degree.
+    let told = "the wheels cannot hold the momentum from 6.0 to 84.0 of 90.0 degrees";
     assert!(problem.message.contains(told), "{}", problem.message);
 }

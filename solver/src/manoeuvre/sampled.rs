@@ -10,7 +10,7 @@ use super::flown::{self, effort};
 use super::ingredients::Ingredients;
 use super::motion::Motion;
 use super::shape::{Course, Lengths};
-use super::{Found, Hold, Manoeuvre, Objective, Plain, direct};
+use super::{Found, Hold, Manoeuvre, Objective, Plain, direct, in_continuous_time};
 use crate::nlp::Interruption;
 
 /// Samples allowed beyond those of the continuous minimum.
@@ -25,7 +25,7 @@ pub(super) fn solve(
     neighbour: Option<&Motion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
-    let mut continuous = continuous(manoeuvre, neighbour, stop);
+    let mut continuous = in_continuous_time(manoeuvre, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
         return continuous;
     }
@@ -78,24 +78,6 @@ pub(super) fn solve(
 )]
 fn whole(number: f64) -> usize {
     number.clamp(0.0, (MOST_INTERVALS + 1) as f64) as usize
-}
-
-/// The minimum in continuous time.
-fn continuous(
-    manoeuvre: &Manoeuvre,
-    neighbour: Option<&Motion>,
-    stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    match manoeuvre.objective() {
-        Objective::MinimumTimeAtEnergy {
-            energy_j,
-            measure: super::Measure::Proxy,
-        } => super::frugal::solve(manoeuvre, energy_j, neighbour, stop),
-        Objective::MinimumTimeAtEnergy { energy_j, .. } => {
-            super::billed(manoeuvre, energy_j, neighbour, stop)
-        }
-        _ => direct(manoeuvre, &Plain::of(manoeuvre), neighbour, stop),
-    }
 }
 
 /// A manoeuvre on a clock.
@@ -166,10 +148,7 @@ impl Clock<'_> {
         } else {
             guess
         };
-        let mut constant = solve(Course::Steps, guess);
-        constant.starts += linear.starts;
-        constant.iterations += linear.iterations;
-        constant
+        solve(Course::Steps, guess).after(&linear)
     }
 
     /// Whether a solution answers the manoeuvre.

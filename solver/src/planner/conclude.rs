@@ -94,14 +94,14 @@ impl<'a> Conclusions<'a> {
     }
 
     /// The plan of the constructed flight, for a search that has ended with none.
-    pub(super) fn constructed(&self) -> Option<Outcome> {
+    pub(super) fn constructed(&self, statistics: SearchStatistics) -> Option<Outcome> {
         let (best, flight) = self.constructed.as_ref()?;
         self.remember(&best.order, flight);
         let only = Incumbent {
             best,
             alternatives: &[],
             lower_bound_s: 0.0,
-            statistics: SearchStatistics::default(),
+            statistics,
         };
         let kind = LowerBoundKind::NlpRelaxation;
         Some(outcome(self.plan(&only, Optimality::Feasible, kind)))

@@ -71,3 +71,16 @@ fn minimum_time_is_a_quarter_shorter_than_the_eigenaxis() {
     let outcome = lro_slew(Objective::MinimumTime, Command::Free { intervals: 32 });
     assert!(outcome.time_s <= 682.0, "{}", outcome.time_s);
 }
+
+#[test]
+fn an_energy_that_does_not_bind_buys_the_fastest_slew() {
+    let command = Command::Uniform { intervals: 40 };
+    let fastest = lro_slew(Objective::MinimumTime, command);
+    for (measure, plenty) in [(Measure::Proxy, 2.0), (Measure::Bill, 1e3)] {
+        let energy_j = plenty * fastest.flown.energies.bill_j;
+        let objective = Objective::MinimumTimeAtEnergy { energy_j, measure };
+        let outcome = lro_slew(objective, command);
+        let excess = outcome.time_s / fastest.time_s - 1.0;
+        assert!(excess.abs() < 1e-6, "{measure:?}: {excess}");
+    }
+}

@@ -3,12 +3,14 @@
 use slewplan_solver::legs::LegKind;
 use slewplan_solver::plan::{Optimality, Outcome};
 use slewplan_solver::planner::{self, Shard};
-use slewplan_tests::ordinary::scenario;
+use slewplan_tests::ordinary::{conditioned, scenario};
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
 
 /// Legs and tours of the suite.
 const LEGS: u64 = 400;
 const TOURS: u64 = 60;
+/// Tours with conditions of every kind.
+const CONDITIONED: u64 = 40;
 /// How much larger the largest wheel is than the smallest, at most.
 const SPREAD: f64 = 3.0;
 const WILD_SPREAD: f64 = 1000.0;
@@ -42,7 +44,7 @@ fn every_leg_is_solved_and_flies() {
 #[test]
 fn every_tour_is_planned_and_flies() {
     for seed in 0..TOURS {
-        let targets = 2 + usize::try_from(seed % 3).expect("few");
+        let targets = 2 + usize::try_from(seed % 5).expect("few");
         let spec = scenario(1000 + seed, targets, SPREAD);
         let scenario = scenario_of(&spec);
         let outcome = on_threads(2, |run| planner::solve(&scenario, run));
@@ -52,6 +54,19 @@ fn every_tour_is_planned_and_flies() {
         let plan = planned(outcome);
         assert_eq!(plan.optimality, Optimality::Optimal, "tour {seed}");
         assert!(plan.largest_open_share().is_some_and(|open| open <= 1.0));
+    }
+}
+
+#[test]
+fn conditions_of_every_kind_are_met_with_momentum_and_limits() {
+    for seed in 0..CONDITIONED {
+        let targets = 1 + usize::try_from(seed % 4).expect("few");
+        let scenario = scenario_of(&conditioned(3000 + seed, targets, SPREAD));
+        let outcome = on_threads(2, |run| planner::solve(&scenario, run));
+        let Outcome::Planned(_) = &outcome else {
+            panic!("tour {seed}: {outcome:?}");
+        };
+        assert_eq!(planned(outcome).optimality, Optimality::Optimal, "{seed}");
     }
 }
 

@@ -9,7 +9,8 @@ use crate::random::Generator;
 use crate::wheel;
 use slewplan_solver::attitude::Attitude;
 use slewplan_solver::spec::{
-    AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
+    AttitudeEquivalence, AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec,
+    WheelSpec,
 };
 use std::cell::Cell;
 
@@ -17,6 +18,10 @@ use std::cell::Cell;
 const MOST_STORED: f64 = 0.8;
 /// Most of a wheel's speed limit that its momentum takes at the start.
 const MOST_SPEED: f64 = 0.98;
+
+/// Sum of the momenta, about the three axes, that the body has at a small rate about each, as a share of
+/// what the wheels hold in every direction.
+const SMALL_RATE: f64 = 0.1;
 
 /// A scenario of an ordinary spacecraft with so many targets; `spread` is how much larger the largest
 /// wheel may be than the smallest.
@@ -30,6 +35,55 @@ pub fn scenario(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
                 ..spec
             };
         }
+    }
+}
+
+/// The same with conditions of every kind: dwells, settling, small fixed rates and bounded ones at
+/// targets, a rate at the start, an end with or without one, a given position, signs that count.
+#[must_use]
+pub fn conditioned(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
+    let mut spec = scenario(seed, targets, spread);
+    let mut generator = Generator::new(!seed);
+    let enabled = spec.spacecraft.wheels.iter().filter(|wheel| wheel.enabled);
+    let sphere = held_everywhere(&enabled.collect::<Vec<_>>());
+    let inertia = spec.spacecraft.inertia_kg_m2;
+    let small = SMALL_RATE * sphere / (inertia[0][0] + inertia[1][1] + inertia[2][2]);
+    for target in &mut spec.targets {
+        (target.zero_rate_axes, target.rate_min_rad_s) = (None, None);
+        target.rate_max_rad_s = None;
+        match generator.below(5) {
+            0 => target.dwell_s = generator.between(1.0, 60.0),
+            1 => target.settle_s = generator.between(1.0, 20.0),
+            2 => {
+                let rate = generator.vector(-small, small).map(Some);
+                (target.rate_min_rad_s, target.rate_max_rad_s) = (Some(rate), Some(rate));
+            }
+            3 => target.zero_rate_axes = Some([true, false, true]),
+            _ => {
+                target.rate_min_rad_s = Some([Some(-small); 3]);
+                target.rate_max_rad_s = Some([Some(small), Some(0.0), Some(2.0 * small)]);
+            }
+        }
+    }
+    if generator.coin() {
+        spec.start.body_rate_rad_s = Some(generator.vector(-small, small));
+    }
+    if generator.coin() {
+        spec.end = Some(StateSpec {
+            attitude: AttitudeSpec::Quaternion(generator.quaternion()),
+            body_rate_rad_s: generator.coin().then(|| generator.vector(-small, small)),
+            ..StateSpec::default()
+        });
+    }
+    if generator.below(4) == 0 {
+        spec.targets[0].position = Some(targets);
+    }
+    if generator.below(3) == 0 {
+        spec.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
+    }
+    ScenarioSpec {
+        name: Some(format!("conditioned {seed}, {targets} targets")),
+        ..spec
     }
 }
 

@@ -4,6 +4,7 @@ mod access;
 mod cli;
 mod clock;
 mod connections;
+mod contradictions;
 mod digest;
 mod export;
 #[cfg(feature = "faults")]

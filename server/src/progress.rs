@@ -3,7 +3,8 @@
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use slewplan_solver::progress::{Observer, Progress, Silent, Stage};
+use slewplan_solver::contradiction::Contradiction;
+use slewplan_solver::progress::{Observer, Progress, Stage};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -24,8 +25,24 @@ pub(crate) fn observer(mode: ProgressMode) -> Box<dyn Observer> {
     match mode {
         ProgressMode::Auto if std::io::stderr().is_terminal() => Box::new(Bar::new()),
         ProgressMode::Json => Box::new(JsonLines::new()),
-        ProgressMode::Auto | ProgressMode::None => Box::new(Silent),
+        ProgressMode::Auto | ProgressMode::None => Box::new(Quiet),
     }
+}
+
+/// Shows nothing but contradictions.
+struct Quiet;
+
+impl Observer for Quiet {
+    fn progress(&self, _: Progress) {}
+
+    fn contradicted(&self, contradiction: &Contradiction) {
+        complain(&format!("error: {contradiction}"));
+    }
+}
+
+/// Writes a line to standard error. Nobody reading is no reason to stop the solve.
+fn complain(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// A progress bar with incumbent, bound, gap and elapsed time.
@@ -57,6 +74,10 @@ impl Observer for Bar {
         bar.set_prefix(progress.stage.as_str());
         bar.set_position(progress.done);
         bar.set_message(figures(&progress));
+    }
+
+    fn contradicted(&self, contradiction: &Contradiction) {
+        self.0.println(format!("error: {contradiction}"));
     }
 }
 
@@ -130,9 +151,12 @@ impl Observer for JsonLines {
         }
         *last = Some((now, progress));
         if let Ok(text) = serde_json::to_string(&self.line(&progress, now)) {
-            // Nobody reading is no reason to stop the solve.
-            let _ = writeln!(std::io::stderr().lock(), "{text}");
+            complain(&text);
         }
+    }
+
+    fn contradicted(&self, contradiction: &Contradiction) {
+        complain(&serde_json::json!({"error": contradiction.to_string()}).to_string());
     }
 }
 

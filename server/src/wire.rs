@@ -25,4 +25,6 @@ pub(crate) mod slew;
 pub(crate) mod spacecraft;
 pub(crate) mod stored_legs;
 pub(crate) mod study;
+#[cfg(test)]
+mod unknown_members;
 pub(crate) mod verification;

@@ -81,6 +81,7 @@ pub mod checker;
 pub mod cmg;
 pub mod comparison;
 mod cone;
+pub mod contradiction;
 mod convex;
 pub mod drive;
 mod dynamics;
@@ -104,6 +105,7 @@ pub mod problem;
 mod profile;
 pub mod progress;
 mod random;
+mod rounding;
 pub mod scenario;
 #[cfg(test)]
 mod second_engine;

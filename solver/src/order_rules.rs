@@ -112,7 +112,10 @@ impl OrderRules {
     #[must_use]
     pub fn is_free(&self) -> bool {
         let targets = self.due.len();
-        self.due.iter().all(|due| *due == targets) && self.predecessors.iter().all(Vec::is_empty)
+        // The last place is due no sooner than any, and yet it is one.
+        self.positions.iter().all(Option::is_none)
+            && self.due.iter().all(|due| *due == targets)
+            && self.predecessors.iter().all(Vec::is_empty)
     }
 
     /// Whether the fixed places and the due dates let a target take this place.

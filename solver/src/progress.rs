@@ -1,5 +1,6 @@
 //! Progress as an injected observer.
 
+use crate::contradiction::Contradiction;
 use crate::plan::Plan;
 
 /// What a solve is busy with.
@@ -61,6 +62,13 @@ pub trait Observer: Sync {
     /// search waits meanwhile: must return quickly.
     fn incumbent(&self, plan: &Plan) {
         let _ = plan;
+    }
+
+    /// Called when something was flown that contradicts a certified bound or a stored leg: a defect of
+    /// the planner, after which its answer claims less. Under debug assertions, as in tests, it is a
+    /// panic for whoever does not listen.
+    fn contradicted(&self, contradiction: &Contradiction) {
+        debug_assert!(false, "{contradiction}");
     }
 }
 

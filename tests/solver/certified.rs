@@ -8,6 +8,7 @@ use slewplan_solver::planner::{self, LegRow, Run, Shard, leg_table};
 use slewplan_solver::progress::{Observer, Progress, Stage};
 use slewplan_solver::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
 use slewplan_solver::stop::StopSignal;
+use slewplan_tests::ordinary::conditioned;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
 use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec};
@@ -171,7 +172,17 @@ fn no_random_leg_is_faster_than_its_bound() {
             ..ScenarioSpec::default()
         };
         let plan = plan_of(&spec);
-        if let Some(bound) = plan.legs[0].certified_lower_bound_s {
+        // Without limits of speeds and rates there is no box.
+        let body = &spec.spacecraft;
+        let limited = body
+            .wheels
+            .iter()
+            .all(|w| !w.enabled || w.max_speed_rad_s.is_some())
+            || body.max_body_rate_rad_s.iter().all(Option::is_some)
+            || body.max_body_rate_norm_rad_s.is_some();
+        let bound = plan.legs[0].certified_lower_bound_s;
+        assert_eq!(bound.is_some(), limited, "seed {seed}");
+        if let Some(bound) = bound {
             let duration = plan.legs[0].duration_s;
             assert!(
                 bound <= duration * (1.0 + ROUNDING),
@@ -183,6 +194,16 @@ fn no_random_leg_is_faster_than_its_bound() {
         }
     }
     assert!(bounded > 12, "{bounded} of 24 legs are bounded");
+}
+
+/// Momentum, locked wheels that turn, limits of the norm, asymmetric torques, windows of rates.
+#[test]
+fn no_ordinary_plan_is_faster_than_its_bounds() {
+    for seed in 0..60 {
+        let targets = 1 + usize::try_from(seed % 3).expect("few");
+        let plan = plan_of(&conditioned(4000 + seed, targets, 3.0));
+        assert_legs_keep_their_bounds(&plan);
+    }
 }
 
 /// Keeps what is told while legs are solved.

@@ -1,9 +1,12 @@
 //! What must not change an answer.
 
 use slewplan_solver::attitude::Attitude;
+use slewplan_solver::legs::LegKind;
+use slewplan_solver::manoeuvre::{self, Manoeuvre, ManoeuvreSpec};
 use slewplan_solver::plan::{Flight, Plan};
-use slewplan_solver::planner;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec};
+use slewplan_solver::planner::{self, Shard};
+use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, WheelSpec};
+use slewplan_solver::stop::StopSignal;
 use slewplan_tests::published_targets_spec;
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, planned, scenario_of};
 
@@ -109,4 +112,51 @@ fn the_names_of_the_body_axes_change_no_duration() {
     let (a, b) = (plan.total_time_s, other.total_time_s);
     assert!(agree(a, b, 1e-4), "{a} and {b} s");
     assert_eq!(order_of(&plan), order_of(&other));
+}
+
+#[test]
+fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
+    // The enabled x wheel holds what the locked one has, so that there is no momentum in all; it has
+    // a tenth of its speeds left for turns to one side.
+    let mut spec = published_targets_spec(&["a", "b"]);
+    let locked = WheelSpec {
+        enabled: false,
+        ..spec.spacecraft.wheels[0].clone()
+    };
+    spec.spacecraft.wheels.push(locked);
+    spec.start.wheel_speed_rad_s = Some(vec![640.0, 0.0, 0.0, -640.0]);
+    let attitudes = [[10.0, 0.0, 0.0], [130.0, 5.0, 0.0]].map(AttitudeSpec::RollPitchYawDeg);
+    for (target, attitude) in spec.targets.iter_mut().zip(&attitudes) {
+        target.attitude = attitude.clone();
+        target.zero_rate_axes = None;
+    }
+    spec.end = None;
+    let [forth, back] = [["a", "b"], ["b", "a"]].map(|[from, to]| {
+        let (scenario, all) = (scenario_of(&spec), Shard { index: 0, of: 1 });
+        let kind = LegKind::RestToRest;
+        let (rows, _) = on_threads(1, |run| planner::leg_table(&scenario, kind, all, run));
+        let row = rows.iter().find(|row| row.from == from && row.to == to);
+        row.and_then(|row| row.duration_s).expect("a leg")
+    });
+    // By a solver that knows nothing of canonical legs.
+    let [slew_forth, slew_back] = [[0, 1], [1, 0]].map(|[from, to]| {
+        let state = |attitude: &AttitudeSpec| StateSpec {
+            attitude: attitude.clone(),
+            ..spec.start.clone()
+        };
+        let slew = ManoeuvreSpec {
+            spacecraft: spec.spacecraft.clone(),
+            start: state(&attitudes[from]),
+            end: state(&attitudes[to]),
+            ..ManoeuvreSpec::default()
+        };
+        let slew = Manoeuvre::try_new(&slew).expect("valid").manoeuvre;
+        let outcome = manoeuvre::solve(&slew, &StopSignal::new());
+        assert!(outcome.solved, "{:?}", outcome.flown.failures);
+        outcome.time_s
+    });
+    assert!(agree(forth, slew_forth, 1e-3), "{forth} {slew_forth}");
+    assert!(agree(back, slew_back, 1e-3), "{back} {slew_back}");
+    let ratio = (forth / back).max(back / forth);
+    assert!(ratio > 1.3, "{forth} forth and {back} back");
 }

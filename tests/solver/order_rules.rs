@@ -3,8 +3,8 @@
 use slewplan_solver::plan::{Optimality, Plan};
 use slewplan_solver::planner::{BoundFrom, OrderError, every_order, fly_order};
 use slewplan_solver::spec::ScenarioSpec;
-use slewplan_tests::experiment_a_spec;
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, scenario_of};
+use slewplan_tests::{experiment_a_spec, published_targets_spec};
 
 /// Experiment A with c second, and d after both b and f: neither of its best orders.
 fn ruled_spec() -> ScenarioSpec {
@@ -45,6 +45,21 @@ fn experiment_a_under_rules_is_the_best_of_the_orders_that_keep_them() {
         agree(plan.total_time_s, orders[0].duration_s, 1e-6),
         "{orders:?}"
     );
+}
+
+#[test]
+fn every_place_alone_is_kept() {
+    for (target, place) in (0..3).flat_map(|target| (1..=3).map(move |place| (target, place))) {
+        let mut spec = published_targets_spec(&["a", "b", "e"]);
+        spec.targets[target].position = Some(place);
+        let plan = plan_of(&spec);
+        let case = format!("target {target} at place {place}");
+        let visited = &plan.flight.passages[place - 1].target;
+        assert_eq!(*visited, spec.targets[target].id, "{case}");
+        for other in &plan.alternatives {
+            assert_eq!(other.sequence[place - 1], spec.targets[target].id, "{case}");
+        }
+    }
 }
 
 #[test]

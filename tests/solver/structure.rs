@@ -167,6 +167,9 @@ fn certified_bounds_use_nothing_of_the_optimiser() {
         "transcription",
     ];
     for (file, target) in used_by("certified") {
+        if file.ends_with("tests.rs") {
+            continue;
+        }
         assert!(given.contains(&target.as_str()), "{file} uses {target}");
     }
 }

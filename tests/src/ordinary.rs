@@ -23,6 +23,9 @@ const MOST_SPEED: f64 = 0.98;
 /// what the wheels hold in every direction.
 const SMALL_RATE: f64 = 0.1;
 
+/// Most momentum of a locked wheel as a share of that.
+const LOCKED: f64 = 0.05;
+
 /// A scenario of an ordinary spacecraft with so many targets; `spread` is how much larger the largest
 /// wheel may be than the smallest.
 #[must_use]
@@ -39,7 +42,8 @@ pub fn scenario(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
 }
 
 /// The same with conditions of every kind: dwells, settling, small fixed rates and bounded ones at
-/// targets, a rate at the start, an end with or without one, a given position, signs that count.
+/// targets, a rate at the start, an end with or without one, a given position, signs that count, and
+/// a locked wheel that turns.
 #[must_use]
 pub fn conditioned(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
     let mut spec = scenario(seed, targets, spread);
@@ -64,6 +68,17 @@ pub fn conditioned(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
                 target.rate_max_rad_s = Some([Some(small), Some(0.0), Some(2.0 * small)]);
             }
         }
+    }
+    if generator.coin() {
+        let max_speed = generator.between(200.0, 800.0);
+        let inertia = LOCKED * sphere / max_speed;
+        spec.spacecraft.wheels.push(WheelSpec {
+            enabled: false,
+            ..wheel(generator.direction(), inertia, 1e-3, max_speed)
+        });
+        let speeds = spec.start.wheel_speed_rad_s.as_mut();
+        let locked = generator.between(-max_speed, max_speed);
+        speeds.expect("every wheel has a speed").push(locked);
     }
     if generator.coin() {
         spec.start.body_rate_rad_s = Some(generator.vector(-small, small));

@@ -8,11 +8,11 @@ pub(super) mod flight;
 use super::access::Caller;
 use super::error::ApiError;
 use super::{App, admission, stored};
+use crate::contradictions::Unwatched;
 use crate::wire::document::Node;
 use slewplan_solver::legs::NoStore;
 use slewplan_solver::planner::Run;
 use slewplan_solver::pool::SolverPool;
-use slewplan_solver::progress::Silent;
 use slewplan_solver::stop::StopSignal;
 
 /// The study with the spacecraft of its scenario written out, if it is not too large.
@@ -30,7 +30,7 @@ fn quiet_run<'a>(pool: &'a SolverPool, stop: &'a StopSignal) -> Run<'a> {
     Run {
         pool,
         stop,
-        observer: &Silent,
+        observer: &Unwatched,
         legs: &NoStore,
         segments: &NoStore,
     }

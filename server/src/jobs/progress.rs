@@ -2,9 +2,11 @@
 
 use super::Jobs;
 use crate::clock::now_us;
+use crate::contradictions;
 use crate::leg_cache::Unwritten;
 use crate::store::{JobRow, NewIncumbent, PackedPlan, ProgressRow};
 use crate::wire;
+use slewplan_solver::contradiction::Contradiction;
 use slewplan_solver::plan::Plan;
 use slewplan_solver::problem::Problem;
 use slewplan_solver::progress::{Observer, Progress};
@@ -67,6 +69,10 @@ impl Observer for Watch<'_> {
             report.incumbent = Some(incumbent);
             false
         });
+    }
+
+    fn contradicted(&self, contradiction: &Contradiction) {
+        contradictions::tell(contradiction);
     }
 }
 

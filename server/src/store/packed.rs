@@ -94,6 +94,25 @@ mod tests {
                 assert_eq!(json, JSON.as_bytes());
             }
         }
+        // Whoever writes over a row may do it with a plan that unpacks.
+        let other = PackedPlan::of(JSON.replace('8', "9").as_bytes());
+        for exchanged in [
+            PackedPlan {
+                digest: other.digest.clone(),
+                ..sound.clone()
+            },
+            PackedPlan {
+                bytes: other.bytes,
+                ..sound.clone()
+            },
+            PackedPlan {
+                bytes: JSON.replace('8', "9").into(),
+                packed: false,
+                ..sound.clone()
+            },
+        ] {
+            exchanged.unpacked().expect_err("another plan");
+        }
         let short = PackedPlan {
             bytes: sound.bytes[..sound.bytes.len() / 2].into(),
             ..sound

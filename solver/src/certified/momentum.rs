@@ -29,6 +29,9 @@ use crate::dynamics::{Dynamics, along};
 use crate::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
 use nalgebra::{Matrix3, Vector3};
 
+#[cfg(test)]
+mod tests;
+
 /// Bounds on the slews of a spacecraft with momentum.
 #[derive(Debug)]
 pub(super) struct MomentumBounds {

@@ -12,9 +12,6 @@ pub(super) fn misplaced(scenario: &Scenario, flight: &Flight) -> Vec<String> {
         let id = &targets[target].id;
         flight.passages.iter().position(|p| p.target == *id)
     };
-    if rules.is_free() {
-        return Vec::new();
-    }
     let places: Vec<Option<usize>> = (0..targets.len()).map(place).collect();
     let mut failures = Vec::new();
     for (index, target) in targets.iter().enumerate() {

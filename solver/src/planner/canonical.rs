@@ -3,6 +3,7 @@
 use super::places::Places;
 use crate::attitude::Attitude;
 use crate::dynamics::Dynamics;
+use crate::rounding::rounded;
 use crate::scenario::RateCondition;
 use crate::slew::arrival::Arrival;
 use crate::slew::extremal::KinematicExtremals;
@@ -13,10 +14,7 @@ use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it: stored legs of another are not
 /// found.
-const VERSION: &str = "leg-7";
-/// Turns and momenta are rounded to this many units of their own scale, far below every tolerance
-/// and far above the rounding of the caller's conversions.
-const RESOLUTION: f64 = 1e13;
+const VERSION: &str = "leg-8";
 
 /// A leg in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone)]
@@ -59,7 +57,7 @@ impl CanonicalLeg {
 
     fn directed(places: &Places<'_>, from: &Waypoint, to: &Waypoint, mirrored: bool) -> Self {
         let reversible = places.reversible([from, to]);
-        let mut turn = rounded(&from.attitude.turn_to(&to.attitude));
+        let mut turn = rounded_attitude(&from.attitude.turn_to(&to.attitude));
         if places.arrival == Arrival::Rotation {
             turn = upper_hemisphere(&turn);
         }
@@ -130,21 +128,14 @@ fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoin
     settled
 }
 
-fn rounded(attitude: &Attitude) -> Attitude {
-    let components = attitude
-        .xyzw()
-        .map(|c| (c * RESOLUTION).round() / RESOLUTION);
+fn rounded_attitude(attitude: &Attitude) -> Attitude {
+    let components = attitude.xyzw().map(|c| rounded(c, 1.0));
     Attitude::from_xyzw(components).expect("rounding leaves a unit quaternion its length")
 }
 
 fn rounded_vector(vector: Vector3<f64>) -> Vector3<f64> {
     let scale = vector.amax();
-    if scale == 0.0 {
-        return vector;
-    }
-    // A power of two, so that scaling itself does not round.
-    let unit = scale.log2().ceil().exp2() / RESOLUTION;
-    vector.map(|c| (c / unit).round() * unit)
+    vector.map(|c| rounded(c, scale))
 }
 
 /// The one of `q` and `-q` whose last component that is not zero is positive.
@@ -204,3 +195,6 @@ fn describe_conditions(text: &mut String, place: &Waypoint) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

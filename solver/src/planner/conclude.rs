@@ -6,6 +6,7 @@ use super::tables::LegTable;
 use super::tours::Tours;
 use super::work::{History, search_work};
 use crate::checker;
+use crate::contradiction::{Contradiction, slack};
 use crate::legs::LegKind;
 use crate::multiphase::Flown;
 use crate::plan::{
@@ -70,9 +71,10 @@ impl<'a> Conclusions<'a> {
         self.certified = certified;
     }
 
-    /// That bound, when there is one.
+    /// That bound, when there is one and no flight has contradicted any.
     pub(super) fn proved(&self) -> Option<f64> {
         self.certified
+            .filter(|_| self.tours.legs.bounds_are_trusted())
     }
 
     /// Constructs a flight of an order, leg by leg, and tells of it; nothing where a leg cannot be
@@ -139,8 +141,11 @@ impl<'a> Conclusions<'a> {
         });
         let gap = self.tours.places.scenario.options().relative_gap;
         let asked_for = best.duration_s * (1.0 - gap);
-        let certified = self.certified.is_some_and(|bound| bound >= asked_for);
-        let optimality = if certified || found.best_is_proven(gap) {
+        // The flight may contradict a bound.
+        let _ = self.verified(&best.order);
+        let trusted = self.tours.legs.bounds_are_trusted();
+        let certified = self.proved().is_some_and(|bound| bound >= asked_for);
+        let optimality = if trusted && (certified || found.best_is_proven(gap)) {
             Optimality::Optimal
         } else {
             Optimality::Feasible
@@ -200,11 +205,13 @@ impl<'a> Conclusions<'a> {
             let hint = "report the scenario: a plan that does not fly is a defect of the solver";
             return Err(Problem::new("", Code::VerificationFailed, message, hint));
         }
-        Ok(VerifiedFlight {
+        let verified = VerifiedFlight {
             flight,
             legs,
             report,
-        })
+        };
+        self.compare_with_bounds(route, &verified);
+        Ok(verified)
     }
 
     /// The plan of an order.
@@ -221,7 +228,12 @@ impl<'a> Conclusions<'a> {
             report,
         } = self.verified(&order.best.order)?;
         let total = flight.total_time_s;
-        let (bound, lower_bound_kind) = self.bound(order.lower_bound_s, kind, total);
+        let (bound, lower_bound_kind) = if self.tours.legs.bounds_are_trusted() {
+            self.bound(order.lower_bound_s, kind, total)
+        } else {
+            // Certified bounds have been part of the search's own.
+            (0.0, kind)
+        };
         let route = self.tours.places.route(&order.best.order, true);
         self.compare(&mut legs, &route);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
@@ -236,7 +248,7 @@ impl<'a> Conclusions<'a> {
                 0.0
             },
             lower_bound_kind,
-            certified_lower_bound_s: self.certified,
+            certified_lower_bound_s: self.proved(),
             alternatives: order
                 .alternatives
                 .iter()
@@ -281,14 +293,47 @@ impl Conclusions<'_> {
     fn compare(&self, legs: &mut [Leg], route: &[Place]) {
         for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
             let rest = self.rest.as_ref();
-            leg.certified_lower_bound_s = self.tours.proved(pair[0], pair[1]);
+            let proved = self.tours.proved(pair[0], pair[1]);
+            leg.certified_lower_bound_s = proved.filter(|_| self.tours.legs.bounds_are_trusted());
             leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
+        }
+    }
+
+    /// Compares a flight with the certified bounds of its legs and of all tours.
+    fn compare_with_bounds(&self, route: &[Place], flown: &VerifiedFlight) {
+        let (tours, places) = (self.tours, &self.tours.places);
+        let total = flown.flight.total_time_s;
+        let contradicted = |leg, bound_s, flown_s| {
+            tours.legs.contradicted(&Contradiction::Tour {
+                route: route.iter().map(|place| places.name(*place)).collect(),
+                leg,
+                bound_s,
+                flown_s,
+            });
+        };
+        let mut all_slack = 0.0;
+        for (leg, pair) in flown.legs.iter().zip(route.windows(2)) {
+            let Some(bound_s) = tours.proved(pair[0], pair[1]) else {
+                continue;
+            };
+            let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place).attitude);
+            let slack = slack(bound_s, places.arrival.turn(&from, &to));
+            all_slack += slack;
+            if bound_s - slack > leg.duration_s {
+                let ends = [pair[0], pair[1]].map(|place| places.name(place));
+                contradicted(Some(ends), bound_s, leg.duration_s);
+            }
+        }
+        if let Some(bound_s) = self.certified
+            && bound_s - slack(bound_s, f64::INFINITY) - all_slack > total
+        {
+            contradicted(None, bound_s, total);
         }
     }
 
     /// A bound, s, or the certified one where that is larger.
     fn raised(&self, bound: f64) -> f64 {
-        self.certified
+        self.proved()
             .map_or(bound, |certified| certified.max(bound))
     }
 
@@ -297,7 +342,7 @@ impl Conclusions<'_> {
     fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
         let gap = self.tours.places.scenario.options().relative_gap;
         let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
-        match self.certified {
+        match self.proved() {
             Some(certified) if certified >= enough => {
                 (certified.min(total), LowerBoundKind::Certified)
             }

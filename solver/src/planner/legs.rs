@@ -7,8 +7,9 @@ use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::recall::{attitudes_of, momenta_of, recalled_leg};
 use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
-use super::verified::flies;
+use super::verified::{flies, flight_faults};
 use super::{Run, interruption};
+use crate::contradiction::{Contradiction, slack};
 use crate::legs::{LegKind, SegmentStore, StoredLeg};
 use crate::multiphase::Flown;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
@@ -38,6 +39,8 @@ pub(super) struct LegSolver<'a> {
     from_store: AtomicU64,
     /// NLPs solved for them.
     nlp_solves: AtomicU64,
+    /// Claims that a flight has contradicted.
+    contradictions: AtomicU64,
 }
 
 /// What has been found out, by the identity of the leg.
@@ -55,6 +58,7 @@ impl<'a> LegSolver<'a> {
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
+            contradictions: AtomicU64::new(0),
         }
     }
 
@@ -103,6 +107,17 @@ impl<'a> LegSolver<'a> {
     /// Counts a program of one slew that is no leg to keep.
     pub(super) fn count_solve(&self) {
         self.nlp_solves.fetch_add(1, Relaxed);
+    }
+
+    /// Takes note of a contradiction: no certified bound counts from now on.
+    pub(super) fn contradicted(&self, contradiction: &Contradiction) {
+        self.contradictions.fetch_add(1, Relaxed);
+        self.run.observer.contradicted(contradiction);
+    }
+
+    /// Whether no flight has contradicted a certified bound so far.
+    pub(super) fn bounds_are_trusted(&self) -> bool {
+        self.contradictions.load(Relaxed) == 0
     }
 
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
@@ -231,13 +246,40 @@ impl<'a> LegSolver<'a> {
 
     /// A leg from the store.
     fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
-        recall(self.run.legs.get(&leg.identity)?)
+        let mut stored = recall(self.run.legs.get(&leg.identity)?)?;
+        let faults = flight_faults(self.places, leg, &stored.flown.profile);
+        if !faults.is_empty() {
+            let identity = leg.identity.clone();
+            self.run
+                .observer
+                .contradicted(&Contradiction::StoredLeg { identity, faults });
+            return None;
+        }
+        self.compare_with_bound(leg, &mut stored);
+        Some(stored)
+    }
+
+    /// Takes the certified bound from a leg that was flown in less.
+    fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
+        let Some((bound_s, flown_s)) = solved.certified.zip(solved.flown.duration()) else {
+            return;
+        };
+        let turn = leg.arrival.turn(&leg.from.attitude, &leg.to.attitude);
+        if bound_s - slack(bound_s, turn) > flown_s {
+            self.contradicted(&Contradiction::Leg {
+                identity: leg.identity.clone(),
+                bound_s,
+                flown_s,
+            });
+            solved.certified = None;
+        }
     }
 
     /// Solves a leg, and stores it.
     fn solve(&self, kind: LegKind, leg: &CanonicalLeg) -> SolvedLeg {
         let bound = lock(&self.certified).get(&leg.identity).copied();
-        let fresh = solve(self.places, leg, bound, self.stop);
+        let mut fresh = solve(self.places, leg, bound, self.stop);
+        self.compare_with_bound(leg, &mut fresh);
         if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
             // At once, so that a solve that is killed has not worked in vain; but not when
             // stopped, since then perhaps not all starts have been tried.

@@ -2,6 +2,7 @@
 
 use crate::certified::CertifiedBounds;
 use crate::dynamics::Dynamics;
+use crate::rounding::rounded;
 use crate::scenario::{RateCondition, Scenario};
 use crate::sequence::Place;
 use crate::slew::arrival::Arrival;
@@ -35,8 +36,10 @@ impl<'a> Places<'a> {
         let dynamics = Dynamics::of(scenario);
         let start = scenario.start();
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
+        let scale = wheels.amax();
         Self {
-            null: dynamics.null_component(&wheels),
+            // What rounding leaves of none is none.
+            null: dynamics.null_component(&wheels).map(|h| rounded(h, scale)),
             extremals: KinematicExtremals::of(&dynamics),
             certified: CertifiedBounds::of(&dynamics),
             resolution: Resolution::of(scenario.options().accuracy, &dynamics),

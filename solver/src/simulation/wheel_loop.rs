@@ -114,6 +114,36 @@ mod tests {
     }
 
     #[test]
+    fn a_wheel_does_backwards_what_it_does_forwards() {
+        for (command, speed) in [
+            (0.05, 50.0),
+            (0.099, 50.0),
+            (0.1, 99.9),
+            (0.1, 100.0),
+            (-0.1, 100.0),
+            (0.2, -30.0),
+            (0.0, 100.2),
+        ] {
+            let forth = cycle(&WHEEL, &RUBBING, command, speed, 0.01);
+            let back = cycle(&WHEEL, &RUBBING, -command, -speed, 0.01);
+            let case = format!("{command} N m at {speed} rad/s");
+            assert!(
+                (forth.motor_torque + back.motor_torque).abs() < 1e-15,
+                "{case}: {forth:?} {back:?}"
+            );
+            assert!((forth.missing + back.missing).abs() < 1e-15, "{case}");
+            assert_eq!(forth.torque_limited, back.torque_limited, "{case}");
+            assert_eq!(forth.speed_limited, back.speed_limited, "{case}");
+            let forth = commandable(&WHEEL, 3.0 * command);
+            let back = commandable(&WHEEL, -3.0 * command);
+            assert!(
+                (forth.0 + back.0).abs() < 1e-15 && forth.1 == back.1,
+                "{case}"
+            );
+        }
+    }
+
+    #[test]
     fn a_wheel_with_a_law_takes_no_commands() {
         let held = Drive {
             speed_law: Some(SpeedLaw {

@@ -5,6 +5,7 @@ use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
 use super::super::{App, computing, stored};
+use crate::contradictions::Unwatched;
 use crate::store::leg_key;
 use crate::wire::leg_query::{
     self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
@@ -15,7 +16,6 @@ use axum::extract::State;
 use slewplan_solver::legs::{LegKind, LegStore, NoStore, StoredLeg};
 use slewplan_solver::planner::{self, LegRow, Run, Shard};
 use slewplan_solver::pool::SolverPool;
-use slewplan_solver::progress::Silent;
 use slewplan_solver::sequence::Place;
 use slewplan_solver::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -122,7 +122,7 @@ fn certified(
     let run = Run {
         pool,
         stop,
-        observer: &Silent,
+        observer: &Unwatched,
         legs: &NoStore,
         segments: &NoStore,
     };
@@ -149,7 +149,7 @@ fn answer(
     let run = Run {
         pool,
         stop,
-        observer: &Silent,
+        observer: &Unwatched,
         legs: &witness,
         segments: &NoStore,
     };

@@ -3,6 +3,7 @@
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::{App, describe};
 use crate::clock::now_us;
+use crate::contradictions::Unwatched;
 use crate::wire;
 use axum::Json;
 use axum::extract::State;
@@ -10,7 +11,6 @@ use serde::Serialize;
 use slewplan_solver::legs::{LegKind, NoStore};
 use slewplan_solver::planner::{self, Run, Shard};
 use slewplan_solver::pool::SolverPool;
-use slewplan_solver::progress::Silent;
 use slewplan_solver::stop::StopSignal;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -104,7 +104,7 @@ fn solves(pool: &SolverPool) -> bool {
     let run = Run {
         pool,
         stop: &stop,
-        observer: &Silent,
+        observer: &Unwatched,
         legs: &NoStore,
         segments: &NoStore,
     };

@@ -3,6 +3,7 @@
 use super::super::App;
 use super::super::describe::ServerErrors;
 use super::super::error::ApiError;
+use crate::contradictions;
 use crate::figures::{head, sample};
 use axum::extract::State;
 use axum::http::{HeaderName, header};
@@ -44,6 +45,14 @@ pub(in crate::http) async fn handler(
     );
     sample(&mut text, name, "outcome=\"hit\"", tally.hits());
     sample(&mut text, name, "outcome=\"miss\"", tally.misses());
+    let name = "slewplan_contradictions_total";
+    head(
+        &mut text,
+        name,
+        "counter",
+        "Flights that contradicted a certified bound or a stored leg: defects of the planner.",
+    );
+    sample(&mut text, name, "", contradictions::count());
     let name = "slewplan_database_bytes";
     head(
         &mut text,

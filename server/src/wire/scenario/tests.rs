@@ -1,3 +1,4 @@
+use super::super::unknown_members::{is_told, with_an_extra_member};
 use super::*;
 
 const COMPLETE: &str = r#"{
@@ -24,6 +25,14 @@ const COMPLETE: &str = r#"{
 
 fn decoded(text: &str) -> (ScenarioSpec, Vec<Problem>) {
     decode(&document::parse(text.as_bytes()).unwrap())
+}
+
+#[test]
+fn a_member_that_nobody_knows_is_refused_in_every_object() {
+    for changed in with_an_extra_member(COMPLETE) {
+        let (_, problems) = decoded(&changed);
+        assert!(is_told(&problems), "{problems:?} of {changed}");
+    }
 }
 
 #[test]

@@ -12,14 +12,59 @@ use std::f64::consts::PI;
 /// Widest enclosure that a few operations on exact numbers may give.
 const SHARP: f64 = 1e-13;
 
+/// A real number as the double next to it and the sign of what is missing to it.
+#[derive(Debug, Clone, Copy)]
+struct Exact {
+    nearest: f64,
+    missing: f64,
+}
+
+impl Exact {
+    /// Two-sum: what a sum loses is a double (Knuth, The Art of Computer Programming 2, 4.2.2).
+    fn sum(a: f64, b: f64) -> Self {
+        let nearest = a + b;
+        let of_b = nearest - a;
+        let missing = (a - (nearest - of_b)) + (b - of_b);
+        Self { nearest, missing }
+    }
+
+    /// What a product loses is a double, and a fused multiplication finds it.
+    fn product(a: f64, b: f64) -> Self {
+        let nearest = a * b;
+        let missing = a.mul_add(b, -nearest);
+        Self { nearest, missing }
+    }
+
+    fn quotient(a: f64, b: f64) -> Self {
+        let nearest = a / b;
+        let missing = (-nearest).mul_add(b, a) * b.signum();
+        Self { nearest, missing }
+    }
+
+    fn root(x: f64) -> Self {
+        let nearest = x.sqrt();
+        let missing = (-nearest).mul_add(nearest, x);
+        Self { nearest, missing }
+    }
+
+    fn is_in(self, interval: Interval) -> bool {
+        let above = interval.low < self.nearest
+            || interval.low.to_bits() == self.nearest.to_bits() && self.missing >= 0.0;
+        let below = interval.high > self.nearest
+            || interval.high.to_bits() == self.nearest.to_bits() && self.missing <= 0.0;
+        above && below
+    }
+}
+
 fn contains(interval: Interval, x: f64) -> bool {
-    // The expected number is rounded itself.
-    let slack = 1e-15 * x.abs().max(1.0);
-    interval.low - slack <= x && x <= interval.high + slack
+    interval.low <= x && x <= interval.high
 }
 
 fn assert_encloses(interval: Interval, x: f64) {
-    assert!(contains(interval, x), "{interval:?} without {x}");
+    // The expected number is rounded itself.
+    let slack = 1e-15 * x.abs().max(1.0);
+    let near = interval.low - slack <= x && x <= interval.high + slack;
+    assert!(near, "{interval:?} without {x}");
     let width = interval.high - interval.low;
     assert!(width < SHARP * x.abs().max(1.0), "{interval:?} is wide");
 }
@@ -45,6 +90,27 @@ fn a_box_about_the_origin_is_seen_everywhere() {
 }
 
 proptest! {
+    #[test]
+    fn operations_on_numbers_enclose_what_is_exact(x in -3.0..3.0_f64, y in -3.0..3.0_f64) {
+        prop_assume!(x != 0.0 && y != 0.0);
+        let (a, b) = (Interval::exactly(x), Interval::exactly(y));
+        let size = x.abs();
+        for (name, enclosure, exact) in [
+            ("sum", a + b, Exact::sum(x, y)),
+            ("difference", a - b, Exact::sum(x, -y)),
+            ("product", a * b, Exact::product(x, y)),
+            ("quotient", a / b, Exact::quotient(x, y)),
+            ("square", a.squared(), Exact::product(x, x)),
+            ("root", Interval::exactly(size).sqrt(), Exact::root(size)),
+            ("twice", a.twice(), Exact::sum(x, x)),
+            ("half", a.half(), Exact::product(x, 0.5)),
+            ("lower end", Interval::around(x, y.abs()), Exact::sum(x, -y.abs())),
+            ("upper end", Interval::around(x, y.abs()), Exact::sum(x, y.abs())),
+        ] {
+            prop_assert!(exact.is_in(enclosure), "{name} {enclosure:?} {exact:?}");
+        }
+    }
+
     #[test]
     fn operations_enclose_points(x in -3.0..3.0_f64, y in -3.0..3.0_f64, at in 0.0..1.0_f64, width in 0.0..0.1_f64) {
         let (a, b) = (Interval { low: x, high: x + width }, Interval { low: y, high: y + width });

@@ -65,6 +65,22 @@ fn a_cone_around_the_start_is_left_once() {
 }
 
 #[test]
+fn a_cone_around_the_end_is_never_left() {
+    let report = accepted(
+        &with_cone(angle(HALF), 0.0, 0.02_f64.to_degrees()),
+        &bang_bang(),
+    );
+    let [intrusion] = report.intrusions[..] else {
+        panic!("{:?}", report.intrusions);
+    };
+    let entered = 2.0 * HALF - (2.0 * 0.02 * EFFECTIVE_X / TORQUE).sqrt();
+    assert!((intrusion.from_s - entered).abs() < 1e-6, "{intrusion:?}");
+    assert!((intrusion.to_s - 2.0 * HALF).abs() < 1e-12, "{intrusion:?}");
+    assert!((intrusion.depth_rad - 0.02).abs() < 1e-9, "{intrusion:?}");
+    assert_eq!(report.keep_out[0].code, Code::KeepOutViolated);
+}
+
+#[test]
 fn a_touched_cone_is_no_violation() {
     let report = accepted(&with_cone(0.15, 0.05, 0.05_f64.to_degrees()), &bang_bang());
     assert!(report.keep_out.is_empty(), "{:?}", report.keep_out);

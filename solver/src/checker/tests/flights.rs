@@ -113,6 +113,22 @@ fn rests_are_held_and_tested_throughout() {
 }
 
 #[test]
+fn who_settles_or_dwells_is_at_rest_whatever_rates_are_free() {
+    // Coasting through the target.
+    let flight = Flight {
+        total_time_s: 2.0 * HALF,
+        passages: vec![passage("a", HALF, 2.0 * HALF)],
+        controls: vec![control(0.0, HALF, -TORQUE), control(HALF, HALF, 0.0)],
+    };
+    for (settle_s, dwell_s) in [(HALF, 0.0), (0.0, HALF), (0.5 * HALF, 0.5 * HALF)] {
+        let mut spec = scenario(vec![target("a", 0.5 * angle(HALF))]);
+        spec.targets[0].zero_rate_axes = Some([false; 3]);
+        (spec.targets[0].settle_s, spec.targets[0].dwell_s) = (settle_s, dwell_s);
+        refused(&spec, &flight, "rate error");
+    }
+}
+
+#[test]
 fn a_rotation_has_two_signs_and_a_quaternion_one() {
     // 4 rad about x: the continuous quaternion ends with w < 0.
     let half = (4.0 * EFFECTIVE_X / TORQUE).sqrt();

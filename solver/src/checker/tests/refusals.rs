@@ -1,7 +1,8 @@
 //! Flights that are not flights of the scenario, each refused in words.
 
-use super::super::NOT_COMPUTED;
-use super::super::visits::{Visit, inspect};
+use super::super::integrator::Flown;
+use super::super::visits::{Misses, Visit, inspect};
+use super::super::{MOMENTUM_TOLERANCE, NOT_COMPUTED, Observed};
 use super::build::{
     HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target, valid,
 };
@@ -128,6 +129,30 @@ fn targets_out_of_order_are_refused() {
 }
 
 #[test]
+fn a_target_at_the_wrong_place_is_refused_at_whatever_place() {
+    let places = [HALF, 2.0 * HALF, 2.0 * HALF];
+    let names = ["a", "b", "c"];
+    for (index, place) in (0..3).flat_map(|index| (0..3).map(move |place| (index, place))) {
+        let mut spec = scenario(vec![
+            target("a", 0.5 * angle(HALF)),
+            target("b", angle(HALF)),
+            target("c", angle(HALF)),
+        ]);
+        spec.targets[0].zero_rate_axes = Some([false, true, true]);
+        spec.targets[index].position = Some(place + 1);
+        let mut flight = bang_bang();
+        flight.passages = (0..3)
+            .map(|i| passage(names[i], places[i], places[i]))
+            .collect();
+        if index == place {
+            accepted(&spec, &flight);
+        } else {
+            refused(&spec, &flight, &format!("instead of {}", place + 1));
+        }
+    }
+}
+
+#[test]
 fn a_target_left_before_it_is_reached_is_tested_all_the_same() {
     let spec = scenario(vec![target("a", angle(HALF)), target("b", angle(HALF))]);
     let end = 2.0 * HALF;
@@ -179,6 +204,27 @@ fn a_motion_beyond_all_numbers_is_refused() {
         .iter()
         .flat_map(|s| s.wheel_speed_rad_s.clone());
     assert!(figures.into_iter().all(f64::is_finite));
+}
+
+#[test]
+fn an_integration_that_loses_momentum_is_not_believed() {
+    let scenario = valid(&spec());
+    for (share, passed) in [(0.5, true), (2.0, false)] {
+        let flown = Flown {
+            steps: 1,
+            momentum_drift: share * MOMENTUM_TOLERANCE,
+        };
+        let figures = (0.0, flown, &Misses::default());
+        let verification = Observed::new(&scenario)
+            .report(&scenario, figures, Vec::new())
+            .verification;
+        assert_eq!(verification.passed, passed, "{verification:?}");
+        let told = verification.failures.iter();
+        assert_eq!(
+            told.filter(|f| f.contains("lost momentum")).count(),
+            usize::from(!passed)
+        );
+    }
 }
 
 #[test]

@@ -44,6 +44,13 @@ fn demands_arrive_as_rules_on_indices() {
     assert!(!rules.is_free());
     let free = Scenario::try_new(&experiment_a()).unwrap().scenario;
     assert!(free.order_rules().is_free());
+    // The last place has the due date of all.
+    for place in 1..=6 {
+        let mut spec = experiment_a();
+        demand(&mut spec, 2, Some(place), &[]);
+        let scenario = Scenario::try_new(&spec).unwrap().scenario;
+        assert!(!scenario.order_rules().is_free(), "place {place}");
+    }
 }
 
 #[test]

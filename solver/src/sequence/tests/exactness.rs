@@ -23,6 +23,11 @@ fn orders_of(result: &SearchResult) -> Vec<FlownOrder> {
 fn assert_same_orders(found: &[FlownOrder], expected: &[FlownOrder], case: &str) {
     let orders = |list: &[FlownOrder]| list.iter().map(|o| o.order.clone()).collect::<Vec<_>>();
     assert_eq!(orders(found), orders(expected), "{case}");
+    assert_same_durations(found, expected, case);
+}
+
+fn assert_same_durations(found: &[FlownOrder], expected: &[FlownOrder], case: &str) {
+    assert_eq!(found.len(), expected.len(), "{case}");
     for (a, b) in found.iter().zip(expected) {
         assert!(
             (a.duration_s - b.duration_s).abs() <= 1e-9 * b.duration_s,
@@ -46,6 +51,20 @@ fn finds_the_best_orders_of_coupled_models() {
         assert!((result.lower_bound_s - best_s).abs() <= 1e-9 * best_s);
         assert!(result.best_is_proven(0.0));
         assert_eq!(result.statistics.bounds_contradicted, 0);
+    }
+}
+
+#[test]
+fn finds_the_best_of_orders_that_hardly_differ() {
+    let pool = pool(2);
+    for seed in 0..96 {
+        let targets = 3 + (seed / 4 % 5) as usize;
+        let model = RandomModel::with_near_ties(targets, seed % 2 == 0, seed);
+        let expected = exhaustive(&model, 4, &pool);
+        let result = run(&model, &alternatives(4));
+        assert_same_durations(&orders_of(&result), &expected, &format!("seed {seed}"));
+        assert!(result.complete && result.best_is_proven(0.0), "seed {seed}");
+        assert_eq!(result.statistics.bounds_contradicted, 0, "seed {seed}");
     }
 }
 

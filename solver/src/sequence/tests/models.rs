@@ -83,6 +83,20 @@ impl RandomModel {
         model
     }
 
+    /// Orders that differ by some millionths of what they cost, or thousandths, and bounds that know all.
+    pub(in crate::sequence) fn with_near_ties(targets: usize, has_end: bool, seed: u64) -> Self {
+        let mut model = Self::new(targets, has_end, seed);
+        let spread = [1e-6, 1e-5, 1e-4, 1e-3][(seed % 4) as usize];
+        for leg in &mut model.legs {
+            *leg = 30.0 + spread * *leg;
+        }
+        for penalty in &mut model.penalties {
+            *penalty = 5.0 + spread * *penalty;
+        }
+        model.known_share = 1.0;
+        model
+    }
+
     /// The same forth and back but for the start, and for a service time at every target.
     pub(in crate::sequence) fn reversible(targets: usize, has_end: bool, seed: u64) -> Self {
         let mut model = Self::new(targets, has_end, seed);

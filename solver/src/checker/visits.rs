@@ -159,15 +159,10 @@ impl Misses {
     fn at_target(&mut self, visit: &Visit<'_>, stay: &[Snapshot], sign: AttitudeEquivalence) {
         let target = visit.target;
         let goal = target.attitude.xyzw();
-        let conditions = if target.settle + target.dwell > 0.0 {
-            [RateCondition::Fixed(0.0); 3]
-        } else {
-            target.rate
-        };
         let (mut turn, mut rate) = (0.0_f64, 0.0_f64);
         for state in stay {
             turn = turn.max(attitude_error(&state.quaternion, &goal, sign));
-            rate = rate.max(rate_error(&state.rate, &conditions));
+            rate = rate.max(rate_error(&state.rate, &target.rate));
         }
         self.record(&format!("target '{}'", target.id), turn, rate);
     }

@@ -125,6 +125,9 @@ fn who_settles_or_dwells_is_at_rest_whatever_rates_are_free() {
         spec.targets[0].zero_rate_axes = Some([false; 3]);
         (spec.targets[0].settle_s, spec.targets[0].dwell_s) = (settle_s, dwell_s);
         refused(&spec, &flight, "rate error");
+        spec.targets[0].zero_rate_axes = None;
+        spec.targets[0].rate_min_rad_s = Some([Some(-1.0), None, None]);
+        refused(&spec, &flight, "rate error");
     }
 }
 

@@ -58,7 +58,8 @@ fn finds_the_best_orders_of_coupled_models() {
 fn finds_the_best_of_orders_that_hardly_differ() {
     let pool = pool(2);
     for seed in 0..96 {
-        let targets = 3 + (seed / 4 % 5) as usize;
+        // Of eight targets so many nodes that the bounds of longer paths are asked for.
+        let targets = 3 + (seed / 4 % 6) as usize;
         let model = RandomModel::with_near_ties(targets, seed % 2 == 0, seed);
         let expected = exhaustive(&model, 4, &pool);
         let result = run(&model, &alternatives(4));

@@ -91,7 +91,7 @@ impl RandomModel {
             *leg = 30.0 + spread * *leg;
         }
         for penalty in &mut model.penalties {
-            *penalty = 5.0 + spread * *penalty;
+            *penalty = 0.02 + spread * *penalty;
         }
         model.known_share = 1.0;
         model

@@ -116,28 +116,35 @@ impl CertifiedBounds {
         }
         let prepared = self.prepared_for(ends)?;
         self.seen(&turn, &prepared)
-            .map(|(bound, turn)| bound.lower_bound_s(&[turn], TOLERANCE))
+            .map(|(_, bound, turn)| bound.lower_bound_s(&[turn], TOLERANCE))
             .reduce(f64::max)
     }
 
-    /// The claim of [`Self::leg`] with all that a second proof needs; `None` where nothing is
-    /// proved, and with momentum, for which there is no second proof.
-    pub(crate) fn certificate(&self, from: &Waypoint, to: &Waypoint) -> Option<Certificate> {
+    /// The claim of [`Self::leg`] with all that a second proof needs, and the axes from which it is
+    /// seen; `None` where nothing is proved, and with momentum, for which there is no second proof.
+    pub(crate) fn certificate(
+        &self,
+        from: &Waypoint,
+        to: &Waypoint,
+    ) -> Option<(Matrix3<f64>, Certificate)> {
         let turn = from.attitude.turn_to(&to.attitude);
         let prepared = self.prepared_for([most(from), most(to)])?;
         self.seen(&turn, &prepared)
-            .map(|(bound, turn)| bound.certificate(&[turn], TOLERANCE))
-            .max_by(|a, b| a.duration_s.total_cmp(&b.duration_s))
+            .map(|(axes, bound, turn)| (axes, bound.certificate(&[turn], TOLERANCE)))
+            .max_by(|(_, a), (_, b)| a.duration_s.total_cmp(&b.duration_s))
     }
 
-    /// The bounds of the frames that have one, each with a turn as it is seen from there.
+    /// The axes of the frames that have a bound, with it and with a turn as it is seen from there.
     fn seen<'s>(
         &'s self,
         turn: &'s Attitude,
         prepared: &'s [Option<SlewBound>],
-    ) -> impl Iterator<Item = (&'s SlewBound, Attitude)> {
+    ) -> impl Iterator<Item = (Matrix3<f64>, &'s SlewBound, Attitude)> {
         let frames = self.frames.iter().zip(prepared);
-        frames.filter_map(|(frame, bound)| Some((bound.as_ref()?, turn.seen_from(&frame.axes)?)))
+        frames.filter_map(|(frame, bound)| {
+            let turn = turn.seen_from(&frame.axes)?;
+            Some((frame.axes, bound.as_ref()?, turn))
+        })
     }
 
     /// The bounds of all frames for ends with rates of these sizes at most, body axes.

@@ -76,9 +76,9 @@ pub fn conditioned(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
             enabled: false,
             ..wheel(generator.direction(), inertia, 1e-3, max_speed)
         });
-        let speeds = spec.start.wheel_speed_rad_s.as_mut();
         let locked = generator.between(-max_speed, max_speed);
-        speeds.expect("every wheel has a speed").push(locked);
+        let speeds = spec.start.wheel_speed_rad_s.get_or_insert_default();
+        speeds.push(locked);
     }
     if generator.coin() {
         spec.start.body_rate_rad_s = Some(generator.vector(-small, small));

@@ -7,8 +7,11 @@
 //! legs whose proof fails count nothing, and the shortest way through the table is what may be
 //! claimed at most.
 //!
-//! Computed in ordinary arithmetic and not proved a second time are the boxes, which are sums of one
-//! term per wheel (`certified`), and the search of the shortest way.
+//! What a certificate takes for granted (boxes, turn, ends) is compared with the scenario's own words,
+//! by other ways than those it was made by (`premises`). Computed in ordinary arithmetic and not proved
+//! a second time is the search of the shortest way.
+
+mod premises;
 
 use super::Run;
 use super::canonical::CanonicalLeg;
@@ -75,6 +78,12 @@ pub enum Objection {
     /// The scenario leaves rates or accelerations without limits.
     #[error("nothing is proved of such slews: their rates are not limited")]
     Unfounded,
+    /// What a proof rests on is not what the scenario says.
+    #[error("a proof would take for granted {what}, which the scenario does not support")]
+    Premises {
+        /// What it is.
+        what: &'static str,
+    },
     /// The second proof failed.
     #[error("{known_s} s is the bound that is known of such slews: {rejection}")]
     NotProved {
@@ -161,7 +170,7 @@ pub fn certify_plan(scenario: &Scenario, claims: &PlanClaims, run: Run<'_>) -> C
 /// The legs between pairs of places, equal ones once.
 #[derive(Default)]
 struct Distinct {
-    legs: Vec<CanonicalLeg>,
+    legs: Vec<((Place, Place), CanonicalLeg)>,
     /// Which of them each pair is.
     of_pair: Vec<usize>,
 }
@@ -175,7 +184,7 @@ impl Distinct {
             let index = *known.entry(leg.identity.clone()).or_insert(next);
             distinct.of_pair.push(index);
             if index == next {
-                distinct.legs.push(leg);
+                distinct.legs.push((*pair, leg));
             }
         }
         distinct
@@ -208,7 +217,7 @@ impl SecondProof<'_> {
         if let Some(early) = self.without_proof(bound, claim.duration_s) {
             return early;
         }
-        match self.proved(&canonical(self.places, pair), Some(bound)) {
+        match self.proved(pair, &canonical(self.places, pair), Some(bound)) {
             Ok(_) => Verdict::Confirmed,
             Err(objection) => Verdict::Rejected(objection),
         }
@@ -226,8 +235,8 @@ impl SecondProof<'_> {
         if let Some(early) = self.without_proof(bound, claims.total_time_s) {
             return early;
         }
-        let bounds = self.run.pool.map(&distinct.legs, |leg| {
-            let bound = (!self.run.stop.is_set()).then(|| self.proved(leg, None).ok());
+        let bounds = self.run.pool.map(&distinct.legs, |(pair, leg)| {
+            let bound = (!self.run.stop.is_set()).then(|| self.proved(*pair, leg, None).ok());
             self.tell();
             bound.flatten()
         });
@@ -271,10 +280,19 @@ impl SecondProof<'_> {
         stopped.then_some(Verdict::NotChecked(Obstacle::Stopped))
     }
 
-    /// A bound on a leg that has been proved, s: the given one, or that of the solver.
-    fn proved(&self, leg: &CanonicalLeg, bound: Option<f64>) -> Result<f64, Objection> {
+    /// A bound on the leg between two places that has been proved, s: the given one, or that of the
+    /// solver.
+    fn proved(
+        &self,
+        (from, to): (Place, Place),
+        leg: &CanonicalLeg,
+        bound: Option<f64>,
+    ) -> Result<f64, Objection> {
         let certificate = self.places.certified.certificate(&leg.from, &leg.to);
-        let mut certificate = certificate.ok_or(Objection::Unfounded)?;
+        let (axes, mut certificate) = certificate.ok_or(Objection::Unfounded)?;
+        let flown = if leg.mirrored { [to, from] } else { [from, to] };
+        premises::check(self.places.scenario, flown, &axes, &certificate)
+            .map_err(|what| Objection::Premises { what })?;
         let known_s = certificate.duration_s;
         certificate.duration_s = bound.unwrap_or(known_s);
         match certify::check(&certificate) {

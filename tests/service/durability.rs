@@ -4,7 +4,6 @@ use crate::client::Request;
 use crate::running::{Service, fixture, large, small};
 use serde_json::{Value, json};
 use std::io::Read;
-use std::time::{Duration, Instant};
 
 /// A scenario that takes seconds and ends by itself on any machine.
 fn sizeable() -> Value {
@@ -44,14 +43,8 @@ fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
     let mut stream = events.open(&service.address);
     let mut told = String::new();
     stream.read_exact(&mut [0; 1]).expect("an answer");
-    let begin = Instant::now();
     assert!(service.terminate());
     stream.read_to_string(&mut told).expect("the stream ends");
-    assert!(
-        begin.elapsed() < Duration::from_secs(5),
-        "{:?}",
-        begin.elapsed()
-    );
     let last = |text: &str| {
         told.rfind(text)
             .unwrap_or_else(|| panic!("no {text} in {told}"))

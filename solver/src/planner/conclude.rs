@@ -266,7 +266,12 @@ impl<'a> Conclusions<'a> {
                 history,
                 ..self.statistics(&order.statistics)
             },
-            warnings: doubts(order, optimality).chain(report.keep_out).collect(),
+            warnings: self
+                .distrust()
+                .into_iter()
+                .chain(doubts(order, optimality))
+                .chain(report.keep_out)
+                .collect(),
         })
     }
 }
@@ -297,6 +302,16 @@ impl Conclusions<'_> {
             leg.certified_lower_bound_s = proved.filter(|_| self.tours.legs.bounds_are_trusted());
             leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
         }
+    }
+
+    /// A doubt about bounds that a flight has contradicted.
+    fn distrust(&self) -> Option<Problem> {
+        let trusted = self.tours.legs.bounds_are_trusted();
+        (!trusted).then(|| {
+            let message = "a flight was faster than a certified bound, so that no bound is given";
+            let hint = "report the scenario: a bound that does not hold is a defect of the solver";
+            Problem::new("", Code::BoundContradicted, message, hint)
+        })
     }
 
     /// Compares a flight with the certified bounds of its legs and of all tours.
@@ -397,31 +412,4 @@ fn doubts(order: &Incumbent<'_>, optimality: Optimality) -> impl Iterator<Item =
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
-        let best = FlownOrder {
-            order: vec![0],
-            duration_s: 1.0,
-        };
-        let with = |bounds_contradicted, tours_unresolved| Incumbent {
-            best: &best,
-            alternatives: &[],
-            lower_bound_s: 1.0,
-            statistics: SearchStatistics {
-                tours_unresolved,
-                bounds_contradicted,
-                ..SearchStatistics::default()
-            },
-        };
-        let told = |contradicted, unresolved, optimality| {
-            let doubts = doubts(&with(contradicted, unresolved), optimality);
-            doubts.map(|doubt| doubt.code).collect::<Vec<_>>()
-        };
-        assert_eq!(told(0, 0, Optimality::Feasible), []);
-        assert_eq!(told(2, 3, Optimality::Optimal), [Code::BoundContradicted]);
-        assert_eq!(told(0, 3, Optimality::Feasible), [Code::SlewNotSolved]);
-    }
-}
+mod tests;

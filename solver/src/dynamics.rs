@@ -350,3 +350,6 @@ fn null_space(axes: &Matrix3xX<f64>, inverse: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_columns(&columns)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -226,3 +226,6 @@ impl<'a> Places<'a> {
                 .all(|end| end.rate.iter().all(symmetric_rate) && symmetric_wheels(&end.wheels))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,8 @@
 //! Keep-out cones that are entered between two clear ends.
 
-use super::build::{EFFECTIVE_X, HALF, TORQUE, accepted, angle, bang_bang, scenario, target};
+use super::build::{
+    EFFECTIVE_X, HALF, TORQUE, accepted, angle, bang_bang, control, passage, scenario, target,
+};
 use crate::problem::Code;
 use crate::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
 
@@ -78,6 +80,39 @@ fn a_cone_around_the_end_is_never_left() {
     assert!((intrusion.to_s - 2.0 * HALF).abs() < 1e-12, "{intrusion:?}");
     assert!((intrusion.depth_rad - 0.02).abs() < 1e-9, "{intrusion:?}");
     assert_eq!(report.keep_out[0].code, Code::KeepOutViolated);
+}
+
+#[test]
+fn a_warning_lists_some_of_many_times_and_counts_the_rest() {
+    // To and fro through the cone, and at rest in between.
+    let mut spec = with_cone(0.15, 0.0, 0.05_f64.to_degrees());
+    for times in [3, 5, 6, 9] {
+        let mut flight = bang_bang();
+        (flight.controls, flight.passages) = (Vec::new(), Vec::new());
+        spec.targets.clear();
+        for leg in 0..times {
+            let begin = f64::from(leg) * 2.0 * HALF;
+            let sign = if leg % 2 == 0 { -1.0 } else { 1.0 };
+            flight.controls.push(control(begin, HALF, sign * TORQUE));
+            flight
+                .controls
+                .push(control(begin + HALF, HALF, -sign * TORQUE));
+            let name = format!("t{leg}");
+            let place = if leg % 2 == 0 { angle(HALF) } else { 0.0 };
+            spec.targets.push(target(&name, place));
+            let arrival = begin + 2.0 * HALF;
+            flight.passages.push(passage(&name, arrival, arrival));
+        }
+        flight.total_time_s = f64::from(times) * 2.0 * HALF;
+        let report = accepted(&spec, &flight);
+        assert_eq!(report.intrusions.len(), usize::try_from(times).unwrap());
+        let message = &report.keep_out[0].message;
+        let more = format!("{} more times", times - 5);
+        assert_eq!(message.contains("more times"), times > 5, "{message}");
+        assert!(times <= 5 || message.contains(&more), "{message}");
+        let listed = message.matches(" s to ").count();
+        assert_eq!(listed, usize::try_from(times.min(5)).unwrap(), "{message}");
+    }
 }
 
 #[test]

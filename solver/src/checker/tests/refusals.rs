@@ -1,5 +1,6 @@
 //! Flights that are not flights of the scenario, each refused in words.
 
+use super::super::dynamics::Snapshot;
 use super::super::integrator::Flown;
 use super::super::visits::{Misses, Visit, inspect};
 use super::super::{MOMENTUM_TOLERANCE, NOT_COMPUTED, Observed};
@@ -7,7 +8,7 @@ use super::build::{
     HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target, valid,
 };
 use crate::plan::Flight;
-use crate::spec::ScenarioSpec;
+use crate::spec::{ScenarioSpec, StateSpec};
 
 fn spec() -> ScenarioSpec {
     scenario(vec![target("a", angle(HALF))])
@@ -178,6 +179,33 @@ fn a_stay_of_which_there_is_no_state_is_refused() {
     let misses = inspect(&scenario, &[visit], &[]);
     assert!(misses.attitude_rad >= NOT_COMPUTED && misses.rate_rad_s >= NOT_COMPUTED);
     assert!(misses.failures[0].contains("target 'a' cannot be tested"));
+}
+
+#[test]
+fn the_worst_of_the_final_wheel_speeds_counts_whichever_wheel_it_is() {
+    let mut spec = spec();
+    spec.spacecraft.wheels[1].max_speed_rad_s = None;
+    spec.end = Some(StateSpec {
+        wheel_speed_rad_s: Some(vec![0.0; 3]),
+        ..StateSpec::default()
+    });
+    let scenario = valid(&spec);
+    for worst in 0..3 {
+        let mut state = Snapshot::at_start(&scenario);
+        state.wheel_speed[worst] = 0.8;
+        state.wheel_speed[(worst + 1) % 3] = 1e-9;
+        let misses = inspect(&scenario, &[], std::slice::from_ref(&state));
+        // Of the wheel's limit; without one, of the fastest wheel.
+        let expected = if worst == 1 { 1.0 } else { 0.8 / 400.0 };
+        let found = misses.end_speed.expect("speeds are given");
+        assert!((found - expected).abs() < 1e-8, "wheel {worst}: {found}");
+        let told = misses.failures.iter();
+        let named = told.filter(|f| f.contains(&format!("leaves wheel {worst} at")));
+        assert_eq!(named.count(), 1, "{:?}", misses.failures);
+    }
+    let state = Snapshot::at_start(&scenario);
+    let misses = inspect(&scenario, &[], &[state]);
+    assert_eq!(misses.end_speed.map(f64::to_bits), Some(0));
 }
 
 #[test]

@@ -328,6 +328,38 @@ fn rounding_of_the_null_space_makes_no_other_leg() {
 }
 
 #[test]
+fn the_sign_of_a_quaternion_makes_another_leg_only_where_it_counts() {
+    // Half turns have no sign that is the natural one.
+    let half = |axis: [f64; 3]| {
+        let [x, y, z] = axis;
+        AttitudeSpec::Quaternion([x, y, z, 0.0])
+    };
+    let cases = [
+        turned(0.4),
+        half([1.0, 0.0, 0.0]),
+        half([0.0, -1.0, 0.0]),
+        half([0.0, 0.6, -0.8]),
+    ];
+    for attitude in cases {
+        let AttitudeSpec::Quaternion(xyzw) = attitude else {
+            unreachable!("quaternions all of them")
+        };
+        for (equivalence, same) in [
+            (AttitudeEquivalence::Rotation, true),
+            (AttitudeEquivalence::Quaternion, false),
+        ] {
+            let with = |sign: f64| {
+                let mut spec = everything();
+                spec.options.attitude_equivalence = equivalence;
+                spec.targets[0].attitude = AttitudeSpec::Quaternion(xyzw.map(|c| sign * c));
+                identities(&spec)[0].clone()
+            };
+            assert_eq!(with(1.0) == with(-1.0), same, "{xyzw:?}");
+        }
+    }
+}
+
+#[test]
 fn only_what_a_sign_does_not_change_is_flown_backwards() {
     let reversible = |change: fn(&mut ScenarioSpec)| {
         let mut spec = everything();

@@ -184,6 +184,62 @@ fn a_stored_leg_that_its_flight_contradicts_is_told_and_not_used() {
     assert!(matches!(&told[..], [Contradiction::Leg { .. }]), "{told:?}");
 }
 
+/// Counts what is asked for.
+#[derive(Default)]
+struct Asked(Mutex<Vec<String>>);
+
+impl LegStore for Asked {
+    fn get(&self, identity: &str) -> Option<StoredLeg> {
+        self.0.lock().expect("no panic").push(identity.into());
+        None
+    }
+
+    fn put(&self, _: &str, _: &StoredLeg) {}
+}
+
+#[test]
+fn whoever_wants_the_best_so_far_asks_the_store_and_whoever_cancels_does_not() {
+    let scenario = scenario();
+    let pool = SolverPool::new(NonZeroUsize::new(1)).expect("a thread");
+    let asked = |stop: &StopSignal| {
+        let store = Asked::default();
+        let run = Run {
+            pool: &pool,
+            stop,
+            observer: &Listener::default(),
+            legs: &store,
+            segments: &NoStore,
+        };
+        let places = Places::of(&scenario);
+        let legs = LegSolver::new(&places, run, stop);
+        let (start, first, second) = (Place::Start, Place::Target(0), Place::Target(1));
+        // Two of the four are one problem, as without momentum a slew may be flown backwards.
+        let pairs = [
+            (start, first),
+            (first, second),
+            (second, first),
+            (start, second),
+        ];
+        let table = legs.table(LegKind::RestToRest, &pairs);
+        let known = pairs
+            .iter()
+            .filter(|(from, to)| table.get(*from, *to).is_some())
+            .count();
+        (
+            store.0.lock().expect("no panic").len(),
+            known,
+            legs.work()[0],
+        )
+    };
+    assert_eq!(asked(&StopSignal::new()), (3, 4, 3));
+    let stop = StopSignal::new();
+    stop.request();
+    assert_eq!(asked(&stop), (3, 0, 0));
+    let stop = StopSignal::new();
+    stop.cancel();
+    assert_eq!(asked(&stop), (0, 0, 0));
+}
+
 #[test]
 fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
     let best = FlownOrder {

@@ -1,0 +1,94 @@
+//! What the wheels can do, by enumeration.
+
+use super::*;
+use crate::random::SplitMix;
+use crate::scenario::reference::{direction, experiment_a, spacecraft};
+use crate::spec::WheelSpec;
+
+fn corners() -> impl Iterator<Item = Vector3<f64>> {
+    let sign = |corner: usize, axis: usize| if corner >> axis & 1 == 0 { 1.0 } else { -1.0 };
+    (0..8).map(move |corner| Vector3::from_fn(|axis, _| sign(corner, axis)))
+}
+
+#[test]
+fn the_gyroscopic_acceleration_is_the_largest_of_all_corners() {
+    let mut random = SplitMix::new(31);
+    for case in 0..40 {
+        let mut dynamics = Dynamics::of(&spacecraft(&mut random, true));
+        dynamics.max_rate_norm = f64::INFINITY;
+        let rates = dynamics.reachable_rates().inf(&dynamics.max_rate);
+        for share in [0.0, dynamics.mean_inverse_inertia()] {
+            let axis = direction(&mut random);
+            let lever = dynamics.inertia_inverse * axis - axis * share;
+            let largest = corners().fold(0.0, |most, corner| {
+                f64::max(most, lever.cross(&rates.component_mul(&corner)).norm())
+            });
+            let expected = largest * dynamics.momentum.norm();
+            let found = dynamics.gyroscopic_acceleration(&axis, share);
+            assert!((found - expected).abs() <= 1e-12 * expected, "case {case}");
+        }
+    }
+}
+
+#[test]
+fn the_axes_nearest_to_the_wheels_are_right_handed() {
+    let mut random = SplitMix::new(32);
+    for case in 0..40 {
+        let axes = Dynamics::of(&spacecraft(&mut random, false)).wheel_axes();
+        let unit = axes.tr_mul(&axes) - Matrix3::identity();
+        assert!(unit.amax() < 1e-12, "case {case}: {axes}");
+        assert!(
+            (axes.determinant() - 1.0).abs() < 1e-12,
+            "case {case}: {axes}"
+        );
+    }
+}
+
+#[test]
+fn momentum_that_is_rounding_is_none() {
+    let mut spec = experiment_a();
+    // Four wheels of a pyramid turn along their null space: three tenths do not sum to nothing.
+    spec.spacecraft.wheels = [
+        [1.0, 0.0, 1.0],
+        [0.0, 1.0, 1.0],
+        [-1.0, 0.0, 1.0],
+        [0.0, -1.0, 1.0],
+    ]
+    .map(|axis| WheelSpec {
+        axis,
+        ..spec.spacecraft.wheels[0].clone()
+    })
+    .into();
+    let with = |speeds: [f64; 4]| {
+        let mut spec = spec.clone();
+        spec.start.wheel_speed_rad_s = Some(speeds.into());
+        Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario)
+    };
+    assert!(!with([300.3, -300.3, 300.3, -300.3]).has_momentum());
+    assert!(!with([300.3, -300.3, 300.3, -300.3 * (1.0 + 1e-15)]).has_momentum());
+    assert!(with([300.3, -300.3, 300.3, -300.3 * (1.0 + 1e-11)]).has_momentum());
+}
+
+#[test]
+fn a_lower_limit_is_strayed_from_by_a_larger_share() {
+    let mut random = SplitMix::new(33);
+    for norm in [false, true] {
+        let mut dynamics = Dynamics::of(&spacecraft(&mut random, true));
+        dynamics.max_rate = Vector3::repeat(f64::INFINITY);
+        dynamics.max_rate_norm = f64::INFINITY;
+        assert!(dynamics.straying() <= 0.0);
+        let mut limited = |limit: f64| {
+            if norm {
+                dynamics.max_rate_norm = limit;
+            } else {
+                dynamics.max_rate.y = limit;
+            }
+            dynamics.straying()
+        };
+        let (wide, narrow) = (limited(1e-3), limited(5e-4));
+        assert!(
+            wide > 0.0 && (narrow - 2.0 * wide).abs() < 1e-9 * wide,
+            "{wide} {narrow}"
+        );
+    }
+}

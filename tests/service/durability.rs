@@ -71,6 +71,7 @@ fn a_database_has_one_service() {
         .expect("the binary starts");
     assert_eq!(second.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&second.stderr).contains("another service"));
+    assert!(folder.path().join("shared.db.lock").exists());
 }
 
 #[test]
@@ -110,4 +111,45 @@ fn legs_on_which_a_search_rests_are_not_solved_again_after_a_kill() {
         let count = figures.lines().find_map(|line| line.strip_prefix(&*name));
         assert_eq!(count == Some("0"), is_zero, "{outcome} {count:?}");
     }
+}
+
+/// Runs the program beside a service; whether it ends well, and what it writes to standard error.
+fn beside(arguments: &[&std::ffi::OsStr]) -> (bool, String) {
+    let ended = std::process::Command::new(env!("CARGO_BIN_EXE_slewplan"))
+        .args(arguments)
+        .output()
+        .expect("the program runs");
+    let told = String::from_utf8_lossy(&ended.stderr).into_owned();
+    (ended.status.success(), told)
+}
+
+#[test]
+fn a_copy_made_beside_the_service_is_sound_or_absent() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [database, copy, text] =
+        ["used.db", "copy.db", "text.db"].map(|name| folder.path().join(name));
+    let service = Service::on(&database, &[]);
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let result = service.get(&format!("/v1/plans/{id}/result")).expect(200);
+    let back_up = |from: &std::path::Path, to: &std::path::Path| {
+        beside(&[
+            "backup".as_ref(),
+            "--database".as_ref(),
+            from.as_ref(),
+            to.as_ref(),
+        ])
+    };
+    let (done, told) = back_up(&database, &copy);
+    assert!(done, "{told}");
+    let other = Service::on(&copy, &[]);
+    let copied = other.get(&format!("/v1/plans/{id}/result")).expect(200);
+    assert_eq!(copied.json(), result.json());
+    std::fs::write(&text, "no database".repeat(1000)).expect("written");
+    let before = std::fs::read_dir(folder.path()).expect("a folder").count();
+    let nothing = folder.path().join("nothing.db");
+    let (done, told) = back_up(&text, &nothing);
+    assert!(!done && !told.is_empty() && !nothing.exists(), "{told}");
+    let after = std::fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(after, before, "something is left behind");
 }

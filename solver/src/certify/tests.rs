@@ -1,4 +1,5 @@
 mod claims;
 mod enclosures;
+mod words;
 
 use super::*;

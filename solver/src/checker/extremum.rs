@@ -63,6 +63,7 @@ pub(super) fn root(
 #[cfg(test)]
 mod tests {
     use super::{critical_points, root};
+    use std::cell::Cell;
 
     #[test]
     fn finds_the_peak_between_two_grid_points() {
@@ -74,6 +75,47 @@ mod tests {
             |s| best = best.max(height(s)),
         );
         assert!((best - 1.0).abs() < 1e-15, "{best}");
+    }
+
+    #[test]
+    fn finds_zeros_as_closely_in_long_and_short_intervals_and_soon() {
+        for length in [1e-6, 1.0, 1e6] {
+            for share in [0.01, 0.37, 0.5, 0.999] {
+                let count = Cell::new(0);
+                let function = |s: f64| {
+                    count.set(count.get() + 1);
+                    ((s - share * length) / length).sinh()
+                };
+                let zero = root((0.0, function(0.0)), (length, function(length)), function);
+                let error = (zero - share * length).abs();
+                assert!(error < 1e-8 * length, "{share} of {length}: {error}");
+                assert!(
+                    count.get() < 30,
+                    "{share} of {length}: {} values",
+                    count.get()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn stays_in_the_bracket_where_values_cannot_be_told_apart() {
+        // Subnormal values, and one of which only the sign is left.
+        for scale in [1e-310, 1e-200] {
+            let function = |s: f64| scale * (s - 0.3);
+            let looked = |s: f64| {
+                assert!((0.0..=1.0).contains(&s), "{s}");
+                function(s)
+            };
+            let zero = root((0.0, function(0.0)), (1.0, function(1.0)), looked);
+            assert!((zero - 0.3).abs() < 1e-3, "{zero}");
+        }
+        let step = |s: f64| {
+            assert!((2.0..=5.0).contains(&s), "{s}");
+            if s < 3.0 { -f64::MAX } else { f64::MAX }
+        };
+        let zero = root((2.0, step(2.0)), (5.0, step(5.0)), step);
+        assert!((2.0..=5.0).contains(&zero), "{zero}");
     }
 
     #[test]

@@ -219,3 +219,6 @@ fn longest(size: &[f64; LEN], tolerance: f64) -> f64 {
     }
     shortest
 }
+
+#[cfg(test)]
+mod tests;

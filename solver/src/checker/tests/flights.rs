@@ -53,6 +53,47 @@ fn states_hold_every_boundary_and_no_wide_gap() {
 }
 
 #[test]
+fn a_short_slew_beside_a_long_rest_is_looked_at_closely() {
+    let (stay, short) = (5000.0, 0.1);
+    let first = 2.0 * HALF;
+    let second = first + stay;
+    let mut spec = scenario(vec![
+        target("a", angle(HALF)),
+        target("b", angle(HALF) + angle(short)),
+    ]);
+    spec.targets[0].dwell_s = stay;
+    let flight = Flight {
+        total_time_s: second + 2.0 * short,
+        passages: vec![
+            passage("a", first, second),
+            passage("b", second + 2.0 * short, second + 2.0 * short),
+        ],
+        controls: vec![
+            control(0.0, HALF, -TORQUE),
+            control(HALF, HALF, TORQUE),
+            control(first, stay, 0.0),
+            control(second, short, -TORQUE),
+            control(second + short, short, TORQUE),
+        ],
+    };
+    let report = accepted(&spec, &flight);
+    let times: Vec<f64> = report.states.iter().map(|s| s.time_s).collect();
+    for (begin, end) in [(0.0, first), (second, second + 2.0 * short)] {
+        let most = (end - begin) / 20.0 * (1.0 + 1e-6);
+        let inside = |pair: &&[f64]| pair[0] >= begin && pair[1] <= end;
+        let gaps: Vec<f64> = times
+            .windows(2)
+            .filter(inside)
+            .map(|p| p[1] - p[0])
+            .collect();
+        assert!(
+            gaps.len() >= 20 && gaps.iter().all(|gap| *gap <= most),
+            "{gaps:?}"
+        );
+    }
+}
+
+#[test]
 fn one_percent_of_torque_is_refused() {
     let mut flight = bang_bang();
     flight.controls[0].wheel_torque_nm[0] *= 0.99;

@@ -1,0 +1,58 @@
+//! Polynomials that fail the equations of motion are noticed, whichever of them it is.
+
+use super::super::dynamics::Body;
+use super::*;
+use crate::spacecraft::Wheel;
+use nalgebra::Matrix3;
+
+const TORQUE: [f64; 3] = [0.01, -0.02, 0.005];
+
+fn body() -> Body {
+    let wheel = |axis: Vector3<f64>| Wheel {
+        axis,
+        inertia: 2e-3,
+        min_torque: -0.05,
+        max_torque: 0.05,
+        max_speed: 400.0,
+        enabled: true,
+    };
+    let inertia = Matrix3::new(4.0, 0.2, 0.0, 0.2, 5.0, -0.1, 0.0, -0.1, 6.0);
+    let wheels = [Vector3::x(), Vector3::y(), Vector3::z()].map(wheel);
+    Body::new(&inertia, &wheels).expect("a body")
+}
+
+fn expansion(body: &Body) -> Expansion {
+    let state = Snapshot {
+        time_s: 0.0,
+        quaternion: [0.1, -0.3, 0.2, (1.0_f64 - 0.14).sqrt()],
+        rate: Vector3::new(0.02, -0.05, 0.03),
+        wheel_speed: vec![50.0, -80.0, 20.0],
+    };
+    Expansion::about(body, &state, (&TORQUE, &[]))
+}
+
+/// What is damaged, and how.
+type Damage = (&'static str, fn(&mut Expansion));
+
+#[test]
+fn each_damaged_coefficient_shows_in_the_defect() {
+    let body = body();
+    let sound = expansion(&body);
+    let s = 0.5 * sound.step_length(1e-15);
+    assert!(sound.defect(&body, &TORQUE, s) < 1e-13);
+    let damages: [Damage; 7] = [
+        ("quaternion", |e| e.quaternion[1][2] += 1e-6),
+        ("rate x", |e| e.rate[1].x += 1e-6),
+        ("rate z", |e| e.rate[2].z -= 1e-6),
+        ("wheel 0", |e| e.wheel[0][1] *= 1.0 + 1e-5),
+        ("wheel 1", |e| e.wheel[1][1] *= 1.0 - 1e-5),
+        ("wheel 2", |e| e.wheel[2][2] += 1e-4),
+        ("no number", |e| e.rate[3].y = f64::NAN),
+    ];
+    for (what, damage) in damages {
+        let mut bad = sound.clone();
+        damage(&mut bad);
+        let defect = bad.defect(&body, &TORQUE, s);
+        assert!(defect > 1e-9, "{what}: {defect}");
+    }
+}

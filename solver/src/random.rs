@@ -1,5 +1,8 @@
 //! Reproducible random numbers.
 
+#[cfg(test)]
+pub(crate) mod spacecraft;
+
 use std::f64::consts::TAU;
 
 /// A small generator of reproducible numbers (Steele, Lea and Flood 2014).

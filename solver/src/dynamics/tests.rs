@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::random::SplitMix;
-use crate::scenario::reference::{direction, experiment_a, spacecraft};
+use crate::random::spacecraft::{direction, spacecraft};
+use crate::scenario::reference::experiment_a;
 use crate::spec::WheelSpec;
 
 fn corners() -> impl Iterator<Item = Vector3<f64>> {

@@ -94,3 +94,15 @@ fn only_the_newest_versions_of_a_spacecraft_are_kept() {
         assert!(other.expect("read").is_some());
     });
 }
+
+#[test]
+fn what_is_asked_whether_it_can_be_written_is_written() {
+    on_a_store(|store| async move {
+        for now_us in [7, 9] {
+            store.check_writable(now_us).await.expect("written");
+            let row = sqlx::query_as("SELECT one, checked_us FROM readiness");
+            let rows: Vec<(i64, i64)> = row.fetch_all(&store.readers).await.expect("read");
+            assert_eq!(rows, [(1, now_us)]);
+        }
+    });
+}

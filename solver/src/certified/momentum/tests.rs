@@ -4,7 +4,8 @@ use super::*;
 use crate::attitude::Attitude;
 use crate::certified::CertifiedBounds;
 use crate::random::SplitMix;
-use crate::scenario::reference::{between, direction, experiment_a, spacecraft};
+use crate::random::spacecraft::{between, direction, spacecraft};
+use crate::scenario::reference::experiment_a;
 use crate::scenario::{RateCondition, Scenario};
 use crate::transcription::{Waypoint, WheelCondition};
 

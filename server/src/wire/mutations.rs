@@ -7,6 +7,7 @@
 //! `SLEWPLAN_SEED` begins elsewhere.
 
 use super::study::envelopes::{self, EnvelopeAnswerDocument};
+use super::unknown_members::documents;
 use super::{flight, plan, scenario, slew};
 use fastrand::Rng;
 use serde_json::json;
@@ -54,17 +55,10 @@ fn setting(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a number"))
 }
 
-/// The documents in a folder of the tests.
+/// The texts of a folder of the fixtures.
 fn fixtures(folder: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../tests")
-        .join(folder);
-    let files = std::fs::read_dir(folder).expect("the fixtures are there");
-    let mut paths: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
-    paths.retain(|path| path.is_file());
-    paths.sort();
     let read = |path| std::fs::read(path).expect("a fixture can be read");
-    paths.into_iter().map(read).collect()
+    documents(folder).into_iter().map(read).collect()
 }
 
 /// The parts of a text between the signs of JSON.
@@ -150,10 +144,8 @@ fn read_many(name: &str, seeds: &[Vec<u8>], read: impl Fn(&[u8]) -> bool) {
 
 #[test]
 fn scenarios_that_are_almost_right_are_read_or_refused() {
-    read_many(
-        "scenarios",
-        &fixtures("fixtures"),
-        |text| match scenario::read(text, None) {
+    read_many("scenarios", &fixtures("."), |text| {
+        match scenario::read(text, None) {
             Ok(valid) => {
                 let _ = planner::feasibility_problems(&valid.scenario);
                 true
@@ -162,13 +154,13 @@ fn scenarios_that_are_almost_right_are_read_or_refused() {
                 assert!(!problems.is_empty(), "refused without a reason");
                 false
             }
-        },
-    );
+        }
+    });
 }
 
 #[test]
 fn slews_that_are_almost_right_are_read_or_refused() {
-    read_many("slews", &fixtures("fixtures/slews"), |text| {
+    read_many("slews", &fixtures("slews"), |text| {
         slew::read(text).map_or_else(
             |problems| {
                 assert!(!problems.is_empty(), "refused without a reason");
@@ -187,7 +179,7 @@ fn studies_of_envelopes_that_are_almost_right_are_answered_or_refused() {
     stop.cancel();
     read_many(
         "studies of envelopes",
-        &fixtures("fixtures/studies"),
+        &fixtures("studies"),
         |text| match envelopes::read(text) {
             Ok(request) => {
                 let report = request.study.conduct(&pool, &stop);

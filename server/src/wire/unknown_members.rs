@@ -47,7 +47,7 @@ pub(super) fn is_told(problems: &[Problem]) -> bool {
 }
 
 /// The documents of a folder of the fixtures.
-fn documents(folder: &str) -> Vec<PathBuf> {
+pub(super) fn documents(folder: &str) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures");
     let files = std::fs::read_dir(root.join(folder)).expect("the fixtures are there");
     let mut paths: Vec<_> = files.map(|file| file.expect("a file").path()).collect();

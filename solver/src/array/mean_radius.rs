@@ -8,16 +8,20 @@
 //!   sum over facets  d / 2  sum over edges  p  integral  ln(1 + (p^2 + t^2) / d^2) / (p^2 + t^2)  dt
 //! ```
 //!
-//! which divided by `4 pi` is the mean. The integrand is analytic up to a distance `sqrt(p^2 + d^2)`
-//! from the real line, so Gauss's rule on pieces of that length is exact to rounding.
+//! which divided by `4 pi` is the mean. The integrand's singularities are `t = +-i s` and beyond, with
+//! `s = sqrt(p^2 + d^2)`. With `t = s sinh(v)` they are `pi / 2` away from the real line wherever `v` is,
+//! so Gauss's rule on pieces of a unit of `v` is exact to rounding, and an edge a thousand million
+//! times as long as its facet is far away has some forty pieces.
 
 use super::plane_axes;
 use super::polytope::{Facet, Polytope};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 
-/// Nodes of Gauss's rule: an error of `4.2^(-2 NODES)` on a piece.
+/// Nodes of Gauss's rule: an error of `6.4^(-2 NODES)` on a piece.
 const NODES: usize = 13;
+/// The numbers that there are have less than so many units of `v`.
+const MOST_PIECES: u32 = 3000;
 /// Newton steps from Chebyshev's to Legendre's nodes, more than enough.
 const NEWTON_STEPS: usize = 8;
 
@@ -47,24 +51,31 @@ fn over_facet(facet: &Facet, vertices: &[Vector3<f64>], rule: &[(f64, f64)]) -> 
 fn over_edge(a: &Vector2<f64>, b: &Vector2<f64>, d: f64, rule: &[(f64, f64)]) -> f64 {
     let along = (b - a).normalize();
     let p = a.perp(&along);
-    let (begin, end) = (a.dot(&along), b.dot(&along));
-    let integrand = |t: f64| {
+    let scale = p.hypot(d);
+    let (begin, end) = (
+        (a.dot(&along) / scale).asinh(),
+        (b.dot(&along) / scale).asinh(),
+    );
+    let integrand = |v: f64| {
+        let t = scale * v.sinh();
         let x = (p * p + t * t) / (d * d);
         // ln(1 + x) / x tends to one.
         let ratio = if x > 0.0 { x.ln_1p() / x } else { 1.0 };
-        ratio / (d * d)
+        ratio / (d * d) * scale * v.cosh()
     };
-    let pieces = ((end - begin) / p.hypot(d)).ceil().max(1.0);
+    let pieces = (end - begin).ceil().max(1.0);
     let half = 0.5 * (end - begin) / pieces;
-    let mut sum = 0.0;
-    let mut middle = begin + half;
-    while middle < end {
-        sum += rule
-            .iter()
-            .map(|(node, weight)| weight * integrand(middle + half * node))
-            .sum::<f64>();
-        middle += 2.0 * half;
-    }
+    let sum: f64 = (0..MOST_PIECES)
+        .map(f64::from)
+        .take_while(|piece| *piece < pieces)
+        .map(|piece| {
+            let middle = begin + half * (2.0 * piece + 1.0);
+            let nodes = rule.iter();
+            nodes
+                .map(|(node, weight)| weight * integrand(middle + half * node))
+                .sum::<f64>()
+        })
+        .sum();
     p * half * sum
 }
 

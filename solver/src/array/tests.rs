@@ -220,6 +220,20 @@ fn the_mean_radius_is_that_of_a_dense_set_of_directions() {
     }
 }
 
+/// A square prism without end: `2 ln(1 + sqrt 2)`. An edge is cut into pieces as it needs them, not
+/// into as many as it is long; a study with one strong wheel never ended.
+#[test]
+fn the_mean_radius_of_a_prism_tends_to_that_of_an_endless_one() {
+    for length in [1e9, 1e15, 1e60] {
+        let axis = |i: usize| Vector3::from_fn(|k, _| f64::from(u8::from(i == k)));
+        let strength = [1.0, 1.0, length];
+        let ranges = [0, 1, 2].map(|i| WheelRange::symmetric(axis(i), strength[i]));
+        let prism = WheelArray::try_new(&ranges, "").unwrap();
+        let mean = prism.full_envelope().figures().mean_radius;
+        assert_near(mean, 2.0 * 1.0_f64.asinh(), 1e-7);
+    }
+}
+
 #[test]
 fn the_figures_of_a_cube_are_known() {
     let cube = of_axes([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).full_envelope();

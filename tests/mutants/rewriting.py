@@ -142,7 +142,7 @@ def rewritten(source, chosen):
             return head + "{ " + returns + whole(body)[1:]
         if node.type == "if_expression" and known:
             condition = node.child_by_field_name("condition")
-            flipped = whole(condition)
+            flipped = emit(condition)
             for number, _ in known:
                 # One that is not chosen changes nothing.
                 flipped = f"({SWITCH}({number}) != ({flipped}))"

@@ -179,9 +179,10 @@ def judged(change, known, seconds):
 
 
 def explained():
-    """What `equivalent.txt` says of changes that change nothing."""
+    """What `equivalent.txt` says of changes that change nothing: the place, and the change or * for any."""
     lines = (Path(__file__).parent / "equivalent.txt").read_text().splitlines()
-    return [line.split(" | ") for line in lines if line and not line.startswith("#")]
+    known = [line.split(" | ") for line in lines if line and not line.startswith("#")]
+    return {(path, before, after) for path, before, after, _ in known}
 
 
 def main():
@@ -211,7 +212,7 @@ def main():
     for module, possible in totals.items():
         mine = [(c, v) for c, v in zip(chosen, verdicts) if module_of[c.number] == module]
         missed = [(c, v) for c, v in mine if v[0] is None]
-        same = [c for c, _ in missed if any(c.path == e[0] and c.before == e[1] and c.after == e[2] for e in equivalent)]
+        same = [c for c, _ in missed if {(c.path, c.before, c.after), (c.path, c.before, "*")} & equivalent]
         left += [(c, v) for c, v in missed if c not in same]
         noticed, open_ = len(mine) - len(missed), len(missed) - len(same)
         share = f"{open_} ({100 * open_ / max(1, len(mine)):.0f} %)"

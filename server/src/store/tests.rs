@@ -114,6 +114,58 @@ fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
     });
 }
 
+/// Of each event its kind and the state that it tells.
+async fn told(store: &Store) -> Vec<String> {
+    let states = "SELECT kind || ' ' || (data ->> 'state') FROM events ORDER BY id";
+    let states = sqlx::query_scalar(states).fetch_all(&store.readers).await;
+    states.expect("read")
+}
+
+#[test]
+fn every_state_of_a_job_is_told() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let lost = claim(&store, "first").await.job;
+        let recovered = store.recover("second", 3).await.expect("recovered");
+        assert_eq!((recovered.queued, recovered.cancelled), (1, 0));
+        claim(&store, "second").await;
+        store.request_cancel(ID, 5).await.expect("cancelled");
+        let recovered = store.recover("third", 6).await.expect("recovered");
+        assert_eq!((recovered.queued, recovered.cancelled), (0, 1));
+        assert!(!store.beat(&lost, 9).await.expect("tried"));
+        let expected = ["queued", "running", "queued", "running", "cancelled"];
+        assert_eq!(
+            told(&store).await,
+            expected.map(|state| format!("state {state}"))
+        );
+    });
+}
+
+#[test]
+fn the_log_is_folded_while_much_is_written() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let claim = claim(&store, "first").await.job;
+        // Some 64 MB in all, none of which is worth keeping.
+        for round in 0..64 {
+            let segment = SegmentRow {
+                name: "piece 1 2 3".into(),
+                intervals: 2,
+                motion: vec![round; 1 << 20],
+            };
+            let taken = store.put_segments(&claim, &[segment]).await;
+            assert!(taken.expect("tried"));
+        }
+        let list = "SELECT file FROM pragma_database_list WHERE name = 'main'";
+        let path: String = sqlx::query_scalar(list)
+            .fetch_one(&store.readers)
+            .await
+            .expect("read");
+        let log = std::fs::metadata(format!("{path}-wal")).expect("a log");
+        assert!(log.len() < 32 << 20, "{} bytes", log.len());
+    });
+}
+
 #[test]
 fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
     on_a_store(|store| async move {

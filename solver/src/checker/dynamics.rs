@@ -193,3 +193,29 @@ impl Rotor {
 pub(super) fn quaternion_derivative(q: &Quaternion, rate: &Vector3<f64>) -> Quaternion {
     product(q, &[rate.x, rate.y, rate.z, 0.0]).map(|c| 0.5 * c)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_number_that_is_none_is_enough() {
+        let whole = Snapshot {
+            time_s: 0.0,
+            quaternion: [0.0, 0.0, 0.0, 1.0],
+            rate: Vector3::zeros(),
+            wheel_speed: vec![0.0; 3],
+        };
+        assert!(whole.is_finite());
+        for index in 0..10 {
+            let mut state = whole.clone();
+            let mut numbers = state.quaternion.iter_mut();
+            let mut numbers = numbers
+                .by_ref()
+                .chain(state.rate.iter_mut())
+                .chain(&mut state.wheel_speed);
+            *numbers.nth(index).expect("ten numbers") = f64::NAN;
+            assert!(!state.is_finite(), "{index}");
+        }
+    }
+}

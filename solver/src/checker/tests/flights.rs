@@ -151,6 +151,12 @@ fn rests_are_held_and_tested_throughout() {
     refused(&spec, &early, "rate error");
     spec.targets[0].dwell_s = 5.0;
     refused(&spec, &stay(0.0), "stayed at for 7 s instead of 8 s");
+    // What counts as none is a share of the larger of the two limits.
+    spec.targets[0].dwell_s = 4.0;
+    spec.spacecraft.wheels[0].max_torque_nm = 2.0 * TORQUE;
+    spec.spacecraft.wheels[0].min_torque_nm = Some(-TORQUE);
+    accepted(&spec, &stay(1.5e-9 * TORQUE));
+    refused(&spec, &stay(2.5e-9 * TORQUE), "held without torque");
 }
 
 #[test]

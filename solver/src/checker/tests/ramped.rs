@@ -84,6 +84,8 @@ fn ramps_and_laws_follow_the_plain_equations() {
         impulse += 0.5 * moment.length_s * ends;
     })
     .expect("a flight");
+    let times: Vec<_> = flight.states.iter().map(|state| state.time_s).collect();
+    assert_eq!(times, [0.0, 11.0, LENGTH]);
     let end = flight.states.last().expect("an end");
     let start = Vector3::new(0.02, -0.01, 0.03);
     let (rate, speeds) = reference(start, [50.0, -80.0, 120.0], law);

@@ -310,6 +310,28 @@ fn momentum_alone_makes_another_leg() {
     }
 }
 
+/// What is stored under an identity is looked for under the same one by the next version: a change of
+/// this text throws all stored legs away, and says so in `VERSION`.
+#[test]
+fn the_identity_of_a_leg_is_written_as_before() {
+    let mut spec = experiment_a();
+    spec.targets[0].attitude = AttitudeSpec::Quaternion([0.0, 0.0, -0.6, -0.8]);
+    let expected = "leg-8;Resolution { intervals: 12, polished: false };Rotation;\
+        6.629831e0,0e0,0e0,0e0,8.899831e0,0e0,0e0,0e0,9.629831000000001e0,;1e0,0e0,0e0,;\
+        1.69e-4,-1.01e-2,1.01e-2,7.1e2,;0e0,1e0,0e0,;1.69e-4,-1.01e-2,1.01e-2,7.1e2,;\
+        0e0,0e0,1e0,;1.69e-4,-1.01e-2,1.01e-2,7.1e2,;0e0,0e0,0e0,;4e-2,4e-2,4e-2,;inf,;\
+        0e0,0e0,0e0,;0e0,0e0,-6e-1,8e-1,;;free;free;0e0,;wheels free;0e0,;0e0,;0e0,;\
+        fixed 0e0,0e0,0e0,;";
+    assert_eq!(identities(&spec)[0], expected);
+}
+
+#[test]
+fn the_sense_of_an_axis_makes_another_leg() {
+    let mut turned = everything();
+    turned.spacecraft.wheels[1].axis = [0.0, -1.0, 0.0];
+    assert_ne!(identities(&turned)[1], identities(&everything())[1]);
+}
+
 #[test]
 fn rounding_of_the_null_space_makes_no_other_leg() {
     let second = |bias: f64| {

@@ -71,6 +71,33 @@ fn momentum_that_is_rounding_is_none() {
 }
 
 #[test]
+fn a_body_that_turns_against_its_wheels_has_no_momentum() {
+    for step in 1..18 {
+        let mut spec = experiment_a();
+        let rate = 1e-3 * f64::from(step);
+        let spin =
+            -spec.spacecraft.inertia_kg_m2[0][0] * rate / spec.spacecraft.wheels[0].inertia_kg_m2;
+        spec.start.body_rate_rad_s = Some([rate, 0.0, 0.0]);
+        spec.start.wheel_speed_rad_s = Some(vec![spin, 0.0, 0.0]);
+        let scenario = Scenario::try_new(&spec).expect("valid").scenario;
+        assert!(!Dynamics::of(&scenario).has_momentum(), "{rate}");
+    }
+}
+
+#[test]
+fn without_momentum_or_lever_nothing_is_gyroscopic() {
+    let mut random = SplitMix::new(35);
+    let axis = direction(&mut random);
+    let mut dynamics = Dynamics::of(&spacecraft(&mut random, true));
+    dynamics.max_rate_norm = f64::INFINITY;
+    dynamics.inertia_inverse = Matrix3::identity();
+    // Equal moments of inertia, seen from axes that turn with the whole acceleration.
+    assert!(dynamics.gyroscopic_acceleration(&axis, 1.0).abs() == 0.0);
+    dynamics.momentum = Vector3::zeros();
+    assert!(dynamics.gyroscopic_acceleration(&axis, 0.0).abs() == 0.0);
+}
+
+#[test]
 fn what_the_wheels_hold_at_a_rate_is_a_rate_again() {
     let mut random = SplitMix::new(34);
     for case in 0..40 {
@@ -101,6 +128,12 @@ fn a_lower_limit_is_strayed_from_by_a_larger_share() {
             dynamics.straying()
         };
         let (wide, narrow) = (limited(1e-3), limited(5e-4));
+        dynamics.momentum *= 2.0;
+        let twice = dynamics.straying();
+        assert!(
+            (twice - 2.0 * narrow).abs() < 1e-9 * narrow,
+            "{twice} {narrow}"
+        );
         assert!(
             wide > 0.0 && (narrow - 2.0 * wide).abs() < 1e-9 * wide,
             "{wide} {narrow}"

@@ -400,3 +400,6 @@ fn recall(stored: StoredLeg) -> Option<SolvedLeg> {
         solve_time: stored.solve_time_s,
     })
 }
+
+#[cfg(test)]
+mod tests;

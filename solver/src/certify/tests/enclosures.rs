@@ -153,6 +153,7 @@ proptest! {
             assert_encloses(product[i], xyzw[i]);
         }
         assert_encloses(angle_of(&product), both.angle_to(&Attitude::identity()));
+        assert_encloses(angle_of(&product.map(|c| -c)), both.angle_to(&Attitude::identity()));
         let v = [0.3, -0.8, 0.5];
         let rotated = rotate(&product, &v.map(Interval::exactly));
         let expected = both.to_reference(v.into());

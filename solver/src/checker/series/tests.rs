@@ -56,3 +56,17 @@ fn each_damaged_coefficient_shows_in_the_defect() {
         assert!(defect > 1e-9, "{what}: {defect}");
     }
 }
+
+#[test]
+fn how_long_a_step_may_be_depends_on_no_unit() {
+    let mut size = [0.0; LEN];
+    for (k, term) in size.iter_mut().enumerate() {
+        *term = 0.4_f64.powi(i32::try_from(k).expect("few terms"));
+    }
+    let usual = longest(&size, 1e-12);
+    let scaled = longest(&size.map(|term| 1e5 * term), 1e-12);
+    assert!((scaled - usual).abs() < 1e-9 * usual, "{scaled} {usual}");
+    // Each term is 0.4 t of the one before.
+    let last = (1e-12_f64.ln() / (LEN - TAIL) as f64).exp() / 0.4;
+    assert!(usual >= last * (1.0 - 1e-9), "{usual} {last}");
+}

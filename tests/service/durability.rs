@@ -113,10 +113,12 @@ fn legs_on_which_a_search_rests_are_not_solved_again_after_a_kill() {
     }
 }
 
-/// Runs the program beside a service; whether it ends well, and what it writes to standard error.
+/// Runs the program beside a service, in a folder where nothing can be written; whether it ends well,
+/// and what it writes to standard error.
 fn beside(arguments: &[&std::ffi::OsStr]) -> (bool, String) {
     let ended = std::process::Command::new(env!("CARGO_BIN_EXE_slewplan"))
         .args(arguments)
+        .current_dir("/proc")
         .output()
         .expect("the program runs");
     let told = String::from_utf8_lossy(&ended.stderr).into_owned();

@@ -144,3 +144,18 @@ fn shifts(angle: Interval, most: f64) -> impl Iterator<Item = f64> {
     let to = ((most - angle.low) / Interval::PI.low + slack).floor();
     std::iter::successors(Some(from), |k| Some(k + 1.0)).take_while(move |k| *k <= to)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_turns_at_the_ends_of_the_range_are_among_the_shifts() {
+        let all =
+            |angle: f64, most: f64| shifts(Interval::exactly(angle), most).collect::<Vec<_>>();
+        assert_eq!(all(0.0, 1.0), [0.0]);
+        assert_eq!(all(0.0, PI), [0.0, 1.0]);
+        assert_eq!(all(-PI, 1.0), [1.0]);
+        assert_eq!(all(0.5, 0.4), Vec::<f64>::new());
+    }
+}

@@ -77,3 +77,44 @@ fn misses(end: &Snapshot, arrival: &Arrival) -> Vec<String> {
     }
     faults
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Control;
+    use crate::scenario::reference::experiment_a;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_motion_that_cannot_be_computed_is_a_fault() {
+        let scenario = Scenario::try_new(&experiment_a()).expect("valid").scenario;
+        let flight = Flight {
+            total_time_s: 1.0,
+            passages: Vec::new(),
+            controls: vec![Control {
+                start_s: 0.0,
+                duration_s: 1.0,
+                wheel_torque_nm: vec![0.0; 3],
+            }],
+        };
+        let arrival = Arrival {
+            quaternion: scenario.start().attitude.xyzw(),
+            rate: [None; 3],
+        };
+        let from = |rate: f64| {
+            let begin = State {
+                time_s: 0.0,
+                attitude: scenario.start().attitude,
+                body_rate_rad_s: Vector3::new(0.0, 0.0, rate),
+                wheel_speed_rad_s: vec![0.0; 3],
+            };
+            leg_faults(&scenario, &begin, &flight, &arrival)
+        };
+        assert_eq!(from(0.0), Vec::<String>::new());
+        let faults = from(f64::NAN);
+        assert!(
+            faults.iter().any(|fault| fault.contains("integration")),
+            "{faults:?}"
+        );
+    }
+}

@@ -46,6 +46,17 @@ fn the_axes_nearest_to_the_wheels_are_right_handed() {
 }
 
 #[test]
+fn body_axes_are_natural_where_their_rates_are_limited() {
+    let mut random = SplitMix::new(36);
+    let mut dynamics = Dynamics::of(&spacecraft(&mut random, false));
+    dynamics.max_rate = Vector3::new(f64::INFINITY, 0.1, f64::INFINITY);
+    assert_eq!(dynamics.natural_axes(), Matrix3::identity());
+    dynamics.max_rate.y = f64::INFINITY;
+    assert_eq!(dynamics.natural_axes(), dynamics.wheel_axes());
+    assert!((dynamics.wheel_axes() - Matrix3::identity()).amax() > 1e-3);
+}
+
+#[test]
 fn momentum_that_is_rounding_is_none() {
     let mut spec = experiment_a();
     // Four wheels of a pyramid turn along their null space: three tenths do not sum to nothing.

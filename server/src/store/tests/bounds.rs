@@ -64,6 +64,27 @@ fn legs_of_other_versions_are_forgotten_some_at_a_time() {
 }
 
 #[test]
+fn legs_are_found_by_their_turn_within_the_tolerance() {
+    on_a_store(|store| async move {
+        let turned = NewLeg {
+            turn_xyzw: [0.1_f64.sin(), 0.0, 0.0, 0.1_f64.cos()],
+            ..leg(1, "a")
+        };
+        store.put_legs(&[turned], 1).await.expect("stored");
+        // It is 0.2 rad away.
+        for (tolerance, count) in [(0.19, 0), (0.21, 1)] {
+            let near = LegFilter {
+                spacecraft: None,
+                turn: Some(([0.0, 0.0, 0.0, 1.0], tolerance)),
+                after: None,
+                limit: 100,
+            };
+            assert_eq!(store.legs(&near).await.expect("read").len(), count);
+        }
+    });
+}
+
+#[test]
 fn the_legs_that_were_stored_first_are_forgotten_first() {
     on_a_store(|store| async move {
         let legs = [leg(1, "a"), leg(2, "b"), leg(3, "a")];

@@ -9,7 +9,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "load"), str(HERE.parent / "trust")]
 
 from harness import strip  # noqa: E402
-from service import FIXTURES, binary  # noqa: E402
+from service import FIXTURES, binary, fixture  # noqa: E402
 
 FORMATS = ("csv", "aem-kvn", "aem-xml", "basilisk", "open-mct", "stk", "wheel-rpm")
 KINDS = ("rest_to_rest", "lower_bound", "certified")
@@ -58,7 +58,7 @@ def plans(work):
     yield "certify", *asked("certify", FIXTURES / "two-targets.json", work / "plan.json", "--progress", "none")
     for text in ("--summary", "--help"):
         yield f"solve {text}", *asked("solve", FIXTURES / "two-targets.json", "--progress", "none", text)
-    ordered = json.loads((FIXTURES / "olivares-a.json").read_text())
+    ordered = fixture("olivares-a")
     ordered["options"] = {"time_limit_s": None, "torque_authority": 0.9, "momentum_authority": 0.8}
     for place, target in enumerate(reversed(ordered["targets"])):
         target["position"] = place + 1
@@ -66,17 +66,15 @@ def plans(work):
 
 
 def slews_and_studies(work):
-    for folder, command in (("slews", ()), ("studies", ())):
-        for path in sorted((FIXTURES / folder).glob("*.json")):
-            if folder == "slews":
-                command = ("slew",)
-            else:
-                command = ("study", "envelopes" if "envelopes" in path.stem else path.stem)
-            code, text, messages = asked(*command, path)
-            yield f"{' '.join(command)} {path.stem}", code, text, messages
-            (work / "answer.json").write_text(text)
-            if code == 0:
-                yield f"plot {' '.join(command)} {path.stem}", *asked("plot", work / "answer.json")
+    documents = [(("slew",), path) for path in sorted((FIXTURES / "slews").glob("*.json"))]
+    for path in sorted((FIXTURES / "studies").glob("*.json")):
+        documents.append((("study", "envelopes" if "envelopes" in path.stem else path.stem), path))
+    for command, path in documents:
+        code, text, messages = asked(*command, path)
+        yield f"{' '.join(command)} {path.stem}", code, text, messages
+        (work / "answer.json").write_text(text)
+        if code == 0:
+            yield f"plot {' '.join(command)} {path.stem}", *asked("plot", work / "answer.json")
 
 
 def leg_files(work):

@@ -3,7 +3,10 @@
 import copy
 import json
 
-from questions import FIXTURES, KINDS
+from questions import KINDS
+
+from generated import places  # noqa: E402
+from service import fixture  # noqa: E402
 
 # What stands in the place of a value. Numbers that JSON has and programs do not like are written out.
 STRANGE = ["null", "true", '"x"', '""', "[]", "{}", "[1]", "-1", "0", "0.5", "1e-300", "1e300", "1e999", "5e-324", "9007199254740993",
@@ -11,14 +14,6 @@ STRANGE = ["null", "true", '"x"', '""', "[]", "{}", "[1]", "-1", "0", "0.5", "1e
 TEXTS = [b"", b"  ", b"{", b"nonsense", b'{"name": "x",}', b"[1 2]", b"{} {}", b"[" * 3000, b"\xff\xfe{}", b'{"name": "\xff"}', b'{"name": NaN}',
          b"[]", b"null", b"7", b'"x"', b"{}", b'{"name": "a", "name": "b"}', b'{"a": 1, "b": 2}', b'{"targets": ' + b"[1," * 900 + b"1" + b"]" * 900 + b"}"]
 HOLE = "@hole@"
-
-
-def places(node, path=()):
-    """The ways to all values within a document."""
-    yield path
-    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
-    for key, value in items:
-        yield from places(value, (*path, key))
 
 
 def replaced(document, path, value):
@@ -61,7 +56,7 @@ def spoilt(document):
 
 def full_scenario():
     """A scenario in which everything is given that can be given."""
-    document = json.loads((FIXTURES / "two-targets.json").read_text())
+    document = fixture("two-targets")
     document.update({"epoch": "2026-01-01T00:00:00Z", "time_system": "UTC", "reference_frame": "EME2000"})
     craft = document["spacecraft"]
     craft.update({"max_body_rate_rad_s": [0.04, 0.04, None], "max_body_rate_norm_rad_s": 0.05,
@@ -79,7 +74,7 @@ def full_scenario():
 
 def bodies(plan):
     """What is posted where, before it is spoilt."""
-    plain = json.loads((FIXTURES / "two-targets.json").read_text())
+    plain = fixture("two-targets")
     attitudes = [{"quaternion": {"x": 0, "y": 0, "z": 0, "w": 1}}, {"mrp": [0.1, 0, 0.2]}, {"matrix": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},
                  {"ra_dec_roll_deg": [10, 20, 30], "boresight": [1, 0, 0]}]
     matrix = {"spacecraft": plain["spacecraft"], "attitudes": attitudes, "kind": KINDS[2], "mode": "compute"}
@@ -87,17 +82,17 @@ def bodies(plan):
     small = copy.deepcopy(plan)
     small["trajectory"] = {key: value[:3] for key, value in small["trajectory"].items()}
     # One small step of a study that would take its time.
-    authority = json.loads((FIXTURES / "studies/authority.json").read_text())
+    authority = fixture("studies/authority")
     authority["authorities"], authority["simulation"]["runs"] = authority["authorities"][:1], 1
     return {
         ("POST", "/v1/plans?validate_only=true"): [full_scenario()],
         ("POST", "/v1/verify"): [{"scenario": plain, "plan": small}],
         ("POST", "/v1/legs/query"): [matrix, pairs],
         ("PUT", "/v1/spacecraft/name"): [plain["spacecraft"]],
-        ("POST", "/v1/slews"): [json.loads((FIXTURES / f"slews/{name}.json").read_text()) for name in ("quarter-turn", "olrac-four-wheels")],
-        ("POST", "/v1/studies/envelopes"): [json.loads((FIXTURES / "studies/pyramid-envelopes.json").read_text())],
+        ("POST", "/v1/slews"): [fixture(f"slews/{name}") for name in ("quarter-turn", "olrac-four-wheels")],
+        ("POST", "/v1/studies/envelopes"): [fixture("studies/pyramid-envelopes")],
         ("POST", "/v1/studies/authority"): [authority],
-        ("POST", "/v1/studies/flight"): [json.loads((FIXTURES / "studies/flight.json").read_text())],
+        ("POST", "/v1/studies/flight"): [fixture("studies/flight")],
         ("POST", "/v1/studies/comparison"): [{"momenta_nms": [0.1], "surface_rows": 2}],
     }
 

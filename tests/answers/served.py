@@ -4,11 +4,10 @@ import http.client
 import json
 import re
 import shutil
-import subprocess
 
-from questions import FIXTURES, FORMATS, KINDS, binary, scenarios
+from questions import FORMATS, KINDS, asked as command, scenarios
 from refusals import everything as refusals
-from service import Service
+from service import Service, fixture
 
 # What is another one at each run: identifiers of jobs and of keys, times of day.
 OWN = re.compile(r"[0-9a-f]{8}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{12}|\d{4}-\d\d-\d\dT[\d:.]+Z|^[0-9a-f]{12}(?= )", re.MULTILINE)
@@ -58,8 +57,8 @@ def stored(service, jobs):
     for leg in legs:
         yield f"stored leg {leg['key']}", *client.ask("GET", f"/v1/legs/{leg['key']}")
     yield "stored spacecraft", *client.ask("GET", "/v1/spacecraft/kept")
-    done = subprocess.run([binary(), "keys", "list", "--database", service.database], capture_output=True, text=True)
-    yield "stored keys", done.returncode, OWN.sub("<own>", done.stdout), done.stderr
+    code, text, messages = command("keys", "list", "--database", service.database)
+    yield "stored keys", code, OWN.sub("<own>", text), messages
 
 
 def asked(service):
@@ -68,13 +67,13 @@ def asked(service):
         yield f"GET {path}", *client.ask("GET", path)
     status, text, _ = client.ask("GET", "/metrics")
     yield "GET /metrics", status, "\n".join(line for line in text.splitlines() if line.startswith("#")), ""
-    craft = json.loads((FIXTURES / "pyramid.json").read_text())["spacecraft"]
+    craft = fixture("pyramid")["spacecraft"]
     attitudes = [{"roll_pitch_yaw_deg": angles} for angles in ([0, 0, 0], [15, 0, 10], [25, -40, 50])]
     for kind in KINDS:
         for mode in ("cached_only", "compute", "cached_only"):
             query = {"spacecraft": craft, "attitudes": attitudes, "kind": kind, "mode": mode}
             yield f"legs {kind} {mode}", *client.ask("POST", "/v1/legs/query", json.dumps(query))
-    scenario = json.loads((FIXTURES / "two-targets.json").read_text())
+    scenario = fixture("two-targets")
     wrong = [("GET", "/v1/plans/x"), ("GET", "/v1/plans/00000000-0000-7000-8000-000000000000"), ("GET", "/v1/plans?state=x"), ("GET", "/nowhere"),
              ("GET", "/v1/legs/x"), ("GET", "/v1/legs?attitude=1,2"), ("GET", "/v1/legs?tolerance_rad=-1"), ("DELETE", "/v1/limits"),
              ("GET", "/v1/spacecraft/none"), ("POST", "/v1/plans/x/stop"), ("GET", "/v1/plans?limit=0"), ("GET", "/v1/plans?cursor=x"),
@@ -83,7 +82,7 @@ def asked(service):
         yield f"{method} {path}", *client.ask(method, path)
     for headers in ({"Content-Type": "text/plain"}, {"Prefer": "wait=x"}, {"Idempotency-Key": "d e"}):
         yield f"POST with {headers}", *client.ask("POST", "/v1/plans", json.dumps(scenario), headers)
-    plan = json.loads(subprocess.run([binary(), "solve", "-", "--progress", "none"], input=json.dumps(scenario), capture_output=True, text=True).stdout)
+    plan = json.loads(command("solve", "-", "--progress", "none", given=scenario)[1])
     for name, method, path, body in refusals(plan):
         yield f"refused {name}", *client.ask(method, path, body)
 
@@ -107,9 +106,9 @@ def started(database):
 def everything(work, before):
     """All of it; also asks a database of `before`, a folder that another program has filled."""
     with started(work / "service.db") as service:
-        craft = json.loads((FIXTURES / "two-targets.json").read_text())["spacecraft"]
+        craft = fixture("two-targets")["spacecraft"]
         service.request("PUT", "/v1/spacecraft/kept", craft)
-        subprocess.run([binary(), "keys", "create", "kept", "--database", service.database], capture_output=True, check=True)
+        command("keys", "create", "kept", "--database", service.database)
         jobs = submitted(service)
         (work / "jobs.json").write_text(json.dumps(jobs))
         yield from stored(service, jobs)

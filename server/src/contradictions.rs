@@ -1,7 +1,7 @@
 //! What was flown and contradicts what was claimed: logged as an error, and counted.
 
-use slewplan_solver::contradiction::Contradiction;
-use slewplan_solver::progress::{Observer, Progress};
+use slewplan_solver::run::contradiction::Contradiction;
+use slewplan_solver::run::progress::{Observer, Progress};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 static COUNT: AtomicU64 = AtomicU64::new(0);

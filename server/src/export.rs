@@ -7,8 +7,8 @@
 
 use crate::clock;
 use slewplan_solver::checker::Motion;
-use slewplan_solver::plan::Flight;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::Flight;
+use slewplan_solver::model::scenario::Scenario;
 
 mod aem;
 mod basilisk;

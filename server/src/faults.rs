@@ -1,8 +1,8 @@
 //! Failures on purpose, for tests of what they cost. Only in builds with the feature `faults`,
 //! which nobody ships: a scenario with one of these names does what it says.
 
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
 use std::time::Duration;
 
 /// Most memory that is taken on purpose, MiB.

@@ -1,10 +1,10 @@
 //! One flight of a plan in closed loop, for the command line and the service alike.
 
-use slewplan_solver::plan::{self, Flight, Optimality};
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::{self, Flight, Optimality};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::simulation::{SimulatedFlight, Simulation, SimulationSpec};
+use slewplan_solver::tour::planner::{self, Run};
 
 /// States that are kept when nothing is said about it, and at most.
 const USUAL_STATES: usize = 2_000;

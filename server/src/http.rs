@@ -29,7 +29,7 @@ use crate::lifecycle::Shutdown;
 use crate::store::Store;
 use computing::Turns;
 use metrics::Metrics;
-use slewplan_solver::pool::SolverPool;
+use slewplan_solver::run::pool::SolverPool;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
 

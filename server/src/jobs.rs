@@ -14,7 +14,7 @@ pub(crate) use worker::Worker;
 use crate::clock::now_us;
 use crate::leg_cache::{LegCache, Tally};
 use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 use tokio::sync::{Notify, watch};

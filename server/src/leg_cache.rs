@@ -4,7 +4,7 @@ pub(crate) mod upkeep;
 
 use crate::clock::now_us;
 use crate::store::{LegTrajectory, NewLeg, Store};
-use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};
+use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::runtime::Handle;

@@ -10,12 +10,12 @@ use crate::store::{NewLeg, Store, StoreError, leg_key};
 use crate::wire;
 use crate::wire::document::Node;
 use crate::wire::legs::{KeyedLeg, LegTable};
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::planner::{self, LegCheck};
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{self, LegCheck};
 use std::collections::{HashMap, HashSet};
 
 /// Legs that are written together, so that nobody else has to wait long for the database.

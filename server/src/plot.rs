@@ -4,7 +4,7 @@
 //! A plan is a sphere, its legs and timelines; a slew has timelines, and with a sweep a trade curve;
 //! studies of wheels have their diagrams, a flight in closed loop its timelines.
 
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 
 mod axes;
 mod canvas;

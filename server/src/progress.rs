@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use slewplan_solver::contradiction::Contradiction;
-use slewplan_solver::progress::{Observer, Progress, Stage};
+use slewplan_solver::run::contradiction::Contradiction;
+use slewplan_solver::run::progress::{Observer, Progress, Stage};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};

@@ -1,9 +1,9 @@
 //! Answers as text for people.
 
-use slewplan_solver::plan::{Margins, Outcome, Verification};
-use slewplan_solver::planner::{CheckedClaims, PlanClaims};
-use slewplan_solver::problem::Problem;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::{Margins, Outcome, Verification};
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::tour::planner::{CheckedClaims, PlanClaims};
 
 mod certification;
 mod figures;

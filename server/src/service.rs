@@ -6,7 +6,7 @@ use crate::jobs::{Jobs, Worker, retention, segments};
 use crate::leg_cache::upkeep;
 use crate::lifecycle::{GRACE, Shutdown};
 use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
-use slewplan_solver::pool::{PoolError, SolverPool};
+use slewplan_solver::run::pool::{PoolError, SolverPool};
 use std::io;
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;

@@ -5,8 +5,8 @@
 //! can be told from its rows alone whether any is missing.
 
 use crate::wire::legs::{KeyedLeg, LegTable};
-use slewplan_solver::planner::{LegRow, Shard};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::tour::planner::{LegRow, Shard};
 use std::collections::BTreeMap;
 
 const SAME_RUN: &str = "join only files of slewplan legs that differ in --shard alone";

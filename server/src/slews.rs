@@ -1,10 +1,10 @@
 //! Solving a request for slews, for the command line and the service alike.
 
 use crate::wire::slew::SlewRequest;
-use slewplan_solver::manoeuvre::evidence::{self, Evidence};
-use slewplan_solver::manoeuvre::{self, Outcome};
-use slewplan_solver::problem::Problem;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::slew::evidence::{self, Evidence};
+use slewplan_solver::slew::{self, Outcome};
 use std::time::Duration;
 
 /// What came of a request.

@@ -28,10 +28,10 @@ pub(crate) use leg::{Arrival, leg_faults};
 pub use motion::Motion;
 pub(crate) use ramped::{Moment, Ramp, fly_ramps};
 
-use crate::attitude::Attitude;
-use crate::plan::{Flight, Margins, State, Verification};
-use crate::problem::Problem;
-use crate::scenario::Scenario;
+use crate::model::attitude::Attitude;
+use crate::model::plan::{Flight, Margins, State, Verification};
+use crate::model::problem::Problem;
+use crate::model::scenario::Scenario;
 use dynamics::{Body, Snapshot};
 use integrator::{Flown, Interval, STEP_TOLERANCE};
 use keep_out::Watch;

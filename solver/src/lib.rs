@@ -30,14 +30,14 @@
 //! A quarter turn about the body's z axis, from rest to rest:
 //!
 //! ```
-//! use slewplan_solver::legs::NoStore;
-//! use slewplan_solver::plan::Outcome;
-//! use slewplan_solver::planner::{Run, solve};
-//! use slewplan_solver::pool::SolverPool;
-//! use slewplan_solver::progress::Silent;
-//! use slewplan_solver::scenario::Scenario;
-//! use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
-//! use slewplan_solver::stop::StopSignal;
+//! use slewplan_solver::tour::legs::NoStore;
+//! use slewplan_solver::model::plan::Outcome;
+//! use slewplan_solver::tour::planner::{Run, solve};
+//! use slewplan_solver::run::pool::SolverPool;
+//! use slewplan_solver::run::progress::Silent;
+//! use slewplan_solver::model::scenario::Scenario;
+//! use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
+//! use slewplan_solver::run::stop::StopSignal;
 //!
 //! let wheel = |axis| WheelSpec {
 //!     axis,
@@ -69,51 +69,18 @@
 //! assert!(plan.verification.passed);
 //! // About the eigenaxis it would take 138 s.
 //! assert!(plan.total_time_s < 114.0);
-//! # Ok::<(), slewplan_solver::pool::PoolError>(())
+//! # Ok::<(), slewplan_solver::run::pool::PoolError>(())
 //! ```
 
-pub mod allocation;
-pub mod array;
-pub mod attitude;
-mod certified;
-pub mod certify;
+pub mod bounds;
 pub mod checker;
-pub mod cmg;
-pub mod comparison;
-mod cone;
-pub mod contradiction;
-mod convex;
-pub mod drive;
-mod dynamics;
-pub mod eigenaxis;
-pub mod envelope;
-pub mod envelope_path;
-pub mod envelope_study;
-mod findings;
-pub mod kinematic_bound;
-mod kinematics;
-pub mod legs;
-pub mod manoeuvre;
-pub mod market;
-mod multiphase;
+mod leg;
+mod math;
+pub mod model;
 mod nlp;
-pub mod order_rules;
-pub mod plan;
-pub mod planner;
-pub mod pool;
-pub mod problem;
-mod profile;
-pub mod progress;
-mod random;
-mod rounding;
-pub mod scenario;
-#[cfg(test)]
-mod second_engine;
-pub mod sequence;
+pub mod run;
 pub mod simulation;
-mod slew;
-pub mod spacecraft;
-pub mod spec;
-pub mod stop;
-mod transcription;
-mod wheel_axes;
+pub mod slew;
+pub mod studies;
+pub mod tour;
+pub mod wheels;

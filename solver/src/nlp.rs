@@ -46,6 +46,9 @@ mod newton;
 mod regularisation;
 mod restoration;
 mod riccati;
+/// A second engine of another kind, which tests compare the first with.
+#[cfg(test)]
+pub(crate) mod second_engine;
 mod settings;
 #[cfg(test)]
 pub(crate) mod tests;

@@ -13,8 +13,8 @@
 //! The plan's motion comes from the [`checker`](crate::checker); neither it nor anything of the
 //! optimiser is used in the loop.
 //!
-//! [`torque_authority`]: crate::spec::OptionsSpec::torque_authority
-//! [`momentum_authority`]: crate::spec::OptionsSpec::momentum_authority
+//! [`torque_authority`]: crate::model::spec::OptionsSpec::torque_authority
+//! [`momentum_authority`]: crate::model::spec::OptionsSpec::momentum_authority
 
 mod allocation;
 mod controller;
@@ -38,13 +38,13 @@ pub use study::{
     Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
 };
 
-use crate::attitude::Attitude;
 use crate::checker::Motion;
-use crate::findings::Findings;
-use crate::plan::Flight;
-use crate::problem::{Code, Problem};
-use crate::scenario::Scenario;
-use crate::spacecraft::Spacecraft;
+use crate::model::attitude::Attitude;
+use crate::model::findings::Findings;
+use crate::model::plan::Flight;
+use crate::model::problem::{Code, Problem};
+use crate::model::scenario::Scenario;
+use crate::model::spacecraft::Spacecraft;
 use controller::{Controller, Measured};
 use course::{Course, Sample};
 use draws::{Drawn, draw, normals};
@@ -338,7 +338,7 @@ impl Craft<'_> {
 /// The on-board computer.
 struct OnBoard<'a> {
     controller: Controller<'a>,
-    noise: crate::random::SplitMix,
+    noise: crate::math::random::SplitMix,
     /// Torques of the wheels that feedback adds, N m.
     feedback: Vec<f64>,
 }

@@ -1,214 +1,346 @@
-//! One slew between two waypoints: guesses, solves, the best of them.
+//! One manoeuvre of one spacecraft, with a choice of what is minimised and of how it is commanded.
+//!
+//! A [`Manoeuvre`] leads from a state to a state. Its [`Objective`] is the time (the paper's
+//! problem), time with effort (OLRAC), the energy of the motors at a given time, or the time at a
+//! given energy (the energy thesis). Its [`Command`] says which torques can be commanded: constant
+//! on intervals of any length, on equal ones, on the samples of a clock held constant or linearly
+//! (BIROS), or continuous. [`solve`] minimises, and flies what it has found with the integrator of
+//! the [checker](crate::checker), which shares nothing with the optimiser.
+//!
+//! With [`WheelAllocation::PseudoInverse`] the wheels' torques are `A^+ A u`, in the program as in flight.
+//!
+//! All of it is one nonlinear program (`program`) with other variables (`shape`) and other
+//! weights (`ingredients`).
+//!
+//! # Drives
+//!
+//! Torques are those that change the wheels' momenta. Where an inner loop makes up for friction the
+//! limits are the motor's, so the program keeps `u + v W + c sign(W)` within them. Where nothing does,
+//! the plan commands the motor and leaves friction to the feedback.
+//!
+//! A wheel with a speed law is not commanded. Relative to the body it is locked at a speed that is a
+//! known function of time (`flow`).
+//!
+//! # Energy
+//!
+//! Power is `P = (R / k^2) M^2 + M W` with the motor torque `M`. The *proxy* is the integral of `P`,
+//! which counts what braking would return; the *bill* is that of `max(P, 0)`, over the motor's
+//! efficiency and with what its electronics take (the thesis's equation 1.16). Within an interval
+//! the program lets one wheel's power of both signs cancel, so that its own bill is low by what
+//! shrinks with the square of the interval; every [`Outcome`] has both integrals of the flown
+//! motion, to rounding. The bill has many local minima, some per cent apart: it is minimised from the
+//! optimum of the proxy and from the usual guesses, and the flown bills are compared.
 
-pub(crate) mod arrival;
-mod centred;
-pub(crate) mod eigenaxis;
-pub(crate) mod extremal;
-mod resolution;
-pub(crate) mod standstill;
+mod attempts;
+mod choices;
+pub mod evidence;
+mod flow;
+mod flown;
+mod frugal;
+mod ingredients;
+mod jet;
+mod motion;
+mod program;
+mod sampled;
+mod shape;
+mod solving;
+mod spec;
 mod starts;
-mod steered;
+mod terms;
 #[cfg(test)]
 mod tests;
 
-use crate::dynamics::Dynamics;
-use crate::multiphase::{Flown, fly, polish};
+pub use flown::{Energies, Flown, Piece};
+pub use spec::{
+    Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Validated,
+    WheelAllocation,
+};
+
 use crate::nlp::{Interruption, NlpStatus};
-use crate::profile::Profile;
-use crate::scenario::RateCondition;
-use crate::transcription::{Waypoint, WheelCondition};
-use arrival::Arrival;
-use eigenaxis::{EigenaxisSlew, Side};
-use extremal::KinematicExtremals;
-use nalgebra::{DVector, Vector3};
-pub(crate) use resolution::Resolution;
-use standstill::standstill;
-use starts::Starts;
-use steered::steered;
+use crate::run::stop::{StopReason, StopSignal};
+use attempts::direct;
+use ingredients::Ingredients;
+use motion::Motion;
+use shape::{Course, Lengths, Shape};
+use solving::Solved;
 
-/// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
-const EIGENAXIS_TOLERANCE: f64 = 1e-6;
-/// Relative difference below which wheel momenta are the same.
-const SAME_MOMENTUM: f64 = 1e-9;
-
-/// A slew between two waypoints.
-#[derive(Clone, Copy)]
-pub(crate) struct SlewProblem<'a> {
-    /// The spacecraft with its momentum.
-    pub(crate) dynamics: &'a Dynamics,
-    /// Where it begins.
-    pub(crate) from: &'a Waypoint,
-    /// Where it ends; the quaternion sign is free with [`Arrival::Rotation`].
-    pub(crate) to: &'a Waypoint,
-    /// Which signs count as arrived.
-    pub(crate) arrival: Arrival,
-    /// Null-space momentum of the wheels in the guesses, N m s.
-    pub(crate) null: &'a DVector<f64>,
-    /// Guesses for its spacecraft.
-    pub(crate) extremals: &'a KinematicExtremals,
-    /// How finely it is solved.
-    pub(crate) resolution: Resolution,
-}
-
-/// The best solution of a slew.
+/// Rounds in which a budget is corrected, and the share of it that may be left.
+const BUDGET_ROUNDS: usize = 8;
+const BUDGET_ACCURACY: f64 = 1e-5;
+/// Relative excess over an energy that is no failure.
+const BUDGET_TOLERANCE: f64 = 1e-4;
+/// What came of a manoeuvre.
 #[derive(Debug, Clone)]
-pub(crate) struct Slew {
-    /// The best converged flight, or one that tells why there is none.
-    pub(crate) flown: Flown,
-    /// NLPs solved.
-    pub(crate) solves: u64,
+pub struct Outcome {
+    /// How the last program ended: `converged`, or why not.
+    pub status: String,
+    /// Whether a local minimum was found and its flight keeps all limits and arrives.
+    pub solved: bool,
+    /// The value of the objective, in its own unit: s, or J.
+    pub objective: f64,
+    /// Duration, s.
+    pub time_s: f64,
+    /// Integral of the squared torques, (N m)² s.
+    pub effort: f64,
+    /// The flight as the independent integration found it.
+    pub flown: Flown,
+    /// Guesses tried.
+    pub starts: usize,
+    /// Interior-point iterations, all programs together.
+    pub iterations: usize,
+    /// Of a sampled manoeuvre the minimum in continuous time, s.
+    pub continuous_time_s: Option<f64>,
+    /// The program's solution, from which a neighbour can begin.
+    solution: Solved,
 }
 
-/// Solves a slew from one guess after the other, until its duration is so close to a bound from
-/// below, s, that no other is worth its time.
-pub(crate) fn solve(
-    slew: &SlewProblem<'_>,
-    bound: Option<f64>,
+/// What is swept along a trade curve.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sweep {
+    /// Durations, s, of [`Objective::Energy`].
+    Durations(Vec<f64>),
+    /// Weights of [`Objective::TimeAndEffort`].
+    Weights(Vec<f64>),
+    /// Energies, J, of [`Objective::MinimumTimeAtEnergy`].
+    Energies(Vec<f64>),
+}
+
+/// Solves a manoeuvre.
+#[must_use]
+pub fn solve(manoeuvre: &Manoeuvre, stop: &StopSignal) -> Outcome {
+    solve_from(manoeuvre, None, stop)
+}
+
+/// Solves the same manoeuvre along a sweep, each from the solution before it; the objective's own
+/// value of what is swept is not used.
+///
+/// # Errors
+///
+/// Problems with the values, all of them at once; the pointers count along the sweep.
+pub fn trade_curve(
+    manoeuvre: &Manoeuvre,
+    sweep: &Sweep,
+    stop: &StopSignal,
+) -> Result<Vec<Outcome>, Vec<crate::model::problem::Problem>> {
+    let points = manoeuvre.along(sweep)?;
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    for point in points {
+        let before = outcomes.last().filter(|before| before.solved);
+        let outcome = solve_from(&point, before.map(|before| &before.solution.motion), stop);
+        outcomes.push(outcome);
+        if stop.is_set() {
+            break;
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Solves from the motion of a neighbour, and from the usual guesses when there is none or it leads
+/// nowhere.
+fn solve_from(manoeuvre: &Manoeuvre, neighbour: Option<&Motion>, stop: &StopSignal) -> Outcome {
+    let stop = &|| interruption(stop);
+    let found = match manoeuvre.command() {
+        Command::Sampled { period_s, hold } => {
+            sampled::solve(manoeuvre, (period_s, hold), neighbour, stop)
+        }
+        _ => in_continuous_time(manoeuvre, neighbour, stop),
+    };
+    found.conclude(manoeuvre)
+}
+
+/// Solves without a clock.
+fn in_continuous_time(
+    manoeuvre: &Manoeuvre,
+    neighbour: Option<&Motion>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Slew {
-    if let Some(flown) = standstill(slew) {
-        return Slew { flown, solves: 0 };
+) -> Found {
+    let plain = Plain::of(manoeuvre);
+    let Objective::MinimumTimeAtEnergy { energy_j, measure } = manoeuvre.objective() else {
+        return direct(manoeuvre, &plain, neighbour, stop);
+    };
+    let fastest = plain.with(manoeuvre, Ingredients::TIME);
+    let fastest = direct(manoeuvre, &fastest, None, stop);
+    let bill = flown::fly(manoeuvre, &fastest.solved.motion)
+        .energies
+        .bill_j;
+    if fastest.solved.converged() && bill <= energy_j {
+        // The energy does not bind: multipliers of a program that keeps within it would vanish.
+        return fastest;
     }
-    let (mut flown, mut solves) = Starts::new(slew, bound, stop).best();
-    if stop().is_none()
-        && let Some(better) = slew.eigenaxis_at_worst(&flown, stop)
-    {
-        flown = better;
-        solves += 1;
+    let found = match measure {
+        Measure::Proxy => frugal::solve(manoeuvre, energy_j, neighbour, stop),
+        Measure::Bill => billed(manoeuvre, energy_j, neighbour, stop),
+    };
+    found.after(&fastest)
+}
+
+fn interruption(stop: &StopSignal) -> Option<Interruption> {
+    stop.reason().map(|reason| match reason {
+        StopReason::TimeLimit => Interruption::TimeLimit,
+        StopReason::Requested | StopReason::Cancelled => Interruption::Cancelled,
+    })
+}
+
+/// A solution with the way to it.
+struct Found {
+    solved: Solved,
+    starts: usize,
+    iterations: usize,
+    continuous_time: Option<f64>,
+    /// Why this is no answer, although it is a solution.
+    refusal: Option<String>,
+}
+
+/// A program that one solve answers.
+struct Plain {
+    ingredients: Ingredients,
+    shape: Shape,
+    intervals: usize,
+    /// The duration of the guesses, s, where it is known.
+    lasting: Option<f64>,
+}
+
+impl Plain {
+    /// The program of a manoeuvre in continuous time.
+    fn of(manoeuvre: &Manoeuvre) -> Self {
+        let ingredients = manoeuvre.ingredients();
+        let (course, own, intervals) = match manoeuvre.command() {
+            Command::Free { intervals } => {
+                let needed = manoeuvre.intervals_of_fastest();
+                (Course::Steps, true, intervals.max(needed))
+            }
+            Command::Uniform { intervals } => (Course::Steps, false, intervals),
+            Command::Smooth { intervals } => (Course::Ramps, false, intervals),
+            // In continuous time, as free as can be.
+            Command::Sampled { .. } => (Course::Steps, true, manoeuvre.usual_intervals()),
+        };
+        let lengths = match (own, ingredients.duration) {
+            (true, _) => Lengths::Own,
+            (false, None) => Lengths::Shared,
+            (false, Some(duration)) => Lengths::Given(vec![duration / intervals as f64; intervals]),
+        };
+        Self {
+            shape: manoeuvre.shape(course, lengths, &ingredients),
+            lasting: ingredients.duration,
+            ingredients,
+            intervals,
+        }
     }
-    if flown.duration().is_none()
-        && stop() != Some(Interruption::Cancelled)
-        && let Some(constructed) = slew.constructed()
-    {
-        flown = constructed;
-        if flown.profile.intervals() > 0 {
-            let improved = slew.fly_in(&flown.intervals, &flown.profile, stop);
-            solves += 1;
-            if improved.improves(&flown) {
-                flown = improved;
+
+    /// The same program with the smooth proxy instead of the bill, which has many local minima.
+    fn proxy(&self, manoeuvre: &Manoeuvre) -> Option<Self> {
+        let billed = self.ingredients.bills() && self.ingredients.budget.is_none();
+        let ingredients = Ingredients {
+            measure: Measure::Proxy,
+            ..self.ingredients
+        };
+        billed.then(|| self.with(manoeuvre, ingredients))
+    }
+
+    /// The same program where effort counts too, this share of what time counts for on a motion.
+    fn with_effort(&self, manoeuvre: &Manoeuvre, share: f64, motion: &Motion) -> Self {
+        let ingredients = Ingredients {
+            effort: share * motion.duration() / flown::effort(motion),
+            ..self.ingredients
+        };
+        self.with(manoeuvre, ingredients)
+    }
+
+    /// The same program with other ingredients.
+    fn with(&self, manoeuvre: &Manoeuvre, ingredients: Ingredients) -> Self {
+        Self {
+            shape: manoeuvre.shape(self.shape.course, self.shape.lengths.clone(), &ingredients),
+            ingredients,
+            intervals: self.intervals,
+            lasting: self.lasting,
+        }
+    }
+
+    /// A guess on the nodes of the program.
+    fn meshed(&self, guess: &Motion, manoeuvre: &Manoeuvre) -> Motion {
+        let dynamics = &manoeuvre.vehicle().dynamics;
+        let lasting = self.lasting.unwrap_or_else(|| guess.duration());
+        let guess = guess.lasting(lasting, dynamics);
+        match &self.shape.lengths {
+            Lengths::Given(lengths) => guess.on_mesh(lengths),
+            // What only time counts for switches, and the guess knows when; what is smooth does not.
+            Lengths::Own if self.ingredients.hurries() && self.intervals >= guess.lengths.len() => {
+                guess.on_finer_mesh(self.intervals)
+            }
+            _ => guess.on_equal_mesh(self.intervals),
+        }
+    }
+}
+
+/// Solves for the time with a bill: the program's own bill is a little low, so that its budget is
+/// lowered until the flight's keeps within the energy.
+fn billed(
+    manoeuvre: &Manoeuvre,
+    energy: f64,
+    neighbour: Option<&Motion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Found {
+    let mut plain = Plain::of(manoeuvre);
+    let mut found = direct(manoeuvre, &plain, neighbour, stop);
+    for _ in 0..BUDGET_ROUNDS {
+        let bill = flown::fly(manoeuvre, &found.solved.motion).energies.bill_j;
+        let Some(budget) = plain.ingredients.budget else {
+            break;
+        };
+        let kept = bill <= energy && bill >= energy * (1.0 - BUDGET_ACCURACY);
+        if kept || !found.solved.converged() || stop().is_some() {
+            break;
+        }
+        plain.ingredients.budget = Some(budget * energy / bill * (1.0 - 0.5 * BUDGET_ACCURACY));
+        let guess = found.solved.motion.clone();
+        let next = direct(manoeuvre, &plain, Some(&guess), stop);
+        found = next.after(&found);
+    }
+    found
+}
+
+impl Found {
+    /// The same, which took another solution first.
+    fn after(self, before: &Self) -> Self {
+        Self {
+            starts: before.starts + self.starts,
+            iterations: before.iterations + self.iterations,
+            ..self
+        }
+    }
+
+    /// Flies the solution and adds it all up.
+    fn conclude(self, manoeuvre: &Manoeuvre) -> Outcome {
+        let motion = &self.solved.motion;
+        let mut flown = flown::fly(manoeuvre, motion);
+        flown.failures.extend(self.refusal);
+        if let Objective::MinimumTimeAtEnergy { energy_j, .. } = manoeuvre.objective() {
+            let bill = flown.energies.bill_j;
+            if bill.is_nan() || bill > energy_j * (1.0 + BUDGET_TOLERANCE) {
+                let sentence =
+                    format!("the bill is {bill:.6} J, more than the {energy_j} J allowed");
+                flown.failures.push(sentence);
             }
         }
-    }
-    if slew.resolution.polished {
-        let waypoints = slew.waypoints(&flown.profile);
-        let intervals = flown.intervals.clone();
-        flown = polish(slew.dynamics, &waypoints, &intervals, flown, stop);
-    }
-    Slew { flown, solves }
-}
-
-impl SlewProblem<'_> {
-    /// Intervals of the slew.
-    pub(crate) fn intervals(&self) -> usize {
-        let turn = self.arrival.turn(&self.from.attitude, &self.to.attitude);
-        self.resolution.intervals_of(self.dynamics, turn)
-    }
-
-    /// A flight that no program has made shorter: slowly about the eigenaxis. `None` where the wheels
-    /// cannot hold the momentum along the way.
-    pub(crate) fn constructed(&self) -> Option<Flown> {
-        steered(self)
-    }
-
-    /// Flies from a guess.
-    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> Flown {
-        self.fly_in(&[self.intervals()], guess, stop)
-    }
-
-    /// Flies from a guess of so many intervals.
-    fn fly_in(
-        &self,
-        intervals: &[usize],
-        guess: &Profile,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Flown {
-        let waypoints = self.waypoints(guess);
-        fly(self.dynamics, &waypoints, intervals, guess, stop)
-    }
-
-    /// A flight that takes no longer than the slew about the eigenaxis, where that can be flown and
-    /// another flight is slower than it: from the exact slew, or the slew itself.
-    fn eigenaxis_at_worst(
-        &self,
-        flown: &Flown,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Option<Flown> {
-        let eigenaxis = self.eigenaxis();
-        let allowed = eigenaxis.trapezoid.duration * (1.0 + EIGENAXIS_TOLERANCE);
-        let fast = |flown: &Flown| flown.duration().is_some_and(|time| time <= allowed);
-        if fast(flown) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
-            return None;
+        let effort = flown::effort(motion);
+        let time_s = motion.duration();
+        let objective = match manoeuvre.objective() {
+            Objective::MinimumTime | Objective::MinimumTimeAtEnergy { .. } => time_s,
+            Objective::TimeAndEffort { weight } => time_s + weight * effort,
+            Objective::Energy { measure, .. } => flown.energies.by(measure),
+        };
+        let converged = self.solved.status == NlpStatus::Converged;
+        Outcome {
+            status: self.solved.status.to_string(),
+            solved: converged && flown.failures.is_empty(),
+            objective,
+            time_s,
+            effort,
+            flown,
+            starts: self.starts,
+            iterations: self.iterations,
+            continuous_time_s: self.continuous_time,
+            solution: self.solved,
         }
-        let exact = eigenaxis.exact(self.dynamics, self.intervals());
-        let solved = self.fly(&exact, stop);
-        if fast(&solved) || self.dynamics.has_momentum() {
-            // With momentum its torque is not piecewise constant.
-            return solved.improves(flown).then_some(solved);
-        }
-        Some(Flown {
-            status: NlpStatus::Converged,
-            profile: exact,
-            intervals: vec![self.intervals()],
-            iterations: solved.iterations,
-            infeasibility: 0.0,
-            passing_prices: Vec::new(),
-        })
-    }
-
-    /// Whether the conditions of both ends admit rest with the null-space momentum of the guesses.
-    pub(crate) fn begins_and_ends_at_rest(&self) -> bool {
-        [self.from, self.to].iter().all(|end| {
-            let still = end.rate.iter().all(|rate| match rate {
-                RateCondition::Free => true,
-                RateCondition::Fixed(value) => *value == 0.0,
-                RateCondition::Within(low, high) => *low <= 0.0 && *high >= 0.0,
-            });
-            let rest = self
-                .dynamics
-                .wheels_at(&end.attitude, &Vector3::zeros(), self.null);
-            still
-                && match &end.wheels {
-                    WheelCondition::Free => true,
-                    WheelCondition::NullSpace(null) => null == self.null,
-                    WheelCondition::Fixed(held) => {
-                        (held - &rest).amax() <= SAME_MOMENTUM * rest.amax()
-                    }
-                }
-        })
-    }
-
-    /// Both ends, the second with the sign at which a motion arrives.
-    fn waypoints(&self, motion: &Profile) -> [Waypoint; 2] {
-        let mut to = self.to.clone();
-        if let Some(last) = motion.attitudes.last() {
-            to.attitude = self.arrival.signed(&to.attitude, last);
-        }
-        [self.from.clone(), to]
-    }
-
-    /// A guess from the kinematic extremal, where rates are limited.
-    pub(crate) fn extremal(&self) -> Option<Profile> {
-        self.extremals.guess(self)
-    }
-
-    /// A guess from the slew about the eigenaxis, bowed to one side.
-    pub(crate) fn bowed(&self, side: Side) -> Profile {
-        let intervals = self.intervals();
-        let slew = self.eigenaxis().lasting(self.least_duration());
-        slew.guess(self.dynamics, intervals, side)
-    }
-
-    /// No guess is shorter, s: what the ends ask for beside the turn takes its time, and even where
-    /// nothing is asked for a guess has to take some.
-    fn least_duration(&self) -> f64 {
-        let change = self.from.change_time(self.to, self.dynamics);
-        change.max(self.dynamics.least_duration())
-    }
-
-    /// The slew about the eigenaxis, the short way round unless the sign says otherwise.
-    pub(crate) fn eigenaxis(&self) -> EigenaxisSlew {
-        let from = &self.from.attitude;
-        let target = self.arrival.signed(&self.to.attitude, from);
-        EigenaxisSlew::fastest(self.dynamics, from, &target, self.null)
     }
 }

@@ -5,11 +5,11 @@
 //! The full size (10,000 rotations, 100,000 motions, 1,000 certificates) is divided by the argument.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::certify::{self, Rejection};
-use slewplan_solver::kinematic_bound::RateBox;
-use slewplan_solver::kinematic_bound::certificate::Certificate;
-use slewplan_solver::kinematic_bound::ramps::{EndRates, SlewBound, SlewLimits};
+use slewplan_solver::bounds::certify::{self, Rejection};
+use slewplan_solver::bounds::kinematic::RateBox;
+use slewplan_solver::bounds::kinematic::certificate::Certificate;
+use slewplan_solver::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+use slewplan_solver::model::attitude::Attitude;
 use slewplan_tests::motions::{Kind, end_of, motion};
 use slewplan_tests::random::Generator;
 use std::f64::consts::PI;

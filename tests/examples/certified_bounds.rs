@@ -1,9 +1,9 @@
 //! Prints how close certified bounds come to the durations of slews from rest to rest, by class:
 //! the published table, the same with unequal ramps, and the random suite.
 
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::planner::{LegRow, Shard, leg_table};
-use slewplan_solver::spec::ScenarioSpec;
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{LegRow, Shard, leg_table};
 use slewplan_tests::experiment_c_spec;
 use slewplan_tests::solving::{on_threads, scenario_of};
 use slewplan_tests::suite::{LEGS_PER_SPACECRAFT, SPACECRAFT, leg};

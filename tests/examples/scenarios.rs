@@ -6,7 +6,9 @@
 //! ```
 
 use serde_json::{Map, Value, json};
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
+use slewplan_solver::model::spec::{
+    AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec,
+};
 use slewplan_tests::ordinary;
 use slewplan_tests::suite::{SPACECRAFT, leg};
 

@@ -1,6 +1,6 @@
 //! Random bodies with random wheels: whatever is asked within their means is flown.
 
-use slewplan_solver::plan::Outcome;
+use slewplan_solver::model::plan::Outcome;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::outcome_of;
 

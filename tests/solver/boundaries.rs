@@ -1,10 +1,10 @@
 //! Every kind of condition at the ends of a slew and every set of limits, one case each: a plan is
 //! found and passes its verification.
 
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::plan::{Outcome, Plan};
-use slewplan_solver::planner::{self, Shard};
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
+use slewplan_solver::model::plan::{Outcome, Plan};
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{self, Shard};
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, on_threads, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, pyramid_spec, target, wheel};

@@ -1,13 +1,13 @@
 //! Certified bounds hold for every slew that is flown, and say how good a plan is.
 
 use nalgebra::Vector3;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::plan::{LowerBoundKind, Optimality, Plan};
-use slewplan_solver::planner::{self, LegRow, Run, Shard, leg_table};
-use slewplan_solver::progress::{Observer, Progress, Stage};
-use slewplan_solver::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::plan::{LowerBoundKind, Optimality, Plan};
+use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec};
+use slewplan_solver::run::progress::{Observer, Progress, Stage};
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{self, LegRow, Run, Shard, leg_table};
 use slewplan_tests::ordinary::conditioned;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
@@ -225,8 +225,8 @@ fn a_bound_is_told_before_any_leg_is_solved_and_no_thread_changes_it() {
             pool: &pool,
             stop: &StopSignal::new(),
             observer: &observer,
-            legs: &slewplan_solver::legs::NoStore,
-            segments: &slewplan_solver::legs::NoStore,
+            legs: &slewplan_solver::tour::legs::NoStore,
+            segments: &slewplan_solver::tour::legs::NoStore,
         };
         let plan = planned(planner::solve(&scenario, run));
         let told = observer.0.into_inner().expect("no panic");

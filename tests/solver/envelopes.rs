@@ -1,15 +1,15 @@
 //! Studies of envelopes: the published pyramid, and what is refused.
 
-use slewplan_solver::eigenaxis::Limit;
-use slewplan_solver::envelope_path::EnvelopePath;
-use slewplan_solver::envelope_study::{
+use slewplan_solver::model::problem::Code;
+use slewplan_solver::model::spec::AttitudeSpec;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::slew::WheelAllocation;
+use slewplan_solver::studies::eigenaxis::Limit;
+use slewplan_solver::studies::envelope_path::EnvelopePath;
+use slewplan_solver::studies::envelope_study::{
     EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, TurnSpec,
 };
-use slewplan_solver::manoeuvre::WheelAllocation;
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::problem::Code;
-use slewplan_solver::spec::AttitudeSpec;
-use slewplan_solver::stop::StopSignal;
 use slewplan_tests::pyramid_spec;
 
 const S: f64 = 0.816_496_580_927_726;

@@ -1,8 +1,8 @@
 //! Orders that are given: flown as the search flies them.
 
-use slewplan_solver::plan::{LowerBoundKind, Optimality, Outcome, Plan};
-use slewplan_solver::planner::{BoundFrom, OrderError, every_order, fly_order};
-use slewplan_solver::spec::ScenarioSpec;
+use slewplan_solver::model::plan::{LowerBoundKind, Optimality, Outcome, Plan};
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, fly_order};
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, on_threads, plan_of, planned, scenario_of};
 use slewplan_tests::{experiment_a_spec, target};

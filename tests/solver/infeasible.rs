@@ -1,8 +1,8 @@
 //! What cannot be flown, and the corners of what can.
 
-use slewplan_solver::plan::{Optimality, Outcome, Plan};
-use slewplan_solver::problem::Code;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
+use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::model::problem::Code;
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
 use slewplan_tests::solving::{agree, outcome_of, plan_of};
 use slewplan_tests::{experiment_a_spec, target};
 

@@ -1,12 +1,12 @@
 //! What must not change an answer.
 
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::manoeuvre::{self, Manoeuvre, ManoeuvreSpec};
-use slewplan_solver::plan::{Flight, Plan};
-use slewplan_solver::planner::{self, Shard};
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, WheelSpec};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::plan::{Flight, Plan};
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, WheelSpec};
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::slew::{self, Manoeuvre, ManoeuvreSpec};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{self, Shard};
 use slewplan_tests::published_targets_spec;
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, planned, scenario_of};
 
@@ -151,7 +151,7 @@ fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
             ..ManoeuvreSpec::default()
         };
         let slew = Manoeuvre::try_new(&slew).expect("valid").manoeuvre;
-        let outcome = manoeuvre::solve(&slew, &StopSignal::new());
+        let outcome = slew::solve(&slew, &StopSignal::new());
         assert!(outcome.solved, "{:?}", outcome.flown.failures);
         outcome.time_s
     });

@@ -1,9 +1,9 @@
 //! Legs that were solved elsewhere: taken bit for bit when they fly, refused when they do not.
 
-use slewplan_solver::legs::{LegKind, LegStore, StoredLeg};
-use slewplan_solver::planner::{LegCheck, OfferedLeg, Run, Shard, leg_table};
-use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
+use slewplan_solver::tour::planner::{LegCheck, OfferedLeg, Run, Shard, leg_table};
 use slewplan_tests::random::Generator;
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::{on_threads, pool, scenario_of};

@@ -1,8 +1,8 @@
 //! Fixed places and precedences of targets.
 
-use slewplan_solver::plan::{Optimality, Plan};
-use slewplan_solver::planner::{BoundFrom, OrderError, every_order, fly_order};
-use slewplan_solver::spec::ScenarioSpec;
+use slewplan_solver::model::plan::{Optimality, Plan};
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, fly_order};
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, published_targets_spec};
 

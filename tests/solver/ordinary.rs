@@ -1,8 +1,8 @@
 //! Ordinary spacecraft: whatever the wheels can hold, a plan is found that flies.
 
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::plan::{Optimality, Outcome};
-use slewplan_solver::planner::{self, Shard};
+use slewplan_solver::model::plan::{Optimality, Outcome};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{self, Shard};
 use slewplan_tests::ordinary::{conditioned, scenario};
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
 

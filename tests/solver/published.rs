@@ -3,10 +3,10 @@
 //! The published durations of the experiments rest on two intervals per leg and cannot be flown;
 //! the figures here are those of the same problems solved on fine grids.
 
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::plan::{Optimality, Plan, Statistics};
-use slewplan_solver::planner::{LegRow, Shard, leg_table};
-use slewplan_solver::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::model::plan::{Optimality, Plan, Statistics};
+use slewplan_solver::model::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{LegRow, Shard, leg_table};
 use slewplan_tests::solving::{on_threads, order_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec, pyramid_spec};
 

@@ -1,7 +1,7 @@
 //! Every leg of the random suite is solved and flies.
 
-use slewplan_solver::plan::Outcome;
-use slewplan_solver::planner;
+use slewplan_solver::model::plan::Outcome;
+use slewplan_solver::tour::planner;
 use slewplan_tests::solving::{on_threads, scenario_of};
 use slewplan_tests::suite::{LEGS_PER_SPACECRAFT, SPACECRAFT, leg};
 

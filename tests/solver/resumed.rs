@@ -1,10 +1,10 @@
 //! A search that begins again with what another one had solved: the same plan for less work.
 
-use slewplan_solver::legs::{SegmentStore, StoredSegment};
-use slewplan_solver::plan::Outcome;
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::problem::Code;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::Outcome;
+use slewplan_solver::model::problem::Code;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::tour::legs::{SegmentStore, StoredSegment};
+use slewplan_solver::tour::planner::{self, Run};
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
 use std::collections::HashMap;

@@ -1,10 +1,10 @@
 //! Slews between places of one attitude: rates and wheels change, the attitude comes back, or there
 //! is nothing to do at all.
 
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::plan::Outcome;
-use slewplan_solver::planner::{self, Shard};
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
+use slewplan_solver::model::plan::Outcome;
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{self, Shard};
 use slewplan_tests::solving::{agree, on_threads, outcome_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, pyramid_spec, target};
 

@@ -1,11 +1,11 @@
 //! Stop requests and limits: what is known so far is returned, and hardly any work is done after them.
 
-use slewplan_solver::plan::{Leg, Optimality, Outcome, Plan};
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::progress::{Observer, Progress, Stage};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::ScenarioSpec;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::plan::{Leg, Optimality, Outcome, Plan};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::run::progress::{Observer, Progress, Stage};
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::planner::{self, Run};
 use slewplan_tests::published_targets_spec;
 use slewplan_tests::solving::{on_threads, planned, pool, scenario_of};
 use std::sync::OnceLock;
@@ -49,8 +49,8 @@ fn stopped_when(scenario: &Scenario, met: fn(&Progress) -> bool) -> (Outcome, u6
         pool: &pool,
         stop: &stop,
         observer: &observer,
-        legs: &slewplan_solver::legs::NoStore,
-        segments: &slewplan_solver::legs::NoStore,
+        legs: &slewplan_solver::tour::legs::NoStore,
+        segments: &slewplan_solver::tour::legs::NoStore,
     };
     let outcome = planner::solve(scenario, run);
     let requested = observer.requested.get().expect("a stop was requested");

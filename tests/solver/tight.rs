@@ -1,7 +1,7 @@
 //! What must not change a duration at the tight accuracy setting.
 
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::spec::{Accuracy, AttitudeSpec, ScenarioSpec};
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::spec::{Accuracy, AttitudeSpec, ScenarioSpec};
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, plan_of, scenario_of};
 use slewplan_tests::suite::leg;

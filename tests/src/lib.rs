@@ -12,7 +12,7 @@ pub mod schedules;
 pub mod solving;
 pub mod suite;
 
-use slewplan_solver::spec::{
+use slewplan_solver::model::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
 };
 
@@ -138,8 +138,8 @@ pub fn wheel(axis: [f64; 3], inertia: f64, max_torque: f64, max_speed: f64) -> W
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slewplan_solver::envelope::momentum_problems;
-    use slewplan_solver::scenario::Scenario;
+    use slewplan_solver::model::scenario::Scenario;
+    use slewplan_solver::wheels::envelope::momentum_problems;
 
     #[test]
     fn the_reference_scenarios_are_valid_without_doubts() {

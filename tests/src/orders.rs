@@ -3,9 +3,9 @@
 use crate::experiment_a_spec;
 use crate::random::Generator;
 use crate::solving::{agree, on_threads, plan_of, scenario_of};
-use slewplan_solver::plan::Optimality;
-use slewplan_solver::planner::every_order;
-use slewplan_solver::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec, StateSpec};
+use slewplan_solver::model::plan::Optimality;
+use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec, StateSpec};
+use slewplan_solver::tour::planner::every_order;
 
 /// What a random scenario is to have; the seed decides the rest.
 #[expect(

@@ -7,8 +7,8 @@
 
 use crate::random::Generator;
 use crate::wheel;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::spec::{
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::spec::{
     AttitudeEquivalence, AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec,
     WheelSpec,
 };

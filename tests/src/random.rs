@@ -1,8 +1,8 @@
 //! Random scenarios that a seed repeats exactly.
 
 use crate::wheel;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::spec::{
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
 };
 use std::f64::consts::TAU;
@@ -220,7 +220,7 @@ fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slewplan_solver::scenario::Scenario;
+    use slewplan_solver::model::scenario::Scenario;
 
     #[test]
     fn equal_seeds_make_equal_scenarios_and_others_differ() {

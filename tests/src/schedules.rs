@@ -5,7 +5,7 @@
 
 use crate::experiment_a_spec;
 use crate::random::Generator;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
 
 /// Where the targets are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

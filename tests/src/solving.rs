@@ -1,12 +1,12 @@
 //! Short ways from a description to an outcome.
 
-use slewplan_solver::plan::{Outcome, Plan};
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::progress::Silent;
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::ScenarioSpec;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::plan::{Outcome, Plan};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::progress::Silent;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::planner::{self, Run};
 use std::num::NonZeroUsize;
 
 /// The scenario of a description without its wall-clock limit: what a test finds must not depend on
@@ -43,8 +43,8 @@ pub fn on_threads<R>(threads: usize, work: impl FnOnce(Run<'_>) -> R) -> R {
         pool: &pool,
         stop: &StopSignal::new(),
         observer: &Silent,
-        legs: &slewplan_solver::legs::NoStore,
-        segments: &slewplan_solver::legs::NoStore,
+        legs: &slewplan_solver::tour::legs::NoStore,
+        segments: &slewplan_solver::tour::legs::NoStore,
     })
 }
 

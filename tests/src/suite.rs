@@ -3,10 +3,12 @@
 
 use crate::random::Generator;
 use crate::wheel;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::envelope::momentum_problems;
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec};
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::{
+    AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec,
+};
+use slewplan_solver::wheels::envelope::momentum_problems;
 
 /// Spacecraft of the suite.
 pub const SPACECRAFT: u64 = 20;

@@ -8,9 +8,9 @@ use crate::report;
 use crate::signals;
 use crate::wire;
 use crate::wire::certification::CertificationDocument;
-use slewplan_solver::legs::NoStore;
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::NoStore;
+use slewplan_solver::tour::planner::{self, Run};
 use std::io::{IsTerminal, stdout};
 use std::path::PathBuf;
 

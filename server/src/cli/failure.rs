@@ -2,8 +2,8 @@
 
 use super::Exit;
 use crate::service::ServiceError;
-use slewplan_solver::pool::PoolError;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::run::pool::PoolError;
 use std::fmt::Write;
 use std::io;
 use std::net::SocketAddr;

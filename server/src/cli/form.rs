@@ -4,8 +4,8 @@ use super::failure::Failure;
 use crate::export::{self, ExportError, Form, Format, Options, PERIOD_S, Spacing, TOLERANCE};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use slewplan_solver::plan::Flight;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::Flight;
+use slewplan_solver::model::scenario::Scenario;
 
 /// Most samples of a file: a week at three per second.
 const MOST_SAMPLES: usize = 2_000_000;

@@ -7,7 +7,7 @@ use crate::leg_import;
 use crate::service::ServiceError;
 use crate::signals;
 use crate::wire::leg_import::LegImportDocument;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
 /// What `import` takes.

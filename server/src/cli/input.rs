@@ -3,8 +3,8 @@
 use super::failure::Failure;
 use crate::wire;
 use crate::wire::document::Node;
-use slewplan_solver::problem::Problem;
-use slewplan_solver::scenario::{Scenario, Validated};
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::model::scenario::{Scenario, Validated};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;

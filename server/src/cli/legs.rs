@@ -13,10 +13,10 @@ use crate::wire::document::Node;
 use crate::wire::legs::{LegTable, LegTableDocument};
 use clap::ValueEnum;
 use recorder::Recorder;
-use slewplan_solver::legs::{LegKind, LegStore, NoStore};
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore};
+use slewplan_solver::tour::planner::{self, Run};
 use std::path::PathBuf;
 
 mod merge;

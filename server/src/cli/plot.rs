@@ -8,7 +8,7 @@ use crate::plot::{
     WrittenPlan, WrittenSlews,
 };
 use crate::wire::slew;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 use std::path::{Path, PathBuf};
 
 /// What `plot` takes.

@@ -5,7 +5,7 @@ use super::runtime;
 use crate::leg_cache::LegCache;
 use crate::service::ServiceError;
 use crate::store::Store;
-use slewplan_solver::legs::LegStore;
+use slewplan_solver::tour::legs::LegStore;
 use std::path::Path;
 use std::sync::Arc;
 use tokio::runtime::Runtime;

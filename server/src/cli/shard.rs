@@ -1,7 +1,7 @@
 //! Parts of a table, for runs side by side.
 
 use super::failure::Failure;
-use slewplan_solver::planner::Shard;
+use slewplan_solver::tour::planner::Shard;
 use std::ffi::OsStr;
 use std::str::FromStr;
 

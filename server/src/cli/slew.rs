@@ -6,7 +6,7 @@ use super::{Exit, input};
 use crate::signals;
 use crate::slews::{self, Solved};
 use crate::wire::slew::{self, SlewAnswerDocument};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
 /// What `slew` takes.

@@ -5,8 +5,8 @@ use super::{Exit, input, output};
 use crate::wire;
 use crate::wire::problems::ValidationDocument;
 use clap::ValueEnum;
-use slewplan_solver::planner;
-use slewplan_solver::problem::{Faults, Problem};
+use slewplan_solver::model::problem::{Faults, Problem};
+use slewplan_solver::tour::planner;
 use std::fmt::Write;
 use std::path::PathBuf;
 

@@ -6,7 +6,7 @@ use crate::report;
 use crate::wire;
 use crate::wire::verification::ReportDocument;
 use slewplan_solver::checker;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
 use std::io::{IsTerminal, stdout};
 use std::path::PathBuf;
 

@@ -11,7 +11,7 @@ use super::calendar::{self, Moment, NO_EPOCH};
 use super::trajectory::{Kind, Sample, Segment, Trajectory};
 use super::{ExportError, Options};
 use crate::clock;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 use std::fmt::Write;
 
 const BODY: &str = "SC_BODY_1";

@@ -4,7 +4,7 @@
 
 use super::ExportError;
 use crate::clock;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 use std::time::Duration;
 
 const DAY_S: i64 = 86_400;

@@ -4,8 +4,8 @@ use super::ExportError;
 use super::calendar::{self, Moment};
 use super::trajectory::{Kind, pieces};
 use serde::Serialize;
-use slewplan_solver::plan::Flight;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::Flight;
+use slewplan_solver::model::scenario::Scenario;
 
 /// Two groups; an activity's `type` is the name of its group.
 #[derive(Debug, Serialize)]

@@ -2,9 +2,9 @@
 
 use super::ExportError;
 use super::trajectory::CLOSEST_S;
-use slewplan_solver::attitude::Attitude;
 use slewplan_solver::checker::Motion;
-use slewplan_solver::plan::State;
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::plan::State;
 
 /// Turn between two samples at most, rad: linear interpolation of quaternions needs it small, and
 /// no motion can hide between samples so close.

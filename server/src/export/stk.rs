@@ -4,7 +4,7 @@
 use super::ExportError;
 use super::calendar::{self, Moment};
 use super::trajectory::Trajectory;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 use std::fmt::Write;
 
 /// Epoch and axes.

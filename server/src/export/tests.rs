@@ -7,8 +7,8 @@ use super::trajectory::{Kind, Trajectory};
 use super::{ExportError, Format, Options, Spacing, write};
 use crate::wire;
 use slewplan_solver::checker::Motion;
-use slewplan_solver::plan::{Control, Flight, Passage};
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::{Control, Flight, Passage};
+use slewplan_solver::model::scenario::Scenario;
 
 const EFFECTIVE_Z: f64 = 6.0 - 0.002;
 const TORQUE: f64 = 0.02;

@@ -4,7 +4,7 @@ use super::ExportError;
 use super::sampling::{self, Sampling};
 use nalgebra::Vector3;
 use slewplan_solver::checker::Motion;
-use slewplan_solver::plan::{Flight, State};
+use slewplan_solver::model::plan::{Flight, State};
 
 /// Times closer than this, s, are one: formats write nanoseconds, and times must be seen to grow.
 pub(super) const CLOSEST_S: f64 = 1e-6;

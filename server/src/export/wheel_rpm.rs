@@ -6,7 +6,7 @@
 
 use super::{ExportError, Options, PERIOD_S, Spacing};
 use slewplan_solver::checker::Motion;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 

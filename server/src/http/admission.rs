@@ -3,8 +3,8 @@
 use super::App;
 use super::error::{ApiError, ErrorCode};
 use crate::wire::document::Node;
-use slewplan_solver::planner;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::tour::planner;
 
 /// Refuses more targets than the service plans.
 pub(super) fn check_targets(app: &App, count: usize) -> Result<(), ApiError> {

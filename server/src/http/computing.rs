@@ -3,7 +3,7 @@
 
 use super::App;
 use super::error::{ApiError, ErrorCode};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::time::Duration;
 use tokio::task::{JoinError, JoinHandle, spawn_blocking};
 

@@ -5,7 +5,7 @@ use crate::wire::problems::ProblemDocument;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 use utoipa::ToSchema;
 
 /// Most problems of one input that are listed.

@@ -9,7 +9,7 @@ use crate::slews;
 use crate::wire::slew::{self, SlewAnswerDocument, SlewRequest};
 use axum::extract::State;
 use axum::response::Response;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 
 /// Solve one slew

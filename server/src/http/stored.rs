@@ -6,7 +6,7 @@ use super::error::ApiError;
 use crate::store::StoreError;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 
 /// Replaces `{"ref": name}` or `{"ref": name, "version": n}` under `spacecraft` by the stored
 /// document; the tree is unchanged when there is none. The flag tells whether there was one.

@@ -10,10 +10,10 @@ use super::error::ApiError;
 use super::{App, admission, stored};
 use crate::contradictions::Unwatched;
 use crate::wire::document::Node;
-use slewplan_solver::legs::NoStore;
-use slewplan_solver::planner::Run;
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::NoStore;
+use slewplan_solver::tour::planner::Run;
 
 /// The study with the spacecraft of its scenario written out, if it is not too large.
 async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Node, ApiError> {

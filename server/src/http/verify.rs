@@ -12,7 +12,7 @@ use crate::wire::verification::ReportDocument;
 use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::checker;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
 
 /// Fly a plan again and test every limit
 #[utoipa::path(

@@ -1,6 +1,6 @@
 //! What a job may take of the memory, watched while it runs.
 
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -7,7 +7,7 @@
 //! reading took a tenth of the time that it saved), and forgotten after the end of the job.
 
 use crate::store::{JobRow, SegmentRow, Store, StoreError};
-use slewplan_solver::legs::{SegmentStore, StoredSegment};
+use slewplan_solver::tour::legs::{SegmentStore, StoredSegment};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -5,7 +5,7 @@ use super::panel::Panel;
 use super::timeline;
 use super::written_flight::{Off, Sample, WrittenFlight};
 use super::{HEAD, MARGIN, WIDTH};
-use slewplan_solver::spacecraft::Spacecraft;
+use slewplan_solver::model::spacecraft::Spacecraft;
 
 /// Errors beyond this, rad or rad/s, are drawn and told as this: they tell that the flight failed.
 const LOST: f64 = 1e3;

@@ -6,7 +6,7 @@ use super::chart::{self, Chart, Curve, Stroke};
 use super::timeline;
 use super::written_slews::{Swept, WrittenSlew, WrittenSlews};
 use super::{HEAD, MARGIN, WIDTH};
-use slewplan_solver::spacecraft::Spacecraft;
+use slewplan_solver::model::spacecraft::Spacecraft;
 use std::fmt::Write;
 
 const CHART: f64 = 400.0;

@@ -4,7 +4,7 @@ use super::canvas::{ALARM, Canvas, FAINT, Frame, Ink, LINE, Pen, SERIES};
 use super::view::Boresight;
 use super::written::{State, WrittenPlan};
 use nalgebra::Vector3;
-use slewplan_solver::scenario::{KeepOut, Scenario};
+use slewplan_solver::model::scenario::{KeepOut, Scenario};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Room for the words below the sphere.

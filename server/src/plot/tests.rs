@@ -4,8 +4,8 @@ use super::{Boresight, WrittenPlan, plan as svg};
 use crate::report::sample;
 use crate::wire;
 use serde_json::{Value, json};
-use slewplan_solver::plan::Outcome;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::Outcome;
+use slewplan_solver::model::scenario::Scenario;
 
 fn written() -> Vec<u8> {
     let outcome = Outcome::Planned(Box::new(sample::plan()));

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, Frame, Ink, Pen, WARM};
 use super::panel::{self, Panel};
 use super::written::{Record, WrittenPlan};
-use slewplan_solver::spacecraft::Spacecraft;
+use slewplan_solver::model::spacecraft::Spacecraft;
 
 /// Body rates, wheel speeds and wheel torques; a spacecraft adds the limits.
 pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Panel> {

@@ -1,7 +1,7 @@
 //! Which body axis is drawn on the sphere.
 
 use nalgebra::Vector3;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::scenario::Scenario;
 
 /// A named body axis.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! A plan as it was written, as far as a picture shows it.
 
 use serde::Deserialize;
-use slewplan_solver::attitude::Attitude;
+use slewplan_solver::model::attitude::Attitude;
 
 /// What is read of a plan's document.
 #[derive(Debug, Deserialize)]

@@ -2,7 +2,7 @@
 
 use super::table::aligned;
 use crate::wire::certification::{name, reason};
-use slewplan_solver::planner::{CheckedClaims, PlanClaims, Verdict};
+use slewplan_solver::tour::planner::{CheckedClaims, PlanClaims, Verdict};
 
 /// Head of the numbers, which stand to the right below it.
 const BOUND: &str = "claimed bound [s]";

@@ -1,8 +1,8 @@
 //! Blocks of figures that several reports share.
 
 use slewplan_solver::checker::NOT_COMPUTED;
-use slewplan_solver::plan::{Margins, Verification};
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::plan::{Margins, Verification};
+use slewplan_solver::model::problem::Problem;
 use std::fmt::{Display, Write};
 
 /// One labelled line.

@@ -3,9 +3,9 @@
 //! Source: A. Olivares, E. Staffetti, "Time-optimal attitude scheduling of a spacecraft equipped
 //! with reaction wheels" (2018), experiments A, B and C.
 
-use slewplan_solver::plan::Plan;
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::AttitudeEquivalence;
+use slewplan_solver::model::plan::Plan;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::AttitudeEquivalence;
 
 /// A published result.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! A small made-up plan for the tests of everything that writes plans.
 
 use nalgebra::Vector3;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::plan::{
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::plan::{
     Alternative, Control, Flight, Leg, LowerBoundKind, Margins, Milestone, NlpSolves, Optimality,
     Passage, Plan, SearchWork, State, Statistics, Verification,
 };

@@ -3,7 +3,7 @@
 use super::figures::{count, line, margins, verification};
 use super::table::aligned;
 use crate::wire::plan::status;
-use slewplan_solver::plan::{Leg, LowerBoundKind, Plan};
+use slewplan_solver::model::plan::{Leg, LowerBoundKind, Plan};
 
 /// Title, legs, totals, bound, verification, comparison and work.
 pub(super) fn plan(title: &str, plan: &Plan) -> String {

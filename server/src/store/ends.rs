@@ -1,7 +1,7 @@
 //! How jobs end.
 
 use super::{JobState, PackedPlan};
-use slewplan_solver::problem::Code;
+use slewplan_solver::model::problem::Code;
 
 /// How a job ended.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! The input forms of an attitude.
 
 use super::reader::{Cursor, Fields};
-use slewplan_solver::problem::Code;
-use slewplan_solver::spec::AttitudeSpec;
+use slewplan_solver::model::problem::Code;
+use slewplan_solver::model::spec::AttitudeSpec;
 
 const FORMS: [&str; 5] = [
     "quaternion",
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use crate::wire::document::parse;
     use crate::wire::reader::Sink;
-    use slewplan_solver::problem::Problem;
+    use slewplan_solver::model::problem::Problem;
 
     fn read_text(text: &str) -> (AttitudeSpec, Vec<Problem>) {
         let node = parse(text.as_bytes()).unwrap();

@@ -2,7 +2,7 @@
 
 use super::number::Number;
 use serde::Serialize;
-use slewplan_solver::planner::{CheckedClaims, PlanClaims, Verdict};
+use slewplan_solver::tour::planner::{CheckedClaims, PlanClaims, Verdict};
 
 /// What became of the claims of a plan.
 #[derive(Debug, Serialize)]

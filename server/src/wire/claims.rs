@@ -4,10 +4,10 @@
 
 use super::document;
 use super::reader::{Cursor, Fields, Sink};
-use slewplan_solver::plan::LowerBoundKind;
-use slewplan_solver::planner::{LegClaim, PlanClaims};
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::LowerBoundKind;
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::tour::planner::{LegClaim, PlanClaims};
 
 /// Reads the claims of a plan for a scenario.
 ///

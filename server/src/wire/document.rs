@@ -9,7 +9,7 @@ pub(crate) use size::values_and_names;
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeMap, Serializer};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 use std::fmt;
 
 /// Most members of an object: far more than any form has, few enough to look for each name in all of

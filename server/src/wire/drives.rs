@@ -1,7 +1,7 @@
 //! Reading how wheels are driven, for slews and for flights with errors.
 
 use super::reader::Cursor;
-use slewplan_solver::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
+use slewplan_solver::model::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 
 /// Reads one drive per wheel; ideal ones stand in where they cannot be read.
 pub(crate) fn read(cursor: &Cursor<'_>) -> Vec<DriveSpec> {

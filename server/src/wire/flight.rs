@@ -4,9 +4,9 @@
 
 use super::document::{self, Node};
 use super::reader::{Cursor, Sink};
-use slewplan_solver::plan::{Control, Flight, Passage};
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::plan::{Control, Flight, Passage};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
 use std::collections::HashSet;
 
 /// Reads the flight of a plan for a scenario. Fields that do not matter for it are not looked at.

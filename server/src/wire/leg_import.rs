@@ -2,7 +2,7 @@
 
 use super::problems::{ProblemDocument, documents};
 use serde::Serialize;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
 use utoipa::ToSchema;
 
 /// What became of the legs of a file.

@@ -5,11 +5,11 @@ use super::number::Number;
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, scenario, spacecraft};
 use serde::Serialize;
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::planner;
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner;
 use utoipa::ToSchema;
 
 /// A valid query.

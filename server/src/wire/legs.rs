@@ -5,8 +5,8 @@ use super::document::{Member, Node};
 use super::number::Number;
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::planner::{LegRow, OfferedLeg, Shard};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{LegRow, OfferedLeg, Shard};
 
 pub(crate) mod read;
 

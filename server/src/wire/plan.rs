@@ -3,8 +3,8 @@
 use super::number::Number;
 use super::problems::{ProblemDocument, documents};
 use serde::Serialize;
-use slewplan_solver::plan::{Alternative, Optimality, Outcome, Plan, State};
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::plan::{Alternative, Optimality, Outcome, Plan, State};
+use slewplan_solver::model::problem::Problem;
 use utoipa::ToSchema;
 
 mod interruption;
@@ -208,7 +208,7 @@ mod tests {
     fn reasons_come_with_null_times() {
         let reason = Problem::new(
             "/targets/0",
-            slewplan_solver::problem::Code::MomentumExceedsEnvelope,
+            slewplan_solver::model::problem::Code::MomentumExceedsEnvelope,
             "too much",
             "unload the wheels",
         );
@@ -256,7 +256,7 @@ mod tests {
         let at = |pointer: &str| {
             Problem::new(
                 pointer,
-                slewplan_solver::problem::Code::KeepOutViolated,
+                slewplan_solver::model::problem::Code::KeepOutViolated,
                 "",
                 "",
             )

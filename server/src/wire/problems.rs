@@ -1,7 +1,7 @@
 //! Problems as JSON.
 
 use serde::Serialize;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
 use utoipa::ToSchema;
 
 /// A problem: where, what, what to do.

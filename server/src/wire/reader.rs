@@ -4,7 +4,7 @@
 //! substitute, so that one pass finds everything that is wrong.
 
 use super::document::Node;
-use slewplan_solver::problem::{Code, MOST_KEPT, Problem};
+use slewplan_solver::model::problem::{Code, MOST_KEPT, Problem};
 use std::cell::RefCell;
 
 mod fields;

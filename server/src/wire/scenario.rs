@@ -3,9 +3,9 @@
 use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, spacecraft};
-use slewplan_solver::problem::{Code, Faults, MOST_KEPT, Problem};
-use slewplan_solver::scenario::{MOST_CONES, MOST_TARGETS, Scenario, Validated};
-use slewplan_solver::spec::{
+use slewplan_solver::model::problem::{Code, Faults, MOST_KEPT, Problem};
+use slewplan_solver::model::scenario::{MOST_CONES, MOST_TARGETS, Scenario, Validated};
+use slewplan_solver::model::spec::{
     Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
 

@@ -10,12 +10,12 @@ pub(crate) use answer::SlewAnswerDocument;
 use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{drives, scenario, spacecraft};
-use slewplan_solver::manoeuvre::{
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::spec::{AttitudeEquivalence, SpacecraftSpec};
+use slewplan_solver::slew::{
     Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Sweep,
     WheelAllocation,
 };
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::spec::{AttitudeEquivalence, SpacecraftSpec};
 
 /// Most points of a sweep.
 pub(crate) const MOST_POINTS: usize = 200;

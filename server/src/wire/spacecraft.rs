@@ -2,10 +2,12 @@
 
 use super::document::Node;
 use super::reader::{Cursor, Fields, Sink};
-use slewplan_solver::problem::{Code, Problem};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spacecraft::{MOST_BORESIGHTS, MOST_WHEELS};
-use slewplan_solver::spec::{BoresightSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spacecraft::{MOST_BORESIGHTS, MOST_WHEELS};
+use slewplan_solver::model::spec::{
+    BoresightSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec,
+};
 
 /// Stands in where the inertia cannot be read: larger than that of any wheel.
 const SUBSTITUTE_INERTIA: [[f64; 3]; 3] = [[1e6, 0.0, 0.0], [0.0, 1e6, 0.0], [0.0, 0.0, 1e6]];

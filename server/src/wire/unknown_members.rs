@@ -2,7 +2,7 @@
 
 use super::study::{authority, comparison, envelopes, flight};
 use super::{scenario, slew};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 use std::path::{Path, PathBuf};
 
 const EXTRA: &str = "never_heard_of";

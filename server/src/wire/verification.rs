@@ -3,8 +3,8 @@
 use super::plan::{MarginsDocument, VerificationDocument};
 use super::problems::{ProblemDocument, documents};
 use serde::Serialize;
-use slewplan_solver::plan::{Margins, Verification};
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::plan::{Margins, Verification};
+use slewplan_solver::model::problem::Problem;
 use utoipa::ToSchema;
 
 /// What flying a plan again showed.

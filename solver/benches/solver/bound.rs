@@ -2,8 +2,8 @@
 
 use divan::{Bencher, black_box};
 use nalgebra::Vector3;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::kinematic_bound::RateBox;
+use slewplan_solver::bounds::kinematic::RateBox;
+use slewplan_solver::model::attitude::Attitude;
 use slewplan_tests::experiment_c_spec;
 use slewplan_tests::solving::scenario_of;
 

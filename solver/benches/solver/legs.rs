@@ -2,8 +2,8 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::planner::{Shard, leg_table};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{Shard, leg_table};
 use slewplan_tests::solving::{on_threads, scenario_of};
 use slewplan_tests::{experiment_c_spec, published_targets_spec};
 

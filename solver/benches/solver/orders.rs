@@ -3,11 +3,11 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use nalgebra::Vector3;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::legs::{LegStore, StoredLeg};
-use slewplan_solver::planner::{BoundFrom, Run, fly_order};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::spec::{AttitudeSpec, TargetSpec};
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::{AttitudeSpec, TargetSpec};
+use slewplan_solver::tour::legs::{LegStore, StoredLeg};
+use slewplan_solver::tour::planner::{BoundFrom, Run, fly_order};
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, planned, scenario_of};

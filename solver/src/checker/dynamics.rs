@@ -1,7 +1,7 @@
 //! The equations of motion, written down a second time on purpose.
 //!
 //! Nothing here is shared with the code that plans, so that a mistake there cannot hide here.
-//! With the symbols of [`crate::spacecraft`] and the conventions of [`crate::attitude`]:
+//! With the symbols of [`crate::model::spacecraft`] and the conventions of [`crate::model::attitude`]:
 //!
 //! ```text
 //! H_b      = J w + sum a_i I_i W_i                  (all wheels)
@@ -13,8 +13,8 @@
 //! J_eff    = J - sum I_i a_i a_i^T                  (driven wheels)
 //! ```
 
-use crate::scenario::Scenario;
-use crate::spacecraft::Wheel;
+use crate::model::scenario::Scenario;
+use crate::model::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
 
 /// Scalar-last quaternion components, sign included.

@@ -4,8 +4,8 @@ use super::dynamics::{Quaternion, to_reference};
 use super::extremum::{critical_points, root};
 use super::integrator::Step;
 use super::wording::figure;
-use crate::problem::{Code, Problem};
-use crate::scenario::KeepOut;
+use crate::model::problem::{Code, Problem};
+use crate::model::scenario::KeepOut;
 
 /// Depth, rad, below which touching a cone is no violation: what an attitude may be off by.
 const TOUCH: f64 = super::ATTITUDE_TOLERANCE;

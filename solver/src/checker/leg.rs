@@ -5,8 +5,8 @@ use super::integrator::{STEP_TOLERANCE, fly};
 use super::limits::{self, Limits};
 use super::wording::figure;
 use super::{ATTITUDE_TOLERANCE, RATE_TOLERANCE, timeline};
-use crate::plan::{Flight, State};
-use crate::scenario::Scenario;
+use crate::model::plan::{Flight, State};
+use crate::model::scenario::Scenario;
 
 /// Where a leg is to end.
 #[derive(Debug, Clone)]

@@ -4,9 +4,9 @@ use super::extremum::critical_points;
 use super::integrator::Step;
 use super::wording::figure;
 use super::{LIMIT_TOLERANCE, NOT_COMPUTED};
-use crate::plan::Flight;
-use crate::scenario::Scenario;
-use crate::spacecraft::Spacecraft;
+use crate::model::plan::Flight;
+use crate::model::scenario::Scenario;
+use crate::model::spacecraft::Spacecraft;
 
 /// Wheel speeds this small, relative to the wheel's limit or, without one, to the fastest wheel,
 /// have no sign: a wheel at rest would otherwise cross zero by rounding.

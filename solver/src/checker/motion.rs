@@ -4,8 +4,8 @@ use super::dynamics::{Body, Snapshot};
 use super::integrator::{STEP_TOLERANCE, fly};
 use super::series::Expansion;
 use super::{state, timeline};
-use crate::plan::{Flight, State};
-use crate::scenario::Scenario;
+use crate::model::plan::{Flight, State};
+use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
 
 /// The integrated motion of a flight: the steps of the verification, kept as the polynomials that

@@ -1,7 +1,7 @@
 //! Whether the targets are visited in an order that the scenario admits.
 
-use crate::plan::Flight;
-use crate::scenario::Scenario;
+use crate::model::plan::Flight;
+use crate::model::scenario::Scenario;
 
 /// Sentences about visits at the wrong place in the order. Targets that are not visited, or more
 /// than once, are somebody else's concern: their first visit counts.

@@ -7,9 +7,9 @@ use super::dynamics::{Body, Snapshot};
 use super::integrator::{Interval, STEP_TOLERANCE, Step, fly};
 use super::limits::Limits;
 use super::state;
-use crate::drive::Drive;
-use crate::plan::State;
-use crate::scenario::Scenario;
+use crate::model::drive::Drive;
+use crate::model::plan::State;
+use crate::model::scenario::Scenario;
 
 /// Torques that change at a constant rate for a while.
 #[derive(Debug, Clone, PartialEq)]

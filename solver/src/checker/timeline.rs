@@ -3,8 +3,8 @@
 use super::TIME_TOLERANCE;
 use super::integrator::Interval;
 use super::wording::figure;
-use crate::plan::{Control, Flight};
-use crate::spacecraft::Wheel;
+use crate::model::plan::{Control, Flight};
+use crate::model::spacecraft::Wheel;
 
 /// Sentences of one kind that are worth reading; a wrong file tends to be wrong everywhere.
 const MAX_SENTENCES: usize = 10;

@@ -8,9 +8,9 @@ use super::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, NOT_COMPUTED, RATE_TOLERANCE, REST_TORQUE_TOLERANCE,
     SNAP, TIME_TOLERANCE,
 };
-use crate::plan::{Flight, Passage};
-use crate::scenario::{End, RateCondition, Scenario, Target};
-use crate::spec::AttitudeEquivalence;
+use crate::model::plan::{Flight, Passage};
+use crate::model::scenario::{End, RateCondition, Scenario, Target};
+use crate::model::spec::AttitudeEquivalence;
 use nalgebra::Vector3;
 
 /// A visit that can be tested: a known target at times inside the flight.

@@ -1,9 +1,9 @@
 //! From a torque on the body to torques of the wheels.
 
-use crate::cone;
-use crate::drive::Drive;
-use crate::spacecraft::Wheel;
-use crate::wheel_axes::pseudo_inverse;
+use crate::math::cone;
+use crate::model::drive::Drive;
+use crate::model::spacecraft::Wheel;
+use crate::model::wheel_axes::pseudo_inverse;
 use nalgebra::Vector3;
 
 /// The pseudo-inverse of the wheel axes: of all torques of the wheels that make a torque on the

@@ -32,8 +32,8 @@
 //! plan's momentum.
 
 use super::settings::{Law, Settings};
-use crate::attitude::Attitude;
-use crate::spacecraft::Spacecraft;
+use crate::model::attitude::Attitude;
+use crate::model::spacecraft::Spacecraft;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 

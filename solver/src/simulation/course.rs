@@ -7,8 +7,8 @@ use super::controller::Desired;
 use super::settings::Settings;
 use super::spec::FeedForward;
 use crate::checker::Motion;
-use crate::plan::{Control, Flight};
-use crate::scenario::Scenario;
+use crate::model::plan::{Control, Flight};
+use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
 use std::ops::Range;
 

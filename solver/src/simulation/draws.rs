@@ -2,9 +2,9 @@
 
 use super::settings::{Errors, Settings};
 use super::truth::{Rotor, State, Truth, effective_inertia};
-use crate::attitude::Attitude;
-use crate::random::SplitMix;
-use crate::scenario::Scenario;
+use crate::math::random::SplitMix;
+use crate::model::attitude::Attitude;
+use crate::model::scenario::Scenario;
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 /// Draws of an inertia at full size, and those after them, each half as large as the one before:

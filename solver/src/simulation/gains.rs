@@ -1,7 +1,7 @@
 //! Gains of the control laws from what one wants of small errors.
 
 use super::spec::{GainsSpec, PidGainsSpec};
-use crate::findings::Findings;
+use crate::model::findings::Findings;
 use nalgebra::Matrix3;
 
 /// Settling time to 2 % in time constants of a damped pair of poles: `exp(-4) = 0.018`.

@@ -2,8 +2,8 @@
 
 use super::Simulation;
 use super::outcome::{SimulatedFlight, TrackingError};
-use crate::pool::SolverPool;
-use crate::stop::StopSignal;
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
 
 /// Values that so many of the flights do not exceed (nearest rank).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

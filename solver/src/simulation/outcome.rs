@@ -3,9 +3,9 @@
 use super::controller::Desired;
 use super::course::{Course, Event};
 use super::wheel_loop::Cycle;
-use crate::attitude::Attitude;
 use crate::checker::NOT_COMPUTED;
-use crate::plan::Flight;
+use crate::model::attitude::Attitude;
+use crate::model::plan::Flight;
 use nalgebra::Vector3;
 
 /// How far the spacecraft is from where it should be.

@@ -3,10 +3,10 @@
 use super::allocation::Allocation;
 use super::gains::{Gains, PidGains};
 use super::spec::{ControllerSpec, ErrorsSpec, FeedForward, SimulationSpec};
-use crate::drive::Drive;
-use crate::findings::Findings;
-use crate::problem::Code;
-use crate::spacecraft::Spacecraft;
+use crate::model::drive::Drive;
+use crate::model::findings::Findings;
+use crate::model::problem::Code;
+use crate::model::spacecraft::Spacecraft;
 use nalgebra::Vector3;
 
 /// Rate of the on-board computer, 1/s, where none is given.

@@ -1,6 +1,6 @@
 //! What a caller may write about a simulated flight: plain, unvalidated descriptions.
 
-use crate::drive::DriveSpec;
+use crate::model::drive::DriveSpec;
 
 /// How a plan is to be flown, and with what errors.
 #[derive(Debug, Clone, Default, PartialEq)]

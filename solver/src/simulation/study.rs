@@ -8,12 +8,12 @@ use super::Simulation;
 use super::monte_carlo::Spread;
 use super::settings::Settings;
 use super::spec::SimulationSpec;
-use crate::findings::Findings;
-use crate::plan::{Optimality, Outcome, Plan};
-use crate::planner::{Run, solve};
-use crate::problem::{Code, Problem};
-use crate::scenario::Scenario;
-use crate::spec::ScenarioSpec;
+use crate::model::findings::Findings;
+use crate::model::plan::{Optimality, Outcome, Plan};
+use crate::model::problem::{Code, Problem};
+use crate::model::scenario::Scenario;
+use crate::model::spec::ScenarioSpec;
+use crate::tour::planner::{Run, solve};
 
 /// Most pairs of shares of one study: each is a plan and as many flights as asked for.
 pub const MOST_AUTHORITIES: usize = 200;

@@ -1,6 +1,6 @@
 //! The body that is really flown: equations of motion with friction and an external torque.
 //!
-//! With the symbols of [`crate::spacecraft`], motor torques `M_i`, friction coefficients `v_i`, `c_i`
+//! With the symbols of [`crate::model::spacecraft`], motor torques `M_i`, friction coefficients `v_i`, `c_i`
 //! and an external torque `d` in body axes:
 //!
 //! ```text

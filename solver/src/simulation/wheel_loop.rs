@@ -13,8 +13,8 @@
 //! cycle, and at last what is beyond the motor's torque.
 
 use crate::checker::LIMIT_TOLERANCE;
-use crate::drive::Drive;
-use crate::spacecraft::Wheel;
+use crate::model::drive::Drive;
+use crate::model::spacecraft::Wheel;
 
 /// What a motor does in a cycle, and which limits it met.
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +70,7 @@ pub(super) fn commandable(wheel: &Wheel, torque: f64) -> (f64, bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::SpeedLaw;
+    use crate::model::drive::SpeedLaw;
     use nalgebra::Vector3;
 
     const WHEEL: Wheel = Wheel {

@@ -12,12 +12,12 @@
 
 mod drawing;
 
-use slewplan_solver::legs::NoStore;
-use slewplan_solver::plan::{Optimality, Outcome, Plan};
-use slewplan_solver::planner::{self, Run};
-use slewplan_solver::progress::{Observer, Progress};
-use slewplan_solver::scenario::Scenario;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::run::progress::{Observer, Progress};
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::NoStore;
+use slewplan_solver::tour::planner::{self, Run};
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::pool;
 use std::ops::Range;

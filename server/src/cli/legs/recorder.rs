@@ -2,8 +2,8 @@
 
 use crate::store::leg_key;
 use crate::wire::legs::KeyedLeg;
-use slewplan_solver::legs::{LegStore, StoredLeg};
-use slewplan_solver::planner::OfferedLeg;
+use slewplan_solver::tour::legs::{LegStore, StoredLeg};
+use slewplan_solver::tour::planner::OfferedLeg;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 

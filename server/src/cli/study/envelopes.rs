@@ -7,7 +7,7 @@ use crate::cli::output;
 use crate::cli::solve::{Threads, start_pool};
 use crate::signals;
 use crate::wire::study::envelopes::{self, EnvelopeAnswerDocument};
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 
 /// What `study envelopes` takes.
 #[derive(Debug, clap::Args)]

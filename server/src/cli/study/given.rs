@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use crate::cli::input;
 use crate::cli::output::Destination;
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
 use std::path::PathBuf;
 
 /// What is read and what is written.

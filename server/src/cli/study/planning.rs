@@ -4,9 +4,9 @@ use crate::cli::failure::Failure;
 use crate::cli::solve::{Threads, start_pool};
 use crate::progress::{self, ProgressMode};
 use crate::signals::{self, Received};
-use slewplan_solver::legs::NoStore;
-use slewplan_solver::planner::Run;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::NoStore;
+use slewplan_solver::tour::planner::Run;
 
 /// How planning is done and shown.
 #[derive(Debug, clap::Args)]

@@ -8,7 +8,7 @@ use crate::leg_import;
 use crate::wire::leg_import::LegImportDocument;
 use axum::extract::State;
 use axum::response::Response;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 
 /// Put legs that were solved elsewhere into the cache

@@ -9,8 +9,8 @@ use crate::wire::stored_legs::{StoredLegDocument, StoredLegListDocument};
 use axum::Json;
 use axum::extract::State;
 use serde::Deserialize;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::problem::{Code, Problem};
 use utoipa::IntoParams;
 
 const DEFAULT_LIMIT: u16 = 50;

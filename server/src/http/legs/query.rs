@@ -13,11 +13,11 @@ use crate::wire::leg_query::{
 use crate::wire::number::Number;
 use axum::Json;
 use axum::extract::State;
-use slewplan_solver::legs::{LegKind, LegStore, NoStore, StoredLeg};
-use slewplan_solver::planner::{self, LegRow, Run, Shard};
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::sequence::Place;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore, StoredLeg};
+use slewplan_solver::tour::order::Place;
+use slewplan_solver::tour::planner::{self, LegRow, Run, Shard};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 

@@ -8,7 +8,7 @@ use crate::store::EndCode;
 use axum::body::Bytes;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use slewplan_solver::problem::Code;
+use slewplan_solver::model::problem::Code;
 use std::fmt::Write;
 use std::sync::LazyLock;
 

@@ -9,8 +9,8 @@ use super::{quiet_run, with_scenario};
 use crate::wire::study::authority::{self, AuthorityAnswerDocument, AuthorityStudy};
 use axum::extract::State;
 use axum::response::Response;
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 
 /// Compare shares of torque and wheel speed

@@ -8,8 +8,8 @@ use super::super::{App, computing, respond, stored};
 use crate::wire::study::envelopes::{self, EnvelopeAnswerDocument, EnvelopeRequest};
 use axum::extract::State;
 use axum::response::Response;
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 
 /// Envelopes of the wheels, and slews within them

@@ -10,8 +10,8 @@ use crate::flights::{self, FlightStudy};
 use crate::wire::study::flight::{self, FlightAnswerDocument};
 use axum::extract::State;
 use axum::response::Response;
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
 
 /// Fly a plan once in closed loop

@@ -4,8 +4,8 @@ use super::{WrittenEnvelopes, svg};
 use crate::plot::Document;
 use crate::wire::study::envelopes::{self, EnvelopeAnswerDocument};
 use serde_json::Value;
-use slewplan_solver::pool::SolverPool;
-use slewplan_solver::stop::StopSignal;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
 
 fn answer(rest: &str) -> Vec<u8> {
     let wheel = |axis: &str| {

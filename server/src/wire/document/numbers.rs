@@ -4,7 +4,7 @@
 //! of nothing but digits would take three times its size.
 
 use super::outside::outside_texts;
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 
 /// Longest number, bytes: more than the exact decimal form of any 64-bit float has digits.
 const LONGEST: usize = 1100;

@@ -6,9 +6,9 @@
 use super::super::document::Node;
 use super::super::reader::{Cursor, Fields, Sink};
 use super::{KeyedLeg, LegTable};
-use slewplan_solver::legs::LegKind;
-use slewplan_solver::planner::{LegRow, OfferedLeg, Shard};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::planner::{LegRow, OfferedLeg, Shard};
 
 const KEY_DIGITS: usize = 64;
 

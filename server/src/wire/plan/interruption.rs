@@ -1,6 +1,6 @@
 //! Solves that were stopped before there was a plan.
 
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 
 /// What has stopped a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

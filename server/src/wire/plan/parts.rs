@@ -2,8 +2,8 @@
 
 use crate::wire::number::Number;
 use serde::Serialize;
-use slewplan_solver::attitude::Attitude;
-use slewplan_solver::plan::{Control, Leg, Margins, Passage, State, Verification};
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::plan::{Control, Leg, Margins, Passage, State, Verification};
 use utoipa::ToSchema;
 
 /// A unit quaternion, scalar part `w`.

@@ -2,7 +2,7 @@
 
 use crate::wire::number::Number;
 use serde::Serialize;
-use slewplan_solver::plan::{Milestone, Statistics};
+use slewplan_solver::model::plan::{Milestone, Statistics};
 use utoipa::ToSchema;
 
 /// How much work it was, and how it went. Not part of the answer: two runs may differ here only.

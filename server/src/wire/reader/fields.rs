@@ -2,7 +2,7 @@
 
 use super::{Cursor, spelling};
 use crate::wire::document::{Member, Node};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 
 /// The members of an object.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use super::Cursor;
 use crate::wire::document::Node;
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 
 impl<'a> Cursor<'a> {
     /// What is read of every entry of a list.

@@ -5,11 +5,9 @@ use crate::wire::number::Number;
 use crate::wire::plan::StateDocument;
 use crate::wire::problems::{ProblemDocument, documents};
 use serde::Serialize;
-use slewplan_solver::manoeuvre::evidence::{Evidence, IntervalEvidence};
-use slewplan_solver::manoeuvre::{
-    Energies, Flown, Objective, Outcome, Piece, Sweep, WheelAllocation,
-};
-use slewplan_solver::problem::Problem;
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::slew::evidence::{Evidence, IntervalEvidence};
+use slewplan_solver::slew::{Energies, Flown, Objective, Outcome, Piece, Sweep, WheelAllocation};
 use utoipa::ToSchema;
 
 /// Solved slews: one, or one for every value of a sweep.

@@ -9,13 +9,13 @@ use crate::wire::problems::{ProblemDocument, documents};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::scenario;
 use serde::Serialize;
-use slewplan_solver::planner::Run;
-use slewplan_solver::problem::Problem;
-use slewplan_solver::scenario::Scenario;
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::simulation::{
     Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
 };
-use slewplan_solver::spec::ScenarioSpec;
+use slewplan_solver::tour::planner::Run;
 use utoipa::ToSchema;
 
 /// Where the solver puts problems of the study, to be told from those of the scenario.

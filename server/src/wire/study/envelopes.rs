@@ -7,10 +7,10 @@ pub(crate) use answer::EnvelopeAnswerDocument;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::{attitude, spacecraft};
-use slewplan_solver::envelope_study::{
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::studies::envelope_study::{
     EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, MOST_TURNS, TurnSpec,
 };
-use slewplan_solver::problem::Problem;
 
 /// A valid study with what the caller should know about it.
 #[derive(Debug)]

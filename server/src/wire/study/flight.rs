@@ -9,7 +9,7 @@ use crate::flights::FlightStudy;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::{flight, scenario};
-use slewplan_solver::problem::{Code, Problem};
+use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::simulation::{self as flying, SimulationSpec};
 
 /// What a document says beside scenario and plan, which are read on their own.

@@ -2,7 +2,7 @@
 
 use super::super::dynamics::Body;
 use super::*;
-use crate::spacecraft::Wheel;
+use crate::model::spacecraft::Wheel;
 use nalgebra::Matrix3;
 
 const TORQUE: [f64; 3] = [0.01, -0.02, 0.005];

@@ -1,9 +1,9 @@
 //! Slews about the x axis with closed forms, as scenarios and flights.
 
 use super::super::{Report, verify};
-use crate::plan::{Control, Flight, Passage};
-use crate::scenario::Scenario;
-use crate::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
+use crate::model::plan::{Control, Flight, Passage};
+use crate::model::scenario::Scenario;
+use crate::model::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
 
 pub(super) const SPIN_INERTIA: f64 = 2e-3;
 pub(super) const TORQUE: f64 = 0.02;

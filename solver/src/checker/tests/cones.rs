@@ -3,8 +3,8 @@
 use super::build::{
     EFFECTIVE_X, HALF, TORQUE, accepted, angle, bang_bang, control, passage, scenario, target,
 };
-use crate::problem::Code;
-use crate::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
+use crate::model::problem::Code;
+use crate::model::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
 
 /// A boresight on z, which the slew about x moves towards -y, and a cone at an angle along that
 /// way and off it, rad.

@@ -4,8 +4,8 @@ use super::build::{
     EFFECTIVE_X, HALF, SPIN_INERTIA, TORQUE, about_x, accepted, angle, bang_bang, control, passage,
     refused, report, scenario, target, valid, wheel,
 };
-use crate::plan::{Control, Flight};
-use crate::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec, StateSpec};
+use crate::model::plan::{Control, Flight};
+use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec, StateSpec};
 use std::time::Instant;
 
 #[test]

@@ -4,8 +4,8 @@ use super::build::{
     HALF, TORQUE, about_x, accepted, angle, bang_bang, control, passage, refused, report, scenario,
     target,
 };
-use crate::plan::Flight;
-use crate::spec::ScenarioSpec;
+use crate::model::plan::Flight;
+use crate::model::spec::ScenarioSpec;
 
 /// Amplitude of the nutation of [`nutation`], rad/s.
 const AMPLITUDE: f64 = 0.02;

@@ -5,7 +5,7 @@ use super::super::dynamics::{
 };
 use super::super::integrator::{Flown, Interval, STEP_TOLERANCE, fly};
 use super::super::series::{Expansion, ORDER};
-use crate::spacecraft::Wheel;
+use crate::model::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
 
 fn wheel(axis: [f64; 3], inertia: f64, enabled: bool) -> Wheel {

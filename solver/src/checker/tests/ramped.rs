@@ -2,8 +2,8 @@
 
 use super::build::scenario;
 use crate::checker::ramped::{Ramp, fly_ramps};
-use crate::drive::{Drive, SpeedLaw};
-use crate::scenario::Scenario;
+use crate::model::drive::{Drive, SpeedLaw};
+use crate::model::scenario::Scenario;
 use nalgebra::{Matrix3, Vector3};
 
 /// Begin and end of the ramp, N m, and its length, s.
@@ -55,7 +55,7 @@ fn ramps_and_laws_follow_the_plain_equations() {
     spec.spacecraft.wheels[2].enabled = false;
     spec.start.body_rate_rad_s = Some([0.02, -0.01, 0.03]);
     spec.start.wheel_speed_rad_s = Some(vec![50.0, -80.0, 120.0, 0.0]);
-    spec.end = Some(crate::spec::StateSpec::default());
+    spec.end = Some(crate::model::spec::StateSpec::default());
     // The fourth wheel only makes the driven ones span space; it gets no torque and hardly any inertia.
     spec.spacecraft.wheels[3].inertia_kg_m2 = 1e-12;
     let scenario = Scenario::try_new(&spec).expect("valid").scenario;

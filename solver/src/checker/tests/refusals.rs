@@ -7,8 +7,8 @@ use super::super::{MOMENTUM_TOLERANCE, NOT_COMPUTED, Observed};
 use super::build::{
     HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target, valid,
 };
-use crate::plan::Flight;
-use crate::spec::{ScenarioSpec, StateSpec};
+use crate::model::plan::Flight;
+use crate::model::spec::{ScenarioSpec, StateSpec};
 
 fn spec() -> ScenarioSpec {
     scenario(vec![target("a", angle(HALF))])

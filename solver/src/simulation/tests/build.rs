@@ -1,9 +1,9 @@
 //! A spacecraft with four wheels, and flights that need no planner.
 
 use super::super::{ControllerSpec, GainsSpec, PidGainsSpec, Simulation, SimulationSpec};
-use crate::plan::{Control, Flight, Passage};
-use crate::scenario::Scenario;
-use crate::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
+use crate::model::plan::{Control, Flight, Passage};
+use crate::model::scenario::Scenario;
+use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 
 pub(super) const MAX_TORQUE: f64 = 0.05;
 

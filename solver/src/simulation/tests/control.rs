@@ -4,7 +4,7 @@ use super::super::{
     ControllerSpec, ErrorsSpec, GainsSpec, SimulatedFlight, SimulationSpec, TrackingError,
 };
 use super::build::{BANDWIDTH, calm_scenario, idle, lively, pid, quaternion, scenario, simulation};
-use crate::spec::{AttitudeSpec, TargetSpec};
+use crate::model::spec::{AttitudeSpec, TargetSpec};
 
 /// A controller that has to take away an initial error of attitude.
 fn off(controller: ControllerSpec) -> SimulationSpec {
@@ -139,7 +139,9 @@ fn gyroscopic_torque_is_made_up_for_when_nothing_else_does() {
         attitude: AttitudeSpec::RollPitchYawDeg([0.0, 0.0, 30.0]),
         ..TargetSpec::default()
     };
-    let scenario = crate::scenario::Scenario::try_new(&spec).unwrap().scenario;
+    let scenario = crate::model::scenario::Scenario::try_new(&spec)
+        .unwrap()
+        .scenario;
     let flight = lively();
     let peak = |gyroscopic| {
         let spec = SimulationSpec {

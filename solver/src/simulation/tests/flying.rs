@@ -6,8 +6,8 @@ use super::super::{ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, Simulatio
 use super::build::{
     BANDWIDTH, MAX_TORQUE, calm_scenario, idle, lively, quaternion, scenario, simulation,
 };
-use crate::attitude::Attitude;
-use crate::drive::{DriveSpec, SpeedLawSpec};
+use crate::model::attitude::Attitude;
+use crate::model::drive::{DriveSpec, SpeedLawSpec};
 use nalgebra::Vector3;
 
 fn open(feed_forward: FeedForward) -> SimulationSpec {

@@ -2,8 +2,8 @@
 
 use super::super::{ErrorsSpec, SimulationSpec, Spread};
 use super::build::{calm_scenario, idle, lively, scenario, simulation};
-use crate::pool::SolverPool;
-use crate::stop::StopSignal;
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
 use std::num::NonZeroUsize;
 
 fn every_error() -> SimulationSpec {
@@ -18,10 +18,10 @@ fn every_error() -> SimulationSpec {
             disturbance_torque_nm: Some([1e-5, 0.0, -2e-5]),
         },
         drives: vec![
-            crate::drive::DriveSpec {
+            crate::model::drive::DriveSpec {
                 viscous_friction_nms: Some(2e-5),
                 coulomb_friction_nm: Some(1e-3),
-                ..crate::drive::DriveSpec::default()
+                ..crate::model::drive::DriveSpec::default()
             };
             5
         ],

@@ -2,8 +2,8 @@
 
 use super::super::{ControllerSpec, SimulationSpec};
 use super::build::{calm_scenario, idle, simulation};
-use crate::pool::SolverPool;
-use crate::stop::StopSignal;
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
 use std::cell::Cell;
 use std::num::NonZeroUsize;
 use std::time::Duration;

@@ -5,14 +5,14 @@ use super::super::{
     Simulation, SimulationSpec, study,
 };
 use super::build::{idle, lively, scenario, spec};
-use crate::drive::{DriveSpec, SpeedLawSpec};
-use crate::legs::NoStore;
-use crate::plan::Flight;
-use crate::planner::Run;
-use crate::pool::SolverPool;
-use crate::problem::{Code, Problem};
-use crate::progress::Silent;
-use crate::stop::StopSignal;
+use crate::model::drive::{DriveSpec, SpeedLawSpec};
+use crate::model::plan::Flight;
+use crate::model::problem::{Code, Problem};
+use crate::run::pool::SolverPool;
+use crate::run::progress::Silent;
+use crate::run::stop::StopSignal;
+use crate::tour::legs::NoStore;
+use crate::tour::planner::Run;
 
 fn refused(flight: &Flight, spec: &SimulationSpec) -> Vec<(Code, String)> {
     let scenario = scenario();

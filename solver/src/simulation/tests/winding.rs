@@ -2,7 +2,7 @@
 
 use super::super::{ControllerSpec, ErrorsSpec, PidGainsSpec, SimulationSpec};
 use super::build::{calm_scenario, idle, simulation};
-use crate::attitude::Attitude;
+use crate::model::attitude::Attitude;
 
 /// A controller that has to take away an initial error far beyond what the wheels can turn at once.
 fn spec(anti_windup: bool) -> SimulationSpec {

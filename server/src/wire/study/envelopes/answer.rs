@@ -5,11 +5,13 @@ use crate::wire::number::Number;
 use crate::wire::problems::{ProblemDocument, documents};
 use nalgebra::Vector3;
 use serde::Serialize;
-use slewplan_solver::allocation::Allocation;
-use slewplan_solver::array::{EnvelopedArray, Facet, Polytope};
-use slewplan_solver::eigenaxis::EigenaxisSlew;
-use slewplan_solver::envelope_path::{EnvelopePath, MomentumSample, TorqueStep};
-use slewplan_solver::envelope_study::{DemandReport, EnvelopeReport, TimeOptimalSlew, TurnReport};
+use slewplan_solver::studies::eigenaxis::EigenaxisSlew;
+use slewplan_solver::studies::envelope_path::{EnvelopePath, MomentumSample, TorqueStep};
+use slewplan_solver::studies::envelope_study::{
+    DemandReport, EnvelopeReport, TimeOptimalSlew, TurnReport,
+};
+use slewplan_solver::wheels::allocation::Allocation;
+use slewplan_solver::wheels::array::{EnvelopedArray, Facet, Polytope};
 use utoipa::ToSchema;
 
 /// What the wheels can do together. Torques and momenta are sums over the enabled wheels of what they

@@ -5,7 +5,7 @@ use crate::wire::number::Number;
 use crate::wire::plan::{self, QuaternionDocument};
 use crate::wire::problems::{ProblemDocument, documents};
 use serde::Serialize;
-use slewplan_solver::plan::Passage;
+use slewplan_solver::model::plan::Passage;
 use slewplan_solver::simulation::{PassageError, Saturation, SimulatedState, TrackingError};
 use utoipa::ToSchema;
 

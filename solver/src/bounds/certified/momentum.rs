@@ -1,0 +1,115 @@
+//! Bounds with stored momentum.
+//!
+//! `J w = R^T H - h_locked - sum a_i I_i W_i`: the momentum turns the body by itself, by `J^-1 R^T H`.
+//! Were the inertia a sphere, `J^-1 = k`, that would be a constant rate in space, `k H`; so the rate
+//! relative to axes that turn with this *drift*,
+//!
+//! ```text
+//!   v = w - k R^T H = J^-1 (- h_locked - sum a_i I_i W_i) + (J^-1 - k) R^T H,
+//! ```
+//!
+//! has a box that the momentum widens only by how much the inertia differs from a sphere: along a
+//! direction `d`, by `|(J^-1 - k) d| |H|` as `R^T H` may point anywhere. As `(R^T H)' = -w x R^T H` and
+//! `J_eff w' = -w x R^T H - A u`,
+//!
+//! ```text
+//!   v' = -J_eff^-1 A u - (J_eff^-1 - k) (w x R^T H),
+//! ```
+//!
+//! of which the second part is at most `|H| max_w |(J_eff^-1 d - k d) x w|` along `d`: convex in `w`,
+//! so the largest of the values at the corners of the box of rates. Limits on `w` hold for `v` up to
+//! `k |H|`. Rest at an end means `v = -k R^T H`, known there. Slews with a drift are bounded in
+//! [`crate::bounds::kinematic`]. Any `k` is valid: the middle of the eigenvalues of `J^-1` makes the box
+//! narrow, and zero, the plain box that contains all rates, does better where rates have limits of
+//! their own.
+
+use super::{Frame, allowed_rate};
+use crate::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+use crate::model::attitude::Attitude;
+use crate::model::dynamics::{Dynamics, along};
+use nalgebra::{Matrix3, Vector3};
+
+#[cfg(test)]
+mod tests;
+
+/// Bounds on the slews of a spacecraft with momentum.
+#[derive(Debug)]
+pub(super) struct MomentumBounds {
+    frames: Vec<Drifting>,
+}
+
+/// What no motion exceeds, relative to a drift.
+#[derive(Debug)]
+struct Drifting {
+    frame: Frame,
+    /// `k`, 1/(kg m²).
+    share: f64,
+    bound: SlewBound,
+}
+
+impl MomentumBounds {
+    /// In each of some orthonormal frames, given as columns in body axes.
+    pub(super) fn of(dynamics: &Dynamics, frames: &[Matrix3<f64>]) -> Self {
+        let shares = [0.0, dynamics.mean_inverse_inertia()];
+        let all = frames
+            .iter()
+            .flat_map(|axes| shares.map(|share| (*axes, share)));
+        Self {
+            frames: all
+                .filter_map(|(axes, share)| Drifting::of(dynamics, axes, share))
+                .collect(),
+        }
+    }
+
+    /// A duration, s, that no slew undercuts that makes a turn, with the momentum (N m s) and rates of
+    /// these sizes at most at its two ends, all in body axes there.
+    pub(super) fn leg(
+        &self,
+        turn: &Attitude,
+        held: &[Vector3<f64>; 2],
+        ends: &[Vector3<f64>; 2],
+        tolerance: f64,
+    ) -> Option<f64> {
+        self.frames
+            .iter()
+            .filter_map(|drifting| {
+                let Drifting {
+                    frame,
+                    share,
+                    bound,
+                } = drifting;
+                let drifts = held.map(|held| frame.axes.tr_mul(&held) * *share);
+                let most = [0, 1].map(|end| frame.seen(&ends[end]) + drifts[end].abs());
+                let ends = EndRates {
+                    begin_rad_s: most[0],
+                    end_rad_s: most[1],
+                };
+                let turn = turn.seen_from(&frame.axes)?;
+                Some(bound.drifting_lower_bound_s(&turn, &drifts[0], ends, tolerance))
+            })
+            .reduce(f64::max)
+    }
+}
+
+impl Drifting {
+    fn of(dynamics: &Dynamics, axes: Matrix3<f64>, share: f64) -> Option<Self> {
+        let drift = share * dynamics.momentum.norm();
+        let rate = |axis: &Vector3<f64>| {
+            dynamics
+                .reachable_relative_rate(axis, share)
+                .min(allowed_rate(dynamics, axis) + drift)
+        };
+        let acceleration = |axis: &Vector3<f64>| {
+            dynamics.reachable_acceleration(axis) + dynamics.gyroscopic_acceleration(axis, share)
+        };
+        let limits = SlewLimits {
+            rates_rad_s: along(&axes, rate),
+            accelerations_rad_s2: along(&axes, acceleration),
+        };
+        Some(Self {
+            frame: Frame { axes, limits },
+            share,
+            bound: SlewBound::new(limits, EndRates::at_rest())?,
+        })
+    }
+}

@@ -1,0 +1,147 @@
+//! Nothing that the wheels can do leaves the boxes.
+
+use super::*;
+use crate::bounds::certified::CertifiedBounds;
+use crate::math::random::SplitMix;
+use crate::model::attitude::Attitude;
+use crate::model::random::{between, direction, spacecraft};
+use crate::model::scenario::reference::experiment_a;
+use crate::model::scenario::{RateCondition, Scenario};
+use crate::model::waypoint::{Waypoint, WheelCondition};
+
+/// Excess over a box that is rounding, relative.
+const ROUNDING: f64 = 1e-12;
+
+/// A state that the limits admit, with the torques: rate, its derivative and the momentum, all in body
+/// axes. Wheels and torques are at their limits more often than not.
+fn motion(dynamics: &Dynamics, random: &mut SplitMix) -> Option<[Vector3<f64>; 3]> {
+    let extreme = |random: &mut SplitMix, low: f64, high: f64| match random.below(3) {
+        0 => low,
+        1 => high,
+        _ => between(random, low, high),
+    };
+    let attitude = Attitude::from_rotation_vector(direction(random) * between(random, 0.0, 3.1));
+    let held = attitude.to_body(dynamics.momentum);
+    let mut spin = Vector3::zeros();
+    let mut torque = Vector3::zeros();
+    for wheel in &dynamics.actuators {
+        let speed = extreme(random, -wheel.max_speed, wheel.max_speed);
+        spin += wheel.axis * (wheel.inertia * speed);
+        torque += wheel.axis * extreme(random, wheel.min_torque, wheel.max_torque);
+    }
+    // The inertia with locked wheels, from that without their spin.
+    let locked = dynamics
+        .actuators
+        .iter()
+        .fold(dynamics.inertia, |sum, wheel| {
+            sum + wheel.axis * wheel.axis.transpose() * wheel.inertia
+        });
+    let rate = locked.try_inverse()? * (held - dynamics.locked_momentum - spin);
+    let allowed = rate
+        .iter()
+        .zip(&dynamics.max_rate)
+        .all(|(w, most)| w.abs() <= *most)
+        && rate.norm() <= dynamics.max_rate_norm;
+    let change = dynamics.inertia_inverse * (-rate.cross(&held) - torque);
+    allowed.then_some([rate, change, held])
+}
+
+/// Shares of the box's sides that a vector has at most.
+fn share(vector: &Vector3<f64>, most: &Vector3<f64>) -> f64 {
+    vector.component_div(most).amax()
+}
+
+#[test]
+fn no_motion_leaves_a_box_and_the_boxes_are_not_idle() {
+    let mut random = SplitMix::new(20);
+    // Of boxes of all rates, and relative to a drift.
+    let (mut fullest, mut samples) = ([[0.0_f64; 2]; 2], 0);
+    for case in 0..60 {
+        let scenario = spacecraft(&mut random, case % 3 > 0);
+        let dynamics = Dynamics::of(&scenario);
+        let bounds = CertifiedBounds::of(&dynamics);
+        let drifting = bounds.momentum.iter().flat_map(|bounds| &bounds.frames);
+        let boxes: Vec<(Frame, f64)> = drifting
+            .map(|drifting| (drifting.frame, drifting.share))
+            .chain(bounds.frames.iter().map(|frame| (*frame, 0.0)))
+            .collect();
+        assert!(!boxes.is_empty(), "case {case}");
+        for _ in 0..3000 {
+            let Some([rate, change, held]) = motion(&dynamics, &mut random) else {
+                continue;
+            };
+            samples += 1;
+            for (frame, share_of_held) in &boxes {
+                // Relative to axes that turn with the drift: (R^T H)' = -w x R^T H.
+                let relative = rate - held * *share_of_held;
+                let relative_change = change + rate.cross(&held) * *share_of_held;
+                let seen = |vector: Vector3<f64>| frame.axes.tr_mul(&vector);
+                let shares = [
+                    share(&seen(relative), &frame.limits.rates_rad_s),
+                    share(&seen(relative_change), &frame.limits.accelerations_rad_s2),
+                ];
+                let kind = usize::from(*share_of_held > 0.0);
+                for (fullest, share) in fullest[kind].iter_mut().zip(shares) {
+                    assert!(share <= 1.0 + ROUNDING, "case {case}: {shares:?}");
+                    *fullest = fullest.max(share);
+                }
+            }
+        }
+    }
+    assert!(samples > 50_000, "{samples}");
+    let idle = fullest.iter().flatten().any(|share| *share < 0.98);
+    assert!(!idle, "{fullest:?}");
+}
+
+#[test]
+fn axes_that_differ_are_all_tried() {
+    let frames = |scenario: &Scenario| CertifiedBounds::of(&Dynamics::of(scenario)).frames.len();
+    let orthogonal = Scenario::try_new(&experiment_a()).expect("valid").scenario;
+    assert_eq!(frames(&orthogonal), 1);
+    let mut random = SplitMix::new(23);
+    let all = (0..20).map(|_| spacecraft(&mut random, false));
+    // A locked wheel may turn.
+    let still = all.filter(|scenario| !Dynamics::of(scenario).has_momentum());
+    let counts: Vec<_> = still.map(|scenario| frames(&scenario)).collect();
+    assert!(
+        counts.len() > 5 && counts.iter().all(|frames| *frames == 2),
+        "{counts:?}"
+    );
+}
+
+#[test]
+fn conditions_at_an_end_admit_no_rate_beyond_their_bound() {
+    let mut random = SplitMix::new(21);
+    for _ in 0..500 {
+        let ends = [0, 1, 2].map(|_| match random.below(3) {
+            0 => (RateCondition::Free, random.normal()),
+            1 => {
+                let rate = random.normal();
+                (RateCondition::Fixed(rate), rate)
+            }
+            _ => {
+                let (one, other) = (random.normal(), random.normal());
+                let (low, high) = (one.min(other), one.max(other));
+                // The ends of the range are what is most often forgotten.
+                let rate = [low, high, between(&mut random, low, high)][random.below(3)];
+                (RateCondition::Within(low, high), rate)
+            }
+        });
+        let waypoint = Waypoint {
+            attitude: Attitude::identity(),
+            rate: ends.map(|(condition, _)| condition),
+            wheels: WheelCondition::Free,
+            price: None,
+        };
+        let most = crate::bounds::certified::most(&waypoint);
+        for (axis, (condition, rate)) in ends.iter().enumerate() {
+            assert!(rate.abs() <= most[axis], "{condition:?} admits {rate}");
+            let tight = match condition {
+                RateCondition::Within(low, high) => low.abs().max(high.abs()),
+                RateCondition::Fixed(rate) => rate.abs(),
+                RateCondition::Free => f64::INFINITY,
+            };
+            assert!(most[axis] <= tight, "{condition:?}: {}", most[axis]);
+        }
+    }
+}

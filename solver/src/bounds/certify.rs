@@ -1,0 +1,188 @@
+//! A slow second proof of the bounds that [`crate::bounds::kinematic`] claims.
+//!
+//! [`check`] takes a [`Certificate`] and proves what it claims again, in intervals that are rounded
+//! outwards, with nothing of the fast search: another list of extremals, another way through them,
+//! another integral. It confirms, or says why not: a motion that is faster than claimed, or that no
+//! proof was found. A certificate comes from
+//! [`SlewBound::certificate`](crate::bounds::kinematic::ramps::SlewBound::certificate); whoever has a
+//! bound from elsewhere replaces the `duration_s` of one.
+//!
+//! ```
+//! use nalgebra::Vector3;
+//! use slewplan_solver::model::attitude::Attitude;
+//! use slewplan_solver::bounds::certify::{self, Rejection};
+//! use slewplan_solver::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+//!
+//! let limits = SlewLimits {
+//!     rates_rad_s: Vector3::new(0.018, 0.013, 0.012),
+//!     accelerations_rad_s2: Vector3::new(0.0015, 0.0011, 0.001),
+//! };
+//! let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
+//! let turn = Attitude::from_rotation_vector(Vector3::new(0.4, -0.9, 0.7));
+//! let mut certificate = bound.certificate(&[turn], 1e-4);
+//! assert_eq!(certify::check(&certificate), Ok(()));
+//! certificate.duration_s *= 1.001;
+//! assert!(matches!(certify::check(&certificate), Err(Rejection::Link { .. })));
+//! ```
+//!
+//! # What is proved
+//!
+//! 1. **Turns** ([`check_turn`]). A motion of least time exists and is one of the extremals that the
+//!    docs of [`crate::bounds::kinematic`] derive from Pontryagin's principle. Taken as given are from
+//!    there: the folded costate runs on a circle and is reflected where a component vanishes, so that
+//!    arcs between flips last equally long; it may rest on saddles only; all dwells can be moved to
+//!    the first visit of the saddle. With corners of length one, an arc longer than `pi` is no part
+//!    of a shortest motion, as the opposite corner makes its turn faster. That leaves
+//!    * two arcs;
+//!    * arcs of one unknown duration `D <= pi` whose flips alternate between two axes, outer arcs no
+//!      longer than `D` (where one axis alone flips, arcs last longer than `pi`: the part of the
+//!      circle beyond the wall is less than half of it);
+//!    * a dwell with arcs before and after it whose durations follow from the costate (`dwelling`).
+//!
+//!    All orders of axes and all octants are gone through, whether an extremal is like that or not:
+//!    each word is a motion within the box, so words too many do no harm. For each, the range of the
+//!    unknown is halved until every part is refuted: `c_0 . P c_f` is not what the target asks for,
+//!    or the outer arcs that close the word (`closing`) are negative, too long, or make the word take
+//!    the claimed time. Words of many flips are refuted together (`near_axis`).
+//! 2. **The link** to the duration: `s(T)` is bounded from above (`link`).
+//!
+//! Within a part about the middle of a range of half-width `b`, interiors differ by Taylor's theorem,
+//! with the derivative at the middle in intervals and second derivatives of a product of turns of at
+//! most the square of the sum of its speeds `v`: `|f - f_m| <= |f_m'| b + v^2 b^2 / 2`, and the turn
+//! from the middle is at most `|velocity| b + v^2 b^2 / 2`.
+//!
+//! Nearly equal rates are moved apart by raising them, by 4e-7 at most, which makes what is proved
+//! stronger; certificates leave 2e-6 of room.
+
+mod closing;
+mod dwelling;
+mod interval;
+mod link;
+mod near_axis;
+mod prover;
+mod rates;
+#[cfg(test)]
+mod tests;
+mod turn;
+mod word;
+
+use crate::bounds::kinematic::certificate::{Certificate, ClaimedTurn};
+use interval::Interval;
+use nalgebra::Vector3;
+use prover::Prover;
+
+/// Why a claim was not confirmed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Rejection {
+    /// A motion within the box of rates is faster than a turn is claimed to be at least.
+    #[error("turn {turn} can be made in {time_s} s, less than is claimed")]
+    Faster {
+        /// The turn's place in the certificate.
+        turn: usize,
+        /// Time of the motion, s.
+        time_s: f64,
+    },
+    /// The least times of the turns do not bound the duration as claimed.
+    #[error("least times of {least_s} s in all bound no duration with s(T) = {needed_s} s")]
+    Link {
+        /// Sum of the turns' least times, s.
+        least_s: f64,
+        /// What the duration needs it to be, s.
+        needed_s: f64,
+    },
+    /// Neither a proof nor a counterexample was found.
+    #[error("not proved: {reason}")]
+    NotProved {
+        /// What stood in the way.
+        reason: &'static str,
+    },
+    /// A number is not finite, or a limit not positive.
+    #[error("the certificate is malformed: {what}")]
+    Malformed {
+        /// What is wrong.
+        what: &'static str,
+    },
+}
+
+impl Rejection {
+    fn not_proved(reason: &'static str) -> Self {
+        Self::NotProved { reason }
+    }
+}
+
+/// Proves a certificate again.
+///
+/// # Errors
+///
+/// The first [`Rejection`] that was met; the link is looked at first.
+pub fn check(certificate: &Certificate) -> Result<(), Rejection> {
+    let Certificate {
+        limits,
+        ends,
+        box_rad_s,
+        turns,
+        duration_s,
+    } = certificate;
+    let malformed = |what| Err(Rejection::Malformed { what });
+    let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
+    if !positive(&limits.rates_rad_s) || !positive(&limits.accelerations_rad_s2) {
+        return malformed("limits must be positive and finite");
+    }
+    let ends_valid = |v: &Vector3<f64>| v.iter().all(|x| *x >= 0.0);
+    if !ends_valid(&ends.begin_rad_s) || !ends_valid(&ends.end_rad_s) {
+        return malformed("end rates must not be negative");
+    }
+    if !turns.iter().all(|turn| turn.least_s.is_finite()) || !duration_s.is_finite() {
+        return malformed("times must be finite");
+    }
+    let Some(mut prover) = Prover::new(box_rad_s) else {
+        return malformed("the box must be positive and finite");
+    };
+    if *duration_s > 0.0 {
+        let least_s = turns.iter().fold(Interval::ZERO, |sum, turn| {
+            sum + Interval::exactly(turn.least_s.max(0.0))
+        });
+        let needed_s = link::at_most(limits, ends, box_rad_s, *duration_s);
+        if needed_s > least_s.low {
+            return Err(Rejection::Link {
+                least_s: least_s.low,
+                needed_s,
+            });
+        }
+    }
+    for (place, turn) in turns.iter().enumerate() {
+        prover
+            .prove(&turn.turn, turn.least_s)
+            .map_err(|rejection| rejection.of_turn(place))?;
+    }
+    Ok(())
+}
+
+/// Proves that no motion with `|w_i| <= box_i`, rad/s, makes a turn in less than the claimed time.
+///
+/// # Errors
+///
+/// A [`Rejection`] that says why it is not confirmed.
+pub fn check_turn(box_rad_s: &Vector3<f64>, claimed: &ClaimedTurn) -> Result<(), Rejection> {
+    let Some(mut prover) = Prover::new(box_rad_s) else {
+        return Err(Rejection::Malformed {
+            what: "the box must be positive and finite",
+        });
+    };
+    if !claimed.least_s.is_finite() {
+        return Err(Rejection::Malformed {
+            what: "times must be finite",
+        });
+    }
+    prover.prove(&claimed.turn, claimed.least_s)
+}
+
+impl Rejection {
+    /// The same, of the turn at a place of a certificate.
+    fn of_turn(self, turn: usize) -> Self {
+        match self {
+            Self::Faster { time_s, .. } => Self::Faster { turn, time_s },
+            other => other,
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! The proof that no word makes a turn in less than a time.
+
+use super::Rejection;
+use super::closing::{Allowed, View};
+use super::dwelling;
+use super::interval::Interval;
+use super::near_axis::NearAxis;
+use super::rates::{Rates, flipped, octants};
+use super::turn::{Turn, about, angle_of, conjugate, product};
+use super::word::{Interior, Word};
+use crate::model::attitude::Attitude;
+use nalgebra::Vector3;
+
+/// Most dwelling words that are gone through.
+const MOST_WORDS: usize = 200_000;
+/// Most flips that are followed near an axis.
+const MOST_FLIPS: usize = 20_000;
+/// Most cells of one proof.
+const MOST_CELLS: usize = 20_000_000;
+/// Cells narrower than this are given up.
+const NARROW: f64 = 1e-13;
+/// A motion counts as faster only by more than this share, which covers the last few operations.
+const FASTER: f64 = 1e-12;
+
+/// A box of rates with the words that dwell.
+#[derive(Debug)]
+pub(super) struct Prover {
+    rates: Rates,
+    dwelling: Vec<Word>,
+    /// Fixed arcs of the words that were collected last up to this time (normalised).
+    horizon: f64,
+}
+
+/// The proof of one turn.
+struct Proof<'a> {
+    rates: &'a Rates,
+    q: Turn,
+    /// What is to be shown, normalised, rounded up.
+    time: f64,
+    cells: usize,
+}
+
+impl Prover {
+    /// `None` unless all rates are positive and finite.
+    pub(super) fn new(rates: &Vector3<f64>) -> Option<Self> {
+        Some(Self {
+            rates: Rates::around(rates)?,
+            dwelling: Vec::new(),
+            horizon: 0.0,
+        })
+    }
+
+    /// Proves that a turn takes a time, s, at least.
+    pub(super) fn prove(&mut self, turn: &Attitude, least_s: f64) -> Result<(), Rejection> {
+        if least_s <= 0.0 {
+            return Ok(());
+        }
+        let time = (Interval::exactly(least_s) * self.rates.speed).high;
+        let mut q = turn.xyzw().map(Interval::exactly);
+        let length = q[0].length(q[1]).length(q[2]).length(q[3]);
+        q = q.map(|x| x / length);
+        let mut proof = Proof {
+            rates: &self.rates,
+            q,
+            time,
+            cells: 0,
+        };
+        // The turn about its own axis is a motion.
+        proof.refuted_by(self.rates.eigenaxis(&q))?;
+        if time > self.horizon {
+            self.dwelling = dwelling::words(&self.rates, time, MOST_WORDS)
+                .ok_or(Rejection::not_proved("too many extremals dwell"))?;
+            self.horizon = time;
+        }
+        for word in &self.dwelling {
+            if word.fixed.low < time {
+                proof.word(word, 0.0, f64::INFINITY)?;
+            }
+        }
+        for (first, axis) in octants().flat_map(|first| (0..3).map(move |axis| (first, axis))) {
+            let word = Word {
+                first,
+                last: flipped(first, axis),
+                fixed: Interval::ZERO,
+                interior: Interior::Nothing,
+            };
+            proof.word(&word, 0.0, 0.0)?;
+        }
+        for axis in 0..3 {
+            proof.alternating(axis)?;
+        }
+        Ok(())
+    }
+}
+
+impl Proof<'_> {
+    /// All words whose flips take turns between the two axes other than the given one. (One axis
+    /// alone flips on levels that leave one wall; the costate then travels more than half of its
+    /// circle between flips, and such arcs are no part of a shortest motion.)
+    fn alternating(&mut self, axis: usize) -> Result<(), Rejection> {
+        let near = NearAxis::new(&self.q, axis);
+        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+        let angle = angle_of(&self.q).low;
+        for arcs in 1..MOST_FLIPS {
+            let longest = (self.time / arcs as f64).next_up().min(Interval::PI.high);
+            let open = [false, true]
+                .map(|negative| !near.proved(self.rates, longest, negative, self.time));
+            if open == [false; 2] {
+                return Ok(());
+            }
+            // Outer arcs are no longer than the others, and no rate is longer than one.
+            let shortest = (angle / (arcs + 2) as f64).next_down().next_down();
+            for first in octants().filter(|first| open[usize::from(first[axis])]) {
+                for axes in [[j, k], [k, j]] {
+                    let word = Word::alternating(first, axes, arcs);
+                    self.word(&word, shortest, longest)?;
+                }
+            }
+        }
+        Err(Rejection::not_proved("extremals with very many flips"))
+    }
+
+    /// One word, with its unknown in a range, by halving.
+    fn word(&mut self, word: &Word, shortest: f64, longest: f64) -> Result<(), Rejection> {
+        let view = View::new(self.rates, &self.q, word);
+        // What the unknown is at most when nothing else takes time; a dwell is no longer than half
+        // a turn at its speed.
+        let repeats = word.repeats();
+        let mut longest = longest;
+        if let Interior::Dwelling { speed, .. } = &word.interior {
+            let left = (self.time - word.fixed.low).next_up();
+            longest = longest.min((Interval::PI / *speed).high).min(left);
+        }
+        let mut open = vec![(shortest.max(0.0), longest)];
+        while let Some((low, high)) = open.pop() {
+            if low > high || self.excluded(word, &view, low, high)? {
+                continue;
+            }
+            let middle = 0.5 * (low + high);
+            if high - low < NARROW || repeats == 0.0 || middle <= low || middle >= high {
+                return Err(Rejection::not_proved(
+                    "an extremal may be as fast as the claim, to rounding",
+                ));
+            }
+            open.extend([(low, middle), (middle, high)]);
+        }
+        Ok(())
+    }
+
+    /// Whether a word with its unknown in a range cannot make the turn in less than the time.
+    fn excluded(
+        &mut self,
+        word: &Word,
+        view: &View,
+        low: f64,
+        high: f64,
+    ) -> Result<bool, Rejection> {
+        self.cells += 1;
+        if self.cells > MOST_CELLS {
+            return Err(Rejection::not_proved("the proof takes too long"));
+        }
+        let repeats = Interval::exactly(word.repeats());
+        let inside = word.fixed + repeats * Interval::exactly(low);
+        let left = Interval::exactly(self.time) - inside;
+        if left.high <= 0.0 {
+            return Ok(true);
+        }
+        let middle = 0.5 * (low + high);
+        let half = Interval::exactly((high - middle).max(middle - low).next_up());
+        let interior = word.at(self.rates, middle);
+        // Second derivatives of a product of turns are at most the square of the sum of the speeds.
+        let bend = (Interval::exactly(word.speed()) * half).squared().half();
+        if view.misses(&interior, half, bend) {
+            return Ok(true);
+        }
+        // The angular velocity is twice the length of the quaternion's derivative.
+        let [x, y, z, w] = interior.slope;
+        let velocity = x.length(y).length(z).length(w).twice();
+        let Some(closing) = view.close(&interior.turn, velocity * half + bend) else {
+            return Ok(true);
+        };
+        let each = match word.interior {
+            Interior::Alternating { .. } => 0.5 * high,
+            _ => Interval::PI.half().high,
+        };
+        let both = left.half().high;
+        if closing.impossible(Allowed { each, both }) {
+            return Ok(true);
+        }
+        // The word of the middle is a motion, but for the turn that it misses the target by.
+        let [first, last] = closing.candidate().map(Interval::exactly);
+        let before = product(&about(&view.ends[0], first), &interior.turn);
+        let end = product(&before, &about(&view.ends[1], last));
+        let missing = self.rates.eigenaxis(&product(&conjugate(&end), &self.q));
+        let inside = word.fixed + repeats * Interval::exactly(middle);
+        self.refuted_by((inside + first + last).high + missing)?;
+        Ok(false)
+    }
+
+    /// Rejects the claim if a motion of this (normalised) time makes the turn.
+    fn refuted_by(&self, time: f64) -> Result<(), Rejection> {
+        // The true rates may be a little smaller.
+        let time = time * self.rates.stretch;
+        if time < self.time * (1.0 - FASTER) {
+            return Err(Rejection::Faster {
+                turn: 0,
+                time_s: time / self.rates.speed.low,
+            });
+        }
+        Ok(())
+    }
+}

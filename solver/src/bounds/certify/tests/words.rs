@@ -1,0 +1,111 @@
+//! Words: their interiors are products of arcs, and what closes them is found.
+
+use super::super::closing::{Allowed, View};
+use super::super::interval::Interval;
+use super::super::rates::{Octant, Rates, flipped};
+use super::super::turn::{Turn, product};
+use super::super::word::Word;
+use crate::model::attitude::Attitude;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+/// Half the width of what is asked for about an outer half duration. Where both arcs hardly tell
+/// apart what they do together and one against the other, that is known to some 1e-5 only.
+const NEAR: f64 = 1e-3;
+/// Step of differences.
+const STEP: f64 = 1e-5;
+
+fn rates(given: [f64; 3]) -> Rates {
+    Rates::around(&given.into()).expect("positive rates")
+}
+
+/// The turn of an arc: a rotation about the corner of an octant.
+fn arc(rates: &Rates, octant: Octant, duration: f64) -> Attitude {
+    let corner = rates.corner(octant).map(Interval::middle);
+    Attitude::from_rotation_vector(Vector3::from(corner) * duration)
+}
+
+/// Arcs of one duration before each of which one of two axes changes its sign, one after the other;
+/// and the octant of the last arc of the word.
+fn interior(
+    rates: &Rates,
+    (first, axes, arcs): (Octant, [usize; 2], usize),
+    duration: f64,
+) -> (Attitude, Octant) {
+    let mut octant = first;
+    let mut all = Attitude::identity();
+    for flip in 0..arcs {
+        octant = flipped(octant, axes[flip % 2]);
+        all = all.then_in_body(&arc(rates, octant, duration));
+    }
+    (all, flipped(octant, axes[arcs % 2]))
+}
+
+fn exactly(turn: &Attitude) -> Turn {
+    turn.xyzw().map(Interval::exactly)
+}
+
+/// First octant, axes and number of arcs.
+fn kinds() -> impl Strategy<Value = (Octant, [usize; 2], usize)> {
+    let axes = prop::sample::select(vec![[0, 1], [1, 0], [1, 2], [2, 1], [0, 2], [2, 0]]);
+    (prop::array::uniform3(any::<bool>()), axes, 1..14_usize)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn interiors_are_products_of_their_arcs(
+        given in prop::array::uniform3(0.2..1.0_f64),
+        kind in kinds(),
+        duration in 0.05..2.0_f64,
+    ) {
+        let (rates, (first, axes, arcs)) = (rates(given), kind);
+        let word = Word::alternating(first, axes, arcs);
+        let (expected, last) = interior(&rates, kind, duration);
+        prop_assert_eq!(word.last, last);
+        let moving = word.at(&rates, duration);
+        let [before, after] = [-STEP, STEP]
+            .map(|step| interior(&rates, kind, duration + step).0.xyzw());
+        for (i, component) in expected.xyzw().into_iter().enumerate() {
+            let found = moving.turn[i];
+            prop_assert!(found.low - 1e-14 <= component && component <= found.high + 1e-14);
+            prop_assert!(found.high - found.low < 1e-11, "{found:?}");
+            let slope = (after[i] - before[i]) / (2.0 * STEP);
+            // Third derivatives of so many arcs grow with the cube of their number.
+            let error = 1e-9 + 0.1 * (arcs as f64 * STEP).powi(2) * arcs as f64;
+            prop_assert!((moving.slope[i].middle() - slope).abs() < error, "{slope}");
+        }
+    }
+
+    #[test]
+    fn outer_arcs_that_close_a_word_are_found(
+        given in prop::array::uniform3(0.2..1.0_f64),
+        kind in kinds(),
+        duration in 0.05..2.0_f64,
+        halves in prop::array::uniform2(0.02..1.4_f64),
+    ) {
+        let (rates, (first, axes, arcs)) = (rates(given), kind);
+        let word = Word::alternating(first, axes, arcs);
+        let (middle, last) = interior(&rates, kind, duration);
+        let [begin, end] = [(first, halves[0]), (last, halves[1])]
+            .map(|(octant, half)| exactly(&arc(&rates, octant, 2.0 * half)));
+        let middle = exactly(&middle);
+        let target = product(&product(&begin, &middle), &end);
+        let view = View::new(&rates, &target, &word);
+        prop_assert!(!view.misses(&word.at(&rates, duration), Interval::ZERO, Interval::exactly(1e-12)));
+        let closing = view.close(&middle, Interval::exactly(1e-9));
+        let Some(closing) = closing else {
+            panic!("nothing closes the word");
+        };
+        let (longer, both) = (halves[0].max(halves[1]), halves[0] + halves[1]);
+        let allowed = |each: f64, both: f64| Allowed { each, both };
+        prop_assert!(!closing.impossible(allowed(longer + NEAR, both + NEAR)));
+        // Other durations that close it are longer by half turns.
+        prop_assert!(closing.impossible(allowed(longer + NEAR, both - NEAR)), "{closing:?}");
+        prop_assert!(closing.impossible(allowed(longer - NEAR, both + NEAR)), "{closing:?}");
+        for (found, half) in closing.candidate().into_iter().zip(halves) {
+            prop_assert!((found - 2.0 * half).abs() < NEAR, "{found} for {half}");
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The motion behind an upper bound: its arcs, made to reach the target.
+
+use super::RateBox;
+use super::closing::{IMAGES, image_of};
+use super::search::Candidate;
+use super::turns::{about, best_axis_sequence, dot, eigenaxis_time, rotation_vector};
+use super::words::{FIRST, Step, corner};
+use crate::math::quaternion::{Quat, conjugate, product, rotate_back};
+use nalgebra::{Matrix3, Vector3};
+
+/// Newton steps that make a word reach its target.
+const POLISHING: usize = 6;
+/// A miss that is left alone, rad.
+const REACHED: f64 = 1e-12;
+/// Damping of the Newton steps, for words whose arcs do not span all directions: the misses that a
+/// search leaves, 1e-7 rad, then move no duration by more than 1e-3.
+const DAMPING: f64 = 1e-9;
+/// Arcs shorter than this are left out, rad.
+const NO_ARC: f64 = 1e-13;
+
+/// Arcs at constant rate, normalised: rate vector and duration.
+pub(super) type Arcs = Vec<([f64; 3], f64)>;
+
+/// The arcs of the best motion that a search found; the last one covers what Newton's method has
+/// left of the miss, so that the target is reached whatever happens.
+pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
+    let c = &table.levels.c;
+    let mut arcs = match best {
+        Candidate::Eigenaxis => Vec::new(),
+        Candidate::Axes => best_axis_sequence(q, c)
+            .1
+            .into_iter()
+            .map(|(axis, angle)| {
+                let rate = [0, 1, 2].map(|i| if i == axis { c[i].copysign(angle) } else { 0.0 });
+                (rate, angle.abs() / c[axis])
+            })
+            .collect(),
+        Candidate::Single {
+            word,
+            image,
+            outer,
+            parameter,
+        } => {
+            let word = &table.singles[word];
+            let steps = Word {
+                first: word.first,
+                last: word.last,
+                steps: word.steps.clone(),
+            };
+            steps.polished(c, q, image, outer, parameter)
+        }
+        Candidate::Family {
+            family,
+            first,
+            flips,
+            image,
+            outer,
+            parameter,
+        } => {
+            let family = &table.families[family];
+            let steps = family.steps(c, first, flips);
+            Word {
+                first,
+                last: family.octant(first, flips),
+                steps,
+            }
+            .polished(c, q, image, outer, parameter)
+        }
+    };
+    let miss = product(&conjugate(&turn_of(&arcs)), q);
+    let vector = rotation_vector(&miss);
+    if dot(&vector, &vector).sqrt() > REACHED {
+        let time = eigenaxis_time(&miss, c);
+        arcs.push((vector.map(|x| x / time), time));
+    }
+    arcs.retain(|(_, duration)| *duration > NO_ARC);
+    arcs
+}
+
+/// The turn that arcs make up.
+pub(super) fn turn_of(arcs: &[([f64; 3], f64)]) -> Quat {
+    arcs.iter()
+        .fold([0.0, 0.0, 0.0, 1.0], |all, (rate, duration)| {
+            let speed = dot(rate, rate).sqrt();
+            product(&all, &about(&rate.map(|r| r / speed), speed * duration))
+        })
+}
+
+struct Word {
+    first: usize,
+    last: usize,
+    steps: Vec<Step>,
+}
+
+impl Word {
+    /// Its arcs for durations near the given ones, the fastest when a miss is made up for.
+    fn polished(
+        &self,
+        c: &[f64; 3],
+        q: &Quat,
+        image: usize,
+        outer: [f64; 2],
+        parameter: f64,
+    ) -> Arcs {
+        let target = image_of(q, image);
+        let mut best = (f64::INFINITY, Vec::new());
+        let mut durations = Vector3::new(outer[0], parameter, outer[1]);
+        for _ in 0..POLISHING {
+            let arcs = self.arcs(c, &durations);
+            let missing = product(&conjugate(&turn_of(&arcs)), &target);
+            let miss = rotation_vector(&missing);
+            let time = arcs.iter().map(|arc| arc.1).sum::<f64>() + eigenaxis_time(&missing, c);
+            let slopes = self.slopes(&arcs);
+            if time < best.0 {
+                best = (time, arcs);
+            }
+            if dot(&miss, &miss).sqrt() < REACHED {
+                break;
+            }
+            let square = slopes * slopes.transpose() + Matrix3::identity() * DAMPING;
+            let Some(inverse) = square.try_inverse() else {
+                break;
+            };
+            durations += slopes.transpose() * (inverse * Vector3::from(miss));
+            durations = durations.map(|d| d.max(0.0));
+        }
+        // Back from the image: a half turn about a body axis changes two signs.
+        let signs = IMAGES[image];
+        for (rate, _) in &mut best.1 {
+            *rate = [0, 1, 2].map(|i| rate[i] * signs[i]);
+        }
+        best.1
+    }
+
+    fn arcs(&self, c: &[f64; 3], durations: &Vector3<f64>) -> Arcs {
+        let interior = self
+            .steps
+            .iter()
+            .map(|step| (step.rate, step.duration.unwrap_or(durations[1])));
+        std::iter::once((corner(c, FIRST[self.first]), durations[0]))
+            .chain(interior)
+            .chain(std::iter::once((corner(c, self.last), durations[2])))
+            .collect()
+    }
+
+    /// Turn of the end, in its own axes, per change of the three durations.
+    fn slopes(&self, arcs: &[([f64; 3], f64)]) -> Matrix3<f64> {
+        let mut slopes = Matrix3::zeros();
+        let mut rest: Quat = [0.0, 0.0, 0.0, 1.0];
+        for (at, arc) in arcs.iter().enumerate().rev() {
+            let column = if at == 0 {
+                Some(0)
+            } else if at == arcs.len() - 1 {
+                Some(2)
+            } else {
+                self.steps[at - 1].duration.is_none().then_some(1)
+            };
+            if let Some(column) = column {
+                let velocity = rotate_back(&rest, &Vector3::from(arc.0));
+                let sum = slopes.column(column) + velocity;
+                slopes.set_column(column, &sum);
+            }
+            rest = product(&turn_of(std::slice::from_ref(arc)), &rest);
+        }
+        slopes
+    }
+}

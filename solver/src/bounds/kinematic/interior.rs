@@ -1,0 +1,100 @@
+//! The interior of a word with several arcs of one length, and where its equation can hold.
+
+use super::search::MARGIN;
+use super::turns::rotate;
+use super::words::{Family, corner};
+use crate::math::quaternion::{Quat, product};
+
+/// The interior of a word of a family at a value of its parameter.
+#[derive(Clone, Copy)]
+pub(super) struct Interior {
+    pub(super) turn: Quat,
+    /// Its angular velocity in the parameter, frame of its beginning.
+    pub(super) velocity: [f64; 3],
+}
+
+impl Interior {
+    pub(super) const NONE: Self = Self {
+        turn: [0.0, 0.0, 0.0, 1.0],
+        velocity: [0.0; 3],
+    };
+
+    fn then(&self, next: &Self) -> Self {
+        let carried = rotate(&self.turn, &next.velocity);
+        Self {
+            turn: product(&self.turn, &next.turn),
+            velocity: [0, 1, 2].map(|i| self.velocity[i] + carried[i]),
+        }
+    }
+
+    /// The interior of a word: its arcs repeat with period four.
+    pub(super) fn of(
+        c: &[f64; 3],
+        family: &Family,
+        first: usize,
+        flips: usize,
+        parameter: f64,
+    ) -> Self {
+        let (sin, cos) = (0.5 * parameter).sin_cos();
+        let arc = |m: usize| {
+            let rate = corner(c, family.octant(first, m));
+            Self {
+                turn: [rate[0] * sin, rate[1] * sin, rate[2] * sin, cos],
+                velocity: rate,
+            }
+        };
+        let arcs = flips - 1;
+        let mut all = Self::NONE;
+        if arcs >= 4 {
+            let mut block = (2..=4).fold(arc(1), |all, m| all.then(&arc(m)));
+            let mut power = arcs / 4;
+            loop {
+                if power % 2 == 1 {
+                    all = all.then(&block);
+                }
+                power /= 2;
+                if power == 0 {
+                    break;
+                }
+                block = block.then(&block);
+            }
+        }
+        for m in 1..=arcs % 4 {
+            all = all.then(&arc(m));
+        }
+        all
+    }
+}
+
+/// The parts of `[-half, half]` in which a function can be zero up to the margin, that has a value
+/// and a slope at 0 and a second derivative of at most `bend`.
+pub(super) fn where_zero(value: f64, slope: f64, bend: f64, half: f64) -> [Option<(f64, f64)>; 3] {
+    let (value, slope) = if value < 0.0 {
+        (-value, -slope)
+    } else {
+        (value, slope)
+    };
+    let kept = |from: f64, to: f64| {
+        let (from, to) = (from.max(-half), to.min(half));
+        (from <= to).then_some((from, to))
+    };
+    // Positive where value + slope x - bend x^2 / 2 > margin: between these two.
+    let above = value - MARGIN;
+    if above <= 0.0 {
+        return [kept(-half, half), None, None];
+    }
+    let root = (slope * slope + 2.0 * bend * above).sqrt();
+    let (left, right) = ((slope - root) / bend, (slope + root) / bend);
+    // Negative where value + slope x + bend x^2 / 2 < -margin: between these two, on one side.
+    let inner = slope * slope - 2.0 * bend * (value + MARGIN);
+    if inner <= 0.0 {
+        return [kept(-half, left), kept(right, half), None];
+    }
+    let root = inner.sqrt();
+    let (far, near) = ((-slope - root) / bend, (-slope + root) / bend);
+    if slope > 0.0 {
+        [kept(-half, far), kept(near, left), kept(right, half)]
+    } else {
+        [kept(-half, left), kept(right, far), kept(near, half)]
+    }
+}

@@ -1,0 +1,441 @@
+//! Branch and bound over the words of one target.
+
+use super::RateBox;
+use super::closing::{Closing, IMAGES, Probes};
+use super::interior::{Interior, where_zero};
+use super::levels::others;
+use super::turns::{
+    best_axis_sequence, cross, dot, eigenaxis_time, rotate, small_angle_bound, twist_and_swing,
+};
+use super::words::{FIRST, Family, SingleWord, corner};
+use crate::math::quaternion::Quat;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Margin of the equation `f = 0`, rad. Rounding in `f` is below 1e-12 even for a thousand arcs.
+pub(super) const MARGIN: f64 = 1e-10;
+/// Cells narrower than this are not split, whatever their bound, rad.
+const NARROW: f64 = 1e-9;
+/// Turn of the interior over half a cell below which the outer arcs are worth a look, rad.
+const CLOSE_LOOK: f64 = 0.25;
+/// Most flips that are followed near an axis; beyond, the bound of the tail is reported.
+const MOST_FLIPS: usize = 4096;
+/// Rounding allowance for angles that wrap, rad.
+const WRAP: f64 = 1e-9;
+/// What rounding takes from a cosine of one: a candidate that seems to miss by less is taken to
+/// arrive. Should it not, its time is too low, which the lower value can bear: it is the least of all
+/// bounds and of this time.
+const ROUNDED_AWAY: f64 = 1e-15;
+/// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
+/// thousand times faster than another, words have thousands of flips and a query would take minutes.
+const MAX_CELLS: usize = 100_000;
+/// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
+const STACK: usize = 160;
+
+/// Which word, and how long its parts are (normalised).
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Candidate {
+    /// The turn about its own axis.
+    Eigenaxis,
+    /// Three turns about body axes.
+    Axes,
+    /// A word of the table.
+    Single {
+        word: usize,
+        image: usize,
+        outer: [f64; 2],
+        parameter: f64,
+    },
+    /// A two-flip or longer word of a family.
+    Family {
+        family: usize,
+        first: usize,
+        flips: usize,
+        image: usize,
+        outer: [f64; 2],
+        parameter: f64,
+    },
+}
+
+/// The state of a query; everything of fixed size.
+pub(super) struct Search<'a> {
+    table: &'a RateBox,
+    q: Quat,
+    /// Twist about each axis, in `[0, 2 pi)`, and swing away from it, rad.
+    twists: [(f64, f64); 3],
+    probes: Probes,
+    stack: [(f64, f64); STACK],
+    tolerance: f64,
+    /// Least time of a kept leaf.
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+    pub(super) best: Candidate,
+    /// Cells looked at.
+    pub(super) cells: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(table: &'a RateBox, q: &Quat, tolerance: f64) -> Self {
+        let c = &table.levels.c;
+        let (eigenaxis, axes) = (eigenaxis_time(q, c), best_axis_sequence(q, c).0);
+        let (upper, best) = if axes < eigenaxis {
+            (axes, Candidate::Axes)
+        } else {
+            (eigenaxis, Candidate::Eigenaxis)
+        };
+        Self {
+            table,
+            q: *q,
+            twists: [0, 1, 2].map(|axis| twist_and_swing(q, axis)),
+            stack: [(0.0, 0.0); STACK],
+            probes: Probes::new(q, c),
+            tolerance,
+            lower: f64::INFINITY,
+            upper,
+            best,
+            cells: 0,
+        }
+    }
+
+    /// Goes through all words that can matter.
+    pub(super) fn run(&mut self) {
+        let table = self.table;
+        self.two_arcs();
+        let (short, long) = table.singles.split_at(table.promising);
+        for (index, word) in short.iter().enumerate() {
+            self.single(word, index);
+        }
+        let floor = self.floor();
+        for index in 0..table.families.len() {
+            self.family(index, floor);
+        }
+        for (index, word) in long.iter().enumerate() {
+            if word.fixed >= self.upper {
+                break;
+            }
+            self.single(word, table.promising + index);
+        }
+        if self.is_spent() {
+            // Of what was not looked at nothing else is known.
+            self.keep(self.swing_time().max(floor));
+        }
+    }
+
+    /// A time that no motion undercuts as none moves a body axis faster than the other two rates do.
+    fn swing_time(&self) -> f64 {
+        let c = &self.table.levels.c;
+        let time = |axis: usize| {
+            let (j, k) = others(axis);
+            let swing = 2.0 * self.q[j].hypot(self.q[k]).min(1.0).asin();
+            swing / c[j].hypot(c[k])
+        };
+        [0, 1, 2].map(time).into_iter().fold(0.0, f64::max)
+    }
+
+    fn is_spent(&self) -> bool {
+        self.cells >= MAX_CELLS
+    }
+
+    /// A time that no motion to the target undercuts.
+    pub(super) fn floor(&self) -> f64 {
+        // The rate's length is at most one.
+        let angle = 2.0 * (self.q[0].hypot(self.q[1]).hypot(self.q[2])).atan2(self.q[3].abs());
+        angle.max(small_angle_bound(&self.q, &self.table.levels.c))
+    }
+
+    /// Words of one and two arcs; the first flips of the three vertex families are all there are.
+    fn two_arcs(&mut self) {
+        let c = self.table.levels.c;
+        for (family, image) in (0..3).flat_map(|family| (0..4).map(move |image| (family, image))) {
+            for first in 0..FIRST.len() {
+                let last = self.table.families[family].octant(first, 1);
+                let probe = self.probes.of(image, first, last);
+                let value = dot(&corner(&c, FIRST[first]), &corner(&c, last));
+                self.cells += 1;
+                if (value - probe.target).abs() > MARGIN {
+                    continue;
+                }
+                if let Some(closing) = probe.close(&Interior::NONE.turn, MARGIN) {
+                    let word = move |outer| Candidate::Family {
+                        family,
+                        first,
+                        flips: 1,
+                        image,
+                        outer,
+                        parameter: 0.0,
+                    };
+                    self.leaf(&closing, 0.0, 0.0, f64::INFINITY, word);
+                }
+            }
+        }
+    }
+
+    /// Takes the centre of a cell as a candidate, and bounds the cell: whether it must be split.
+    fn leaf(
+        &mut self,
+        closing: &Closing,
+        least_interior: f64,
+        interior: f64,
+        cap: f64,
+        word: impl Fn([f64; 2]) -> Candidate,
+    ) -> bool {
+        let Some(least) = closing.least(cap) else {
+            return false;
+        };
+        let bound = least_interior + 2.0 * least;
+        if bound >= self.upper {
+            return false;
+        }
+        for (first, last, cosine) in closing.candidates() {
+            let mut time = interior + 2.0 * (first + last);
+            let missing = 1.0 - cosine;
+            if missing > ROUNDED_AWAY {
+                // The turn that is missing, about its own axis at the worst.
+                time += 2.0 * (1.0 - missing).acos() / self.table.slowest;
+            }
+            if time < self.upper {
+                self.upper = time;
+                self.best = word([2.0 * first, 2.0 * last]);
+            }
+        }
+        if bound < self.upper * (1.0 - self.tolerance) {
+            return true;
+        }
+        self.lower = self.lower.min(bound);
+        false
+    }
+
+    /// A word whose equation is a sinusoid: its roots in closed form.
+    fn single(&mut self, word: &SingleWord, index: usize) {
+        for image in 0..4 {
+            if word.fixed + word.range.0 >= self.upper {
+                return;
+            }
+            let target = self.probes.of(image, word.first, word.last).target;
+            let cosine = (target - word.offset) / word.amplitude;
+            let margin = MARGIN / word.amplitude;
+            if cosine.abs() > 1.0 + margin {
+                continue;
+            }
+            let (middle, half) = if 1.0 - cosine.abs() > 100.0 * margin {
+                // The slope of acos varies by less than 2 % over the margin.
+                (
+                    cosine.acos(),
+                    1.02 * margin / (1.0 - cosine * cosine).sqrt(),
+                )
+            } else {
+                let (wide, narrow) = (
+                    (cosine - margin).max(-1.0).acos(),
+                    (cosine + margin).min(1.0).acos(),
+                );
+                (0.5 * (wide + narrow), 0.5 * (wide - narrow) + WRAP)
+            };
+            for angle in [word.phase - middle, word.phase + middle] {
+                let angle = angle.rem_euclid(TAU);
+                // Next to a full turn the parameter may in truth be next to nothing.
+                let angle = if angle + half >= TAU {
+                    angle - TAU
+                } else {
+                    angle
+                };
+                self.single_cells(word, index, image, angle, half);
+            }
+        }
+    }
+
+    fn single_cells(
+        &mut self,
+        word: &SingleWord,
+        index: usize,
+        image: usize,
+        angle: f64,
+        half: f64,
+    ) {
+        let mut open = 1;
+        self.stack[0] = (angle, half);
+        while open > 0 && !self.is_spent() {
+            open -= 1;
+            let (angle, half) = self.stack[open];
+            let least = ((angle - half) / word.speed).max(word.range.0);
+            let most = ((angle + half) / word.speed).min(word.range.1);
+            if least > most || word.fixed + least >= self.upper {
+                continue;
+            }
+            self.cells += 1;
+            let (sin, cos) = (0.5 * angle).sin_cos();
+            let interior = [0, 1, 2, 3].map(|i| cos * word.even[i] + sin * word.odd[i]);
+            let probe = self.probes.of(image, word.first, word.last);
+            let Some(closing) = probe.close(&interior, 0.5 * (half + MARGIN)) else {
+                continue;
+            };
+            let parameter = (angle / word.speed).clamp(least, most);
+            let cap = if word.capped {
+                0.5 * most + WRAP
+            } else {
+                f64::INFINITY
+            };
+            let candidate = move |outer| Candidate::Single {
+                word: index,
+                image,
+                outer,
+                parameter,
+            };
+            let split = self.leaf(
+                &closing,
+                word.fixed + least,
+                word.fixed + parameter,
+                cap,
+                candidate,
+            );
+            if split {
+                if half < NARROW || open + 2 > STACK {
+                    self.keep(word.fixed + least + closing_floor(&closing, cap));
+                    continue;
+                }
+                self.stack[open] = (angle - 0.5 * half, 0.5 * half);
+                self.stack[open + 1] = (angle + 0.5 * half, 0.5 * half);
+                open += 2;
+            }
+        }
+    }
+
+    fn keep(&mut self, bound: f64) {
+        self.lower = self.lower.min(bound);
+    }
+
+    /// The words of a gap, by their number of flips, until none can be shorter.
+    fn family(&mut self, index: usize, floor: f64) {
+        let family = &self.table.families[index];
+        // Words with two flips are among the singles.
+        for flips in 3.. {
+            let arcs = (flips - 1) as f64;
+            let longest = family.range.1.min(self.upper / arcs);
+            if longest < family.range.0 {
+                return;
+            }
+            let bounds = match family.vertex {
+                Some(axis) => self.by_twist(axis, longest),
+                None => [floor; 2],
+            };
+            let mut any = false;
+            for (first, image) in (0..2).flat_map(|first| (0..4).map(move |image| (first, image))) {
+                let backwards = match family.vertex {
+                    Some(axis) => (first == 1) != (IMAGES[image][axis] < 0.0),
+                    None => false,
+                };
+                let least = bounds[usize::from(backwards)];
+                if least >= self.upper * (1.0 - self.tolerance) || flips == MOST_FLIPS {
+                    self.keep(least);
+                    continue;
+                }
+                any = true;
+                let shortest = least.max(floor) / (flips + 1) as f64 - WRAP;
+                let range = (shortest.max(family.range.0), longest);
+                self.family_cells(family, [index, first, flips, image], range);
+            }
+            // More flips mean shorter arcs and a narrower cone: the bounds only rise.
+            if !any || self.is_spent() {
+                return;
+            }
+        }
+    }
+
+    /// Least times of words near an axis whose arcs last at most so long, when the rate about the
+    /// axis is positive and when it is negative: infinite if the target swings too far from it.
+    fn by_twist(&self, axis: usize, longest: f64) -> [f64; 2] {
+        let levels = &self.table.levels;
+        let cone = levels.cone(axis, longest);
+        let (twist, swing) = self.twists[axis];
+        if swing > 2.0 * cone + WRAP {
+            return [f64::INFINITY; 2];
+        }
+        if cone >= FRAC_PI_2 {
+            return [0.0; 2];
+        }
+        let (j, k) = others(axis);
+        let drift = cone.tan() * levels.c[j].hypot(levels.c[k]);
+        [twist, TAU - twist].map(|along| {
+            let along = if along > TAU - WRAP { 0.0 } else { along };
+            let forward = along / (levels.c[axis] + drift);
+            if drift > levels.c[axis] {
+                forward.min((TAU - along) / (drift - levels.c[axis]))
+            } else {
+                forward
+            }
+        })
+    }
+
+    fn family_cells(&mut self, family: &Family, word: [usize; 4], range: (f64, f64)) {
+        let [index, first, flips, image] = word;
+        let c = self.table.levels.c;
+        let arcs = (flips - 1) as f64;
+        let last = family.octant(first, flips);
+        let (begin, end) = (corner(&c, FIRST[first]), corner(&c, last));
+        let target = self.probes.of(image, first, last).target;
+        self.stack[0] = range;
+        let mut open = 1;
+        while open > 0 && !self.is_spent() {
+            open -= 1;
+            let (low, high) = self.stack[open];
+            let high = high.min(self.upper / arcs);
+            if low > high {
+                continue;
+            }
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+            self.cells += 1;
+            let interior = Interior::of(&c, family, first, flips, middle);
+            let tip = rotate(&interior.turn, &end);
+            let value = dot(&begin, &tip) - target;
+            let slope = dot(&begin, &cross(&interior.velocity, &tip));
+            // |f''| <= (sum of the speeds)^2.
+            let bend = arcs * arcs;
+            if value.abs() > slope.abs() * half + 0.5 * bend * half * half + MARGIN {
+                continue;
+            }
+            if open + 6 > STACK {
+                self.keep(arcs * low);
+                continue;
+            }
+            if arcs * half < CLOSE_LOOK {
+                let speed = dot(&interior.velocity, &interior.velocity).sqrt();
+                let eta = speed * half + 0.5 * bend * half * half;
+                let probe = self.probes.of(image, first, last);
+                let Some(closing) = probe.close(&interior.turn, 0.5 * (eta + MARGIN)) else {
+                    continue;
+                };
+                let cap = 0.5 * high + WRAP;
+                let candidate = move |outer| Candidate::Family {
+                    family: index,
+                    first,
+                    flips,
+                    image,
+                    outer,
+                    parameter: middle,
+                };
+                if !self.leaf(&closing, arcs * low, arcs * middle, cap, candidate) {
+                    continue;
+                }
+                if half < NARROW {
+                    self.keep(arcs * low + closing_floor(&closing, cap));
+                    continue;
+                }
+            }
+            for (from, to) in where_zero(value, slope, bend, half).into_iter().flatten() {
+                // A cell that hardly shrank is halved.
+                if to - from > 1.2 * half {
+                    let cut = 0.5 * (from + to);
+                    self.stack[open] = (middle + from, middle + cut);
+                    self.stack[open + 1] = (middle + cut, middle + to);
+                    open += 2;
+                } else {
+                    self.stack[open] = (middle + from, middle + to);
+                    open += 1;
+                }
+            }
+        }
+    }
+}
+
+/// Least time of the outer arcs of a cell.
+fn closing_floor(closing: &Closing, cap: f64) -> f64 {
+    2.0 * closing.least(cap).unwrap_or(0.0)
+}

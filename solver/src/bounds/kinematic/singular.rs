@@ -1,0 +1,194 @@
+//! The words that dwell: extremals on the level of a saddle.
+//!
+//! The costate may rest on the saddle `M_j = 0`, `M` parallel to the face diagonal, with the rate
+//! parallel to it; on leaving, `w_j` has either sign. A later visit is passed or reflected. All
+//! dwells of an extremal are turns about the same axis in space and may be collected at the first
+//! one. Between visits the arcs have durations that the level fixes.
+
+use super::levels::Levels;
+use super::turns::{about, best_axis_sequence, eigenaxis_time};
+use super::words::{FIRST, Octant, SingleWord, Step, corner, sense};
+use crate::math::quaternion::{Quat, product};
+use std::f64::consts::{PI, TAU};
+
+/// Most arcs of an interior.
+const MOST_STEPS: usize = 500;
+/// A sequence of fixed arcs is no part of a shortest motion if it can be replaced by one shorter by
+/// this share.
+const CLEARLY_SHORTER: f64 = 1e-6;
+
+/// What the folded costate meets on its circle.
+#[derive(Debug, Clone, Copy)]
+enum Event {
+    /// A saddle, where the sign of an axis is free.
+    Saddle(usize),
+    /// The wall of an axis, met when moving in the given direction.
+    Wall(usize, i32),
+}
+
+/// One level and what lies on it, by azimuth.
+struct Circle<'a> {
+    c: &'a [f64; 3],
+    horizon: f64,
+    limit: usize,
+    events: Vec<(f64, Event)>,
+    words: &'a mut Vec<SingleWord>,
+}
+
+/// How far a word has been followed.
+#[derive(Clone, Copy)]
+struct Place {
+    /// Index of the first octant.
+    first: usize,
+    octant: Octant,
+    event: usize,
+    direction: i32,
+    /// Index of the dwell among the steps.
+    dwell: Option<usize>,
+    /// Sum of the fixed arcs so far.
+    fixed: f64,
+}
+
+/// All dwelling words whose fixed arcs last at most up to the horizon; `None` if there are more
+/// than the limit.
+pub(super) fn words(levels: &Levels, horizon: f64, limit: usize) -> Option<Vec<SingleWord>> {
+    let mut found = Vec::new();
+    for j in 0..3 {
+        let h = levels.saddle[j];
+        let same = |k: usize| levels.same_rate(j, k);
+        if (0..j).any(same) {
+            continue;
+        }
+        let mut events = Vec::new();
+        for k in 0..3 {
+            let centre = levels.azimuth[k] + PI;
+            if same(k) {
+                events.push((centre.rem_euclid(TAU), Event::Saddle(k)));
+            } else if levels.saddle[k] > h {
+                let half = levels.half_width(k, h);
+                events.push(((centre - half).rem_euclid(TAU), Event::Wall(k, 1)));
+                events.push(((centre + half).rem_euclid(TAU), Event::Wall(k, -1)));
+            }
+        }
+        events.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut circle = Circle {
+            c: &levels.c,
+            horizon,
+            limit,
+            events,
+            words: &mut found,
+        };
+        for first in 0..FIRST.len() {
+            let direction = -sense(FIRST[first]);
+            for event in 0..circle.events.len() {
+                if matches!(circle.events[event].1, Event::Wall(_, met) if met != direction) {
+                    continue;
+                }
+                let place = Place {
+                    first,
+                    octant: FIRST[first],
+                    event,
+                    direction,
+                    dwell: None,
+                    fixed: 0.0,
+                };
+                circle.follow(place, &mut Vec::new())?;
+            }
+        }
+    }
+    found.sort_by(|a, b| a.fixed.total_cmp(&b.fixed));
+    Some(found)
+}
+
+impl Circle<'_> {
+    /// Goes on from an event in all ways that there are.
+    fn follow(&mut self, at: Place, steps: &mut Vec<Step>) -> Option<()> {
+        match self.events[at.event].1 {
+            Event::Wall(axis, _) => self.leave(at, at.octant ^ (1 << axis), -at.direction, steps),
+            Event::Saddle(axis) if at.dwell.is_none() => {
+                let mut rate = corner(self.c, at.octant);
+                rate[axis] = 0.0;
+                let dwell = Some(steps.len());
+                steps.push(Step {
+                    rate,
+                    duration: None,
+                });
+                let at = Place { dwell, ..at };
+                for octant in [at.octant, at.octant ^ (1 << axis)] {
+                    self.leave(at, octant, -sense(octant), steps)?;
+                }
+                steps.pop();
+                Some(())
+            }
+            Event::Saddle(axis) => {
+                self.leave(at, at.octant, at.direction, steps)?;
+                self.leave(at, at.octant ^ (1 << axis), -at.direction, steps)
+            }
+        }
+    }
+
+    /// Leaves an event in an octant: ends there with the last arc, or follows the arc to the next
+    /// event.
+    fn leave(
+        &mut self,
+        at: Place,
+        octant: Octant,
+        direction: i32,
+        steps: &mut Vec<Step>,
+    ) -> Option<()> {
+        if at.dwell.is_some() {
+            if self.words.len() == self.limit {
+                return None;
+            }
+            let range = (0.0, f64::INFINITY);
+            let word = SingleWord::new(self.c, at.first, steps.clone(), octant, range, false);
+            self.words.extend(word);
+        }
+        // Refused rather than followed without end, should rounding make arcs vanish.
+        if steps.len() == MOST_STEPS {
+            return None;
+        }
+        let count = self.events.len();
+        let event = (at.event + count).saturating_add_signed(direction as isize) % count;
+        let mut arc = (f64::from(direction) * (self.events[event].0 - self.events[at.event].0))
+            .rem_euclid(TAU);
+        if event == at.event {
+            arc = TAU;
+        }
+        // Two walls without a saddle between them: no dwell will come.
+        if at.dwell.is_none() && matches!(self.events[event].1, Event::Wall(..)) {
+            return Some(());
+        }
+        steps.push(Step {
+            rate: corner(self.c, octant),
+            duration: Some(arc),
+        });
+        let next = Place {
+            octant,
+            event,
+            direction,
+            fixed: at.fixed + arc,
+            ..at
+        };
+        if next.fixed < self.horizon && !self.replaceable(steps, at.dwell) {
+            self.follow(next, steps)?;
+        }
+        steps.pop();
+        Some(())
+    }
+
+    /// Whether some of the last arcs, back to the dwell at most, can be replaced by a faster turn:
+    /// then no shortest motion contains them.
+    fn replaceable(&self, steps: &[Step], dwell: Option<usize>) -> bool {
+        let begin = dwell.map_or(0, |at| at + 1);
+        let mut turn: Quat = [0.0, 0.0, 0.0, 1.0];
+        let mut lasted = 0.0;
+        steps[begin..].iter().rev().any(|step| {
+            let duration = step.duration.unwrap_or(0.0);
+            turn = product(&about(&step.rate, duration), &turn);
+            lasted += duration;
+            let shorter = lasted * (1.0 - CLEARLY_SHORTER);
+            eigenaxis_time(&turn, self.c) < shorter || best_axis_sequence(&turn, self.c).0 < shorter
+        })
+    }
+}

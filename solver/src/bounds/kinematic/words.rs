@@ -1,0 +1,185 @@
+//! The extremals as words: a first arc, an interior that depends on one parameter, a last arc.
+//!
+//! Every word starts in the octant `(+, +, +)` or `(-, -, -)`; the other six follow by conjugation
+//! with half turns about the body axes, which the search applies to the target instead.
+
+use super::levels::{Levels, RANGE_SLACK, others};
+use super::turns::{about, chain, cross, dot, rotate};
+use crate::math::quaternion::{Quat, conjugate, product};
+use std::f64::consts::TAU;
+
+/// Signs of the rates: bit `i` is set where `w_i` is negative.
+pub(super) type Octant = usize;
+
+/// The octants in which words start, by the index of their sense.
+pub(super) const FIRST: [Octant; 2] = [0b000, 0b111];
+
+/// The rate vector of an octant.
+pub(super) fn corner(c: &[f64; 3], octant: Octant) -> [f64; 3] {
+    [0, 1, 2].map(|i| if octant >> i & 1 == 1 { -c[i] } else { c[i] })
+}
+
+/// The product of the signs of an octant: the folded costate moves against it.
+pub(super) fn sense(octant: Octant) -> i32 {
+    if octant.count_ones().is_multiple_of(2) {
+        1
+    } else {
+        -1
+    }
+}
+
+/// An arc of an interior.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// Rate vector: a corner, or on a dwell a face diagonal.
+    pub(super) rate: [f64; 3],
+    /// Its duration; the parameter's value where there is none.
+    pub(super) duration: Option<f64>,
+}
+
+/// A word whose parameter is the duration of one arc: the interior is `P = cos(x / 2) U +
+/// sin(x / 2) W`, `x = speed p`, and the equation for `x` a sinusoid.
+#[derive(Debug, Clone)]
+pub(super) struct SingleWord {
+    /// Index into [`FIRST`].
+    pub(super) first: usize,
+    pub(super) last: Octant,
+    /// Sum of the fixed durations.
+    pub(super) fixed: f64,
+    pub(super) speed: f64,
+    /// Range of the parameter.
+    pub(super) range: (f64, f64),
+    /// Whether the outer arcs may be no longer than the parameter.
+    pub(super) capped: bool,
+    /// `c_first . P c_last = offset + amplitude cos(x - phase)`.
+    pub(super) offset: f64,
+    pub(super) amplitude: f64,
+    pub(super) phase: f64,
+    pub(super) even: Quat,
+    pub(super) odd: Quat,
+    pub(super) steps: Vec<Step>,
+}
+
+impl SingleWord {
+    /// From its interior, which has one arc without a duration.
+    pub(super) fn new(
+        c: &[f64; 3],
+        first: usize,
+        steps: Vec<Step>,
+        last: Octant,
+        range: (f64, f64),
+        capped: bool,
+    ) -> Option<Self> {
+        let at = steps.iter().position(|step| step.duration.is_none())?;
+        let turn = |step: &Step| {
+            let speed = dot(&step.rate, &step.rate).sqrt();
+            about(
+                &step.rate.map(|r| r / speed),
+                speed * step.duration.unwrap_or(0.0),
+            )
+        };
+        let before = chain(&steps[..at].iter().map(turn).collect::<Vec<_>>());
+        let after = chain(&steps[at..].iter().map(turn).collect::<Vec<_>>());
+        let rate = steps[at].rate;
+        let speed = dot(&rate, &rate).sqrt();
+        let axis = rate.map(|r| r / speed);
+        let from = rotate(&conjugate(&before), &corner(c, FIRST[first]));
+        let to = rotate(&after, &corner(c, last));
+        let offset = dot(&from, &axis) * dot(&axis, &to);
+        let (cos, sin) = (dot(&from, &to) - offset, dot(&from, &cross(&axis, &to)));
+        Some(Self {
+            first,
+            last,
+            fixed: steps.iter().filter_map(|step| step.duration).sum(),
+            speed,
+            range,
+            capped,
+            offset,
+            amplitude: cos.hypot(sin),
+            phase: sin.atan2(cos),
+            even: product(&before, &after),
+            odd: product(&product(&before, &[axis[0], axis[1], axis[2], 0.0]), &after),
+            steps,
+        })
+    }
+}
+
+/// The words of a gap: the flips of two axes take turns, all interior arcs last equally long.
+#[derive(Debug, Clone)]
+pub(super) struct Family {
+    /// The axis whose rate keeps its sign near that axis; `None` for the far side and a single wall.
+    pub(super) vertex: Option<usize>,
+    /// The axes that flip, first and second, for each of [`FIRST`].
+    pub(super) flips: [[usize; 2]; 2],
+    /// Range of the length of the gap.
+    pub(super) range: (f64, f64),
+}
+
+impl Family {
+    /// All families of a set of levels.
+    pub(super) fn all(levels: &Levels) -> Vec<Self> {
+        let c = &levels.c;
+        let mut families: Vec<Self> = (0..3)
+            .map(|i| {
+                let (j, k) = others(i);
+                Self {
+                    vertex: Some(i),
+                    flips: [[j, k], [k, j]],
+                    range: (0.0, levels.longest_gap(i)),
+                }
+            })
+            .collect();
+        // Largest, middle and smallest rate: the walls vanish in this order.
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| c[j].total_cmp(&c[i]));
+        let [a, b, z] = order;
+        let (j, k) = others(a);
+        let around = |h: f64| levels.far_gap(a, h);
+        families.push(Self {
+            vertex: None,
+            flips: [[k, j], [j, k]],
+            range: (
+                around(levels.saddle[a]) - RANGE_SLACK,
+                around(levels.saddle[b]) + RANGE_SLACK,
+            ),
+        });
+        families.push(Self {
+            vertex: None,
+            flips: [[z, z]; 2],
+            range: (
+                levels.single_wall_gap(z, levels.saddle[b]) - RANGE_SLACK,
+                TAU,
+            ),
+        });
+        families
+    }
+
+    /// The octant after so many flips.
+    pub(super) fn octant(&self, first: usize, flips: usize) -> Octant {
+        let [one, two] = self.flips[first];
+        let mut octant = FIRST[first];
+        if flips.div_ceil(2) % 2 == 1 {
+            octant ^= 1 << one;
+        }
+        if flips / 2 % 2 == 1 {
+            octant ^= 1 << two;
+        }
+        octant
+    }
+
+    /// The interior of the word with so many flips.
+    pub(super) fn steps(&self, c: &[f64; 3], first: usize, flips: usize) -> Vec<Step> {
+        (1..flips)
+            .map(|arc| Step {
+                rate: corner(c, self.octant(first, arc)),
+                duration: None,
+            })
+            .collect()
+    }
+
+    /// The word with two flips, whose parameter is the duration of one arc.
+    pub(super) fn two_flips(&self, c: &[f64; 3], first: usize) -> Option<SingleWord> {
+        let steps = self.steps(c, first, 2);
+        SingleWord::new(c, first, steps, self.octant(first, 2), self.range, true)
+    }
+}

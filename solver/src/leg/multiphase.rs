@@ -1,0 +1,405 @@
+//! The multi-phase problem: fly through waypoints in a fixed order in minimum time.
+//!
+//! A leg is the case of two waypoints, a tour that of many. Rate components and wheel momenta that
+//! a waypoint leaves free are continuous across it, which couples neighbouring legs.
+
+mod between_nodes;
+mod extended;
+mod rolling;
+#[cfg(test)]
+mod tests;
+
+use crate::leg::profile::Profile;
+use crate::leg::transcription::{ControlPenalty, LEAST_TURN, Reserves, Scales, Transcription};
+use crate::model::attitude::Attitude;
+use crate::model::dynamics::Dynamics;
+use crate::model::waypoint::Waypoint;
+use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
+use between_nodes::excess_between_nodes;
+pub(crate) use between_nodes::{excess_inside, keeps_limits_inside};
+pub(crate) use extended::fly_on;
+use nalgebra::DVector;
+pub(crate) use rolling::fly_rolling;
+
+/// A program to solve on the way to another.
+struct Phase {
+    settings: Settings,
+    /// Weights of the penalty that draws the controls to those at the phase's beginning.
+    penalty: ControlPenalty,
+}
+
+/// Which limits are active and roughly where the switches are, then where exactly. A strong penalty
+/// on lengths halves the iterations but costs up to 0.15 % of the duration; a weaker one, drawn to
+/// the lengths of the first phase, costs 0.02 % at most (measured on 171 legs).
+const FROM_A_GUESS: [Phase; 2] = [
+    ROUGHLY,
+    Phase {
+        settings: Settings {
+            initial_barrier: 1e-3,
+            ..Settings::COLD
+        },
+        penalty: ControlPenalty::of_lengths(0.02),
+    },
+];
+/// The same with momentum under a rate limit: there are more intervals than switches, so a torque
+/// may move from one to its neighbour at no cost. Penalties that settle it save a third of the
+/// iterations for less than 1e-5 of the duration (measured on 40 slews with rate limits).
+const ALONG_LIMITS: [Phase; 2] = [
+    ROUGHLY,
+    Phase {
+        settings: Settings {
+            initial_barrier: 1e-3,
+            tolerance: 5e-6,
+            ..Settings::COLD
+        },
+        penalty: ControlPenalty {
+            length: 0.05,
+            change: 0.01,
+        },
+    },
+];
+const ROUGHLY: Phase = Phase {
+    settings: Settings {
+        tolerance: 1e-2,
+        feasibility: 1e-3,
+        ..Settings::COLD
+    },
+    penalty: ControlPenalty::of_lengths(0.1),
+};
+/// From the primal solution of almost the same program.
+const POLISHING: [Phase; 1] = [Phase {
+    settings: Settings {
+        tolerance: 1e-9,
+        initial_barrier: 1e-4,
+        initial_slack: 1e-4,
+        ..Settings::COLD
+    },
+    penalty: ControlPenalty::of_lengths(1e-3),
+}];
+/// Most rounds of the proximal point method, and the relative gain that ends it.
+const POLISH_ROUNDS: usize = 6;
+const POLISHED: f64 = 1e-8;
+
+/// Rounds of correcting the turns and raising the reserves at limits.
+const MAX_ROUNDS: usize = 12;
+/// Rounds that keep a reserve only where a limit was exceeded, and the relative excess from which on
+/// they do; smaller ones are taken off everywhere, which costs half of them in duration.
+const LOCAL_ROUNDS: usize = 6;
+const LOCAL_EXCESS: f64 = 1e-3;
+/// Reserve per excess: a little more than is missing, since the motion moves when it is tightened.
+const RESERVE_FACTOR: f64 = 1.1;
+/// Relative excess up to which the multipliers are near those of the tightened program, and the
+/// barrier parameter to go on with.
+pub(crate) const NEAR_EXCESS: f64 = 1e-2;
+pub(crate) const NEAR_BARRIER: f64 = 1e-5;
+/// Angle, rad, by which a flight may miss its end as the optimiser sees it; the checker's tolerance
+/// is hundreds of times this.
+const MISS_TOLERANCE: f64 = 3e-9;
+/// A miss, rad, that asks for better derivatives too.
+const LARGE_MISS: f64 = 1e-3;
+/// Relative excess over a limit between nodes that is not worth another round; the checker's
+/// tolerance is ten times this.
+const LIMIT_TOLERANCE: f64 = 1e-7;
+
+/// A solved flight.
+#[derive(Debug, Clone)]
+pub(crate) struct Flown {
+    /// How the NLP ended.
+    pub(crate) status: NlpStatus,
+    /// The motion; of use only when converged.
+    pub(crate) profile: Profile,
+    /// Intervals of each of its legs.
+    pub(crate) intervals: Vec<usize>,
+    /// Interior-point iterations.
+    pub(crate) iterations: usize,
+    /// Largest violation of any condition at the end, scaled.
+    pub(crate) infeasibility: f64,
+    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: what the legs
+    /// before it save per momentum with which it is passed, and what the legs after it lose.
+    pub(crate) passing_prices: Vec<DVector<f64>>,
+}
+
+impl Flown {
+    /// A flight of which not even a guess is known.
+    pub(crate) fn nowhere() -> Self {
+        Self {
+            status: NlpStatus::IterationLimit,
+            profile: Profile::empty(),
+            intervals: Vec::new(),
+            iterations: 0,
+            infeasibility: f64::MAX,
+            passing_prices: Vec::new(),
+        }
+    }
+
+    /// The flight backwards, which is one where momenta and torques admit it.
+    pub(crate) fn reversed(&self) -> Self {
+        Self {
+            profile: self.profile.reversed(),
+            intervals: self.intervals.iter().rev().copied().collect(),
+            // What was saved is lost, but the momenta have changed their sign too.
+            passing_prices: self.passing_prices.iter().rev().cloned().collect(),
+            ..*self
+        }
+    }
+
+    /// Duration, s, where there is a motion that flies.
+    pub(crate) fn duration(&self) -> Option<f64> {
+        let flies = matches!(self.status, NlpStatus::Converged | NlpStatus::Constructed);
+        flies.then(|| self.profile.duration())
+    }
+
+    /// Duration, s, when the NLP converged: none is faster, if that was solved globally.
+    pub(crate) fn least_duration(&self) -> Option<f64> {
+        (self.status == NlpStatus::Converged).then(|| self.profile.duration())
+    }
+
+    /// Whether it beats another flight: converged ones beat all others, ties go to the other.
+    pub(crate) fn improves(&self, other: &Flown) -> bool {
+        match (self.duration(), other.duration()) {
+            (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
+            (Some(_), None) => true,
+            (None, _) => false,
+        }
+    }
+}
+
+/// Relative difference below which two durations are the same.
+const SAME_DURATION: f64 = 1e-9;
+
+/// Flies through waypoints from a guess whose nodes are split into legs by `intervals`.
+pub(crate) fn fly(
+    dynamics: &Dynamics,
+    waypoints: &[Waypoint],
+    intervals: &[usize],
+    guess: &Profile,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Flown {
+    Flight::new(dynamics, waypoints, intervals, guess).solve(from_a_guess(dynamics), stop)
+}
+
+/// The phases that lead from a guess to a solution.
+fn from_a_guess(dynamics: &Dynamics) -> &'static [Phase] {
+    if dynamics.straying() > 0.0 {
+        &ALONG_LIMITS
+    } else {
+        &FROM_A_GUESS
+    }
+}
+
+/// Frees a solution of the penalty on uneven interval lengths and solves it more exactly.
+///
+/// The penalty is turned on the lengths of the last solution again and again (the proximal point
+/// method): where they no longer change, it has no share in the optimality conditions.
+pub(crate) fn polish(
+    dynamics: &Dynamics,
+    waypoints: &[Waypoint],
+    intervals: &[usize],
+    mut flown: Flown,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> Flown {
+    for _ in 0..POLISH_ROUNDS {
+        let Some(before) = flown.least_duration() else {
+            break;
+        };
+        let next =
+            Flight::new(dynamics, waypoints, intervals, &flown.profile).solve(&POLISHING, stop);
+        let Some(after) = next.duration() else {
+            break;
+        };
+        if after > before {
+            break;
+        }
+        flown = next;
+        if before - after <= POLISHED * before {
+            break;
+        }
+    }
+    flown
+}
+
+/// A flight on the way to its solution.
+struct Flight<'a> {
+    dynamics: &'a Dynamics,
+    scales: Scales,
+    chain: Transcription,
+    engine: InteriorPoint,
+    iterate: Iterate,
+    /// Interval that ends at each waypoint between two legs.
+    arrivals: Vec<usize>,
+    flown: Flown,
+}
+
+impl<'a> Flight<'a> {
+    fn new(
+        dynamics: &'a Dynamics,
+        waypoints: &[Waypoint],
+        intervals: &[usize],
+        guess: &Profile,
+    ) -> Self {
+        let leg = guess.duration() / intervals.len() as f64;
+        let leg = leg.max(dynamics.least_duration());
+        let scales = Scales::for_legs(dynamics, typical_angle(dynamics, waypoints), leg);
+        let chain = Transcription::new(dynamics, scales, waypoints, intervals);
+        Self {
+            dynamics,
+            scales,
+            engine: InteriorPoint::new(&chain, Settings::COLD),
+            chain,
+            iterate: scaled(guess, &scales),
+            arrivals: arrivals(intervals),
+            flown: Flown {
+                status: NlpStatus::IterationLimit,
+                profile: guess.clone(),
+                intervals: intervals.to_vec(),
+                iterations: 0,
+                infeasibility: f64::MAX,
+                passing_prices: Vec::new(),
+            },
+        }
+    }
+
+    /// Solves one phase after the other, and the last one until its solution can be flown.
+    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> Flown {
+        if !self.passes(phases, stop) {
+            return self.flown;
+        }
+        let mut reserves = Reserves::none(self.dynamics, self.flown.profile.intervals());
+        for round in 0..MAX_ROUNDS {
+            let missed = self.chain.correct(&self.iterate);
+            let excesses = excess_between_nodes(self.dynamics, &self.flown.profile);
+            let excess = excesses.iter().copied().fold(0.0, f64::max);
+            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
+                return self.flown;
+            }
+            if missed > LARGE_MISS {
+                self.chain.refine(&self.iterate);
+            }
+            if excess > LIMIT_TOLERANCE {
+                if round == 0 || (excess > LOCAL_EXCESS && round < LOCAL_ROUNDS) {
+                    reserves.raise(&excesses, RESERVE_FACTOR);
+                } else {
+                    reserves.raise_all(RESERVE_FACTOR * excess);
+                }
+                self.tighten(&reserves, excess);
+            }
+            if !self.converges(stop) {
+                return self.flown;
+            }
+        }
+        // Converged at the nodes, and yet not to be flown: more rounds would be needed.
+        self.flown.status = NlpStatus::IterationLimit;
+        self.flown
+    }
+
+    /// Keeps reserves that answer an excess from now on.
+    fn tighten(&mut self, reserves: &Reserves, excess: f64) {
+        self.chain.keep(reserves);
+        let settings = &mut self.engine.settings;
+        if excess <= NEAR_EXCESS {
+            settings.initial_barrier = NEAR_BARRIER;
+            self.iterate.recentre(NEAR_BARRIER);
+        } else {
+            // Slacks belong to the old limits: begin again from the primal point alone.
+            settings.initial_barrier = Settings::COLD.initial_barrier;
+            self.iterate = scaled(&self.flown.profile, &self.scales);
+        }
+    }
+
+    /// Solves one phase after the other; whether all converge.
+    fn passes(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> bool {
+        phases.iter().all(|phase| {
+            self.chain.draw_controls_to(&self.iterate, phase.penalty);
+            self.engine.settings = phase.settings;
+            self.converges(stop)
+        })
+    }
+
+    /// Multipliers of the links that end between two legs: were each of the two to have its own copy
+    /// of the state, these would be what makes the copies equal.
+    fn passing_prices(&self) -> Vec<DVector<f64>> {
+        let states = 3 + self.dynamics.wheel_count();
+        let unit = self.scales.time / self.scales.momentum;
+        let of_momenta = |&interval: &usize| {
+            let multipliers = &self.iterate.lambda[interval * states..(interval + 1) * states];
+            DVector::from_column_slice(&multipliers[3..]) * unit
+        };
+        self.arrivals.iter().map(of_momenta).collect()
+    }
+
+    /// Runs the engine from where the flight is; whether it converges.
+    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
+        let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
+        self.flown = Flown {
+            status: report.status,
+            profile: physical(&self.iterate, &self.scales, self.dynamics.wheel_count()),
+            intervals: std::mem::take(&mut self.flown.intervals),
+            iterations: self.flown.iterations + report.iterations,
+            infeasibility: report.infeasibility,
+            passing_prices: self.passing_prices(),
+        };
+        report.status == NlpStatus::Converged
+    }
+}
+
+/// The intervals that end between two legs.
+fn arrivals(intervals: &[usize]) -> Vec<usize> {
+    let before_last = intervals.split_last().map_or(&[][..], |(_, before)| before);
+    let ends = before_last.iter().scan(0, |end, count| {
+        *end += count;
+        Some(*end - 1)
+    });
+    ends.collect()
+}
+
+/// The middle one of the legs' turns, rad, or of what takes as long as the changes that their ends
+/// ask for; legs on which nothing happens do not count.
+fn typical_angle(dynamics: &Dynamics, waypoints: &[Waypoint]) -> f64 {
+    let mut angles: Vec<f64> = waypoints
+        .windows(2)
+        .map(|pair| {
+            let turn = pair[0].attitude.signed_turn_to(&pair[1].attitude).norm();
+            let change = pair[0].change_time(&pair[1], dynamics);
+            turn.max(dynamics.turn_within(change))
+        })
+        .filter(|angle| *angle > LEAST_TURN)
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    angles.get(angles.len() / 2).copied().unwrap_or(LEAST_TURN)
+}
+
+fn scaled(profile: &Profile, scales: &Scales) -> Iterate {
+    let mut points = Vec::new();
+    for (attitude, wheels) in profile.attitudes.iter().zip(&profile.wheels) {
+        points.extend_from_slice(&attitude.xyzw());
+        points.extend(wheels.iter().map(|h| h / scales.momentum));
+    }
+    let mut controls = Vec::new();
+    for (pair, length) in profile.wheels.windows(2).zip(&profile.lengths) {
+        controls.extend(
+            pair[1]
+                .iter()
+                .zip(pair[0].iter())
+                .map(|(b, a)| (b - a) / scales.momentum),
+        );
+        controls.push(length / scales.time);
+    }
+    Iterate::cold(points, controls)
+}
+
+fn physical(iterate: &Iterate, scales: &Scales, wheels: usize) -> Profile {
+    let mut profile = Profile::empty();
+    for point in iterate.points.chunks_exact(4 + wheels) {
+        let components = [point[0], point[1], point[2], point[3]];
+        // Retraction keeps quaternions at unit length.
+        profile
+            .attitudes
+            .push(Attitude::from_xyzw(components).unwrap_or_else(Attitude::identity));
+        let momenta = point[4..].iter().map(|h| h * scales.momentum);
+        profile.wheels.push(DVector::from_iterator(wheels, momenta));
+    }
+    for control in iterate.controls.chunks_exact(wheels + 1) {
+        profile.lengths.push(control[wheels] * scales.time);
+    }
+    profile
+}

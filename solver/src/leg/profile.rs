@@ -1,0 +1,91 @@
+//! A motion as the optimiser sees it: states at nodes and the time between them.
+
+use crate::model::attitude::Attitude;
+use nalgebra::DVector;
+use std::ops::Range;
+
+/// A piecewise motion with constant torque between nodes; also used as a starting guess, and then
+/// neither flyable nor within limits.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Profile {
+    /// Attitude at every node, continuous in sign.
+    pub(crate) attitudes: Vec<Attitude>,
+    /// Wheel momenta at every node, N m s.
+    pub(crate) wheels: Vec<DVector<f64>>,
+    /// Time between nodes, s.
+    pub(crate) lengths: Vec<f64>,
+}
+
+impl Profile {
+    /// Duration, s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.lengths.iter().sum()
+    }
+
+    /// Number of intervals.
+    pub(crate) fn intervals(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Appends a motion that begins where this one ends, with its quaternion signs made to match.
+    pub(crate) fn append(&mut self, next: &Profile) {
+        let flip = match (self.attitudes.last(), next.attitudes.first()) {
+            (Some(here), Some(there)) => there.nearest_sign(here) != *there,
+            _ => false,
+        };
+        let skip = usize::from(!self.attitudes.is_empty());
+        let signed = |a: &Attitude| if flip { a.negated() } else { *a };
+        self.attitudes
+            .extend(next.attitudes.iter().skip(skip).map(signed));
+        self.wheels.extend(next.wheels.iter().skip(skip).cloned());
+        self.lengths.extend_from_slice(&next.lengths);
+    }
+
+    /// The motion over some of its intervals.
+    pub(crate) fn part(&self, intervals: Range<usize>) -> Self {
+        let nodes = intervals.start..=intervals.end;
+        Self {
+            attitudes: self.attitudes[nodes.clone()].to_vec(),
+            wheels: self.wheels[nodes].to_vec(),
+            lengths: self.lengths[intervals].to_vec(),
+        }
+    }
+
+    /// An empty motion to append to.
+    pub(crate) fn empty() -> Self {
+        Self {
+            attitudes: Vec::new(),
+            wheels: Vec::new(),
+            lengths: Vec::new(),
+        }
+    }
+
+    /// No motion at all, in no time.
+    pub(crate) fn standstill(attitude: Attitude, wheels: DVector<f64>, intervals: usize) -> Self {
+        Self {
+            attitudes: vec![attitude; intervals + 1],
+            wheels: vec![wheels; intervals + 1],
+            lengths: vec![0.0; intervals],
+        }
+    }
+
+    /// Inserts intervals of no length at a node.
+    pub(crate) fn pause_at(&mut self, node: usize, intervals: usize) {
+        let (attitude, wheels) = (self.attitudes[node], self.wheels[node].clone());
+        self.attitudes
+            .splice(node..node, std::iter::repeat_n(attitude, intervals));
+        self.wheels
+            .splice(node..node, std::iter::repeat_n(wheels, intervals));
+        self.lengths
+            .splice(node..node, std::iter::repeat_n(0.0, intervals));
+    }
+
+    /// The motion flown backwards: wheel momenta change sign, torques do not.
+    pub(crate) fn reversed(&self) -> Self {
+        Self {
+            attitudes: self.attitudes.iter().rev().copied().collect(),
+            wheels: self.wheels.iter().rev().map(|h| -h).collect(),
+            lengths: self.lengths.iter().rev().copied().collect(),
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! The slew about the eigenaxis: the everyday baseline, and the first starting guess.
+//!
+//! Bang-coast-bang about a fixed axis with the wheels allocated by the pseudo-inverse and their
+//! null-space momentum held. Without total momentum its limits are constant along the way; with
+//! it they vary, and the slew is slowed down until all of them hold everywhere.
+
+use crate::leg::profile::Profile;
+use crate::model::attitude::Attitude;
+use crate::model::dynamics::Dynamics;
+use nalgebra::{DVector, Vector3};
+
+/// Points along the way at which limits are tested when momentum makes them vary.
+const SAMPLES: usize = 65;
+/// Halvings of the slow-down factor's interval: six digits of the duration.
+const BISECTIONS: usize = 24;
+/// Slowest factor worth trying.
+const SLOWEST: f64 = 1e-3;
+
+/// Intervals of a ramp in a starting guess.
+const RAMP_INTERVALS: usize = 2;
+/// Share of the duration below which a coast is not worth nodes of its own.
+const LEAST_COAST: f64 = 1e-3;
+/// Bow of a starting guess across the axis, as a share of the peak rate.
+const BOW: f64 = 0.1;
+
+/// To which side a guess bows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// To one.
+    Near,
+    /// To the other.
+    Far,
+}
+
+impl Side {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Near => 1.0,
+            Self::Far => -1.0,
+        }
+    }
+}
+
+/// A bang-coast-bang of a fixed angle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trapezoid {
+    /// Total angle, rad.
+    angle: f64,
+    /// Acceleration, rad/s².
+    acceleration: f64,
+    /// Duration of each ramp, s.
+    ramp: f64,
+    /// Duration, s.
+    pub(crate) duration: f64,
+}
+
+impl Trapezoid {
+    /// The fastest one within an acceleration (rad/s²) and a rate (rad/s) that may be infinite.
+    pub(crate) fn fastest(angle: f64, acceleration: f64, rate: f64) -> Self {
+        let ramp = (angle / acceleration).sqrt().min(rate / acceleration);
+        let duration = if ramp > 0.0 {
+            angle / (ramp * acceleration) + ramp
+        } else {
+            0.0
+        };
+        Self {
+            angle,
+            acceleration,
+            ramp,
+            duration,
+        }
+    }
+
+    /// Durations of its ramps and of the coast between them, s.
+    pub(crate) fn parts(&self) -> [f64; 3] {
+        let coast = (self.duration - 2.0 * self.ramp).max(0.0);
+        [self.ramp, coast, self.ramp]
+    }
+
+    /// One of the same angle, which may be zero, that takes this long without a coast.
+    fn lasting(angle: f64, duration: f64) -> Self {
+        Self {
+            angle,
+            acceleration: 4.0 * angle / duration.powi(2),
+            ramp: 0.5 * duration,
+            duration,
+        }
+    }
+
+    /// Times that cut it into intervals, s: the ramps into [`RAMP_INTERVALS`] each where that cuts
+    /// them finer than equal intervals would.
+    fn node_times(&self, intervals: usize) -> Vec<f64> {
+        let even = |begin: f64, end: f64, count: usize| {
+            (0..count).map(move |i| begin + (end - begin) * i as f64 / count as f64)
+        };
+        let (ramp, end) = (self.ramp, self.duration);
+        let equal = end / intervals as f64;
+        let finer = ramp < equal * RAMP_INTERVALS as f64 && end - 2.0 * ramp > LEAST_COAST * end;
+        let mut times: Vec<f64> = if finer && intervals > 2 * RAMP_INTERVALS {
+            even(0.0, ramp, RAMP_INTERVALS)
+                .chain(even(ramp, end - ramp, intervals - 2 * RAMP_INTERVALS))
+                .chain(even(end - ramp, end, RAMP_INTERVALS))
+                .collect()
+        } else {
+            even(0.0, end, intervals).collect()
+        };
+        times.push(end);
+        times
+    }
+
+    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time.
+    pub(crate) fn at(&self, time: f64) -> (f64, f64, f64) {
+        let a = self.acceleration;
+        let left = self.duration - time;
+        if time < self.ramp {
+            (0.5 * a * time * time, a * time, a)
+        } else if left > self.ramp {
+            let rate = a * self.ramp;
+            (rate * (time - 0.5 * self.ramp), rate, 0.0)
+        } else {
+            (self.angle - 0.5 * a * left * left, a * left, -a)
+        }
+    }
+}
+
+/// A slew about the eigenaxis between two attitudes with given signs.
+#[derive(Debug, Clone)]
+pub(crate) struct EigenaxisSlew {
+    from: Attitude,
+    axis: Vector3<f64>,
+    null: DVector<f64>,
+    /// Its course in time.
+    pub(crate) trapezoid: Trapezoid,
+    /// Whether all limits hold.
+    pub(crate) flyable: bool,
+}
+
+impl EigenaxisSlew {
+    /// The fastest rest-to-rest slew of this kind; `null` is the wheels' null-space momentum.
+    pub(crate) fn fastest(
+        dynamics: &Dynamics,
+        from: &Attitude,
+        to: &Attitude,
+        null: &DVector<f64>,
+    ) -> Self {
+        let turn = from.signed_turn_to(to);
+        let angle = turn.norm();
+        let axis = if angle > 0.0 {
+            turn / angle
+        } else {
+            Vector3::x()
+        };
+        let acceleration = dynamics.axis_acceleration(&axis);
+        let rate = dynamics.axis_rate(&axis);
+        let at_factor = |factor: f64| Self {
+            from: *from,
+            axis,
+            null: null.clone(),
+            trapezoid: Trapezoid::fastest(angle, acceleration * factor * factor, rate * factor),
+            flyable: true,
+        };
+        let full = at_factor(1.0);
+        if full.usage(dynamics) <= 1.0 + 1e-9 {
+            return full;
+        }
+        let (mut slow, mut fast) = (SLOWEST, 1.0);
+        if at_factor(slow).usage(dynamics) > 1.0 {
+            return Self {
+                flyable: false,
+                ..at_factor(0.5)
+            };
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (slow + fast);
+            if at_factor(middle).usage(dynamics) <= 1.0 {
+                slow = middle;
+            } else {
+                fast = middle;
+            }
+        }
+        at_factor(slow)
+    }
+
+    /// The same slew, slower where it takes less than a time, s, that is not zero.
+    pub(crate) fn lasting(self, least: f64) -> Self {
+        if self.trapezoid.duration >= least {
+            return self;
+        }
+        Self {
+            trapezoid: Trapezoid::lasting(self.trapezoid.angle, least),
+            ..self
+        }
+    }
+
+    fn state(&self, dynamics: &Dynamics, time: f64) -> (Attitude, Vector3<f64>, DVector<f64>) {
+        let (angle, rate, _) = self.trapezoid.at(time);
+        let attitude = self.from.retract(self.axis * angle);
+        let rate = self.axis * rate;
+        let wheels = dynamics.wheels_at(&attitude, &rate, &self.null);
+        (attitude, rate, wheels)
+    }
+
+    /// Greatest share of any torque, speed or rate limit along the way.
+    fn usage(&self, dynamics: &Dynamics) -> f64 {
+        let mut worst = 0.0_f64;
+        for sample in 0..SAMPLES {
+            let time = self.trapezoid.duration * sample as f64 / (SAMPLES - 1) as f64;
+            let (attitude, rate, wheels) = self.state(dynamics, time);
+            let (_, _, acceleration) = self.trapezoid.at(time);
+            let body = attitude.to_body(dynamics.momentum);
+            let change = -rate.cross(&body) - dynamics.inertia * self.axis * acceleration;
+            let torque = &dynamics.axes_inverse * change;
+            worst = worst
+                .max(dynamics.speed_usage(&rate, &wheels))
+                .max(dynamics.torque_usage(&torque));
+        }
+        worst
+    }
+
+    /// The slew itself: nodes where its ramps end, and evenly between.
+    pub(crate) fn exact(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
+        let ramp = intervals / 3;
+        let coast = intervals - 2 * ramp;
+        let Trapezoid {
+            ramp: ramping,
+            duration,
+            ..
+        } = self.trapezoid;
+        let coasting = (duration - 2.0 * ramping).max(0.0);
+        let mut profile = Profile::empty();
+        let mut push = |time: f64| {
+            let (attitude, _, wheels) = self.state(dynamics, time);
+            profile.attitudes.push(attitude);
+            profile.wheels.push(wheels);
+        };
+        for node in 0..ramp {
+            push(ramping * node as f64 / ramp as f64);
+        }
+        for node in 0..coast {
+            push(ramping + coasting * node as f64 / coast as f64);
+        }
+        for node in (0..=ramp).rev() {
+            push(duration - ramping * node as f64 / ramp as f64);
+        }
+        profile.lengths = [(ramp, ramping), (coast, coasting), (ramp, ramping)]
+            .into_iter()
+            .flat_map(|(count, time)| std::iter::repeat_n(time / count as f64, count))
+            .collect();
+        profile
+    }
+
+    /// A direction across the axis that turns with the spacecraft: that of the wheel axis least
+    /// along it, the first of equal ones.
+    fn across(&self, dynamics: &Dynamics) -> Vector3<f64> {
+        let (mut across, mut least) = (Vector3::zeros(), f64::INFINITY);
+        for wheel in &dynamics.actuators {
+            let axis = wheel.axis.normalize();
+            let along = axis.dot(&self.axis).abs();
+            if along < least - 1e-6 {
+                (across, least) = (self.axis.cross(&axis), along);
+            }
+        }
+        // Wheel axes span space, so one of them lies across.
+        across.normalize()
+    }
+
+    /// The slew sampled at its nodes, as a starting guess; it has to take some time.
+    ///
+    /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
+    /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
+    pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize, side: Side) -> Profile {
+        let times = self.trapezoid.node_times(intervals);
+        let peak = self.trapezoid.at(0.5 * self.trapezoid.duration).1;
+        let across = self.across(dynamics);
+        let direction = (across + across.cross(&self.axis)).normalize();
+        let most = 0.5 * dynamics.axis_rate(&direction);
+        let bow = direction * (side.sign() * (BOW * peak).min(most));
+        let mut profile = Profile::empty();
+        for (node, time) in times.iter().enumerate() {
+            let (attitude, rate, _) = self.state(dynamics, *time);
+            let phase = std::f64::consts::PI * time / self.trapezoid.duration;
+            // Exactly zero at both ends, where the rates are given.
+            let bowed = rate
+                + if node < intervals {
+                    bow * phase.sin()
+                } else {
+                    Vector3::zeros()
+                };
+            profile
+                .wheels
+                .push(dynamics.wheels_at(&attitude, &bowed, &self.null));
+            profile.attitudes.push(attitude);
+        }
+        profile.lengths = times.windows(2).map(|t| t[1] - t[0]).collect();
+        profile
+    }
+}

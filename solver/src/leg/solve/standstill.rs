@@ -1,0 +1,80 @@
+//! The slew between two ends that one state meets: nothing moves and no time passes.
+
+use super::SlewProblem;
+use crate::leg::multiphase::Flown;
+use crate::leg::profile::Profile;
+use crate::model::scenario::RateCondition;
+use crate::model::waypoint::{Waypoint, WheelCondition};
+use crate::nlp::NlpStatus;
+use nalgebra::{DVector, Vector3};
+
+/// Attitudes closer than this are the same, rad.
+pub(crate) const SAME_ATTITUDE: f64 = 1e-11;
+/// Rates closer than this are the same, rad/s: a thousandth of what the checker tells apart.
+const SAME_RATE: f64 = 1e-10;
+/// Relative difference below which wheel momenta are the same.
+const SAME_MOMENTUM: f64 = 1e-9;
+
+/// No motion at all, where that meets both ends; no slew is faster.
+pub(super) fn standstill(slew: &SlewProblem<'_>) -> Option<Flown> {
+    let ends = [slew.from, slew.to];
+    let turn = slew.arrival.turn(&slew.from.attitude, &slew.to.attitude);
+    if turn > SAME_ATTITUDE || ends.iter().any(|end| end.price.is_some()) {
+        return None;
+    }
+    let wheels = wheels(slew);
+    let rate = slew.dynamics.rate(&slew.from.attitude, &wheels);
+    let met = |end: &&Waypoint| {
+        (0..3).all(|axis| contains(end.rate[axis], rate[axis])) && held(slew, &end.wheels, &wheels)
+    };
+    let within = ends.iter().any(|end| end.is_fixed(slew.dynamics))
+        || slew.dynamics.speed_usage(&rate, &wheels) <= 1.0;
+    (within && ends.iter().all(met)).then(|| Flown {
+        status: NlpStatus::Converged,
+        profile: Profile::standstill(slew.from.attitude, wheels, slew.intervals()),
+        intervals: vec![slew.intervals()],
+        iterations: 0,
+        infeasibility: 0.0,
+        passing_prices: Vec::new(),
+    })
+}
+
+/// The wheel momenta, N m s, of the state that meets both ends, if there is one.
+fn wheels(slew: &SlewProblem<'_>) -> DVector<f64> {
+    let conditions = [&slew.from.wheels, &slew.to.wheels];
+    let fixed = |condition: &&WheelCondition| match condition {
+        WheelCondition::Fixed(momenta) => Some(momenta.clone()),
+        WheelCondition::NullSpace(_) | WheelCondition::Free => None,
+    };
+    let null = |condition: &&WheelCondition| match condition {
+        WheelCondition::NullSpace(null) => Some(null.clone()),
+        WheelCondition::Fixed(_) | WheelCondition::Free => None,
+    };
+    conditions.iter().find_map(fixed).unwrap_or_else(|| {
+        let rate = Vector3::from_fn(|axis, _| slowest(slew.from.rate[axis], slew.to.rate[axis]));
+        let null = conditions.iter().find_map(null);
+        let null = null.as_ref().unwrap_or(slew.null);
+        slew.dynamics.wheels_at(&slew.from.attitude, &rate, null)
+    })
+}
+
+/// The rate nearest to zero that meets two conditions, if there is one.
+fn slowest(one: RateCondition, other: RateCondition) -> f64 {
+    let ([a, b], [c, d]) = (one.range(), other.range());
+    0.0_f64.max(a.max(c)).min(b.min(d))
+}
+
+fn contains(condition: RateCondition, rate: f64) -> bool {
+    let [least, greatest] = condition.range();
+    least - SAME_RATE <= rate && rate <= greatest + SAME_RATE
+}
+
+fn held(slew: &SlewProblem<'_>, condition: &WheelCondition, wheels: &DVector<f64>) -> bool {
+    let off = match condition {
+        WheelCondition::Free => return true,
+        WheelCondition::Fixed(held) => wheels - held,
+        WheelCondition::NullSpace(held) => slew.dynamics.null_component(wheels) - held,
+    };
+    let by_rate = SAME_RATE * slew.dynamics.inertia.amax();
+    off.amax() <= SAME_MOMENTUM * wheels.amax() + by_rate
+}

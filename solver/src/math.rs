@@ -1,0 +1,7 @@
+//! Mathematics that knows no spacecraft.
+
+pub(crate) mod cone;
+pub(crate) mod convex;
+pub(crate) mod quaternion;
+pub(crate) mod random;
+pub(crate) mod rounding;

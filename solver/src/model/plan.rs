@@ -1,0 +1,280 @@
+//! The answer: order, passage times, wheel torques, bound and verification.
+
+use crate::model::attitude::Attitude;
+use crate::model::problem::Problem;
+use nalgebra::Vector3;
+
+/// How a solve ended.
+#[derive(Debug, Clone)]
+pub enum Outcome {
+    /// A verified plan.
+    Planned(Box<Plan>),
+    /// No plan can exist, for these reasons.
+    Infeasible(Vec<Problem>),
+    /// No plan was found, for these reasons; none may be a proof.
+    Failed(Vec<Problem>),
+    /// Stopped before a first plan was found.
+    StoppedEmpty,
+}
+
+/// What is known about a plan's optimality.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Optimality {
+    /// The search is complete: no order beats the plan by more than the requested gap, relative
+    /// to the stated kind of bound.
+    Optimal,
+    /// The search was stopped with this incumbent.
+    Feasible,
+}
+
+/// What a lower bound rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LowerBoundKind {
+    /// Relaxed multi-phase NLPs, assumed to be solved globally.
+    NlpRelaxation,
+    /// Sums over a table of leg times with free ends, assumed to be solved globally.
+    PairTable,
+    /// Proved bounds of the rate-limited kinematics.
+    Certified,
+}
+
+impl LowerBoundKind {
+    /// The stable text of the kind.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::NlpRelaxation => "nlp_relaxation",
+            Self::PairTable => "pair_table",
+            Self::Certified => "certified",
+        }
+    }
+}
+
+/// A complete answer.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// What is known about optimality.
+    pub optimality: Optimality,
+    /// Duration including settle and dwell, s.
+    pub total_time_s: f64,
+    /// No plan is shorter than this, s, in the sense of the kind.
+    pub lower_bound_s: f64,
+    /// `(total - bound) / total`.
+    pub relative_gap: f64,
+    /// What the bound rests on.
+    pub lower_bound_kind: LowerBoundKind,
+    /// No plan is shorter than this, s, in any order that the scenario admits (of a plan whose order was given:
+    /// in that order), proved: the shortest sum of the certified bounds of its legs with settle and
+    /// dwell. `None` where no slew is bounded.
+    pub certified_lower_bound_s: Option<f64>,
+    /// The next best orders.
+    pub alternatives: Vec<Alternative>,
+    /// One entry per slew.
+    pub legs: Vec<Leg>,
+    /// The flight itself.
+    pub flight: Flight,
+    /// Sampled states, at every control boundary at least.
+    pub states: Vec<State>,
+    /// What is left of every limit.
+    pub margins: Margins,
+    /// The independent re-integration.
+    pub verification: Verification,
+    /// How much work it was.
+    pub statistics: Statistics,
+    /// What the caller should know, keep-out violations for one.
+    pub warnings: Vec<Problem>,
+}
+
+impl Plan {
+    /// The largest share of a leg's duration that its certified bound leaves open: how much of it a
+    /// better local minimum might save. One where a leg has no bound; `None` without slews.
+    #[must_use]
+    pub fn largest_open_share(&self) -> Option<f64> {
+        let slews = self.legs.iter().filter(|leg| leg.duration_s > 0.0);
+        let open = slews.map(|leg| {
+            let proved = leg.certified_lower_bound_s.unwrap_or(0.0);
+            (1.0 - proved / leg.duration_s).max(0.0)
+        });
+        open.reduce(f64::max)
+    }
+}
+
+/// The part of a plan that can be flown and checked: when to be where, and the torques.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flight {
+    /// Duration, s.
+    pub total_time_s: f64,
+    /// The visits in order of time.
+    pub passages: Vec<Passage>,
+    /// Wheel torques; the intervals tile `[0, total_time_s]`.
+    pub controls: Vec<Control>,
+}
+
+/// A visit to a target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passage {
+    /// Identifier of the target.
+    pub target: String,
+    /// Arrival, s.
+    pub time_s: f64,
+    /// Departure: arrival plus settle and dwell, s.
+    pub departure_s: f64,
+}
+
+/// Constant wheel torques on one interval.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// Begin of the interval, s.
+    pub start_s: f64,
+    /// Length of the interval, s.
+    pub duration_s: f64,
+    /// Motor torque on each wheel, N m; the body feels the opposite.
+    pub wheel_torque_nm: Vec<f64>,
+}
+
+/// Another order of the same targets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alternative {
+    /// Identifiers in visiting order.
+    pub sequence: Vec<String>,
+    /// Duration, s.
+    pub total_time_s: f64,
+}
+
+/// One slew of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leg {
+    /// Where it begins: `start` or a target's identifier.
+    pub from: String,
+    /// Where it ends: a target's identifier or `end`.
+    pub to: String,
+    /// Begin, s.
+    pub start_s: f64,
+    /// Length without settle and dwell, s.
+    pub duration_s: f64,
+    /// No slew takes less, s, between these two places under the conditions that the scenario sets
+    /// there, proved, as part of whatever tour: rates that the plan chose are not used. `None` where
+    /// nothing is proved.
+    pub certified_lower_bound_s: Option<f64>,
+    /// Time of the rest-to-rest slew about the eigenaxis, s, when that slew can be flown.
+    pub eigenaxis_duration_s: Option<f64>,
+    /// Least time of the slew from rest to rest between the same attitudes, s: what the slew would
+    /// take if it stood alone. `None` when it was not solved, as in plans of searches that were
+    /// stopped or go on.
+    pub rest_to_rest_duration_s: Option<f64>,
+    /// How the NLP that shaped this leg ended.
+    pub solver_status: String,
+}
+
+/// A state of the spacecraft.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Time, s.
+    pub time_s: f64,
+    /// Attitude, with the sign of the continuous quaternion trajectory.
+    pub attitude: Attitude,
+    /// Body rate in body axes, rad/s.
+    pub body_rate_rad_s: Vector3<f64>,
+    /// Wheel speeds relative to the body, rad/s.
+    pub wheel_speed_rad_s: Vec<f64>,
+}
+
+/// What is left of every limit: 0 is at the limit, 1 is unused.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Margins {
+    /// Smallest relative margin of the wheel torques.
+    pub torque: f64,
+    /// Smallest relative margin of the wheel speeds, when any is limited.
+    pub wheel_speed: Option<f64>,
+    /// Smallest relative margin of the body rates, when any is limited.
+    pub body_rate: Option<f64>,
+    /// How often each wheel's speed passes through zero.
+    pub wheel_zero_crossings: Vec<u32>,
+    /// Smallest angle between boresight and cone for each keep-out, degrees; negative inside.
+    pub keep_out_clearance_deg: Vec<f64>,
+}
+
+/// Result of the independent re-integration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verification {
+    /// Whether every tolerance is met.
+    pub passed: bool,
+    /// Largest attitude error at a passage or the end, rad.
+    pub max_attitude_error_rad: f64,
+    /// Largest error of a required rate component, rad/s.
+    pub max_rate_error_rad_s: f64,
+    /// Largest relative excess over a wheel speed limit.
+    pub max_wheel_speed_excess: f64,
+    /// Largest relative excess over a torque limit.
+    pub max_torque_excess: f64,
+    /// Largest relative excess over a body rate limit.
+    pub max_rate_excess: f64,
+    /// The integrator and its tolerance.
+    pub integrator: String,
+    /// What failed, in words; empty when passed.
+    pub failures: Vec<String>,
+}
+
+/// How much work a solve was, and how it went; never part of a comparison between plans.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Statistics {
+    /// Wall-clock time, s.
+    pub wall_time_s: f64,
+    /// Search nodes explored.
+    pub nodes_explored: u64,
+    /// NLPs solved, all starts counted.
+    pub nlp_solves: u64,
+    /// The same by kind.
+    pub nlp_solves_by_kind: NlpSolves,
+    /// What became of the nodes of the search.
+    pub search: SearchWork,
+    /// Every plan that was better than those before, and last the one that was returned.
+    pub history: Vec<Milestone>,
+    /// Legs solved.
+    pub legs_solved: u64,
+    /// Legs taken from a cache.
+    pub legs_from_cache: u64,
+    /// Worker threads.
+    pub threads: usize,
+}
+
+/// NLPs solved, all starts counted, by what they were solved for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NlpSolves {
+    /// Single slews.
+    pub legs: u64,
+    /// Several slews at once, coupled where rates are free: beginnings of orders and whole ones.
+    pub segments: u64,
+}
+
+/// What became of the nodes of the search.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SearchWork {
+    /// Beginnings of orders evaluated.
+    pub prefixes: u64,
+    /// Beginnings whose evaluation did not converge.
+    pub prefixes_unresolved: u64,
+    /// Whole orders evaluated.
+    pub tours: u64,
+    /// Whole orders whose evaluation did not converge.
+    pub tours_unresolved: u64,
+    /// Nodes pruned by the table of legs alone.
+    pub pruned_by_table: u64,
+    /// Nodes pruned by their own evaluation.
+    pub pruned_by_prefix: u64,
+    /// Nodes pruned when a better order was found.
+    pub pruned_by_incumbent: u64,
+    /// Nodes dropped for want of memory.
+    pub dropped_for_memory: u64,
+}
+
+/// A moment at which a better plan was known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Milestone {
+    /// Wall-clock time since the beginning, s.
+    pub time_s: f64,
+    /// Duration of the best plan then, s.
+    pub total_time_s: f64,
+    /// Its lower bound then, s.
+    pub lower_bound_s: f64,
+}

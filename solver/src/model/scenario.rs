@@ -1,0 +1,270 @@
+//! A planning problem, valid by construction.
+//!
+//! [`Scenario::try_new`] reads the parts in the order of the document, each in a file of its own,
+//! and goes on after a fault: what a part needs from an earlier one is either optional or taken
+//! from the description, so that one run lists everything that is wrong.
+
+mod keep_out;
+mod limits;
+mod options;
+mod order;
+mod state;
+mod target;
+
+pub use keep_out::MOST_CONES;
+pub use target::MOST_TARGETS;
+
+use crate::model::attitude::Attitude;
+use crate::model::findings::Findings;
+use crate::model::order_rules::OrderRules;
+use crate::model::problem::{Faults, Problem};
+use crate::model::spacecraft::Spacecraft;
+use crate::model::spec::{OptionsSpec, ScenarioSpec};
+use limits::Limits;
+use nalgebra::Vector3;
+
+/// What a rate component must satisfy at a visit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RateCondition {
+    /// Only the spacecraft's own limits.
+    Free,
+    /// Exactly this value, rad/s.
+    Fixed(f64),
+    /// Between these values, rad/s; either may be infinite.
+    Within(f64, f64),
+}
+
+impl RateCondition {
+    /// The least and the greatest rate that meet it, rad/s; infinite where open.
+    pub(crate) fn range(self) -> [f64; 2] {
+        match self {
+            Self::Free => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Fixed(value) => [value; 2],
+            Self::Within(low, high) => [low, high],
+        }
+    }
+}
+
+/// The fully known state at time zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    /// Attitude, sign as given.
+    pub attitude: Attitude,
+    /// Body rate in body axes, rad/s.
+    pub rate: Vector3<f64>,
+    /// Wheel speeds relative to the body, rad/s, one per wheel.
+    pub wheel_speed: Vec<f64>,
+}
+
+/// What must hold at the end of the tour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct End {
+    /// Attitude, sign as given.
+    pub attitude: Attitude,
+    /// Body rate in body axes, rad/s.
+    pub rate: Vector3<f64>,
+    /// Wheel speeds relative to the body, rad/s, one per wheel; `None` leaves them free.
+    pub wheel_speed: Option<Vec<f64>>,
+}
+
+/// A valid target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Unique identifier.
+    pub id: String,
+    /// Attitude, sign as given.
+    pub attitude: Attitude,
+    /// Condition of each rate component; all are `Fixed(0.0)` when settle or dwell is above zero.
+    pub rate: [RateCondition; 3],
+    /// Time to settle at rest after arrival, s.
+    pub settle: f64,
+    /// Time to stay at rest after settling, s.
+    pub dwell: f64,
+}
+
+/// A cone that a boresight should avoid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeepOut {
+    /// Name of the boresight.
+    pub boresight: String,
+    /// Unit direction of the boresight in body axes.
+    pub axis: Vector3<f64>,
+    /// Unit direction of the cone's axis in the reference frame.
+    pub direction: Vector3<f64>,
+    /// Half angle, rad.
+    pub half_angle: f64,
+}
+
+/// A valid planning problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    name: Option<String>,
+    epoch: Option<String>,
+    time_system: Option<String>,
+    reference_frame: Option<String>,
+    spacecraft: Spacecraft,
+    start: Start,
+    end: Option<End>,
+    targets: Vec<Target>,
+    order_rules: OrderRules,
+    keep_out: Vec<KeepOut>,
+    options: OptionsSpec,
+}
+
+impl Scenario {
+    /// Validates a description and collects every problem.
+    ///
+    /// # Errors
+    ///
+    /// All problems at once, in the order of the document.
+    pub fn try_new(spec: &ScenarioSpec) -> Result<Validated, Vec<Problem>> {
+        Self::examine(spec).map_err(|faults| faults.problems)
+    }
+
+    /// Validates a description like [`Scenario::try_new`], and has all warnings also of one that is
+    /// refused.
+    ///
+    /// # Errors
+    ///
+    /// All problems and warnings at once, both in the order of the document.
+    pub fn examine(spec: &ScenarioSpec) -> Result<Validated, Faults> {
+        let mut findings = Findings::default();
+        let scenario = Self::read(spec, &mut findings);
+        let (scenario, warnings) = findings.judge(scenario)?;
+        Ok(Validated { scenario, warnings })
+    }
+
+    fn read(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Self> {
+        let equivalence = spec.options.attitude_equivalence;
+        let limits = Limits::of(spec);
+        let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", findings);
+        let start =
+            state::read_start(&spec.start, equivalence, &limits, findings).filter(|start| {
+                spacecraft.as_ref().is_none_or(|spacecraft| {
+                    let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+                    state::momentum_is_finite(&momentum, "/start", findings)
+                })
+            });
+        let end = spec.end.as_ref().map(|end| {
+            let end = state::read_end(end, &spec.start, equivalence, &limits, findings)?;
+            let known = spacecraft.as_ref().zip(start.as_ref());
+            known
+                .is_none_or(|(spacecraft, start)| {
+                    state::end_conserves_momentum(spacecraft, start, &end, findings)
+                })
+                .then_some(end)
+        });
+        let targets = target::read_all(spec, &limits, findings);
+        let order_rules = order::read(spec, findings);
+        let keep_out = keep_out::read_all(spec, findings);
+        let options_valid = options::check(&spec.options, findings);
+        Some(Self {
+            name: spec.name.clone(),
+            epoch: spec.epoch.clone(),
+            time_system: spec.time_system.clone(),
+            reference_frame: spec.reference_frame.clone(),
+            spacecraft: spacecraft?,
+            start: start?,
+            end: match end {
+                Some(end) => Some(end?),
+                None => None,
+            },
+            targets: targets?,
+            order_rules: order_rules?,
+            keep_out: keep_out?,
+            options: options_valid.then(|| spec.options.clone())?,
+        })
+    }
+
+    /// Free text that names the scenario.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Epoch of time zero as the caller wrote it; only labels exports.
+    #[must_use]
+    pub fn epoch(&self) -> Option<&str> {
+        self.epoch.as_deref()
+    }
+
+    /// Time system of the epoch as the caller wrote it; only labels exports.
+    #[must_use]
+    pub fn time_system(&self) -> Option<&str> {
+        self.time_system.as_deref()
+    }
+
+    /// Name of the reference frame as the caller wrote it; only labels exports.
+    #[must_use]
+    pub fn reference_frame(&self) -> Option<&str> {
+        self.reference_frame.as_deref()
+    }
+
+    /// The spacecraft.
+    #[must_use]
+    pub fn spacecraft(&self) -> &Spacecraft {
+        &self.spacecraft
+    }
+
+    /// State at time zero.
+    #[must_use]
+    pub fn start(&self) -> &Start {
+        &self.start
+    }
+
+    /// Conditions at the end, if there is one beyond the last target.
+    #[must_use]
+    pub fn end(&self) -> Option<&End> {
+        self.end.as_ref()
+    }
+
+    /// The targets in the caller's order.
+    #[must_use]
+    pub fn targets(&self) -> &[Target] {
+        &self.targets
+    }
+
+    /// Which orders of the targets, by their indices, may be flown: at least one.
+    #[must_use]
+    pub fn order_rules(&self) -> &OrderRules {
+        &self.order_rules
+    }
+
+    /// The keep-out cones.
+    #[must_use]
+    pub fn keep_out(&self) -> &[KeepOut] {
+        &self.keep_out
+    }
+
+    /// Options of the solve.
+    #[must_use]
+    pub fn options(&self) -> &OptionsSpec {
+        &self.options
+    }
+
+    /// Total angular momentum in the reference frame, N m s: a constant of the motion.
+    #[must_use]
+    pub fn momentum(&self) -> Vector3<f64> {
+        momentum_at(&self.spacecraft, &self.start)
+    }
+}
+
+/// A valid scenario with what the caller should know about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validated {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// Doubts that do not stand in the way.
+    pub warnings: Vec<Problem>,
+}
+
+/// Total angular momentum of a start in the reference frame, N m s.
+fn momentum_at(spacecraft: &Spacecraft, start: &Start) -> Vector3<f64> {
+    let in_body = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+    start.attitude.to_reference(in_body)
+}
+
+#[cfg(test)]
+pub(crate) mod reference;
+#[cfg(test)]
+mod tests;

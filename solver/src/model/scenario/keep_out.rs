@@ -1,0 +1,76 @@
+//! The keep-out cones.
+
+use super::KeepOut;
+use crate::model::findings::{Findings, unit};
+use crate::model::problem::{self, Code};
+use crate::model::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
+use nalgebra::Vector3;
+
+/// Most keep-out cones of a scenario.
+pub const MOST_CONES: usize = 1000;
+
+pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
+    if !findings.at_most("/keep_out", spec.keep_out.len(), MOST_CONES) {
+        return None;
+    }
+    // Read one by one first: collecting straight into an option would stop at the first fault.
+    let cones: Vec<_> = spec
+        .keep_out
+        .iter()
+        .enumerate()
+        .map(|(i, cone)| {
+            read(
+                cone,
+                &spec.spacecraft.boresights,
+                &format!("/keep_out/{i}"),
+                findings,
+            )
+        })
+        .collect();
+    cones.into_iter().collect()
+}
+
+fn read(
+    spec: &KeepOutSpec,
+    boresights: &[BoresightSpec],
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<KeepOut> {
+    // Sought in the description, where a name is known even if its axis is refused.
+    let boresight = boresights.iter().find(|known| known.name == spec.boresight);
+    if boresight.is_none() {
+        let known = problem::quoted(boresights.iter().map(|b| b.name.as_str()));
+        findings.refuse(
+            format!("{pointer}/boresight"),
+            Code::UnknownReference,
+            format!("no boresight is named \"{}\"", spec.boresight),
+            match known.as_str() {
+                "" => "declare it in spacecraft.boresights".to_owned(),
+                known => format!("declare it in spacecraft.boresights, or use {known}"),
+            },
+        );
+    }
+    let direction = findings.direction(&format!("{pointer}/direction"), spec.direction);
+    let half_angle = read_half_angle(spec, &format!("{pointer}/half_angle_deg"), findings);
+    Some(KeepOut {
+        boresight: spec.boresight.clone(),
+        axis: unit(Vector3::from(boresight?.axis)),
+        direction: direction?,
+        half_angle: half_angle?,
+    })
+}
+
+/// Half angle in rad.
+fn read_half_angle(spec: &KeepOutSpec, pointer: &str, findings: &mut Findings) -> Option<f64> {
+    let degrees = findings.finite(pointer, spec.half_angle_deg)?;
+    if degrees > 0.0 && degrees < 180.0 {
+        return Some(degrees.to_radians());
+    }
+    findings.refuse(
+        pointer,
+        Code::OutOfRange,
+        format!("the half angle is {degrees} degrees, it must be above 0 and below 180"),
+        "give the angle from the cone's axis to its surface, in degrees",
+    );
+    None
+}

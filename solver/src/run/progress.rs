@@ -1,0 +1,81 @@
+//! Progress as an injected observer.
+
+use crate::model::plan::Plan;
+use crate::run::contradiction::Contradiction;
+
+/// What a solve is busy with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Solving the table of leg times.
+    Legs,
+    /// Searching the order.
+    Search,
+    /// Re-integrating the plan.
+    Verify,
+}
+
+impl Stage {
+    /// The stable text of the stage.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Legs => "legs",
+            Self::Search => "search",
+            Self::Verify => "verify",
+        }
+    }
+}
+
+/// A snapshot of a running solve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// What is being done.
+    pub stage: Stage,
+    /// Steps of the stage that are done.
+    pub done: u64,
+    /// Steps of the stage in all, when known.
+    pub total: Option<u64>,
+    /// Duration of the best plan so far, s.
+    pub incumbent_s: Option<f64>,
+    /// Lower bound on the duration of every plan so far, s.
+    pub lower_bound_s: Option<f64>,
+}
+
+impl Progress {
+    /// The relative gap between incumbent and bound, when both are known.
+    #[must_use]
+    pub fn relative_gap(&self) -> Option<f64> {
+        match (self.incumbent_s, self.lower_bound_s) {
+            (Some(upper), Some(lower)) if upper > 0.0 => Some(((upper - lower) / upper).max(0.0)),
+            _ => None,
+        }
+    }
+}
+
+/// Receives progress from any worker thread.
+pub trait Observer: Sync {
+    /// Called at every step worth showing; must return quickly.
+    fn progress(&self, progress: Progress);
+
+    /// Called whenever a better order has been found and the search goes on: its plan, verified,
+    /// `feasible`, with the bound of that moment. The progress that tells of it comes after. The
+    /// search waits meanwhile: must return quickly.
+    fn incumbent(&self, plan: &Plan) {
+        let _ = plan;
+    }
+
+    /// Called when something was flown that contradicts a certified bound or a stored leg: a defect of
+    /// the planner, after which its answer claims less. Under debug assertions, as in tests, it is a
+    /// panic for whoever does not listen.
+    fn contradicted(&self, contradiction: &Contradiction) {
+        debug_assert!(false, "{contradiction}");
+    }
+}
+
+/// An observer that ignores everything.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn progress(&self, _: Progress) {}
+}

@@ -1,0 +1,232 @@
+//! Whether objective, command and conditions of a manoeuvre are valid and go with its wheels.
+
+use super::spec::{Command, FinalWheels, Hold, ManoeuvreSpec, Measure, Objective, WheelAllocation};
+use crate::model::findings::Findings;
+use crate::model::problem::Code;
+use crate::nlp::{MAX_CONTROLS, MAX_STATES};
+
+/// Most intervals of a manoeuvre.
+pub(super) const MOST_INTERVALS: usize = 2000;
+/// Relative error of a duration as a multiple of the sampling period that is rounding.
+const MULTIPLE_TOLERANCE: f64 = 1e-9;
+
+/// Checks all choices; `false` after a fault.
+pub(super) fn check(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    let checks = [
+        check_objective(&spec.objective, findings),
+        check_command(&spec.command, findings),
+        check_multiple(
+            &spec.objective,
+            &spec.command,
+            "/objective/duration_s",
+            findings,
+        ),
+        check_motors(spec, findings),
+        check_size(spec, findings),
+        check_final_wheels(spec, findings),
+        check_laws(spec, findings),
+        check_allocation(spec, findings),
+    ];
+    checks.iter().all(|passed| *passed)
+}
+
+fn check_objective(objective: &Objective, findings: &mut Findings) -> bool {
+    match *objective {
+        Objective::MinimumTime => true,
+        Objective::TimeAndEffort { weight } => {
+            findings.positive("/objective/weight", weight).is_some()
+        }
+        Objective::Energy { duration_s, .. } => findings
+            .positive("/objective/duration_s", duration_s)
+            .is_some(),
+        Objective::MinimumTimeAtEnergy { energy_j, .. } => {
+            findings.positive("/objective/energy_j", energy_j).is_some()
+        }
+    }
+}
+
+fn check_command(command: &Command, findings: &mut Findings) -> bool {
+    match *command {
+        Command::Sampled { period_s, .. } => {
+            findings.positive("/command/period_s", period_s).is_some()
+        }
+        Command::Free { intervals }
+        | Command::Uniform { intervals }
+        | Command::Smooth { intervals } => {
+            let valid = (2..=MOST_INTERVALS).contains(&intervals);
+            if !valid {
+                findings.refuse(
+                    "/command/intervals",
+                    Code::OutOfRange,
+                    format!("there are {intervals} intervals"),
+                    format!("give 2 to {MOST_INTERVALS} intervals"),
+                );
+            }
+            valid
+        }
+    }
+}
+
+/// A prescribed duration must be a multiple of the period, and not of too many of them.
+pub(super) fn check_multiple(
+    objective: &Objective,
+    command: &Command,
+    pointer: &str,
+    findings: &mut Findings,
+) -> bool {
+    let (Objective::Energy { duration_s, .. }, Command::Sampled { period_s, .. }) =
+        (objective, command)
+    else {
+        return true;
+    };
+    let samples = duration_s / period_s;
+    let valid = (samples - samples.round()).abs() <= MULTIPLE_TOLERANCE * samples
+        && (2.0..=MOST_INTERVALS as f64).contains(&samples.round());
+    if !valid {
+        findings.refuse(
+            pointer,
+            Code::OutOfRange,
+            format!("{duration_s} s are {samples} samples of {period_s} s"),
+            format!("give a duration of 2 to {MOST_INTERVALS} whole samples"),
+        );
+    }
+    valid
+}
+
+/// Energy needs the motors of all commanded wheels.
+fn check_motors(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    let needed = matches!(
+        spec.objective,
+        Objective::Energy { .. } | Objective::MinimumTimeAtEnergy { .. }
+    );
+    let mut known = true;
+    for (i, wheel) in spec.spacecraft.wheels.iter().enumerate().filter(|_| needed) {
+        let drive = spec.drives.get(i);
+        let commanded = wheel.enabled && drive.is_none_or(|drive| drive.speed_law.is_none());
+        if commanded && drive.is_none_or(|drive| drive.motor.is_none()) {
+            known = false;
+            findings.refuse(
+                format!("/drives/{i}/motor"),
+                Code::MissingField,
+                "the objective is about energy, but nothing is known of this wheel's motor",
+                "give resistance_ohm and torque_constant_nm_a, or another objective",
+            );
+        }
+    }
+    known
+}
+
+/// The engine is built for so many variables per interval.
+fn check_size(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    let lawful = |i: usize| {
+        spec.drives
+            .get(i)
+            .is_some_and(|drive| drive.speed_law.is_some())
+    };
+    let wheels = spec.spacecraft.wheels.iter().enumerate();
+    let wheels = wheels
+        .filter(|(i, wheel)| wheel.enabled && !lawful(*i))
+        .count();
+    let billed = matches!(
+        spec.objective,
+        Objective::Energy {
+            measure: Measure::Bill,
+            ..
+        } | Objective::MinimumTimeAtEnergy {
+            measure: Measure::Bill,
+            ..
+        }
+    );
+    let ramps = matches!(
+        spec.command,
+        Command::Smooth { .. }
+            | Command::Sampled {
+                hold: Hold::Linear,
+                ..
+            }
+    );
+    let controls = wheels * (1 + usize::from(billed)) + 1;
+    let states = 3 + wheels * (1 + usize::from(ramps)) + 2 + usize::from(drifts(spec));
+    let valid = controls <= MAX_CONTROLS && states <= MAX_STATES;
+    if !valid {
+        findings.refuse(
+            "/spacecraft/wheels",
+            Code::TooManyWheels,
+            format!("{wheels} commanded wheels are too many for this objective and command"),
+            "disable wheels to spare, or choose constant torques or another objective",
+        );
+    }
+    valid
+}
+
+fn check_final_wheels(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    if spec.final_wheels != FinalWheels::Given {
+        return true;
+    }
+    if spec.end.wheel_speed_rad_s.is_none() {
+        findings.refuse(
+            "/end/wheel_speed_rad_s",
+            Code::MissingField,
+            "the wheels are to end at given speeds, but none are given",
+            "give one speed per wheel, or leave the wheels free at the end",
+        );
+        return false;
+    }
+    let moving = drifts(spec);
+    if moving {
+        findings.refuse(
+            "/end/wheel_speed_rad_s",
+            Code::ConflictingFields,
+            "speeds are given for the end while a speed law moves another wheel's momentum",
+            "leave the wheels free at the end, or pin their null-space momentum",
+        );
+    }
+    !moving
+}
+
+/// Whether a speed law moves any wheel.
+fn drifts(spec: &ManoeuvreSpec) -> bool {
+    let start = spec.start.wheel_speed_rad_s.as_deref().unwrap_or(&[]);
+    spec.drives.iter().enumerate().any(|(i, drive)| {
+        drive.speed_law.as_ref().is_some_and(|law| {
+            let speed = start.get(i).copied().unwrap_or(0.0);
+            law.rate_per_s > 0.0 && (law.speed_rad_s - speed).abs() > 0.0
+        })
+    })
+}
+
+/// A wheel that is out of order follows no law.
+fn check_laws(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    let mut valid = true;
+    for (i, wheel) in spec.spacecraft.wheels.iter().enumerate() {
+        let lawful = spec
+            .drives
+            .get(i)
+            .is_some_and(|drive| drive.speed_law.is_some());
+        if lawful && !wheel.enabled {
+            valid = false;
+            findings.refuse(
+                format!("/drives/{i}/speed_law"),
+                Code::ConflictingFields,
+                "the wheel is disabled, so it cannot follow a speed law",
+                "enable the wheel, or remove the law: a disabled wheel keeps its speed",
+            );
+        }
+    }
+    valid
+}
+
+/// The pseudo-inverse leaves null-space momentum alone, so nothing is left to choose at the end.
+fn check_allocation(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+    let valid = spec.allocation == WheelAllocation::Free || spec.final_wheels != FinalWheels::Given;
+    if !valid {
+        findings.refuse(
+            "/allocation",
+            Code::ConflictingFields,
+            "the pseudo-inverse keeps the null-space momentum of the start, but speeds are given \
+             for the end",
+            "leave the wheels free at the end: attitude, rate and start settle their speeds",
+        );
+    }
+    valid
+}

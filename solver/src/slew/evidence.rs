@@ -1,0 +1,314 @@
+//! Evidence of optimality: the conditions of the minimum principle, along a solution.
+//!
+//! The multipliers of the program's links are the costates at the ends of its intervals: `p` of a
+//! turn in body axes, `r` of the wheels' momenta, `p_t` of time where a speed law moves a wheel's
+//! momentum `d(t)`, on which the body rate depends: `w = Ji (R^T H_total - h_locked - d - A h)`. With
+//! the running cost `l` the Hamiltonian and the costates between the nodes are
+//!
+//! ```text
+//!   H   = l(u, W) + p . w + r . u
+//!   H + p_t                                                constant; zero when the duration is free
+//!   p'   = -w x p + (R^T H_total) x (Ji y)                 s/rad per s
+//!   r'   = A^T Ji y - (dl/dW / I)^T                        per N m s per s
+//!   p_t' = -dH/dt = (Ji y) . d'                            per s per s
+//!   y    = p - A (dl/dW)^T
+//! ```
+//!
+//! A drift makes `H` change along an optimum by what depends on time explicitly, `dH/dt`; `p_t` is what
+//! it has still to change by, the integral of that to the end, and what the objective would change by
+//! for a law that is a second ahead. It has a value at the end where the conditions there depend on
+//! time, as a rate does that wheels of other speeds would not leave at rest. (Where time is a state,
+//! this is the minimum principle of a system that does not depend on it.)
+//!
+//! The torques minimise `H` at every moment (`controls`): torques free of each other each for itself,
+//! those of the pseudo-inverse together. Where `l` has no torque in it, they are at limits. An active
+//! limit of speed or rate makes the costates jump at nodes, by its multipliers. Of momenta that the
+//! pseudo-inverse moves, only three combinations can change: their costates are `(A^+)^T r`.
+//!
+//! Nothing here asks the program anything but its multipliers at the nodes: costates are integrated
+//! from there by these equations, and what is left of a jump that no multiplier explains is the
+//! [`Evidence::costate_defect`].
+
+mod controls;
+mod cost;
+mod costate;
+
+use super::flow::Sample;
+use super::program::Program;
+use super::solving::Solved;
+use super::{Manoeuvre, Outcome, WheelAllocation, interruption};
+use crate::nlp::{Chain, Layout};
+use crate::run::stop::StopSignal;
+use controls::Controls;
+use cost::Running;
+use costate::{Costate, PARTS};
+use nalgebra::Vector3;
+
+/// The conditions along a solution.
+#[derive(Debug, Clone)]
+pub struct Evidence {
+    /// Every interval that takes time.
+    pub intervals: Vec<IntervalEvidence>,
+    /// What is controlled: the torques of all wheels, or with [`WheelAllocation::PseudoInverse`] the
+    /// torque on all wheels together, in body axes.
+    pub controls: WheelAllocation,
+    /// Mean of `H + p_t` over the time: zero when the duration is free, else what a second more would
+    /// add to the objective.
+    pub hamiltonian: f64,
+    /// What its differences are measured by: the mean size of `p . w + r . u`, one for minimum time.
+    pub scale: f64,
+    /// Greatest difference of an interval's average of `H + p_t` from the mean, in the scale.
+    pub average_spread: f64,
+    /// Greatest difference of `H + p_t` at any moment from the mean, in the scale.
+    pub pointwise_spread: f64,
+    /// Greatest difference of `H` alone at any moment from its mean, in the scale: what drifting wheels
+    /// change it by, and no more than the spread without any.
+    pub variation: f64,
+    /// Mean over the time by how much the torques could lower the Hamiltonian, in the scale.
+    pub principle_gap: f64,
+    /// Greatest jump at a node where no limit is active, of a momentum costate relative to the size of
+    /// these or of `p_t` in the scale.
+    pub costate_defect: f64,
+    /// Greatest product of a limit's slack and its multiplier, in the unit of the objective.
+    pub complementarity: f64,
+    /// Of the size of the switching functions of torques at their limits, integrated over the time,
+    /// the share that belongs to torques of the sign asked for; one where none is at a limit.
+    pub switching_agreement: f64,
+}
+
+/// The conditions on one interval. Lists have one entry per control: the commanded wheels, or three
+/// body axes where the pseudo-inverse shares torques out.
+#[derive(Debug, Clone)]
+pub struct IntervalEvidence {
+    /// Begin, s.
+    pub start_s: f64,
+    /// Length, s.
+    pub duration_s: f64,
+    /// Costate of the attitude in body axes at begin and end, unit of the objective per rad.
+    pub attitude_costate: [Vector3<f64>; 2],
+    /// Costates of the momenta that the controls move at begin and end, per N m s.
+    pub momentum_costate: [Vec<f64>; 2],
+    /// `p_t` at begin and end, per s; zero where no speed law moves a wheel.
+    pub time_costate: [f64; 2],
+    /// Derivatives of `H` by the controls at begin and end, per N m s.
+    pub switching: [Vec<f64>; 2],
+    /// Average of `H + p_t`, and its least and greatest value.
+    pub hamiltonian: [f64; 3],
+}
+
+/// The evidence for an outcome; `None` when it is not solved or the stop signal comes first.
+///
+/// The solution is polished before, which takes a few iterations more.
+#[must_use]
+pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option<Evidence> {
+    if !outcome.solved {
+        return None;
+    }
+    let polished = outcome
+        .solution
+        .polished(manoeuvre.vehicle(), &|| interruption(stop));
+    if stop.is_set() || !polished.converged() {
+        return None;
+    }
+    let plain = Running::new(manoeuvre.vehicle(), &polished.program.ingredients, 0.0);
+    let witness = Witness {
+        manoeuvre,
+        controls: Controls::new(manoeuvre.allocation(), &plain),
+        solved: &polished,
+        layout: Layout::of(&polished.program),
+    };
+    Some(witness.evidence())
+}
+
+struct Witness<'a> {
+    manoeuvre: &'a Manoeuvre,
+    controls: Controls,
+    solved: &'a Solved,
+    layout: Layout,
+}
+
+/// An interval with its samples, twice as many as steps: a step of the fourth order asks for its
+/// middle too.
+struct Stretch<'a> {
+    samples: Vec<Sample>,
+    costates: Vec<Costate>,
+    running: Running<'a>,
+}
+
+impl Stretch<'_> {
+    /// The moments that are looked at.
+    fn moments(&self) -> impl Iterator<Item = (&Costate, &Sample)> {
+        self.costates.iter().zip(self.samples.iter().step_by(2))
+    }
+}
+
+/// What an interval adds to the whole.
+struct Tested {
+    evidence: IntervalEvidence,
+    /// Average, least and greatest value of the Hamiltonian alone.
+    alone: [f64; 3],
+    /// Integral of the size of `p . w + r . u`.
+    motion: f64,
+    /// Integral of what the torques could lower the Hamiltonian by.
+    gap: f64,
+    /// Integrals of the switching functions' size, of torques at limits, and of those of the right
+    /// sign.
+    limited: [f64; 2],
+}
+
+impl Witness<'_> {
+    fn program(&self) -> &Program {
+        &self.solved.program
+    }
+
+    fn evidence(&self) -> Evidence {
+        let total = self.solved.motion.duration();
+        let tested: Vec<Tested> = (0..self.program().intervals())
+            .filter(|k| self.solved.motion.lengths[*k] > SHORTEST * total)
+            .map(|k| self.test(k))
+            .collect();
+        let time: f64 = tested.iter().map(|t| t.evidence.duration_s).sum();
+        let sum = |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).sum::<f64>();
+        let mean = |of: &dyn Fn(&Tested) -> f64| sum(&|t| of(t) * t.evidence.duration_s) / time;
+        let hamiltonian = mean(&|t| t.evidence.hamiltonian[0]);
+        let alone = mean(&|t| t.alone[0]);
+        let scale = sum(&|t| t.motion) / time;
+        let spread =
+            |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).fold(0.0, f64::max) / scale;
+        let (limited, right) = (sum(&|t| t.limited[0]), sum(&|t| t.limited[1]));
+        Evidence {
+            controls: self.manoeuvre.allocation(),
+            average_spread: spread(&|t| (t.evidence.hamiltonian[0] - hamiltonian).abs()),
+            pointwise_spread: spread(&|t| furthest(t.evidence.hamiltonian, hamiltonian)),
+            variation: spread(&|t| furthest(t.alone, alone)),
+            principle_gap: sum(&|t| t.gap) / time / scale,
+            costate_defect: self.costate_defect(scale),
+            complementarity: self.complementarity(),
+            switching_agreement: if limited > 0.0 { right / limited } else { 1.0 },
+            intervals: tested.into_iter().map(|t| t.evidence).collect(),
+            hamiltonian,
+            scale,
+        }
+    }
+
+    /// What energy costs on an interval, unit of the objective per J: in the objective itself, or
+    /// taken from a budget.
+    fn energy_price(&self, k: usize) -> f64 {
+        let program = self.program();
+        let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
+        let spent = if program.shape.account {
+            lambda[program.shape.account_at()] * program.units.cost / program.units.energy
+        } else {
+            0.0
+        };
+        program.ingredients.energy + spent
+    }
+
+    fn stretch(&self, k: usize) -> Stretch<'_> {
+        let vehicle = self.manoeuvre.vehicle();
+        let motion = &self.solved.motion;
+        let price = self.energy_price(k);
+        let running = Running::new(vehicle, &self.program().ingredients, price);
+        let begin: f64 = motion.lengths[..k].iter().sum();
+        let samples = vehicle.samples(motion, k, begin, 2 * PARTS);
+        Stretch {
+            costates: self.costates(k, &samples, &running),
+            samples,
+            running,
+        }
+    }
+
+    fn test(&self, k: usize) -> Tested {
+        let length = self.solved.motion.lengths[k];
+        let stretch = self.stretch(k);
+        let (running, controls) = (&stretch.running, &self.controls);
+        let integral = |of: &dyn Fn(&Costate, &Sample) -> f64| {
+            let values: Vec<f64> = stretch.moments().map(|(p, at)| of(p, at)).collect();
+            trapezoid(&values) * length
+        };
+        let moving =
+            |p: &Costate, at: &Sample| p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques);
+        let hamiltonian = |p: &Costate, at: &Sample| running.value(at) + moving(p, at);
+        let alone: Vec<f64> = stretch
+            .moments()
+            .map(|(p, at)| hamiltonian(p, at))
+            .collect();
+        let times = stretch.costates.iter().map(|p| p.time);
+        let constant: Vec<f64> = alone.iter().zip(times).map(|(h, p)| h + p).collect();
+        let ends = [0, PARTS].map(|i| (&stretch.costates[i], &stretch.samples[2 * i]));
+        let mut limited = [0.0; 2];
+        for (p, at) in stretch.moments() {
+            for (sum, size) in limited.iter_mut().zip(controls.limited(p, at, running)) {
+                *sum += size * length;
+            }
+        }
+        Tested {
+            evidence: IntervalEvidence {
+                start_s: self.solved.motion.lengths[..k].iter().sum(),
+                duration_s: length,
+                attitude_costate: ends.map(|(p, _)| p.attitude),
+                momentum_costate: ends.map(|(p, _)| controls.pulled(p.momenta.iter().copied())),
+                time_costate: ends.map(|(p, _)| p.time),
+                switching: ends.map(|(p, at)| controls.switching(p, at, running)),
+                hamiltonian: course(&constant),
+            },
+            alone: course(&alone),
+            motion: integral(&|p, at| moving(p, at).abs()),
+            gap: integral(&|p, at| controls.gap(p, at, running)),
+            limited,
+        }
+    }
+
+    /// Greatest jump of the costates between two intervals that no limit explains.
+    fn costate_defect(&self, scale: f64) -> f64 {
+        let (mut worst, mut size, mut late) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let momenta = |p: &Costate| self.controls.pulled(p.momenta.iter().copied());
+        for k in 1..self.program().intervals() {
+            let stretch = self.stretch(k);
+            let (before, after) = (self.end_costate(k - 1), &stretch.costates[0]);
+            let pairs: Vec<_> = momenta(&before).into_iter().zip(momenta(after)).collect();
+            size = pairs.iter().map(|(own, _)| own.abs()).fold(size, f64::max);
+            if !stretch.running.held(&stretch.samples[0]).contains(&true) {
+                let jumps = pairs.iter().map(|(from, to)| (to - from).abs());
+                worst = jumps.fold(worst, f64::max);
+                late = late.max((after.time - before.time).abs());
+            }
+        }
+        if size > 0.0 {
+            (worst / size).max(late / scale)
+        } else {
+            0.0
+        }
+    }
+
+    fn complementarity(&self) -> f64 {
+        let iterate = &self.solved.iterate;
+        let products = iterate
+            .slack
+            .iter()
+            .zip(&iterate.z)
+            .map(|(s, z)| (s * z).abs());
+        products.fold(0.0, f64::max) * self.program().units.cost
+    }
+}
+
+/// Intervals shorter than this share of the whole have shrunk to nothing.
+const SHORTEST: f64 = 1e-4;
+
+/// Mean of values at equal distances.
+fn trapezoid(values: &[f64]) -> f64 {
+    let sums = values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    sums.sum::<f64>() / (values.len() - 1) as f64
+}
+
+/// Mean, least and greatest of values at equal distances.
+fn course(values: &[f64]) -> [f64; 3] {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    [trapezoid(values), least, greatest]
+}
+
+/// How far a course goes from a value.
+fn furthest([_, least, greatest]: [f64; 3], from: f64) -> f64 {
+    (greatest - from).max(from - least)
+}

@@ -1,0 +1,107 @@
+//! The costates: from the multipliers at the nodes, by their equations in between.
+
+use super::{Witness, cost::Running};
+use crate::slew::flow::Sample;
+use nalgebra::{DVector, Vector3};
+
+/// Steps of the costates' integration per interval; as many moments are looked at.
+pub(super) const PARTS: usize = 8;
+
+/// The costates at a moment.
+#[derive(Debug, Clone)]
+pub(super) struct Costate {
+    /// `p`, unit of the objective per rad, body axes.
+    pub(super) attitude: Vector3<f64>,
+    /// `r`, per N m s.
+    pub(super) momenta: DVector<f64>,
+    /// `p_t`, per s.
+    pub(super) time: f64,
+}
+
+impl Costate {
+    fn moved(&self, by: f64, slope: &Self) -> Self {
+        Self {
+            attitude: self.attitude + slope.attitude * by,
+            momenta: &self.momenta + &slope.momenta * by,
+            time: self.time + slope.time * by,
+        }
+    }
+}
+
+impl Witness<'_> {
+    /// The costates at the end of an interval, as the links' multipliers have them.
+    pub(super) fn end_costate(&self, k: usize) -> Costate {
+        let program = self.program();
+        let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
+        let unit = program.units.cost;
+        let wheels = program.shape.wheels;
+        let time = if self.manoeuvre.vehicle().followers.move_at_all() {
+            let per_second = unit / program.scales.time;
+            (lambda[program.shape.clock_at()] - self.price_of_duration()) * per_second
+        } else {
+            0.0
+        };
+        Costate {
+            attitude: Vector3::from_column_slice(&lambda[..3]) * (unit / program.scales.angle),
+            momenta: DVector::from_column_slice(&lambda[3..3 + wheels])
+                * (unit / program.scales.momentum),
+            time,
+        }
+    }
+
+    /// The multiplier of the clock's own condition at the end, scaled; none where the end is free.
+    fn price_of_duration(&self) -> f64 {
+        let row = self.program().clock_end_row();
+        let at = |row: usize| self.layout.equality(self.layout.intervals).start + row;
+        row.map_or(0.0, |row| self.solved.iterate.nu[at(row)])
+    }
+
+    /// Costates at the ends of equal parts of an interval, integrated backwards from its end.
+    pub(super) fn costates(
+        &self,
+        k: usize,
+        samples: &[Sample],
+        running: &Running<'_>,
+    ) -> Vec<Costate> {
+        let step = -self.solved.motion.lengths[k] / PARTS as f64;
+        let mut costates = vec![self.end_costate(k)];
+        for part in (0..PARTS).rev() {
+            let from = costates[costates.len() - 1].clone();
+            let [first, middle, last] = [2, 1, 0].map(|i| &samples[2 * part + i]);
+            let a = slope(&from, first, running);
+            let b = slope(&from.moved(0.5 * step, &a), middle, running);
+            let c = slope(&from.moved(0.5 * step, &b), middle, running);
+            let d = slope(&from.moved(step, &c), last, running);
+            let next = from
+                .moved(step / 6.0, &a)
+                .moved(step / 3.0, &b)
+                .moved(step / 3.0, &c)
+                .moved(step / 6.0, &d);
+            costates.push(next);
+        }
+        costates.reverse();
+        costates
+    }
+}
+
+/// The costates' equations.
+fn slope(p: &Costate, at: &Sample, running: &Running<'_>) -> Costate {
+    let dynamics = running.dynamics();
+    // The running cost depends on attitude, momenta and time through the wheels' speeds.
+    let wheels = 0..at.speeds.len();
+    let by_speed: Vec<f64> = wheels.map(|wheel| running.by_speed(wheel, at)).collect();
+    let mut lever = p.attitude;
+    for (wheel, slope) in dynamics.actuators.iter().zip(&by_speed) {
+        lever -= wheel.axis * *slope;
+    }
+    let pulled = dynamics.inertia_inverse.tr_mul(&lever);
+    let momenta = dynamics.actuators.iter().zip(&by_speed);
+    Costate {
+        attitude: at.stored.cross(&pulled) - at.rate.cross(&p.attitude),
+        momenta: DVector::from_iterator(
+            by_speed.len(),
+            momenta.map(|(wheel, slope)| wheel.axis.dot(&pulled) - slope / wheel.inertia),
+        ),
+        time: pulled.dot(&at.drift_rate),
+    }
+}

@@ -1,0 +1,300 @@
+//! The flight of a solution, as an independent integration finds it, and what it takes.
+
+use super::motion::Motion;
+use super::spec::{Manoeuvre, Measure};
+use crate::checker::{
+    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
+    RATE_TOLERANCE, Ramp, fly_ramps,
+};
+use crate::model::drive::Drive;
+use crate::model::plan::State;
+use crate::model::waypoint::WheelCondition;
+
+/// Halvings that find where the power of a wheel changes its sign.
+const HALVINGS: usize = 40;
+/// Parts of a moment between which the power is looked at for its sign.
+const PARTS: usize = 4;
+/// Gauss's rule with three points.
+const GAUSS: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 5.0 / 18.0),
+    (0.5, 8.0 / 18.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
+
+/// Commanded torques from a time on, linear from begin to end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// Begin, s.
+    pub start_s: f64,
+    /// Length, s.
+    pub duration_s: f64,
+    /// Torque on each wheel at the begin, N m; zero for wheels that are not commanded.
+    pub torque_begin_nm: Vec<f64>,
+    /// The same at the end.
+    pub torque_end_nm: Vec<f64>,
+}
+
+/// Energies of all motors together, J.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energies {
+    /// Integral of the power, braking counted against it.
+    pub proxy_j: f64,
+    /// What the supply gives: the integral of the power where it is positive over the efficiency,
+    /// and what the electronics take.
+    pub bill_j: f64,
+}
+
+impl Energies {
+    /// The energy in one of the two measures, J.
+    #[must_use]
+    pub fn by(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Proxy => self.proxy_j,
+            Measure::Bill => self.bill_j,
+        }
+    }
+}
+
+/// A solution with what its independent integration found.
+#[derive(Debug, Clone)]
+pub struct Flown {
+    /// The commands; they tile the time from zero to the end.
+    pub pieces: Vec<Piece>,
+    /// States at the begin of every piece that takes time, and at the end.
+    pub states: Vec<State>,
+    /// The motors' energies.
+    pub energies: Energies,
+    /// Angle between the attitude at the end and the wanted one, rad.
+    pub attitude_error_rad: f64,
+    /// Norm of the error of the body rate at the end, rad/s.
+    pub rate_error_rad_s: f64,
+    /// Greatest excess over a motor torque limit, relative.
+    pub torque_excess: f64,
+    /// Greatest excess over a wheel speed limit, relative.
+    pub wheel_speed_excess: f64,
+    /// Greatest excess over a body rate limit, relative.
+    pub rate_excess: f64,
+    /// Greatest error of a prescribed final wheel speed, rad/s; zero where none is.
+    pub wheel_speed_error_rad_s: f64,
+    /// What is wrong with the flight, in sentences; empty when all is well.
+    pub failures: Vec<String>,
+}
+
+/// Integral of the squared torques, (N m)² s.
+pub(super) fn effort(motion: &Motion) -> f64 {
+    let torques = motion.begin.iter().zip(&motion.end);
+    torques
+        .zip(&motion.lengths)
+        .map(|((u, v), tau)| tau * (u.norm_squared() + u.dot(v) + v.norm_squared()) / 3.0)
+        .sum()
+}
+
+/// Flies a motion.
+pub(super) fn fly(manoeuvre: &Manoeuvre, motion: &Motion) -> Flown {
+    let scenario = manoeuvre.scenario();
+    let ramps = ramps(manoeuvre, motion);
+    let drives = manoeuvre.all_drives();
+    let mut energies = Energies::default();
+    let flight = fly_ramps(scenario, drives, &ramps, |moment| {
+        for actuator in &manoeuvre.vehicle().dynamics.actuators {
+            let spent = spent(&drives[actuator.index], actuator.index, moment);
+            energies.proxy_j += spent.proxy_j;
+            energies.bill_j += spent.bill_j;
+        }
+    });
+    let mut flown = Flown {
+        pieces: ramps.iter().map(piece).collect(),
+        states: Vec::new(),
+        energies,
+        attitude_error_rad: f64::MAX,
+        rate_error_rad_s: f64::MAX,
+        torque_excess: f64::MAX,
+        wheel_speed_excess: f64::MAX,
+        rate_excess: f64::MAX,
+        wheel_speed_error_rad_s: f64::MAX,
+        failures: Vec::new(),
+    };
+    let flight = match flight {
+        Ok(flight) => flight,
+        Err(sentence) => {
+            flown.failures.push(sentence);
+            return flown;
+        }
+    };
+    if let (Some(end), Some(wanted)) = (flight.states.last(), scenario.end()) {
+        flown.attitude_error_rad = manoeuvre.missed_by(&end.attitude);
+        flown.rate_error_rad_s = (end.body_rate_rad_s - wanted.rate).norm();
+        flown.wheel_speed_error_rad_s = speed_error(manoeuvre, end);
+    }
+    flown.torque_excess = excess(flight.torque_usage);
+    flown.wheel_speed_excess = excess(flight.wheel_usage.unwrap_or(0.0));
+    flown.rate_excess = excess(flight.rate_usage.unwrap_or(0.0));
+    flown.failures = flight.failures;
+    flown.failures.extend(faults(&flown, flight.momentum_drift));
+    flown.states = flight.states;
+    flown.failures.extend(speed_fault(manoeuvre, &flown));
+    flown
+}
+
+/// The excess over 1, or 0; finite even for limits that are almost nothing, and the greatest where
+/// there is no usage to tell.
+fn excess(usage: f64) -> f64 {
+    if usage.is_nan() {
+        f64::MAX
+    } else {
+        (usage - 1.0).clamp(0.0, f64::MAX)
+    }
+}
+
+/// Sentences about the end and the torques; speeds and rates have their own.
+fn faults(flown: &Flown, momentum_drift: f64) -> Vec<String> {
+    let too_large = [
+        (
+            flown.attitude_error_rad,
+            ATTITUDE_TOLERANCE,
+            "the end is missed by",
+            "rad",
+        ),
+        (
+            flown.rate_error_rad_s,
+            RATE_TOLERANCE,
+            "the rate at the end is off by",
+            "rad/s",
+        ),
+        (
+            flown.torque_excess,
+            LIMIT_TOLERANCE,
+            "a motor torque exceeds its limit by a share of",
+            "",
+        ),
+        (
+            momentum_drift,
+            MOMENTUM_TOLERANCE,
+            "the integration lost momentum, a share of",
+            "",
+        ),
+    ];
+    too_large
+        .into_iter()
+        // What is not a number is no success.
+        .filter(|(value, tolerance, ..)| value.is_nan() || value > tolerance)
+        .map(|(value, _, what, unit)| format!("{what} {value:.3e} {unit}").trim_end().to_owned())
+        .collect()
+}
+
+/// A sentence when the wheels miss their prescribed speeds, measured by the least limit or, where
+/// nothing is limited, by the fastest wheel.
+fn speed_fault(manoeuvre: &Manoeuvre, flown: &Flown) -> Option<String> {
+    let actuators = manoeuvre.vehicle().dynamics.actuators.iter();
+    let least = actuators
+        .map(|wheel| wheel.max_speed)
+        .fold(f64::INFINITY, f64::min);
+    let speeds = flown
+        .states
+        .iter()
+        .flat_map(|state| &state.wheel_speed_rad_s);
+    let fastest = speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs()));
+    let unit = if least.is_finite() { least } else { fastest };
+    let error = flown.wheel_speed_error_rad_s;
+    (error > END_SPEED_TOLERANCE * unit)
+        .then(|| format!("a wheel misses its final speed by {error:.3e} rad/s"))
+}
+
+/// The greatest error of a prescribed final speed, rad/s.
+fn speed_error(manoeuvre: &Manoeuvre, end: &State) -> f64 {
+    let dynamics = &manoeuvre.vehicle().dynamics;
+    let momenta = dynamics.wheels_of_speeds(&end.body_rate_rad_s, &end.wheel_speed_rad_s);
+    let WheelCondition::Fixed(wanted) = &manoeuvre.ends()[1].wheels else {
+        return 0.0;
+    };
+    let errors = dynamics
+        .actuators
+        .iter()
+        .zip((momenta - wanted).iter().copied().collect::<Vec<_>>());
+    errors
+        .map(|(wheel, error)| (error / wheel.inertia).abs())
+        .fold(0.0, f64::max)
+}
+
+fn piece(ramp: &Ramp) -> Piece {
+    Piece {
+        start_s: ramp.start_s,
+        duration_s: ramp.duration_s,
+        torque_begin_nm: ramp.begin_nm.clone(),
+        torque_end_nm: ramp.end_nm.clone(),
+    }
+}
+
+fn ramps(manoeuvre: &Manoeuvre, motion: &Motion) -> Vec<Ramp> {
+    let dynamics = &manoeuvre.vehicle().dynamics;
+    let of_all = |torques: &nalgebra::DVector<f64>| {
+        let mut all = vec![0.0; manoeuvre.all_drives().len()];
+        for (wheel, torque) in dynamics.actuators.iter().zip(torques.iter()) {
+            all[wheel.index] = *torque;
+        }
+        all
+    };
+    motion
+        .times()
+        .iter()
+        .zip(&motion.lengths)
+        .zip(motion.begin.iter().zip(&motion.end))
+        .map(|((start, length), (begin, end))| Ramp {
+            start_s: *start,
+            duration_s: *length,
+            begin_nm: of_all(begin),
+            end_nm: of_all(end),
+        })
+        .collect()
+}
+
+/// What one wheel takes in a short while: exact where the power is a polynomial of degree five, cut
+/// where it changes its sign.
+fn spent(drive: &Drive, wheel: usize, moment: &Moment<'_>) -> Energies {
+    let Some(motor) = drive.motor else {
+        return Energies::default();
+    };
+    let power = |s: f64| {
+        let speed = moment.speed(wheel, s);
+        motor.power(drive.motor_torque(moment.torque(wheel, s), speed), speed)
+    };
+    let mut energies = Energies {
+        proxy_j: 0.0,
+        bill_j: motor.quiescent_power * moment.length_s,
+    };
+    for part in 0..PARTS {
+        let at = |i: usize| moment.length_s * i as f64 / PARTS as f64;
+        let (begin, end) = (at(part), at(part + 1));
+        let cut = sign_change(&power, begin, end);
+        for (from, to) in [(begin, cut), (cut, end)] {
+            let integral = |f: &dyn Fn(f64) -> f64| -> f64 {
+                let points = GAUSS.iter();
+                (to - from)
+                    * points
+                        .map(|(s, w)| w * f(from + (to - from) * s))
+                        .sum::<f64>()
+            };
+            energies.proxy_j += integral(&power);
+            energies.bill_j += integral(&|s| power(s).max(0.0)) / motor.efficiency;
+        }
+    }
+    energies
+}
+
+/// Where a function changes its sign, or the end when it does not.
+fn sign_change(f: &impl Fn(f64) -> f64, begin: f64, end: f64) -> f64 {
+    let sign = f(begin) > 0.0;
+    if (f(end) > 0.0) == sign {
+        return end;
+    }
+    let (mut low, mut high) = (begin, end);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if (f(middle) > 0.0) == sign {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,243 @@
+//! A motion in physical units, and its way into and out of the program's variables.
+
+use super::program::Program;
+use super::shape::{Course, Lengths};
+use crate::leg::profile::Profile;
+use crate::model::attitude::Attitude;
+use crate::model::dynamics::Dynamics;
+use crate::nlp::{Chain, Iterate, Layout};
+use nalgebra::DVector;
+
+/// States at nodes and the torques between them, of the commanded wheels.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Motion {
+    /// Attitude at every node, continuous in sign.
+    pub(super) attitudes: Vec<Attitude>,
+    /// Wheel momenta at every node, N m s.
+    pub(super) momenta: Vec<DVector<f64>>,
+    /// Length of every interval, s.
+    pub(super) lengths: Vec<f64>,
+    /// Torque at the beginning of every interval, N m.
+    pub(super) begin: Vec<DVector<f64>>,
+    /// Torque at the end of every interval, N m.
+    pub(super) end: Vec<DVector<f64>>,
+}
+
+impl Motion {
+    /// A motion under constant torques.
+    pub(super) fn of_profile(profile: &Profile) -> Self {
+        let torques: Vec<_> = profile
+            .wheels
+            .windows(2)
+            .zip(&profile.lengths)
+            .map(|(pair, length)| {
+                if *length > 0.0 {
+                    (&pair[1] - &pair[0]) / *length
+                } else {
+                    DVector::zeros(pair[0].len())
+                }
+            })
+            .collect();
+        Self {
+            attitudes: profile.attitudes.clone(),
+            momenta: profile.wheels.clone(),
+            lengths: profile.lengths.clone(),
+            begin: torques.clone(),
+            end: torques,
+        }
+    }
+
+    /// Duration, s.
+    pub(super) fn duration(&self) -> f64 {
+        self.lengths.iter().sum()
+    }
+
+    /// Times of the nodes, s.
+    pub(super) fn times(&self) -> Vec<f64> {
+        let ends = self.lengths.iter().scan(0.0, |time, length| {
+            *time += length;
+            Some(*time)
+        });
+        std::iter::once(0.0).chain(ends).collect()
+    }
+
+    /// About the same motion in another time: rates shrink as the time grows. Between the nodes of
+    /// the result torque is constant.
+    pub(super) fn lasting(&self, duration: f64, dynamics: &Dynamics) -> Self {
+        let factor = duration / self.duration();
+        let slower = self.attitudes.iter().zip(&self.momenta).map(|(q, h)| {
+            let rate = dynamics.rate(q, h) / factor;
+            dynamics.wheels_at(q, &rate, &dynamics.null_component(h))
+        });
+        Self::of_profile(&Profile {
+            attitudes: self.attitudes.clone(),
+            wheels: slower.collect(),
+            lengths: self.lengths.iter().map(|length| length * factor).collect(),
+        })
+    }
+
+    /// The same attitudes and rates with these null-space momenta, N m s.
+    pub(super) fn keeping(&self, null: &DVector<f64>, dynamics: &Dynamics) -> Self {
+        let states = self.attitudes.iter().zip(&self.momenta);
+        let wheels = states.map(|(q, h)| dynamics.wheels_at(q, &dynamics.rate(q, h), null));
+        Self::of_profile(&Profile {
+            attitudes: self.attitudes.clone(),
+            wheels: wheels.collect(),
+            lengths: self.lengths.clone(),
+        })
+    }
+
+    /// The motion seen at other nodes, given by the lengths between them, s.
+    pub(super) fn on_mesh(&self, lengths: &[f64]) -> Self {
+        let times = self.times();
+        let mut time = 0.0;
+        let mut profile = Profile::empty();
+        for length in std::iter::once(&0.0).chain(lengths) {
+            time += length;
+            let after = times.partition_point(|t| *t <= time);
+            let k = after.saturating_sub(1).min(self.lengths.len() - 1);
+            let share = if self.lengths[k] > 0.0 {
+                ((time - times[k]) / self.lengths[k]).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            let turn = self.attitudes[k].signed_turn_to(&self.attitudes[k + 1]);
+            profile
+                .attitudes
+                .push(self.attitudes[k].retract(turn * share));
+            profile
+                .wheels
+                .push(&self.momenta[k] * (1.0 - share) + &self.momenta[k + 1] * share);
+        }
+        profile.lengths = lengths.to_vec();
+        Self::of_profile(&profile)
+    }
+
+    /// As many equal intervals.
+    pub(super) fn on_equal_mesh(&self, intervals: usize) -> Self {
+        self.on_mesh(&vec![self.duration() / intervals as f64; intervals])
+    }
+
+    /// The motion on intervals that cut those of this one, the longest first.
+    pub(super) fn on_finer_mesh(&self, intervals: usize) -> Self {
+        let mut parts = vec![1_usize; self.lengths.len()];
+        for _ in self.lengths.len()..intervals {
+            let length = |k: usize| self.lengths[k] / parts[k] as f64;
+            let longest = (0..parts.len()).max_by(|a, b| length(*a).total_cmp(&length(*b)));
+            if let Some(longest) = longest {
+                parts[longest] += 1;
+            }
+        }
+        let lengths: Vec<_> = parts
+            .iter()
+            .zip(&self.lengths)
+            .flat_map(|(parts, length)| std::iter::repeat_n(length / *parts as f64, *parts))
+            .collect();
+        self.on_mesh(&lengths)
+    }
+
+    /// The torque at a node: the mean of those beside it.
+    fn node_torque(&self, node: usize) -> DVector<f64> {
+        match (node.checked_sub(1), self.begin.get(node)) {
+            (Some(before), Some(after)) => (&self.end[before] + after) * 0.5,
+            (Some(before), None) => self.end[before].clone(),
+            (None, _) => self.begin[0].clone(),
+        }
+    }
+
+    /// An iterate of a program with as many intervals, without multipliers.
+    pub(super) fn iterate(&self, program: &Program) -> Iterate {
+        let (shape, scales) = (&program.shape, &program.scales);
+        let torque = scales.momentum / scales.time;
+        let intervals = self.lengths.len();
+        let mean = self.duration() / intervals as f64;
+        let mut iterate = Iterate::cold(Vec::new(), Vec::new());
+        for (node, (attitude, momenta)) in self.attitudes.iter().zip(&self.momenta).enumerate() {
+            let points = &mut iterate.points;
+            points.extend_from_slice(&attitude.xyzw());
+            points.extend(momenta.iter().map(|h| h / scales.momentum));
+            if shape.course == Course::Ramps {
+                points.extend(self.node_torque(node).iter().map(|u| u / torque));
+            }
+            if shape.lengths == Lengths::Shared {
+                points.push(mean / scales.time);
+            }
+            if shape.clock {
+                let passed: f64 = self.lengths[..node].iter().sum();
+                points.push(passed / scales.time);
+            }
+            if shape.account {
+                points.push(0.0);
+            }
+        }
+        for k in 0..intervals {
+            let controls = &mut iterate.controls;
+            match shape.course {
+                Course::Steps => {
+                    let change = &self.momenta[k + 1] - &self.momenta[k];
+                    controls.extend(change.iter().map(|m| m / scales.momentum));
+                }
+                Course::Ramps => {
+                    controls.extend(self.node_torque(k + 1).iter().map(|u| u / torque));
+                }
+            }
+            if shape.lengths == Lengths::Own {
+                controls.push(self.lengths[k] / scales.time);
+            }
+            if shape.slacks {
+                controls.extend(std::iter::repeat_n(0.0, shape.wheels));
+            }
+        }
+        program.fill_energies(&mut iterate);
+        iterate
+    }
+
+    /// The motion of an iterate.
+    pub(super) fn of_iterate(iterate: &Iterate, program: &Program) -> Self {
+        let layout = Layout::of(program);
+        let (shape, scales) = (&program.shape, &program.scales);
+        let (wheels, torque) = (shape.wheels, scales.momentum / scales.time);
+        let mut motion = Self {
+            attitudes: Vec::new(),
+            momenta: Vec::new(),
+            lengths: Vec::new(),
+            begin: Vec::new(),
+            end: Vec::new(),
+        };
+        for node in 0..=program.intervals() {
+            let link = iterate.link(&layout, node);
+            let point = link.point;
+            // Retraction keeps quaternions at unit length.
+            let attitude = Attitude::from_xyzw([point[0], point[1], point[2], point[3]]);
+            motion
+                .attitudes
+                .push(attitude.unwrap_or_else(Attitude::identity));
+            let momenta = DVector::from_column_slice(&point[4..4 + wheels]);
+            motion.momenta.push(momenta * scales.momentum);
+            if !link.has_interval() {
+                break;
+            }
+            let length = program.length(&link) * scales.time;
+            let control = DVector::from_column_slice(&link.control[..wheels]);
+            let (begin, end) = match shape.course {
+                Course::Steps => {
+                    let constant = if length > 0.0 {
+                        control * (scales.momentum / length)
+                    } else {
+                        DVector::zeros(wheels)
+                    };
+                    (constant.clone(), constant)
+                }
+                Course::Ramps => {
+                    let at = 1 + shape.torque_at();
+                    let begin = DVector::from_column_slice(&point[at..at + wheels]);
+                    (begin * torque, control * torque)
+                }
+            };
+            motion.lengths.push(length.max(0.0));
+            motion.begin.push(begin);
+            motion.end.push(end);
+        }
+        motion
+    }
+}

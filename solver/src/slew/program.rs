@@ -1,0 +1,351 @@
+//! The nonlinear program of a manoeuvre: a [`Transcription`] with other courses of torque, other
+//! lengths and other costs around it.
+//!
+//! The transcription is used for what it knows: the conditions on states at nodes, and the attitude
+//! link of an interval, a function of `(q, h, m, tau)`. Here those become functions of the
+//! program's own variables ([`Shape`]) and derivatives are pulled back. A linear torque bends the
+//! momenta; the link then gets momenta that are moved by the mean of the bulge, which makes the
+//! integral of the rate exact, and the rest is left to the corrections of the turns.
+
+mod allocation;
+mod chain;
+mod listing;
+
+use super::flow::{Followers, Vehicle};
+use super::ingredients::Ingredients;
+use super::jet::Jet;
+use super::shape::{Course, Lengths, Shape};
+use super::terms::{BEGIN, DrivenWheel, END, LENGTH, SPEED, TURN, TURN_END, WheelState};
+use crate::leg::transcription::{Drift, Row, Scales, Transcription};
+use crate::math::quaternion::Quat;
+use crate::model::waypoint::Waypoint;
+use crate::nlp::{Chain, Iterate, Layout, Link};
+use allocation::Kept;
+use nalgebra::DMatrix;
+
+/// Weight of the penalty that draws interval lengths together, and to which lengths.
+#[derive(Debug, Clone)]
+pub(super) struct LengthPenalty {
+    pub(super) weight: f64,
+    pub(super) lengths: Vec<f64>,
+}
+
+/// Units of what is neither state nor control.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Units {
+    /// Of the cost, in that of the ingredients.
+    pub(super) cost: f64,
+    /// Of energies, J.
+    pub(super) energy: f64,
+}
+
+/// The program.
+#[derive(Debug, Clone)]
+pub(super) struct Program {
+    pub(super) base: Transcription,
+    pub(super) shape: Shape,
+    pub(super) scales: Scales,
+    pub(super) units: Units,
+    pub(super) ingredients: Ingredients,
+    wheels: Vec<DrivenWheel>,
+    /// Speed of each wheel in a state, rad/s.
+    speeds: Vec<Row>,
+    /// Speed of wheel `i` per momentum of wheel `j` and unit of time, 1/(kg m²).
+    speed_per_momentum: DMatrix<f64>,
+    /// Share of the supplied power that reaches each motor.
+    efficiency: Vec<f64>,
+    /// What the electronics of all motors take, W.
+    quiescent_power: f64,
+    pub(super) penalty: LengthPenalty,
+    /// Wheels whose momentum is a function of the clock.
+    followers: Followers,
+    /// Momenta of the enabled wheels, scaled, that do the same to the body as a momentum, per N m s.
+    equivalent: DMatrix<f64>,
+    /// Reserve kept from the torque limits on every interval, relative.
+    pub(super) torque_reserve: Vec<f64>,
+    /// What the momenta keep where the pseudo-inverse shares torques out.
+    kept: Option<Kept>,
+}
+
+/// Where a term belongs.
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    Cost,
+    Gap(usize),
+    Inequality(usize),
+}
+
+/// A term with the derivatives of its features.
+struct Term<'a> {
+    place: Place,
+    jet: Jet,
+    wheel: usize,
+    link: &'a Link<'a>,
+}
+
+/// A function of a few variables to second order: gradient and Hessian by index.
+#[derive(Default)]
+struct Local {
+    gradient: Vec<(usize, f64)>,
+    hessian: Vec<(usize, usize, f64)>,
+}
+
+impl Program {
+    /// A slew between two waypoints.
+    pub(super) fn new(
+        vehicle: &Vehicle,
+        scales: Scales,
+        waypoints: &[Waypoint; 2],
+        intervals: usize,
+        shape: Shape,
+        (ingredients, units): (Ingredients, Units),
+    ) -> Self {
+        let (dynamics, drives) = (&vehicle.dynamics, &vehicle.drives);
+        let base = Transcription::new(dynamics, scales, waypoints, &[intervals]);
+        let actuators = &dynamics.actuators;
+        let speeds = actuators.iter().enumerate().map(|(i, wheel)| {
+            let per_momentum = scales.momentum / wheel.inertia;
+            base.row(0.0, -wheel.axis, &[(i, per_momentum)])
+        });
+        let speed_per_momentum = DMatrix::from_fn(actuators.len(), actuators.len(), |i, j| {
+            let own = if i == j {
+                actuators[i].inertia.recip()
+            } else {
+                0.0
+            };
+            own + actuators[i]
+                .axis
+                .dot(&(dynamics.inertia_inverse * actuators[j].axis))
+        });
+        let wheels = actuators.iter().zip(drives);
+        Self {
+            speeds: speeds.collect(),
+            speed_per_momentum,
+            wheels: wheels.map(|(w, d)| DrivenWheel::new(w, d)).collect(),
+            efficiency: drives
+                .iter()
+                .map(|drive| drive.motor.map_or(1.0, |motor| motor.efficiency))
+                .collect(),
+            quiescent_power: drives
+                .iter()
+                .filter_map(|drive| drive.motor)
+                .map(|motor| motor.quiescent_power)
+                .sum(),
+            penalty: LengthPenalty {
+                weight: 0.0,
+                lengths: vec![1.0; intervals],
+            },
+            followers: vehicle.followers.clone(),
+            equivalent: &dynamics.axes_inverse / scales.momentum,
+            torque_reserve: vec![0.0; intervals + 1],
+            kept: vehicle.kept.as_ref().map(|momenta| Kept {
+                null_space: dynamics.null_space.clone(),
+                momenta: momenta / scales.momentum,
+            }),
+            base,
+            shape,
+            scales,
+            units,
+            ingredients,
+        }
+    }
+
+    /// What the locked wheels have taken of the momentum at a point.
+    fn drift(&self, point: &[f64]) -> Drift {
+        self.drift_after(point, 0.0)
+    }
+
+    /// The same a while later, of which the clock is part, scaled.
+    fn drift_after(&self, point: &[f64], length: f64) -> Drift {
+        let clock = self.shape.clock_at();
+        if !self.followers.move_at_all() {
+            return Drift::default();
+        }
+        let unit = self.scales.time;
+        let [taken, slope, bend] = self.followers.drift((point[1 + clock] + length) * unit);
+        Drift {
+            taken: [taken, slope * unit, bend * (unit * unit)],
+            clock: Some(clock),
+        }
+    }
+
+    /// Makes the turn of one interval exact; the angle, rad, by which the correction changes.
+    pub(super) fn correct_turn(&mut self, link: &Link<'_>, exact: &Quat) -> f64 {
+        let base = self.base_link(link);
+        let wheels = self.shape.wheels;
+        let link = base.link(link, wheels);
+        self.base.correct_turn(&link, exact)
+    }
+
+    /// What the penalty on lengths costs on an interval.
+    pub(super) fn penalty_of(&self, link: &Link<'_>) -> f64 {
+        if link.has_interval() && self.draws_lengths() {
+            0.5 * self.penalty.weight * self.stray(link).powi(2)
+        } else {
+            0.0
+        }
+    }
+
+    /// What the motion of an iterate takes, J, braking never counted against it.
+    pub(super) fn energy_of(&self, iterate: &Iterate) -> f64 {
+        let layout = Layout::of(self);
+        let energy = |link: &Link<'_>| -> f64 {
+            let wheels = self.wheels.iter().enumerate();
+            let energies = wheels.map(|(i, w)| w.energy(&self.wheel_state(i, link)).value);
+            energies.map(|energy| energy.max(0.0)).sum()
+        };
+        (0..self.base.intervals())
+            .map(|node| energy(&iterate.link(&layout, node)))
+            .sum()
+    }
+
+    /// Fills the slacks and the account of an iterate with what its motion takes.
+    pub(super) fn fill_energies(&self, iterate: &mut Iterate) {
+        if !self.ingredients.uses_energy() {
+            return;
+        }
+        let layout = Layout::of(self);
+        let mut spent = 0.0;
+        for node in 0..self.base.intervals() {
+            let link = iterate.link(&layout, node);
+            let energies: Vec<f64> = (0..self.shape.wheels)
+                .map(|i| self.wheels[i].energy(&self.wheel_state(i, &link)).value)
+                .collect();
+            let length = self.length(&link) * self.scales.time;
+            if self.shape.slacks {
+                let at = layout.control(node).start + self.shape.slack_at();
+                for (i, energy) in energies.iter().enumerate() {
+                    iterate.controls[at + i] = energy.max(0.0) / self.units.energy;
+                }
+                let prices = energies.iter().zip(&self.efficiency);
+                spent += self.quiescent_power * length;
+                spent += prices.map(|(e, share)| e.max(0.0) / share).sum::<f64>();
+            } else {
+                spent += energies.iter().sum::<f64>();
+            }
+            if self.shape.account {
+                let at = layout.point(node + 1).start + 1 + self.shape.account_at();
+                iterate.points[at] = spent / self.units.energy;
+            }
+        }
+    }
+
+    /// Whether any term divides by the length of an interval.
+    fn divides_by_length(&self) -> bool {
+        self.shape.course == Course::Steps
+            && (self.ingredients.effort > 0.0 || self.ingredients.uses_energy())
+    }
+
+    fn torque_unit(&self) -> f64 {
+        self.scales.momentum / self.scales.time
+    }
+
+    /// Length of an interval, scaled.
+    pub(super) fn length(&self, link: &Link<'_>) -> f64 {
+        match &self.shape.lengths {
+            Lengths::Own => link.control[self.shape.wheels],
+            Lengths::Shared => link.point[1 + self.shape.shared_at()],
+            Lengths::Given(lengths) => lengths[link.node] / self.scales.time,
+        }
+    }
+
+    /// The features of a wheel; at the last node those of the node alone.
+    fn wheel_state(&self, wheel: usize, link: &Link<'_>) -> WheelState {
+        let (shape, unit) = (&self.shape, self.torque_unit());
+        let view = self.base.view(link.point, self.drift(link.point));
+        let mut features = [0.0; super::jet::FEATURES];
+        features[SPEED] = self.speeds[wheel].value(&view);
+        let couplings = self.speed_per_momentum.row(wheel);
+        let sum = |values: &[f64], unit: f64| {
+            couplings
+                .iter()
+                .zip(values)
+                .map(|(c, v)| c * v * unit)
+                .sum::<f64>()
+        };
+        let torques = &link.point[1 + shape.torque_at()..];
+        if shape.course == Course::Ramps {
+            features[BEGIN] = torques[wheel] * unit;
+        }
+        if link.has_interval() {
+            features[LENGTH] = self.length(link) * self.scales.time;
+            match shape.course {
+                Course::Steps => {
+                    features[BEGIN] = link.control[wheel] * self.scales.momentum;
+                    features[TURN] = sum(&link.control[..shape.wheels], self.scales.momentum);
+                }
+                Course::Ramps => {
+                    features[END] = link.control[wheel] * unit;
+                    features[TURN] = sum(&torques[..shape.wheels], unit);
+                    features[TURN_END] = sum(&link.control[..shape.wheels], unit);
+                }
+            }
+        }
+        WheelState {
+            course: shape.course,
+            features,
+        }
+    }
+
+    /// Derivatives of a wheel's features by the variables, state and controls, sparse.
+    fn feature_gradient(&self, wheel: usize, feature: usize, link: &Link<'_>) -> Vec<(usize, f64)> {
+        let (shape, unit) = (&self.shape, self.torque_unit());
+        let (torques, controls) = (shape.torque_at(), shape.states());
+        let coupled = |first: usize, unit: f64| {
+            let couplings = self.speed_per_momentum.row(wheel);
+            (0..shape.wheels)
+                .map(|j| (first + j, couplings[j] * unit))
+                .collect()
+        };
+        match (feature, shape.course) {
+            (SPEED, _) => {
+                let mut row = vec![0.0; shape.states()];
+                let view = self.base.view(link.point, self.drift(link.point));
+                self.base.write_row(&self.speeds[wheel], &view, &mut row);
+                let entries = row.into_iter().enumerate();
+                entries.filter(|(_, slope)| *slope != 0.0).collect()
+            }
+            (TURN, Course::Steps) => coupled(controls, self.scales.momentum),
+            (TURN, Course::Ramps) => coupled(torques, unit),
+            (TURN_END, Course::Ramps) => coupled(controls, unit),
+            (BEGIN, Course::Steps) => vec![(controls + wheel, self.scales.momentum)],
+            (BEGIN, Course::Ramps) => vec![(torques + wheel, unit)],
+            (END, Course::Ramps) => vec![(controls + wheel, unit)],
+            (LENGTH, _) => self
+                .shape
+                .length_variable()
+                .map(|at| (at, self.scales.time))
+                .into_iter()
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A jet as a function of the variables.
+    fn local(&self, wheel: usize, jet: &Jet, link: &Link<'_>) -> Local {
+        let used: Vec<_> = (0..super::jet::FEATURES)
+            .filter(|&f| jet.gradient[f] != 0.0 || jet.hessian[f].iter().any(|h| *h != 0.0))
+            .map(|f| (f, self.feature_gradient(wheel, f, link)))
+            .collect();
+        let mut local = Local::default();
+        for (f, by_f) in &used {
+            local
+                .gradient
+                .extend(by_f.iter().map(|(at, c)| (*at, c * jet.gradient[*f])));
+            for (g, by_g) in &used {
+                let bend = jet.hessian[*f][*g];
+                if bend == 0.0 {
+                    continue;
+                }
+                for (i, a) in by_f {
+                    for (j, b) in by_g {
+                        if i >= j {
+                            local.hessian.push((*i, *j, bend * a * b));
+                        }
+                    }
+                }
+            }
+        }
+        local
+    }
+}

@@ -1,0 +1,212 @@
+//! The list of a program's terms: which wheel adds what to the cost, the links and the limits.
+//!
+//! Inequalities of a node come in this order: the conditions on the state, those of each wheel
+//! (torque, then energy against its slack), the length or the budget, the slacks, the rates in the
+//! middle.
+
+use super::{Place, Program, Term};
+use crate::nlp::{Chain, Link};
+use crate::slew::jet::Jet;
+use crate::slew::shape::{Course, Lengths};
+use crate::slew::terms::DrivenWheel;
+
+impl Program {
+    /// Shows every term of a link.
+    pub(super) fn terms<'a>(&self, link: &'a Link<'a>, mut show: impl FnMut(&Term<'a>)) {
+        let shape = &self.shape;
+        let mut row = self.base.state_inequalities(link.node);
+        let ingredients = &self.ingredients;
+        for wheel in 0..shape.wheels {
+            let state = self.wheel_state(wheel, link);
+            let mut emit = |place, jet| {
+                show(&Term {
+                    place,
+                    jet,
+                    wheel,
+                    link,
+                });
+            };
+            let mut limit = |jet: Jet| {
+                row += 1;
+                (Place::Inequality(row - 1), jet)
+            };
+            let reserve = self.torque_reserve[link.node];
+            if shape.course == Course::Ramps {
+                for margin in self.wheels[wheel].node_margins(&state) {
+                    let (place, jet) = limit(margin - Jet::constant(reserve));
+                    emit(place, jet);
+                }
+            }
+            if !link.has_interval() {
+                continue;
+            }
+            if shape.course == Course::Steps {
+                for margin in self.wheels[wheel].step_margins(&state) {
+                    let margin = margin - state.length() * reserve;
+                    let (place, jet) = limit(margin * self.scales.time.recip());
+                    emit(place, jet);
+                }
+            }
+            emit(
+                Place::Gap(3 + wheel),
+                state.impulse() * self.scales.momentum.recip(),
+            );
+            if ingredients.effort > 0.0 {
+                emit(
+                    Place::Cost,
+                    state.effort() * (ingredients.effort / self.units.cost),
+                );
+            }
+            if ingredients.uses_energy() {
+                let energy = self.wheels[wheel].energy(&state);
+                if shape.slacks {
+                    let (place, jet) = limit(energy * -self.units.energy.recip());
+                    emit(place, jet);
+                } else {
+                    self.spend(&energy, &mut emit);
+                }
+            }
+        }
+    }
+
+    /// Energy as far as it is not a slack.
+    fn spend(&self, energy: &Jet, emit: &mut impl FnMut(Place, Jet)) {
+        if self.ingredients.energy > 0.0 {
+            emit(
+                Place::Cost,
+                *energy * (self.ingredients.energy / self.units.cost),
+            );
+        }
+        if self.shape.account {
+            let place = Place::Gap(self.shape.account_at());
+            emit(place, *energy * self.units.energy.recip());
+        }
+    }
+
+    /// Where the rows of a wheel at a node and on its interval begin; where those of all wheels end
+    /// for the wheel after the last.
+    fn wheel_rows_at(&self, node: usize, wheel: usize) -> usize {
+        let interval = node < self.base.intervals();
+        let rows = |wheel: &DrivenWheel| match self.shape.course {
+            Course::Ramps => 2,
+            Course::Steps if interval => wheel.step_rows(),
+            Course::Steps => 0,
+        };
+        let slacks = usize::from(self.shape.slacks && interval);
+        let before: usize = self.wheels[..wheel].iter().map(|w| rows(w) + slacks).sum();
+        self.base.state_inequalities(node) + before
+    }
+
+    /// Number of inequalities of a node and its interval.
+    pub(super) fn rows(&self, node: usize) -> usize {
+        let middle = if node == self.base.intervals() {
+            0
+        } else {
+            self.base.middle_limits()
+        };
+        self.middle_rows_at(node) + middle
+    }
+
+    /// Where the rows of the rates in the middle of an interval begin.
+    pub(super) fn middle_rows_at(&self, node: usize) -> usize {
+        let plain = if node == self.base.intervals() {
+            usize::from(self.ingredients.budget.is_some())
+        } else {
+            usize::from(self.limits_length())
+                + if self.shape.slacks {
+                    self.shape.wheels
+                } else {
+                    0
+                }
+        };
+        self.wheel_rows_at(node, self.shape.wheels) + plain
+    }
+
+    fn limits_length(&self) -> bool {
+        self.shape.course == Course::Ramps && !matches!(self.shape.lengths, Lengths::Given(_))
+    }
+
+    /// What the supply gives per slack: energy over the motor's efficiency.
+    fn slack_price(&self, wheel: usize) -> f64 {
+        self.units.energy / self.efficiency[wheel]
+    }
+
+    /// Linear terms as `(place, variable or none, coefficient)`.
+    pub(super) fn linear_terms(
+        &self,
+        node: usize,
+        mut show: impl FnMut(Place, Option<usize>, f64),
+    ) {
+        let (shape, states) = (&self.shape, self.shape.states());
+        let mut row = self.wheel_rows_at(node, shape.wheels);
+        if node == self.base.intervals() {
+            if let Some(budget) = self.ingredients.budget {
+                show(Place::Inequality(row), None, budget / self.units.energy);
+                show(Place::Inequality(row), Some(shape.account_at()), -1.0);
+            }
+            return;
+        }
+        for i in 3..shape.torque_at() {
+            show(Place::Gap(i), Some(i), 1.0);
+        }
+        if shape.course == Course::Ramps {
+            for wheel in 0..shape.wheels {
+                show(
+                    Place::Gap(shape.torque_at() + wheel),
+                    Some(states + wheel),
+                    1.0,
+                );
+            }
+        }
+        let length = shape.length_variable();
+        let given = match &shape.lengths {
+            Lengths::Given(lengths) => lengths[node] / self.scales.time,
+            _ => 1.0,
+        };
+        show(
+            Place::Cost,
+            length,
+            given * self.ingredients.time * self.scales.time / self.units.cost,
+        );
+        if shape.lengths == Lengths::Shared {
+            show(Place::Gap(shape.shared_at()), Some(shape.shared_at()), 1.0);
+        }
+        if shape.clock {
+            show(Place::Gap(shape.clock_at()), Some(shape.clock_at()), 1.0);
+            show(Place::Gap(shape.clock_at()), length, given);
+        }
+        if shape.account {
+            show(
+                Place::Gap(shape.account_at()),
+                Some(shape.account_at()),
+                1.0,
+            );
+        }
+        if shape.account && self.ingredients.bills() {
+            let idle = self.quiescent_power * self.scales.time / self.units.energy;
+            show(Place::Gap(shape.account_at()), length, given * idle);
+        }
+        if self.limits_length() {
+            show(Place::Inequality(row), length, 1.0);
+            row += 1;
+        }
+        if shape.slacks {
+            for wheel in 0..shape.wheels {
+                let slack = Some(states + shape.slack_at() + wheel);
+                // The row of the wheel's energy is its last.
+                let energy_row = self.wheel_rows_at(node, wheel + 1) - 1;
+                show(Place::Inequality(energy_row), slack, 1.0);
+                show(Place::Inequality(row + wheel), slack, 1.0);
+                let price = self.slack_price(wheel);
+                if self.ingredients.energy > 0.0 {
+                    let weight = self.ingredients.energy / self.units.cost;
+                    show(Place::Cost, slack, price * weight);
+                }
+                if shape.account {
+                    let at = Place::Gap(shape.account_at());
+                    show(at, slack, price / self.units.energy);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! From a guess to a motion that flies: solve, correct the turns, keep reserves, solve again.
+
+use super::flow::Vehicle;
+use super::ingredients::Ingredients;
+use super::motion::Motion;
+use super::program::{LengthPenalty, Program, Units};
+use super::shape::{Lengths, Shape};
+use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
+use crate::leg::transcription::{Reserves, Scales};
+use crate::model::waypoint::Waypoint;
+use crate::nlp::{
+    Chain, InteriorPoint, Interruption, Iterate, Layout, NlpReport, NlpStatus, Settings, values_of,
+};
+
+/// A program to solve on the way to another.
+struct Phase {
+    settings: Settings,
+    length_penalty: f64,
+}
+
+/// Where interval lengths are unknown: which limits are active and roughly where the switches are,
+/// then where exactly, as for the legs of a tour.
+const WITH_LENGTHS: [Phase; 2] = [
+    Phase {
+        settings: Settings {
+            tolerance: 1e-2,
+            feasibility: 1e-3,
+            ..Settings::COLD
+        },
+        length_penalty: 0.1,
+    },
+    Phase {
+        settings: Settings {
+            initial_barrier: 1e-3,
+            max_iterations: 400,
+            ..Settings::COLD
+        },
+        length_penalty: 1e-3,
+    },
+];
+/// The same with momentum, from the fastest motion: the first phase would lead far away from it.
+const NEARBY: [Phase; 1] = [Phase {
+    settings: Settings {
+        initial_barrier: 3e-5,
+        initial_slack: 3e-5,
+        max_iterations: 400,
+        ..Settings::COLD
+    },
+    length_penalty: 0.02,
+}];
+const WITHOUT_LENGTHS: [Phase; 1] = [Phase {
+    settings: Settings {
+        max_iterations: 400,
+        ..Settings::COLD
+    },
+    length_penalty: 0.0,
+}];
+/// From a solution to one whose multipliers are evidence.
+const POLISHING: Phase = Phase {
+    settings: Settings {
+        tolerance: 1e-8,
+        initial_barrier: 1e-5,
+        initial_slack: 1e-5,
+        max_iterations: 200,
+        ..Settings::COLD
+    },
+    length_penalty: 1e-3,
+};
+/// Rounds of polishing: each turns the penalty on lengths to those of the last (the proximal point
+/// method), so that its share in the multipliers fades.
+const POLISH_ROUNDS: usize = 4;
+/// The penalty on lengths where energy is billed: the program would stretch the intervals on which
+/// power changes its sign, because it lets the signs cancel there.
+const BILLED_PENALTY: f64 = 0.1;
+/// Rounds of correcting the turns and raising the reserves at limits.
+const MAX_ROUNDS: usize = 15;
+/// Rounds that keep a reserve only where a limit was exceeded; then everywhere.
+const LOCAL_ROUNDS: usize = 6;
+/// Reserve per excess: a little more than is missing.
+const RESERVE_FACTOR: f64 = 1.1;
+/// Angle, rad, by which a flight may miss its end as the optimiser sees it.
+const MISS_TOLERANCE: f64 = 3e-9;
+/// A miss, rad, that asks for better derivatives too.
+const LARGE_MISS: f64 = 1e-3;
+/// Relative excess over a limit between nodes that is not worth another round.
+const LIMIT_TOLERANCE: f64 = 1e-7;
+/// The cost of a guess in the unit of the program's cost.
+const COST_OF_GUESS: f64 = 5.0;
+
+/// One program to solve.
+#[derive(Clone)]
+pub(super) struct Task<'a> {
+    pub(super) vehicle: &'a Vehicle,
+    pub(super) ends: [Waypoint; 2],
+    pub(super) shape: Shape,
+    pub(super) ingredients: Ingredients,
+}
+
+/// What came of it.
+#[derive(Debug, Clone)]
+pub(super) struct Solved {
+    pub(super) status: NlpStatus,
+    pub(super) motion: Motion,
+    /// `a T + b integral u'u + c E` as the program counts it.
+    pub(super) cost: f64,
+    pub(super) iterations: usize,
+    /// The program with its corrections, and the iterate with its multipliers.
+    pub(super) program: Program,
+    pub(super) iterate: Iterate,
+}
+
+impl Solved {
+    /// Whether it ended in a local minimum.
+    pub(super) fn converged(&self) -> bool {
+        self.status == NlpStatus::Converged
+    }
+
+    /// The same solution with multipliers to more digits, where they can be had.
+    pub(super) fn polished(
+        &self,
+        vehicle: &Vehicle,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Self {
+        let mut best = self.clone();
+        for _ in 0..POLISH_ROUNDS {
+            let mut run = Run {
+                engine: InteriorPoint::new(&best.program, POLISHING.settings),
+                solved: best.clone(),
+                vehicle,
+            };
+            run.draw_lengths(POLISHING.length_penalty);
+            run.forget_multipliers();
+            if !run.converges(stop) {
+                break;
+            }
+            run.correct();
+            best = run.solved;
+        }
+        best
+    }
+
+    /// Whether it beats another.
+    pub(super) fn improves(&self, other: &Self) -> bool {
+        self.converged() && (!other.converged() || self.cost < other.cost)
+    }
+}
+
+impl Task<'_> {
+    /// Solves from a guess with as many intervals as the program is to have.
+    pub(super) fn solve(&self, guess: &Motion, stop: &dyn Fn() -> Option<Interruption>) -> Solved {
+        let own = self.shape.lengths == Lengths::Own;
+        if !own {
+            return self.solve_in(&WITHOUT_LENGTHS, guess, stop);
+        }
+        if self.vehicle.dynamics.has_momentum() {
+            let nearby = self.solve_in(&NEARBY, guess, stop);
+            if nearby.converged() || stop().is_some() {
+                return nearby;
+            }
+        }
+        self.solve_in(&WITH_LENGTHS, guess, stop)
+    }
+
+    fn solve_in(
+        &self,
+        phases: &[Phase],
+        guess: &Motion,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Solved {
+        let program = self.program(guess);
+        let mut run = Run {
+            engine: InteriorPoint::new(&program, Settings::COLD),
+            solved: Solved {
+                status: NlpStatus::IterationLimit,
+                motion: guess.clone(),
+                cost: f64::INFINITY,
+                iterations: 0,
+                iterate: guess.iterate(&program),
+                program,
+            },
+            vehicle: self.vehicle,
+        };
+        run.pass(phases, stop);
+        run.solved
+    }
+
+    fn program(&self, guess: &Motion) -> Program {
+        let dynamics = &self.vehicle.dynamics;
+        let angle = self.ends[0]
+            .attitude
+            .signed_turn_to(&self.ends[1].attitude)
+            .norm();
+        let scales = Scales::for_legs(dynamics, angle, guess.duration());
+        let units = Units {
+            cost: scales.time,
+            energy: 1.0,
+        };
+        let mut program = Program::new(
+            self.vehicle,
+            scales,
+            &self.ends,
+            guess.lengths.len(),
+            self.shape.clone(),
+            (self.ingredients, units),
+        );
+        let energy = program.energy_of(&guess.iterate(&program));
+        let wheels = dynamics.wheel_count() as f64;
+        if energy > 0.0 {
+            program.units.energy = energy / wheels;
+        }
+        let effort: f64 = guess
+            .begin
+            .iter()
+            .zip(&guess.lengths)
+            .map(|(u, length)| u.norm_squared() * length)
+            .sum();
+        let ingredients = &self.ingredients;
+        let cost = ingredients.time * guess.duration()
+            + ingredients.effort * effort
+            + ingredients.energy * energy;
+        if cost > 0.0 {
+            program.units.cost = cost / COST_OF_GUESS;
+        }
+        program
+    }
+}
+
+/// A task on the way to its solution.
+struct Run<'a> {
+    vehicle: &'a Vehicle,
+    engine: InteriorPoint,
+    solved: Solved,
+}
+
+impl Run<'_> {
+    fn pass(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) {
+        for phase in phases {
+            let penalty = if self.solved.program.ingredients.bills() {
+                BILLED_PENALTY
+            } else {
+                phase.length_penalty
+            };
+            self.draw_lengths(penalty);
+            self.engine.settings = phase.settings;
+            if !self.converges(stop) {
+                return;
+            }
+        }
+        let intervals = self.solved.motion.lengths.len();
+        let mut reserves = Reserves::none(&self.vehicle.dynamics, intervals);
+        for round in 0..MAX_ROUNDS {
+            let missed = self.correct();
+            let (shares, torques) = self.vehicle.excesses(&self.solved.motion);
+            let excess = shares.iter().chain(&torques).copied().fold(0.0, f64::max);
+            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
+                return;
+            }
+            if missed > LARGE_MISS {
+                self.solved.program.base.use_finer_map();
+                self.correct();
+            }
+            if excess > LIMIT_TOLERANCE {
+                self.keep_reserves(round, &mut reserves, (&shares, &torques));
+            }
+            if !self.converges(stop) {
+                return;
+            }
+        }
+        self.solved.status = NlpStatus::IterationLimit;
+    }
+
+    fn draw_lengths(&mut self, weight: f64) {
+        let program = &self.solved.program;
+        let layout = Layout::of(program);
+        let lengths = (0..program.intervals())
+            .map(|node| program.length(&self.solved.iterate.link(&layout, node)))
+            .collect();
+        self.solved.program.penalty = LengthPenalty { weight, lengths };
+    }
+
+    /// Makes turns exact where the iterate is; the angle, rad, by which it missed.
+    fn correct(&mut self) -> f64 {
+        let Solved {
+            program,
+            iterate,
+            motion,
+            ..
+        } = &mut self.solved;
+        let mut missed = 0.0;
+        let layout = Layout::of(program);
+        for (node, exact) in self.vehicle.turns(motion).iter().enumerate() {
+            missed += program.correct_turn(&iterate.link(&layout, node), exact);
+        }
+        missed
+    }
+
+    fn keep_reserves(
+        &mut self,
+        round: usize,
+        reserves: &mut Reserves,
+        (shares, torques): (&[f64], &[f64]),
+    ) {
+        let program = &mut self.solved.program;
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max) * RESERVE_FACTOR;
+        if round < LOCAL_ROUNDS {
+            reserves.raise(shares, RESERVE_FACTOR);
+            let before = program.torque_reserve.clone();
+            for (k, excess) in torques.iter().enumerate() {
+                for end in [k, k + 1] {
+                    let raised = before[end] + RESERVE_FACTOR * excess;
+                    program.torque_reserve[end] = program.torque_reserve[end].max(raised);
+                }
+            }
+        } else {
+            reserves.raise_all(most(shares));
+            program
+                .torque_reserve
+                .iter_mut()
+                .for_each(|r| *r += most(torques));
+        }
+        program.base.keep(reserves);
+        if most(shares).max(most(torques)) <= NEAR_EXCESS {
+            self.solved.iterate.recentre(NEAR_BARRIER);
+            self.engine.settings.initial_barrier = NEAR_BARRIER;
+        } else {
+            // Slacks belong to the old limits.
+            self.forget_multipliers();
+            self.engine.settings.initial_barrier = Settings::COLD.initial_barrier;
+        }
+    }
+
+    /// Begins again from the primal point alone.
+    fn forget_multipliers(&mut self) {
+        let iterate = &mut self.solved.iterate;
+        *iterate = Iterate::cold(
+            std::mem::take(&mut iterate.points),
+            std::mem::take(&mut iterate.controls),
+        );
+    }
+
+    /// Runs the engine from where the run is; whether it converges.
+    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
+        let solved = &mut self.solved;
+        let report: NlpReport = self
+            .engine
+            .solve(&solved.program, &mut solved.iterate, stop);
+        solved.status = report.status;
+        solved.iterations += report.iterations;
+        solved.motion = Motion::of_iterate(&solved.iterate, &solved.program);
+        solved.cost = cost(&solved.program, &solved.iterate);
+        solved.converged()
+    }
+}
+
+/// The cost of an iterate without penalties, in the unit of the ingredients.
+fn cost(program: &Program, iterate: &Iterate) -> f64 {
+    let (layout, mut values) = (Layout::of(program), values_of(program));
+    let mut sum = 0.0;
+    for (node, values) in values.iter_mut().enumerate() {
+        let link = iterate.link(&layout, node);
+        program.values(&link, values);
+        sum += values.cost - program.penalty_of(&link);
+    }
+    sum * program.units.cost
+}

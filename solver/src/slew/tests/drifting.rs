@@ -1,0 +1,119 @@
+//! Slews while a speed law moves the momentum of wheels: how much time and the Hamiltonian know of it.
+
+use super::craft::{biros, biros_end, lro_drives, solved};
+use crate::model::drive::SpeedLawSpec;
+use crate::run::stop::StopSignal;
+use crate::slew::evidence::{self, Evidence};
+use crate::slew::{Command, Manoeuvre, ManoeuvreSpec, Measure, Objective};
+use nalgebra::Vector3;
+
+/// Speeds of the wheels with laws, rad/s: at the start, and where the law leads.
+const SPEEDS: [f64; 2] = [-200.0, 400.0];
+/// Return rate, 1/s: most of the way is gone during the slew.
+const RATE: f64 = 0.1;
+
+/// A slew whose wheels with laws are ahead by a time, s, in what is otherwise the same state: momenta
+/// of the commanded wheels and of the whole.
+fn ahead(by: f64, objective: Objective, command: Command) -> ManoeuvreSpec {
+    let (spacecraft, mut drives, mut start) = biros(true);
+    for drive in &mut drives[..3] {
+        drive.motor.clone_from(&lro_drives()[0].motor);
+    }
+    for drive in &mut drives[3..] {
+        drive.speed_law = Some(SpeedLawSpec {
+            rate_per_s: RATE,
+            speed_rad_s: SPEEDS[1],
+        });
+    }
+    let held = SPEEDS[1] + (SPEEDS[0] - SPEEDS[1]) * (-RATE * by).exp();
+    let spins = spacecraft.wheels[3..].iter();
+    let spins = spins.map(|wheel| Vector3::from(wheel.axis) * wheel.inertia_kg_m2);
+    let taken = spins.sum::<Vector3<f64>>() * (held - SPEEDS[0]);
+    let plain = ManoeuvreSpec {
+        spacecraft: spacecraft.clone(),
+        drives,
+        start: start.clone(),
+        end: biros_end(),
+        objective,
+        command,
+        ..ManoeuvreSpec::default()
+    };
+    let manoeuvre = Manoeuvre::try_new(&plain).expect("valid").manoeuvre;
+    // The body takes the other side of what the wheels with laws have taken.
+    let rate = -(manoeuvre.vehicle().dynamics.inertia_inverse * taken);
+    let mut speeds = vec![held; 7];
+    for (speed, wheel) in speeds.iter_mut().zip(&spacecraft.wheels[..3]) {
+        *speed = -Vector3::from(wheel.axis).dot(&rate);
+    }
+    start.body_rate_rad_s = Some(rate.into());
+    start.wheel_speed_rad_s = Some(speeds);
+    ManoeuvreSpec { start, ..plain }
+}
+
+fn evidence_for(spec: &ManoeuvreSpec) -> Evidence {
+    let manoeuvre = Manoeuvre::try_new(spec).expect("valid").manoeuvre;
+    let outcome = solved(spec);
+    let found =
+        evidence::of(&manoeuvre, &outcome, &StopSignal::new()).expect("a polished solution");
+    println!(
+        "H {:.3e} scale {:.4} averages {:.2e} pointwise {:.2e} alone {:.2e} gap {:.2e} defect {:.2e}",
+        found.hamiltonian,
+        found.scale,
+        found.average_spread,
+        found.pointwise_spread,
+        found.variation,
+        found.principle_gap,
+        found.costate_defect,
+    );
+    found
+}
+
+/// What a law that is a second ahead changes the objective by, from slews on both sides.
+fn difference(objective: Objective, command: Command) -> f64 {
+    let by = 0.05;
+    let value = |by: f64| solved(&ahead(by, objective, command)).objective;
+    (value(by) - value(-by)) / (2.0 * by)
+}
+
+#[test]
+fn the_hamiltonian_is_constant_only_with_the_costate_of_time() {
+    let command = Command::Free { intervals: 40 };
+    let found = evidence_for(&ahead(0.0, Objective::MinimumTime, command));
+    assert!(found.hamiltonian.abs() <= 2e-3);
+    assert!(found.average_spread <= 1e-2 && found.pointwise_spread <= 1e-2);
+    // The same check without the correction.
+    assert!(found.variation > 5e-2 && found.variation > 10.0 * found.pointwise_spread);
+    assert!(found.costate_defect <= 1e-2);
+    assert!(found.complementarity <= 1e-5);
+    assert!(found.switching_agreement >= 0.97);
+}
+
+#[test]
+fn the_costate_of_time_is_what_a_law_ahead_changes_the_time_by() {
+    let command = Command::Uniform { intervals: 60 };
+    let found = evidence_for(&ahead(0.0, Objective::MinimumTime, command));
+    let changed = difference(Objective::MinimumTime, command);
+    let [costate, _] = found.intervals[0].time_costate;
+    println!("{costate} {changed}");
+    assert!(changed.abs() > 2e-2 && (costate / changed - 1.0).abs() < 1e-2);
+}
+
+#[test]
+fn the_costate_of_time_is_what_a_law_ahead_changes_the_energy_by() {
+    // Here the times of all nodes are known, and the Hamiltonian is not zero.
+    let command = Command::Uniform { intervals: 60 };
+    let objective = |duration_s: f64| Objective::Energy {
+        duration_s,
+        measure: Measure::Proxy,
+    };
+    let found = evidence_for(&ahead(0.0, objective(14.0), command));
+    let changed = difference(objective(14.0), command);
+    let [costate, _] = found.intervals[0].time_costate;
+    println!("{costate} {changed}");
+    assert!((costate / changed - 1.0).abs() < 1e-2);
+    let energy = |duration: f64| solved(&ahead(0.0, objective(duration), command)).objective;
+    let added = (energy(14.1) - energy(13.9)) / 0.2;
+    println!("{} {added}", found.hamiltonian);
+    assert!((found.hamiltonian / added - 1.0).abs() < 2e-2);
+    assert!(found.variation > 3.0 * found.pointwise_spread);
+}

@@ -1,0 +1,86 @@
+//! The energy thesis: the proxy, the bill, and times at a given energy.
+
+use super::craft::{lro, lro_drives, lro_end, solved};
+use crate::slew::{Command, FinalWheels, ManoeuvreSpec, Measure, Objective, Outcome};
+
+/// The duration and the bill of the slew about the eigenaxis.
+const EIGENAXIS_S: f64 = 910.1;
+const EIGENAXIS_J: f64 = 28.12;
+
+fn lro_slew(objective: Objective, command: Command) -> Outcome {
+    solved(&ManoeuvreSpec {
+        spacecraft: lro(),
+        drives: lro_drives(),
+        end: lro_end(),
+        final_wheels: FinalWheels::Given,
+        objective,
+        command,
+        ..ManoeuvreSpec::default()
+    })
+}
+
+#[test]
+fn the_proxy_is_as_published_and_billed_more() {
+    let objective = Objective::Energy {
+        duration_s: EIGENAXIS_S,
+        measure: Measure::Proxy,
+    };
+    let outcome = lro_slew(objective, Command::Uniform { intervals: 80 });
+    assert!(outcome.objective <= 6.65, "{}", outcome.objective);
+    let bill = outcome.flown.energies.bill_j;
+    assert!((bill - 17.5).abs() < 0.2, "{bill}");
+}
+
+#[test]
+fn the_proxy_is_billed_like_the_eigenaxis_in_870_seconds() {
+    let objective = Objective::MinimumTimeAtEnergy {
+        energy_j: EIGENAXIS_J,
+        measure: Measure::Proxy,
+    };
+    let outcome = lro_slew(objective, Command::Uniform { intervals: 80 });
+    assert!(
+        (869.0..=870.0).contains(&outcome.time_s),
+        "{}",
+        outcome.time_s
+    );
+}
+
+#[test]
+fn the_bill_itself_can_be_cut_further() {
+    let objective = Objective::Energy {
+        duration_s: EIGENAXIS_S,
+        measure: Measure::Bill,
+    };
+    let outcome = lro_slew(objective, Command::Uniform { intervals: 120 });
+    assert!(outcome.objective <= 13.2, "{}", outcome.objective);
+}
+
+#[test]
+fn the_eigenaxis_bill_buys_a_slew_a_minute_shorter() {
+    let objective = Objective::MinimumTimeAtEnergy {
+        energy_j: EIGENAXIS_J,
+        measure: Measure::Bill,
+    };
+    let outcome = lro_slew(objective, Command::Uniform { intervals: 120 });
+    assert!(outcome.time_s <= 849.0, "{}", outcome.time_s);
+    assert!(outcome.flown.energies.bill_j <= EIGENAXIS_J);
+}
+
+#[test]
+fn minimum_time_is_a_quarter_shorter_than_the_eigenaxis() {
+    let outcome = lro_slew(Objective::MinimumTime, Command::Free { intervals: 32 });
+    assert!(outcome.time_s <= 682.0, "{}", outcome.time_s);
+}
+
+#[test]
+fn an_energy_that_does_not_bind_buys_the_fastest_slew() {
+    let command = Command::Uniform { intervals: 40 };
+    let fastest = lro_slew(Objective::MinimumTime, command);
+    for (measure, plenty) in [(Measure::Proxy, 2.0), (Measure::Bill, 1e3)] {
+        let energy_j = plenty * fastest.flown.energies.bill_j;
+        let objective = Objective::MinimumTimeAtEnergy { energy_j, measure };
+        let outcome = lro_slew(objective, command);
+        let excess = outcome.time_s / fastest.time_s - 1.0;
+        assert!(excess.abs() < 1e-6, "{measure:?}: {excess}");
+    }
+}

@@ -1,0 +1,76 @@
+//! BIROS: commands on the samples of a clock.
+
+use super::craft::{biros, biros_end, diagonal, solved, turn};
+use crate::model::spec::SpacecraftSpec;
+use crate::slew::{Command, Hold, ManoeuvreSpec, Objective, Outcome};
+
+fn biros_slew(pyramid: bool, command: Command) -> Outcome {
+    let (spacecraft, drives, start) = biros(pyramid);
+    solved(&ManoeuvreSpec {
+        spacecraft,
+        drives,
+        start,
+        end: biros_end(),
+        objective: Objective::MinimumTime,
+        command,
+        ..ManoeuvreSpec::default()
+    })
+}
+
+const TWO_HERTZ: Command = Command::Sampled {
+    period_s: 0.5,
+    hold: Hold::Constant,
+};
+
+#[test]
+fn nineteen_samples_are_enough_with_and_without_the_small_wheels() {
+    for pyramid in [false, true] {
+        let outcome = biros_slew(pyramid, TWO_HERTZ);
+        let continuous = outcome.continuous_time_s.expect("a continuous minimum");
+        assert!(continuous <= 9.30, "{continuous}");
+        assert_eq!(outcome.flown.pieces.len(), 19);
+        assert!((outcome.time_s - 9.5).abs() < 1e-9);
+        assert!(outcome.flown.attitude_error_rad <= 1e-7);
+        assert!(outcome.flown.rate_error_rad_s <= 1e-5);
+    }
+}
+
+#[test]
+fn linear_hold_is_continuous_and_flies() {
+    let command = Command::Sampled {
+        period_s: 0.5,
+        hold: Hold::Linear,
+    };
+    let outcome = biros_slew(true, command);
+    assert!(outcome.time_s >= 9.5 - 1e-9);
+    for pair in outcome.flown.pieces.windows(2) {
+        let steps = pair[0].torque_end_nm.iter().zip(&pair[1].torque_begin_nm);
+        assert!(steps.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-8);
+    }
+}
+
+#[test]
+fn continuous_torques_take_little_longer_than_jumps() {
+    let free = biros_slew(false, Command::Free { intervals: 24 }).time_s;
+    let smooth = biros_slew(false, Command::Smooth { intervals: 40 }).time_s;
+    assert!(free < smooth && smooth < 1.05 * free, "{free} {smooth}");
+}
+
+#[test]
+fn thirty_degrees_about_ten_take_ten_seconds() {
+    let (spacecraft, drives, start) = biros(false);
+    let outcome = solved(&ManoeuvreSpec {
+        spacecraft: SpacecraftSpec {
+            inertia_kg_m2: diagonal([10.0, 10.0, 10.0]),
+            wheels: spacecraft.wheels,
+            ..SpacecraftSpec::default()
+        },
+        drives,
+        start,
+        end: turn([0.0, 0.0, 1.0], 30_f64.to_radians()),
+        objective: Objective::MinimumTime,
+        command: TWO_HERTZ,
+        ..ManoeuvreSpec::default()
+    });
+    assert!((outcome.time_s - 10.0).abs() < 1e-9, "{}", outcome.time_s);
+}

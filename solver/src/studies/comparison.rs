@@ -1,0 +1,321 @@
+//! Reaction wheels against control moment gyroscopes: who turns a spacecraft faster, and from which
+//! angle on (RW/CMG thesis, chapter VII).
+//!
+//! Four pyramids of devices of the same momentum `h` turn the same spacecraft, sized so that wheels
+//! with eigenaxis control just reach a required rate (equation 272). A pyramid counts with a sphere:
+//! its body momentum and torque are multiples of a device's ([`Radii`]; equations 270 and 271), the
+//! torque of a device follows from its momentum by a law fitted to the market ([`crate::studies::market`]).
+//! A slew is bang-coast-bang within rate and acceleration:
+//!
+//! ```text
+//!   J = r_eigenaxis h / w_required,     w = r h / J,     w' = r_torque tau(h) / J
+//! ```
+//!
+//! Gyroscopes accelerate faster, wheels hold more momentum and coast faster; so wheels win beyond
+//! some angle, the *advantage angle*.
+//!
+//! # Published and computed advantage angles
+//!
+//! | `h`, N m s | control | published | computed | with a cut-off |
+//! |---|---|---|---|---|
+//! | 0.1 | time-optimal | 77 | 83.4 | 80.5 |
+//! | 0.01 | time-optimal | 24.1 | 25.5 | 24.9 |
+//! | 0.01 | eigenaxis | 30.3 | 31.8 | 30.5 |
+//!
+//! The thesis's own radii and laws, put into its own trapezoid, give the computed angles. The
+//! published ones were read off simulated slews (its figures 80 and 82), and its simulation ends a
+//! trapezoid when 0.999 of the angle is turned (as it says of figure 71). That cuts off the end of
+//! the slow last ramp, which is longer for wheels than for gyroscopes: the last column, from
+//! [`Advantage::with_cut_off_rad`]. It explains most of the difference for the eigenaxis and about
+//! half of it for the time-optimal slews; what remains, 3 to 4 %, the text does not explain.
+
+mod mass;
+mod radii;
+mod study;
+
+pub use mass::{MassPoint, MassStudy};
+pub use radii::{Control, Radii, Radius};
+pub use study::{AdvantageCurve, MarketFit, PyramidEnvelopes, SingularStates, Study, StudySpec};
+
+use crate::model::findings::Findings;
+use crate::model::problem::{Code, Problem};
+use crate::studies::eigenaxis::BangCoastBang;
+use crate::studies::market::{GYROSCOPES, PowerLaw, WHEELS};
+
+/// Share of the angle that the thesis's simulated slews leave out at their end.
+pub const CUT_OFF: f64 = 0.001;
+/// Halvings of the interval of an advantage angle: to rounding.
+const BISECTIONS: usize = 60;
+/// Most entries of a list in a request.
+const MOST_ENTRIES: usize = 10_000;
+
+/// A published advantage angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PublishedAngle {
+    /// Momentum of a device, N m s.
+    pub momentum_nms: f64,
+    /// Control of the wheels.
+    pub control: Control,
+    /// The angle, degrees.
+    pub angle_deg: f64,
+}
+
+/// The advantage angles that the thesis prints.
+pub const PUBLISHED_ANGLES: [PublishedAngle; 3] = [
+    PublishedAngle {
+        momentum_nms: 0.1,
+        control: Control::Optimal,
+        angle_deg: 77.0,
+    },
+    PublishedAngle {
+        momentum_nms: 0.01,
+        control: Control::Optimal,
+        angle_deg: 24.1,
+    },
+    PublishedAngle {
+        momentum_nms: 0.01,
+        control: Control::Eigenaxis,
+        angle_deg: 30.3,
+    },
+];
+
+/// Torque (N m) of a device over its momentum (N m s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Laws {
+    /// Of a wheel.
+    pub wheel: PowerLaw,
+    /// Of a gyroscope.
+    pub gyroscope: PowerLaw,
+}
+
+impl Laws {
+    /// Equations 268 and 269.
+    pub const PUBLISHED: Self = Self {
+        wheel: PowerLaw::PUBLISHED_WHEEL,
+        gyroscope: PowerLaw::PUBLISHED_GYROSCOPE,
+    };
+
+    /// Fitted to the thesis's tables. `None` never, for these tables.
+    #[must_use]
+    pub fn of_the_tables() -> Option<Self> {
+        let torque = |devices| PowerLaw::of_devices(devices, |d| d.momentum_nms, |d| d.torque_nm);
+        Some(Self {
+            wheel: torque(&WHEELS)?,
+            gyroscope: torque(&GYROSCOPES)?,
+        })
+    }
+
+    fn of(&self, control: Control) -> PowerLaw {
+        match control {
+            Control::Gyroscopes => self.gyroscope,
+            _ => self.wheel,
+        }
+    }
+}
+
+/// What a comparison is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparisonSpec {
+    /// Momenta of a device, N m s.
+    pub momenta_nms: Vec<f64>,
+    /// Angles of the slews whose durations are compared, rad.
+    pub angles_rad: Vec<f64>,
+    /// Rate that wheels with eigenaxis control have to reach, rad/s.
+    pub required_rate_rad_s: f64,
+    /// Radii of the body's spheres.
+    pub radii: Radii,
+    /// Laws of torque.
+    pub laws: Laws,
+}
+
+impl Default for ComparisonSpec {
+    /// The thesis's: 1, 0.1 and 0.01 N m s, every degree to a half turn, 3 deg/s.
+    fn default() -> Self {
+        Self {
+            momenta_nms: vec![1.0, 0.1, 0.01],
+            angles_rad: (1..=180)
+                .map(|angle| f64::from(angle).to_radians())
+                .collect(),
+            required_rate_rad_s: 3.0_f64.to_radians(),
+            radii: Radii::PUBLISHED,
+            laws: Laws::PUBLISHED,
+        }
+    }
+}
+
+/// How agile a spacecraft is under one control.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Agility {
+    /// The control.
+    pub control: Control,
+    /// Body momentum, N m s.
+    pub momentum_nms: f64,
+    /// Body torque, N m.
+    pub torque_nm: f64,
+    /// Rate, rad/s.
+    pub rate_rad_s: f64,
+    /// Acceleration, rad/s².
+    pub acceleration_rad_s2: f64,
+}
+
+impl Agility {
+    /// The slew from rest to rest by an angle, rad, above zero.
+    #[must_use]
+    pub fn slew(&self, angle: f64) -> BangCoastBang {
+        BangCoastBang::fastest(angle, self.acceleration_rad_s2, self.rate_rad_s)
+    }
+
+    /// The angle, rad, beyond which this control is faster than another; slews count as ended with a
+    /// share of their angle (below a half) left. Zero when it always is, `None` when it never is.
+    #[must_use]
+    pub fn advantage_over(&self, other: &Self, left: f64) -> Option<f64> {
+        if self.rate_rad_s <= other.rate_rad_s {
+            return None;
+        }
+        if self.acceleration_rad_s2 >= other.acceleration_rad_s2 {
+            return Some(0.0);
+        }
+        // A trapezoid takes at most angle / rate + rate / acceleration, and at least angle / rate:
+        // beyond this angle the lead is certain.
+        let slower = 1.0 / other.rate_rad_s - 1.0 / self.rate_rad_s;
+        let (mut behind, mut ahead) = (0.0, self.rate_rad_s / self.acceleration_rad_s2 / slower);
+        for _ in 0..BISECTIONS {
+            let angle = 0.5 * (behind + ahead);
+            if self.slew(angle).time_with_left(left) > other.slew(angle).time_with_left(left) {
+                behind = angle;
+            } else {
+                ahead = angle;
+            }
+        }
+        Some(ahead)
+    }
+}
+
+/// From which angle on wheels are faster than gyroscopes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Advantage {
+    /// Control of the wheels.
+    pub control: Control,
+    /// The angle, rad; it may exceed the half turn that is the largest slew. `None` when never.
+    pub angle_rad: Option<f64>,
+    /// The angle, rad, when slews end with [`CUT_OFF`] of their angle left, as in the thesis.
+    pub with_cut_off_rad: Option<f64>,
+}
+
+/// Durations of slews under one control.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Durations {
+    /// The control.
+    pub control: Control,
+    /// One duration per angle of the request, s.
+    pub durations_s: Vec<f64>,
+}
+
+/// The comparison for devices of one momentum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SizeComparison {
+    /// Momentum of a device, N m s.
+    pub momentum_nms: f64,
+    /// Inertia of the spacecraft, kg m².
+    pub inertia_kg_m2: f64,
+    /// One entry per control, in the order of [`Control::ALL`].
+    pub agilities: Vec<Agility>,
+    /// One entry per control.
+    pub slews: Vec<Durations>,
+    /// One entry per control of wheels.
+    pub advantages: Vec<Advantage>,
+}
+
+/// A whole comparison.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// What was asked for.
+    pub spec: ComparisonSpec,
+    /// One entry per momentum.
+    pub sizes: Vec<SizeComparison>,
+}
+
+impl Comparison {
+    /// Compares.
+    ///
+    /// # Errors
+    ///
+    /// All problems of the request at once.
+    pub fn of(spec: ComparisonSpec) -> Result<Self, Vec<Problem>> {
+        let mut findings = Findings::default();
+        for (name, values) in [
+            ("momenta_nms", &spec.momenta_nms),
+            ("angles_rad", &spec.angles_rad),
+        ] {
+            check_list(name, values, &mut findings);
+        }
+        findings.positive("/required_rate_rad_s", spec.required_rate_rad_s);
+        spec.radii.check("/radii", &mut findings);
+        for (name, law) in [
+            ("wheel", spec.laws.wheel),
+            ("gyroscope", spec.laws.gyroscope),
+        ] {
+            findings.positive(&format!("/laws/{name}/factor"), law.factor);
+            findings.finite(&format!("/laws/{name}/exponent"), law.exponent);
+        }
+        findings.conclude(Some(()))?;
+        let sizes = spec.momenta_nms.iter().map(|&h| size(&spec, h)).collect();
+        Ok(Self { spec, sizes })
+    }
+}
+
+fn size(spec: &ComparisonSpec, momentum: f64) -> SizeComparison {
+    let inertia = spec.radii.of(Control::Eigenaxis).momentum * momentum / spec.required_rate_rad_s;
+    let agilities = Control::ALL.map(|control| {
+        let radius = spec.radii.of(control);
+        let momentum_nms = radius.momentum * momentum;
+        let torque_nm = radius.torque * spec.laws.of(control).at(momentum);
+        Agility {
+            control,
+            momentum_nms,
+            torque_nm,
+            rate_rad_s: momentum_nms / inertia,
+            acceleration_rad_s2: torque_nm / inertia,
+        }
+    });
+    let [wheels @ .., gyroscopes] = &agilities;
+    let advantage = |wheels: &Agility| Advantage {
+        control: wheels.control,
+        angle_rad: wheels.advantage_over(gyroscopes, 0.0),
+        with_cut_off_rad: wheels.advantage_over(gyroscopes, CUT_OFF),
+    };
+    let durations = |agility: &Agility| Durations {
+        control: agility.control,
+        durations_s: spec
+            .angles_rad
+            .iter()
+            .map(|&a| agility.slew(a).duration())
+            .collect(),
+    };
+    SizeComparison {
+        momentum_nms: momentum,
+        inertia_kg_m2: inertia,
+        slews: agilities.iter().map(durations).collect(),
+        advantages: wheels.iter().map(advantage).collect(),
+        agilities: agilities.to_vec(),
+    }
+}
+
+fn check_list(name: &str, values: &[f64], findings: &mut Findings) {
+    let pointer = format!("/{name}");
+    if values.is_empty() {
+        findings.refuse(
+            &pointer,
+            Code::WrongLength,
+            "the list is empty",
+            "give at least one number",
+        );
+    }
+    findings.at_most(&pointer, values.len(), MOST_ENTRIES);
+    for (i, &value) in values.iter().enumerate() {
+        findings.positive(&format!("{pointer}/{i}"), value);
+    }
+}
+
+#[cfg(test)]
+mod tests;

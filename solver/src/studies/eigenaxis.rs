@@ -1,0 +1,370 @@
+//! Slews about the eigenaxis from rest to rest: what everyday attitude control does.
+//!
+//! The body accelerates about the fixed axis `e` of the whole turn, coasts, and brakes. Without
+//! stored momentum the gyroscopic terms vanish, and along the way
+//!
+//! ```text
+//!   A h = -J e w,      A u = -J_eff e w'            (h, u: momenta and torques of the wheels)
+//! ```
+//!
+//! so the rate is limited by how far the momentum envelope reaches along `J e`, the acceleration by
+//! how far the torque envelope reaches along `J_eff e`. How much of an envelope may be used depends
+//! on how demands are shared out and on what is promised in every direction ([`Limit`]; RW/CMG
+//! thesis, chapter IV, sections E to G).
+//!
+//! ```text
+//!   T = angle / w + w / w'    where the rate is reached, else    T = 2 sqrt(angle / w')
+//! ```
+
+use crate::leg::solve::eigenaxis::Trapezoid;
+use crate::model::problem::Problem;
+use crate::model::spacecraft::Spacecraft;
+use crate::wheels::array::{Envelopes, Polytope, SpacecraftEnvelopes};
+use nalgebra::Vector3;
+
+/// How much of its wheels a slew about the eigenaxis may use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// The sphere inside the pseudo-inverse envelope: the same in every direction, by the simplest
+    /// allocation.
+    PseudoInverseSphere,
+    /// The pseudo-inverse envelope.
+    PseudoInverse,
+    /// The sphere inside the full envelope: the same in every direction, by the best allocation.
+    FullSphere,
+    /// The full envelope.
+    Full,
+}
+
+impl Limit {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::PseudoInverseSphere,
+        Self::PseudoInverse,
+        Self::FullSphere,
+        Self::Full,
+    ];
+
+    /// The stable text of the limit.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::PseudoInverseSphere => "pseudo_inverse_sphere",
+            Self::PseudoInverse => "pseudo_inverse",
+            Self::FullSphere => "full_sphere",
+            Self::Full => "full",
+        }
+    }
+
+    /// How far along a demand of one unit of motion a multiple of it may go.
+    fn multiple(self, envelopes: &Envelopes, demand: &Vector3<f64>) -> f64 {
+        let sphere = |polytope: &Polytope| polytope.figures().inscribed_radius / demand.norm();
+        match self {
+            Self::PseudoInverseSphere => sphere(&envelopes.pseudo_inverse),
+            Self::PseudoInverse => 1.0 / envelopes.pseudo_inverse.share(demand),
+            Self::FullSphere => sphere(&envelopes.full),
+            Self::Full => 1.0 / envelopes.full.share(demand),
+        }
+    }
+}
+
+/// A bang-coast-bang of one angle.
+#[derive(Debug, Clone, Copy)]
+pub struct BangCoastBang {
+    trapezoid: Trapezoid,
+    angle: f64,
+    rate: f64,
+    acceleration: f64,
+}
+
+impl BangCoastBang {
+    /// The fastest over an angle (rad) within an acceleration (rad/s²) and a rate (rad/s), all above
+    /// zero; the rate may be infinite.
+    #[must_use]
+    pub fn fastest(angle: f64, acceleration: f64, rate: f64) -> Self {
+        let trapezoid = Trapezoid::fastest(angle, acceleration, rate);
+        Self {
+            trapezoid,
+            angle,
+            rate: trapezoid.at(0.5 * trapezoid.duration).1,
+            acceleration,
+        }
+    }
+
+    /// Duration, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.trapezoid.duration
+    }
+
+    /// Greatest rate, rad/s.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Acceleration of the ramps, rad/s².
+    #[must_use]
+    pub fn acceleration(&self) -> f64 {
+        self.acceleration
+    }
+
+    /// Duration of each ramp, s.
+    #[must_use]
+    pub fn ramp(&self) -> f64 {
+        self.rate / self.acceleration
+    }
+
+    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time of the slew, s.
+    #[must_use]
+    pub fn at(&self, time: f64) -> (f64, f64, f64) {
+        self.trapezoid.at(time)
+    }
+
+    /// When a share (in [0, 1]) of the angle is left, s.
+    #[must_use]
+    pub fn time_with_left(&self, share: f64) -> f64 {
+        let left = self.angle * share;
+        let ramp = self.ramp();
+        let ramped = 0.5 * self.rate * ramp;
+        let remaining = if left <= ramped {
+            (2.0 * left / self.acceleration).sqrt()
+        } else if left <= self.angle - ramped {
+            ramp + (left - ramped) / self.rate
+        } else {
+            let begun = 2.0 * (self.angle - left) / self.acceleration;
+            self.duration() - begun.sqrt()
+        };
+        self.duration() - remaining
+    }
+}
+
+/// A slew about the eigenaxis under one limit.
+#[derive(Debug, Clone, Copy)]
+pub struct EigenaxisSlew {
+    /// How much of the wheels it uses.
+    pub limit: Limit,
+    /// Its axis, unit, body axes.
+    pub axis: Vector3<f64>,
+    /// Its course in time.
+    pub course: BangCoastBang,
+    /// What the wheels hold at the greatest rate, `A h`, body axes, N m s.
+    pub peak_momentum: Vector3<f64>,
+    /// What the wheels take up while the body accelerates, `A u`, body axes, N m; the opposite when
+    /// it brakes.
+    pub ramp_torque: Vector3<f64>,
+}
+
+/// What limits slews of a spacecraft without stored momentum.
+#[derive(Debug, Clone)]
+pub struct Baselines {
+    spacecraft: Spacecraft,
+    envelopes: SpacecraftEnvelopes,
+}
+
+impl Baselines {
+    /// Those of a spacecraft with the usable shares of its torque and speed limits. With a wheel of
+    /// unlimited speed the array's momentum is taken as unlimited too.
+    ///
+    /// # Errors
+    ///
+    /// An authority that is not in (0, 1]; pointers are those of a scenario's options.
+    pub fn of(
+        spacecraft: &Spacecraft,
+        torque_authority: f64,
+        momentum_authority: f64,
+    ) -> Result<Self, Vec<Problem>> {
+        Ok(Self {
+            envelopes: SpacecraftEnvelopes::of(spacecraft, torque_authority, momentum_authority)?,
+            spacecraft: spacecraft.clone(),
+        })
+    }
+
+    /// The envelopes within which the slews stay.
+    #[must_use]
+    pub fn envelopes(&self) -> &SpacecraftEnvelopes {
+        &self.envelopes
+    }
+
+    /// The fastest slew by a rotation vector (axis times angle, body axes, rad) under each limit.
+    /// `None` for no turn at all.
+    #[must_use]
+    pub fn slews(&self, turn: &Vector3<f64>) -> Option<[EigenaxisSlew; 4]> {
+        let axis = turn.try_normalize(0.0)?;
+        Some(Limit::ALL.map(|limit| self.slew(axis, turn.norm(), limit)))
+    }
+
+    fn slew(&self, axis: Vector3<f64>, angle: f64, limit: Limit) -> EigenaxisSlew {
+        // What the wheels hold and take up per unit of rate and of acceleration.
+        let held = -(self.spacecraft.inertia() * axis);
+        let taken = -(self.spacecraft.effective_inertia() * axis);
+        let momentum = self.envelopes.momentum.as_ref();
+        let by_wheels = momentum.map(|momentum| limit.multiple(&momentum.envelopes, &held));
+        let per_axis = axis
+            .abs()
+            .zip_map(&self.spacecraft.max_rate(), |share, most| most / share);
+        let rate = by_wheels
+            .unwrap_or(f64::INFINITY)
+            .min(per_axis.min())
+            .min(self.spacecraft.max_rate_norm());
+        // Uneven torque limits: both ramps are as steep as the flatter one has to be.
+        let torque = &self.envelopes.torque.envelopes;
+        let speeding = limit.multiple(torque, &taken);
+        let braking = limit.multiple(torque, &-taken);
+        let course = BangCoastBang::fastest(angle, speeding.min(braking), rate);
+        EigenaxisSlew {
+            limit,
+            axis,
+            course,
+            peak_momentum: held * course.rate(),
+            ramp_torque: taken * course.acceleration(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::spec::{SpacecraftSpec, WheelSpec};
+
+    const S: f64 = 0.816_496_580_927_726;
+    const C: f64 = 0.577_350_269_189_625_8;
+
+    /// The thesis's spacecraft: 25.4 kg m² about every axis, wheels of 1 N m s and 85.7 mN m.
+    fn thesis() -> SpacecraftSpec {
+        let max_speed = 3000.0 * std::f64::consts::TAU / 60.0;
+        let wheel = |axis| WheelSpec {
+            axis,
+            normalize_axis: true,
+            inertia_kg_m2: 1.0 / max_speed,
+            max_torque_nm: 0.0857,
+            min_torque_nm: None,
+            max_speed_rad_s: Some(max_speed),
+            enabled: true,
+        };
+        SpacecraftSpec {
+            inertia_kg_m2: [[25.4, 0.0, 0.0], [0.0, 25.4, 0.0], [0.0, 0.0, 25.4]],
+            wheels: [[S, 0.0, C], [0.0, S, C], [-S, 0.0, C], [0.0, -S, C]]
+                .map(wheel)
+                .into(),
+            ..SpacecraftSpec::default()
+        }
+    }
+
+    fn slews(spec: &SpacecraftSpec, turn: Vector3<f64>) -> [EigenaxisSlew; 4] {
+        let spacecraft = Spacecraft::try_new(spec, "").unwrap();
+        Baselines::of(&spacecraft, 1.0, 1.0)
+            .unwrap()
+            .slews(&turn)
+            .unwrap()
+    }
+
+    #[test]
+    fn the_published_slew_takes_51_6_seconds() {
+        let turn = Vector3::new(S, 0.0, C) * 120.0_f64.to_radians();
+        let [sphere, simple, full_sphere, full] = slews(&thesis(), turn);
+        // The thesis prints 51.8 s of a simulation; its formula gives 51.57 s.
+        assert!(
+            (simple.course.duration() - 51.6).abs() < 0.05,
+            "{:?}",
+            simple.course
+        );
+        // The axis is that of a minor vertex, where the pseudo-inverse has only its sphere.
+        assert!((sphere.course.duration() - simple.course.duration()).abs() < 1e-9);
+        assert!((simple.peak_momentum.norm() - 4.0 / 3.0).abs() < 1e-12);
+        assert!((full_sphere.peak_momentum.norm() - 1.633).abs() < 5e-4);
+        assert!((full.peak_momentum.norm() - 2.0).abs() < 1e-12);
+        let by_formula = |momentum: f64, torque: f64| {
+            let (rate, effective) = (momentum / 25.4, 25.4 - 4.0 / 3.0 / 314.159_265);
+            turn.norm() / rate + rate * effective / torque
+        };
+        assert!((full.course.duration() - by_formula(2.0, 2.0 * 0.0857)).abs() < 1e-6);
+        assert!((simple.course.duration() - by_formula(4.0 / 3.0, 0.0857 / 0.75)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_planner_finds_the_same_slew() {
+        use crate::model::attitude::Attitude;
+        use crate::model::dynamics::Dynamics;
+        use crate::model::scenario::Scenario;
+        use crate::model::spec::ScenarioSpec;
+        let mut spacecraft = thesis();
+        spacecraft.inertia_kg_m2 = [[25.4, 1.0, -2.0], [1.0, 31.0, 0.5], [-2.0, 0.5, 18.0]];
+        spacecraft.max_body_rate_rad_s = [None, Some(0.03), None];
+        let spec = ScenarioSpec {
+            spacecraft: spacecraft.clone(),
+            targets: vec![crate::model::spec::TargetSpec {
+                id: "t".into(),
+                ..Default::default()
+            }],
+            ..ScenarioSpec::default()
+        };
+        let dynamics = Dynamics::of(&Scenario::try_new(&spec).unwrap().scenario);
+        for turn in [[1.0, 0.3, -0.2], [0.1, -0.05, 0.02], [-0.4, 2.0, 1.0]] {
+            let turn = Vector3::from(turn);
+            let to = Attitude::identity().retract(turn);
+            let null = nalgebra::DVector::zeros(1);
+            let planned = crate::leg::solve::eigenaxis::EigenaxisSlew::fastest(
+                &dynamics,
+                &Attitude::identity(),
+                &to,
+                &null,
+            );
+            let duration = slews(&spacecraft, turn)[1].course.duration();
+            assert!(
+                (duration / planned.trapezoid.duration - 1.0).abs() < 1e-9,
+                "{turn}"
+            );
+        }
+    }
+
+    #[test]
+    fn more_of_the_wheels_is_never_slower() {
+        for turn in [[1.0, 0.0, 0.0], [0.2, -0.7, 1.3], [0.0, 0.0, 0.01]] {
+            let [sphere, simple, full_sphere, full] =
+                slews(&thesis(), Vector3::from(turn)).map(|slew| slew.course.duration());
+            let slack = 1.0 + 1e-12;
+            assert!(simple <= sphere * slack && full <= simple * slack);
+            assert!(full_sphere <= sphere * slack && full <= full_sphere * slack);
+        }
+    }
+
+    #[test]
+    fn no_turn_has_no_axis_and_shares_lie_between_zero_and_one() {
+        let spacecraft = Spacecraft::try_new(&thesis(), "").unwrap();
+        let baselines = Baselines::of(&spacecraft, 1.0, 1.0).unwrap();
+        assert!(baselines.slews(&Vector3::zeros()).is_none());
+        let problems = Baselines::of(&spacecraft, 0.0, 1.5).unwrap_err();
+        let pointers: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
+        assert_eq!(
+            pointers,
+            ["/options/torque_authority", "/options/momentum_authority"]
+        );
+    }
+
+    #[test]
+    fn the_course_inverts_its_own_angles() {
+        for rate in [0.05, 0.2, f64::INFINITY] {
+            let course = BangCoastBang::fastest(2.0, 0.01, rate);
+            for i in 0..=20 {
+                let share = f64::from(i) / 20.0;
+                let (angle, ..) = course.at(course.time_with_left(share));
+                assert!(
+                    (angle - 2.0 * (1.0 - share)).abs() < 1e-7,
+                    "{rate} {share}: {angle}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn wheels_without_a_speed_limit_leave_the_rate_to_the_body() {
+        let mut spec = thesis();
+        spec.wheels[2].max_speed_rad_s = None;
+        let turn = Vector3::new(3.0, 0.0, 0.0);
+        let free = slews(&spec, turn)[1].course;
+        assert!((free.duration() - 2.0 * free.ramp()).abs() < 1e-9);
+        spec.max_body_rate_norm_rad_s = Some(0.01);
+        assert!((slews(&spec, turn)[1].course.rate() - 0.01).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,348 @@
+//! What the wheels of a spacecraft can do together: envelopes, slews within them, demands shared out.
+//!
+//! For every turn from rest to rest, without stored momentum, the study has the slews about the
+//! eigenaxis under each [limit](crate::studies::eigenaxis::Limit) and, on request, the fastest ones, once with
+//! torques free of each other and once with those that the pseudo-inverse shares out; all with
+//! their ways through the envelopes (RW/CMG thesis, figures 71 to 76).
+
+use crate::model::attitude::Attitude;
+use crate::model::findings::Findings;
+use crate::model::plan::Control;
+use crate::model::problem::{Code, Problem};
+use crate::model::spacecraft::Spacecraft;
+use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, SpacecraftSpec, StateSpec};
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
+use crate::slew::{self, FinalWheels, Manoeuvre, ManoeuvreSpec, Outcome, WheelAllocation};
+use crate::studies::eigenaxis::{Baselines, EigenaxisSlew};
+use crate::studies::envelope_path::EnvelopePath;
+use crate::wheels::allocation::{self, Allocation};
+use crate::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
+use nalgebra::Vector3;
+
+/// Most turns of a study, each with two optimisations at most.
+pub const MOST_TURNS: usize = 100;
+/// Most demands of a study, each with a linear program.
+pub const MOST_DEMANDS: usize = 1000;
+/// Turns below this angle, rad, are rounding.
+const LEAST_ANGLE: f64 = 1e-9;
+
+/// A turn as a caller describes it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TurnSpec {
+    /// Attitude at the start.
+    pub from: AttitudeSpec,
+    /// Attitude at the end; of the two ways to it the study takes the shorter one.
+    pub to: AttitudeSpec,
+}
+
+/// A study as a caller describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvelopeStudySpec {
+    /// The spacecraft.
+    pub spacecraft: SpacecraftSpec,
+    /// Share of every torque limit that may be used.
+    pub torque_authority: f64,
+    /// Share of every wheel speed limit that may be used.
+    pub momentum_authority: f64,
+    /// Turns from rest to rest.
+    pub turns: Vec<TurnSpec>,
+    /// Torques that the wheels are to take up together, body axes, N m; the body gets the opposite.
+    pub demands_nm: Vec<[f64; 3]>,
+    /// Whether the fastest slews are wanted too.
+    pub time_optimal: bool,
+}
+
+/// A valid study.
+#[derive(Debug, Clone)]
+pub struct EnvelopeStudy {
+    spacecraft: Spacecraft,
+    baselines: Baselines,
+    turns: Vec<Turn>,
+    demands: Vec<Vector3<f64>>,
+}
+
+#[derive(Debug, Clone)]
+struct Turn {
+    /// Axis times angle, body axes, rad.
+    vector: Vector3<f64>,
+    /// The slews to optimise.
+    manoeuvres: Vec<Manoeuvre>,
+}
+
+/// What a study finds.
+#[derive(Debug, Clone)]
+pub struct EnvelopeReport {
+    /// The envelopes with the usable shares of the limits.
+    pub envelopes: SpacecraftEnvelopes,
+    /// The turns, in their order.
+    pub turns: Vec<TurnReport>,
+    /// The demands, in their order.
+    pub demands: Vec<DemandReport>,
+    /// Whether every slew was reached before the stop signal.
+    pub complete: bool,
+}
+
+impl EnvelopeReport {
+    /// Number of slews in minimum time that were tried and not found.
+    #[must_use]
+    pub fn unsolved(&self) -> usize {
+        let tried = self.turns.iter().flat_map(|turn| &turn.time_optimal);
+        tried.filter(|slew| slew.found.is_none()).count()
+    }
+}
+
+/// A turn in all its ways.
+#[derive(Debug, Clone)]
+pub struct TurnReport {
+    /// Axis times angle, body axes, rad.
+    pub vector: Vector3<f64>,
+    /// About the eigenaxis, in the order of [`crate::studies::eigenaxis::Limit::ALL`].
+    pub eigenaxis: Vec<(EigenaxisSlew, EnvelopePath)>,
+    /// The fastest ones that were asked for and reached.
+    pub time_optimal: Vec<TimeOptimalSlew>,
+}
+
+/// A slew in minimum time; null-space momentum is zero at both ends.
+#[derive(Debug, Clone)]
+pub struct TimeOptimalSlew {
+    /// How torque is shared out.
+    pub allocation: WheelAllocation,
+    /// How the program ended: `converged`, or why not.
+    pub status: String,
+    /// Duration, s, and the way through the envelopes; none when no slew was found that flies.
+    pub found: Option<(f64, EnvelopePath)>,
+}
+
+/// A demand, shared out in both ways.
+#[derive(Debug, Clone)]
+pub struct DemandReport {
+    /// The demand, N m.
+    pub torque: Vector3<f64>,
+    /// By the pseudo-inverse.
+    pub pseudo_inverse: Allocation,
+    /// With the least load; none when the linear program could not be solved.
+    pub least_load: Option<Allocation>,
+}
+
+impl EnvelopeStudy {
+    /// Validates a description, with what the caller should know about it. Pointers are those of the
+    /// fields: `/spacecraft`, `/options`, `/turns`, `/demands_nm`.
+    ///
+    /// # Errors
+    ///
+    /// All problems at once.
+    pub fn try_new(spec: &EnvelopeStudySpec) -> Result<(Self, Vec<Problem>), Vec<Problem>> {
+        let mut findings = Findings::default();
+        let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", &mut findings);
+        let (torque, momentum) = (spec.torque_authority, spec.momentum_authority);
+        let baselines = match &spacecraft {
+            Some(spacecraft) => Baselines::of(spacecraft, torque, momentum),
+            None => Err(authority_problems(torque, momentum)),
+        };
+        let baselines = baselines
+            .map_err(|problems| findings.include(problems))
+            .ok();
+        findings.at_most("/turns", spec.turns.len(), MOST_TURNS);
+        findings.at_most("/demands_nm", spec.demands_nm.len(), MOST_DEMANDS);
+        let vectors: Vec<_> = spec
+            .turns
+            .iter()
+            .enumerate()
+            .map(|(i, turn)| read_turn(turn, &format!("/turns/{i}"), &mut findings))
+            .collect();
+        let demands: Vec<_> = spec
+            .demands_nm
+            .iter()
+            .enumerate()
+            .map(|(i, torque)| findings.vector(&format!("/demands_nm/{i}"), *torque))
+            .collect();
+        let read = (|| {
+            Some((
+                spacecraft?,
+                baselines?,
+                vectors.into_iter().collect::<Option<Vec<_>>>()?,
+                demands.into_iter().collect::<Option<Vec<_>>>()?,
+            ))
+        })();
+        let ((spacecraft, baselines, vectors, demands), warnings) = findings.conclude(read)?;
+        let beyond = beyond_numbers(&baselines, &vectors, &demands);
+        if !beyond.is_empty() {
+            return Err(beyond);
+        }
+        let turns = vectors.into_iter().zip(&spec.turns).map(|(vector, turn)| {
+            let manoeuvres = if spec.time_optimal {
+                fastest(spec, turn)?
+            } else {
+                Vec::new()
+            };
+            Ok(Turn { vector, manoeuvres })
+        });
+        let study = Self {
+            turns: turns.collect::<Result<_, Vec<Problem>>>()?,
+            spacecraft,
+            baselines,
+            demands,
+        };
+        Ok((study, warnings))
+    }
+
+    /// Conducts the study; what the stop signal cuts short is left out.
+    #[must_use]
+    pub fn conduct(&self, pool: &SolverPool, stop: &StopSignal) -> EnvelopeReport {
+        let torque = &self.baselines.envelopes().torque.array;
+        let demands = self.demands.iter().map(|demand| DemandReport {
+            torque: *demand,
+            pseudo_inverse: allocation::pseudo_inverse(torque, demand),
+            least_load: allocation::least_load(torque, demand).filter(is_finite),
+        });
+        EnvelopeReport {
+            envelopes: self.baselines.envelopes().clone(),
+            demands: demands.collect(),
+            turns: pool.map(&self.turns, |turn| self.turn(turn, stop)),
+            complete: !stop.is_set(),
+        }
+    }
+
+    fn turn(&self, turn: &Turn, stop: &StopSignal) -> TurnReport {
+        let envelopes = self.baselines.envelopes();
+        let slews = self.baselines.slews(&turn.vector).into_iter().flatten();
+        let mut time_optimal = Vec::new();
+        for manoeuvre in &turn.manoeuvres {
+            if stop.is_set() {
+                break;
+            }
+            let outcome = slew::solve(manoeuvre, stop);
+            // What was interrupted says nothing.
+            if stop.is_set() && !outcome.solved {
+                break;
+            }
+            time_optimal.push(TimeOptimalSlew {
+                allocation: manoeuvre.allocation(),
+                found: outcome
+                    .solved
+                    .then(|| (outcome.time_s, self.path_of(&outcome))),
+                status: outcome.status,
+            });
+        }
+        TurnReport {
+            vector: turn.vector,
+            eigenaxis: slews
+                .map(|slew| (slew, EnvelopePath::of_eigenaxis_slew(envelopes, &slew)))
+                .collect(),
+            time_optimal,
+        }
+    }
+
+    fn path_of(&self, outcome: &Outcome) -> EnvelopePath {
+        // Torques on intervals of free length are constant.
+        let pieces = outcome.flown.pieces.iter().map(|piece| Control {
+            start_s: piece.start_s,
+            duration_s: piece.duration_s,
+            wheel_torque_nm: piece.torque_begin_nm.clone(),
+        });
+        EnvelopePath::of_flight(
+            self.baselines.envelopes(),
+            &self.spacecraft,
+            &outcome.flown.states,
+            &pieces.collect::<Vec<_>>(),
+        )
+    }
+}
+
+/// What leaves the range of numbers: finite limits have volumes, durations and loads that are not.
+fn beyond_numbers(
+    baselines: &Baselines,
+    turns: &[Vector3<f64>],
+    demands: &[Vector3<f64>],
+) -> Vec<Problem> {
+    let envelopes = baselines.envelopes();
+    let arrays = std::iter::once(&envelopes.torque).chain(&envelopes.momentum);
+    let mut polytopes = arrays.flat_map(|array| {
+        let Envelopes {
+            full,
+            pseudo_inverse,
+        } = &array.envelopes;
+        [full, pseudo_inverse]
+    });
+    let sound = polytopes.all(|polytope| {
+        let figures = polytope.figures();
+        figures.volume.is_normal() && figures.mean_radius.is_normal()
+    });
+    let problem = |pointer: String, what: &str| {
+        let hint = "look for a wrong unit among the limits of the wheels and the inertia";
+        Problem::new(pointer, Code::OutOfRange, what, hint)
+    };
+    if !sound {
+        let what = "the envelope of the wheels is beyond the range of numbers";
+        return vec![problem("/spacecraft/wheels".to_owned(), what)];
+    }
+    let slow = turns.iter().enumerate().filter(|(_, turn)| {
+        let slews = baselines.slews(turn).into_iter().flatten();
+        let mut durations = slews.map(|slew| slew.course.duration());
+        !durations.all(f64::is_normal)
+    });
+    let slow = slow.map(|(i, _)| {
+        let what = "the turn about the eigenaxis takes a time beyond the range of numbers";
+        problem(format!("/turns/{i}"), what)
+    });
+    let torque = &envelopes.torque.array;
+    let heavy = demands
+        .iter()
+        .enumerate()
+        .filter(|(_, demand)| !is_finite(&allocation::pseudo_inverse(torque, demand)));
+    let heavy = heavy.map(|(i, _)| {
+        let what = "the torque asks for shares of the wheels beyond the range of numbers";
+        problem(format!("/demands_nm/{i}"), what)
+    });
+    slow.chain(heavy).collect()
+}
+
+fn is_finite(allocation: &Allocation) -> bool {
+    allocation.load.is_finite() && allocation.wheels.iter().all(|wheel| wheel.is_finite())
+}
+
+/// The rotation vector of a turn, rad.
+fn read_turn(spec: &TurnSpec, pointer: &str, findings: &mut Findings) -> Option<Vector3<f64>> {
+    let mut read = |spec, name| {
+        let pointer = format!("{pointer}/{name}");
+        Attitude::read(spec, AttitudeEquivalence::Rotation, &pointer, findings)
+    };
+    let (from, to) = (read(&spec.from, "from"), read(&spec.to, "to"));
+    let (from, to) = (from?, to?);
+    let vector = from.signed_turn_to(&to.nearest_sign(&from));
+    if vector.norm() < LEAST_ANGLE {
+        findings.refuse(
+            pointer,
+            Code::ZeroDirection,
+            "both attitudes are the same, so the turn has no axis",
+            "give two attitudes that differ",
+        );
+        return None;
+    }
+    Some(vector)
+}
+
+/// The slews that are to be optimised for a valid turn.
+fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Manoeuvre>, Vec<Problem>> {
+    let at = |attitude: &AttitudeSpec| StateSpec {
+        attitude: attitude.clone(),
+        ..StateSpec::default()
+    };
+    WheelAllocation::ALL
+        .into_iter()
+        .map(|allocation| {
+            let spec = ManoeuvreSpec {
+                spacecraft: spec.spacecraft.clone(),
+                start: at(&turn.from),
+                end: at(&turn.to),
+                final_wheels: FinalWheels::NullSpaceOfStart,
+                torque_authority: spec.torque_authority,
+                momentum_authority: spec.momentum_authority,
+                allocation,
+                ..ManoeuvreSpec::default()
+            };
+            Ok(Manoeuvre::try_new(&spec)?.manoeuvre)
+        })
+        .collect()
+}

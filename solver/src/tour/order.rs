@@ -1,0 +1,295 @@
+//! The order of the targets: branch and bound over partial orders.
+//!
+//! # Problem
+//!
+//! A tour leaves the start, visits each of n targets once and, where one is prescribed, goes on to
+//! an end. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left
+//! free at a target couple the slews before and after it, so `T` is no sum over pairs. Wanted are
+//! the order of least duration among those that [`OrderRules`] admit, the next best `k` orders, and
+//! a bound on what was not looked at.
+//!
+//! # Bounds
+//!
+//! A node fixes a prefix `p` of the order; `l` is its last place and `R` the set of targets not in
+//! it. Cut any tour that begins with `p` at the moment it leaves `l`:
+//!
+//! - What comes before lasts at least `head(p)`, the greater of [`TourModel::prefix_bound`] and
+//!   `head(parent) + d(parent's last, l)`, with `d` the pair bounds; `head` of the root is 0.
+//! - What comes after is a path from `l` through all of `R` (and to the end). Each of its legs
+//!   lasts at least its pair bound, so all of it lasts at least `rest(l, R)`, the shortest such
+//!   path in the pair table ([`remainder`]: dynamic programming over subsets, or the spanning tree
+//!   relaxation of it when there are many targets).
+//!
+//! Hence `head(p) + rest(l, R)` is a lower bound of every completion of `p`. So is the parent's
+//! bound, whose completions include those of `p`; the node takes the greater, and bounds never
+//! fall on the way down. Where [`OrderRules`] restrict the orders, only prefixes that an admitted
+//! order begins with are opened. What may follow depends on the set of the visited alone, not on
+//! their order, so that the dynamic program takes the rules in and remains exact; the spanning tree
+//! ignores them, and the least over more paths is a bound all the same. A node enters the frontier with the bound that costs nothing (the
+//! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
+//!
+//! Where legs couple and a search goes on, better bounds of what comes after are asked for, and where
+//! that is not enough, bounds of whole orders that begin with a prefix ([`charges`], [`priced`]).
+//!
+//! # Symmetry
+//!
+//! Where every order takes as long backwards, the orders that visit one target in the first half are
+//! half of all, and one of every order and its reverse is among them. The search then keeps to these,
+//! in its dynamic program too, and lists both of each pair. The target is the one nearest to the
+//! start: good orders visit it early or late, and the late ones are given up at the root.
+//!
+//! # Honesty
+//!
+//! Every order is at every moment in exactly one of these: flown, below a node of the frontier, in
+//! flight, or given up (pruned, not resolved, or dropped for memory). The reported bound is the
+//! least over the flown durations and the bounds of all the others.
+//!
+//! # Determinism
+//!
+//! A round takes the first nodes in the order (bound, prefix), as many as follow from the number of
+//! nodes explored before, evaluates them in parallel and merges the answers in that order. Unless
+//! the search is stopped from outside, nothing in the result depends on the number of threads.
+
+pub mod charges;
+mod exhaustive;
+mod frontier;
+mod heuristics;
+mod incumbents;
+mod node;
+pub mod priced;
+pub mod remainder;
+mod search;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use exhaustive::exhaustive;
+pub use heuristics::short_order;
+pub use search::search;
+pub use table::PairTable;
+
+use crate::model::order_rules::OrderRules;
+use crate::run::progress::Progress;
+use crate::run::stop::StopReason;
+
+/// Where a leg begins or ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// The state at time zero.
+    Start,
+    /// A target by its index.
+    Target(usize),
+    /// The prescribed end.
+    End,
+}
+
+/// Answer of [`TourModel::prefix_bound`] and [`TourModel::path_bound`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Evaluation {
+    /// The lower bound, s.
+    Value(f64),
+    /// The evaluation did not converge; nothing is known beyond what was known before.
+    Unresolved,
+    /// The evaluation was interrupted by the stop signal.
+    Stopped,
+}
+
+/// Answer of [`TourModel::tour`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TourEvaluation {
+    /// The order can be flown in this time, s.
+    Flown(f64),
+    /// The evaluation did not converge; the order may or may not be good.
+    Unresolved,
+    /// The evaluation was interrupted by the stop signal.
+    Stopped,
+}
+
+/// What a unit more of each quantity of the state in which a target is passed is worth, s.
+pub type Price = Vec<f64>;
+
+/// All that the search knows of slews.
+///
+/// Durations are in seconds, finite and not negative. Equal questions must get equal answers,
+/// whichever thread asks.
+pub trait TourModel: Sync {
+    /// Number of targets.
+    fn target_count(&self) -> usize;
+
+    /// Whether the tour goes on to a prescribed end after the last target.
+    fn has_end(&self) -> bool;
+
+    /// Which orders may be flown: at least one. The model is asked for no other.
+    fn rules(&self) -> &OrderRules;
+
+    /// Whether every order is admitted and takes as long backwards, so that one of the two will do.
+    fn is_symmetric(&self) -> bool {
+        false
+    }
+
+    /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
+    /// dwelling at `to` are included. Cheap: the search asks once for every pair. A value that is
+    /// not finite says that nothing is known and is read as 0.
+    fn pair_bound(&self, from: Place, to: Place) -> f64;
+
+    /// Lower bound, s, of the time from the start to leaving the last target of a prefix, in any
+    /// tour that begins with it: the last target has its own conditions only. Expensive. The
+    /// prefix has at least two targets and lacks at least two: the pair bound of the first leg is
+    /// taken to be all that can be said of one target, and with one left the order is flown.
+    fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
+
+    /// Lower bound, s, of the time from leaving the first place of a path to leaving its last, in
+    /// any tour that contains it; settling and dwelling are included but for the first place.
+    /// Expensive. The path has three or five places, all different, targets but for its ends: the
+    /// start only comes first and a prescribed end only last.
+    fn path_bound(&self, path: &[Place]) -> Evaluation;
+
+    /// Whether the slews before and after a target influence each other. Where they do not,
+    /// the bound of a path is the sum of those of its parts and is not asked for.
+    fn couples(&self, via: usize) -> bool;
+
+    /// Flies a whole order, to the end where there is one. Expensive.
+    fn tour(&self, order: &[usize]) -> TourEvaluation;
+
+    /// Costates of the flight of a whole order at each of its targets with a leg after it: what the
+    /// state there saves the slews before it, at the margin, and costs those after it. `None` where
+    /// the order does not resolve or the model knows no states. In a symmetric model those backwards
+    /// are the same.
+    fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
+        let _ = order;
+        None
+    }
+
+    /// Lower bound, s, of the time from leaving one place to leaving the other, plus what the state
+    /// in which it is reached costs by the second price, less what that in which the first is left
+    /// costs by the first; where there is no price, no more than the time. In any tour with this leg.
+    /// Expensive.
+    fn priced_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+        let _ = prices;
+        Evaluation::Value(self.pair_bound(leg[0], leg[1]))
+    }
+}
+
+/// Told how a search goes, between its rounds.
+pub trait SearchObserver: Sync {
+    /// How it stands.
+    fn progress(&self, progress: Progress);
+
+    /// A better order than all before has been flown, and the search goes on. Comes before the
+    /// progress that tells its duration, at most once in a round.
+    fn improved(&self, incumbent: &Incumbent<'_>);
+}
+
+/// The best of a search that goes on.
+#[derive(Debug, Clone, Copy)]
+pub struct Incumbent<'a> {
+    /// The best order.
+    pub best: &'a FlownOrder,
+    /// The next best orders.
+    pub alternatives: &'a [FlownOrder],
+    /// No order lasts less, s, provided that the model's bounds are admissible.
+    pub lower_bound_s: f64,
+    /// The work so far.
+    pub statistics: SearchStatistics,
+}
+
+/// What to search for, and how long.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchSettings {
+    /// How many orders to prove and list besides the best.
+    pub alternatives: usize,
+    /// Branches that cannot beat the worst listed order by more than this share are not searched;
+    /// in `[0, 1)`.
+    pub relative_gap: f64,
+    /// Nodes to explore at most; `None` is unlimited.
+    pub node_limit: Option<u64>,
+    /// Memory for open nodes, bytes, roughly. Beyond it the nodes of the largest bounds are
+    /// dropped; their bounds stay in the result, which is then incomplete.
+    pub frontier_bytes: usize,
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self {
+            alternatives: 0,
+            relative_gap: 0.0,
+            node_limit: None,
+            frontier_bytes: frontier::DEFAULT_BYTES,
+        }
+    }
+}
+
+/// An order with its duration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlownOrder {
+    /// Indices of the targets in visiting order.
+    pub order: Vec<usize>,
+    /// Duration of the tour, s.
+    pub duration_s: f64,
+}
+
+/// Why the search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SearchEnd {
+    /// Nothing was left to explore.
+    Exhausted,
+    /// The node limit was reached.
+    NodeLimit,
+    /// The stop signal was given.
+    Stopped(StopReason),
+}
+
+/// How much work a search was, and where it was saved.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SearchStatistics {
+    /// Nodes explored: evaluated prefixes and flown leaves of the tree.
+    pub nodes_explored: u64,
+    /// Prefixes evaluated.
+    pub prefixes: u64,
+    /// Prefixes whose evaluation did not converge.
+    pub prefixes_unresolved: u64,
+    /// Whole orders evaluated, the heuristic ones included.
+    pub tours: u64,
+    /// Whole orders whose evaluation did not converge.
+    pub tours_unresolved: u64,
+    /// Nodes pruned by the pair table alone, before any evaluation of their own.
+    pub pruned_by_table: u64,
+    /// Nodes pruned by their own evaluation.
+    pub pruned_by_prefix: u64,
+    /// Open nodes pruned when a better order was found.
+    pub pruned_by_incumbent: u64,
+    /// Nodes dropped for want of memory.
+    pub dropped: u64,
+    /// Orders flown in less than a bound had allowed: the model's bounds are then not admissible,
+    /// for instance because a relaxed problem was solved to a local minimum only.
+    pub bounds_contradicted: u64,
+}
+
+/// What a search found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchResult {
+    /// The best order found.
+    pub best: Option<FlownOrder>,
+    /// The next best orders found, at most as many as asked for.
+    pub alternatives: Vec<FlownOrder>,
+    /// No order lasts less, s, provided that the model's bounds are admissible.
+    pub lower_bound_s: f64,
+    /// Whether the tree was exhausted within the gap: best and alternatives are proven.
+    pub complete: bool,
+    /// Why the search ended.
+    pub end: SearchEnd,
+    /// How much work it was.
+    pub statistics: SearchStatistics,
+}
+
+impl SearchResult {
+    /// Whether the best order is proven within a relative gap. This can hold while the
+    /// alternatives are still open, that is while the search is not complete.
+    #[must_use]
+    pub fn best_is_proven(&self, relative_gap: f64) -> bool {
+        self.best.as_ref().is_some_and(|best| {
+            let needed = best.duration_s * (1.0 - relative_gap);
+            incumbents::tie_class(self.lower_bound_s) >= incumbents::tie_class(needed)
+        })
+    }
+}

@@ -1,0 +1,250 @@
+//! The neighbours that a target chooses for itself.
+
+use super::Charges;
+
+/// The part of a tour that a bound is of.
+#[derive(Debug)]
+pub(super) struct Part<'a> {
+    /// Where it comes from.
+    pub(super) entry: usize,
+    /// The targets on it.
+    pub(super) targets: &'a [usize],
+    /// Whether a place lies on it.
+    admitted: Vec<bool>,
+    end: usize,
+}
+
+/// The neighbours of a target, what lies beyond them, and what they cost it, s.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Choice {
+    /// The two neighbours.
+    pub(super) ends: [usize; 2],
+    /// The outer shares that the target pays: of which target, and of its edge to which place.
+    pub(super) beyond: [[usize; 2]; 2],
+    pub(super) cost: f64,
+}
+
+impl Choice {
+    /// The places beyond both neighbours, when both neighbours are targets.
+    pub(super) fn path_beyond(&self) -> Option<[usize; 2]> {
+        let [first, last] = self.beyond;
+        ([first[0], last[0]] == self.ends).then_some([first[1], last[1]])
+    }
+}
+
+impl<'a> Part<'a> {
+    pub(super) fn new(entry: usize, end: usize, targets: &'a [usize]) -> Self {
+        let mut admitted = vec![false; end + 1];
+        for &place in targets.iter().chain([&entry, &end]) {
+            admitted[place] = true;
+        }
+        Self {
+            entry,
+            targets,
+            admitted,
+            end,
+        }
+    }
+
+    /// Whether a place is one between which the part lies.
+    fn is_outer(&self, place: usize) -> bool {
+        place == self.entry || place == self.end
+    }
+}
+
+impl Charges {
+    /// Ranks the places around all targets by the shares as they are.
+    pub(super) fn rank(&mut self) {
+        let Self {
+            shares, near, far, ..
+        } = self;
+        let targets = self.legs.table().targets();
+        for of in 0..targets {
+            far.rank(of, |place| shares.outer(of, place));
+        }
+        for via in 0..targets {
+            near.rank(via, |place| {
+                let of = if place < targets { place } else { via };
+                shares.near(via, place) + far.least(of)
+            });
+        }
+    }
+
+    /// The cheapest neighbours of a target of a part, and places beyond them: the least sum of their
+    /// shares and of what passing the target between them costs.
+    ///
+    /// Exact, though most pairs are never looked at: they come in the order of their shares with
+    /// the least outer shares that they could come with, so once these alone reach the best cost
+    /// all later pairs do. What passing costs is not negative.
+    pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> Choice {
+        let mut best = Choice {
+            ends: [via; 2],
+            beyond: [[via; 2]; 2],
+            cost: f64::INFINITY,
+        };
+        let inner = |&place: &usize| part.admitted[place] && place != part.entry;
+        let mut places = self.near.row(via).filter(inner);
+        let cost = |place| self.near.cost(via, place);
+        // With the place that the part comes from, be that a target or not, no target shares the
+        // edge beyond: in the ranking it has no place.
+        let entry = self.shares.near(via, part.entry) + self.far.least(via);
+        for other in places.clone() {
+            if entry + cost(other) >= best.cost {
+                break;
+            }
+            // Only a lone target lies between where the part comes from and the end.
+            if other != part.end || part.targets.len() == 1 {
+                self.choose_beyond(part, via, [part.entry, other], &mut best);
+            }
+        }
+        while let Some(one) = places.next() {
+            for (rank, other) in places.clone().enumerate() {
+                if cost(one) + cost(other) >= best.cost {
+                    // Nor is the next place cheaper together with this one, or any after them.
+                    if rank <= 1 {
+                        return best;
+                    }
+                    break;
+                }
+                self.choose_beyond(part, via, [one, other], &mut best);
+            }
+        }
+        best
+    }
+
+    /// Betters a choice by one of these neighbours and the cheapest places beyond them.
+    fn choose_beyond(&self, part: &Part<'_>, via: usize, ends: [usize; 2], best: &mut Choice) {
+        let [one, other] = ends;
+        let excesses = &self.excesses;
+        let passing = self.legs.passing(excesses, part.entry, [one, via, other]);
+        let near = self.shares.near(via, one) + self.shares.near(via, other) + passing;
+        let truncated = part.is_outer(one) || part.is_outer(other);
+        for (first, first_s) in self.beyond(part, via, one, other) {
+            for (rank, (last, last_s)) in self.beyond(part, via, other, one).enumerate() {
+                let mut cost = near + first_s + last_s;
+                if cost >= best.cost {
+                    if rank == 0 {
+                        return;
+                    }
+                    break;
+                }
+                if !truncated {
+                    if first[1] == last[1] {
+                        continue;
+                    }
+                    let path = [first[1], one, via, other, last[1]];
+                    cost += self.legs.passing_five(excesses, part.entry, path) - passing;
+                }
+                if cost < best.cost {
+                    *best = Choice {
+                        ends,
+                        beyond: [first, last],
+                        cost,
+                    };
+                }
+            }
+        }
+    }
+
+    /// The outer shares that a target may have to pay on the side of one neighbour, cheapest first.
+    /// Next to the start or the end it is the one that this would have to pay if it were a target.
+    fn beyond(
+        &self,
+        part: &Part<'_>,
+        via: usize,
+        one: usize,
+        other: usize,
+    ) -> impl Iterator<Item = ([usize; 2], f64)> + Clone {
+        let outer = part.is_outer(one);
+        let of = if outer { via } else { one };
+        let fits = move |&place: &usize| {
+            if outer {
+                place == other
+            } else {
+                part.admitted[place] && place != via && place != other
+            }
+        };
+        self.far
+            .row(of)
+            .filter(fits)
+            .map(move |place| ([of, place], self.far.cost(of, place)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::pool::SolverPool;
+    use crate::run::stop::StopSignal;
+    use crate::tour::order::PairTable;
+    use crate::tour::order::charges::Effort;
+    use crate::tour::order::remainder::{LegCosts, SpanningTrees};
+    use crate::tour::order::tests::RandomModel;
+    use std::num::NonZeroUsize;
+
+    /// The cheapest choice by trying all.
+    fn least(charges: &Charges, part: &Part<'_>, via: usize) -> f64 {
+        let others = || (0..=charges.end()).filter(|&p| p != via && part.admitted[p]);
+        let (shares, legs) = (&charges.shares, &charges.legs);
+        let sides = |one: usize, other: usize| -> Vec<[usize; 2]> {
+            if part.is_outer(one) {
+                return vec![[via, other]];
+            }
+            let fits = others().filter(|&p| p != one && p != other);
+            fits.map(|p| [one, p]).collect()
+        };
+        let mut least = f64::INFINITY;
+        for (one, other) in others().flat_map(|a| others().map(move |b| (a, b))) {
+            let lone = part.targets.len() == 1;
+            if one >= other || (part.is_outer(one) && part.is_outer(other) && !lone) {
+                continue;
+            }
+            let near = shares.near(via, one) + shares.near(via, other);
+            for [of, first] in sides(one, other) {
+                for [to, last] in sides(other, one) {
+                    let outer = shares.outer(of, first) + shares.outer(to, last);
+                    let passing = if of == via || to == via {
+                        legs.passing(&charges.excesses, part.entry, [one, via, other])
+                    } else if first == last {
+                        f64::INFINITY
+                    } else {
+                        let path = [first, one, via, other, last];
+                        legs.passing_five(&charges.excesses, part.entry, path)
+                    };
+                    least = least.min(near + outer + passing);
+                }
+            }
+        }
+        least
+    }
+
+    #[test]
+    fn the_cheapest_choice_is_found_without_looking_at_all() {
+        let pool = SolverPool::new(NonZeroUsize::new(1)).expect("test threads start");
+        for seed in 0..8 {
+            let kinds = [RandomModel::new, RandomModel::reversible];
+            let model = kinds[seed % 2](8, seed % 4 < 2, seed as u64);
+            let table = PairTable::new(&model);
+            let trees = SpanningTrees::new(&table);
+            let mut charges = Charges::new(&model, &table, &trees).expect("legs are coupled");
+            let effort = Effort {
+                triples: 300,
+                fives: 300,
+                steps: 70,
+            };
+            charges.raise(&model, &effort, &pool, &StopSignal::new());
+            for (entry, size) in [(table.start(), 8), (7, 7), (7, 4), (7, 2), (7, 1)] {
+                let targets: Vec<usize> = (0..size).collect();
+                let part = Part::new(entry, table.end(), &targets);
+                for &via in &targets {
+                    let found = charges.choice(&part, via).cost;
+                    let expected = least(&charges, &part, via);
+                    assert!(
+                        (found - expected).abs() < 1e-9,
+                        "seed {seed}, {size} targets"
+                    );
+                }
+            }
+        }
+    }
+}

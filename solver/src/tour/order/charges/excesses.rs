@@ -1,0 +1,148 @@
+//! By how much paths exceed the sums of their parts, as far as the model has been asked.
+
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
+use crate::tour::order::{Evaluation, PairTable, Place, TourModel};
+use std::collections::HashMap;
+
+/// Three or five places in a row, in either direction, the smaller number at the front.
+///
+/// Places are numbered as in [`PairTable`].
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Passage(Vec<usize>);
+
+impl Passage {
+    pub(super) fn new(places: &[usize]) -> Self {
+        let mut places = places.to_vec();
+        if places.last() < places.first() {
+            places.reverse();
+        }
+        Self(places)
+    }
+}
+
+/// Excesses of triples over their pair bounds, and of five places in a row over these.
+#[derive(Debug)]
+pub(super) struct Excesses {
+    targets: usize,
+    has_end: bool,
+    couples: Vec<bool>,
+    /// Row `via * places + from`, there once something is known of it: excess of every `to`, s, not
+    /// a number where nothing is known.
+    triples: Vec<Option<Box<[f64]>>>,
+    /// Excess of five places over their four pair bounds, s.
+    fives: HashMap<[usize; 5], f64>,
+}
+
+impl Excesses {
+    /// Nothing known yet.
+    pub(super) fn new(model: &dyn TourModel) -> Self {
+        let targets = model.target_count();
+        Self {
+            targets,
+            has_end: model.has_end(),
+            couples: (0..targets).map(|via| model.couples(via)).collect(),
+            triples: vec![None; targets * (targets + 2)],
+            fives: HashMap::new(),
+        }
+    }
+
+    /// Lower bound, s, of what two legs take together beyond their pair bounds: 0 where nothing
+    /// better is known.
+    pub(super) fn triple(&self, from: usize, via: usize, to: usize) -> f64 {
+        // The greater of 0 and what is no number is 0.
+        self.known_triple(from, via, to).max(0.0)
+    }
+
+    /// Lower bound, s, of what four legs take together beyond what their two halves take.
+    pub(super) fn five(&self, path: [usize; 5]) -> f64 {
+        if self.fives.is_empty() {
+            return 0.0;
+        }
+        let [a, b, c, d, e] = path;
+        let halves = || self.triple(a, b, c) + self.triple(c, d, e);
+        self.fives
+            .get(&path)
+            .map_or(0.0, |excess| (excess - halves()).max(0.0))
+    }
+
+    /// Whether asking the model could tell more.
+    pub(super) fn is_open(&self, passage: &Passage) -> bool {
+        let middle = passage.0[passage.0.len() / 2];
+        let unknown = |path: Vec<usize>| match path[..] {
+            [a, b, c] => self.known_triple(a, b, c).is_nan(),
+            [a, b, c, d, e] => !self.fives.contains_key(&[a, b, c, d, e]),
+            _ => false,
+        };
+        self.couples[middle] && self.directions(passage).into_iter().flatten().any(unknown)
+    }
+
+    /// Asks the model, about both directions of a passage by the same worker, who may know the one
+    /// when he knows the other. What is interrupted stays unknown.
+    pub(super) fn ask(
+        &mut self,
+        passages: &[Passage],
+        table: &PairTable,
+        model: &dyn TourModel,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) {
+        let answers = pool.map(passages, |passage| {
+            self.directions(passage).map(|path| {
+                let path = path?;
+                if stop.is_set() {
+                    return None;
+                }
+                let places: Vec<Place> = path.iter().map(|&number| self.place(number)).collect();
+                let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
+                match model.path_bound(&places) {
+                    Evaluation::Value(bound) if bound.is_finite() => {
+                        Some((path, (bound - pairs).max(0.0)))
+                    }
+                    // Nothing beyond the pairs, and no use asking again.
+                    Evaluation::Value(_) | Evaluation::Unresolved => Some((path, 0.0)),
+                    Evaluation::Stopped => None,
+                }
+            })
+        });
+        for (path, excess) in answers.into_iter().flatten().flatten() {
+            match path[..] {
+                [a, b, c] => self.set_triple(a, b, c, excess),
+                [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], excess),
+                _ => {}
+            }
+        }
+    }
+
+    /// The directions in which a passage can be flown and of which there is something to know.
+    fn directions(&self, passage: &Passage) -> [Option<Vec<usize>>; 2] {
+        let (start, end) = (self.targets, self.targets + 1);
+        let mut back = passage.0.clone();
+        back.reverse();
+        [passage.0.clone(), back].map(|path| {
+            let (from, to) = (path[0], path[path.len() - 1]);
+            let possible = from != end && to != start && (to != end || self.has_end);
+            possible.then_some(path)
+        })
+    }
+
+    fn place(&self, number: usize) -> Place {
+        match number.checked_sub(self.targets) {
+            None => Place::Target(number),
+            Some(0) => Place::Start,
+            Some(_) => Place::End,
+        }
+    }
+
+    fn known_triple(&self, from: usize, via: usize, to: usize) -> f64 {
+        self.triples[via * (self.targets + 2) + from]
+            .as_ref()
+            .map_or(f64::NAN, |row| row[to])
+    }
+
+    fn set_triple(&mut self, from: usize, via: usize, to: usize, excess: f64) {
+        let places = self.targets + 2;
+        let row = &mut self.triples[via * places + from];
+        row.get_or_insert_with(|| vec![f64::NAN; places].into())[to] = excess;
+    }
+}

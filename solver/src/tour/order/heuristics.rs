@@ -1,0 +1,176 @@
+//! Orders worth flying at once, found in the pair table alone.
+
+mod cost;
+mod iterated;
+mod local_search;
+mod neighbours;
+mod path;
+#[cfg(test)]
+mod tests;
+
+use super::charges::Charges;
+use super::remainder::Remainder;
+use super::{PairTable, TourModel};
+use crate::model::order_rules::OrderRules;
+use crate::run::stop::StopSignal;
+use iterated::IteratedSearch;
+use local_search::OrderTask;
+
+/// Candidates besides the best when the shortest order of the table is out of reach.
+const ALTERNATIVES: usize = 3;
+/// Kicks per target for the candidates and for the completion of a prefix: about half a second and
+/// fifty milliseconds at 200 targets.
+const CANDIDATE_KICKS: usize = 100;
+const COMPLETION_KICKS: usize = 10;
+/// The searches of this file are repeatable, and may all draw the same numbers.
+const SEED: u64 = 0;
+
+/// An order that is short in the table of a model's pair bounds, without flying any; `None` where
+/// there are no targets.
+#[must_use]
+pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
+    let table = PairTable::new(model);
+    let all: Vec<usize> = (0..table.targets()).collect();
+    searched(&table, &all, 0, stop).into_iter().next()
+}
+
+/// A few different orders that are short in the pair table, best guess first.
+pub(super) fn candidates(
+    table: &PairTable,
+    remainder: &Remainder,
+    stop: &StopSignal,
+) -> Vec<Vec<usize>> {
+    let all: Vec<usize> = (0..table.targets()).collect();
+    let mut orders = match remainder {
+        _ if all.is_empty() => return Vec::new(),
+        Remainder::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
+        Remainder::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
+    };
+    // Slews are nearly symmetric in time, and legs that are free at the targets are not: the
+    // shortest order of the table is often best flown backwards.
+    let reverse: Vec<usize> = orders[0].iter().rev().copied().collect();
+    if table.rules().admits(&reverse) {
+        orders.insert(1, reverse);
+    }
+    let mut distinct: Vec<Vec<usize>> = Vec::with_capacity(orders.len());
+    for order in orders {
+        if !distinct.contains(&order) {
+            distinct.push(order);
+        }
+    }
+    distinct
+}
+
+/// How long to search among orders.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SearchEffort {
+    /// Kicks, by the number of targets.
+    pub(super) kicks_per_target: usize,
+    /// How many orders to list besides the best.
+    pub(super) alternatives: usize,
+    /// What other kicks follow from.
+    pub(super) seed: u64,
+}
+
+/// Orders that are shorter than one in what is known of legs and their couplings, best first.
+pub(super) fn shorter_orders(
+    costs: &Charges,
+    rules: &OrderRules,
+    order: &[usize],
+    effort: &SearchEffort,
+    stop: &StopSignal,
+) -> Vec<Vec<usize>> {
+    let admits = |order: &[usize]| rules.admits(order);
+    let task = OrderTask {
+        cost: costs,
+        from: costs.table().start(),
+        admits: (!rules.is_free()).then_some(&admits),
+    };
+    let mut search = IteratedSearch::new(&task, order, effort.alternatives, effort.seed);
+    search.run(effort.kicks_per_target * order.len(), stop);
+    let best = search.best().iter();
+    best.map(|best| best.order.clone()).collect()
+}
+
+/// Orders by iterated search from the nearest neighbours, best first.
+fn searched(
+    table: &PairTable,
+    all: &[usize],
+    alternatives: usize,
+    stop: &StopSignal,
+) -> Vec<Vec<usize>> {
+    let built = nearest_neighbours(table, &[], all);
+    let kicks = CANDIDATE_KICKS * all.len();
+    iterated(table, &[], &built, alternatives, kicks, stop)
+}
+
+/// A short completion of a prefix that an admitted order begins with.
+pub(super) fn complete(
+    table: &PairTable,
+    remainder: &Remainder,
+    prefix: &[usize],
+    remaining: &[usize],
+    stop: &StopSignal,
+) -> Vec<usize> {
+    let completion = match remainder {
+        Remainder::Exact(subsets) => {
+            subsets.shortest_order(table, table.last_place(prefix), remaining)
+        }
+        Remainder::Relaxed(_) => {
+            let built = nearest_neighbours(table, prefix, remaining);
+            let kicks = COMPLETION_KICKS * built.len();
+            let mut found = iterated(table, prefix, &built, 0, kicks, stop);
+            found.pop().unwrap_or(built)
+        }
+    };
+    [prefix, &completion].concat()
+}
+
+/// The best orders of an iterated search that begins at an admitted one, best first, so many besides
+/// the best.
+fn iterated(
+    table: &PairTable,
+    prefix: &[usize],
+    order: &[usize],
+    alternatives: usize,
+    kicks: usize,
+    stop: &StopSignal,
+) -> Vec<Vec<usize>> {
+    let rules = table.rules();
+    let admits = |order: &[usize]| rules.admits(&[prefix, order].concat());
+    let task = OrderTask {
+        cost: table,
+        from: table.last_place(prefix),
+        admits: (!rules.is_free()).then_some(&admits),
+    };
+    let mut search = IteratedSearch::new(&task, order, alternatives, SEED);
+    search.run(kicks, stop);
+    let best = search.best().iter();
+    best.map(|best| best.order.clone()).collect()
+}
+
+/// From the end of a prefix always on to the nearest of the targets, the smallest index among
+/// equals, of those that leave an admitted order.
+fn nearest_neighbours(table: &PairTable, prefix: &[usize], targets: &[usize]) -> Vec<usize> {
+    let mut path = prefix.to_vec();
+    let mut left = targets.to_vec();
+    while !left.is_empty() {
+        let from = table.last_place(&path);
+        // Sorted, since whether an order is left is the dearer question.
+        left.sort_by(|&a, &b| {
+            let far = |target| table.bound(from, target);
+            far(a).total_cmp(&far(b)).then(a.cmp(&b))
+        });
+        let admitted = |target: &usize| {
+            path.push(*target);
+            let admitted = table.rules().completable(&path);
+            path.pop();
+            admitted
+        };
+        let Some(nearest) = left.iter().position(admitted) else {
+            break;
+        };
+        path.push(left.remove(nearest));
+    }
+    path.split_off(prefix.len())
+}

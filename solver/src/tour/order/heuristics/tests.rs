@@ -1,0 +1,66 @@
+//! Local search and kicks against full evaluation and enumeration.
+
+mod models;
+mod moves;
+mod searches;
+
+use super::cost::length;
+use super::{candidates, complete, iterated, nearest_neighbours};
+use crate::run::stop::StopSignal;
+use crate::tour::order::PairTable;
+use crate::tour::order::remainder::Remainder;
+use crate::tour::order::tests::RandomModel;
+
+#[test]
+fn improving_keeps_the_targets_and_shortens_the_order() {
+    for seed in 0..5 {
+        let table = PairTable::new(&RandomModel::new(30, seed % 2 == 0, seed));
+        let start = table.start();
+        let all: Vec<usize> = (0..30).collect();
+        let built = nearest_neighbours(&table, &[], &all);
+        let improved = iterated(&table, &[], &built, 0, 300, &StopSignal::new()).remove(0);
+        assert!(length(&table, start, &improved) < length(&table, start, &built));
+        let mut targets = improved;
+        targets.sort_unstable();
+        assert!(targets.into_iter().eq(0..30));
+    }
+}
+
+#[test]
+fn a_completion_keeps_the_prefix_and_visits_the_rest() {
+    for targets in [6, 24] {
+        let table = PairTable::new(&RandomModel::new(targets, true, 9));
+        let remainder = Remainder::new(&table, table.rules(), &StopSignal::new());
+        let prefix = [3, 1];
+        let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
+        let mut order = complete(&table, &remainder, &prefix, &remaining, &StopSignal::new());
+        assert_eq!(order[..2], prefix);
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..targets));
+    }
+}
+
+#[test]
+fn few_targets_start_from_the_shortest_order_of_the_table() {
+    let table = PairTable::new(&RandomModel::new(5, true, 3));
+    let remainder = Remainder::new(&table, table.rules(), &StopSignal::new());
+    let orders = candidates(&table, &remainder, &StopSignal::new());
+    let least = remainder.bound(&table, table.start(), &[0, 1, 2, 3, 4]);
+    assert!((length(&table, table.start(), &orders[0]) - least).abs() < 1e-9);
+    assert!(orders[1].iter().rev().eq(&orders[0]));
+}
+
+#[test]
+fn many_targets_have_several_candidates() {
+    let table = PairTable::new(&RandomModel::new(24, true, 3));
+    let remainder = Remainder::new(&table, table.rules(), &StopSignal::new());
+    let orders = candidates(&table, &remainder, &StopSignal::new());
+    assert_eq!(orders.len(), 5);
+    let of = |order: &[usize]| length(&table, table.start(), order);
+    for order in &orders {
+        assert!(of(&orders[0]) <= of(order));
+        let mut targets = order.clone();
+        targets.sort_unstable();
+        assert!(targets.into_iter().eq(0..24));
+    }
+}

@@ -1,0 +1,225 @@
+//! The shortest orders by priced legs: dynamic programming over subsets with two places remembered.
+
+use super::PricedLegs;
+use crate::model::order_rules::OrderRules;
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
+use crate::tour::order::remainder::EXACT_TARGETS;
+use crate::tour::order::remainder::subsets::{Admitted, least_sum, mask, members};
+
+/// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum of
+/// all legs from `i` on, when `h, i, j` were visited last and the targets `R` remain. Of the prices
+/// as they were when it was filled.
+#[derive(Debug)]
+pub struct PricedPaths {
+    legs: PricedLegs,
+    admitted: Admitted,
+    /// For every set `R` that is not empty, by its others `h, i, j` in rows: rounded down, so that
+    /// all are bounds.
+    rest: Vec<Box<[f32]>>,
+    root_s: f64,
+}
+
+impl PricedPaths {
+    /// Memory of the table for so many targets, bytes.
+    #[must_use]
+    pub fn bytes(targets: usize) -> u64 {
+        let targets = targets as u64;
+        // Three others of every set; the mean of their cube over all sets.
+        let states = (targets * targets * (targets + 3)) << targets;
+        states / 8 * 4
+    }
+
+    /// A table for the orders that some rules admit, to be filled.
+    #[must_use]
+    pub fn new(legs: &PricedLegs, rules: &OrderRules) -> Self {
+        let targets = legs.table.targets();
+        Self {
+            legs: legs.clone(),
+            admitted: Admitted::of(rules, targets),
+            rest: vec![Box::default(); 1 << targets],
+            root_s: 0.0,
+        }
+    }
+
+    /// Fills the table anew: some `n^4 2^n / 16` steps. When the solve is stopped meanwhile it
+    /// answers `false` and is of no use.
+    #[must_use]
+    pub fn fill(&mut self, legs: &PricedLegs, pool: &SolverPool, stop: &StopSignal) -> bool {
+        self.legs.clone_from(legs);
+        let targets = legs.table.targets();
+        // With fewer than three others there is no state.
+        for size in 1..(targets + 1).saturating_sub(3) {
+            let sets: Vec<usize> = (1..1_usize << targets)
+                .filter(|set| set.count_ones() as usize == size)
+                .collect();
+            let filled = pool.map(&sets, |&set| (!stop.is_set()).then(|| self.filled(set)));
+            for (set, rest) in sets.into_iter().zip(filled) {
+                let Some(rest) = rest else { return false };
+                self.rest[set] = rest;
+            }
+        }
+        self.root_s = self.beginning(&[], (1 << targets) - 1);
+        true
+    }
+
+    /// Lower bound, s, of all tours.
+    #[must_use]
+    pub fn root_bound(&self) -> f64 {
+        self.root_s
+    }
+
+    /// Lower bound, s, of the path from a place, in any state there, through the remaining targets and
+    /// to the end.
+    #[must_use]
+    pub fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
+        self.entered(from, mask(remaining.iter().copied()))
+    }
+
+    /// Lower bound, s, of all tours that begin with a prefix.
+    #[must_use]
+    pub fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
+        self.beginning(prefix, mask(remaining.iter().copied()))
+    }
+
+    /// The best orders with different first targets, the best first, of each that takes as long
+    /// backwards one.
+    #[must_use]
+    pub fn orders(&self, count: usize) -> Vec<Vec<usize>> {
+        let all = (1 << self.legs.table.targets()) - 1;
+        let mut firsts: Vec<(usize, f64)> = members(self.admitted.next(all))
+            .map(|first| (first, self.beginning(&[first], all & !(1 << first))))
+            .filter(|(_, whole)| whole.is_finite())
+            .collect();
+        firsts.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut orders: Vec<Vec<usize>> = Vec::new();
+        for (first, _) in firsts {
+            let order = self.completed(first);
+            let backwards: Vec<usize> = order.iter().rev().copied().collect();
+            let known =
+                orders.contains(&order) || self.legs.symmetric && orders.contains(&backwards);
+            if !known {
+                orders.push(order);
+            }
+            if orders.len() == count {
+                break;
+            }
+        }
+        orders
+    }
+
+    /// The best order that begins with a target.
+    fn completed(&self, first: usize) -> Vec<usize> {
+        let mut order = vec![first];
+        let mut left = ((1 << self.legs.table.targets()) - 1) & !(1 << first);
+        while left != 0 {
+            let whole = |next: usize| {
+                let prefix = [&order[..], &[next]].concat();
+                self.beginning(&prefix, left & !(1 << next))
+            };
+            let next = members(self.admitted.next(left))
+                .map(|next| (next, whole(next)))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((next, _)) = next else { break };
+            order.push(next);
+            left &= !(1 << next);
+        }
+        order
+    }
+
+    /// The least sum of all legs when the first targets are fixed and the others remain.
+    fn beginning(&self, prefix: &[usize], left: usize) -> f64 {
+        let (start, nobody) = (self.legs.table.start(), self.legs.nobody());
+        let path = [&[nobody, start], prefix].concat();
+        if let [_, _, first] = path[..]
+            && left != 0
+        {
+            return self.second(start, first, left);
+        }
+        let Some(&[h, i, j]) = path.last_chunk() else {
+            return self.entered(start, left);
+        };
+        let flown = path
+            .windows(4)
+            .map(|leg| self.legs.cost([leg[0], leg[1], leg[2], leg[3]]));
+        flown.sum::<f64>() + self.after([h, i, j], left)
+    }
+
+    /// From a place in any state there through some targets.
+    fn entered(&self, from: usize, left: usize) -> f64 {
+        if left == 0 {
+            return self.legs.table.bound(from, self.legs.table.end());
+        }
+        let nobody = self.legs.nobody();
+        members(self.admitted.next(left))
+            .map(|first| match left & !(1 << first) {
+                0 => self.legs.ending([nobody, from, first]),
+                others => self.second(from, first, others),
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// From a place in any state there to a target and through some others.
+    fn second(&self, from: usize, first: usize, left: usize) -> f64 {
+        let nobody = self.legs.nobody();
+        members(self.admitted.next(left))
+            .map(|second| {
+                let leg = self.legs.cost([nobody, from, first, second]);
+                leg + self.after([from, first, second], left & !(1 << second))
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// `rest`; where `h` is the start, out of the entries of smaller sets.
+    fn after(&self, [h, i, j]: [usize; 3], left: usize) -> f64 {
+        if left == 0 {
+            return self.legs.ending([h, i, j]);
+        }
+        if h < self.legs.table.targets() {
+            return f64::from(self.rest[left][self.state([h, i, j], left)]);
+        }
+        members(self.admitted.next(left))
+            .map(|k| self.legs.cost([h, i, j, k]) + self.after([i, j, k], left & !(1 << k)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Where three targets out of a set are in its rows.
+    fn state(&self, path: [usize; 3], set: usize) -> usize {
+        let others = self.legs.table.targets() - set.count_ones() as usize;
+        let rank = |target: usize| target - (set & ((1 << target) - 1)).count_ones() as usize;
+        path.into_iter()
+            .fold(0, |at, target| at * others + rank(target))
+    }
+
+    /// The rows of a set, out of those of smaller ones.
+    fn filled(&self, set: usize) -> Box<[f32]> {
+        let targets = self.legs.table.targets();
+        let next = self.admitted.next(set);
+        let others: Vec<usize> = members(!set & ((1 << targets) - 1)).collect();
+        let mut rest = vec![f32::INFINITY; others.len().pow(3)].into_boxed_slice();
+        for &i in &others {
+            for &j in others.iter().filter(|&&j| j != i) {
+                let mut after = [f64::INFINITY; EXACT_TARGETS];
+                for k in members(next) {
+                    after[k] = self.after([i, j, k], set & !(1 << k));
+                }
+                for &h in others.iter().filter(|&&h| h != i && h != j) {
+                    let least = least_sum(self.legs.row([h, i, j]), &after);
+                    rest[self.state([h, i, j], set)] = below(least);
+                }
+            }
+        }
+        rest
+    }
+}
+
+/// The greatest number of half the precision that is not above this one.
+fn below(value: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is mended below")]
+    let near = value as f32;
+    if f64::from(near) > value {
+        near.next_down()
+    } else {
+        near
+    }
+}

@@ -1,0 +1,158 @@
+//! The least time from a place through all remaining targets, bounded from below by the pair table.
+
+pub(super) mod least_tree;
+mod spanning_tree;
+pub(super) mod subsets;
+
+pub use spanning_tree::SpanningTrees;
+pub use subsets::SubsetTable;
+
+use super::PairTable;
+use crate::model::order_rules::OrderRules;
+use crate::run::stop::StopSignal;
+
+/// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 160 MiB and a quarter
+/// of a second for twenty targets, half of the one and of the other for every target less.
+pub const EXACT_TARGETS: usize = 20;
+
+/// Costs of legs between places numbered as in [`PairTable`], s.
+pub trait LegCosts {
+    /// Number of targets.
+    fn targets(&self) -> usize;
+
+    /// Cost of a leg.
+    fn cost(&self, from: usize, to: usize) -> f64;
+
+    /// Number of the end.
+    fn end(&self) -> usize {
+        self.targets() + 1
+    }
+}
+
+impl LegCosts for PairTable {
+    fn targets(&self) -> usize {
+        Self::targets(self)
+    }
+
+    fn cost(&self, from: usize, to: usize) -> f64 {
+        self.bound(from, to)
+    }
+}
+
+/// Bounds what comes after a prefix.
+#[derive(Debug)]
+pub enum Remainder {
+    /// The shortest path in the pair table.
+    Exact(SubsetTable),
+    /// A relaxation of the shortest path.
+    Relaxed(SpanningTrees),
+}
+
+impl Remainder {
+    /// Prepares the bounds over a pair table, for the orders that some rules admit; the weaker ones
+    /// when stopped.
+    #[must_use]
+    pub fn new(table: &PairTable, rules: &OrderRules, stop: &StopSignal) -> Self {
+        let few = table.targets() <= EXACT_TARGETS;
+        let exact = few.then(|| SubsetTable::new(table, rules, stop)).flatten();
+        exact.map_or_else(|| Self::Relaxed(SpanningTrees::new(table)), Self::Exact)
+    }
+
+    /// Lower bound, s, of the path from a place (numbered as in the table) through all remaining
+    /// targets and to the end.
+    #[must_use]
+    pub fn bound(&self, table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
+        match self {
+            Self::Exact(subsets) => subsets.bound(table, from, remaining),
+            Self::Relaxed(trees) => trees.bound(table, from, remaining),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::RandomModel;
+    use super::*;
+
+    /// Shortest path by trying all of them, s.
+    fn shortest(table: &PairTable, from: usize, remaining: &[usize]) -> f64 {
+        if remaining.is_empty() {
+            return table.bound(from, table.end());
+        }
+        remaining
+            .iter()
+            .map(|&to| {
+                let rest: Vec<usize> = remaining.iter().copied().filter(|&t| t != to).collect();
+                table.bound(from, to) + shortest(table, to, &rest)
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Start and last target of every case, and the targets between.
+    fn cases(table: &PairTable) -> Vec<(usize, Vec<usize>)> {
+        let all: Vec<usize> = (0..table.targets()).collect();
+        let mut cases = vec![(table.start(), all.clone())];
+        for from in 0..table.targets() {
+            for size in 0..table.targets() {
+                cases.push((
+                    from,
+                    all.iter()
+                        .copied()
+                        .filter(|&t| t != from)
+                        .take(size)
+                        .collect(),
+                ));
+            }
+        }
+        cases
+    }
+
+    #[test]
+    fn subsets_give_the_shortest_path() {
+        for seed in 0..10 {
+            let table = PairTable::new(&RandomModel::new(6, seed % 2 == 0, seed));
+            let exact = SubsetTable::new(&table, table.rules(), &StopSignal::new());
+            let exact = exact.expect("not stopped");
+            for (from, remaining) in cases(&table) {
+                let expected = shortest(&table, from, &remaining);
+                assert!((exact.bound(&table, from, &remaining) - expected).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn trees_never_exceed_the_shortest_path() {
+        for seed in 0..20 {
+            let model = if seed < 10 {
+                RandomModel::new
+            } else {
+                RandomModel::with_ties
+            };
+            let table = PairTable::new(&model(7, seed % 2 == 0, seed));
+            let exact = SubsetTable::new(&table, table.rules(), &StopSignal::new());
+            let exact = exact.expect("not stopped");
+            let trees = SpanningTrees::new(&table);
+            for (from, remaining) in cases(&table) {
+                let expected = exact.bound(&table, from, &remaining);
+                assert!(trees.bound(&table, from, &remaining) <= expected + 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_stop_leaves_the_bounds_of_trees() {
+        let table = PairTable::new(&RandomModel::new(14, false, 3));
+        let stop = StopSignal::new();
+        let exact = Remainder::new(&table, table.rules(), &stop);
+        assert!(matches!(exact, Remainder::Exact(_)));
+        stop.request();
+        let relaxed = Remainder::new(&table, table.rules(), &stop);
+        assert!(matches!(relaxed, Remainder::Relaxed(_)));
+        let all: Vec<usize> = (0..14).collect();
+        let bounds = [relaxed, exact].map(|bounds| bounds.bound(&table, table.start(), &all));
+        assert!(
+            0.0 < bounds[0] && bounds[0] <= bounds[1] + 1e-9,
+            "{bounds:?}"
+        );
+    }
+}

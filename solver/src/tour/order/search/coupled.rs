@@ -1,0 +1,148 @@
+//! What a search knows beyond the pair table when legs couple: bounds from several places in a row,
+//! and orders that are short in what is known so far.
+//!
+//! A few targets are searched with pairs alone at first, since most searches end before the bounds
+//! of longer paths would pay. Many targets need them from the beginning: they are the bound that is
+//! told, and they tell which orders are worth flying.
+
+use super::Search;
+use crate::model::order_rules::OrderRules;
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
+use crate::tour::order::charges::{ChargedSubsets, Charges, Effort};
+use crate::tour::order::heuristics::SearchEffort;
+use crate::tour::order::priced::PricedPaths;
+use crate::tour::order::remainder::{EXACT_TARGETS, SpanningTrees};
+use crate::tour::order::{PairTable, SearchEnd, TourModel};
+
+/// Steps of an ascent at most.
+const STEPS: usize = 400;
+/// Paths asked for per target when few targets turn out to be hard: some seconds of work.
+const TRIPLES_OF_FEW: usize = 30;
+const FIVES_OF_FEW: usize = 20;
+/// Rounds of raising the bound and improving orders of many targets, what is asked for per target in
+/// a round, and the orders searched after it.
+const ROUNDS: u64 = 6;
+const TRIPLES_OF_MANY: usize = 12;
+const FIVES_OF_MANY: usize = 8;
+const ORDERS_PER_ROUND: u64 = 4;
+/// Kicks per target of a search for an order, and how many of its best orders are flown.
+const KICKS: usize = 60;
+const FLOWN: usize = 2;
+
+/// Bounds from several places in a row.
+pub(super) enum Couplings {
+    /// With the rest of an order relaxed to a tree.
+    Trees(Box<Charges>),
+    /// With a shortest path in its place.
+    Paths(Box<ChargedSubsets>),
+    /// With that and with legs that pay each other for the states they meet in.
+    Priced(Box<ChargedSubsets>, Box<PricedPaths>),
+}
+
+impl Couplings {
+    /// What a first ascent finds for a few targets; nothing where no target couples its legs.
+    pub(super) fn of_few(
+        model: &dyn TourModel,
+        table: &PairTable,
+        rules: &OrderRules,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) -> Option<Self> {
+        let mut charges = Charges::new(model, table, &SpanningTrees::new(table))?;
+        let targets = table.targets();
+        let effort = Effort {
+            triples: TRIPLES_OF_FEW * targets,
+            fives: FIVES_OF_FEW * targets,
+            steps: STEPS,
+        };
+        charges.raise(model, &effort, pool, stop);
+        let subsets = ChargedSubsets::new(charges, rules, stop);
+        Some(Self::Paths(Box::new(subsets)))
+    }
+
+    /// Lower bound, s, of the path from a place through the remaining targets and to the end.
+    pub(super) fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
+        match self {
+            Self::Trees(charges) => charges.bound(from, remaining),
+            Self::Paths(subsets) => subsets.bound(from, remaining),
+            Self::Priced(subsets, priced) => {
+                let charged = subsets.bound(from, remaining);
+                charged.max(priced.bound(from, remaining))
+            }
+        }
+    }
+
+    /// Lower bound, s, of all orders that begin with a prefix, whatever is known of the prefix.
+    pub(super) fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
+        match self {
+            Self::Trees(_) | Self::Paths(_) => 0.0,
+            Self::Priced(_, priced) => priced.whole(prefix, remaining),
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Bounds and improves orders of many targets in turn, before the tree is opened.
+    pub(super) fn work_on_couplings(&mut self) -> Option<SearchEnd> {
+        if self.tree.table().targets() <= EXACT_TARGETS {
+            return None;
+        }
+        let table = self.tree.table();
+        let targets = table.targets();
+        let mut charges = Charges::new(self.model, table, &SpanningTrees::new(table))?;
+        for round in 0..ROUNDS {
+            let effort = Effort {
+                triples: TRIPLES_OF_MANY * targets,
+                fives: FIVES_OF_MANY * targets,
+                steps: STEPS,
+            };
+            charges.raise(self.model, &effort, self.pool, self.stop);
+            self.tree.bound_root(charges.root_bound());
+            self.account.report(&self.tree);
+            for order in 0..ORDERS_PER_ROUND {
+                self.improve_orders(&mut charges, round * ORDERS_PER_ROUND + order);
+                if self.stop.is_set() {
+                    break;
+                }
+            }
+            if self.stop.is_set() {
+                break;
+            }
+        }
+        self.tree.couple(Couplings::Trees(Box::new(charges)));
+        self.stop.is_set().then(|| self.stopped())
+    }
+
+    /// Searches for orders that are short in all that is known of couplings, flies them, and learns
+    /// what was unknown of their triples.
+    fn improve_orders(&mut self, charges: &mut Charges, seed: u64) {
+        let effort = SearchEffort {
+            kicks_per_target: KICKS,
+            alternatives: FLOWN - 1,
+            seed,
+        };
+        let orders = self.tree.short_orders(charges, &effort, self.stop);
+        charges.ask_along(&orders, self.model, self.pool, self.stop);
+        self.fly_new(&orders);
+        self.account.hand_over(&self.tree);
+        self.account.report(&self.tree);
+    }
+
+    /// Tightens the bounds of a search over few targets that is not about to end.
+    pub(super) fn tighten(&mut self) {
+        if self.tree.table().targets() > EXACT_TARGETS {
+            return;
+        }
+        let couplings = Couplings::of_few(
+            self.model,
+            self.tree.table(),
+            self.tree.rules(),
+            self.pool,
+            self.stop,
+        );
+        if let Some(couplings) = couplings {
+            self.tree.couple(couplings);
+        }
+    }
+}

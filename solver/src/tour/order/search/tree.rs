@@ -1,0 +1,418 @@
+//! The search tree: what is open, what is flown, what was given up and why.
+
+use super::coupled::Couplings;
+use crate::model::order_rules::OrderRules;
+use crate::run::pool::SolverPool;
+use crate::run::stop::StopSignal;
+use crate::tour::order::charges::Charges;
+use crate::tour::order::frontier::Frontier;
+use crate::tour::order::heuristics::{self, SearchEffort};
+use crate::tour::order::incumbents::Incumbents;
+use crate::tour::order::node::Node;
+use crate::tour::order::remainder::Remainder;
+use crate::tour::order::{
+    FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
+};
+use std::collections::BTreeMap;
+
+/// Relative error of an NLP's optimal duration that says nothing about its admissibility.
+const CONTRADICTION_RELATIVE: f64 = 1e-6;
+
+/// All orders, each in exactly one place.
+pub(super) struct Tree {
+    table: PairTable,
+    /// Whether orders are as good backwards.
+    symmetric: bool,
+    /// The orders that are searched: with symmetry half of those that are admitted.
+    rules: OrderRules,
+    remainder: Remainder,
+    /// Bounds from several places in a row, once they have been asked for.
+    couplings: Option<Couplings>,
+    /// No order lasts less, s, by what is known before the root is opened.
+    root_s: f64,
+    /// Whether the root has been opened.
+    planted: bool,
+    frontier: Frontier,
+    incumbents: Incumbents,
+    /// Orders that have been flown: the duration, s, if they resolved.
+    tried: BTreeMap<Vec<usize>, Option<f64>>,
+    /// Smallest bound of what was ruled out, s: it cannot be among the best up to the gap.
+    ruled_out_s: f64,
+    /// Smallest bound of what was lost, s: unresolved leaves and dropped nodes.
+    lost_s: f64,
+    /// Whether the incumbents have changed since the frontier was last pruned.
+    improved: bool,
+    statistics: SearchStatistics,
+}
+
+impl Tree {
+    /// A tree in which nothing is open yet.
+    pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings, stop: &StopSignal) -> Self {
+        let table = PairTable::new(model);
+        let symmetric = model.is_symmetric();
+        let mut rules = table.rules().clone();
+        if let (true, Some(nearest)) = (symmetric, nearest_to_start(&table)) {
+            rules = rules.in_first_half(nearest);
+        }
+        Self {
+            symmetric,
+            remainder: Remainder::new(&table, &rules, stop),
+            rules,
+            couplings: None,
+            root_s: 0.0,
+            planted: false,
+            frontier: Frontier::new(table.targets(), settings.frontier_bytes),
+            incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
+            tried: BTreeMap::new(),
+            ruled_out_s: f64::INFINITY,
+            lost_s: f64::INFINITY,
+            improved: false,
+            statistics: SearchStatistics::default(),
+            table,
+        }
+    }
+
+    /// Orders worth flying first.
+    pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
+        heuristics::candidates(&self.table, &self.remainder, stop)
+    }
+
+    /// Takes in an order flown before the search reached it.
+    pub(super) fn record_candidate(&mut self, order: &[usize], answer: TourEvaluation) {
+        let duration = match answer {
+            TourEvaluation::Stopped => return,
+            TourEvaluation::Unresolved => None,
+            TourEvaluation::Flown(duration_s) => Some(duration_s),
+        };
+        self.statistics.tours += 1;
+        match duration {
+            Some(duration_s) => self.offer(order, duration_s),
+            None => self.statistics.tours_unresolved += 1,
+        }
+        let order = self.either_way(order);
+        self.tried.insert(order, duration);
+    }
+
+    /// The pair bounds.
+    pub(super) fn table(&self) -> &PairTable {
+        &self.table
+    }
+
+    /// Which orders are searched.
+    pub(super) fn rules(&self) -> &OrderRules {
+        &self.rules
+    }
+
+    /// Takes in a lower bound of all orders, s, before the root is opened.
+    pub(super) fn bound_root(&mut self, bound_s: f64) {
+        self.root_s = self.root_s.max(bound_s);
+    }
+
+    /// Gives up the bounds from several places in a row, for better ones to be made of them.
+    pub(super) fn decouple(&mut self) -> Option<Couplings> {
+        self.couplings.take()
+    }
+
+    /// Takes in better bounds, of what is open already too.
+    pub(super) fn couple(&mut self, couplings: Couplings) {
+        self.couplings = Some(couplings);
+        for mut node in self.frontier.take_if(|_| true) {
+            let remaining = node.remaining(self.table.targets());
+            let head = node.head;
+            self.raise(&mut node, head, &remaining);
+            self.admit(node);
+        }
+    }
+
+    /// Orders that are short by some costs, from the best one flown so far; the best first.
+    pub(super) fn short_orders(
+        &self,
+        costs: &Charges,
+        effort: &SearchEffort,
+        stop: &StopSignal,
+    ) -> Vec<Vec<usize>> {
+        let Some(best) = self.incumbents.orders().first() else {
+            return Vec::new();
+        };
+        heuristics::shorter_orders(costs, self.table.rules(), &best.order, effort, stop)
+    }
+
+    /// Whether an order has not been flown.
+    pub(super) fn is_new(&self, order: &[usize]) -> bool {
+        !self.tried.contains_key(&self.either_way(order))
+    }
+
+    /// Lower bound, s, of the path from a place through the remaining targets and to the end.
+    fn rest(&self, from: usize, remaining: &[usize]) -> f64 {
+        let pairs = self.remainder.bound(&self.table, from, remaining);
+        let couplings = self.couplings.as_ref();
+        couplings.map_or(pairs, |known| pairs.max(known.bound(from, remaining)))
+    }
+
+    /// Takes in a bound of the time until the last fixed target is left, s, with what is known of the
+    /// rest and of whole orders that begin so.
+    fn raise(&self, node: &mut Node, head: f64, remaining: &[usize]) {
+        node.raise_head(
+            head,
+            self.rest(self.table.last_place(&node.prefix), remaining),
+        );
+        if let Some(known) = &self.couplings {
+            node.bound = node.bound.max(known.whole(&node.prefix, remaining));
+        }
+    }
+
+    /// Lower bound of all orders, s.
+    fn root_bound(&self) -> f64 {
+        let all: Vec<usize> = (0..self.table.targets()).collect();
+        self.rest(self.table.start(), &all).max(self.root_s)
+    }
+
+    /// Opens the root.
+    pub(super) fn plant(&mut self) {
+        self.planted = true;
+        self.admit(Node::root(self.root_bound()));
+        self.tidy();
+    }
+
+    /// Whether all targets are fixed.
+    pub(super) fn is_leaf(&self, node: &Node) -> bool {
+        node.prefix.len() == self.table.targets()
+    }
+
+    /// Takes the next nodes to evaluate, expanding what is evaluated already.
+    pub(super) fn take_round(
+        &mut self,
+        size: u64,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) -> Vec<Node> {
+        let mut round = Vec::new();
+        // Expanding takes its time when there are many targets.
+        while (round.len() as u64) < size && !stop.is_set() {
+            let Some(node) = self.frontier.pop() else {
+                break;
+            };
+            if self.is_leaf(&node) || !node.evaluated {
+                round.push(node);
+            } else {
+                self.expand(&node, pool);
+            }
+        }
+        round
+    }
+
+    /// The completion of an open node that is shortest in the table, unless it was tried already.
+    pub(super) fn probe(&self, node: &Node, stop: &StopSignal) -> Option<Vec<usize>> {
+        if self.is_leaf(node) {
+            return None;
+        }
+        let remaining = node.remaining(self.table.targets());
+        let order =
+            heuristics::complete(&self.table, &self.remainder, &node.prefix, &remaining, stop);
+        self.is_new(&order).then_some(order)
+    }
+
+    /// Opens the children of a node.
+    fn expand(&mut self, parent: &Node, pool: &SolverPool) {
+        let remaining = parent.remaining(self.table.targets());
+        let children = pool.map(&remaining, |&next| {
+            let prefix = [&*parent.prefix, &[next]].concat();
+            let admitted = self.rules.admits(&prefix) && self.rules.completable(&prefix);
+            admitted.then(|| self.child(parent, next, &remaining))
+        });
+        for child in children.into_iter().flatten() {
+            self.admit(child);
+        }
+        self.drop_excess();
+    }
+
+    /// The node with one more target, bounded by the pair table.
+    fn child(&self, parent: &Node, next: usize, remaining: &[usize]) -> Node {
+        let mut left: Vec<usize> = remaining.iter().copied().filter(|&t| t != next).collect();
+        let mut child = parent.clone();
+        self.append(&mut child, next);
+        // Where one target is left there is one order left: better flown than bounded.
+        if left.len() == 1 {
+            self.append(&mut child, left.remove(0));
+        }
+        // Of one leg from the given start the pair table knows all.
+        child.evaluated = child.prefix.len() == 1;
+        let head = child.head;
+        self.raise(&mut child, head, &left);
+        child
+    }
+
+    /// Fixes one more target by the pair table.
+    fn append(&self, node: &mut Node, target: usize) {
+        let last = self.table.last_place(&node.prefix);
+        node.head += self.table.bound(last, target);
+        node.prefix.push(target);
+    }
+
+    /// Opens a node unless it is decided already.
+    fn admit(&mut self, node: Node) {
+        if self.is_leaf(&node) {
+            match self.tried.get(&self.either_way(&node.prefix)) {
+                Some(Some(duration_s)) => return self.check(&node, *duration_s),
+                Some(None) => return self.lose(node.bound),
+                None => {}
+            }
+        }
+        if self.incumbents.rule_out(node.bound, &node.prefix) {
+            self.statistics.pruned_by_table += 1;
+            self.rule_out(node.bound);
+        } else {
+            self.frontier.insert(node);
+        }
+    }
+
+    /// Takes in the evaluation of a prefix, `None` when it did not resolve.
+    pub(super) fn bounded(&mut self, mut node: Node, head: Option<f64>) {
+        self.statistics.nodes_explored += 1;
+        self.statistics.prefixes += 1;
+        node.evaluated = true;
+        if let Some(head) = head.filter(|head| head.is_finite()) {
+            let remaining = node.remaining(self.table.targets());
+            self.raise(&mut node, head, &remaining);
+        } else {
+            self.statistics.prefixes_unresolved += 1;
+        }
+        if self.incumbents.rule_out(node.bound, &node.prefix) {
+            self.statistics.pruned_by_prefix += 1;
+            self.rule_out(node.bound);
+        } else {
+            self.frontier.insert(node);
+        }
+    }
+
+    /// Takes in the duration of a leaf.
+    pub(super) fn flown(&mut self, node: &Node, duration_s: f64) {
+        self.statistics.nodes_explored += 1;
+        self.statistics.tours += 1;
+        self.check(node, duration_s);
+        self.offer(&node.prefix, duration_s);
+        let order = self.either_way(&node.prefix);
+        self.tried.insert(order, Some(duration_s));
+    }
+
+    /// Takes in that a leaf did not resolve.
+    pub(super) fn unresolved(&mut self, node: &Node) {
+        self.statistics.nodes_explored += 1;
+        self.statistics.tours += 1;
+        self.statistics.tours_unresolved += 1;
+        self.lose(node.bound);
+        let order = self.either_way(&node.prefix);
+        self.tried.insert(order, None);
+    }
+
+    /// Opens a node again whose evaluation was interrupted.
+    pub(super) fn put_back(&mut self, node: Node) {
+        self.frontier.insert(node);
+    }
+
+    /// Rules out what the incumbents allow, and drops what does not fit into memory.
+    pub(super) fn tidy(&mut self) {
+        if self.improved {
+            let incumbents = &self.incumbents;
+            for node in self
+                .frontier
+                .take_if(|node| incumbents.rule_out(node.bound, &node.prefix))
+            {
+                self.statistics.pruned_by_incumbent += 1;
+                self.rule_out(node.bound);
+            }
+            self.improved = false;
+        }
+        self.drop_excess();
+    }
+
+    fn drop_excess(&mut self) {
+        while let Some(node) = self.frontier.pop_excess() {
+            self.statistics.dropped += 1;
+            self.lose(node.bound);
+        }
+    }
+
+    fn offer(&mut self, order: &[usize], duration_s: f64) {
+        let mut take_in = |order| {
+            self.improved |= self.incumbents.offer(FlownOrder { order, duration_s });
+        };
+        take_in(order.to_vec());
+        if self.symmetric {
+            take_in(order.iter().rev().copied().collect());
+        }
+    }
+
+    /// What an order and its reverse have in common: where they are equally good, the
+    /// lexicographically first of the two.
+    fn either_way(&self, order: &[usize]) -> Vec<usize> {
+        let reverse = order.iter().rev().copied().collect();
+        if self.symmetric {
+            order.to_vec().min(reverse)
+        } else {
+            order.to_vec()
+        }
+    }
+
+    /// Notes when an order is flown faster than its bound allows, beyond what a solver resolves.
+    fn check(&mut self, node: &Node, duration_s: f64) {
+        if duration_s < node.bound * (1.0 - CONTRADICTION_RELATIVE) {
+            self.statistics.bounds_contradicted += 1;
+        }
+    }
+
+    fn rule_out(&mut self, bound: f64) {
+        self.ruled_out_s = self.ruled_out_s.min(bound);
+    }
+
+    fn lose(&mut self, bound: f64) {
+        self.lost_s = self.lost_s.min(bound);
+    }
+
+    /// Whether nothing is open.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.planted && self.frontier.is_empty()
+    }
+
+    /// Whether the list of the best is proven up to the gap: nothing is open, and nothing that was
+    /// lost could have entered it.
+    pub(super) fn is_complete(&self) -> bool {
+        let nothing_lost = self.lost_s.is_infinite() || self.incumbents.rule_out_bound(self.lost_s);
+        self.is_exhausted() && nothing_lost
+    }
+
+    /// Lower bound of every order that has not been flown, s.
+    pub(super) fn open_bound(&self) -> f64 {
+        if self.planted {
+            self.frontier.bound().min(self.ruled_out_s).min(self.lost_s)
+        } else {
+            self.root_bound()
+        }
+    }
+
+    /// Duration of the best order flown, s.
+    pub(super) fn best_s(&self) -> Option<f64> {
+        self.incumbents.best_s()
+    }
+
+    /// The work so far.
+    pub(super) fn statistics(&self) -> &SearchStatistics {
+        &self.statistics
+    }
+
+    /// The best orders flown so far, best first.
+    pub(super) fn orders(&self) -> &[FlownOrder] {
+        self.incumbents.orders()
+    }
+
+    /// The orders flown, best first.
+    pub(super) fn into_orders(self) -> Vec<FlownOrder> {
+        self.incumbents.into_orders()
+    }
+}
+
+/// The target of the least bound from the start, the first of equal ones.
+fn nearest_to_start(table: &PairTable) -> Option<usize> {
+    let far = |target: usize| table.bound(table.start(), target);
+    (0..table.targets()).min_by(|&a, &b| far(a).total_cmp(&far(b)))
+}

@@ -1,0 +1,244 @@
+//! Bounds from triples, against all orders.
+
+use super::anytime::StopsInside;
+use super::{RandomModel, pool};
+use crate::run::stop::StopSignal;
+use crate::tour::order::charges::{ChargedSubsets, Charges, Effort};
+use crate::tour::order::remainder::SpanningTrees;
+use crate::tour::order::{Evaluation, PairTable, Place, TourEvaluation, TourModel};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const EFFORT: Effort = Effort {
+    triples: 1000,
+    fives: 1000,
+    steps: 200,
+};
+
+/// Paths that do not resolve.
+fn some_paths(path: &[usize]) -> bool {
+    path.iter().sum::<usize>() % 3 == 0
+}
+
+/// Models of each kind, whose paths know all penalties.
+fn models() -> impl Iterator<Item = RandomModel> {
+    (0..63).map(|seed| {
+        let kinds = [
+            RandomModel::new,
+            RandomModel::reversible,
+            RandomModel::with_ties,
+        ];
+        let targets = 1 + (seed % 7) as usize;
+        let mut model = kinds[(seed % 3) as usize](targets, seed % 2 == 0, seed);
+        model.known_share = 1.0;
+        if seed % 5 == 0 {
+            model.couples = |via| via % 2 == 0;
+        }
+        model
+    })
+}
+
+fn prepared(model: &dyn TourModel) -> (PairTable, SpanningTrees, Charges) {
+    let table = PairTable::new(model);
+    let trees = SpanningTrees::new(&table);
+    let charges = Charges::new(model, &table, &trees).expect("legs are coupled");
+    (table, trees, charges)
+}
+
+/// What the bound relaxes of a way, s, when all is known: a penalty counts half, and three quarters
+/// with two places on either side; that is less than the whole.
+fn relaxed(model: &RandomModel, way: &[Place]) -> f64 {
+    let pair = |leg: &[Place]| model.pair_bound(leg[0], leg[1]);
+    let penalties = way
+        .windows(3)
+        .enumerate()
+        .map(|(first, triple)| match triple[1] {
+            Place::Target(via) if model.couples(via) => {
+                let Evaluation::Value(bound) = model.path_bound(triple) else {
+                    panic!("the model resolves");
+                };
+                let share = if first > 0 && first + 4 <= way.len() {
+                    0.75
+                } else {
+                    0.5
+                };
+                share * (bound - pair(&triple[..2]) - pair(&triple[1..]))
+            }
+            _ => 0.0,
+        });
+    way.windows(2).map(pair).chain(penalties).sum()
+}
+
+/// The least of that over all ways that begin so and go through the remaining targets to the end, s.
+fn cheapest(model: &RandomModel, begun: &[Place], remaining: &[usize]) -> f64 {
+    if remaining.is_empty() {
+        let end = model.has_end().then_some(Place::End);
+        return relaxed(model, &begun.iter().copied().chain(end).collect::<Vec<_>>());
+    }
+    let onward = |&to: &usize| {
+        let rest: Vec<usize> = remaining.iter().copied().filter(|&t| t != to).collect();
+        cheapest(model, &[begun, &[Place::Target(to)]].concat(), &rest)
+    };
+    remaining.iter().map(onward).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn no_bound_exceeds_the_cheapest_way() {
+    let pool = pool(2);
+    for (case, mut model) in models().enumerate() {
+        if case % 4 == 0 {
+            model.fails = some_paths;
+        }
+        let (table, _, mut charges) = prepared(&model);
+        let before = charges.root_bound();
+        charges.raise(&model, &EFFORT, &pool, &StopSignal::new());
+        assert!(charges.root_bound() >= before, "case {case}");
+        model.fails = |_| false;
+        let all: Vec<usize> = (0..table.targets()).collect();
+        // The shares kept are those of the best bound.
+        let root = charges.bound(table.start(), &all);
+        assert!((charges.root_bound() - root).abs() <= 1e-9, "case {case}");
+        let mut parts = vec![(table.start(), Place::Start, all.clone())];
+        for &from in &all {
+            for size in 0..all.len() {
+                let others = all.iter().copied().filter(|&t| t != from);
+                parts.push((from, Place::Target(from), others.take(size).collect()));
+            }
+        }
+        let bound =
+            |(from, _, remaining): &(usize, Place, Vec<usize>)| charges.bound(*from, remaining);
+        let trees: Vec<f64> = parts.iter().map(bound).collect();
+        let subsets = ChargedSubsets::new(charges, table.rules(), &StopSignal::new());
+        for ((from, place, remaining), tree) in parts.into_iter().zip(trees) {
+            let least = cheapest(&model, &[place], &remaining);
+            let path = subsets.bound(from, &remaining);
+            assert!(tree <= path + 1e-9, "case {case}");
+            assert!(path <= least + 1e-9, "case {case}: {path} above {least}");
+        }
+    }
+}
+
+#[test]
+fn triples_raise_the_bound_of_held_and_karp_and_fives_raise_that() {
+    let pool = pool(2);
+    for seed in 0..12 {
+        let kinds = [RandomModel::new, RandomModel::reversible];
+        let mut model = kinds[seed % 2](8, seed % 4 < 2, seed as u64);
+        model.known_share = 1.0;
+        let (table, trees, mut charges) = prepared(&model);
+        let all: Vec<usize> = (0..8).collect();
+        let mut bound = trees.bound(&table, table.start(), &all);
+        assert!(charges.root_bound() >= bound - 1e-9, "seed {seed}");
+        for fives in [0, EFFORT.fives] {
+            let effort = Effort { fives, ..EFFORT };
+            charges.raise(&model, &effort, &pool, &StopSignal::new());
+            assert!(charges.root_bound() > bound * 1.005, "seed {seed}");
+            bound = charges.root_bound();
+        }
+    }
+}
+
+#[test]
+fn nothing_depends_on_the_number_of_threads() {
+    for seed in 0..3 {
+        let model = RandomModel::new(20, seed % 2 == 0, seed);
+        let some: Vec<usize> = (3..17).collect();
+        let results = [1, 2, 3].map(|threads| {
+            let (_, _, mut charges) = prepared(&model);
+            let raised = charges.raise(&model, &EFFORT, &pool(threads), &StopSignal::new());
+            let bounds = [charges.root_bound(), charges.bound(0, &some)];
+            (raised, bounds.map(f64::to_bits))
+        });
+        assert!(results.iter().all(|result| *result == results[0]));
+    }
+}
+
+/// A model that counts what it is asked and gives the signal at the so manieth question.
+fn counting(stop: &StopSignal, stop_at: usize) -> StopsInside<'_> {
+    StopsInside {
+        inner: RandomModel::new(12, true, 5),
+        stop,
+        evaluations: AtomicUsize::new(0),
+        stop_at,
+    }
+}
+
+#[test]
+fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
+    let stop = StopSignal::new();
+    let model = counting(&stop, 10);
+    let (_, _, mut charges) = prepared(&model);
+    let before = charges.root_bound();
+    let raised = charges.raise(&model, &EFFORT, &pool(2), &stop);
+    assert!(!raised.settled && raised.steps < EFFORT.steps);
+    // The other worker may be past its look at the signal.
+    assert!(model.evaluations.load(Ordering::Relaxed) <= 11);
+    assert!(charges.root_bound() >= before);
+    let again = charges.raise(&model, &EFFORT, &pool(2), &stop);
+    assert_eq!((again.steps, again.triples), (0, 0));
+}
+
+#[test]
+fn no_more_is_asked_than_allowed_and_nothing_twice() {
+    let stop = StopSignal::new();
+    let model = counting(&stop, usize::MAX);
+    let (_, _, mut charges) = prepared(&model);
+    let mut passages = 0;
+    let mut bound = charges.root_bound();
+    for (triples, fives) in [
+        (0, 0),
+        (1, 1),
+        (10, 0),
+        (10_000, 10),
+        (10_000, 0),
+        (10_000, 0),
+    ] {
+        let effort = Effort {
+            triples,
+            fives,
+            ..EFFORT
+        };
+        let raised = charges.raise(&model, &effort, &pool(2), &stop);
+        assert!(raised.triples <= triples && raised.fives <= fives);
+        passages += raised.triples + raised.fives;
+        // One direction for what begins at the start or ends at the end, two for all others.
+        let asked = model.evaluations.load(Ordering::Relaxed);
+        assert!((passages..=2 * passages).contains(&asked));
+        assert!(charges.root_bound() >= bound);
+        bound = charges.root_bound();
+    }
+    // There are 12 targets, each with 11 others, start and end around it.
+    assert!(passages <= 12 * (13 * 12 / 2 - 1) + 11);
+}
+
+#[test]
+fn estimates_lie_between_the_pairs_and_the_flight() {
+    let mut model = RandomModel::new(6, true, 2);
+    model.known_share = 1.0;
+    let (table, _, mut charges) = prepared(&model);
+    charges.raise(&model, &EFFORT, &pool(2), &StopSignal::new());
+    let mut raised = 0;
+    let mut order: Vec<usize> = (0..6).collect();
+    for turn in 0..6 {
+        order.swap(turn, 5 - turn / 2);
+        let mut path = vec![table.start()];
+        path.extend(&order);
+        path.push(table.end());
+        let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
+        let excess = |triple: &[usize]| charges.excess(triple[0], triple[1], triple[2]);
+        let estimate = pairs + path.windows(3).map(excess).sum::<f64>();
+        let TourEvaluation::Flown(duration) = model.tour(&order) else {
+            panic!("the model resolves");
+        };
+        assert!(pairs <= estimate && estimate <= duration + 1e-9);
+        raised += usize::from(estimate > pairs);
+    }
+    assert!(raised > 0);
+}
+
+#[test]
+fn where_nothing_couples_there_are_no_charges() {
+    let mut model = RandomModel::new(5, true, 1);
+    model.couples = |_| false;
+    let table = PairTable::new(&model);
+    assert!(Charges::new(&model, &table, &SpanningTrees::new(&table)).is_none());
+}

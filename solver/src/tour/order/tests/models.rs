@@ -1,0 +1,216 @@
+//! Cost models in place of slews.
+
+pub(super) use crate::math::random::SplitMix;
+use crate::model::order_rules::OrderRules;
+use crate::tour::order::{Evaluation, Place, TourEvaluation, TourModel};
+
+/// A number in `[0, 1)`.
+pub(in crate::tour::order) fn unit(random: &mut SplitMix) -> f64 {
+    (random.draw() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Legs with random costs, and a random penalty on every two consecutive legs.
+///
+/// The pair bounds are the costs without penalties; the bound of a prefix knows a share of the
+/// penalties inside it: admissible, and not tight.
+pub(in crate::tour::order) struct RandomModel {
+    targets: usize,
+    has_end: bool,
+    legs: Vec<f64>,
+    penalties: Vec<f64>,
+    /// Which orders may be flown.
+    pub(in crate::tour::order) rules: OrderRules,
+    /// Share of the penalties that the bound of a prefix knows.
+    pub(in crate::tour::order) known_share: f64,
+    /// Orders and prefixes for which this holds do not resolve.
+    pub(in crate::tour::order) fails: fn(&[usize]) -> bool,
+    /// The other targets have no penalties.
+    pub(in crate::tour::order) couples: fn(usize) -> bool,
+    symmetric: bool,
+}
+
+impl RandomModel {
+    /// Legs of 10 to 50 s that depend on the direction, and penalties up to 15 s.
+    pub(in crate::tour::order) fn new(targets: usize, has_end: bool, seed: u64) -> Self {
+        let places = targets + 2;
+        let mut random = SplitMix::new(seed);
+        Self {
+            targets,
+            has_end,
+            legs: (0..places * places)
+                .map(|_| 10.0 + 40.0 * unit(&mut random))
+                .collect(),
+            penalties: (0..places.pow(3))
+                .map(|_| 15.0 * unit(&mut random))
+                .collect(),
+            rules: OrderRules::none(targets),
+            known_share: 0.7,
+            fails: |_| false,
+            couples: |_| true,
+            symmetric: false,
+        }
+    }
+
+    /// Every order costs the same backwards: the start is the end.
+    pub(in crate::tour::order) fn symmetric(targets: usize, seed: u64) -> Self {
+        let mut model = Self::new(targets, true, seed);
+        let places = targets + 2;
+        let (start, end) = (targets, targets + 1);
+        // Costs by places in which start and end are one, whatever the direction.
+        let one = |place: usize| if place == end { start } else { place };
+        let (legs, penalties) = (model.legs.clone(), model.penalties.clone());
+        for from in 0..places {
+            for to in 0..places {
+                let (low, high) = (one(from).min(one(to)), one(from).max(one(to)));
+                model.legs[from * places + to] = legs[low * places + high];
+                for via in 0..targets {
+                    let known = penalties[(low * places + via) * places + high];
+                    model.penalties[(from * places + via) * places + to] = known;
+                }
+            }
+        }
+        model.symmetric = true;
+        model
+    }
+
+    /// Costs of 0, 1 or 2 only and no penalties: ties everywhere.
+    pub(in crate::tour::order) fn with_ties(targets: usize, has_end: bool, seed: u64) -> Self {
+        let mut model = Self::new(targets, has_end, seed);
+        for leg in &mut model.legs {
+            *leg = ((*leg - 10.0) / 15.0).floor();
+        }
+        model.penalties.fill(0.0);
+        model
+    }
+
+    /// Orders that differ by some millionths of what they cost, or thousandths, and bounds that know all.
+    pub(in crate::tour::order) fn with_near_ties(targets: usize, has_end: bool, seed: u64) -> Self {
+        let mut model = Self::new(targets, has_end, seed);
+        let spread = [1e-6, 1e-5, 1e-4, 1e-3][(seed % 4) as usize];
+        for leg in &mut model.legs {
+            *leg = 30.0 + spread * *leg;
+        }
+        for penalty in &mut model.penalties {
+            *penalty = 0.02 + spread * *penalty;
+        }
+        model.known_share = 1.0;
+        model
+    }
+
+    /// The same forth and back but for the start, and for a service time at every target.
+    pub(in crate::tour::order) fn reversible(targets: usize, has_end: bool, seed: u64) -> Self {
+        let mut model = Self::new(targets, has_end, seed);
+        let places = targets + 2;
+        for a in 0..targets {
+            for b in 0..a {
+                model.legs[a * places + b] = model.legs[b * places + a];
+            }
+            for (from, to) in (0..targets).flat_map(|i| (0..i).map(move |k| (i, k))) {
+                let back = model.penalties[(to * places + a) * places + from];
+                model.penalties[(from * places + a) * places + to] = back;
+            }
+        }
+        for (leg, to) in model.legs.iter_mut().zip((0..places).cycle()) {
+            *leg += (to % 3) as f64;
+        }
+        model
+    }
+
+    /// The same without telling that orders are as good backwards.
+    pub(in crate::tour::order) fn searched_whole(mut self) -> Self {
+        self.symmetric = false;
+        self
+    }
+
+    fn leg(&self, from: usize, to: usize) -> f64 {
+        self.legs[from * (self.targets + 2) + to]
+    }
+
+    fn number(&self, place: Place) -> usize {
+        match place {
+            Place::Start => self.targets,
+            Place::Target(target) => target,
+            Place::End => self.targets + 1,
+        }
+    }
+
+    fn penalty(&self, from: usize, via: usize, to: usize) -> f64 {
+        if !(self.couples)(via) {
+            return 0.0;
+        }
+        let places = self.targets + 2;
+        self.penalties[(from * places + via) * places + to]
+    }
+
+    fn cost(&self, order: &[usize], to_end: bool, share: f64) -> f64 {
+        let mut path = vec![self.targets];
+        path.extend(order);
+        if to_end {
+            path.push(self.targets + 1);
+        }
+        self.along(&path, share)
+    }
+
+    fn along(&self, path: &[usize], share: f64) -> f64 {
+        let legs: f64 = path.windows(2).map(|leg| self.leg(leg[0], leg[1])).sum();
+        let penalties: f64 = path
+            .windows(3)
+            .map(|p| self.penalty(p[0], p[1], p[2]))
+            .sum();
+        legs + share * penalties
+    }
+}
+
+impl TourModel for RandomModel {
+    fn target_count(&self) -> usize {
+        self.targets
+    }
+
+    fn has_end(&self) -> bool {
+        self.has_end
+    }
+
+    fn rules(&self) -> &OrderRules {
+        &self.rules
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    fn pair_bound(&self, from: Place, to: Place) -> f64 {
+        self.leg(self.number(from), self.number(to))
+    }
+
+    fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
+        assert!(prefix.len() >= 2 && prefix.len() + 2 <= self.targets);
+        assert!(self.rules.some_order(prefix).is_some());
+        if (self.fails)(prefix) {
+            return Evaluation::Unresolved;
+        }
+        Evaluation::Value(self.cost(prefix, false, self.known_share))
+    }
+
+    fn path_bound(&self, path: &[Place]) -> Evaluation {
+        let path: Vec<usize> = path.iter().map(|&place| self.number(place)).collect();
+        let middle = path[path.len() / 2];
+        assert!((self.couples)(middle) && [3, 5].contains(&path.len()));
+        if (self.fails)(&path) {
+            return Evaluation::Unresolved;
+        }
+        Evaluation::Value(self.along(&path, self.known_share))
+    }
+
+    fn couples(&self, via: usize) -> bool {
+        (self.couples)(via)
+    }
+
+    fn tour(&self, order: &[usize]) -> TourEvaluation {
+        assert_eq!(order.len(), self.targets);
+        assert!(self.rules.admits(order));
+        if (self.fails)(order) {
+            return TourEvaluation::Unresolved;
+        }
+        TourEvaluation::Flown(self.cost(order, self.has_end, 1.0))
+    }
+}

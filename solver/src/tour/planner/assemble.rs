@@ -1,0 +1,102 @@
+//! From solved segments to a flight that can be checked and flown.
+
+use super::torques::{SHORTEST, torques};
+use super::tours::Tours;
+use crate::leg::multiphase::Flown;
+use crate::model::plan::{Control, Flight, Leg, Passage};
+use crate::tour::order::Place;
+use std::sync::Arc;
+
+/// A flight under construction.
+struct Assembly<'a> {
+    tours: &'a Tours<'a>,
+    clock: f64,
+    shortest: f64,
+    controls: Vec<Control>,
+    passages: Vec<Passage>,
+    legs: Vec<Leg>,
+}
+
+/// Puts the solved segments of a route together, settle and dwell included.
+pub(super) fn assemble(
+    tours: &Tours<'_>,
+    route: &[Place],
+    segments: &[Arc<Flown>],
+) -> (Flight, Vec<Leg>) {
+    let total: f64 = segments.iter().map(|flown| flown.profile.duration()).sum();
+    let mut assembly = Assembly {
+        tours,
+        clock: 0.0,
+        shortest: SHORTEST * total,
+        controls: Vec::new(),
+        passages: Vec::new(),
+        legs: Vec::new(),
+    };
+    for (places, flown) in tours.split(route).iter().zip(segments) {
+        let mut begin = 0;
+        for (pair, intervals) in places.windows(2).zip(&flown.intervals) {
+            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + intervals);
+            begin += intervals;
+            assembly.visit(pair[1]);
+        }
+    }
+    let flight = Flight {
+        total_time_s: assembly.clock,
+        passages: assembly.passages,
+        controls: assembly.controls,
+    };
+    (flight, assembly.legs)
+}
+
+impl Assembly<'_> {
+    fn fly_leg(&mut self, from: Place, to: Place, flown: &Flown, range: std::ops::Range<usize>) {
+        let begin = self.clock;
+        for (length, torque) in torques(&flown.profile, range, self.shortest) {
+            self.push(length, torque.iter().copied());
+        }
+        let duration = self.clock - begin;
+        self.legs.push(Leg {
+            from: self.tours.places.name(from),
+            to: self.tours.places.name(to),
+            start_s: begin,
+            duration_s: duration,
+            certified_lower_bound_s: None,
+            eigenaxis_duration_s: self.eigenaxis_duration(from, to),
+            rest_to_rest_duration_s: None,
+            solver_status: flown.status.as_str().into(),
+        });
+    }
+
+    /// Records the arrival at a target and holds still there as long as it asks for.
+    fn visit(&mut self, place: Place) {
+        let Place::Target(index) = place else { return };
+        let target = &self.tours.places.scenario.targets()[index];
+        let arrival = self.clock;
+        let service = self.tours.places.service_time(place);
+        if service > 0.0 {
+            let wheels = self.tours.places.dynamics.wheel_count();
+            self.push(service, std::iter::repeat_n(0.0, wheels));
+        }
+        self.passages.push(Passage {
+            target: target.id.clone(),
+            time_s: arrival,
+            departure_s: self.clock,
+        });
+    }
+
+    fn push(&mut self, duration: f64, torques: impl Iterator<Item = f64>) {
+        self.controls.push(Control {
+            start_s: self.clock,
+            duration_s: duration,
+            wheel_torque_nm: self.tours.places.all_torques(torques),
+        });
+        self.clock += duration;
+    }
+
+    fn eigenaxis_duration(&self, from: Place, to: Place) -> Option<f64> {
+        let places = self.tours.places;
+        let (from, to) = (places.waypoint(from), places.waypoint(to));
+        let slew = places.slew(&from, &to).eigenaxis();
+        slew.flyable.then_some(slew.trapezoid.duration)
+    }
+}

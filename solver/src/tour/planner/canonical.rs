@@ -1,0 +1,200 @@
+//! The canonical form of a leg: what makes two legs the same problem.
+
+use super::places::Places;
+use crate::leg::solve::arrival::Arrival;
+use crate::leg::solve::extremal::KinematicExtremals;
+use crate::leg::solve::{Resolution, SlewProblem};
+use crate::math::rounding::rounded;
+use crate::model::attitude::Attitude;
+use crate::model::dynamics::Dynamics;
+use crate::model::scenario::RateCondition;
+use crate::model::waypoint::{Waypoint, WheelCondition};
+use nalgebra::{DVector, Vector3};
+use std::fmt::Write;
+
+/// Version of the canonical form and of the numerics behind it: stored legs of another are not
+/// found.
+const VERSION: &str = "leg-8";
+
+/// A leg in the frame in which it begins at the identity attitude.
+#[derive(Debug, Clone)]
+pub(super) struct CanonicalLeg {
+    /// The text that tells it from all other legs.
+    pub(super) identity: String,
+    /// The share of the identity that describes the spacecraft.
+    pub(super) spacecraft: String,
+    /// The spacecraft with the momentum in this frame.
+    pub(super) dynamics: Dynamics,
+    /// Begin, at the identity attitude.
+    pub(super) from: Waypoint,
+    /// End.
+    pub(super) to: Waypoint,
+    /// Whether it is the wanted leg flown backwards.
+    pub(super) mirrored: bool,
+    /// Whether it may be flown backwards.
+    pub(super) reversible: bool,
+    /// Which signs count as arrived.
+    pub(super) arrival: Arrival,
+    null: DVector<f64>,
+    /// How finely it is solved.
+    pub(super) resolution: Resolution,
+}
+
+impl CanonicalLeg {
+    /// The canonical form of the leg between two waypoints.
+    pub(super) fn of(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
+        let forth = Self::directed(places, from, to, false);
+        if !forth.reversible {
+            return forth;
+        }
+        let back = Self::directed(places, to, from, true);
+        if back.identity < forth.identity {
+            back
+        } else {
+            forth
+        }
+    }
+
+    fn directed(places: &Places<'_>, from: &Waypoint, to: &Waypoint, mirrored: bool) -> Self {
+        let reversible = places.reversible([from, to]);
+        let mut turn = rounded_attitude(&from.attitude.turn_to(&to.attitude));
+        if places.arrival == Arrival::Rotation {
+            turn = upper_hemisphere(&turn);
+        }
+        let mut dynamics = places.dynamics.clone();
+        dynamics.momentum = rounded_vector(from.attitude.to_body(dynamics.momentum));
+        let from = settled(&dynamics, Attitude::identity(), from);
+        let to = settled(&dynamics, turn, to);
+        let spacecraft = describe_spacecraft(&dynamics);
+        let mut identity = format!("{VERSION};{:?};{:?};", places.resolution, places.arrival);
+        identity.push_str(&spacecraft);
+        let momentum = dynamics.momentum;
+        for part in [momentum.as_slice(), &turn.xyzw(), places.null.as_slice()] {
+            push_numbers(&mut identity, part);
+        }
+        for place in [&from, &to] {
+            describe_conditions(&mut identity, place);
+        }
+        Self {
+            identity,
+            spacecraft,
+            dynamics,
+            from,
+            to,
+            mirrored,
+            reversible,
+            arrival: places.arrival,
+            null: places.null.clone(),
+            resolution: places.resolution,
+        }
+    }
+
+    /// The problem to solve, with the guesses for its spacecraft.
+    pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> SlewProblem<'a> {
+        SlewProblem {
+            dynamics: &self.dynamics,
+            from: &self.from,
+            to: &self.to,
+            arrival: self.arrival,
+            null: &self.null,
+            extremals,
+            resolution: self.resolution,
+        }
+    }
+}
+
+/// A place at an attitude of this frame; conditions that leave nothing free are written as the
+/// wheel momenta that they fix, so that different wordings of one state are one leg.
+fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoint {
+    let mut settled = Waypoint {
+        attitude,
+        ..place.clone()
+    };
+    if let [
+        RateCondition::Fixed(x),
+        RateCondition::Fixed(y),
+        RateCondition::Fixed(z),
+    ] = place.rate
+        && place.is_fixed(dynamics)
+    {
+        let null = match &place.wheels {
+            WheelCondition::NullSpace(null) => null.clone(),
+            WheelCondition::Free => DVector::zeros(0),
+            WheelCondition::Fixed(_) => return settled,
+        };
+        let wheels = dynamics.wheels_at(&attitude, &Vector3::new(x, y, z), &null);
+        settled.wheels = WheelCondition::Fixed(wheels);
+    }
+    settled
+}
+
+fn rounded_attitude(attitude: &Attitude) -> Attitude {
+    let components = attitude.xyzw().map(|c| rounded(c, 1.0));
+    Attitude::from_xyzw(components).expect("rounding leaves a unit quaternion its length")
+}
+
+fn rounded_vector(vector: Vector3<f64>) -> Vector3<f64> {
+    let scale = vector.amax();
+    vector.map(|c| rounded(c, scale))
+}
+
+/// The one of `q` and `-q` whose last component that is not zero is positive.
+fn upper_hemisphere(attitude: &Attitude) -> Attitude {
+    let leading = attitude.xyzw().into_iter().rev().find(|c| *c != 0.0);
+    if leading.is_some_and(|c| c < 0.0) {
+        attitude.negated()
+    } else {
+        *attitude
+    }
+}
+
+fn push_numbers(text: &mut String, numbers: &[f64]) {
+    for number in numbers {
+        // Adding zero turns -0 into 0. Writing to a string cannot fail.
+        let _ = write!(text, "{:e},", number + 0.0);
+    }
+    text.push(';');
+}
+
+fn describe_spacecraft(dynamics: &Dynamics) -> String {
+    let mut text = String::new();
+    push_numbers(&mut text, dynamics.inertia.as_slice());
+    for wheel in &dynamics.actuators {
+        push_numbers(&mut text, wheel.axis.as_slice());
+        let numbers = [
+            wheel.inertia,
+            wheel.min_torque,
+            wheel.max_torque,
+            wheel.max_speed,
+        ];
+        push_numbers(&mut text, &numbers);
+    }
+    push_numbers(&mut text, dynamics.locked_momentum.as_slice());
+    push_numbers(&mut text, dynamics.max_rate.as_slice());
+    push_numbers(&mut text, &[dynamics.max_rate_norm]);
+    text
+}
+
+fn describe_conditions(text: &mut String, place: &Waypoint) {
+    for rate in &place.rate {
+        match rate {
+            RateCondition::Free => text.push_str("free;"),
+            RateCondition::Fixed(value) => push_numbers(text, &[*value]),
+            RateCondition::Within(low, high) => push_numbers(text, &[*low, *high]),
+        }
+    }
+    match &place.wheels {
+        WheelCondition::Free => text.push_str("wheels free;"),
+        WheelCondition::NullSpace(h) => {
+            text.push_str("null ");
+            push_numbers(text, h.as_slice());
+        }
+        WheelCondition::Fixed(h) => {
+            text.push_str("fixed ");
+            push_numbers(text, h.as_slice());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! What a certificate takes for granted, compared with the scenario.
+//!
+//! A certificate says that no motion within some limits, with some rates at its ends, makes a turn in
+//! less than a time. Whether that is about the slews of the scenario is looked at here from its words
+//! alone, by other ways than those of [`crate::bounds::certified`]: greatest components by the corners of
+//! boxes, inertias by solving with them, turns as products of matrices.
+
+use crate::bounds::kinematic::certificate::Certificate;
+use crate::model::scenario::{RateCondition, Scenario};
+use crate::tour::order::Place;
+use nalgebra::{Matrix3, Vector3};
+
+/// What rounding may take off a limit, relative.
+const ROUNDING: f64 = 1e-12;
+/// Components of matrices of turns agree this well; places are rounded to a tenth of a picoradian.
+const SAME_TURN: f64 = 1e-9;
+/// The same of axes that have to be orthonormal.
+const ORTHONORMAL: f64 = 1e-12;
+
+/// What stands in the way of relying on a certificate, seen from axes that are the columns of a matrix,
+/// for slews between two places without momentum.
+///
+/// # Errors
+///
+/// What the scenario does not support.
+pub(super) fn check(
+    scenario: &Scenario,
+    places: [Place; 2],
+    axes: &Matrix3<f64>,
+    certificate: &Certificate,
+) -> Result<(), &'static str> {
+    if (axes.tr_mul(axes) - Matrix3::identity()).amax() > ORTHONORMAL || axes.determinant() < 0.0 {
+        return Err("axes that are not orthonormal");
+    }
+    let [turn] = &certificate.turns[..] else {
+        return Err("other than one turn");
+    };
+    let [(from, begin), (to, end)] = places.map(|place| conditions(scenario, place));
+    let made = axes.tr_mul(&(from.tr_mul(&to) * axes));
+    if (made - turn.turn.matrix()).amax() > SAME_TURN {
+        return Err("another turn");
+    }
+    let Some([rates, accelerations]) = reachable(scenario, axes) else {
+        return Err("an inertia that cannot be inverted");
+    };
+    let within = |needed: Vector3<f64>, granted: &Vector3<f64>| {
+        (0..3).all(|axis| needed[axis] <= granted[axis] * (1.0 + ROUNDING))
+    };
+    if !within(rates, &certificate.limits.rates_rad_s) {
+        return Err("a limit of the rates below what the wheels can do");
+    }
+    if !within(accelerations, &certificate.limits.accelerations_rad_s2) {
+        return Err("a limit of the accelerations below what the wheels can do");
+    }
+    let greatest = |ranges: &[(f64, f64); 3]| seen(axes, |axis| over_corners(axis, ranges));
+    if !within(greatest(&begin), &certificate.ends.begin_rad_s) {
+        return Err("a rate at the beginning below what is admitted there");
+    }
+    if !within(greatest(&end), &certificate.ends.end_rad_s) {
+        return Err("a rate at the end below what is admitted there");
+    }
+    Ok(())
+}
+
+/// The body axes in the reference frame, as columns, and the ranges of the rate at a place.
+fn conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, f64); 3]) {
+    let fixed = |rate: &Vector3<f64>| [0, 1, 2].map(|axis| (rate[axis], rate[axis]));
+    match place {
+        Place::Start => {
+            let start = scenario.start();
+            (start.attitude.matrix(), fixed(&start.rate))
+        }
+        Place::Target(index) => {
+            let target = &scenario.targets()[index];
+            let range = |condition: RateCondition| match condition {
+                RateCondition::Fixed(rate) => (rate, rate),
+                RateCondition::Within(low, high) => (low, high),
+                RateCondition::Free => (f64::NEG_INFINITY, f64::INFINITY),
+            };
+            (target.attitude.matrix(), target.rate.map(range))
+        }
+        Place::End => {
+            let end = scenario.end().expect("a leg to the end has one");
+            (end.attitude.matrix(), fixed(&end.rate))
+        }
+    }
+}
+
+fn seen(axes: &Matrix3<f64>, greatest: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| greatest(&axes.column(axis).into_owned()))
+}
+
+/// Greatest size of the component along a direction of the vectors in a box.
+fn over_corners(direction: &Vector3<f64>, ranges: &[(f64, f64); 3]) -> f64 {
+    let corners = (0..8_u8).map(|corner| {
+        let parts = (0..3).map(|axis| {
+            let (low, high) = ranges[axis];
+            let component = if corner >> axis & 1 == 0 { low } else { high };
+            // What is across the direction does not count, infinite or not.
+            if direction[axis] == 0.0 {
+                0.0
+            } else {
+                direction[axis] * component
+            }
+        });
+        parts.sum::<f64>().abs()
+    });
+    // Of two infinities of different sign nothing is known: no number counts as infinite.
+    corners.fold(0.0, |most, size| {
+        if size.is_nan() {
+            f64::INFINITY
+        } else {
+            size.max(most)
+        }
+    })
+}
+
+/// Greatest components along axes of the rates and accelerations that wheels within their limits make
+/// without momentum: `J w = -h_locked - sum a I W` and `J_eff w' = -sum a u`.
+fn reachable(scenario: &Scenario, axes: &Matrix3<f64>) -> Option<[Vector3<f64>; 2]> {
+    let (spacecraft, options) = (scenario.spacecraft(), scenario.options());
+    let speeds = &scenario.start().wheel_speed;
+    let mut effective = *spacecraft.inertia();
+    let mut locked = Vector3::zeros();
+    for (wheel, speed) in spacecraft.wheels().iter().zip(speeds) {
+        if wheel.enabled {
+            effective -= wheel.axis * wheel.axis.transpose() * wheel.inertia;
+        } else {
+            locked += wheel.axis * (wheel.inertia * speed);
+        }
+    }
+    // Both inertias are symmetric: d . J^-1 v = (J^-1 d) . v.
+    let levers = spacecraft.inertia().lu().solve(axes)?;
+    let pushes = effective.lu().solve(axes)?;
+    let limits = spacecraft.max_rate().map(|limit| (-limit, limit));
+    let limits = [limits.x, limits.y, limits.z];
+    let rates = Vector3::from_fn(|axis, _| {
+        let (lever, direction) = (levers.column(axis), axes.column(axis).into_owned());
+        let mut reached = lever.dot(&locked).abs();
+        for (_, wheel) in spacecraft.enabled_wheels() {
+            let share = (lever.dot(&wheel.axis) * wheel.inertia).abs();
+            if share > 0.0 {
+                reached += share * wheel.max_speed * options.momentum_authority;
+            }
+        }
+        let by_axis = over_corners(&direction, &limits);
+        reached.min(by_axis).min(spacecraft.max_rate_norm())
+    });
+    let accelerations = Vector3::from_fn(|axis, _| {
+        let push = pushes.column(axis);
+        let ends = |sign: f64| -> f64 {
+            let wheels = spacecraft.enabled_wheels();
+            let most = wheels.map(|(_, wheel)| {
+                let share = sign * push.dot(&wheel.axis) * options.torque_authority;
+                (share * wheel.max_torque).max(share * wheel.min_torque)
+            });
+            most.sum()
+        };
+        ends(1.0).max(ends(-1.0))
+    });
+    Some([rates, accelerations])
+}
+
+#[cfg(test)]
+mod tests;

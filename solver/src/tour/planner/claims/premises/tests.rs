@@ -1,0 +1,88 @@
+//! Each premise, made a little too good.
+
+use super::*;
+use crate::model::scenario::reference::experiment_a;
+use crate::tour::planner::places::Places;
+
+/// A leg with bounded rates at its end past a locked wheel that turns.
+fn scenario() -> Scenario {
+    let mut spec = experiment_a();
+    spec.spacecraft.inertia_kg_m2 = [[6.6, 0.3, -0.2], [0.3, 8.9, 0.1], [-0.2, 0.1, 9.6]];
+    spec.spacecraft.max_body_rate_norm_rad_s = Some(0.05);
+    let mut locked = spec.spacecraft.wheels[1].clone();
+    locked.enabled = false;
+    spec.spacecraft.wheels.push(locked);
+    spec.start.wheel_speed_rad_s = Some(vec![0.0, -100.0, 0.0, 100.0]);
+    for wheel in &mut spec.spacecraft.wheels {
+        wheel.min_torque_nm = Some(-0.006);
+    }
+    let target = &mut spec.targets[0];
+    target.zero_rate_axes = None;
+    target.rate_min_rad_s = Some([Some(-0.03), None, Some(0.0)]);
+    target.rate_max_rad_s = Some([Some(0.0), Some(0.01), Some(0.0)]);
+    Scenario::try_new(&spec).expect("valid").scenario
+}
+
+/// What is told of a change.
+type Case = (&'static str, fn(&mut Certificate));
+
+#[test]
+fn premises_that_are_too_good_are_told() {
+    let scenario = scenario();
+    let places = Places::of(&scenario);
+    assert!(!places.dynamics.has_momentum());
+    let route = [Place::Start, Place::Target(0)];
+    let [from, to] = route.map(|place| places.waypoint(place));
+    let (axes, good) = places.certified.certificate(&from, &to).expect("a bound");
+    assert_eq!(check(&scenario, route, &axes, &good), Ok(()));
+    let backwards = [route[1], route[0]];
+    check(&scenario, backwards, &axes, &good).expect_err("another turn");
+    let cases: [Case; 5] = [
+        ("rates below", |c| c.limits.rates_rad_s.z *= 0.999),
+        ("accelerations below", |c| {
+            c.limits.accelerations_rad_s2.x *= 0.999;
+        }),
+        ("at the end below", |c| c.ends.end_rad_s.x = 0.0),
+        ("another turn", |c| {
+            c.turns[0].turn = c.turns[0].turn.turn_to(&c.turns[0].turn);
+        }),
+        ("one turn", |c| c.turns.push(c.turns[0])),
+    ];
+    for (words, change) in cases {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let told = check(&scenario, route, &axes, &bad).expect_err(words);
+        assert!(told.contains(words), "{told} instead of {words}");
+    }
+    let told = check(&scenario, route, &(axes * 1.001), &good).expect_err("axes");
+    assert!(told.contains("orthonormal"), "{told}");
+}
+
+#[test]
+fn greatest_components_are_those_of_the_corners() {
+    let open = (f64::NEG_INFINITY, f64::INFINITY);
+    let cases = [
+        (Vector3::x(), [(-0.05, 0.0), open, open], 0.05),
+        (Vector3::x(), [(0.02, 0.03), (0.0, 0.0), (0.0, 0.0)], 0.03),
+        (
+            Vector3::new(0.6, -0.8, 0.0),
+            [(-1.0, 2.0), (-3.0, 1.0), open],
+            3.6,
+        ),
+        (
+            Vector3::new(0.6, 0.8, 0.0),
+            [(0.0, 1.0), open, (0.0, 0.0)],
+            f64::INFINITY,
+        ),
+        (
+            Vector3::new(0.6, 0.8, 0.0),
+            [open, open, (0.0, 0.0)],
+            f64::INFINITY,
+        ),
+    ];
+    for (direction, ranges, expected) in cases {
+        let found = over_corners(&direction, &ranges);
+        let same = found.total_cmp(&expected).is_eq() || (found - expected).abs() < 1e-12;
+        assert!(same, "{direction} {ranges:?}: {found}");
+    }
+}

@@ -1,0 +1,121 @@
+//! The targets in an order that is given.
+
+use super::certified::route_bound;
+use super::conclude::Conclusions;
+use super::legs::LegSolver;
+use super::places::Places;
+use super::tours::Tours;
+use super::{Run, feasibility_problems, limited, unsolved};
+use crate::model::plan::Outcome;
+use crate::model::scenario::Scenario;
+use crate::tour::legs::LegKind;
+use crate::tour::order::{FlownOrder, Place, TourEvaluation, TourModel};
+use std::time::Instant;
+
+/// Where the bound on the tours along a given order comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoundFrom {
+    /// The certified bounds of its legs: nothing is solved for it, and the plan has no legs from rest
+    /// to rest to compare with.
+    Certificates,
+    /// Its legs with free ends, solved one by one: tighter, for about the same work again.
+    Legs,
+}
+
+/// Why a list of indices cannot be flown as an order of a scenario's targets.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum OrderError {
+    /// It is none.
+    #[error("an order lists the indices of all {targets} targets, each of them once")]
+    NotAnOrder {
+        /// Number of targets.
+        targets: usize,
+    },
+    /// The scenario's positions and precedences do not admit it.
+    #[error("the order breaks a position or precedence that the scenario demands")]
+    NotAdmitted,
+}
+
+/// Visits the targets in a given order in minimum time: torques, bound and verification, without a
+/// search.
+///
+/// `order` lists indices into [`Scenario::targets`]; the work is linear in their number. The flight is
+/// the one that [`super::solve`] makes of the order when it finds it best. The bound holds for this
+/// order only; nothing is said of other orders, so the plan is never called optimal.
+///
+/// # Errors
+///
+/// When `order` does not name every target exactly once, or breaks
+/// [`Scenario::order_rules`].
+pub fn fly_order(
+    scenario: &Scenario,
+    order: &[usize],
+    bound: BoundFrom,
+    run: Run<'_>,
+) -> Result<Outcome, OrderError> {
+    let targets = scenario.targets().len();
+    let mut named = order.to_vec();
+    named.sort_unstable();
+    if !named.into_iter().eq(0..targets) {
+        return Err(OrderError::NotAnOrder { targets });
+    }
+    if !scenario.order_rules().admits(order) {
+        return Err(OrderError::NotAdmitted);
+    }
+    Ok(fly(scenario, order, bound, run))
+}
+
+fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> Outcome {
+    let begin = Instant::now();
+    let problems = feasibility_problems(scenario);
+    if !problems.is_empty() {
+        return Outcome::Infeasible(problems);
+    }
+    let stop = limited(scenario, run.stop);
+    let places = Places::of(scenario);
+    let route = places.route(order, true);
+    let solver = LegSolver::new(&places, run, &stop);
+    let pairs = legs_of(&places, &route);
+    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
+    let certified = route_bound(&places, &bounds, &route);
+    solver.tell(None, certified);
+    let tours = Tours::new(&places, &solver, &stop);
+    tours.prove(bounds);
+    if bound == BoundFrom::Legs {
+        tours.know(solver.table(LegKind::LowerBound, &pairs));
+    }
+    match tours.tour(order) {
+        TourEvaluation::Flown(duration_s) => {
+            let order = order.to_vec();
+            let flown = FlownOrder { order, duration_s };
+            let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
+            // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
+            let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
+            let mut conclusions = Conclusions::new(&tours, run, begin);
+            conclusions.prove(certified);
+            if bound == BoundFrom::Legs {
+                conclusions.compare_with_rest(&flown);
+            }
+            conclusions.given(&flown, lower_bound_s)
+        }
+        TourEvaluation::Stopped => Outcome::StoppedEmpty,
+        TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),
+    }
+}
+
+/// The legs between neighbours of a route, also between those that become neighbours because places
+/// that are one stop are flown as one.
+fn legs_of(places: &Places<'_>, route: &[Place]) -> Vec<(Place, Place)> {
+    let mut legs = Vec::new();
+    for (i, from) in route.iter().enumerate() {
+        for (j, to) in route.iter().enumerate().skip(i + 1) {
+            legs.push((*from, *to));
+            let next = route.get(j + 1);
+            let joined = next.is_some_and(|next| places.are_one_stop(*to, *next));
+            if !joined && !places.are_one_stop(*from, *to) {
+                break;
+            }
+        }
+    }
+    legs
+}

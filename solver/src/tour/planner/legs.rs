@@ -1,0 +1,405 @@
+//! The tables of leg times.
+//!
+//! Pairs of places are reduced to canonical legs first, so that equal problems are solved once:
+//! in a table, between tables of one solve, and, through the store, between solves.
+
+use super::canonical::CanonicalLeg;
+use super::places::Places;
+use super::recall::{attitudes_of, momenta_of, recalled_leg};
+use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
+use super::verified::{flies, flight_faults};
+use super::{Run, interruption};
+use crate::leg::multiphase::Flown;
+use crate::leg::solve;
+use crate::model::waypoint::Waypoint;
+use crate::nlp::{Breakdown, NlpStatus, Quantity};
+use crate::run::contradiction::{Contradiction, slack};
+use crate::run::progress::{Progress, Stage};
+use crate::run::stop::{StopReason, StopSignal};
+use crate::tour::legs::{LegKind, SegmentStore, StoredLeg};
+use crate::tour::order::Place;
+use std::collections::{HashMap, HashSet};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// Solves canonical legs and remembers them for the tables and tours of one solve.
+pub(super) struct LegSolver<'a> {
+    places: &'a Places<'a>,
+    run: Run<'a>,
+    stop: &'a StopSignal,
+    known: Remembered<Arc<SolvedLeg>>,
+    certified: Remembered<CertifiedLeg>,
+    /// What a first tour takes and what none undercuts, s, as far as it is known: told with the
+    /// progress.
+    told: Mutex<(Option<f64>, Option<f64>)>,
+    /// Legs solved.
+    solved: AtomicU64,
+    /// Legs taken from the store.
+    from_store: AtomicU64,
+    /// NLPs solved for them.
+    nlp_solves: AtomicU64,
+    /// Claims that a flight has contradicted.
+    contradictions: AtomicU64,
+}
+
+/// What has been found out, by the identity of the leg.
+type Remembered<T> = Mutex<HashMap<String, T>>;
+
+impl<'a> LegSolver<'a> {
+    pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
+        Self {
+            places,
+            run,
+            stop,
+            known: Remembered::default(),
+            certified: Remembered::default(),
+            told: Mutex::default(),
+            solved: AtomicU64::new(0),
+            from_store: AtomicU64::new(0),
+            nlp_solves: AtomicU64::new(0),
+            contradictions: AtomicU64::new(0),
+        }
+    }
+
+    /// The places between which the legs are.
+    pub(super) fn places(&self) -> &'a Places<'a> {
+        self.places
+    }
+
+    /// Where the segments of tours are remembered beyond this solve.
+    pub(super) fn segments(&self) -> &'a dyn SegmentStore {
+        self.run.segments
+    }
+
+    /// Tells that work has begun.
+    pub(super) fn tell_begin(&self) {
+        self.tell_done(0, None);
+    }
+
+    /// Tells the duration of a first tour and a bound on all tours, s, now and with the progress of
+    /// the legs from now on.
+    pub(super) fn tell(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
+        {
+            let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+            *told = (incumbent_s.or(told.0), lower_bound_s.or(told.1));
+        }
+        self.tell_done(0, None);
+    }
+
+    fn tell_done(&self, done: u64, total: Option<u64>) {
+        let told = self.told.lock();
+        let (incumbent_s, lower_bound_s) = *told.unwrap_or_else(PoisonError::into_inner);
+        self.run.observer.progress(Progress {
+            stage: Stage::Legs,
+            done,
+            total,
+            incumbent_s,
+            lower_bound_s,
+        });
+    }
+
+    /// The work so far: legs solved, legs from the store, NLPs.
+    pub(super) fn work(&self) -> [u64; 3] {
+        [&self.solved, &self.from_store, &self.nlp_solves].map(|count| count.load(Relaxed))
+    }
+
+    /// Counts a program of one slew that is no leg to keep.
+    pub(super) fn count_solve(&self) {
+        self.nlp_solves.fetch_add(1, Relaxed);
+    }
+
+    /// Takes note of a contradiction: no certified bound counts from now on.
+    pub(super) fn contradicted(&self, contradiction: &Contradiction) {
+        self.contradictions.fetch_add(1, Relaxed);
+        self.run.observer.contradicted(contradiction);
+    }
+
+    /// Whether no flight has contradicted a certified bound so far.
+    pub(super) fn bounds_are_trusted(&self) -> bool {
+        self.contradictions.load(Relaxed) == 0
+    }
+
+    /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
+    /// out of the table.
+    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+        self.fill(kind, pairs, |done, total| self.tell_done(done, Some(total)))
+    }
+
+    /// The same, without telling of a stage that is over.
+    pub(super) fn late_table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+        self.fill(kind, pairs, |_, _| {})
+    }
+
+    fn fill(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+        tell: impl Fn(u64, u64) + Sync,
+    ) -> LegTable {
+        let canonical = self.all_canonical(kind, pairs);
+        self.solve_missing(kind, &canonical, tell);
+        let known = lock(&self.known);
+        let entry = |canonical: &Option<CanonicalLeg>| {
+            let canonical = canonical.as_ref()?;
+            Some(TabledLeg {
+                leg: Arc::clone(known.get(&canonical.identity)?),
+                mirrored: canonical.mirrored,
+            })
+        };
+        let legs = pairs.iter().zip(&canonical);
+        let entries = legs.map(|(pair, leg)| (*pair, entry(leg)));
+        Table::new(self.places, entries)
+    }
+
+    /// The leg of a kind between two places, solved if it was not before.
+    pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> Flown {
+        let canonical = self.canonical(kind, from, to);
+        let known = lock(&self.known).get(&canonical.identity).cloned();
+        let leg = known.unwrap_or_else(|| {
+            let stored = self.recall(&canonical);
+            let from_store = stored.is_some();
+            let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
+            self.remember(&canonical, &leg, from_store);
+            leg
+        });
+        let placed = TabledLeg {
+            leg,
+            mirrored: canonical.mirrored,
+        };
+        placed.from(&self.places.waypoint(from).attitude)
+    }
+
+    /// A table of [`Self::certified_legs`].
+    pub(super) fn certified_table(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> CertifiedTable {
+        let legs = self.certified_legs(kind, pairs);
+        Table::new(self.places, pairs.iter().copied().zip(legs))
+    }
+
+    /// What is proved of the legs of a kind between pairs of places, without any program; nothing
+    /// where the stop signal prevents it.
+    pub(super) fn certified_legs(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> Vec<Option<CertifiedLeg>> {
+        let canonical = self.all_canonical(kind, pairs);
+        let missing = missing_from(&lock(&self.certified), &canonical);
+        let bounds = self.run.pool.map(&missing, |leg| {
+            (!self.stop.is_set()).then(|| certify(self.places, leg))
+        });
+        let mut certified = lock(&self.certified);
+        for (leg, bound) in missing.into_iter().zip(bounds) {
+            if let Some(bound) = bound {
+                certified.insert(leg.identity.clone(), bound);
+            }
+        }
+        let known = |leg: &Option<CanonicalLeg>| certified.get(&leg.as_ref()?.identity).copied();
+        canonical.iter().map(known).collect()
+    }
+
+    fn canonical(&self, kind: LegKind, from: Place, to: Place) -> CanonicalLeg {
+        let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
+        CanonicalLeg::of(self.places, &from, &to)
+    }
+
+    /// The legs of many pairs; those that the stop signal prevents are left out.
+    fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<Option<CanonicalLeg>> {
+        self.run.pool.map(pairs, |(from, to)| {
+            (!self.is_abandoned()).then(|| self.canonical(kind, *from, *to))
+        })
+    }
+
+    /// Whether not even known legs are wanted any more: whoever asks for the best so far still
+    /// takes what the store has.
+    fn is_abandoned(&self) -> bool {
+        let reason = self.stop.reason();
+        reason.is_some_and(|reason| reason != StopReason::Requested)
+    }
+
+    fn solve_missing(
+        &self,
+        kind: LegKind,
+        canonical: &[Option<CanonicalLeg>],
+        tell: impl Fn(u64, u64) + Sync,
+    ) {
+        let missing = missing_from(&lock(&self.known), canonical);
+        let done = AtomicU64::new(0);
+        let total = missing.len() as u64;
+        self.run.pool.map(&missing, |leg| {
+            // Asking the store takes time too, for thousands of legs too much of it.
+            if self.is_abandoned() {
+                return;
+            }
+            if let Some(stored) = self.recall(leg) {
+                self.remember(leg, &Arc::new(stored), true);
+            } else if !self.stop.is_set() {
+                self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
+            }
+            tell(done.fetch_add(1, Relaxed) + 1, total);
+        });
+    }
+
+    /// A leg from the store.
+    fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
+        let mut stored = recall(self.run.legs.get(&leg.identity)?)?;
+        let faults = flight_faults(self.places, leg, &stored.flown.profile);
+        if !faults.is_empty() {
+            let identity = leg.identity.clone();
+            self.run
+                .observer
+                .contradicted(&Contradiction::StoredLeg { identity, faults });
+            return None;
+        }
+        self.compare_with_bound(leg, &mut stored);
+        Some(stored)
+    }
+
+    /// Takes the certified bound from a leg that was flown in less.
+    fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
+        let Some((bound_s, flown_s)) = solved.certified.zip(solved.flown.duration()) else {
+            return;
+        };
+        let turn = leg.arrival.turn(&leg.from.attitude, &leg.to.attitude);
+        if bound_s - slack(bound_s, turn) > flown_s {
+            self.contradicted(&Contradiction::Leg {
+                identity: leg.identity.clone(),
+                bound_s,
+                flown_s,
+            });
+            solved.certified = None;
+        }
+    }
+
+    /// Solves a leg, and stores it.
+    fn solve(&self, kind: LegKind, leg: &CanonicalLeg) -> SolvedLeg {
+        let bound = lock(&self.certified).get(&leg.identity).copied();
+        let mut fresh = solve(self.places, leg, bound, self.stop);
+        self.compare_with_bound(leg, &mut fresh);
+        if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
+            // At once, so that a solve that is killed has not worked in vain; but not when
+            // stopped, since then perhaps not all starts have been tried.
+            self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
+        }
+        fresh
+    }
+
+    /// Keeps a leg unless it was interrupted.
+    fn remember(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
+        if solved.flown.status.is_interrupted() {
+            return;
+        }
+        if from_store {
+            self.from_store.fetch_add(1, Relaxed);
+        } else {
+            self.solved.fetch_add(1, Relaxed);
+            self.nlp_solves.fetch_add(solved.solves, Relaxed);
+        }
+        lock(&self.known).insert(leg.identity.clone(), Arc::clone(solved));
+    }
+}
+
+fn lock<T>(remembered: &Remembered<T>) -> MutexGuard<'_, HashMap<String, T>> {
+    // Whoever panicked has left the map whole.
+    remembered.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The legs of which nothing is known, each of them once.
+fn missing_from<'c, T>(
+    known: &HashMap<String, T>,
+    legs: &'c [Option<CanonicalLeg>],
+) -> Vec<&'c CanonicalLeg> {
+    let mut listed = HashSet::new();
+    legs.iter()
+        .flatten()
+        .filter(|leg| !known.contains_key(&leg.identity) && listed.insert(&leg.identity))
+        .collect()
+}
+
+/// A place under the conditions of a kind of leg.
+pub(super) fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
+    match kind {
+        LegKind::RestToRest | LegKind::Certified => places.at_rest(place),
+        LegKind::LowerBound => places.waypoint(place),
+    }
+}
+
+/// What is proved of a leg.
+pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
+    let begin = Instant::now();
+    CertifiedLeg {
+        lower_bound: places
+            .certified
+            .leg(&leg.from, &leg.to, &leg.dynamics.momentum),
+        solve_time: begin.elapsed().as_secs_f64(),
+    }
+}
+
+/// Solves a leg, refines it until it can be flown, and has it flown by the checker. What has been
+/// certified of it before is not computed again.
+fn solve(
+    places: &Places<'_>,
+    leg: &CanonicalLeg,
+    certified: Option<CertifiedLeg>,
+    stop: &StopSignal,
+) -> SolvedLeg {
+    let begin = Instant::now();
+    let certified = certified
+        .unwrap_or_else(|| certify(places, leg))
+        .lower_bound;
+    let problem = leg.problem(&places.extremals);
+    let mut solved = solve::solve(&problem, certified, &|| interruption(stop));
+    if solved.flown.duration().is_some() && !flies(places, leg, &solved.flown.profile) {
+        solved.flown.status = NlpStatus::NumericalError(Breakdown {
+            stage: solved.flown.profile.intervals(),
+            quantity: Quantity::Flight,
+        });
+    }
+    SolvedLeg {
+        flown: solved.flown,
+        certified,
+        solves: solved.solves,
+        solve_time: begin.elapsed().as_secs_f64(),
+    }
+}
+
+/// A solved leg to be stored.
+pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
+    let profile = &solved.flown.profile;
+    StoredLeg {
+        spacecraft: leg.spacecraft.clone(),
+        kind,
+        turn_xyzw: leg.to.attitude.xyzw(),
+        body_momentum_nms: leg.dynamics.momentum.into(),
+        reversible: leg.reversible,
+        duration_s: profile.duration(),
+        certified_lower_bound_s: solved.certified,
+        status: solved.flown.status.as_str().into(),
+        solve_time_s: solved.solve_time,
+        attitudes_xyzw: attitudes_of(profile),
+        wheel_momenta_nms: momenta_of(profile),
+        lengths_s: profile.lengths.clone(),
+    }
+}
+
+/// A stored leg as a solved one; `None` when its numbers do not fit together.
+fn recall(stored: StoredLeg) -> Option<SolvedLeg> {
+    let flown = recalled_leg(
+        &stored.attitudes_xyzw,
+        stored.wheel_momenta_nms,
+        stored.lengths_s,
+    )?;
+    Some(SolvedLeg {
+        flown,
+        certified: stored.certified_lower_bound_s,
+        solves: 0,
+        solve_time: stored.solve_time_s,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,125 @@
+//! Tables of legs between places.
+
+use super::places::Places;
+use crate::leg::multiphase::Flown;
+use crate::model::attitude::Attitude;
+use crate::tour::order::Place;
+use std::sync::Arc;
+
+/// A solved leg in its canonical form.
+#[derive(Debug, Clone)]
+pub(super) struct SolvedLeg {
+    /// The motion, from the identity attitude, and how it ended.
+    pub(super) flown: Flown,
+    /// No slew with its conditions takes less, s.
+    pub(super) certified: Option<f64>,
+    /// NLPs solved for it.
+    pub(super) solves: u64,
+    /// Wall-clock time of all starts, s.
+    pub(super) solve_time: f64,
+}
+
+/// What is proved of a leg.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CertifiedLeg {
+    /// No slew with its conditions takes less, s; `None` where nothing is proved.
+    pub(super) lower_bound: Option<f64>,
+    /// Wall-clock time that this took, s.
+    pub(super) solve_time: f64,
+}
+
+/// A solved leg between two places.
+#[derive(Debug, Clone)]
+pub(super) struct TabledLeg {
+    /// The solution that it shares with all legs of the same canonical form.
+    pub(super) leg: Arc<SolvedLeg>,
+    /// Whether that is flown backwards.
+    pub(super) mirrored: bool,
+}
+
+impl TabledLeg {
+    /// The motion from an attitude, and how it ended.
+    pub(super) fn from(&self, begin: &Attitude) -> Flown {
+        let solution = &self.leg.flown;
+        let mut profile = if self.mirrored {
+            solution.profile.reversed()
+        } else {
+            solution.profile.clone()
+        };
+        if let Some(first) = profile.attitudes.first().copied() {
+            for attitude in &mut profile.attitudes {
+                *attitude = begin.then_in_body(&first.turn_to(attitude));
+            }
+        }
+        Flown {
+            profile,
+            intervals: solution.intervals.clone(),
+            passing_prices: Vec::new(),
+            ..*solution
+        }
+    }
+}
+
+/// What is known of legs of one kind between pairs of places.
+pub(super) struct Table<T> {
+    places: usize,
+    entries: Vec<Option<T>>,
+}
+
+/// Solved legs.
+pub(super) type LegTable = Table<TabledLeg>;
+/// Certified legs.
+pub(super) type CertifiedTable = Table<CertifiedLeg>;
+
+impl LegTable {
+    /// Minimum time of the leg between two places, s, where it is solved.
+    pub(super) fn duration(&self, from: Place, to: Place) -> Option<f64> {
+        self.get(from, to)
+            .and_then(|leg| leg.leg.flown.least_duration())
+    }
+}
+
+impl CertifiedTable {
+    /// No slew between two places takes less, s; `None` where nothing is proved.
+    pub(super) fn bound(&self, from: Place, to: Place) -> Option<f64> {
+        self.get(from, to).and_then(|leg| leg.lower_bound)
+    }
+
+    /// Whether anything is proved of any leg.
+    pub(super) fn says_anything(&self) -> bool {
+        let mut known = self.entries.iter().flatten();
+        known.any(|leg| leg.lower_bound.is_some())
+    }
+}
+
+impl<T> Table<T> {
+    /// A table with some entries.
+    pub(super) fn new(
+        places: &Places<'_>,
+        entries: impl Iterator<Item = ((Place, Place), Option<T>)>,
+    ) -> Self {
+        let count = 2 + places.scenario.targets().len();
+        let mut table = Self {
+            places: count,
+            entries: (0..count * count).map(|_| None).collect(),
+        };
+        for ((from, to), entry) in entries {
+            table.entries[index(from, count) * count + index(to, count)] = entry;
+        }
+        table
+    }
+
+    /// The entry of the leg between two places, when there is one.
+    pub(super) fn get(&self, from: Place, to: Place) -> Option<&T> {
+        let (from, to) = (index(from, self.places), index(to, self.places));
+        self.entries[from * self.places + to].as_ref()
+    }
+}
+
+fn index(place: Place, places: usize) -> usize {
+    match place {
+        Place::Start => 0,
+        Place::Target(i) => 1 + i,
+        Place::End => places - 1,
+    }
+}

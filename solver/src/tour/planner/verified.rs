@@ -1,0 +1,119 @@
+//! Legs are flown by the checker before anyone relies on them.
+
+use super::canonical::CanonicalLeg;
+use super::places::Places;
+use super::torques::{SHORTEST, torques};
+use crate::checker::{ATTITUDE_TOLERANCE, Arrival, leg_faults};
+use crate::leg::profile::Profile;
+use crate::model::attitude::Attitude;
+use crate::model::plan::{Control, Flight, State};
+use crate::model::scenario::RateCondition;
+use nalgebra::{DVector, Vector3};
+
+/// Whether a solved leg flies as it says: from where it begins to the attitude and the rates where
+/// it is to end, within all limits.
+pub(super) fn flies(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> bool {
+    flight_faults(places, leg, profile).is_empty()
+}
+
+/// What keeps a leg from flying as it says.
+pub(super) fn flight_faults(
+    places: &Places<'_>,
+    leg: &CanonicalLeg,
+    profile: &Profile,
+) -> Vec<String> {
+    let (Some(begin), Some(last)) = (begin(places, leg, profile), profile.attitudes.last()) else {
+        return vec!["there is no motion".into()];
+    };
+    let target = leg.arrival.signed(&leg.to.attitude, last);
+    let arrival = Arrival {
+        quaternion: target.xyzw(),
+        rate: leg.to.rate.map(|condition| match condition {
+            RateCondition::Fixed(rate) => Some(rate),
+            RateCondition::Free | RateCondition::Within(..) => None,
+        }),
+    };
+    let flight = flight(places, profile);
+    leg_faults(places.scenario, &begin, &flight, &arrival)
+}
+
+/// Where the nodes of a leg are not on one motion under its torques: every interval is flown from
+/// the node where it begins.
+pub(super) fn node_faults(
+    places: &Places<'_>,
+    leg: &CanonicalLeg,
+    profile: &Profile,
+) -> Vec<String> {
+    let shortest = SHORTEST * profile.duration();
+    let mut faults = Vec::new();
+    for k in 0..profile.intervals() {
+        let part = profile.part(k..k + 1);
+        let next = &part.attitudes[1];
+        if part.duration() <= shortest {
+            if part.attitudes[0].signed_turn_to(next).norm() > ATTITUDE_TOLERANCE {
+                faults.push(format!("between nodes {k} and {} it jumps", k + 1));
+            }
+            continue;
+        }
+        let rate = |node: usize| leg.dynamics.rate(&part.attitudes[node], &part.wheels[node]);
+        let begin = state(places, leg, (&part.attitudes[0], &part.wheels[0]), rate(0));
+        let end = rate(1);
+        let arrival = Arrival {
+            quaternion: next.xyzw(),
+            rate: [end.x, end.y, end.z].map(Some),
+        };
+        let found = leg_faults(places.scenario, &begin, &flight(places, &part), &arrival);
+        let told = |fault: String| format!("between nodes {k} and {}: {fault}", k + 1);
+        faults.extend(found.into_iter().map(told));
+    }
+    faults
+}
+
+/// The state at the beginning: given rates as given, the others as the motion has them.
+fn begin(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> Option<State> {
+    let (attitude, wheels) = (profile.attitudes.first()?, profile.wheels.first()?);
+    let flown = leg.dynamics.rate(attitude, wheels);
+    let rate = Vector3::from_fn(|axis, _| match leg.from.rate[axis] {
+        RateCondition::Fixed(rate) => rate,
+        RateCondition::Free | RateCondition::Within(..) => flown[axis],
+    });
+    Some(state(places, leg, (attitude, wheels), rate))
+}
+
+/// A state with the speeds of all wheels.
+fn state(
+    places: &Places<'_>,
+    leg: &CanonicalLeg,
+    (attitude, wheels): (&Attitude, &DVector<f64>),
+    rate: Vector3<f64>,
+) -> State {
+    let mut speeds = places.scenario.start().wheel_speed.clone();
+    for (actuator, momentum) in leg.dynamics.actuators.iter().zip(wheels.iter()) {
+        speeds[actuator.index] = momentum / actuator.inertia - actuator.axis.dot(&rate);
+    }
+    State {
+        time_s: 0.0,
+        attitude: *attitude,
+        body_rate_rad_s: rate,
+        wheel_speed_rad_s: speeds,
+    }
+}
+
+fn flight(places: &Places<'_>, profile: &Profile) -> Flight {
+    let mut clock = 0.0;
+    let mut controls = Vec::with_capacity(profile.intervals());
+    let shortest = SHORTEST * profile.duration();
+    for (duration, torque) in torques(profile, 0..profile.intervals(), shortest) {
+        controls.push(Control {
+            start_s: clock,
+            duration_s: duration,
+            wheel_torque_nm: places.all_torques(torque.iter().copied()),
+        });
+        clock += duration;
+    }
+    Flight {
+        total_time_s: clock,
+        passages: Vec::new(),
+        controls,
+    }
+}

@@ -1,0 +1,5 @@
+//! What several wheels can do together.
+
+pub mod allocation;
+pub mod array;
+pub mod envelope;

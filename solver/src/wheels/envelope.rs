@@ -1,0 +1,178 @@
+//! Whether the wheels can hold the stored angular momentum where the body must have a given rate.
+//!
+//! At an attitude with body rate `w` the enabled wheels have to carry
+//! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels share this in many
+//! ways; the best is the one whose most loaded wheel is loaded least, which a linear program finds.
+
+mod turn;
+
+pub(crate) use turn::{OutsideEnvelope, outside_envelope};
+
+use crate::model::problem::{Code, Problem};
+use crate::model::scenario::{RateCondition, Scenario};
+use crate::model::spacecraft::{Spacecraft, Wheel};
+use crate::wheels::allocation;
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// Excess over the usable speed that the accuracy of the linear program explains, relative.
+const LOAD_TOLERANCE: f64 = 1e-6;
+/// Weight of a wheel without a speed limit beside limited ones: it takes what it can.
+const UNLIMITED_WEIGHT: f64 = 1e-6;
+
+/// Wheel speeds that carry a momentum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hold {
+    /// Speeds relative to the body, rad/s, one per wheel; locked wheels keep theirs.
+    pub wheel_speed: Vec<f64>,
+    /// Largest speed of an enabled wheel relative to its usable limit; beyond 1 the wheels cannot
+    /// hold the momentum.
+    pub load: f64,
+}
+
+impl Hold {
+    /// Whether every wheel stays within its usable speed.
+    #[must_use]
+    pub fn fits(&self) -> bool {
+        self.load <= 1.0 + LOAD_TOLERANCE
+    }
+}
+
+/// The wheel speeds with the least largest load that carry a total momentum of the wheels.
+///
+/// `momentum` is what all wheels together must carry in body axes, N m s: at rest, the total
+/// angular momentum. `authority` is the usable share of every speed limit, `locked_speed` holds the
+/// speeds of disabled wheels, rad/s, one entry per wheel (those of enabled wheels are not read).
+/// `None` when the linear program could not be solved, which says nothing about the wheels.
+///
+/// # Panics
+///
+/// When `locked_speed` is shorter than the list of wheels.
+#[must_use]
+pub fn hold_momentum(
+    spacecraft: &Spacecraft,
+    authority: f64,
+    locked_speed: &[f64],
+    momentum: Vector3<f64>,
+) -> Option<Hold> {
+    let mut wheel_speed = vec![0.0; spacecraft.wheels().len()];
+    let mut demand = momentum;
+    for (i, wheel) in spacecraft
+        .wheels()
+        .iter()
+        .enumerate()
+        .filter(|(_, w)| !w.enabled)
+    {
+        wheel_speed[i] = locked_speed[i];
+        demand -= wheel.axis * (wheel.inertia * locked_speed[i]);
+    }
+    let scale = demand.amax();
+    if scale == 0.0 {
+        return Some(Hold {
+            wheel_speed,
+            load: 0.0,
+        });
+    }
+    let enabled: Vec<_> = spacecraft.enabled_wheels().collect();
+    let shares = least_loaded(&enabled, demand / scale)?;
+    let mut load: f64 = 0.0;
+    for ((i, wheel), share) in enabled.into_iter().zip(shares.iter()) {
+        wheel_speed[i] = share * scale / wheel.inertia;
+        load = load.max(wheel_speed[i].abs() / (wheel.max_speed * authority));
+    }
+    Some(Hold { wheel_speed, load })
+}
+
+/// Momenta of the wheels about their axes that sum to `demand` with the least largest load.
+fn least_loaded(wheels: &[(usize, &Wheel)], demand: Vector3<f64>) -> Option<DVector<f64>> {
+    let axes = DMatrix::from_fn(3, wheels.len(), |row, column| wheels[column].1.axis[row]);
+    // Speeds are limited alike to both sides.
+    let weights: Vec<_> = weights(wheels).into_iter().map(|w| [w, w]).collect();
+    allocation::least_loaded(&axes, &weights, demand)
+}
+
+/// Inverse capacity of each wheel, the largest being 1; the authority shares out equally.
+fn weights(wheels: &[(usize, &Wheel)]) -> Vec<f64> {
+    let capacity = |wheel: &Wheel| wheel.inertia * wheel.max_speed;
+    let least = wheels
+        .iter()
+        .map(|(_, w)| capacity(w))
+        .fold(f64::INFINITY, f64::min);
+    wheels
+        .iter()
+        .map(|(_, wheel)| match capacity(wheel) {
+            _ if least.is_infinite() => 1.0,
+            capacity if capacity.is_infinite() => UNLIMITED_WEIGHT,
+            capacity => least / capacity,
+        })
+        .collect()
+}
+
+/// Targets, and the end, at which the wheels cannot hold the conserved momentum.
+///
+/// Only places with a fully prescribed rate are judged: a free rate component can carry momentum.
+#[must_use]
+pub fn momentum_problems(scenario: &Scenario) -> Vec<Problem> {
+    let targets = scenario
+        .targets()
+        .iter()
+        .enumerate()
+        .filter_map(|(i, target)| {
+            let rate = prescribed(&target.rate)?;
+            let total = target.attitude.to_body(scenario.momentum());
+            problem(scenario, total, rate, &format!("/targets/{i}"))
+        });
+    // Wheel speeds given at the end have been checked when the scenario was made.
+    let end = scenario
+        .end()
+        .filter(|end| end.wheel_speed.is_none())
+        .and_then(|end| {
+            problem(
+                scenario,
+                end.attitude.to_body(scenario.momentum()),
+                end.rate,
+                "/end",
+            )
+        });
+    // The end comes before the targets in the document.
+    end.into_iter().chain(targets).collect()
+}
+
+/// The rate, rad/s, if all its components are prescribed.
+fn prescribed(rate: &[RateCondition; 3]) -> Option<Vector3<f64>> {
+    let mut values = Vector3::zeros();
+    for (value, condition) in values.iter_mut().zip(rate) {
+        let RateCondition::Fixed(fixed) = condition else {
+            return None;
+        };
+        *value = *fixed;
+    }
+    Some(values)
+}
+
+fn problem(
+    scenario: &Scenario,
+    total: Vector3<f64>,
+    rate: Vector3<f64>,
+    pointer: &str,
+) -> Option<Problem> {
+    let spacecraft = scenario.spacecraft();
+    let authority = scenario.options().momentum_authority;
+    let demand = total - spacecraft.inertia() * rate;
+    let hold = hold_momentum(spacecraft, authority, &scenario.start().wheel_speed, demand)?;
+    if hold.fits() {
+        return None;
+    }
+    Some(Problem::new(
+        pointer,
+        Code::MomentumExceedsEnvelope,
+        format!(
+            "the wheels must carry ({:.6e}, {:.6e}, {:.6e}) N m s in body axes there, which needs \
+             {:.4} times the usable speed of the most loaded wheel",
+            demand.x, demand.y, demand.z, hold.load
+        ),
+        "unload momentum first, raise options.momentum_authority, or leave a rate component free",
+    ))
+}
+
+#[cfg(test)]
+mod tests;

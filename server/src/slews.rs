@@ -27,8 +27,8 @@ pub(crate) fn solve(request: &SlewRequest, stop: &StopSignal) -> Result<Solved, 
         None => stop.clone(),
     };
     let outcomes = match &request.sweep {
-        Some(sweep) => manoeuvre::trade_curve(manoeuvre, sweep, stop)?,
-        None => vec![manoeuvre::solve(manoeuvre, stop)],
+        Some(sweep) => slew::trade_curve(manoeuvre, sweep, stop)?,
+        None => vec![slew::solve(manoeuvre, stop)],
     };
     // What was interrupted is not complete, however far it came.
     let complete = !stop.is_set();

@@ -75,12 +75,11 @@
 pub mod bounds;
 pub mod checker;
 mod leg;
-mod math;
+pub mod math;
 pub mod model;
 mod nlp;
 pub mod run;
 pub mod simulation;
 pub mod slew;
-pub mod studies;
 pub mod tour;
 pub mod wheels;

@@ -1,5 +1,6 @@
 //! Mathematics that knows no spacecraft.
 
+pub mod bang_coast_bang;
 pub(crate) mod cone;
 pub(crate) mod convex;
 pub(crate) mod quaternion;

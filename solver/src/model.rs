@@ -3,7 +3,7 @@
 pub mod attitude;
 pub mod drive;
 pub(crate) mod dynamics;
-pub(crate) mod findings;
+pub mod findings;
 pub mod order_rules;
 pub mod plan;
 pub mod problem;

@@ -26,7 +26,6 @@ mod monte_carlo;
 mod outcome;
 mod settings;
 mod spec;
-mod study;
 mod truth;
 mod wheel_loop;
 
@@ -34,9 +33,6 @@ pub use gains::Gains;
 pub use monte_carlo::{PassageSpread, Percentiles, SaturationSpread, Spread};
 pub use outcome::{PassageError, Saturation, SimulatedFlight, SimulatedState, TrackingError};
 pub use spec::{ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, PidGainsSpec, SimulationSpec};
-pub use study::{
-    Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
-};
 
 use crate::checker::Motion;
 use crate::model::attitude::Attitude;

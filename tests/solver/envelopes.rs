@@ -5,9 +5,9 @@ use slewplan_solver::model::spec::AttitudeSpec;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::WheelAllocation;
-use slewplan_solver::studies::eigenaxis::Limit;
-use slewplan_solver::studies::envelope_path::EnvelopePath;
-use slewplan_solver::studies::envelope_study::{
+use slewplan_studies::eigenaxis::Limit;
+use slewplan_studies::envelope_path::EnvelopePath;
+use slewplan_studies::envelope_study::{
     EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, TurnSpec,
 };
 use slewplan_tests::pyramid_spec;

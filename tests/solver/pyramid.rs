@@ -5,10 +5,10 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_solver::studies::comparison::{Control, Radii};
-use slewplan_solver::studies::eigenaxis::{BangCoastBang, Baselines};
-use slewplan_solver::studies::envelope_path::EnvelopePath;
-use slewplan_solver::studies::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
+use slewplan_studies::comparison::{Control, Radii};
+use slewplan_studies::eigenaxis::{BangCoastBang, Baselines};
+use slewplan_studies::envelope_path::EnvelopePath;
+use slewplan_studies::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
 use slewplan_tests::pyramid_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, plan_of, scenario_of};
@@ -133,8 +133,7 @@ fn a_time_optimal_slew_goes_where_no_pseudo_inverse_does() {
         ("torque", torque.collect()),
     ] {
         let most = |share: fn(&_) -> f64| points.iter().map(share).fold(0.0, f64::max);
-        let full =
-            most(|point: &slewplan_solver::studies::envelope_path::EnvelopePoint| point.full_share);
+        let full = most(|point: &slewplan_studies::envelope_path::EnvelopePoint| point.full_share);
         let simple = most(|point| point.pseudo_inverse_share);
         println!("{name}: {full:.4} of the full envelope, {simple:.4} of the pseudo-inverse's");
         assert!(full <= 1.0 + 1e-6 && full > 0.99);

@@ -134,7 +134,7 @@ impl SlewProblem<'_> {
         stop: &dyn Fn() -> Option<Interruption>,
     ) -> Option<Flown> {
         let eigenaxis = self.eigenaxis();
-        let allowed = eigenaxis.trapezoid.duration * (1.0 + EIGENAXIS_TOLERANCE);
+        let allowed = eigenaxis.course.duration() * (1.0 + EIGENAXIS_TOLERANCE);
         let fast = |flown: &Flown| flown.duration().is_some_and(|time| time <= allowed);
         if fast(flown) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
             return None;

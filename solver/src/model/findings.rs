@@ -8,14 +8,14 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Problems and warnings, in the order in which they were found.
 #[derive(Debug, Default)]
-pub(crate) struct Findings {
+pub struct Findings {
     problems: Vec<Problem>,
     warnings: Vec<Problem>,
 }
 
 impl Findings {
     /// Notes a reason to refuse the description.
-    pub(crate) fn refuse(
+    pub fn refuse(
         &mut self,
         pointer: impl Into<String>,
         code: Code,
@@ -29,7 +29,7 @@ impl Findings {
     }
 
     /// Notes a doubt that does not stand in the way.
-    pub(crate) fn warn(
+    pub fn warn(
         &mut self,
         pointer: impl Into<String>,
         code: Code,
@@ -43,19 +43,19 @@ impl Findings {
     }
 
     /// Takes over the problems that another reader has found.
-    pub(crate) fn include(&mut self, problems: Vec<Problem>) {
+    pub fn include(&mut self, problems: Vec<Problem>) {
         self.problems.extend(problems);
     }
 
     /// The value with its warnings, or all the problems.
     ///
     /// Whoever returns `None` has noted why, so the two always agree.
-    pub(crate) fn conclude<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Vec<Problem>> {
+    pub fn conclude<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Vec<Problem>> {
         self.judge(value).map_err(|faults| faults.problems)
     }
 
     /// The value with its warnings, or all the problems with all the warnings.
-    pub(crate) fn judge<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Faults> {
+    pub fn judge<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Faults> {
         match value {
             Some(value) if self.problems.is_empty() => Ok((value, self.warnings)),
             _ => {
@@ -72,7 +72,7 @@ impl Findings {
     }
 
     /// Whether a list has at most so many entries, beyond which it is not read at all.
-    pub(crate) fn at_most(&mut self, pointer: &str, entries: usize, most: usize) -> bool {
+    pub fn at_most(&mut self, pointer: &str, entries: usize, most: usize) -> bool {
         if entries > most {
             self.include(vec![Problem::too_long(pointer, entries, most)]);
         }
@@ -80,7 +80,7 @@ impl Findings {
     }
 
     /// A finite number.
-    pub(crate) fn finite(&mut self, pointer: &str, value: f64) -> Option<f64> {
+    pub fn finite(&mut self, pointer: &str, value: f64) -> Option<f64> {
         if value.is_finite() {
             return Some(value);
         }
@@ -94,7 +94,7 @@ impl Findings {
     }
 
     /// Finite numbers; each fault points at its element.
-    pub(crate) fn finite_all<const N: usize>(
+    pub fn finite_all<const N: usize>(
         &mut self,
         pointer: &str,
         values: [f64; N],
@@ -107,7 +107,7 @@ impl Findings {
     }
 
     /// A finite matrix, given by rows; each fault points at its entry.
-    pub(crate) fn matrix(&mut self, pointer: &str, rows: &[[f64; 3]; 3]) -> Option<Matrix3<f64>> {
+    pub fn matrix(&mut self, pointer: &str, rows: &[[f64; 3]; 3]) -> Option<Matrix3<f64>> {
         let mut finite = true;
         for (i, row) in rows.iter().enumerate() {
             finite &= self.finite_all(&format!("{pointer}/{i}"), *row).is_some();
@@ -116,12 +116,12 @@ impl Findings {
     }
 
     /// A finite vector.
-    pub(crate) fn vector(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
+    pub fn vector(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
         self.finite_all(pointer, values).map(Vector3::from)
     }
 
     /// A finite number above zero.
-    pub(crate) fn positive(&mut self, pointer: &str, value: f64) -> Option<f64> {
+    pub fn positive(&mut self, pointer: &str, value: f64) -> Option<f64> {
         let value = self.finite(pointer, value)?;
         if value > 0.0 {
             return Some(value);
@@ -136,7 +136,7 @@ impl Findings {
     }
 
     /// A finite number that is zero or above.
-    pub(crate) fn not_negative(&mut self, pointer: &str, value: f64) -> Option<f64> {
+    pub fn not_negative(&mut self, pointer: &str, value: f64) -> Option<f64> {
         let value = self.finite(pointer, value)?;
         if value >= 0.0 {
             return Some(value);
@@ -151,7 +151,7 @@ impl Findings {
     }
 
     /// A finite vector that is not zero, as given.
-    pub(crate) fn nonzero(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
+    pub fn nonzero(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
         let vector = self.vector(pointer, values)?;
         if vector.amax() > 0.0 {
             return Some(vector);
@@ -166,13 +166,13 @@ impl Findings {
     }
 
     /// The unit vector along a finite vector that is not zero.
-    pub(crate) fn direction(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
+    pub fn direction(&mut self, pointer: &str, values: [f64; 3]) -> Option<Vector3<f64>> {
         self.nonzero(pointer, values).map(unit)
     }
 }
 
 /// Unit vector along a non-zero vector of any representable length.
-pub(crate) fn unit(vector: Vector3<f64>) -> Vector3<f64> {
+pub fn unit(vector: Vector3<f64>) -> Vector3<f64> {
     // Scaled first, since the squares of very long or very short vectors leave the number range.
     (vector / vector.amax()).normalize()
 }

@@ -84,11 +84,7 @@ impl Spacecraft {
     }
 
     /// As [`Spacecraft::try_new`], for a reader of something larger.
-    pub(crate) fn read(
-        spec: &SpacecraftSpec,
-        pointer: &str,
-        findings: &mut Findings,
-    ) -> Option<Self> {
+    pub fn read(spec: &SpacecraftSpec, pointer: &str, findings: &mut Findings) -> Option<Self> {
         let inertia_pointer = format!("{pointer}/inertia_kg_m2");
         let inertia = inertia::read(&spec.inertia_kg_m2, &inertia_pointer, findings);
         let max_rate = axis_limits(spec, pointer, findings);

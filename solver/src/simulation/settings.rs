@@ -5,7 +5,7 @@ use super::gains::{Gains, PidGains};
 use super::spec::{ControllerSpec, ErrorsSpec, FeedForward, SimulationSpec};
 use crate::model::drive::Drive;
 use crate::model::findings::Findings;
-use crate::model::problem::Code;
+use crate::model::problem::{Code, Problem};
 use crate::model::spacecraft::Spacecraft;
 use nalgebra::Vector3;
 
@@ -86,6 +86,16 @@ pub(super) struct Errors {
     pub(super) rate_noise: f64,
     /// Body axes, N m.
     pub(super) disturbance: Vector3<f64>,
+}
+
+impl SimulationSpec {
+    /// All that is wrong with it for a spacecraft; pointers begin with `pointer`.
+    #[must_use]
+    pub fn problems(&self, spacecraft: &Spacecraft, pointer: &str) -> Vec<Problem> {
+        let mut findings = Findings::default();
+        let settings = Settings::read(self, spacecraft, pointer, &mut findings);
+        findings.conclude(settings).err().unwrap_or_default()
+    }
 }
 
 impl Settings {

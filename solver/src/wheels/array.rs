@@ -21,7 +21,7 @@ mod of_spacecraft;
 mod polytope;
 mod zonotope;
 
-pub(crate) use of_spacecraft::authority_problems;
+pub use of_spacecraft::authority_problems;
 pub use of_spacecraft::{EnvelopedArray, SpacecraftEnvelopes};
 pub use polytope::{Facet, Figures, Polytope};
 

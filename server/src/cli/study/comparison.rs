@@ -4,7 +4,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::{self, Destination};
 use crate::cli::{Exit, input};
 use crate::wire::study::comparison::{self, ComparisonAnswerDocument};
-use slewplan_solver::studies::comparison::{Study, StudySpec};
+use slewplan_studies::comparison::{Study, StudySpec};
 use std::path::PathBuf;
 
 /// What `study comparison` takes.

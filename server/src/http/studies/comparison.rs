@@ -8,7 +8,7 @@ use crate::wire::study::comparison::{self, ComparisonAnswerDocument};
 use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_solver::studies::comparison::{Study, StudySpec};
+use slewplan_studies::comparison::{Study, StudySpec};
 
 /// Compare reaction wheels with control moment gyroscopes
 ///

@@ -12,10 +12,10 @@ use serde::Serialize;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::simulation::{
+use slewplan_solver::tour::planner::Run;
+use slewplan_studies::authority::{
     Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
 };
-use slewplan_solver::tour::planner::Run;
 use utoipa::ToSchema;
 
 /// Where the solver puts problems of the study, to be told from those of the scenario.

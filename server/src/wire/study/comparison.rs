@@ -7,10 +7,8 @@ pub(crate) use answer::ComparisonAnswerDocument;
 use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Fields, Sink};
 use slewplan_solver::model::problem::{Code, Problem};
-use slewplan_solver::studies::comparison::{
-    ComparisonSpec, Control, Laws, Radii, Radius, StudySpec,
-};
-use slewplan_solver::studies::market::PowerLaw;
+use slewplan_studies::comparison::{ComparisonSpec, Control, Laws, Radii, Radius, StudySpec};
+use slewplan_studies::market::PowerLaw;
 
 /// Most circles of latitude of the singular surfaces in an answer: eight surfaces of some 300 kB.
 pub(crate) const MOST_ROWS: usize = 40;

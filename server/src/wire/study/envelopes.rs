@@ -8,7 +8,7 @@ use crate::wire::document::{self, Node};
 use crate::wire::reader::{Cursor, Sink};
 use crate::wire::{attitude, spacecraft};
 use slewplan_solver::model::problem::Problem;
-use slewplan_solver::studies::envelope_study::{
+use slewplan_studies::envelope_study::{
     EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, MOST_TURNS, TurnSpec,
 };
 

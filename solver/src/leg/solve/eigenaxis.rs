@@ -5,6 +5,7 @@
 //! it they vary, and the slew is slowed down until all of them hold everywhere.
 
 use crate::leg::profile::Profile;
+use crate::math::bang_coast_bang::BangCoastBang;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use nalgebra::{DVector, Vector3};
@@ -41,88 +42,6 @@ impl Side {
     }
 }
 
-/// A bang-coast-bang of a fixed angle.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Trapezoid {
-    /// Total angle, rad.
-    angle: f64,
-    /// Acceleration, rad/s².
-    acceleration: f64,
-    /// Duration of each ramp, s.
-    ramp: f64,
-    /// Duration, s.
-    pub(crate) duration: f64,
-}
-
-impl Trapezoid {
-    /// The fastest one within an acceleration (rad/s²) and a rate (rad/s) that may be infinite.
-    pub(crate) fn fastest(angle: f64, acceleration: f64, rate: f64) -> Self {
-        let ramp = (angle / acceleration).sqrt().min(rate / acceleration);
-        let duration = if ramp > 0.0 {
-            angle / (ramp * acceleration) + ramp
-        } else {
-            0.0
-        };
-        Self {
-            angle,
-            acceleration,
-            ramp,
-            duration,
-        }
-    }
-
-    /// Durations of its ramps and of the coast between them, s.
-    pub(crate) fn parts(&self) -> [f64; 3] {
-        let coast = (self.duration - 2.0 * self.ramp).max(0.0);
-        [self.ramp, coast, self.ramp]
-    }
-
-    /// One of the same angle, which may be zero, that takes this long without a coast.
-    fn lasting(angle: f64, duration: f64) -> Self {
-        Self {
-            angle,
-            acceleration: 4.0 * angle / duration.powi(2),
-            ramp: 0.5 * duration,
-            duration,
-        }
-    }
-
-    /// Times that cut it into intervals, s: the ramps into [`RAMP_INTERVALS`] each where that cuts
-    /// them finer than equal intervals would.
-    fn node_times(&self, intervals: usize) -> Vec<f64> {
-        let even = |begin: f64, end: f64, count: usize| {
-            (0..count).map(move |i| begin + (end - begin) * i as f64 / count as f64)
-        };
-        let (ramp, end) = (self.ramp, self.duration);
-        let equal = end / intervals as f64;
-        let finer = ramp < equal * RAMP_INTERVALS as f64 && end - 2.0 * ramp > LEAST_COAST * end;
-        let mut times: Vec<f64> = if finer && intervals > 2 * RAMP_INTERVALS {
-            even(0.0, ramp, RAMP_INTERVALS)
-                .chain(even(ramp, end - ramp, intervals - 2 * RAMP_INTERVALS))
-                .chain(even(end - ramp, end, RAMP_INTERVALS))
-                .collect()
-        } else {
-            even(0.0, end, intervals).collect()
-        };
-        times.push(end);
-        times
-    }
-
-    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time.
-    pub(crate) fn at(&self, time: f64) -> (f64, f64, f64) {
-        let a = self.acceleration;
-        let left = self.duration - time;
-        if time < self.ramp {
-            (0.5 * a * time * time, a * time, a)
-        } else if left > self.ramp {
-            let rate = a * self.ramp;
-            (rate * (time - 0.5 * self.ramp), rate, 0.0)
-        } else {
-            (self.angle - 0.5 * a * left * left, a * left, -a)
-        }
-    }
-}
-
 /// A slew about the eigenaxis between two attitudes with given signs.
 #[derive(Debug, Clone)]
 pub(crate) struct EigenaxisSlew {
@@ -130,7 +49,7 @@ pub(crate) struct EigenaxisSlew {
     axis: Vector3<f64>,
     null: DVector<f64>,
     /// Its course in time.
-    pub(crate) trapezoid: Trapezoid,
+    pub(crate) course: BangCoastBang,
     /// Whether all limits hold.
     pub(crate) flyable: bool,
 }
@@ -156,7 +75,7 @@ impl EigenaxisSlew {
             from: *from,
             axis,
             null: null.clone(),
-            trapezoid: Trapezoid::fastest(angle, acceleration * factor * factor, rate * factor),
+            course: BangCoastBang::fastest(angle, acceleration * factor * factor, rate * factor),
             flyable: true,
         };
         let full = at_factor(1.0);
@@ -183,17 +102,17 @@ impl EigenaxisSlew {
 
     /// The same slew, slower where it takes less than a time, s, that is not zero.
     pub(crate) fn lasting(self, least: f64) -> Self {
-        if self.trapezoid.duration >= least {
+        if self.course.duration() >= least {
             return self;
         }
         Self {
-            trapezoid: Trapezoid::lasting(self.trapezoid.angle, least),
+            course: BangCoastBang::lasting(self.course.angle(), least),
             ..self
         }
     }
 
     fn state(&self, dynamics: &Dynamics, time: f64) -> (Attitude, Vector3<f64>, DVector<f64>) {
-        let (angle, rate, _) = self.trapezoid.at(time);
+        let (angle, rate, _) = self.course.at(time);
         let attitude = self.from.retract(self.axis * angle);
         let rate = self.axis * rate;
         let wheels = dynamics.wheels_at(&attitude, &rate, &self.null);
@@ -204,9 +123,9 @@ impl EigenaxisSlew {
     fn usage(&self, dynamics: &Dynamics) -> f64 {
         let mut worst = 0.0_f64;
         for sample in 0..SAMPLES {
-            let time = self.trapezoid.duration * sample as f64 / (SAMPLES - 1) as f64;
+            let time = self.course.duration() * sample as f64 / (SAMPLES - 1) as f64;
             let (attitude, rate, wheels) = self.state(dynamics, time);
-            let (_, _, acceleration) = self.trapezoid.at(time);
+            let (_, _, acceleration) = self.course.at(time);
             let body = attitude.to_body(dynamics.momentum);
             let change = -rate.cross(&body) - dynamics.inertia * self.axis * acceleration;
             let torque = &dynamics.axes_inverse * change;
@@ -221,11 +140,7 @@ impl EigenaxisSlew {
     pub(crate) fn exact(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
         let ramp = intervals / 3;
         let coast = intervals - 2 * ramp;
-        let Trapezoid {
-            ramp: ramping,
-            duration,
-            ..
-        } = self.trapezoid;
+        let (ramping, duration) = (self.course.ramp(), self.course.duration());
         let coasting = (duration - 2.0 * ramping).max(0.0);
         let mut profile = Profile::empty();
         let mut push = |time: f64| {
@@ -269,8 +184,8 @@ impl EigenaxisSlew {
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
     /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
     pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize, side: Side) -> Profile {
-        let times = self.trapezoid.node_times(intervals);
-        let peak = self.trapezoid.at(0.5 * self.trapezoid.duration).1;
+        let times = node_times(&self.course, intervals);
+        let peak = self.course.rate();
         let across = self.across(dynamics);
         let direction = (across + across.cross(&self.axis)).normalize();
         let most = 0.5 * dynamics.axis_rate(&direction);
@@ -278,7 +193,7 @@ impl EigenaxisSlew {
         let mut profile = Profile::empty();
         for (node, time) in times.iter().enumerate() {
             let (attitude, rate, _) = self.state(dynamics, *time);
-            let phase = std::f64::consts::PI * time / self.trapezoid.duration;
+            let phase = std::f64::consts::PI * time / self.course.duration();
             // Exactly zero at both ends, where the rates are given.
             let bowed = rate
                 + if node < intervals {
@@ -294,4 +209,25 @@ impl EigenaxisSlew {
         profile.lengths = times.windows(2).map(|t| t[1] - t[0]).collect();
         profile
     }
+}
+
+/// Times that cut a course into intervals, s: the ramps into [`RAMP_INTERVALS`] each where that cuts
+/// them finer than equal intervals would.
+fn node_times(course: &BangCoastBang, intervals: usize) -> Vec<f64> {
+    let even = |begin: f64, end: f64, count: usize| {
+        (0..count).map(move |i| begin + (end - begin) * i as f64 / count as f64)
+    };
+    let (ramp, end) = (course.ramp(), course.duration());
+    let equal = end / intervals as f64;
+    let finer = ramp < equal * RAMP_INTERVALS as f64 && end - 2.0 * ramp > LEAST_COAST * end;
+    let mut times: Vec<f64> = if finer && intervals > 2 * RAMP_INTERVALS {
+        even(0.0, ramp, RAMP_INTERVALS)
+            .chain(even(ramp, end - ramp, intervals - 2 * RAMP_INTERVALS))
+            .chain(even(end - ramp, end, RAMP_INTERVALS))
+            .collect()
+    } else {
+        even(0.0, end, intervals).collect()
+    };
+    times.push(end);
+    times
 }

@@ -151,7 +151,7 @@ fn long_way_round(slew: &SlewProblem<'_>) -> Option<Waypoint> {
     };
     let duration = |target| {
         let slew = EigenaxisSlew::fastest(slew.dynamics, &slew.from.attitude, target, slew.null);
-        slew.trapezoid.duration
+        slew.course.duration()
     };
     (duration(&there.attitude) <= MAX_LONG_WAY_RATIO * duration(&short)).then_some(there)
 }

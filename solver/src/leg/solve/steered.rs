@@ -10,11 +10,11 @@
 
 use super::SlewProblem;
 use super::centred::centred;
-use super::eigenaxis::Trapezoid;
 use super::resolution::parts_of;
 use crate::leg::kinematics::{TurnInputs, exact_turn};
 use crate::leg::multiphase::{Flown, keeps_limits_inside};
 use crate::leg::profile::Profile;
+use crate::math::bang_coast_bang::BangCoastBang;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;
@@ -219,8 +219,8 @@ impl Nominal {
         let axis = turn / angle;
         let fastest = dynamics.axis_rate(&axis) * (1.0 - STRAY) * pace;
         let acceleration = dynamics.axis_acceleration(&axis) * pace.powi(2);
-        let course = Trapezoid::fastest(angle, acceleration, fastest);
-        if !(course.duration > 0.0 && course.duration.is_finite()) {
+        let course = BangCoastBang::fastest(angle, acceleration, fastest);
+        if !(course.duration() > 0.0 && course.duration().is_finite()) {
             // Limits that are hardly numbers allow no turn.
             return None;
         }
@@ -300,7 +300,7 @@ fn flown(dynamics: &Dynamics, profile: &Profile, k: usize, from: &Attitude) -> A
 }
 
 /// Times of the nodes after the first, s: an even number, the ramps cut evenly and the coast too.
-fn node_times(dynamics: &Dynamics, course: &Trapezoid, angle: f64) -> Vec<f64> {
+fn node_times(dynamics: &Dynamics, course: &BangCoastBang, angle: f64) -> Vec<f64> {
     let turns = 2 * parts_of(angle, 2.0 * longest_turn(dynamics), MOST_PAIRS);
     let coast = turns.max(LEAST_COAST);
     let parts = course.parts();

@@ -92,7 +92,7 @@ fn a_long_turn_about_one_axis_is_bang_coast_bang() {
     let null = DVector::zeros(0);
     let dynamics = held_to_z(Some(rate));
     let eigenaxis = EigenaxisSlew::fastest(&dynamics, &Attitude::identity(), &to, &null);
-    assert!((eigenaxis.trapezoid.duration / bang_coast_bang - 1.0).abs() < 1e-9);
+    assert!((eigenaxis.course.duration() / bang_coast_bang - 1.0).abs() < 1e-9);
 }
 
 /// Two axes that must hardly move leave a program next to no interior: it ends 2.5e-6 slower than
@@ -105,7 +105,7 @@ fn no_slew_takes_longer_than_the_one_about_the_eigenaxis() {
         let duration = rest_to_rest(&dynamics, Attitude::identity(), to);
         let null = DVector::zeros(0);
         let eigenaxis = EigenaxisSlew::fastest(&dynamics, &Attitude::identity(), &to, &null);
-        let excess = duration / eigenaxis.trapezoid.duration - 1.0;
+        let excess = duration / eigenaxis.course.duration() - 1.0;
         assert!(excess <= EIGENAXIS_TOLERANCE, "{angle} rad: {excess:.1e}");
     }
 }
@@ -138,7 +138,7 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
     };
     let instead = slew.eigenaxis_at_worst(&failed, &|| None);
     let duration = instead.and_then(|flown| flown.duration());
-    let allowed = eigenaxis.trapezoid.duration * (1.0 + EIGENAXIS_TOLERANCE);
+    let allowed = eigenaxis.course.duration() * (1.0 + EIGENAXIS_TOLERANCE);
     assert!(duration.is_some_and(|time| time <= allowed), "{duration:?}");
     // Ends that ask for motion are not met by it.
     let moving = Waypoint {

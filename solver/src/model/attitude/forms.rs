@@ -42,7 +42,7 @@ impl Attitude {
     }
 
     /// As [`Attitude::try_new`], for a reader of something larger.
-    pub(crate) fn read(
+    pub fn read(
         spec: &AttitudeSpec,
         equivalence: AttitudeEquivalence,
         pointer: &str,

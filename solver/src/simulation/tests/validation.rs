@@ -1,18 +1,12 @@
 //! What is refused, with code and place.
 
 use super::super::{
-    Authorities, AuthorityStudySpec, ControllerSpec, ErrorsSpec, GainsSpec, PidGainsSpec,
-    Simulation, SimulationSpec, study,
+    ControllerSpec, ErrorsSpec, GainsSpec, PidGainsSpec, Simulation, SimulationSpec,
 };
 use super::build::{idle, lively, scenario, spec};
 use crate::model::drive::{DriveSpec, SpeedLawSpec};
 use crate::model::plan::Flight;
 use crate::model::problem::{Code, Problem};
-use crate::run::pool::SolverPool;
-use crate::run::progress::Silent;
-use crate::run::stop::StopSignal;
-use crate::tour::legs::NoStore;
-use crate::tour::planner::Run;
 
 fn refused(flight: &Flight, spec: &SimulationSpec) -> Vec<(Code, String)> {
     let scenario = scenario();
@@ -220,37 +214,4 @@ fn flights_that_cannot_be_flown_are_refused() {
     late.passages[0].time_s = f64::NAN;
     plan(&late);
     plan(&idle(0.0));
-}
-
-#[test]
-fn a_study_lists_all_that_is_wrong_with_it() {
-    let mut scenario = spec();
-    scenario.targets[0].id = String::new();
-    let shares = |torque, momentum| Authorities { torque, momentum };
-    let bad = AuthorityStudySpec {
-        simulation: SimulationSpec::default(),
-        authorities: vec![shares(1.1, 0.9), shares(0.9, 0.0)],
-    };
-    let pool = SolverPool::new(None).unwrap();
-    let stop = StopSignal::new();
-    let run = Run {
-        pool: &pool,
-        stop: &stop,
-        observer: &Silent,
-        legs: &NoStore,
-        segments: &NoStore,
-    };
-    let problems = study(&scenario, &bad, "", run).unwrap_err();
-    let found: Vec<_> = problems.into_iter().map(|p| p.pointer).collect();
-    let expected = [
-        "/targets/0/id",
-        "/authorities/0/torque_authority",
-        "/authorities/1/momentum_authority",
-    ];
-    assert_eq!(found, expected);
-    let mut runs = AuthorityStudySpec::default();
-    runs.simulation.runs = Some(0);
-    let problems = study(&spec(), &runs, "/study", run).unwrap_err();
-    let found: Vec<_> = problems.into_iter().map(|p| p.pointer).collect();
-    assert_eq!(found, ["/study/simulation/runs", "/study/authorities"]);
 }

@@ -97,6 +97,6 @@ impl Assembly<'_> {
         let places = self.tours.places;
         let (from, to) = (places.waypoint(from), places.waypoint(to));
         let slew = places.slew(&from, &to).eigenaxis();
-        slew.flyable.then_some(slew.trapezoid.duration)
+        slew.flyable.then_some(slew.course.duration())
     }
 }

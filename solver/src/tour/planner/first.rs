@@ -11,7 +11,7 @@ pub(super) fn first_order(tours: &Tours<'_>, stop: &StopSignal) -> Option<Vec<us
     let places = tours.places;
     let eigenaxes = SummedTours::new(places, |from, to| {
         let (begin, end) = (places.waypoint(from), places.waypoint(to));
-        places.slew(&begin, &end).eigenaxis().trapezoid.duration
+        places.slew(&begin, &end).eigenaxis().course.duration()
     });
     short_order(&eigenaxes, stop)
 }

@@ -138,7 +138,7 @@ impl<'a> LegCheck<'a> {
         // With momentum the solver does not promise it either.
         if slew.begins_and_ends_at_rest() && !leg.dynamics.has_momentum() {
             let eigenaxis = slew.eigenaxis();
-            let (duration, usual) = (profile.duration(), eigenaxis.trapezoid.duration);
+            let (duration, usual) = (profile.duration(), eigenaxis.course.duration());
             if eigenaxis.flyable && duration > usual * (1.0 + EIGENAXIS_TOLERANCE) {
                 faults.push(format!(
                     "it takes {duration:.6} s, the slew about the eigenaxis {usual:.6} s"

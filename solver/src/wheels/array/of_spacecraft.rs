@@ -59,7 +59,7 @@ impl SpacecraftEnvelopes {
 }
 
 /// What is wrong with the shares of the limits alone.
-pub(crate) fn authority_problems(torque: f64, momentum: f64) -> Vec<Problem> {
+pub fn authority_problems(torque: f64, momentum: f64) -> Vec<Problem> {
     let shares = [
         ("/options/torque_authority", torque),
         ("/options/momentum_authority", momentum),

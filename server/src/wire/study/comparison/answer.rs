@@ -2,13 +2,13 @@
 
 use crate::wire::number::Number;
 use serde::Serialize;
-use slewplan_solver::studies::cmg::SingularSurface;
-use slewplan_solver::studies::comparison::{
+use slewplan_solver::wheels::array::Figures;
+use slewplan_studies::cmg::SingularSurface;
+use slewplan_studies::comparison::{
     Advantage, AdvantageCurve, Agility, CUT_OFF, Control, Durations, MarketFit, MassPoint,
     MassStudy, PUBLISHED_ANGLES, Radius, SingularStates, SizeComparison, Study,
 };
-use slewplan_solver::studies::market::{Device, PowerLaw};
-use slewplan_solver::wheels::array::Figures;
+use slewplan_studies::market::{Device, PowerLaw};
 use utoipa::ToSchema;
 
 /// Wheels against control moment gyroscopes. Controls are `rw_eigenaxis`, `rw_pseudo_optimal`,

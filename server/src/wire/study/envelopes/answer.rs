@@ -5,13 +5,11 @@ use crate::wire::number::Number;
 use crate::wire::problems::{ProblemDocument, documents};
 use nalgebra::Vector3;
 use serde::Serialize;
-use slewplan_solver::studies::eigenaxis::EigenaxisSlew;
-use slewplan_solver::studies::envelope_path::{EnvelopePath, MomentumSample, TorqueStep};
-use slewplan_solver::studies::envelope_study::{
-    DemandReport, EnvelopeReport, TimeOptimalSlew, TurnReport,
-};
 use slewplan_solver::wheels::allocation::Allocation;
 use slewplan_solver::wheels::array::{EnvelopedArray, Facet, Polytope};
+use slewplan_studies::eigenaxis::EigenaxisSlew;
+use slewplan_studies::envelope_path::{EnvelopePath, MomentumSample, TorqueStep};
+use slewplan_studies::envelope_study::{DemandReport, EnvelopeReport, TimeOptimalSlew, TurnReport};
 use utoipa::ToSchema;
 
 /// What the wheels can do together. Torques and momenta are sums over the enabled wheels of what they

@@ -1,12 +1,12 @@
 //! The whole study of wheels against gyroscopes, with the tables that it rests on.
 
 use super::{Comparison, ComparisonSpec, Control, Laws, MassPoint, MassStudy, Radii};
-use crate::model::findings::Findings;
-use crate::model::problem::{Code, Problem};
-use crate::studies::cmg::{CmgCluster, MOST_SURFACE_ROWS, SingularSurface};
-use crate::studies::market::{Device, GYROSCOPES, PowerLaw, WHEELS};
-use crate::wheels::array::{Figures, WheelArray, WheelRange};
+use crate::cmg::{CmgCluster, MOST_SURFACE_ROWS, SingularSurface};
+use crate::market::{Device, GYROSCOPES, PowerLaw, WHEELS};
 use nalgebra::Vector3;
+use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::wheels::array::{Figures, WheelArray, WheelRange};
 
 /// Values between which everything is that is above zero; what follows from it can be computed.
 const RANGE: (f64, f64) = (1e-9, 1e9);

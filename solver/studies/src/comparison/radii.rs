@@ -1,8 +1,8 @@
 //! What a pyramid of four devices counts with: spheres of momentum and torque.
 
 use super::study::pyramid_envelopes;
-use crate::model::findings::Findings;
-use crate::studies::cmg::CmgCluster;
+use crate::cmg::CmgCluster;
+use slewplan_solver::model::findings::Findings;
 
 /// How a pyramid of devices is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

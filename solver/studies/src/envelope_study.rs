@@ -1,24 +1,26 @@
 //! What the wheels of a spacecraft can do together: envelopes, slews within them, demands shared out.
 //!
 //! For every turn from rest to rest, without stored momentum, the study has the slews about the
-//! eigenaxis under each [limit](crate::studies::eigenaxis::Limit) and, on request, the fastest ones, once with
+//! eigenaxis under each [limit](crate::eigenaxis::Limit) and, on request, the fastest ones, once with
 //! torques free of each other and once with those that the pseudo-inverse shares out; all with
 //! their ways through the envelopes (RW/CMG thesis, figures 71 to 76).
 
-use crate::model::attitude::Attitude;
-use crate::model::findings::Findings;
-use crate::model::plan::Control;
-use crate::model::problem::{Code, Problem};
-use crate::model::spacecraft::Spacecraft;
-use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, SpacecraftSpec, StateSpec};
-use crate::run::pool::SolverPool;
-use crate::run::stop::StopSignal;
-use crate::slew::{self, FinalWheels, Manoeuvre, ManoeuvreSpec, Outcome, WheelAllocation};
-use crate::studies::eigenaxis::{Baselines, EigenaxisSlew};
-use crate::studies::envelope_path::EnvelopePath;
-use crate::wheels::allocation::{self, Allocation};
-use crate::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
+use crate::eigenaxis::{Baselines, EigenaxisSlew};
+use crate::envelope_path::EnvelopePath;
 use nalgebra::Vector3;
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::plan::Control;
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::spacecraft::Spacecraft;
+use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, SpacecraftSpec, StateSpec};
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::slew::{
+    self, FinalWheels, Manoeuvre, ManoeuvreSpec, Outcome, WheelAllocation,
+};
+use slewplan_solver::wheels::allocation::{self, Allocation};
+use slewplan_solver::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
 
 /// Most turns of a study, each with two optimisations at most.
 pub const MOST_TURNS: usize = 100;
@@ -97,7 +99,7 @@ impl EnvelopeReport {
 pub struct TurnReport {
     /// Axis times angle, body axes, rad.
     pub vector: Vector3<f64>,
-    /// About the eigenaxis, in the order of [`crate::studies::eigenaxis::Limit::ALL`].
+    /// About the eigenaxis, in the order of [`crate::eigenaxis::Limit::ALL`].
     pub eigenaxis: Vec<(EigenaxisSlew, EnvelopePath)>,
     /// The fastest ones that were asked for and reached.
     pub time_optimal: Vec<TimeOptimalSlew>,

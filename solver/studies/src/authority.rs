@@ -4,16 +4,13 @@
 //! what is not as believed. The study plans a scenario anew for each pair of shares and flies every
 //! plan with the same errors: the table from which a planner chooses.
 
-use super::Simulation;
-use super::monte_carlo::Spread;
-use super::settings::Settings;
-use super::spec::SimulationSpec;
-use crate::model::findings::Findings;
-use crate::model::plan::{Optimality, Outcome, Plan};
-use crate::model::problem::{Code, Problem};
-use crate::model::scenario::Scenario;
-use crate::model::spec::ScenarioSpec;
-use crate::tour::planner::{Run, solve};
+use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::simulation::{Simulation, SimulationSpec, Spread};
+use slewplan_solver::tour::planner::{Run, solve};
 
 /// Most pairs of shares of one study: each is a plan and as many flights as asked for.
 pub const MOST_AUTHORITIES: usize = 200;
@@ -82,16 +79,13 @@ pub fn study(
         .map_err(|problems| findings.include(problems))
         .ok();
     let at = format!("{pointer}/simulation");
-    let settings = given.as_ref().and_then(|given| {
-        Settings::read(
-            &spec.simulation,
-            given.scenario.spacecraft(),
-            &at,
-            &mut findings,
-        )
-    });
+    let problems = given
+        .as_ref()
+        .map(|given| spec.simulation.problems(given.scenario.spacecraft(), &at));
+    let is_flyable = problems.as_ref().is_some_and(Vec::is_empty);
+    findings.include(problems.unwrap_or_default());
     let rows = check_shares(&spec.authorities, pointer, &mut findings);
-    findings.conclude(settings.filter(|_| rows))?;
+    findings.conclude((rows && is_flyable).then_some(()))?;
     let rows = spec.authorities.iter().map(|&authorities| AuthorityRow {
         authorities,
         outcome: row(scenario, &spec.simulation, authorities, &at, run),
@@ -176,5 +170,74 @@ fn fly(
                 .collect(),
         },
         Err(problems) => RowOutcome::NoPlan(problems),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use slewplan_solver::model::spec::{SpacecraftSpec, TargetSpec, WheelSpec};
+    use slewplan_solver::run::pool::SolverPool;
+    use slewplan_solver::run::progress::Silent;
+    use slewplan_solver::run::stop::StopSignal;
+    use slewplan_solver::tour::legs::NoStore;
+
+    fn spec() -> ScenarioSpec {
+        let wheel = |axis| WheelSpec {
+            axis,
+            normalize_axis: true,
+            inertia_kg_m2: 2e-3,
+            max_torque_nm: 0.05,
+            min_torque_nm: None,
+            max_speed_rad_s: Some(400.0),
+            enabled: true,
+        };
+        ScenarioSpec {
+            spacecraft: SpacecraftSpec {
+                inertia_kg_m2: [[4.0, 0.2, -0.1], [0.2, 5.0, 0.3], [-0.1, 0.3, 6.0]],
+                wheels: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+                    .map(wheel)
+                    .into(),
+                ..SpacecraftSpec::default()
+            },
+            targets: vec![TargetSpec {
+                id: "t".into(),
+                ..TargetSpec::default()
+            }],
+            ..ScenarioSpec::default()
+        }
+    }
+
+    #[test]
+    fn a_study_lists_all_that_is_wrong_with_it() {
+        let mut scenario = spec();
+        scenario.targets[0].id = String::new();
+        let shares = |torque, momentum| Authorities { torque, momentum };
+        let bad = AuthorityStudySpec {
+            simulation: SimulationSpec::default(),
+            authorities: vec![shares(1.1, 0.9), shares(0.9, 0.0)],
+        };
+        let pool = SolverPool::new(None).unwrap();
+        let stop = StopSignal::new();
+        let run = Run {
+            pool: &pool,
+            stop: &stop,
+            observer: &Silent,
+            legs: &NoStore,
+            segments: &NoStore,
+        };
+        let problems = study(&scenario, &bad, "", run).unwrap_err();
+        let found: Vec<_> = problems.into_iter().map(|p| p.pointer).collect();
+        let expected = [
+            "/targets/0/id",
+            "/authorities/0/torque_authority",
+            "/authorities/1/momentum_authority",
+        ];
+        assert_eq!(found, expected);
+        let mut runs = AuthorityStudySpec::default();
+        runs.simulation.runs = Some(0);
+        let problems = study(&spec(), &runs, "/study", run).unwrap_err();
+        let found: Vec<_> = problems.into_iter().map(|p| p.pointer).collect();
+        assert_eq!(found, ["/study/simulation/runs", "/study/authorities"]);
     }
 }

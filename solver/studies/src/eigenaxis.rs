@@ -16,11 +16,11 @@
 //!   T = angle / w + w / w'    where the rate is reached, else    T = 2 sqrt(angle / w')
 //! ```
 
-use crate::leg::solve::eigenaxis::Trapezoid;
-use crate::model::problem::Problem;
-use crate::model::spacecraft::Spacecraft;
-use crate::wheels::array::{Envelopes, Polytope, SpacecraftEnvelopes};
 use nalgebra::Vector3;
+use slewplan_solver::math::bang_coast_bang::BangCoastBang;
+use slewplan_solver::model::problem::Problem;
+use slewplan_solver::model::spacecraft::Spacecraft;
+use slewplan_solver::wheels::array::{Envelopes, Polytope, SpacecraftEnvelopes};
 
 /// How much of its wheels a slew about the eigenaxis may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,77 +65,6 @@ impl Limit {
             Self::FullSphere => sphere(&envelopes.full),
             Self::Full => 1.0 / envelopes.full.share(demand),
         }
-    }
-}
-
-/// A bang-coast-bang of one angle.
-#[derive(Debug, Clone, Copy)]
-pub struct BangCoastBang {
-    trapezoid: Trapezoid,
-    angle: f64,
-    rate: f64,
-    acceleration: f64,
-}
-
-impl BangCoastBang {
-    /// The fastest over an angle (rad) within an acceleration (rad/s²) and a rate (rad/s), all above
-    /// zero; the rate may be infinite.
-    #[must_use]
-    pub fn fastest(angle: f64, acceleration: f64, rate: f64) -> Self {
-        let trapezoid = Trapezoid::fastest(angle, acceleration, rate);
-        Self {
-            trapezoid,
-            angle,
-            rate: trapezoid.at(0.5 * trapezoid.duration).1,
-            acceleration,
-        }
-    }
-
-    /// Duration, s.
-    #[must_use]
-    pub fn duration(&self) -> f64 {
-        self.trapezoid.duration
-    }
-
-    /// Greatest rate, rad/s.
-    #[must_use]
-    pub fn rate(&self) -> f64 {
-        self.rate
-    }
-
-    /// Acceleration of the ramps, rad/s².
-    #[must_use]
-    pub fn acceleration(&self) -> f64 {
-        self.acceleration
-    }
-
-    /// Duration of each ramp, s.
-    #[must_use]
-    pub fn ramp(&self) -> f64 {
-        self.rate / self.acceleration
-    }
-
-    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) at a time of the slew, s.
-    #[must_use]
-    pub fn at(&self, time: f64) -> (f64, f64, f64) {
-        self.trapezoid.at(time)
-    }
-
-    /// When a share (in [0, 1]) of the angle is left, s.
-    #[must_use]
-    pub fn time_with_left(&self, share: f64) -> f64 {
-        let left = self.angle * share;
-        let ramp = self.ramp();
-        let ramped = 0.5 * self.rate * ramp;
-        let remaining = if left <= ramped {
-            (2.0 * left / self.acceleration).sqrt()
-        } else if left <= self.angle - ramped {
-            ramp + (left - ramped) / self.rate
-        } else {
-            let begun = 2.0 * (self.angle - left) / self.acceleration;
-            self.duration() - begun.sqrt()
-        };
-        self.duration() - remaining
     }
 }
 
@@ -225,7 +154,17 @@ impl Baselines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::spec::{SpacecraftSpec, WheelSpec};
+    use slewplan_solver::model::attitude::Attitude;
+    use slewplan_solver::model::plan::Outcome;
+    use slewplan_solver::model::scenario::Scenario;
+    use slewplan_solver::model::spec::{
+        AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec,
+    };
+    use slewplan_solver::run::pool::SolverPool;
+    use slewplan_solver::run::progress::Silent;
+    use slewplan_solver::run::stop::StopSignal;
+    use slewplan_solver::tour::legs::NoStore;
+    use slewplan_solver::tour::planner::{Run, solve};
 
     const S: f64 = 0.816_496_580_927_726;
     const C: f64 = 0.577_350_269_189_625_8;
@@ -284,37 +223,35 @@ mod tests {
 
     #[test]
     fn the_planner_finds_the_same_slew() {
-        use crate::model::attitude::Attitude;
-        use crate::model::dynamics::Dynamics;
-        use crate::model::scenario::Scenario;
-        use crate::model::spec::ScenarioSpec;
+        let (pool, stop) = (SolverPool::new(None).unwrap(), StopSignal::new());
+        let run = Run {
+            pool: &pool,
+            stop: &stop,
+            observer: &Silent,
+            legs: &NoStore,
+            segments: &NoStore,
+        };
         let mut spacecraft = thesis();
         spacecraft.inertia_kg_m2 = [[25.4, 1.0, -2.0], [1.0, 31.0, 0.5], [-2.0, 0.5, 18.0]];
         spacecraft.max_body_rate_rad_s = [None, Some(0.03), None];
-        let spec = ScenarioSpec {
-            spacecraft: spacecraft.clone(),
-            targets: vec![crate::model::spec::TargetSpec {
-                id: "t".into(),
-                ..Default::default()
-            }],
-            ..ScenarioSpec::default()
-        };
-        let dynamics = Dynamics::of(&Scenario::try_new(&spec).unwrap().scenario);
         for turn in [[1.0, 0.3, -0.2], [0.1, -0.05, 0.02], [-0.4, 2.0, 1.0]] {
             let turn = Vector3::from(turn);
-            let to = Attitude::identity().retract(turn);
-            let null = nalgebra::DVector::zeros(1);
-            let planned = crate::leg::solve::eigenaxis::EigenaxisSlew::fastest(
-                &dynamics,
-                &Attitude::identity(),
-                &to,
-                &null,
-            );
+            let spec = ScenarioSpec {
+                spacecraft: spacecraft.clone(),
+                targets: vec![TargetSpec {
+                    id: "t".into(),
+                    attitude: AttitudeSpec::Quaternion(Attitude::from_rotation_vector(turn).xyzw()),
+                    ..TargetSpec::default()
+                }],
+                ..ScenarioSpec::default()
+            };
+            let Outcome::Planned(plan) = solve(&Scenario::try_new(&spec).unwrap().scenario, run)
+            else {
+                panic!("{turn}")
+            };
             let duration = slews(&spacecraft, turn)[1].course.duration();
-            assert!(
-                (duration / planned.trapezoid.duration - 1.0).abs() < 1e-9,
-                "{turn}"
-            );
+            let planned = plan.legs[0].eigenaxis_duration_s.unwrap();
+            assert!((duration / planned - 1.0).abs() < 1e-9, "{turn}");
         }
     }
 
@@ -340,21 +277,6 @@ mod tests {
             pointers,
             ["/options/torque_authority", "/options/momentum_authority"]
         );
-    }
-
-    #[test]
-    fn the_course_inverts_its_own_angles() {
-        for rate in [0.05, 0.2, f64::INFINITY] {
-            let course = BangCoastBang::fastest(2.0, 0.01, rate);
-            for i in 0..=20 {
-                let share = f64::from(i) / 20.0;
-                let (angle, ..) = course.at(course.time_with_left(share));
-                assert!(
-                    (angle - 2.0 * (1.0 - share)).abs() < 1e-7,
-                    "{rate} {share}: {angle}"
-                );
-            }
-        }
     }
 
     #[test]

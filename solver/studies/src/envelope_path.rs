@@ -6,11 +6,11 @@
 //! body axes, and the shares of the full and of the pseudo-inverse-limited envelope that this is.
 //! A share of the latter above 1 is what no pseudo-inverse could have shared out.
 
-use crate::model::plan::{Control, State};
-use crate::model::spacecraft::Spacecraft;
-use crate::studies::eigenaxis::EigenaxisSlew;
-use crate::wheels::array::{EnvelopedArray, SpacecraftEnvelopes};
+use crate::eigenaxis::EigenaxisSlew;
 use nalgebra::Vector3;
+use slewplan_solver::model::plan::{Control, State};
+use slewplan_solver::model::spacecraft::Spacecraft;
+use slewplan_solver::wheels::array::{EnvelopedArray, SpacecraftEnvelopes};
 
 /// A vector within the envelopes of an array.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,9 +138,9 @@ fn point(within: &EnvelopedArray, vector: Vector3<f64>) -> EnvelopePoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::attitude::Attitude;
-    use crate::model::spec::{SpacecraftSpec, WheelSpec};
-    use crate::studies::eigenaxis::{Baselines, Limit};
+    use crate::eigenaxis::{Baselines, Limit};
+    use slewplan_solver::model::attitude::Attitude;
+    use slewplan_solver::model::spec::{SpacecraftSpec, WheelSpec};
 
     const S: f64 = 0.816_496_580_927_726;
     const C: f64 = 0.577_350_269_189_625_8;

@@ -1,9 +1,12 @@
 //! The queue at work: one job at a time, in the order of submission, on the solver's own threads.
 
+pub(crate) mod leg_cache;
+pub(crate) mod leg_import;
 mod memory;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;
+pub(crate) mod slews;
 mod solve;
 mod tally;
 mod worker;
@@ -11,8 +14,8 @@ mod worker;
 pub(crate) use tally::JobTally;
 pub(crate) use worker::Worker;
 
-use crate::clock::now_us;
-use crate::leg_cache::{LegCache, Tally};
+use crate::base::clock::now_us;
+use crate::jobs::leg_cache::{LegCache, Tally};
 use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,30 +1,13 @@
 //! The `slewplan` binary: multi-target attitude scheduling as a command and as a service.
 
-mod access;
+mod api;
+mod base;
 mod cli;
-mod clock;
-mod connections;
-mod contradictions;
-mod digest;
-mod export;
-#[cfg(feature = "faults")]
-mod faults;
-mod figures;
-mod flights;
-mod http;
+mod documents;
 mod jobs;
-mod leg_cache;
-mod leg_import;
-mod lifecycle;
-mod plot;
-mod progress;
-mod report;
+mod render;
 mod service;
-mod shards;
-mod signals;
-mod slews;
 mod store;
-mod wire;
 
 use std::process::ExitCode;
 

@@ -1,10 +1,11 @@
 //! The service put together: database, worker, routes, and their end.
 
-use crate::connections;
-use crate::http::{self, Access, App, Limits};
+use crate::api::connections;
+use crate::api::{self, Access, App, Limits};
+use crate::base::lifecycle::{GRACE, Shutdown};
+use crate::documents::jobs::EventDocument;
+use crate::jobs::leg_cache::upkeep;
 use crate::jobs::{Jobs, Worker, retention, segments};
-use crate::leg_cache::upkeep;
-use crate::lifecycle::{GRACE, Shutdown};
 use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
 use slewplan_solver::run::pool::{PoolError, SolverPool};
 use std::io;
@@ -173,12 +174,12 @@ async fn serve<E: From<ServiceError>>(
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let _lock = DatabaseLock::take(&settings.database).map_err(ServiceError::from)?;
-    let store = Store::open(&settings.database)
+    let store = Store::open(&settings.database, EventDocument::tell)
         .await
         .map_err(ServiceError::from)?;
     let boot_id = Uuid::new_v4().to_string();
     let recovered = store
-        .recover(&boot_id, crate::clock::now_us())
+        .recover(&boot_id, crate::base::clock::now_us())
         .await
         .map_err(ServiceError::from)?;
     tracing::info!(boot_id, ?recovered, database = %settings.database.display(), "store is open");
@@ -203,7 +204,7 @@ async fn serve<E: From<ServiceError>>(
         // Who only listens does not keep others from asking.
         streams: settings.connections.div_ceil(2),
     };
-    let router = http::router(App::new(jobs, limits, access, shutdown.clone(), pools));
+    let router = api::router(App::new(jobs, limits, access, shutdown.clone(), pools));
     tell(address)?;
     tracing::info!(%address, "listening");
     let serving = connections::serve(listener, router, shutdown.clone(), settings.connections);

@@ -28,7 +28,7 @@ pub(crate) use backup::backup;
 pub(crate) use claims::Claim;
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
-pub(crate) use events::EventRow;
+pub(crate) use events::{EventRow, TellJob};
 pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey};
 pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
@@ -69,6 +69,7 @@ pub(crate) struct Store {
     writer: SqlitePool,
     readers: SqlitePool,
     folder: SqlitePool,
+    tell: TellJob,
     alarm: Alarm,
     /// Told after every commit.
     written: Arc<Notify>,
@@ -108,12 +109,12 @@ impl DatabaseLock {
 }
 
 impl Store {
-    /// Opens or creates the database and brings its schema up to date.
+    /// Opens or creates the database and brings its schema up to date; `tell` writes the events of jobs.
     ///
     /// # Errors
     ///
     /// When the file cannot be used, or the embedded SQLite is too old to be trusted.
-    pub(crate) async fn open(path: &Path) -> Result<Self, StoreError> {
+    pub(crate) async fn open(path: &Path, tell: TellJob) -> Result<Self, StoreError> {
         let options = SqliteConnectOptions::new()
             .filename(path)
             .create_if_missing(true)
@@ -151,6 +152,7 @@ impl Store {
             writer,
             readers,
             folder,
+            tell,
             alarm,
             written,
             recent: Recent::default(),

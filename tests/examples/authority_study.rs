@@ -4,9 +4,8 @@
 //! Inertia known to 2 % (three standard deviations), quaternion feedback of 0.1 rad/s at 10 Hz.
 //! Arguments: seconds under control after the end (default 0), and shares as `torque/momentum`.
 
-use slewplan_solver::simulation::{
-    Authorities, AuthorityStudySpec, ErrorsSpec, RowOutcome, SimulationSpec, Spread, study,
-};
+use slewplan_solver::simulation::{ErrorsSpec, SimulationSpec, Spread};
+use slewplan_studies::authority::{Authorities, AuthorityStudySpec, RowOutcome, study};
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::solving::on_threads;
 

@@ -1,8 +1,10 @@
 //! Plans flown in closed loop: how much of the wheels a plan has to leave to feedback.
 
 use slewplan_solver::simulation::{
-    Authorities, AuthorityRow, AuthorityStudySpec, ControllerSpec, ErrorsSpec, GainsSpec,
-    RowOutcome, Simulation, SimulationSpec, Spread, study,
+    ControllerSpec, ErrorsSpec, GainsSpec, Simulation, SimulationSpec, Spread,
+};
+use slewplan_studies::authority::{
+    Authorities, AuthorityRow, AuthorityStudySpec, RowOutcome, study,
 };
 use slewplan_tests::solving::{on_threads, order_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, pyramid_spec};

@@ -1,12 +1,13 @@
 //! The published pyramid of four wheels: random slews against the published curve, and the way of a
 //! slew through the envelopes.
 
+use slewplan_solver::math::bang_coast_bang::BangCoastBang;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_studies::comparison::{Control, Radii};
-use slewplan_studies::eigenaxis::{BangCoastBang, Baselines};
+use slewplan_studies::eigenaxis::Baselines;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
 use slewplan_tests::pyramid_spec;

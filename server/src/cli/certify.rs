@@ -3,11 +3,11 @@
 use super::failure::Failure;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input, output};
-use crate::progress::{self, ProgressMode};
-use crate::report;
-use crate::signals;
-use crate::wire;
-use crate::wire::certification::CertificationDocument;
+use crate::cli::progress::{self, ProgressMode};
+use crate::cli::signals;
+use crate::documents;
+use crate::documents::certification::CertificationDocument;
+use crate::render::report;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::NoStore;
 use slewplan_solver::tour::planner::{self, Run};
@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
-    let claims = input::of_plan(&arguments.plan, &scenario, wire::claims::read)?;
+    let claims = input::of_plan(&arguments.plan, &scenario, documents::claims::read)?;
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;

@@ -4,8 +4,8 @@ use super::failure::Failure;
 use super::form::Choices;
 use super::output::{self, Destination};
 use super::{Exit, input};
-use crate::export::Format;
-use crate::wire;
+use crate::documents;
+use crate::render::export::Format;
 use slewplan_solver::checker;
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
     arguments.choices.check(arguments.format, &scenario)?;
-    let flight = input::of_plan(&arguments.plan, &scenario, wire::flight::read)?;
+    let flight = input::of_plan(&arguments.plan, &scenario, documents::flight::read)?;
     // A plan beside the wrong scenario makes files that look well and point elsewhere.
     let found = checker::verify(&scenario, &flight).verification;
     if !found.passed {

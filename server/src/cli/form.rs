@@ -1,7 +1,9 @@
 //! The form in which a command writes a plan.
 
 use super::failure::Failure;
-use crate::export::{self, ExportError, Form, Format, Options, PERIOD_S, Spacing, TOLERANCE};
+use crate::render::export::{
+    self, ExportError, Form, Format, Options, PERIOD_S, Spacing, TOLERANCE,
+};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use slewplan_solver::model::plan::Flight;

@@ -3,10 +3,10 @@
 use super::failure::Failure;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input, output, runtime};
-use crate::leg_import;
+use crate::cli::signals;
+use crate::documents::leg_import::LegImportDocument;
+use crate::jobs::leg_import;
 use crate::service::ServiceError;
-use crate::signals;
-use crate::wire::leg_import::LegImportDocument;
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! Files and standard input.
 
 use super::failure::Failure;
-use crate::wire;
-use crate::wire::document::Node;
+use crate::documents;
+use crate::documents::document::Node;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::{Scenario, Validated};
 use std::fs::File;
@@ -65,7 +65,7 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
 
 /// Reads a document of any meaning.
 pub(super) fn document(path: &Path) -> Result<Node, Failure> {
-    wire::document::parse(&read(path)?).map_err(|problem| Failure::Invalid {
+    documents::document::parse(&read(path)?).map_err(|problem| Failure::Invalid {
         name: name(path),
         problems: vec![problem],
     })
@@ -73,7 +73,7 @@ pub(super) fn document(path: &Path) -> Result<Node, Failure> {
 
 /// Reads a valid scenario; a time limit from the command line, s, replaces its own.
 pub(super) fn scenario(path: &Path, time_limit_s: Option<f64>) -> Result<Validated, Failure> {
-    wire::scenario::read(&read(path)?, time_limit_s).map_err(|problems| Failure::Invalid {
+    documents::scenario::read(&read(path)?, time_limit_s).map_err(|problems| Failure::Invalid {
         name: name(path),
         problems,
     })

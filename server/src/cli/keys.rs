@@ -1,8 +1,8 @@
 //! `slewplan keys`: who may use the service.
 
 use super::{Exit, Failure, output, runtime};
-use crate::access::{FreshKey, Scope, Scopes};
-use crate::clock::{now_us, rfc3339};
+use crate::base::access::{FreshKey, Scope, Scopes};
+use crate::base::clock::{now_us, rfc3339};
 use crate::service::ServiceError;
 use crate::store::{KeyRow, NewKey, Store};
 use std::fmt::Write;

@@ -6,11 +6,11 @@ use super::remembered::RememberedLegs;
 use super::shard::ShardArgument;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input};
-use crate::progress::{self, ProgressMode};
-use crate::signals::{self, Received};
-use crate::wire;
-use crate::wire::document::Node;
-use crate::wire::legs::{LegTable, LegTableDocument};
+use crate::cli::progress::{self, ProgressMode};
+use crate::cli::signals::{self, Received};
+use crate::documents;
+use crate::documents::document::Node;
+use crate::documents::legs::{LegTable, LegTableDocument};
 use clap::ValueEnum;
 use recorder::Recorder;
 use slewplan_solver::model::scenario::Scenario;
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         None => merge::table(&arguments.merge)?,
         Some(path) => {
             let node = input::document(path)?;
-            let read = wire::scenario::read_node(&node, None);
+            let read = documents::scenario::read_node(&node, None);
             let scenario = read.map_err(|problems| Failure::Invalid {
                 name: input::name(path),
                 problems,
@@ -143,7 +143,7 @@ fn solve(
     let table = LegTable {
         version: env!("CARGO_PKG_VERSION").into(),
         kind,
-        scenario_key: wire::legs::scenario_key(&node),
+        scenario_key: documents::legs::scenario_key(&node),
         shard,
         complete,
         scenario: arguments.trajectories.then_some(node),

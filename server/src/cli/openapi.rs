@@ -2,10 +2,10 @@
 
 use super::failure::Failure;
 use super::{Exit, output};
-use crate::http;
+use crate::api;
 
 /// Prints the description on standard output.
 pub(super) fn run() -> Result<Exit, Failure> {
-    output::print(&http::openapi())?;
+    output::print(&api::openapi())?;
     Ok(Exit::Complete)
 }

@@ -3,11 +3,11 @@
 use super::failure::Failure;
 use super::output::Destination;
 use super::{Exit, input};
-use crate::plot::{
+use crate::documents::slew;
+use crate::render::plot::{
     self, Boresight, Document, Marks, WrittenComparison, WrittenEnvelopes, WrittenFlight,
     WrittenPlan, WrittenSlews,
 };
-use crate::wire::slew;
 use slewplan_solver::model::scenario::Scenario;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,8 @@
 
 use super::failure::Failure;
 use super::runtime;
-use crate::leg_cache::LegCache;
+use crate::documents::jobs::EventDocument;
+use crate::jobs::leg_cache::LegCache;
 use crate::service::ServiceError;
 use crate::store::Store;
 use slewplan_solver::tour::legs::LegStore;
@@ -22,7 +23,7 @@ impl RememberedLegs {
     pub(super) fn open(database: &Path) -> Result<Self, Failure> {
         let runtime = runtime::start()?;
         let store = runtime
-            .block_on(Store::open(database))
+            .block_on(Store::open(database, EventDocument::tell))
             .map_err(ServiceError::from)?;
         let legs = LegCache::new(store, runtime.handle().clone(), Arc::default());
         Ok(Self {

@@ -1,6 +1,7 @@
 //! The database for commands that are not the service.
 
 use super::Failure;
+use crate::documents::jobs::EventDocument;
 use crate::service::ServiceError;
 use crate::store::Store;
 use std::path::Path;
@@ -24,7 +25,9 @@ pub(super) fn with_store<T>(
     work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     start()?.block_on(async {
-        let store = Store::open(database).await.map_err(ServiceError::from)?;
+        let store = Store::open(database, EventDocument::tell)
+            .await
+            .map_err(ServiceError::from)?;
         let done = work(&store).await;
         store.close().await;
         done

@@ -3,9 +3,9 @@
 use super::failure::Failure;
 use super::output::{self, Destination};
 use super::{Exit, input};
-use crate::signals;
-use crate::slews::{self, Solved};
-use crate::wire::slew::{self, SlewAnswerDocument};
+use crate::cli::signals;
+use crate::documents::slew::{self, SlewAnswerDocument};
+use crate::jobs::slews::{self, Solved};
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 

@@ -5,12 +5,12 @@ use super::form::Choices;
 use super::output::{self, Destination};
 use super::remembered::RememberedLegs;
 use super::{Exit, input};
-use crate::export::Form;
-use crate::progress::{self, ProgressMode};
-use crate::report;
-use crate::signals::{self, Received};
-use crate::wire;
-use crate::wire::plan::Interruption;
+use crate::cli::progress::{self, ProgressMode};
+use crate::cli::signals::{self, Received};
+use crate::documents;
+use crate::documents::plan::Interruption;
+use crate::render::export::Form;
+use crate::render::report;
 use slewplan_solver::model::plan::{Optimality, Outcome};
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::{Scenario, Validated};
@@ -187,7 +187,7 @@ impl Outlets {
                 (Form::Json, _) => {
                     // After a signal nothing is written.
                     let stopped = [Interruption::TimeLimit.reason()];
-                    let document = wire::plan::document(outcome, &stopped, doubts);
+                    let document = documents::plan::document(outcome, &stopped, doubts);
                     destination.write(&output::json(&document)?)?;
                 }
                 (Form::Export(format), Outcome::Planned(plan)) => {

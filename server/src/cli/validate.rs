@@ -2,8 +2,8 @@
 
 use super::failure::{Failure, listing};
 use super::{Exit, input, output};
-use crate::wire;
-use crate::wire::problems::ValidationDocument;
+use crate::documents;
+use crate::documents::problems::ValidationDocument;
 use clap::ValueEnum;
 use slewplan_solver::model::problem::{Faults, Problem};
 use slewplan_solver::tour::planner;
@@ -33,9 +33,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         problems: vec![problem],
         ..Faults::default()
     };
-    let found = wire::document::parse(&input::read(&arguments.scenario)?)
+    let found = documents::document::parse(&input::read(&arguments.scenario)?)
         .map_err(malformed)
-        .and_then(|node| wire::scenario::examine(&node, None));
+        .and_then(|node| documents::scenario::examine(&node, None));
     let (errors, warnings) = match found {
         Ok(valid) => (
             planner::feasibility_problems(&valid.scenario),

@@ -2,9 +2,9 @@
 
 use super::failure::Failure;
 use super::{Exit, input, output};
-use crate::report;
-use crate::wire;
-use crate::wire::verification::ReportDocument;
+use crate::documents;
+use crate::documents::verification::ReportDocument;
+use crate::render::report;
 use slewplan_solver::checker;
 use slewplan_solver::model::problem::Problem;
 use std::io::{IsTerminal, stdout};
@@ -26,7 +26,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let valid = input::scenario(&arguments.scenario, None)?;
-    let flight = input::of_plan(&arguments.plan, &valid.scenario, wire::flight::read)?;
+    let flight = input::of_plan(&arguments.plan, &valid.scenario, documents::flight::read)?;
     let found = checker::verify(&valid.scenario, &flight);
     let warnings: Vec<Problem> = valid.warnings.into_iter().chain(found.keep_out).collect();
     output::print(&if arguments.summary || stdout().is_terminal() {

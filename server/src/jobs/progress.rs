@@ -1,11 +1,11 @@
 //! From the solver's observer, called on any of its threads, to recorded events.
 
 use super::Jobs;
-use crate::clock::now_us;
-use crate::contradictions;
-use crate::leg_cache::Unwritten;
+use crate::base::clock::now_us;
+use crate::base::contradictions;
+use crate::documents;
+use crate::jobs::leg_cache::Unwritten;
 use crate::store::{JobRow, NewIncumbent, PackedPlan, ProgressRow};
-use crate::wire;
 use slewplan_solver::model::plan::Plan;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::run::contradiction::Contradiction;
@@ -55,7 +55,7 @@ impl Observer for Watch<'_> {
     }
 
     fn incumbent(&self, plan: &Plan) {
-        let document = match serde_json::to_vec(&wire::plan::plan(plan, self.doubts)) {
+        let document = match serde_json::to_vec(&documents::plan::plan(plan, self.doubts)) {
             Ok(document) => PackedPlan::of(&document),
             Err(error) => return tracing::error!(%error, "the best plan so far cannot be written"),
         };

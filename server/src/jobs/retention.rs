@@ -1,6 +1,6 @@
 //! Jobs that ended long ago are deleted, a few at a time.
 
-use crate::clock::now_us;
+use crate::base::clock::now_us;
 use crate::store::{Store, StoreError};
 use std::time::Duration;
 

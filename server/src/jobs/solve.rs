@@ -2,9 +2,9 @@
 
 use super::memory::MemoryGuard;
 use super::progress::Reporter;
+use crate::documents;
+use crate::documents::plan::Interruption;
 use crate::store::{EndCode, Ended, JobState, PackedPlan};
-use crate::wire;
-use crate::wire::plan::Interruption;
 use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Validated;
@@ -58,13 +58,13 @@ pub(super) fn broken() -> Ended {
 }
 
 fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
-    let Validated { scenario, warnings } = match wire::scenario::read(scenario, None) {
+    let Validated { scenario, warnings } = match documents::scenario::read(scenario, None) {
         Ok(valid) => valid,
         // It was valid when it was accepted: another version of the program reads it now.
         Err(problems) => return refused(JobState::Failed, &problems),
     };
     #[cfg(feature = "faults")]
-    crate::faults::strike(scenario.name(), means.pool, means.stop);
+    crate::base::faults::strike(scenario.name(), means.pool, means.stop);
     let observer = means.reporter.observer(&warnings);
     let run = Run {
         pool: means.pool,
@@ -75,12 +75,12 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
     };
     let outcome = planner::solve(&scenario, run);
     #[cfg(feature = "faults")]
-    crate::faults::strike_late(scenario.name());
+    crate::base::faults::strike_late(scenario.name());
     if run.stop.reason() == Some(StopReason::Cancelled) {
         return without_plan(JobState::Cancelled, None, "abandoned on request");
     }
     let stopped = means.interruption().reason();
-    let document = wire::plan::document(&outcome, slice::from_ref(&stopped), &warnings);
+    let document = documents::plan::document(&outcome, slice::from_ref(&stopped), &warnings);
     match serde_json::to_vec(&document) {
         Ok(document) => Ended {
             document: Some(PackedPlan::of(&document)),

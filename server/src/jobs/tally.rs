@@ -1,6 +1,6 @@
 //! What is known about the jobs that this process has worked on.
 
-use crate::figures::{Histogram, head, sample};
+use crate::base::metrics::{Histogram, head, sample};
 use crate::store::{EndCode, Ended, JobRow, JobState};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};

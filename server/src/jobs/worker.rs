@@ -8,7 +8,7 @@ use super::progress::{Reporter, record};
 use super::segments::{self, SegmentCache};
 use super::solve::{self, Means};
 use super::{Active, Jobs};
-use crate::clock::now_us;
+use crate::base::clock::now_us;
 use crate::store::{Claim, Ended, JobRow, JobState, StoreError};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;

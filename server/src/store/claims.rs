@@ -4,12 +4,13 @@
 //! still the newest one: a worker that was taken for dead cannot overwrite its successor.
 
 use super::rows::job_columns;
+use super::writing::Writing;
 use super::{
     EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
 };
 use sqlx::query::Query;
 use sqlx::sqlite::SqliteArguments;
-use sqlx::{Row, Sqlite, SqliteConnection};
+use sqlx::{Row, Sqlite};
 
 /// Attempts after which a job whose process dies each time is given up.
 const MOST_ATTEMPTS: i64 = 3;
@@ -249,15 +250,15 @@ impl Store {
 /// Changes a job that is claimed, with the event that tells of it; the job as it is then, `None`
 /// when the claim has been lost.
 async fn changed(
-    connection: &mut SqliteConnection,
+    transaction: &mut Writing,
     update: Query<'_, Sqlite, SqliteArguments>,
     kind: &'static str,
     now_us: i64,
 ) -> Result<Option<JobRow>, StoreError> {
-    let Some(row) = update.fetch_optional(&mut *connection).await? else {
+    let Some(row) = update.fetch_optional(&mut **transaction).await? else {
         return Ok(None);
     };
     let job = JobRow::of(&row)?;
-    events::append(connection, kind, &job, now_us).await?;
+    events::append(transaction, kind, &job, now_us).await?;
     Ok(Some(job))
 }

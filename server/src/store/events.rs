@@ -1,8 +1,8 @@
 //! What happened to a job, in order.
 
+use super::writing::Writing;
 use super::{JobRow, Store, StoreError};
-use crate::wire::jobs::EventDocument;
-use sqlx::{FromRow, SqliteConnection};
+use sqlx::FromRow;
 
 /// Something that happened to a job.
 #[derive(Debug, Clone, FromRow)]
@@ -15,22 +15,20 @@ pub(crate) struct EventRow {
     pub(crate) data: String,
 }
 
+/// Writes how a job stands at a time (microseconds since 1970), as JSON: an event that is kept as it is.
+pub(crate) type TellJob = fn(&JobRow, i64) -> Result<String, StoreError>;
+
 /// Most events that are read at once.
 const BATCH: i64 = 256;
 
 /// Appends an event that tells how a job stands now.
 pub(super) async fn append(
-    connection: &mut SqliteConnection,
+    transaction: &mut Writing,
     kind: &'static str,
     job: &JobRow,
     now_us: i64,
 ) -> Result<(), StoreError> {
-    let data = serde_json::to_string(&EventDocument::new(job, now_us)?).map_err(|error| {
-        StoreError::Inconsistent {
-            table: "jobs",
-            what: error.to_string(),
-        }
-    })?;
+    let data = (transaction.tell)(job, now_us)?;
     sqlx::query(
         "INSERT INTO events (job, id, kind, data) \
          SELECT ?1, 1 + coalesce(max(id), 0), ?2, ?3 FROM events WHERE job = ?1",
@@ -38,7 +36,7 @@ pub(super) async fn append(
     .bind(job.sequence)
     .bind(kind)
     .bind(data)
-    .execute(connection)
+    .execute(&mut **transaction)
     .await?;
     Ok(())
 }

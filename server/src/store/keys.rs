@@ -1,7 +1,7 @@
 //! Keys of clients, and whose job is whose.
 
 use super::{Store, StoreError};
-use crate::access::Scopes;
+use crate::base::access::Scopes;
 use sqlx::FromRow;
 
 /// A key without its secret.

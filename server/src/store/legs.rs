@@ -121,7 +121,7 @@ pub(crate) struct LegFilter {
 
 /// The key of a canonical text.
 pub(crate) fn key(identity: &str) -> String {
-    crate::digest::hex(identity.as_bytes())
+    crate::base::digest::hex(identity.as_bytes())
 }
 
 impl Store {

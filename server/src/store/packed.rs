@@ -31,7 +31,7 @@ impl PackedPlan {
         Self {
             bytes: written.expect("writing to memory cannot fail"),
             packed: true,
-            digest: crate::digest::hex(json),
+            digest: crate::base::digest::hex(json),
         }
     }
 
@@ -46,7 +46,7 @@ impl PackedPlan {
         } else {
             Some(self.bytes)
         };
-        json.filter(|json| crate::digest::hex(json) == self.digest)
+        json.filter(|json| crate::base::digest::hex(json) == self.digest)
             .ok_or(StoreError::Damaged { what: "plan" })
     }
 }
@@ -77,7 +77,7 @@ mod tests {
         let old = PackedPlan {
             bytes: JSON.into(),
             packed: false,
-            digest: crate::digest::hex(JSON.as_bytes()),
+            digest: crate::base::digest::hex(JSON.as_bytes()),
         };
         assert_eq!(old.unpacked().expect("intact"), JSON.as_bytes());
     }

@@ -82,6 +82,11 @@ async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
     found.expect("the job is there")
 }
 
+/// An event that tells the state.
+fn state_of(job: &JobRow, _: i64) -> Result<String, StoreError> {
+    Ok(format!("{{\"state\":\"{}\"}}", job.state()?.as_str()))
+}
+
 /// Runs a scene on an empty database.
 fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -91,7 +96,7 @@ fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
         .expect("a runtime");
     runtime.block_on(async {
         let path = folder.path().join("store.db");
-        scene(Store::open(&path).await.expect("opened")).await;
+        scene(Store::open(&path, state_of).await.expect("opened")).await;
     });
 }
 

@@ -1,6 +1,6 @@
 //! Write transactions, and the alarm for a disk that does not keep what is written.
 
-use super::{Store, StoreError};
+use super::{Store, StoreError, TellJob};
 use sqlx::{Sqlite, SqliteConnection, Transaction};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
@@ -38,6 +38,8 @@ impl Alarm {
 #[derive(Debug)]
 pub(super) struct Writing {
     transaction: Transaction<'static, Sqlite>,
+    /// Writes the events.
+    pub(super) tell: TellJob,
     alarm: Alarm,
     written: Arc<Notify>,
 }
@@ -73,6 +75,7 @@ impl Store {
         let begun = self.writer.begin_with("BEGIN IMMEDIATE").await;
         Ok(Writing {
             transaction: begun.map_err(|error| self.alarm.heed(error.into()))?,
+            tell: self.tell,
             alarm: self.alarm.clone(),
             written: Arc::clone(&self.written),
         })

@@ -2,9 +2,9 @@
 
 use super::super::failure::Failure;
 use super::super::input;
-use crate::shards;
-use crate::wire;
-use crate::wire::legs::LegTable;
+use crate::documents;
+use crate::documents::legs::LegTable;
+use crate::documents::shards;
 use std::path::{Path, PathBuf};
 
 /// The whole table of the parts in some files.
@@ -14,7 +14,7 @@ pub(super) fn table(files: &[PathBuf]) -> Result<LegTable, Failure> {
     let (mut parts, mut problems) = (Vec::new(), Vec::new());
     for path in &paths {
         let name = || Some(input::name(path));
-        match wire::legs::read::read(&input::document(path)?) {
+        match documents::legs::read::read(&input::document(path)?) {
             Ok(part) => parts.push(part),
             Err(found) => problems.extend(found.into_iter().map(|problem| (name(), problem))),
         }

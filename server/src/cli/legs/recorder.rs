@@ -1,7 +1,7 @@
 //! Notes the motions of the legs of a run.
 
+use crate::documents::legs::KeyedLeg;
 use crate::store::leg_key;
-use crate::wire::legs::KeyedLeg;
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
 use slewplan_solver::tour::planner::OfferedLeg;
 use std::collections::BTreeMap;

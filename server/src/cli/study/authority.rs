@@ -5,7 +5,7 @@ use super::planning::Planning;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use crate::wire::study::authority::{self, AuthorityAnswerDocument};
+use crate::documents::study::authority::{self, AuthorityAnswerDocument};
 
 /// What `study authority` takes.
 #[derive(Debug, clap::Args)]

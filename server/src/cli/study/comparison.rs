@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use crate::cli::output::{self, Destination};
 use crate::cli::{Exit, input};
-use crate::wire::study::comparison::{self, ComparisonAnswerDocument};
+use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
 use slewplan_studies::comparison::{Study, StudySpec};
 use std::path::PathBuf;
 

@@ -4,9 +4,9 @@ use super::given::Given;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
 use crate::cli::output;
+use crate::cli::signals;
 use crate::cli::solve::{Threads, start_pool};
-use crate::signals;
-use crate::wire::study::envelopes::{self, EnvelopeAnswerDocument};
+use crate::documents::study::envelopes::{self, EnvelopeAnswerDocument};
 use slewplan_solver::run::stop::StopSignal;
 
 /// What `study envelopes` takes.

@@ -5,8 +5,8 @@ use super::planning::Planning;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use crate::flights::{self, Outcome};
-use crate::wire::study::flight::{self, FlightAnswerDocument};
+use crate::documents::study::flight::{self, FlightAnswerDocument};
+use slewplan_studies::flight::{Outcome, fly};
 
 /// What `study flight` takes.
 #[derive(Debug, clap::Args)]
@@ -21,9 +21,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let given = &arguments.given;
     let (destination, study) = given.open(flight::read)?;
-    let (flown, received) = arguments
-        .planning
-        .conduct(|run| flights::fly(&study, run))?;
+    let (flown, received) = arguments.planning.conduct(|run| fly(&study, run))?;
     let flown = flown.map_err(|problems| given.invalid(problems))?;
     if let (Outcome::Stopped, Some(code)) = (&flown, received.exit_code()) {
         return Ok(Exit::Signalled(code));

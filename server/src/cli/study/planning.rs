@@ -1,9 +1,9 @@
 //! Planning as a part of a study.
 
 use crate::cli::failure::Failure;
+use crate::cli::progress::{self, ProgressMode};
+use crate::cli::signals::{self, Received};
 use crate::cli::solve::{Threads, start_pool};
-use crate::progress::{self, ProgressMode};
-use crate::signals::{self, Received};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::NoStore;
 use slewplan_solver::tour::planner::Run;

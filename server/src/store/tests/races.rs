@@ -2,7 +2,7 @@
 //!
 //! `SLEWPLAN_RACES` says how many races there are.
 
-use super::{ID, claim, ended, json, plan, result, submitted};
+use super::{ID, claim, ended, json, plan, result, state_of, submitted};
 use crate::store::{JobState, Store};
 use std::time::Duration;
 
@@ -52,8 +52,10 @@ fn a_job_that_two_workers_end_has_one_end() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {
         let path = folder.path().join("races.db");
-        let stale = Store::open(&path).await.expect("opened");
-        let rescuer = Store::open(&path).await.expect("opened by another");
+        let stale = Store::open(&path, state_of).await.expect("opened");
+        let rescuer = Store::open(&path, state_of)
+            .await
+            .expect("opened by another");
         let mut rescued = 0;
         for round in 0..rounds {
             let (by_stale, by_rescuer) = race(&stale, &rescuer, round).await;

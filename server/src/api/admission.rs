@@ -1,0 +1,41 @@
+//! What the service takes on at all, whatever else a request says.
+
+use super::App;
+use super::error::{ApiError, ErrorCode};
+use crate::documents::document::Node;
+use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::tour::planner;
+
+/// Refuses more targets than the service plans.
+pub(super) fn check_targets(app: &App, count: usize) -> Result<(), ApiError> {
+    let limit = app.limits().targets;
+    if count <= limit {
+        return Ok(());
+    }
+    let detail = format!("{count} targets; the limit is {limit} (max_targets)");
+    Err(ApiError::new(ErrorCode::TooManyTargets, detail))
+}
+
+/// The same before the scenario is read in full, which takes long with many targets.
+pub(super) fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
+    match scenario.member("targets") {
+        Some(Node::List(targets)) => check_targets(app, targets.len()),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses to plan what may need more memory than a job has.
+pub(super) fn check_memory(app: &App, scenario: &Scenario) -> Result<(), ApiError> {
+    let (needed, given) = (
+        planner::memory_estimate(scenario),
+        app.jobs().memory_limit(),
+    );
+    if needed <= given {
+        return Ok(());
+    }
+    let count = scenario.targets().len();
+    let detail = format!(
+        "{count} targets may need {needed} bytes of memory; the limit is {given} (job_memory_bytes)"
+    );
+    Err(ApiError::new(ErrorCode::TooMuchMemory, detail))
+}

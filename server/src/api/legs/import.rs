@@ -1,0 +1,44 @@
+//! `POST /v1/legs/import`: legs that were solved elsewhere enter the cache.
+
+use super::super::describe::{self, BodyErrors, LegFileBody, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::JsonBody;
+use super::super::{App, admission, computing, respond};
+use crate::documents::leg_import::LegImportDocument;
+use crate::jobs::leg_import;
+use axum::extract::State;
+use axum::response::Response;
+use slewplan_solver::run::stop::StopSignal;
+use std::sync::Arc;
+
+/// Put legs that were solved elsewhere into the cache
+///
+/// The body is a file of `slewplan legs --trajectories`, whole or a shard. The checker flies every
+/// leg before it is cached, and what is proved of it is proved anew; legs that do not fly as they
+/// should are listed and left out. That a leg is the fastest is taken on trust: import only files
+/// from where you would run the solver. Known legs stay as they are.
+#[utoipa::path(
+    post, path = "/v1/legs/import", tag = "legs", operation_id = "import_legs",
+    request_body(content = LegFileBody, example = json!(describe::leg_file())),
+    responses(
+        (status = 200, description = "What became of the legs",
+            body = LegImportDocument<'static>),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let import = leg_import::read(&body.node).map_err(ApiError::input)?;
+    admission::check_targets(&app, import.scenario.targets().len())?;
+    let pool = Arc::clone(&app.0.pool);
+    let work = move |stop: &StopSignal| import.judge(&pool, stop);
+    let judged = computing::in_turn(&app, computing::UNTIL_DONE, work).await?;
+    let judged =
+        judged.ok_or_else(|| ApiError::new(ErrorCode::NotReady, "the service is about to end"))?;
+    let counts = judged.store(app.store()).await?;
+    let document = LegImportDocument::new(counts, &judged.refused);
+    let json = respond::written(&document, "answer")?;
+    Ok(respond::json(json))
+}

@@ -1,0 +1,144 @@
+//! `GET /v1/legs`: the cached legs, page by page.
+
+use super::super::App;
+use super::super::describe::{ParameterErrors, ServerErrors};
+use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::extract::{self, Parameters};
+use crate::documents::stored_legs::{StoredLegDocument, StoredLegListDocument};
+use crate::store::LegFilter;
+use axum::Json;
+use axum::extract::State;
+use serde::Deserialize;
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::problem::{Code, Problem};
+use utoipa::IntoParams;
+
+const DEFAULT_LIMIT: u16 = 50;
+const LARGEST_LIMIT: u16 = 200;
+/// What remains of an attitude that was written with six digits, degrees.
+const DEFAULT_TOLERANCE_DEG: f64 = 1e-3;
+
+/// What to list.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::api) struct Query {
+    /// Only legs of the spacecraft with this key.
+    #[param(pattern = "^[0-9a-f]{64}$")]
+    spacecraft_key: Option<String>,
+    /// Only legs that lead to this attitude, a quaternion `x,y,z,w`. A leg is stored without the
+    /// place where it was flown, so what counts is the relative attitude: the turn to here from
+    /// `from`. A leg that is `reversible` is found from either side.
+    #[param(
+        example = "0.130526,0,0,0.991445",
+        pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
+    )]
+    attitude: Option<String>,
+    /// Only legs that lead from this attitude, a quaternion `x,y,z,w`. Of `from` and `attitude`
+    /// the one that is left out is the identity.
+    #[param(
+        example = "0,0,0,1",
+        pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
+    )]
+    from: Option<String>,
+    /// Largest angle, degrees, between the relative attitude that is asked for and the `turn` of a
+    /// leg.
+    #[param(minimum = 0, maximum = 180, default = 0.001)]
+    tolerance_deg: Option<f64>,
+    /// Where the page begins: `next_cursor` of the page before.
+    #[param(pattern = "^[0-9]{1,9}$")]
+    cursor: Option<String>,
+    /// Most legs of the page.
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u16>,
+}
+
+/// List cached legs in the order in which they were stored
+#[utoipa::path(
+    get, path = "/v1/legs", tag = "legs", operation_id = "list_legs",
+    params(Query),
+    responses(
+        (status = 200, description = "A page of legs", body = StoredLegListDocument),
+        (status = 422, description = "The attitude has no direction",
+            body = ErrorDocument<'static>, content_type = "application/problem+json"),
+        ParameterErrors, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    Parameters(query): Parameters<Query>,
+) -> Result<Json<StoredLegListDocument>, ApiError> {
+    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
+    if !(1..=LARGEST_LIMIT).contains(&limit) {
+        return Err(wrong(format!("limit is from 1 to {LARGEST_LIMIT}")));
+    }
+    let tolerance = query.tolerance_deg.unwrap_or(DEFAULT_TOLERANCE_DEG);
+    if !(0.0..=180.0).contains(&tolerance) {
+        return Err(wrong("tolerance_deg is from 0 to 180"));
+    }
+    let is_key = |text: &String| {
+        text.len() == 64 && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
+    };
+    if query
+        .spacecraft_key
+        .as_ref()
+        .is_some_and(|key| !is_key(key))
+    {
+        return Err(wrong(
+            "spacecraft_key has 64 hexadecimal digits in lower case",
+        ));
+    }
+    let turn = turn(query.from.as_deref(), query.attitude.as_deref())?;
+    let filter = LegFilter {
+        spacecraft: query.spacecraft_key,
+        turn: turn.map(|turn| (turn, tolerance.to_radians())),
+        after: extract::cursor(query.cursor.as_deref())?,
+        limit: i64::from(limit) + 1,
+    };
+    let mut rows = app.store().legs(&filter).await?;
+    let more = rows.len() > usize::from(limit);
+    rows.truncate(limit.into());
+    Ok(Json(StoredLegListDocument {
+        next_cursor: rows
+            .last()
+            .filter(|_| more)
+            .map(|leg| leg.sequence.to_string()),
+        legs: rows.iter().map(StoredLegDocument::from).collect(),
+    }))
+}
+
+fn wrong(detail: impl Into<String>) -> ApiError {
+    ApiError::new(ErrorCode::InvalidParameter, detail)
+}
+
+/// The relative attitude that is asked for, if one is.
+fn turn(from: Option<&str>, to: Option<&str>) -> Result<Option<[f64; 4]>, ApiError> {
+    if from.is_none() && to.is_none() {
+        return Ok(None);
+    }
+    let attitude = |name, text: Option<&str>| {
+        text.map_or(Ok(Attitude::identity()), |text| quaternion(name, text))
+    };
+    let (from, to) = (attitude("from", from)?, attitude("attitude", to)?);
+    Ok(Some(from.turn_to(&to).xyzw()))
+}
+
+/// A quaternion of any length but zero.
+fn quaternion(name: &str, text: &str) -> Result<Attitude, ApiError> {
+    let parts: Option<Vec<f64>> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok())
+        .collect();
+    let xyzw: Option<[f64; 4]> = parts.and_then(|parts| parts.try_into().ok());
+    let xyzw =
+        xyzw.ok_or_else(|| wrong(format!("{name} is a quaternion x,y,z,w of four numbers")))?;
+    Attitude::from_xyzw(xyzw).ok_or_else(|| {
+        ApiError::input(vec![Problem::new(
+            // A parameter has no place in a document; its name stands for one.
+            format!("/{name}"),
+            Code::ZeroDirection,
+            format!("{text} has no direction: its length is zero or not finite"),
+            "write a quaternion x,y,z,w of any finite length but zero",
+        )])
+    })
+}

@@ -1,0 +1,225 @@
+//! `POST /v1/legs/query`: leg times between attitudes.
+
+use super::super::access::Caller;
+use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::JsonBody;
+use super::super::{App, computing, stored};
+use crate::base::contradictions::Unwatched;
+use crate::documents::leg_query::{
+    self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
+};
+use crate::documents::number::Number;
+use crate::store::leg_key;
+use axum::Json;
+use axum::extract::State;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore, StoredLeg};
+use slewplan_solver::tour::order::Place;
+use slewplan_solver::tour::planner::{self, LegRow, Run, Shard};
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::runtime::Handle;
+
+/// Most legs of one query: the full matrix of 32 attitudes.
+pub(in crate::api) const MOST_PAIRS: usize = 1000;
+/// With a start and two targets, the fourth of six pairs leads from the first target to the second.
+const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
+
+/// Ask for leg times
+///
+/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with what
+/// is known; `compute` solves what is not, for at most a minute. Legs of the kind `certified`
+/// are only computed, without solving any slew, and not stored.
+#[utoipa::path(
+    post, path = "/v1/legs/query", tag = "legs", operation_id = "query_legs",
+    request_body(content = LegQueryBody, examples(
+        ("matrix" = (summary = "The full matrix of three attitudes",
+            value = json!(describe::leg_matrix()))),
+        ("pair" = (summary = "One leg, only if it is known",
+            value = json!(describe::leg_pair()))),
+    )),
+    responses(
+        (status = 200, description = "One answer for every leg", body = LegAnswersDocument),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    body: JsonBody,
+) -> Result<Json<LegAnswersDocument>, ApiError> {
+    let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
+    let query = leg_query::read(&node, MOST_PAIRS).map_err(|refusal| match refusal {
+        Refusal::Invalid(problems) => ApiError::input(problems),
+        Refusal::TooMany(count) => {
+            let detail = format!("{count} legs; the limit is {MOST_PAIRS} (max_leg_pairs)");
+            ApiError::new(ErrorCode::TooManyPairs, detail)
+        }
+    })?;
+    if !query.compute {
+        let stop = StopSignal::new();
+        stop.request();
+        let answers =
+            computing::at_once(&app, (stop, computing::LONGEST), work(&app, query, false)).await;
+        return answers.map(Json);
+    }
+    computing::in_turn(&app, computing::LONGEST, work(&app, query, true))
+        .await
+        .map(Json)
+}
+
+/// The work of a query.
+fn work(
+    app: &App,
+    query: LegQuery,
+    compute: bool,
+) -> impl FnOnce(&StopSignal) -> LegAnswersDocument + Send + use<> {
+    let cache = app.jobs().legs(Handle::current());
+    let pool = Arc::clone(if compute { &app.0.pool } else { &app.0.lookups });
+    move |stop| {
+        let answers = answers(&query, &pool, stop, &cache);
+        // Written before the answer names their keys.
+        drop(cache);
+        answers
+    }
+}
+
+fn answers(
+    query: &LegQuery,
+    pool: &SolverPool,
+    stop: &StopSignal,
+    cache: &dyn LegStore,
+) -> LegAnswersDocument {
+    let answered = if query.kind == LegKind::Certified {
+        certified(query, pool, stop)
+    } else {
+        pool.map(&query.pairs, |pair| {
+            answer(pair, query.kind, pool, stop, cache)
+        })
+    };
+    let spacecraft_key = answered
+        .iter()
+        .find_map(|(_, spacecraft)| spacecraft.clone());
+    LegAnswersDocument {
+        kind: query.kind.as_str(),
+        spacecraft_key,
+        legs: answered.into_iter().map(|(leg, _)| leg).collect(),
+    }
+}
+
+/// The answers for certified legs, in one go: they share what is prepared for the spacecraft.
+fn certified(
+    query: &LegQuery,
+    pool: &SolverPool,
+    stop: &StopSignal,
+) -> Vec<(LegAnswerDocument, Option<String>)> {
+    let place = |pair: &Pair| {
+        let (from, to) = pair.targets;
+        (Place::Target(from), Place::Target(to))
+    };
+    let places: Vec<_> = query.pairs.iter().map(place).collect();
+    let run = Run {
+        pool,
+        stop,
+        observer: &Unwatched,
+        legs: &NoStore,
+        segments: &NoStore,
+    };
+    let rows = planner::certified_legs(&query.scenario, &places, run);
+    let answer = |(pair, row): (&Pair, Option<LegRow>)| {
+        let source = row.as_ref().map_or(Source::Missing, |_| Source::Computed);
+        (document(pair, row, source, None), None)
+    };
+    query.pairs.iter().zip(rows).map(answer).collect()
+}
+
+/// The answer for a leg and the key of its spacecraft.
+fn answer(
+    pair: &Pair,
+    kind: LegKind,
+    pool: &SolverPool,
+    stop: &StopSignal,
+    cache: &dyn LegStore,
+) -> (LegAnswerDocument, Option<String>) {
+    let witness = Witness {
+        cache,
+        seen: Mutex::default(),
+    };
+    let run = Run {
+        pool,
+        stop,
+        observer: &Unwatched,
+        legs: &witness,
+        segments: &NoStore,
+    };
+    let (rows, _) = planner::leg_table(&pair.scenario, kind, BETWEEN_TARGETS, run);
+    let seen = witness
+        .seen
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner);
+    let row = rows.into_iter().next();
+    let source = match (&row, &seen) {
+        (Some(_), Some(seen)) if seen.found => Source::Cached,
+        (Some(row), _) if row.duration_s.is_some() => Source::Computed,
+        _ => Source::Missing,
+    };
+    let document = document(pair, row, source, seen.as_ref());
+    (document, seen.map(|seen| seen.spacecraft))
+}
+
+fn document(
+    pair: &Pair,
+    row: Option<LegRow>,
+    source: Source,
+    seen: Option<&Seen>,
+) -> LegAnswerDocument {
+    LegAnswerDocument {
+        from: pair.from,
+        to: pair.to,
+        duration_s: row.as_ref().and_then(|row| row.duration_s).map(Number),
+        certified_lower_bound_s: row
+            .as_ref()
+            .and_then(|row| row.certified_lower_bound_s)
+            .map(Number),
+        status: row.map(|row| row.status),
+        source,
+        key: seen.map(|seen| seen.key.clone()),
+    }
+}
+
+/// Notes which leg the solver asked for.
+struct Witness<'a> {
+    cache: &'a dyn LegStore,
+    seen: Mutex<Option<Seen>>,
+}
+
+struct Seen {
+    key: String,
+    spacecraft: String,
+    found: bool,
+}
+
+impl Witness<'_> {
+    fn note(&self, identity: &str, leg: &StoredLeg, found: bool) {
+        let seen = Seen {
+            key: leg_key(identity),
+            spacecraft: leg_key(&leg.spacecraft),
+            found,
+        };
+        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = Some(seen);
+    }
+}
+
+impl LegStore for Witness<'_> {
+    fn get(&self, identity: &str) -> Option<StoredLeg> {
+        let leg = self.cache.get(identity)?;
+        self.note(identity, &leg, true);
+        Some(leg)
+    }
+
+    fn put(&self, identity: &str, leg: &StoredLeg) {
+        self.cache.put(identity, leg);
+        self.note(identity, leg, false);
+    }
+}

@@ -1,0 +1,37 @@
+//! `POST /v1/plans/{id}/cancel`: abandon a job.
+
+use super::super::App;
+use super::super::describe::{Conflict, NotFound, ServerErrors};
+use super::super::error::ApiError;
+use super::super::extract::Named;
+use super::super::respond;
+use crate::documents::jobs::JobDocument;
+use crate::store::JobState;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+
+/// Abandon a queued or running job
+///
+/// Answers when the job has ended, or after two seconds with 202 when it has not.
+#[utoipa::path(
+    post, path = "/v1/plans/{id}/cancel", tag = "plans", operation_id = "cancel_plan",
+    params(("id" = String, Path, format = "uuid", description = "Identifier of the job")),
+    responses(
+        (status = 200, description = "The job has ended", body = JobDocument),
+        (status = 202, description = "The job is about to end", body = JobDocument),
+        Conflict, NotFound, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    Named(id): Named,
+) -> Result<Response, ApiError> {
+    let job = super::present(app.jobs().cancel(&id).await?, &id)?;
+    match job.state()? {
+        JobState::Queued | JobState::Running => {}
+        JobState::Cancelled => return respond::job(StatusCode::OK, &job),
+        ended => return Err(super::has_ended(ended)),
+    }
+    super::ending(&app, &id).await
+}

@@ -1,0 +1,236 @@
+//! `POST /v1/plans`: a scenario becomes a job.
+
+use super::super::App;
+use super::super::access::Caller;
+use super::super::describe::{BodyErrors, QuotaErrors, Scenario, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::{JsonBody, Parameters, header_text};
+use super::super::{admission, respond, stored};
+use crate::base::digest;
+use crate::documents;
+use crate::documents::jobs::JobDocument;
+use crate::documents::plan::PlanDocument;
+use crate::documents::problems::ValidationDocument;
+use crate::store::{JobRow, Submission, Submitted};
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use slewplan_solver::model::scenario::Validated;
+use slewplan_solver::tour::planner;
+use std::time::Duration;
+use utoipa::IntoParams;
+use uuid::Uuid;
+
+/// Longest wait of a request for its plan, s.
+pub(in crate::api) const LONGEST_WAIT_S: u64 = 60;
+const LONGEST_KEY: usize = 255;
+
+/// Parameters of a submission.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::api) struct Query {
+    /// Only say what is wrong or doubtful; nothing is queued.
+    #[serde(default)]
+    validate_only: bool,
+}
+
+/// Submit a scenario
+///
+/// Answers with a job, or, with `Prefer: wait=N`, with the finished plan when it is ready within
+/// N seconds (at most 60). A job that ends within that time without a plan, because it is cancelled
+/// or dies, is answered with 200 too; its `state` is final then.
+#[utoipa::path(
+    post, path = "/v1/plans", tag = "plans", operation_id = "create_plan",
+    params(
+        Query,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+            pattern = "^[!-~]+$",
+            description = "The same request under the same key makes one job"),
+        ("Prefer" = Option<String>, Header,
+            description = "`wait=N`: answer with the plan when it is ready within N seconds"),
+    ),
+    request_body(content = Scenario, examples(
+        ("two-targets" = (summary = "Two targets, one with settle and dwell",
+            value = json!(super::super::describe::two_targets()))),
+        ("experiment-a" = (summary = "The published experiment A",
+            value = json!(super::super::describe::experiment_a()))),
+    )),
+    responses(
+        (status = 200, description = "The finished plan, the job that ended without one, or what \
+            validation says", body = inline(Finished)),
+        (status = 202, description = "The job, queued or already running",
+            body = JobDocument,
+            headers(("Location" = String, description = "Address of the job")),
+            links(
+                ("get_plan" = (operation_id = "get_plan",
+                    parameters(("id" = "$response.body#/id")))),
+                ("get_scenario" = (operation_id = "get_scenario",
+                    parameters(("id" = "$response.body#/id")))),
+                ("get_result" = (operation_id = "get_result",
+                    parameters(("id" = "$response.body#/id")))),
+                ("follow_plan" = (operation_id = "follow_plan",
+                    parameters(("id" = "$response.body#/id")))),
+                ("stop_plan" = (operation_id = "stop_plan",
+                    parameters(("id" = "$response.body#/id")))),
+                ("cancel_plan" = (operation_id = "cancel_plan",
+                    parameters(("id" = "$response.body#/id")))),
+                ("delete_plan" = (operation_id = "delete_plan",
+                    parameters(("id" = "$response.body#/id")))),
+            )),
+        BodyErrors, QuotaErrors, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    Parameters(query): Parameters<Query>,
+    headers: HeaderMap,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let key = idempotency_key(&headers)?;
+    let fingerprint = digest::hex(&body.bytes);
+    admission::check_size(&app, &body.node)?;
+    if key.is_none() && !query.validate_only {
+        check_room(&app).await?;
+    }
+    let (node, written_out) = stored::write_out(&app, &caller, body.node, "").await?;
+    let valid = documents::scenario::examine(&node, None)
+        .map_err(|faults| ApiError::input(faults.problems).with_warnings(faults.warnings))?;
+    let targets = valid.scenario.targets().len();
+    if query.validate_only {
+        return validation(&valid);
+    }
+    admission::check_memory(&app, &valid.scenario)?;
+    let submission = Submission {
+        id: Uuid::now_v7().to_string(),
+        name: valid.scenario.name().map(str::to_owned),
+        scenario: if written_out {
+            node.to_json().into()
+        } else {
+            body.bytes.into()
+        },
+        targets: i64::try_from(targets).unwrap_or(i64::MAX),
+        client: caller.client().map(str::to_owned),
+        key: key.map(|key| (caller.own(&key), fingerprint)),
+    };
+    let (job, replayed) = submit(&app, &submission).await?;
+    let mut response = answer(&app, job, wait(&headers)).await?;
+    if replayed {
+        let name = header::HeaderName::from_static("idempotency-replayed");
+        response
+            .headers_mut()
+            .insert(name, HeaderValue::from_static("true"));
+    }
+    Ok(response)
+}
+
+/// Refuses cheaply while the queue is full; whoever gets past this may still come too late. A key may
+/// stand for a job that is there already.
+async fn check_room(app: &App) -> Result<(), ApiError> {
+    if app.store().waiting().await? < app.jobs().queue_limits().all {
+        return Ok(());
+    }
+    Err(queue_full(app))
+}
+
+fn queue_full(app: &App) -> ApiError {
+    let limit = app.jobs().queue_limits().all;
+    let detail = format!("{limit} jobs wait already (queue_limit)");
+    ApiError::new(ErrorCode::QueueFull, detail)
+}
+
+/// What a finished request answers.
+#[derive(serde::Serialize, utoipa::ToSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "only describes the answer")]
+enum Finished {
+    /// With `Prefer: wait`.
+    Plan(Box<PlanDocument<'static>>),
+    /// With `Prefer: wait`, of a job that ended without a plan.
+    Job(Box<JobDocument>),
+    /// With `validate_only`.
+    Validation(ValidationDocument<'static>),
+}
+
+fn validation(valid: &Validated) -> Result<Response, ApiError> {
+    let obstacles = planner::feasibility_problems(&valid.scenario);
+    if !obstacles.is_empty() {
+        return Err(ApiError::input(obstacles).with_warnings(valid.warnings.clone()));
+    }
+    Ok(Json(ValidationDocument::new(&[], &valid.warnings)).into_response())
+}
+
+async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), ApiError> {
+    if app.shutdown().has_begun() {
+        let detail = "the service is about to end";
+        return Err(ApiError::new(ErrorCode::NotReady, detail));
+    }
+    match app.jobs().submit(submission).await? {
+        Submitted::New(job) => {
+            tracing::info!(job_id = job.id, targets = job.targets, "job queued");
+            Ok((job, false))
+        }
+        Submitted::Replayed(job) => Ok((job, true)),
+        Submitted::KeyReused => Err(ApiError::new(
+            ErrorCode::IdempotencyKeyReused,
+            "another body was submitted under this Idempotency-Key",
+        )),
+        Submitted::QueueFull => Err(queue_full(app)),
+        Submitted::QuotaExceeded => {
+            let limit = app.jobs().queue_limits().client;
+            let detail = format!("{limit} jobs of this client wait already (client_queue_limit)");
+            Err(ApiError::new(ErrorCode::QuotaExceeded, detail))
+        }
+    }
+}
+
+/// The plan when it is ready in time, the job otherwise.
+async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
+    let Some(patience) = wait else {
+        return Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job));
+    };
+    let job = super::present(respond::await_end(app, &job.id, patience).await?, &job.id)?;
+    let found = app.store().result(&job.id).await?;
+    let result = found.and_then(|(_, plan)| plan);
+    Ok(match result.filter(|result| result.is_final) {
+        Some(result) => located(super::result::json(&result), &job),
+        // Without a plan nothing more may come: a job that was cancelled, for one.
+        None => located(super::standing(&job)?, &job),
+    })
+}
+
+fn located(mut response: Response, job: &JobRow) -> Response {
+    if let Ok(location) = HeaderValue::from_str(&format!("/v1/plans/{}", job.id)) {
+        response.headers_mut().insert(header::LOCATION, location);
+    }
+    response
+}
+
+fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, ApiError> {
+    let Some(key) = header_text(headers, "idempotency-key")? else {
+        return Ok(None);
+    };
+    let visible = key.bytes().all(|byte| byte.is_ascii_graphic());
+    if key.is_empty() || key.len() > LONGEST_KEY || !visible {
+        let detail =
+            format!("an Idempotency-Key has 1 to {LONGEST_KEY} visible ASCII characters, no space");
+        return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
+    }
+    Ok(Some(key.to_owned()))
+}
+
+/// The wait of `Prefer: wait=N`. Preferences that are not understood are ignored, as RFC 7240 says.
+fn wait(headers: &HeaderMap) -> Option<Duration> {
+    let preferences = headers
+        .get_all("prefer")
+        .iter()
+        .filter_map(|value| value.to_str().ok());
+    preferences
+        .flat_map(|value| value.split([',', ';']))
+        .filter_map(|preference| preference.trim().strip_prefix("wait="))
+        .find_map(|seconds| seconds.trim().parse::<u64>().ok())
+        .map(|seconds| Duration::from_secs(seconds.min(LONGEST_WAIT_S)))
+}

@@ -1,0 +1,25 @@
+//! `DELETE /v1/plans/{id}`: a job and all that belongs to it.
+
+use super::super::App;
+use super::super::describe::{NotFound, ServerErrors};
+use super::super::error::ApiError;
+use super::super::extract::Named;
+use axum::extract::State;
+use axum::http::StatusCode;
+
+/// Delete a job with its result and events; a running one is cancelled
+#[utoipa::path(
+    delete, path = "/v1/plans/{id}", tag = "plans", operation_id = "delete_plan",
+    params(("id" = String, Path, format = "uuid", description = "Identifier of the job")),
+    responses((status = 204, description = "Deleted"), NotFound, ServerErrors),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    Named(id): Named,
+) -> Result<StatusCode, ApiError> {
+    if app.jobs().delete(&id).await? {
+        Ok(StatusCode::NO_CONTENT)
+    } else {
+        Err(ApiError::not_found("plan", &id))
+    }
+}

@@ -1,0 +1,173 @@
+//! `GET /v1/plans/{id}/events`: what happens to a job, as it happens.
+
+use super::super::App;
+use super::super::describe::{NotFound, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::Named;
+use crate::base::lifecycle::Shutdown;
+use crate::store::{EventRow, JobState, StoreError};
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use futures_util::stream::unfold;
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{OwnedSemaphorePermit, watch};
+use tokio::time::Instant;
+
+/// Longest life of a stream.
+const LIFE: Duration = Duration::from_hours(1);
+/// Longest wait, when the service ends, for the job to be given back.
+const FAREWELL: Duration = Duration::from_secs(2);
+/// Time after which a client shall connect again.
+const AGAIN: Duration = Duration::from_secs(2);
+
+/// Follow a job
+///
+/// Server-sent events with ids that count from 1. Every event carries state, incumbent and bound.
+/// A stream ends after the last event of a job; one that broke is resumed with `Last-Event-ID`.
+/// Where nothing is left to tell of a job that has ended, the answer is 204, which keeps an
+/// `EventSource` from coming again. When the service ends, and after an hour, a stream ends with
+/// `closing`, which has no id: connect again.
+#[utoipa::path(
+    get, path = "/v1/plans/{id}/events", tag = "plans", operation_id = "follow_plan",
+    params(
+        ("id" = String, Path, format = "uuid", description = "Identifier of the job"),
+        ("Last-Event-ID" = Option<String>, Header,
+            description = "The last event that is known"),
+    ),
+    responses(
+        (status = 200, description = "The events", body = Frame, content_type = "text/event-stream"),
+        (status = 204, description = "The job has ended, and there is no event after the last that \
+            is known"),
+        NotFound, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    Named(id): Named,
+    headers: HeaderMap,
+) -> Result<Response, ApiError> {
+    // An id that is none of ours is taken for none: the caller then sees everything.
+    let known = headers
+        .get("last-event-id")
+        .and_then(|id| id.to_str().ok()?.trim().parse::<u32>().ok())
+        .map_or(0, i64::from);
+    let job = super::find(&app, &id).await?;
+    let Ok(place) = Arc::clone(&app.0.streams).try_acquire_owned() else {
+        let detail = "too many streams are open";
+        return Err(ApiError::new(ErrorCode::Busy, detail));
+    };
+    let mut tail = Tail {
+        changes: app.jobs().changes(),
+        known,
+        sequence: job.sequence,
+        id,
+        shutdown: app.shutdown().clone(),
+        app,
+        read: VecDeque::new(),
+        until: Instant::now() + LIFE,
+        closed: false,
+        _place: place,
+    };
+    // Nobody follows a job that is gone since.
+    let state = tail.fetch().await?;
+    let state = state.ok_or_else(|| ApiError::not_found("plan", &tail.id))?;
+    if state.is_final() && tail.read.is_empty() {
+        return Ok(StatusCode::NO_CONTENT.into_response());
+    }
+    let stream = Sse::new(unfold(tail, Tail::next));
+    Ok(stream.keep_alive(KeepAlive::default()).into_response())
+}
+
+/// One server-sent event.
+#[derive(serde::Serialize, utoipa::ToSchema)]
+#[schema(as = EventFrame)]
+struct Frame {
+    /// Counts from 1 within the job; `closing` has none.
+    id: Option<String>,
+    /// `state` when the state has changed, `progress` otherwise, or `closing`.
+    event: String,
+    /// An `Event` as JSON; empty for `closing`.
+    data: String,
+}
+
+/// Reads the events of a job as they come.
+struct Tail {
+    app: App,
+    id: String,
+    sequence: i64,
+    changes: watch::Receiver<u64>,
+    shutdown: Shutdown,
+    known: i64,
+    read: VecDeque<EventRow>,
+    /// When the stream ends if the job does not.
+    until: Instant,
+    closed: bool,
+    _place: OwnedSemaphorePermit,
+}
+
+impl Tail {
+    async fn next(mut self) -> Option<(Result<Event, Infallible>, Self)> {
+        if self.closed {
+            return None;
+        }
+        loop {
+            if let Some(row) = self.read.pop_front() {
+                self.known = row.id;
+                let event = Event::default().id(row.id.to_string());
+                return Some((Ok(event.event(row.kind).data(row.data)), self));
+            }
+            self.changes.borrow_and_update();
+            let state = self.fetch().await.unwrap_or_else(|error| {
+                tracing::error!(job_id = self.id, %error, "events cannot be read");
+                None
+            })?;
+            if !self.read.is_empty() {
+                continue;
+            }
+            if state.is_final() {
+                return None;
+            }
+            // A running job is about to be given back: that is worth telling.
+            let given_back = self.shutdown.has_begun() && state == JobState::Queued;
+            if given_back || self.until <= Instant::now() {
+                self.closed = true;
+                let event = Event::default().event("closing").retry(AGAIN).data("");
+                return Some((Ok(event), self));
+            }
+            self.wait().await;
+        }
+    }
+
+    /// Waits for a reason to look again.
+    async fn wait(&mut self) {
+        let ending = self.shutdown.has_begun();
+        if ending {
+            self.until = self.until.min(Instant::now() + FAREWELL);
+        }
+        tokio::select! {
+            _ = self.changes.changed() => {}
+            () = self.shutdown.begun(), if !ending => {}
+            () = tokio::time::sleep_until(self.until) => {}
+        }
+    }
+
+    /// Reads what is new, and where the job stood before that; `None` when it is gone.
+    async fn fetch(&mut self) -> Result<Option<JobState>, StoreError> {
+        // The state first: the last event is there before anybody can see the last state.
+        let Some(job) = self.app.store().job(&self.id).await? else {
+            return Ok(None);
+        };
+        self.read = self
+            .app
+            .store()
+            .events_after(self.sequence, self.known)
+            .await?
+            .into();
+        Ok(Some(job.state()?))
+    }
+}

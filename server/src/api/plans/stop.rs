@@ -1,0 +1,42 @@
+//! `POST /v1/plans/{id}/stop`: finish with the best plan so far.
+
+use super::super::App;
+use super::super::describe::{Conflict, NotFound, ServerErrors};
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract::Named;
+use super::super::respond;
+use crate::documents::jobs::JobDocument;
+use crate::store::JobState;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+
+/// Finish a running job with the best plan so far
+///
+/// Answers when the job has ended, or after two seconds with 202 when it has not.
+#[utoipa::path(
+    post, path = "/v1/plans/{id}/stop", tag = "plans", operation_id = "stop_plan",
+    params(("id" = String, Path, format = "uuid", description = "Identifier of the job")),
+    responses(
+        (status = 200, description = "The job has ended", body = JobDocument),
+        (status = 202, description = "The job is about to end", body = JobDocument),
+        Conflict, NotFound, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    Named(id): Named,
+) -> Result<Response, ApiError> {
+    let job = super::present(app.jobs().stop(&id).await?, &id)?;
+    match job.state()? {
+        JobState::Running => {}
+        JobState::Queued => {
+            let detail = "there is no plan to stop with; cancel or delete the job instead";
+            return Err(ApiError::new(ErrorCode::NotRunning, detail));
+        }
+        // Asked for again, or too late to matter: the caller has what it wants.
+        JobState::Stopped | JobState::Succeeded => return respond::job(StatusCode::OK, &job),
+        ended => return Err(super::has_ended(ended)),
+    }
+    super::ending(&app, &id).await
+}

@@ -1,0 +1,102 @@
+//! Answers that several routes give.
+
+use super::App;
+use super::error::{ApiError, ErrorCode};
+use crate::documents::jobs::JobDocument;
+use crate::store::{JobRow, StoreError};
+use axum::Json;
+use axum::body::Bytes;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// A job with a status and, where it is found, its address.
+pub(super) fn job(status: StatusCode, job: &JobRow) -> Result<Response, ApiError> {
+    let mut response = (status, Json(JobDocument::new(job)?)).into_response();
+    if let Ok(location) = HeaderValue::from_str(&format!("/v1/plans/{}", job.id)) {
+        response
+            .headers_mut()
+            .insert(header::CONTENT_LOCATION, location);
+    }
+    Ok(response)
+}
+
+/// Waits for the end of a job, at most so long; the job as it is then, `None` when it is gone.
+pub(super) async fn await_end(
+    app: &App,
+    id: &str,
+    patience: Duration,
+) -> Result<Option<JobRow>, StoreError> {
+    let until = Instant::now() + patience;
+    let mut changes = app.jobs().changes();
+    let mut shutdown = app.shutdown().clone();
+    loop {
+        changes.borrow_and_update();
+        let job = app.store().job(id).await?;
+        let waiting = match &job {
+            Some(job) => !job.state()?.is_final(),
+            None => false,
+        };
+        if !waiting {
+            return Ok(job);
+        }
+        tokio::select! {
+            _ = changes.changed() => {}
+            () = tokio::time::sleep_until(until) => return Ok(job),
+            () = shutdown.begun() => return Ok(job),
+        }
+    }
+}
+
+/// A document as JSON; `what` names it should that fail.
+pub(super) fn written(document: &impl Serialize, what: &str) -> Result<Vec<u8>, ApiError> {
+    serde_json::to_vec(document).map_err(|error| {
+        tracing::error!(%error, "the {what} cannot be written");
+        ApiError::new(ErrorCode::Internal, format!("the {what} cannot be written"))
+    })
+}
+
+/// A document that was [written].
+pub(super) fn json(document: Vec<u8>) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], document).into_response()
+}
+
+/// A content of a media type with the tag that belongs to it.
+pub(super) fn tagged(form: &str, tag: &str, body: Bytes) -> Response {
+    let mut response = ([(header::CONTENT_TYPE, form.to_owned())], body).into_response();
+    if let Some(tag) = quoted(tag) {
+        response.headers_mut().insert(header::ETAG, tag);
+    }
+    response
+}
+
+/// The response, or only its tag when that is one of those that `If-None-Match` lists.
+pub(super) fn unless_known(known: &str, response: Response) -> Response {
+    let tag = response.headers().get(header::ETAG);
+    let unchanged = tag.and_then(|tag| not_modified(known, tag));
+    unchanged.unwrap_or(response)
+}
+
+/// The answer to whoever knows the content of a tag, if `If-None-Match` lists it: for contents that
+/// take long to make.
+pub(super) fn unless_made(known: &str, tag: &str) -> Option<Response> {
+    not_modified(known, &quoted(tag)?)
+}
+
+fn not_modified(known: &str, tag: &HeaderValue) -> Option<Response> {
+    let this = bare(tag.to_str().ok()?);
+    let listed = known.trim() == "*" || known.split(',').any(|one| bare(one) == this);
+    let headers = [(header::ETAG, tag.clone())];
+    listed.then(|| (StatusCode::NOT_MODIFIED, headers).into_response())
+}
+
+fn quoted(tag: &str) -> Option<HeaderValue> {
+    HeaderValue::from_str(&format!("\"{tag}\"")).ok()
+}
+
+/// A tag for the weak comparison that `If-None-Match` asks for.
+fn bare(tag: &str) -> &str {
+    tag.trim().trim_start_matches("W/")
+}

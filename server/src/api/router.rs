@@ -1,0 +1,95 @@
+//! The only list of routes, and what every request passes through.
+
+use super::{
+    App, access, legs, observe, operations, page, plans, protect, slews, spacecraft, studies,
+    verify,
+};
+use crate::documents::jobs::EventDocument;
+use axum::Router;
+use axum::middleware::{from_fn, from_fn_with_state};
+use axum::routing::get;
+use tower_http::catch_panic::CatchPanicLayer;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use utoipa_swagger_ui::SwaggerUi;
+
+/// What the description says about itself.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "slewplan",
+        description = "Minimum-time multi-target attitude scheduling for spacecraft with reaction \
+            wheels.\n\nNumbers are SI with the unit in the field name. Unknown fields are \
+            refused. Every error is RFC 9457 problem details; `/docs/errors` lists the codes.",
+    ),
+    components(schemas(EventDocument)),
+    tags(
+        (name = "plans", description = "Planning jobs"),
+        (name = "legs", description = "Leg times"),
+        (name = "slews", description = "Single manoeuvres with a choice of objective and command"),
+        (name = "studies", description = "What the choice of an option leads to, and what wheels can do together"),
+        (name = "spacecraft", description = "Stored spacecraft"),
+        (name = "verify", description = "Independent verification"),
+        (name = "operations", description = "Running the service"),
+    ),
+)]
+struct Description;
+
+fn routes() -> OpenApiRouter<App> {
+    OpenApiRouter::with_openapi(Description::openapi())
+        .routes(routes!(plans::create::handler, plans::list::handler))
+        .routes(routes!(plans::get::handler, plans::delete::handler))
+        .routes(routes!(plans::scenario::handler))
+        .routes(routes!(plans::result::handler))
+        .routes(routes!(plans::events::handler))
+        .routes(routes!(plans::stop::handler))
+        .routes(routes!(plans::cancel::handler))
+        .routes(routes!(legs::query::handler))
+        .routes(routes!(legs::list::handler))
+        .routes(routes!(legs::import::handler))
+        .routes(routes!(legs::get::handler))
+        .routes(routes!(slews::handler))
+        .routes(routes!(studies::authority::handler))
+        .routes(routes!(studies::envelopes::handler))
+        .routes(routes!(studies::comparison::handler))
+        .routes(routes!(studies::flight::handler))
+        .routes(routes!(spacecraft::put::handler, spacecraft::get::handler))
+        .routes(routes!(verify::handler))
+        .routes(routes!(page::handler))
+        .routes(routes!(operations::limits::handler))
+        .routes(routes!(operations::version::handler))
+        .routes(routes!(operations::docs::openapi))
+        .routes(routes!(operations::docs::errors))
+        .routes(routes!(operations::health::live))
+        .routes(routes!(operations::health::ready))
+        .routes(routes!(operations::metrics::handler))
+}
+
+/// The whole service.
+pub(crate) fn router(app: App) -> Router {
+    let (router, _) = routes().split_for_parts();
+    let docs = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
+    let router = router.merge(docs).route(page::FILES, get(page::file));
+    #[cfg(feature = "faults")]
+    let router = router.layer(from_fn(observe::fault));
+    router
+        .layer(from_fn_with_state(app.clone(), access::authorize))
+        .layer(CatchPanicLayer::custom(observe::panicked))
+        .layer(from_fn(observe::envelop))
+        .layer(from_fn_with_state(app.clone(), observe::observe))
+        .layer(from_fn(protect::protect))
+        .with_state(app)
+}
+
+/// The description of the interface as YAML.
+///
+/// # Panics
+///
+/// Never: the description is made of types that all can be written.
+pub(crate) fn openapi() -> String {
+    let description = routes().into_openapi();
+    description
+        .to_yaml()
+        .expect("the description can be written as YAML")
+}

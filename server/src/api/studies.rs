@@ -1,0 +1,37 @@
+//! What the choice of an option leads to, and what wheels can do together.
+
+pub(super) mod authority;
+pub(super) mod comparison;
+pub(super) mod envelopes;
+pub(super) mod flight;
+
+use super::access::Caller;
+use super::error::ApiError;
+use super::{App, admission, stored};
+use crate::base::contradictions::Unwatched;
+use crate::documents::document::Node;
+use slewplan_solver::run::pool::SolverPool;
+use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::tour::legs::NoStore;
+use slewplan_solver::tour::planner::Run;
+
+/// The study with the spacecraft of its scenario written out, if it is not too large.
+async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Node, ApiError> {
+    if let Some(scenario) = node.member_mut("scenario") {
+        admission::check_size(app, scenario)?;
+        let given = std::mem::take(scenario);
+        (*scenario, _) = stored::write_out(app, caller, given, "/scenario").await?;
+    }
+    Ok(node)
+}
+
+/// Planning for a study, which tells nobody how far it is and keeps no legs.
+fn quiet_run<'a>(pool: &'a SolverPool, stop: &'a StopSignal) -> Run<'a> {
+    Run {
+        pool,
+        stop,
+        observer: &Unwatched,
+        legs: &NoStore,
+        segments: &NoStore,
+    }
+}

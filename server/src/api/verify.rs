@@ -1,0 +1,63 @@
+//! `POST /v1/verify`: a plan made by anyone is flown again.
+
+use super::access::Caller;
+use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
+use super::error::ApiError;
+use super::extract::JsonBody;
+use super::{App, admission, computing, respond, stored};
+use crate::documents;
+use crate::documents::document::Node;
+use crate::documents::reader::{Cursor, Sink};
+use crate::documents::verification::ReportDocument;
+use axum::extract::State;
+use axum::response::Response;
+use slewplan_solver::checker;
+use slewplan_solver::model::problem::Problem;
+
+/// Fly a plan again and test every limit
+#[utoipa::path(
+    post, path = "/v1/verify", tag = "verify", operation_id = "verify_plan",
+    request_body(content = VerifyBody, example = json!(describe::verify_request())),
+    responses(
+        (status = 200, description = "What the flight showed", body = ReportDocument<'static>),
+        BodyErrors, ServerErrors,
+    ),
+)]
+pub(super) async fn handler(
+    State(app): State<App>,
+    caller: Caller,
+    body: JsonBody,
+) -> Result<Response, ApiError> {
+    let (scenario, plan) = parts(body.node)?;
+    admission::check_size(&app, &scenario)?;
+    let (scenario, _) = stored::write_out(&app, &caller, scenario, "/scenario").await?;
+    // Integrating a long flight takes long, and the answer borrows from what it integrates.
+    let json = computing::flown(&app.0.flying, move || verify(&scenario, &plan)).await??;
+    Ok(respond::json(json))
+}
+
+fn parts(mut node: Node) -> Result<(Node, Node), ApiError> {
+    let sink = Sink::default();
+    if let Some(fields) = Cursor::root(&node, &sink).object(&["scenario", "plan"]) {
+        fields.required("scenario");
+        fields.required("plan");
+    }
+    let problems = sink.into_problems();
+    if !problems.is_empty() {
+        return Err(ApiError::input(problems));
+    }
+    let mut part = |name| node.member_mut(name).map_or(Node::Null, std::mem::take);
+    Ok((part("scenario"), part("plan")))
+}
+
+fn verify(scenario: &Node, plan: &Node) -> Result<Vec<u8>, ApiError> {
+    let valid = documents::scenario::read_node(scenario, None)
+        .map_err(|problems| ApiError::input(Problem::all_under("/scenario", problems)))?;
+    let flight = documents::flight::read_node(plan, &valid.scenario)
+        .map_err(|problems| ApiError::input(Problem::all_under("/plan", problems)))?;
+    let found = checker::verify(&valid.scenario, &flight);
+    let warnings = valid.warnings.into_iter().chain(found.keep_out).collect();
+    let warnings = Problem::all_under("/scenario", warnings);
+    let report = ReportDocument::new(&found.verification, &found.margins, &warnings);
+    respond::written(&report, "verification")
+}

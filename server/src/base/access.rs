@@ -1,0 +1,142 @@
+//! Keys of clients: what they look like and what they open.
+//!
+//! A key is 256 random bits, so that a plain SHA-256 of it can be stored and compared: there is
+//! nothing to guess that a slow hash would protect.
+
+use crate::base::digest::{self, hexadecimal};
+use std::fmt::{self, Display};
+use std::str::FromStr;
+
+/// What every key begins with, for those who search for leaked ones.
+const PREFIX: &str = "slewplan_";
+const SECRET_BYTES: usize = 32;
+const ID_BYTES: usize = 6;
+
+/// What a key opens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+pub(crate) enum Scope {
+    /// Read the client's own jobs and spacecraft
+    Read,
+    /// Submit, end and delete jobs, store spacecraft, compute
+    Write,
+    /// Read metrics and the cached legs of all clients, import legs
+    Operate,
+}
+
+impl Scope {
+    const ALL: [Self; 3] = [Self::Read, Self::Write, Self::Operate];
+
+    /// The stable text of the scope.
+    pub(crate) const fn as_str(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Write => "write",
+            Self::Operate => "operate",
+        }
+    }
+}
+
+/// What a key opens, all of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Scopes(Vec<Scope>);
+
+impl Scopes {
+    /// Each of them once.
+    pub(crate) fn new(scopes: &[Scope]) -> Self {
+        let mut scopes = scopes.to_vec();
+        scopes.sort_unstable();
+        scopes.dedup();
+        Self(scopes)
+    }
+
+    /// Whether a scope is among them.
+    pub(crate) fn contain(&self, scope: Scope) -> bool {
+        self.0.contains(&scope)
+    }
+}
+
+impl Display for Scopes {
+    fn fmt(&self, form: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = self.0.iter().map(|scope| scope.as_str()).collect();
+        form.write_str(&names.join(" "))
+    }
+}
+
+impl FromStr for Scopes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let scope = |name: &str| {
+            let found = Scope::ALL.into_iter().find(|scope| scope.as_str() == name);
+            found.ok_or_else(|| format!("{name:?} is no scope"))
+        };
+        Ok(Self(
+            text.split_whitespace()
+                .map(scope)
+                .collect::<Result<_, _>>()?,
+        ))
+    }
+}
+
+/// A key that nobody has yet. Its secret is in memory only, to be shown once.
+pub(crate) struct FreshKey {
+    /// Names the key.
+    pub(crate) id: String,
+    /// The key itself.
+    pub(crate) secret: String,
+}
+
+impl FreshKey {
+    /// A key from the operating system's randomness.
+    ///
+    /// # Errors
+    ///
+    /// When the operating system has none.
+    pub(crate) fn new() -> Result<Self, getrandom::Error> {
+        let mut bytes = [0; SECRET_BYTES];
+        getrandom::fill(&mut bytes)?;
+        let mut id = [0; ID_BYTES];
+        getrandom::fill(&mut id)?;
+        Ok(Self {
+            id: hexadecimal(&id),
+            secret: format!("{PREFIX}{}", hexadecimal(&bytes)),
+        })
+    }
+
+    /// What is stored of the key.
+    pub(crate) fn digest(&self) -> String {
+        digest_of(&self.secret)
+    }
+}
+
+/// What is stored of a key that somebody has sent. It is looked up by this: how long that takes
+/// depends on a hash that nobody can steer, not on the key.
+pub(crate) fn digest_of(key: &str) -> String {
+    digest::hex(key.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_long_and_never_the_same() {
+        let keys = [(); 2].map(|()| FreshKey::new().expect("randomness"));
+        assert_ne!(keys[0].secret, keys[1].secret);
+        assert_ne!(keys[0].id, keys[1].id);
+        for key in keys {
+            let secret = key.secret.strip_prefix(PREFIX).expect("the prefix");
+            assert_eq!(secret.len(), 64);
+            assert_eq!(key.digest(), digest_of(&key.secret));
+            assert!(!key.secret.contains(&key.id));
+        }
+    }
+
+    #[test]
+    fn scopes_are_read_as_they_were_written() {
+        let scopes = Scopes::new(&[Scope::Write, Scope::Read, Scope::Write]);
+        assert_eq!(scopes.to_string(), "read write");
+        assert_eq!("read write".parse(), Ok(scopes));
+        assert!("read fly".parse::<Scopes>().is_err());
+    }
+}

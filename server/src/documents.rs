@@ -1,0 +1,31 @@
+//! JSON at the border of the program: documents in, documents out, no decisions.
+//!
+//! Reading goes in two steps, so that every problem is found at once: [`document`] turns text
+//! into a tree that loses nothing, and a [`reader`] walks the tree, knows where it is and
+//! collects what is wrong. Writing is plain `serde` on structs whose fields carry their units.
+
+pub(crate) mod attitude;
+pub(crate) mod certification;
+pub(crate) mod claims;
+pub(crate) mod document;
+pub(crate) mod drives;
+pub(crate) mod flight;
+pub(crate) mod jobs;
+pub(crate) mod leg_import;
+pub(crate) mod leg_query;
+pub(crate) mod legs;
+#[cfg(test)]
+mod mutations;
+pub(crate) mod number;
+pub(crate) mod plan;
+pub(crate) mod problems;
+pub(crate) mod reader;
+pub(crate) mod scenario;
+pub(crate) mod shards;
+pub(crate) mod slew;
+pub(crate) mod spacecraft;
+pub(crate) mod stored_legs;
+pub(crate) mod study;
+#[cfg(test)]
+mod unknown_members;
+pub(crate) mod verification;

@@ -1,0 +1,282 @@
+//! A plan, or why there is none, as JSON.
+
+use super::number::Number;
+use super::problems::{ProblemDocument, documents};
+use serde::Serialize;
+use slewplan_solver::model::plan::{Alternative, Optimality, Outcome, Plan, State};
+use slewplan_solver::model::problem::Problem;
+use utoipa::ToSchema;
+
+mod interruption;
+mod parts;
+mod statistics;
+
+pub(crate) use interruption::Interruption;
+pub(crate) use parts::{
+    ControlDocument, MarginsDocument, QuaternionDocument, StateDocument, VerificationDocument,
+};
+use parts::{LegDocument, PassageDocument};
+use statistics::StatisticsDocument;
+
+/// The answer of `solve`. All times are `null` and all lists empty when there is no plan.
+#[derive(Debug, Default, Serialize, ToSchema)]
+#[schema(as = Plan)]
+pub(crate) struct PlanDocument<'a> {
+    status: &'static str,
+    total_time_s: Option<Number>,
+    lower_bound_s: Option<Number>,
+    relative_gap: Option<Number>,
+    lower_bound_kind: Option<&'static str>,
+    /// No plan takes less, s, in any order that the targets' demands admit, proved: the shortest sum of the
+    /// `certified_lower_bound_s` of legs through all targets, with settle and dwell. `null` where no
+    /// leg has such a bound.
+    certified_lower_bound_s: Option<Number>,
+    /// The largest share of a leg's `duration_s` that lies above its `certified_lower_bound_s`, 1 where
+    /// a leg has no such bound. `optimal` assumes that slews were solved globally: this is how much of
+    /// a leg a better solution might save at most.
+    largest_open_share: Option<Number>,
+    sequence: Vec<&'a str>,
+    alternatives: Vec<AlternativeDocument<'a>>,
+    legs: Vec<LegDocument<'a>>,
+    passages: Vec<PassageDocument<'a>>,
+    trajectory: TrajectoryDocument,
+    margins: Option<MarginsDocument>,
+    verification: Option<VerificationDocument<'a>>,
+    statistics: Option<StatisticsDocument>,
+    reasons: Vec<ProblemDocument<'a>>,
+    warnings: Vec<ProblemDocument<'a>>,
+}
+
+/// What is flown.
+#[derive(Debug, Default, Serialize, ToSchema)]
+#[schema(as = Trajectory)]
+struct TrajectoryDocument {
+    controls: Vec<ControlDocument>,
+    states: Vec<StateDocument>,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Alternative)]
+struct AlternativeDocument<'a> {
+    sequence: Vec<&'a str>,
+    total_time_s: Number,
+}
+
+impl<'a> From<&'a Alternative> for AlternativeDocument<'a> {
+    fn from(other: &'a Alternative) -> Self {
+        Self {
+            sequence: other.sequence.iter().map(String::as_str).collect(),
+            total_time_s: Number(other.total_time_s),
+        }
+    }
+}
+
+/// The document of an outcome, with the doubts about its scenario; `stopped` are the reasons of a
+/// solve that was stopped before there was a plan.
+pub(crate) fn document<'a>(
+    outcome: &'a Outcome,
+    stopped: &'a [Problem],
+    doubts: &'a [Problem],
+) -> PlanDocument<'a> {
+    let mut document = match outcome {
+        Outcome::Planned(found) => return plan(found, doubts),
+        Outcome::Infeasible(reasons) => without_plan("infeasible", reasons),
+        Outcome::Failed(reasons) => without_plan("failed", reasons),
+        Outcome::StoppedEmpty => without_plan("failed", stopped),
+    };
+    document.warnings = documents(doubts);
+    document
+}
+
+/// The document of a plan, with the doubts about its scenario.
+pub(crate) fn plan<'a>(plan: &'a Plan, doubts: &'a [Problem]) -> PlanDocument<'a> {
+    let mut document = planned(plan);
+    document.warnings.splice(0..0, documents(doubts));
+    document
+}
+
+/// The stable text of a plan's status.
+pub(crate) const fn status(optimality: Optimality) -> &'static str {
+    match optimality {
+        Optimality::Optimal => "optimal",
+        Optimality::Feasible => "feasible",
+    }
+}
+
+fn without_plan<'a>(status: &'static str, reasons: &'a [Problem]) -> PlanDocument<'a> {
+    PlanDocument {
+        status,
+        reasons: documents(reasons),
+        ..PlanDocument::default()
+    }
+}
+
+fn planned(plan: &Plan) -> PlanDocument<'_> {
+    let flight = &plan.flight;
+    PlanDocument {
+        status: status(plan.optimality),
+        total_time_s: Some(Number(plan.total_time_s)),
+        lower_bound_s: Some(Number(plan.lower_bound_s)),
+        relative_gap: Some(Number(plan.relative_gap)),
+        lower_bound_kind: Some(plan.lower_bound_kind.as_str()),
+        certified_lower_bound_s: plan.certified_lower_bound_s.map(Number),
+        largest_open_share: plan.largest_open_share().map(Number),
+        sequence: flight
+            .passages
+            .iter()
+            .map(|passage| passage.target.as_str())
+            .collect(),
+        alternatives: plan
+            .alternatives
+            .iter()
+            .map(AlternativeDocument::from)
+            .collect(),
+        legs: plan.legs.iter().map(LegDocument::from).collect(),
+        passages: flight
+            .passages
+            .iter()
+            .filter_map(|passage| {
+                state_at(&plan.states, passage.time_s)
+                    .map(|state| PassageDocument::new(passage, state))
+            })
+            .collect(),
+        trajectory: TrajectoryDocument {
+            controls: flight.controls.iter().map(ControlDocument::from).collect(),
+            states: plan.states.iter().map(StateDocument::from).collect(),
+        },
+        margins: Some(MarginsDocument::from(&plan.margins)),
+        verification: Some(VerificationDocument::from(&plan.verification)),
+        statistics: Some(StatisticsDocument::from(&plan.statistics)),
+        reasons: Vec::new(),
+        warnings: documents(&plan.warnings),
+    }
+}
+
+/// The sampled state nearest to a time. Passages are control boundaries, which are all sampled.
+fn state_at(states: &[State], time_s: f64) -> Option<&State> {
+    let after = states.partition_point(|state| state.time_s < time_s);
+    let candidates = &states[after.saturating_sub(1)..states.len().min(after + 1)];
+    candidates.iter().min_by(|a, b| {
+        (a.time_s - time_s)
+            .abs()
+            .total_cmp(&(b.time_s - time_s).abs())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::report::sample;
+    use serde_json::Value;
+
+    fn written(outcome: &Outcome) -> Value {
+        serde_json::to_value(document(outcome, &[], &[])).unwrap()
+    }
+
+    #[test]
+    fn a_plan_has_the_fields_of_the_contract() {
+        let value = written(&Outcome::Planned(Box::new(sample::plan())));
+        assert_eq!(value["status"], "optimal");
+        assert_eq!(value["sequence"], serde_json::json!(["a", "b"]));
+        assert_eq!(value["lower_bound_kind"], "nlp_relaxation");
+        assert_eq!(value["passages"][1]["attitude"]["quaternion"]["w"], 1.0);
+        assert_eq!(value["passages"][1]["body_rate_rad_s"][0], 0.25);
+        assert_eq!(value["passages"][1]["departure_s"], 25.0);
+        assert_eq!(value["trajectory"]["states"][1]["quaternion"]["x"], 0.0);
+        assert_eq!(value["statistics"]["version"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(value["verification"]["passed"], true);
+        assert_eq!(value["legs"][2]["rest_to_rest_duration_s"], 11.0);
+        let work = &value["statistics"];
+        let by_kind = serde_json::json!({"legs": 4, "segments": 3});
+        assert_eq!(work["nlp_solves_by_kind"], by_kind);
+        assert_eq!(
+            (&work["pruned_by_table"], &work["dropped_for_memory"]),
+            (&5.into(), &1.into())
+        );
+        let last = serde_json::json!({"time_s": 2.0, "total_time_s": 30.0, "lower_bound_s": 30.0});
+        assert_eq!(
+            (
+                work["history"].as_array().map(Vec::len),
+                &work["history"][1]
+            ),
+            (Some(2), &last)
+        );
+        assert_eq!(value["margins"]["wheel_speed"], Value::Null);
+    }
+
+    #[test]
+    fn reasons_come_with_null_times() {
+        let reason = Problem::new(
+            "/targets/0",
+            slewplan_solver::model::problem::Code::MomentumExceedsEnvelope,
+            "too much",
+            "unload the wheels",
+        );
+        let value = written(&Outcome::Infeasible(vec![reason]));
+        assert_eq!(value["status"], "infeasible");
+        assert_eq!(value["total_time_s"], Value::Null);
+        assert_eq!(value["reasons"][0]["code"], "momentum_exceeds_envelope");
+        assert_eq!(value["reasons"][0]["hint"], "unload the wheels");
+    }
+
+    #[test]
+    fn a_solve_that_was_stopped_without_a_plan_says_what_stopped_it() {
+        let limit = 64 << 20;
+        for (interruption, code, pointer) in [
+            (
+                Interruption::TimeLimit,
+                "stopped_without_plan",
+                "/options/time_limit_s",
+            ),
+            (Interruption::Request, "stopped_without_plan", ""),
+            (Interruption::Memory { limit }, "memory_limit", "/targets"),
+        ] {
+            let reasons = [interruption.reason()];
+            let document = document(&Outcome::StoppedEmpty, &reasons, &[]);
+            let value = serde_json::to_value(document).unwrap();
+            assert_eq!(value["status"], "failed");
+            let reason = &value["reasons"][0];
+            assert_eq!(
+                (&reason["code"], &reason["pointer"]),
+                (&code.into(), &pointer.into())
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_never_written() {
+        let mut plan = sample::plan();
+        plan.states[0].body_rate_rad_s.x = f64::NAN;
+        let outcome = Outcome::Planned(Box::new(plan));
+        assert!(serde_json::to_string(&document(&outcome, &[], &[])).is_err());
+    }
+
+    #[test]
+    fn doubts_about_the_scenario_come_before_those_about_the_plan() {
+        let at = |pointer: &str| {
+            Problem::new(
+                pointer,
+                slewplan_solver::model::problem::Code::KeepOutViolated,
+                "",
+                "",
+            )
+        };
+        let mut plan = sample::plan();
+        plan.warnings = vec![at("/keep_out/0")];
+        let doubts = [at("/start")];
+        let outcome = Outcome::Planned(Box::new(plan));
+        let value = serde_json::to_value(document(&outcome, &[], &doubts)).unwrap();
+        assert_eq!(value["warnings"][0]["pointer"], "/start");
+        assert_eq!(value["warnings"][1]["pointer"], "/keep_out/0");
+    }
+
+    #[test]
+    fn the_nearest_state_is_found_at_the_ends_and_between() {
+        let states = sample::plan().states;
+        for (time, expected) in [(-1.0, 0.0), (9.9, 10.0), (10.1, 10.0), (99.0, 30.0)] {
+            let found = state_at(&states, time).unwrap();
+            assert!((found.time_s - expected).abs() < 1e-12, "{time}");
+        }
+        assert!(state_at(&[], 0.0).is_none());
+    }
+}

@@ -1,0 +1,201 @@
+//! The parts of a plan document.
+
+use crate::documents::number::Number;
+use serde::Serialize;
+use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::plan::{Control, Leg, Margins, Passage, State, Verification};
+use utoipa::ToSchema;
+
+/// A unit quaternion, scalar part `w`.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = UnitQuaternion)]
+pub(crate) struct QuaternionDocument {
+    x: Number,
+    y: Number,
+    z: Number,
+    w: Number,
+}
+
+impl From<&Attitude> for QuaternionDocument {
+    fn from(attitude: &Attitude) -> Self {
+        attitude.xyzw().into()
+    }
+}
+
+impl From<[f64; 4]> for QuaternionDocument {
+    fn from(xyzw: [f64; 4]) -> Self {
+        let [x, y, z, w] = xyzw.map(Number);
+        Self { x, y, z, w }
+    }
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Leg)]
+pub(super) struct LegDocument<'a> {
+    from: &'a str,
+    to: &'a str,
+    start_s: Number,
+    duration_s: Number,
+    /// No slew takes less, s, between these two places under the conditions that the scenario sets
+    /// there, proved, as part of whatever tour: rates that the plan chose where they are free are not
+    /// used. `null` where nothing is proved: with stored momentum, or without limits of speed.
+    certified_lower_bound_s: Option<Number>,
+    /// The slew about the eigenaxis, rest to rest; `null` where that cannot be flown.
+    eigenaxis_duration_s: Option<Number>,
+    /// The fastest slew from rest to rest between the same attitudes; `null` where it was not solved,
+    /// as in plans of searches that were stopped or go on. What `duration_s` saves against it comes
+    /// of rates that the conditions leave free.
+    rest_to_rest_duration_s: Option<Number>,
+    solver_status: &'a str,
+}
+
+impl<'a> From<&'a Leg> for LegDocument<'a> {
+    fn from(leg: &'a Leg) -> Self {
+        Self {
+            from: &leg.from,
+            to: &leg.to,
+            start_s: Number(leg.start_s),
+            duration_s: Number(leg.duration_s),
+            certified_lower_bound_s: leg.certified_lower_bound_s.map(Number),
+            eigenaxis_duration_s: leg.eigenaxis_duration_s.map(Number),
+            rest_to_rest_duration_s: leg.rest_to_rest_duration_s.map(Number),
+            solver_status: &leg.solver_status,
+        }
+    }
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = PassageAttitude)]
+struct AttitudeDocument {
+    quaternion: QuaternionDocument,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Passage)]
+pub(super) struct PassageDocument<'a> {
+    target: &'a str,
+    time_s: Number,
+    departure_s: Number,
+    attitude: AttitudeDocument,
+    body_rate_rad_s: [Number; 3],
+    wheel_speed_rad_s: Vec<Number>,
+}
+
+impl<'a> PassageDocument<'a> {
+    /// A passage with the state at its arrival.
+    pub(super) fn new(passage: &'a Passage, state: &State) -> Self {
+        Self {
+            target: &passage.target,
+            time_s: Number(passage.time_s),
+            departure_s: Number(passage.departure_s),
+            attitude: AttitudeDocument {
+                quaternion: (&state.attitude).into(),
+            },
+            body_rate_rad_s: <[f64; 3]>::from(state.body_rate_rad_s).map(Number),
+            wheel_speed_rad_s: Number::all(&state.wheel_speed_rad_s),
+        }
+    }
+}
+
+/// Constant motor torques, N m.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Control)]
+pub(crate) struct ControlDocument {
+    start_s: Number,
+    duration_s: Number,
+    wheel_torque_nm: Vec<Number>,
+}
+
+impl From<&Control> for ControlDocument {
+    fn from(control: &Control) -> Self {
+        Self::new(
+            control.start_s,
+            control.duration_s,
+            &control.wheel_torque_nm,
+        )
+    }
+}
+
+impl ControlDocument {
+    /// Constant torques, N m, from a time on for so long, s.
+    pub(crate) fn new(start_s: f64, duration_s: f64, torque_nm: &[f64]) -> Self {
+        Self {
+            start_s: Number(start_s),
+            duration_s: Number(duration_s),
+            wheel_torque_nm: Number::all(torque_nm),
+        }
+    }
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = State)]
+pub(crate) struct StateDocument {
+    time_s: Number,
+    quaternion: QuaternionDocument,
+    body_rate_rad_s: [Number; 3],
+    wheel_speed_rad_s: Vec<Number>,
+}
+
+impl From<&State> for StateDocument {
+    fn from(state: &State) -> Self {
+        Self {
+            time_s: Number(state.time_s),
+            quaternion: (&state.attitude).into(),
+            body_rate_rad_s: <[f64; 3]>::from(state.body_rate_rad_s).map(Number),
+            wheel_speed_rad_s: Number::all(&state.wheel_speed_rad_s),
+        }
+    }
+}
+
+/// What is left of every limit.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Margins)]
+pub(crate) struct MarginsDocument {
+    torque: Number,
+    wheel_speed: Option<Number>,
+    body_rate: Option<Number>,
+    wheel_zero_crossings: Vec<u32>,
+    keep_out_clearance_deg: Vec<Number>,
+}
+
+impl From<&Margins> for MarginsDocument {
+    fn from(margins: &Margins) -> Self {
+        Self {
+            torque: Number(margins.torque),
+            wheel_speed: margins.wheel_speed.map(Number),
+            body_rate: margins.body_rate.map(Number),
+            wheel_zero_crossings: margins.wheel_zero_crossings.clone(),
+            keep_out_clearance_deg: Number::all(&margins.keep_out_clearance_deg),
+        }
+    }
+}
+
+/// The re-integration. Figures that could not be computed are very large, never `null`: in many
+/// languages `null` is below any tolerance.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Verification)]
+pub(crate) struct VerificationDocument<'a> {
+    passed: bool,
+    max_attitude_error_rad: Number,
+    max_rate_error_rad_s: Number,
+    max_wheel_speed_excess: Number,
+    max_torque_excess: Number,
+    max_rate_excess: Number,
+    integrator: &'a str,
+    failures: &'a [String],
+}
+
+impl<'a> From<&'a Verification> for VerificationDocument<'a> {
+    fn from(found: &'a Verification) -> Self {
+        Self {
+            passed: found.passed,
+            max_attitude_error_rad: Number(found.max_attitude_error_rad),
+            max_rate_error_rad_s: Number(found.max_rate_error_rad_s),
+            max_wheel_speed_excess: Number(found.max_wheel_speed_excess),
+            max_torque_excess: Number(found.max_torque_excess),
+            max_rate_excess: Number(found.max_rate_excess),
+            integrator: &found.integrator,
+            failures: &found.failures,
+        }
+    }
+}

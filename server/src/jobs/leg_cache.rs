@@ -1,0 +1,162 @@
+//! Legs remembered in the database, as the solver's threads see them.
+
+pub(crate) mod upkeep;
+
+use crate::base::clock::now_us;
+use crate::store::{LegTrajectory, NewLeg, Store};
+use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::runtime::Handle;
+
+/// Legs that are written together.
+const BATCH: usize = 64;
+
+/// How often legs were found.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    hits: AtomicU64,
+    misses: AtomicU64,
+}
+
+impl Tally {
+    /// Legs that were found.
+    pub(crate) fn hits(&self) -> u64 {
+        self.hits.load(Ordering::Relaxed)
+    }
+
+    /// Legs that were not.
+    pub(crate) fn misses(&self) -> u64 {
+        self.misses.load(Ordering::Relaxed)
+    }
+}
+
+/// The legs of a database for one solve. What is new is written in batches, when somebody asks for
+/// that, and when the value is dropped, which must not happen on a thread of the runtime.
+#[derive(Debug)]
+pub(crate) struct LegCache {
+    store: Store,
+    runtime: Handle,
+    tally: Arc<Tally>,
+    unwritten: Unwritten,
+}
+
+/// Solved legs that are not in the database yet.
+#[derive(Debug, Clone)]
+pub(crate) struct Unwritten {
+    store: Store,
+    legs: Arc<Mutex<Vec<NewLeg>>>,
+}
+
+impl Unwritten {
+    fn legs(&self) -> MutexGuard<'_, Vec<NewLeg>> {
+        self.legs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes all of them.
+    pub(crate) async fn write(&self) {
+        let legs = std::mem::take(&mut *self.legs());
+        if legs.is_empty() {
+            return;
+        }
+        // A leg that is forgotten is solved again: no reason to fail.
+        if let Err(error) = self.store.put_legs(&legs, now_us()).await {
+            tracing::warn!(%error, legs = legs.len(), "solved legs are forgotten");
+        }
+    }
+}
+
+impl LegCache {
+    /// The legs of a store, reached from threads outside of the runtime.
+    pub(crate) fn new(store: Store, runtime: Handle, tally: Arc<Tally>) -> Self {
+        Self {
+            unwritten: Unwritten {
+                store: store.clone(),
+                legs: Arc::default(),
+            },
+            store,
+            runtime,
+            tally,
+        }
+    }
+
+    /// What is not in the database yet.
+    pub(crate) fn unwritten(&self) -> Unwritten {
+        self.unwritten.clone()
+    }
+}
+
+impl LegStore for LegCache {
+    fn get(&self, identity: &str) -> Option<StoredLeg> {
+        let found = self.runtime.block_on(self.store.known_leg(identity));
+        let leg = found.unwrap_or_else(|error| {
+            tracing::warn!(%error, "a leg cannot be looked up and is solved again");
+            None
+        });
+        let tally = if leg.is_some() {
+            &self.tally.hits
+        } else {
+            &self.tally.misses
+        };
+        tally.fetch_add(1, Ordering::Relaxed);
+        let (row, spacecraft, trajectory) = leg?;
+        Some(StoredLeg {
+            spacecraft,
+            kind: kind(&row.kind)?,
+            turn_xyzw: row.turn_xyzw(),
+            body_momentum_nms: row.momentum(),
+            reversible: row.reversible,
+            duration_s: row.duration_s,
+            certified_lower_bound_s: row.certified_lower_bound_s,
+            status: row.status,
+            solve_time_s: row.solve_time_s,
+            attitudes_xyzw: trajectory.attitudes_xyzw,
+            wheel_momenta_nms: trajectory.wheel_momenta_nms,
+            lengths_s: trajectory.lengths_s,
+        })
+    }
+
+    fn put(&self, identity: &str, leg: &StoredLeg) {
+        let waiting = {
+            let mut unwritten = self.unwritten.legs();
+            unwritten.push(new_leg(identity, leg));
+            unwritten.len()
+        };
+        if waiting >= BATCH {
+            self.runtime.block_on(self.unwritten.write());
+        }
+    }
+}
+
+impl Drop for LegCache {
+    fn drop(&mut self) {
+        self.runtime.block_on(self.unwritten.write());
+    }
+}
+
+/// A leg as the database keeps it.
+pub(crate) fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
+    NewLeg {
+        identity: identity.to_owned(),
+        spacecraft: leg.spacecraft.clone(),
+        kind: leg.kind.as_str(),
+        turn_xyzw: leg.turn_xyzw,
+        momentum: leg.body_momentum_nms,
+        reversible: leg.reversible,
+        duration_s: leg.duration_s,
+        certified_lower_bound_s: leg.certified_lower_bound_s,
+        solve_time_s: leg.solve_time_s,
+        status: leg.status.clone(),
+        trajectory: LegTrajectory {
+            attitudes_xyzw: leg.attitudes_xyzw.clone(),
+            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
+            lengths_s: leg.lengths_s.clone(),
+        },
+    }
+}
+
+fn kind(text: &str) -> Option<LegKind> {
+    [LegKind::RestToRest, LegKind::LowerBound]
+        .into_iter()
+        .find(|kind| kind.as_str() == text)
+}

@@ -1,0 +1,5 @@
+//! Answers for other tools and for people: formats, drawings, text.
+
+pub(crate) mod export;
+pub(crate) mod plot;
+pub(crate) mod report;

@@ -1,0 +1,257 @@
+//! Plans in the formats of other tools, one file each.
+//!
+//! A format knows the trajectory and the labels of its scenario, nothing of HTTP or the command
+//! line. All of them say the same rotation in other words: the quaternion that maps body vectors
+//! to reference vectors has the numbers of the one that turns the reference frame into the body
+//! frame, which is what CCSDS, STK and Basilisk ask for.
+
+use crate::base::clock;
+use slewplan_solver::checker::Motion;
+use slewplan_solver::model::plan::Flight;
+use slewplan_solver::model::scenario::Scenario;
+
+mod aem;
+mod basilisk;
+mod calendar;
+mod csv;
+mod form;
+mod open_mct;
+mod sampling;
+mod stk;
+#[cfg(test)]
+mod tests;
+mod trajectory;
+mod wheel_rpm;
+
+pub(crate) use form::Form;
+use sampling::Sampling;
+pub(crate) use sampling::Spacing;
+use trajectory::Trajectory;
+
+/// Largest error of interpolation between two samples when nothing else is asked for, rad of
+/// attitude and rad/s of body rate: two arc seconds, what star trackers tell apart.
+pub(crate) const TOLERANCE: f64 = 1e-5;
+/// Period of wheel speed commands when no other is asked for, s.
+pub(crate) const PERIOD_S: f64 = 0.1;
+
+/// What a plan can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// A table of everything, one row per sample.
+    Csv,
+    /// CCSDS Attitude Ephemeris Message, keywords and values.
+    AemKvn,
+    /// CCSDS Attitude Ephemeris Message, XML.
+    AemXml,
+    /// Waypoints for Basilisk's `waypointReference`.
+    Basilisk,
+    /// The schedule as a plan of Open MCT.
+    OpenMct,
+    /// An attitude file of STK.
+    Stk,
+    /// Wheel speed commands at a fixed period.
+    WheelRpm,
+}
+
+impl Format {
+    /// All formats.
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Csv,
+        Self::AemKvn,
+        Self::AemXml,
+        Self::Basilisk,
+        Self::OpenMct,
+        Self::Stk,
+        Self::WheelRpm,
+    ];
+
+    /// The stable name.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::AemKvn => "aem-kvn",
+            Self::AemXml => "aem-xml",
+            Self::Basilisk => "basilisk",
+            Self::OpenMct => "open-mct",
+            Self::Stk => "stk",
+            Self::WheelRpm => "wheel-rpm",
+        }
+    }
+
+    /// What it is, in a line.
+    pub(crate) const fn summary(self) -> &'static str {
+        match self {
+            Self::Csv => "The sampled trajectory with rates, wheel speeds and torques",
+            Self::AemKvn => "CCSDS Attitude Ephemeris Message 2.0 in keywords and values",
+            Self::AemXml => "CCSDS Attitude Ephemeris Message 2.0 in XML",
+            Self::Basilisk => "Waypoints for Basilisk's waypointReference (attitudeType 2)",
+            Self::OpenMct => "The schedule as a plan of Open MCT",
+            Self::Stk => "STK attitude file (.a)",
+            Self::WheelRpm => "Wheel speed commands, rpm, at a fixed period",
+        }
+    }
+
+    /// The media type; only those of CSV and tab-separated values are registered.
+    pub(crate) const fn media_type(self) -> &'static str {
+        match self {
+            Self::Csv => "text/csv",
+            Self::AemKvn => "text/x.ccsds.aem.kvn",
+            Self::AemXml => "application/x.ccsds.aem+xml",
+            Self::Basilisk => "text/x.basilisk.waypoints",
+            Self::OpenMct => "application/x.open-mct.plan+json",
+            Self::Stk => "text/x.stk.attitude",
+            Self::WheelRpm => "text/tab-separated-values",
+        }
+    }
+
+    /// How the name of a file ends.
+    pub(crate) const fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::AemKvn => "aem",
+            Self::AemXml => "aem.xml",
+            Self::Basilisk => "waypoints.csv",
+            Self::OpenMct => "open-mct.json",
+            Self::Stk => "a",
+            Self::WheelRpm => "tsv",
+        }
+    }
+}
+
+/// What can be chosen about an export.
+#[derive(Debug, Clone)]
+pub(crate) struct Options {
+    /// Where to sample; `None` takes the default of the format.
+    pub(crate) spacing: Option<Spacing>,
+    /// Most samples that are written.
+    pub(crate) most_samples: usize,
+    /// Whether attitudes come with body rates, where the format leaves the choice.
+    pub(crate) rates: bool,
+    /// Write commands of this wheel only, counted from 0.
+    pub(crate) wheel: Option<usize>,
+    /// Name of the spacecraft, where the format has a place for it.
+    pub(crate) object_name: Option<String>,
+    /// International designator of the spacecraft, where the format has a place for it.
+    pub(crate) object_id: Option<String>,
+    /// When the answer was made, microseconds since 1970.
+    pub(crate) created_us: i64,
+}
+
+impl Options {
+    /// The defaults, with at most this many samples.
+    pub(crate) fn new(most_samples: usize) -> Self {
+        Self {
+            spacing: None,
+            most_samples,
+            rates: true,
+            wheel: None,
+            object_name: None,
+            object_id: None,
+            created_us: clock::now_us(),
+        }
+    }
+}
+
+/// Why a plan cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ExportError {
+    /// The controls make no motion.
+    #[error("the plan cannot be flown: {0}")]
+    NotFlown(String),
+    /// A choice that the format does not leave, or that asks for too much.
+    #[error("{0}")]
+    Choice(String),
+    /// A label of the scenario that the format cannot say.
+    #[error("{pointer} of the scenario: {what}")]
+    Label {
+        /// Its JSON pointer in the scenario.
+        pointer: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A number that must not be written.
+    #[error("a number of the trajectory is not finite")]
+    NotFinite,
+}
+
+/// The flight of a scenario in a format.
+///
+/// # Errors
+///
+/// What [`check`] finds, and what keeps the flight from being flown or sampled.
+pub(crate) fn write(
+    format: Format,
+    (scenario, flight): (&Scenario, &Flight),
+    options: &Options,
+) -> Result<String, ExportError> {
+    check(format, scenario, options)?;
+    let motion =
+        || Motion::of(scenario, flight).map_err(|why| ExportError::NotFlown(why.join("; ")));
+    let spacing = options.spacing.unwrap_or(Spacing::Tolerance(TOLERANCE));
+    let sampling = Sampling {
+        spacing,
+        most: options.most_samples,
+    };
+    let sampled = || Trajectory::of(flight, &motion()?, sampling);
+    match format {
+        Format::Csv => Ok(csv::table(&sampled()?)),
+        Format::AemKvn => Ok(aem::message(scenario, &sampled()?, options)?.kvn()),
+        Format::AemXml => Ok(aem::message(scenario, &sampled()?, options)?.xml()),
+        Format::Basilisk => Ok(basilisk::waypoints(&sampled()?)),
+        Format::OpenMct => open_mct::plan(scenario, flight),
+        Format::Stk => stk::attitude_file(scenario, &sampled()?, options.rates),
+        Format::WheelRpm => wheel_rpm::commands(&motion()?, flight.total_time_s, options),
+    }
+}
+
+/// Whether plans of a scenario can be written so, as far as that is known without a plan.
+///
+/// # Errors
+///
+/// A choice that the format does not leave, or a label of the scenario that it cannot say.
+pub(crate) fn check(
+    format: Format,
+    scenario: &Scenario,
+    options: &Options,
+) -> Result<(), ExportError> {
+    check_choices(format, options)?;
+    match format {
+        Format::Csv | Format::Basilisk => Ok(()),
+        Format::AemKvn | Format::AemXml => calendar::epoch(scenario).map(drop),
+        Format::OpenMct => open_mct::epoch(scenario).map(drop),
+        Format::Stk => stk::labels(scenario).map(drop),
+        Format::WheelRpm => wheel_rpm::check_wheel(scenario, options.wheel),
+    }
+}
+
+/// Choices that a format does not leave are refused: whoever makes them expects something else.
+fn check_choices(format: Format, options: &Options) -> Result<(), ExportError> {
+    use Format::{AemKvn, AemXml, OpenMct, Stk, WheelRpm};
+    let message = matches!(format, AemKvn | AemXml);
+    let refused = [
+        (
+            options.wheel.is_some() && format != WheelRpm,
+            "a wheel is chosen for wheel-rpm only",
+        ),
+        (
+            !options.rates && !message && format != Stk,
+            "rates can be left out of aem-kvn, aem-xml and stk only",
+        ),
+        (
+            !message && (options.object_name.is_some() || options.object_id.is_some()),
+            "only aem-kvn and aem-xml name the object",
+        ),
+        (
+            options.spacing.is_some() && format == OpenMct,
+            "open-mct has the schedule only and no samples",
+        ),
+        (
+            matches!(options.spacing, Some(Spacing::Tolerance(_))) && format == WheelRpm,
+            "wheel-rpm has a fixed period, which is the step",
+        ),
+    ];
+    match refused.iter().find(|(is_so, _)| *is_so) {
+        Some((_, why)) => Err(ExportError::Choice((*why).to_owned())),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,166 @@
+//! The scenario's epoch and times after it as text.
+//!
+//! Days have 86,400 s here. Where a plan runs through a leap second of UTC, label its epoch in TAI.
+
+use super::ExportError;
+use crate::base::clock;
+use slewplan_solver::model::scenario::Scenario;
+use std::time::Duration;
+
+const DAY_S: i64 = 86_400;
+/// Stands for the epoch of scenarios without one.
+pub(super) const NO_EPOCH: &str = "2000-01-01T12:00:00";
+const MONTHS: [&str; 12] = [
+    "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+];
+
+/// A moment in the time system of a scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Moment {
+    /// Whole seconds since 1970-01-01T00:00:00.
+    seconds: i64,
+    nanoseconds: u32,
+}
+
+/// The epoch of a scenario, [`NO_EPOCH`] when it has none.
+pub(super) fn epoch(scenario: &Scenario) -> Result<Moment, ExportError> {
+    let text = scenario.epoch().unwrap_or(NO_EPOCH);
+    Moment::parse(text).ok_or_else(|| ExportError::Label {
+        pointer: "/epoch",
+        what: format!("{text:?} is not of the form 2026-01-31T12:00:00.5 or with Z at its end"),
+    })
+}
+
+/// The time system of a scenario, UTC when it has none.
+pub(super) fn time_system(scenario: &Scenario) -> &str {
+    scenario.time_system().unwrap_or("UTC")
+}
+
+/// The epoch for formats that know UTC only.
+pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<Moment, ExportError> {
+    match time_system(scenario) {
+        "UTC" => epoch(scenario),
+        other => Err(ExportError::Label {
+            pointer: "/time_system",
+            what: format!(
+                "{format} counts in UTC and leap seconds are not known here: not {other:?}"
+            ),
+        }),
+    }
+}
+
+impl Moment {
+    /// Reads `YYYY-MM-DDThh:mm:ss`, with a fraction or `Z` or both or none.
+    fn parse(text: &str) -> Option<Self> {
+        let text = text.strip_suffix(['Z', 'z']).unwrap_or(text);
+        let (date, time) = text.split_once(['T', 't', ' '])?;
+        let mut date = date.splitn(3, '-').map(|part| whole(part, 10));
+        let (year, month, day) = (date.next()??, date.next()??, date.next()??);
+        let (time, fraction) = time.split_once('.').unwrap_or((time, "0"));
+        let mut time = time.splitn(3, ':').map(|part| whole(part, 2));
+        let (hour, minute, second) = (time.next()??, time.next()??, time.next()??);
+        let days = clock::days_from_civil(year, month, day);
+        if clock::civil(days) != (year, month, day) || hour > 23 || minute > 59 || second > 59 {
+            return None;
+        }
+        let digits = whole(fraction, 9).and(Some(fraction))?;
+        let nanoseconds = format!("{digits:0<9}").parse().ok()?;
+        Some(Self {
+            seconds: days * DAY_S + hour * 3600 + minute * 60 + second,
+            nanoseconds,
+        })
+    }
+
+    /// So many seconds later, not negative; to the nanosecond.
+    pub(super) fn plus(self, time_s: f64) -> Result<Self, ExportError> {
+        let later = Duration::try_from_secs_f64(time_s).map_err(|_| ExportError::NotFinite)?;
+        let sum = later + Duration::from_nanos(self.nanoseconds.into());
+        let seconds = i64::try_from(sum.as_secs()).map_err(|_| ExportError::NotFinite)?;
+        Ok(Self {
+            seconds: self.seconds.saturating_add(seconds),
+            nanoseconds: sum.subsec_nanos(),
+        })
+    }
+
+    /// `YYYY-MM-DDThh:mm:ss.nnnnnnnnn`, without a zone: the time system is told elsewhere.
+    pub(super) fn iso(self) -> String {
+        let (year, month, day) = clock::civil(self.seconds.div_euclid(DAY_S));
+        let (hour, minute, second) = self.clock();
+        let fraction = self.nanoseconds;
+        format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{fraction:09}")
+    }
+
+    /// `D Mon YYYY hh:mm:ss.nnnnnnnnn`, as STK writes dates.
+    pub(super) fn gregorian(self) -> String {
+        let (year, month, day) = clock::civil(self.seconds.div_euclid(DAY_S));
+        let (hour, minute, second) = self.clock();
+        let month = usize::try_from(month - 1).ok();
+        let name = month.and_then(|month| MONTHS.get(month)).unwrap_or(&"");
+        let fraction = self.nanoseconds;
+        format!("{day} {name} {year} {hour:02}:{minute:02}:{second:02}.{fraction:09}")
+    }
+
+    /// Milliseconds since 1970, rounded down.
+    pub(super) fn unix_ms(self) -> i64 {
+        self.seconds * 1000 + i64::from(self.nanoseconds / 1_000_000)
+    }
+
+    fn clock(self) -> (i64, i64, i64) {
+        let in_day = self.seconds.rem_euclid(DAY_S);
+        (in_day / 3600, in_day / 60 % 60, in_day % 60)
+    }
+}
+
+/// A number of decimal digits only, at most so many.
+fn whole(text: &str, longest: usize) -> Option<i64> {
+    let digits = text.bytes().all(|byte| byte.is_ascii_digit());
+    (digits && text.len() <= longest).then(|| text.parse().ok())?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn epochs_are_read_and_times_after_them_written() {
+        let cases = [
+            ("2026-01-01T00:00:00Z", 0.0, "2026-01-01T00:00:00.000000000"),
+            (
+                "2024-02-28T23:59:59.75",
+                0.5,
+                "2024-02-29T00:00:00.250000000",
+            ),
+            (
+                "1999-12-31 23:59:59",
+                86_401.0,
+                "2000-01-02T00:00:00.000000000",
+            ),
+            ("1969-12-31T23:59:59", 1e-9, "1969-12-31T23:59:59.000000001"),
+        ];
+        for (epoch, after, text) in cases {
+            let moment = Moment::parse(epoch).unwrap();
+            assert_eq!(moment.plus(after).unwrap().iso(), text);
+        }
+        for wrong in [
+            "2026-01-01",
+            "2026-13-01T00:00:00",
+            "2026-02-29T00:00:00",
+            "2026-01-01T24:00:00",
+            "2026-01-01T00:00:60",
+            "2026-01-01T00:00:00+01:00",
+            "2026-01-01T00:00:+1",
+            "tomorrow",
+        ] {
+            assert_eq!(Moment::parse(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn stk_and_unix_have_their_own_forms() {
+        let moment = Moment::parse("2026-03-05T06:07:08.5").unwrap();
+        assert_eq!(moment.gregorian(), "5 Mar 2026 06:07:08.500000000");
+        // date -u -d 2026-03-05T06:07:08 +%s
+        assert_eq!(moment.unix_ms(), 1_772_690_828_500);
+        assert!(moment.plus(-1.0).is_err() && moment.plus(f64::NAN).is_err());
+    }
+}

@@ -14,7 +14,6 @@ mod run;
 mod slew;
 mod solve;
 mod stopping;
-mod structure;
 mod study;
 mod validate;
 mod verify;

@@ -33,15 +33,15 @@ from rewriting import changes, rewritten  # noqa: E402
 
 MODULES = {
     "checker": ["solver/src/checker.rs", "solver/src/checker"],
-    "certified": ["solver/src/certified.rs", "solver/src/certified", "solver/src/dynamics.rs"],
-    "certify": ["solver/src/certify.rs", "solver/src/certify", "solver/src/planner/claims.rs"],
-    "kinematic_bound": ["solver/src/kinematic_bound.rs", "solver/src/kinematic_bound"],
-    "canonical": ["solver/src/planner/canonical.rs", "solver/src/planner/places.rs", "solver/src/planner/legs.rs"],
-    "order_rules": ["solver/src/order_rules.rs", "solver/src/scenario/order.rs"],
-    "search": ["solver/src/sequence.rs", "solver/src/sequence"],
+    "certified": ["solver/src/bounds/certified.rs", "solver/src/bounds/certified", "solver/src/model/dynamics.rs"],
+    "certify": ["solver/src/bounds/certify.rs", "solver/src/bounds/certify", "solver/src/tour/planner/claims.rs"],
+    "kinematic_bound": ["solver/src/bounds/kinematic.rs", "solver/src/bounds/kinematic"],
+    "canonical": ["solver/src/tour/planner/canonical.rs", "solver/src/tour/planner/places.rs", "solver/src/tour/planner/legs.rs"],
+    "order_rules": ["solver/src/model/order_rules.rs", "solver/src/model/scenario/order.rs"],
+    "search": ["solver/src/tour/order.rs", "solver/src/tour/order"],
     "store": ["server/src/store.rs", "server/src/store"],
-    "reader": ["server/src/wire/reader.rs", "server/src/wire/reader", "server/src/wire/scenario.rs",
-               "server/src/wire/scenario"],
+    "reader": ["server/src/documents/reader.rs", "server/src/documents/reader", "server/src/documents/scenario.rs",
+               "server/src/documents/scenario"],
 }
 SWITCH = '''//! Which change is switched on.
 #![allow(missing_docs, dead_code)]

@@ -18,5 +18,4 @@ mod random_suite;
 mod resumed;
 mod standing;
 mod stopping;
-mod structure;
 mod tight;

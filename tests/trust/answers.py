@@ -79,8 +79,8 @@ def every_failure_is_named(scale):
     statuses = re.findall(r'Self::(\w+)(?:\(_\))? => "(\w+)"', optimiser)
     for what, codes in {
         "states of jobs": codes_of("server/src/store/rows.rs", "states! {\n    ///"),
-        "codes of problems": codes_of("solver/src/problem.rs", "codes! {\n    ///"),
-        "codes of HTTP errors": codes_of("server/src/http/error.rs", "error_codes! {\n    Mal"),
+        "codes of problems": codes_of("solver/src/model/problem.rs", "codes! {\n    ///"),
+        "codes of HTTP errors": codes_of("server/src/api/error.rs", "error_codes! {\n    Mal"),
         "statuses of the optimiser": dict(statuses),
     }.items():
         unnamed = [text for name, text in codes.items() if f'"{text}"' not in tests and f"[{text}]" not in tests and f"::{name}" not in tests]

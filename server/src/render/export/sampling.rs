@@ -1,10 +1,12 @@
 //! At which times to sample, so that what a reader puts between the samples is close enough.
 
 use super::ExportError;
-use super::trajectory::CLOSEST_S;
 use slewplan_solver::checker::Motion;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::State;
+
+/// Times closer than this, s, are one: formats write nanoseconds, and times must be seen to grow.
+pub(super) const CLOSEST_S: f64 = 1e-6;
 
 /// Turn between two samples at most, rad: linear interpolation of quaternions needs it small, and
 /// no motion can hide between samples so close.

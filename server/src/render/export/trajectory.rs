@@ -1,13 +1,11 @@
 //! The flight cut into slews and rests, each with samples at its ends and at every switch.
 
 use super::ExportError;
-use super::sampling::{self, Sampling};
+use super::sampling::{CLOSEST_S, self, Sampling};
 use nalgebra::Vector3;
 use slewplan_solver::checker::Motion;
 use slewplan_solver::model::plan::{Flight, State};
 
-/// Times closer than this, s, are one: formats write nanoseconds, and times must be seen to grow.
-pub(super) const CLOSEST_S: f64 = 1e-6;
 
 /// A sampled flight.
 #[derive(Debug)]

@@ -220,11 +220,6 @@ fn stroke(pen: Pen) -> String {
     format!("stroke=\"{colour}\" stroke-width=\"{width}\"{dashes}{veil}")
 }
 
-/// A number's text with a sign as wide as its digits.
-pub(super) fn minus(number: &str) -> String {
-    number.replace('-', "\u{2212}")
-}
-
 /// Text as XML wants it; characters that XML forbids are left out.
 fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());

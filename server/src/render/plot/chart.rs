@@ -1,7 +1,8 @@
 //! Curves of one quantity over another.
 
 use super::axes;
-use super::canvas::{Canvas, Frame, Ink, LINE, Pen, minus};
+use super::canvas::{Canvas, Frame, Ink, LINE, Pen};
+use super::scale::minus;
 use super::scale::Scale;
 
 /// Room between the extreme values and the frame, as a share.

@@ -8,7 +8,8 @@ mod written;
 
 pub(crate) use written::WrittenEnvelopes;
 
-use super::canvas::{Canvas, Frame, Ink, Pen, SERIES, minus};
+use super::canvas::{Canvas, Frame, Ink, Pen, SERIES};
+use super::scale::minus;
 use super::panel::{self, GAP, Panel};
 use super::{HEAD, MARGIN, WIDTH};
 use nalgebra::Vector3;

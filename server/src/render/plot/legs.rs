@@ -1,6 +1,7 @@
 //! Every slew beside the eigenaxis slew between the same attitudes.
 
-use super::canvas::{Canvas, Frame, Ink, Pen, SERIES, minus};
+use super::canvas::{Canvas, Frame, Ink, Pen, SERIES};
+use super::scale::minus;
 use super::written::{Leg, WrittenPlan};
 
 const HIGHEST: f64 = 42.0;

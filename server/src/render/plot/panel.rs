@@ -1,7 +1,8 @@
 //! A quantity over time: curves, grid, limits, legend.
 
 use super::axes::{self, Key};
-use super::canvas::{ALARM, Canvas, Frame, Ink, LINE, Pen, SERIES, minus};
+use super::canvas::{ALARM, Canvas, Frame, Ink, LINE, Pen, SERIES};
+use super::scale::minus;
 use super::scale::Scale;
 
 /// Height of a panel, and room between two.

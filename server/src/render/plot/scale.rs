@@ -1,6 +1,5 @@
 //! From quantities to places in the picture.
 
-use super::canvas::minus;
 
 /// How far apart the ends of positive values are, as a ratio, for a scale of logarithms.
 const DECADES: f64 = 30.0;
@@ -164,6 +163,11 @@ fn figure(value: f64) -> String {
         return text.trim_end_matches('0').trim_end_matches('.').to_owned();
     }
     minus(&format!("{value:.0e}"))
+}
+
+/// A number's text with a sign as wide as its digits.
+pub(super) fn minus(number: &str) -> String {
+    number.replace('-', "\u{2212}")
 }
 
 #[cfg(test)]

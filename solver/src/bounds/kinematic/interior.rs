@@ -1,9 +1,11 @@
 //! The interior of a word with several arcs of one length, and where its equation can hold.
 
-use super::search::MARGIN;
 use super::turns::rotate;
 use super::words::{Family, corner};
 use crate::math::quaternion::{Quat, product};
+
+/// Margin of the equation `f = 0`, rad. Rounding in `f` is below 1e-12 even for a thousand arcs.
+pub(super) const MARGIN: f64 = 1e-10;
 
 /// The interior of a word of a family at a value of its parameter.
 #[derive(Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use super::RateBox;
 use super::closing::{Closing, IMAGES, Probes};
-use super::interior::{Interior, where_zero};
+use super::interior::{MARGIN, Interior, where_zero};
 use super::levels::others;
 use super::turns::{
     best_axis_sequence, cross, dot, eigenaxis_time, rotate, small_angle_bound, twist_and_swing,
@@ -11,8 +11,6 @@ use super::words::{FIRST, Family, SingleWord, corner};
 use crate::math::quaternion::Quat;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Margin of the equation `f = 0`, rad. Rounding in `f` is below 1e-12 even for a thousand arcs.
-pub(super) const MARGIN: f64 = 1e-10;
 /// Cells narrower than this are not split, whatever their bound, rad.
 const NARROW: f64 = 1e-9;
 /// Turn of the interior over half a cell below which the outer arcs are worth a look, rad.

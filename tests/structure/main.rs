@@ -26,7 +26,7 @@ const SOLVER: &[Row] = &[
         "bounds/certify",
         &[
             "bounds::kinematic::certificate",
-            "bounds::kinematic::ramps",
+            "bounds::kinematic::limits",
             "model::attitude",
         ],
     ),

@@ -34,7 +34,8 @@
 mod momentum;
 
 use crate::bounds::kinematic::certificate::Certificate;
-use crate::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
+use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::{Dynamics, along};
 use crate::model::scenario::RateCondition;

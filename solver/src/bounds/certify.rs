@@ -11,7 +11,8 @@
 //! use nalgebra::Vector3;
 //! use slewplan_solver::model::attitude::Attitude;
 //! use slewplan_solver::bounds::certify::{self, Rejection};
-//! use slewplan_solver::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+//! use slewplan_solver::bounds::kinematic::limits::{EndRates, SlewLimits};
+//! use slewplan_solver::bounds::kinematic::ramps::SlewBound;
 //!
 //! let limits = SlewLimits {
 //!     rates_rad_s: Vector3::new(0.018, 0.013, 0.012),

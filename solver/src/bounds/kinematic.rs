@@ -76,6 +76,7 @@ mod drift;
 mod extremal;
 mod interior;
 mod levels;
+pub mod limits;
 pub mod ramps;
 mod rise;
 mod search;

@@ -81,8 +81,8 @@ fn misses(end: &Snapshot, arrival: &Arrival) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Control;
-    use crate::scenario::reference::experiment_a;
+    use crate::model::plan::Control;
+    use crate::model::scenario::reference::experiment_a;
     use nalgebra::Vector3;
 
     #[test]

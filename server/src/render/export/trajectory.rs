@@ -1,11 +1,10 @@
 //! The flight cut into slews and rests, each with samples at its ends and at every switch.
 
 use super::ExportError;
-use super::sampling::{CLOSEST_S, self, Sampling};
+use super::sampling::{self, CLOSEST_S, Sampling};
 use nalgebra::Vector3;
 use slewplan_solver::checker::Motion;
 use slewplan_solver::model::plan::{Flight, State};
-
 
 /// A sampled flight.
 #[derive(Debug)]

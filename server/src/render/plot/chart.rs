@@ -2,8 +2,8 @@
 
 use super::axes;
 use super::canvas::{Canvas, Frame, Ink, LINE, Pen};
-use super::scale::minus;
 use super::scale::Scale;
+use super::scale::minus;
 
 /// Room between the extreme values and the frame, as a share.
 const AIR: f64 = 0.06;

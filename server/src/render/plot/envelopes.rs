@@ -9,8 +9,8 @@ mod written;
 pub(crate) use written::WrittenEnvelopes;
 
 use super::canvas::{Canvas, Frame, Ink, Pen, SERIES};
-use super::scale::minus;
 use super::panel::{self, GAP, Panel};
+use super::scale::minus;
 use super::{HEAD, MARGIN, WIDTH};
 use nalgebra::Vector3;
 use projection::Way;

@@ -2,8 +2,8 @@
 
 use super::axes::{self, Key};
 use super::canvas::{ALARM, Canvas, Frame, Ink, LINE, Pen, SERIES};
-use super::scale::minus;
 use super::scale::Scale;
+use super::scale::minus;
 
 /// Height of a panel, and room between two.
 pub(super) const HEIGHT: f64 = 150.0;

@@ -1,6 +1,5 @@
 //! From quantities to places in the picture.
 
-
 /// How far apart the ends of positive values are, as a ratio, for a scale of logarithms.
 const DECADES: f64 = 30.0;
 

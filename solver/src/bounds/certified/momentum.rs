@@ -24,7 +24,8 @@
 //! their own.
 
 use super::{Frame, allowed_rate};
-use crate::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
+use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::{Dynamics, along};
 use nalgebra::{Matrix3, Vector3};

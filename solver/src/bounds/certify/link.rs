@@ -5,7 +5,7 @@
 //! no more than their sum cannot be undercut.
 
 use super::interval::Interval;
-use crate::bounds::kinematic::ramps::{EndRates, SlewLimits};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
 /// Pieces narrower than this share of the duration are bounded by a constant.

@@ -1,6 +1,6 @@
 //! What a bound claims, in plain data: all that a checker needs to verify it.
 
-use super::ramps::{EndRates, SlewLimits};
+use super::limits::{EndRates, SlewLimits};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 

@@ -16,7 +16,8 @@
 //! takes a time in `[T, T']` if `s(T') + l (T' - T) < V_p(Q(T))`. Once all durations below `T` are
 //! excluded, by whatever box, the next step starts there.
 
-use super::ramps::{DEFLATION, EndRates, SlewBound, claimable, rounded_down};
+use super::limits::EndRates;
+use super::ramps::{DEFLATION, SlewBound, claimable, rounded_down};
 use super::rise::Rise;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;

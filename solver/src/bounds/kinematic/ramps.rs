@@ -39,6 +39,7 @@
 
 use super::RateBox;
 use super::certificate::{Certificate, ClaimedTurn, ROOM};
+use super::limits::{EndRates, SlewLimits};
 use super::rise::Rise;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;

@@ -2,7 +2,7 @@
 //!
 //! The docs of [`super::ramps`] define `m_i(t; T)` and `s(T)`.
 
-use super::ramps::{EndRates, SlewLimits};
+use super::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
 /// A box is no narrower than this share of the rates, relative to its widest axis: more extreme

@@ -2,7 +2,7 @@
 
 use super::RateBox;
 use super::closing::{Closing, IMAGES, Probes};
-use super::interior::{MARGIN, Interior, where_zero};
+use super::interior::{Interior, MARGIN, where_zero};
 use super::levels::others;
 use super::turns::{
     best_axis_sequence, cross, dot, eigenaxis_time, rotate, small_angle_bound, twist_and_swing,

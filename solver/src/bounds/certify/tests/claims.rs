@@ -3,7 +3,8 @@
 
 use super::*;
 use crate::bounds::kinematic::RateBox;
-use crate::bounds::kinematic::ramps::{EndRates, SlewBound, SlewLimits};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
+use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
 use proptest::prelude::*;
 

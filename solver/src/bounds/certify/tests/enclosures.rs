@@ -3,7 +3,7 @@
 use super::super::interval::{Interval, twice_asin_of_root};
 use super::super::link;
 use super::super::turn::{about, angle_of, product, rotate, swing, twist};
-use crate::bounds::kinematic::ramps::{EndRates, SlewLimits};
+use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 use proptest::prelude::*;

@@ -1,6 +1,7 @@
 //! Bounds on slews with limited accelerations.
 
-use super::super::ramps::{EndRates, SlewBound, SlewLimits};
+use super::super::limits::{EndRates, SlewLimits};
+use super::super::ramps::SlewBound;
 use super::{PAPER, rate_box, turn};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;

@@ -1,11 +1,11 @@
 //! What is kept of a leg, and what is not.
 
 use super::*;
-use crate::legs::NoStore;
-use crate::pool::SolverPool;
-use crate::progress::Observer;
-use crate::scenario::Scenario;
-use crate::scenario::reference::experiment_a;
+use crate::model::scenario::Scenario;
+use crate::model::scenario::reference::experiment_a;
+use crate::run::pool::SolverPool;
+use crate::run::progress::Observer;
+use crate::tour::legs::NoStore;
 use std::num::NonZeroUsize;
 
 /// Counts contradictions.

@@ -82,9 +82,11 @@ async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
     found.expect("the job is there")
 }
 
-/// An event that tells the state.
+/// An event that tells the state, and why it ended.
 fn state_of(job: &JobRow, _: i64) -> Result<String, StoreError> {
-    Ok(format!("{{\"state\":\"{}\"}}", job.state()?.as_str()))
+    let (state, detail, code) = (job.state()?.as_str(), &job.detail, &job.code);
+    let event = serde_json::json!({ "state": state, "detail": detail, "code": code });
+    Ok(event.to_string())
 }
 
 /// Runs a scene on an empty database.

@@ -79,12 +79,12 @@ pub(crate) struct Limits {
 /// each, so that half of the largest body can be full of them; in memory they take about 24 bytes.
 const BYTES_PER_VALUE: usize = 32;
 /// Values and names that every body may have, however small the largest body is.
-const LEAST_VALUES: usize = 1 << 16;
+const MIN_VALUES: usize = 1 << 16;
 
 impl Limits {
     /// Most values in a body, those in lists and objects included, and names of members.
     pub(crate) fn body_values(self) -> usize {
-        (self.body_bytes / BYTES_PER_VALUE).max(LEAST_VALUES)
+        (self.body_bytes / BYTES_PER_VALUE).max(MIN_VALUES)
     }
 }
 

@@ -8,7 +8,7 @@ use slewplan_solver::slew::WheelAllocation;
 use slewplan_studies::eigenaxis::Limit;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{
-    EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, TurnSpec,
+    EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MAX_DEMANDS, TurnSpec,
 };
 use slewplan_tests::pyramid_spec;
 
@@ -117,7 +117,7 @@ fn every_problem_is_named_with_its_place() {
         to: AttitudeSpec::Mrp([f64::NAN, 0.0, 0.0]),
         ..TurnSpec::default()
     });
-    spec.demands_nm = vec![[0.0, f64::INFINITY, 0.0]; MOST_DEMANDS + 1];
+    spec.demands_nm = vec![[0.0, f64::INFINITY, 0.0]; MAX_DEMANDS + 1];
     let problems = EnvelopeStudy::try_new(&spec).expect_err("problems");
     let found: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
     for place in [

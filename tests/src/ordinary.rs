@@ -15,9 +15,9 @@ use slewplan_solver::model::spec::{
 use std::cell::Cell;
 
 /// Most momentum of the scenarios, as a share of what the wheels hold in every direction.
-const MOST_STORED: f64 = 0.8;
+const MAX_STORED: f64 = 0.8;
 /// Most of a wheel's speed limit that its momentum takes at the start.
-const MOST_SPEED: f64 = 0.98;
+const MAX_SPEED: f64 = 0.98;
 
 /// Sum of the momenta, about the three axes, that the body has at a small rate about each, as a share of
 /// what the wheels hold in every direction.
@@ -112,11 +112,11 @@ fn attempt(generator: &mut Generator, targets: usize, spread: f64) -> Option<Sce
     }
     let enabled: Vec<_> = wheels.iter().filter(|wheel| wheel.enabled).collect();
     let sphere = held_everywhere(&enabled);
-    let stored = generator.between(0.0, MOST_STORED) * sphere;
+    let stored = generator.between(0.0, MAX_STORED) * sphere;
     let demand = generator.direction().map(|c| c * stored);
     let momenta = shared(&enabled, demand)?;
     let mut next = enabled.iter().zip(&momenta);
-    if next.any(|(wheel, momentum)| momentum.abs() > MOST_SPEED * capacity(wheel)) {
+    if next.any(|(wheel, momentum)| momentum.abs() > MAX_SPEED * capacity(wheel)) {
         return None;
     }
     let mut momenta = momenta.into_iter();

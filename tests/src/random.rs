@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 /// Smallest determinant of the best triple of unit wheel axes: arrays nearer to a plane are
 /// refused, because what they cannot do says nothing about the solver.
-const LEAST_SPAN: f64 = 0.3;
+const MIN_SPAN: f64 = 0.3;
 
 /// Marsaglia's xorshift generator with a final multiplication.
 #[derive(Debug, Clone)]
@@ -173,7 +173,7 @@ impl Generator {
     ) -> Vec<WheelSpec> {
         loop {
             let wheels: Vec<_> = (0..count).map(|_| wheel(self)).collect();
-            if widest_span(&wheels[..enabled]) > LEAST_SPAN {
+            if widest_span(&wheels[..enabled]) > MIN_SPAN {
                 return wheels;
             }
         }

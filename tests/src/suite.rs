@@ -15,7 +15,7 @@ pub const SPACECRAFT: u64 = 20;
 /// Legs with each of them.
 pub const LEGS_PER_SPACECRAFT: u64 = 15;
 /// Smallest turn of a leg, rad.
-const SMALLEST_TURN: f64 = 1e-4;
+const MIN_TURN: f64 = 1e-4;
 
 /// A leg of the suite, named after its seeds.
 ///
@@ -36,7 +36,7 @@ pub fn leg(spacecraft: u64, leg: u64) -> ScenarioSpec {
     };
     for _ in 0..1000 {
         let from = Attitude::from_xyzw(generator.quaternion()).expect("unit length");
-        let angle = generator.logarithmic(SMALLEST_TURN, std::f64::consts::PI);
+        let angle = generator.logarithmic(MIN_TURN, std::f64::consts::PI);
         let turn = generator.direction().map(|c| c * angle);
         let to = from.then_in_body(&Attitude::from_rotation_vector(turn.into()));
         let speeds = craft.wheels.iter().map(|wheel| {

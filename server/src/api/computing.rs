@@ -13,8 +13,8 @@ use turns::Turn;
 pub(super) use turns::Turns;
 
 /// Longest time that a request may wait for its turn, and compute, s.
-pub(super) const LONGEST_S: u64 = 60;
-pub(super) const LONGEST: Duration = Duration::from_secs(LONGEST_S);
+pub(super) const MAX_S: u64 = 60;
+pub(super) const LONGEST: Duration = Duration::from_secs(MAX_S);
 /// For work of which half is worth nothing.
 pub(super) const UNTIL_DONE: Duration = Duration::MAX;
 /// Flights that are integrated at once: there are not more cores to spare beside the solver.

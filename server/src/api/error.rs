@@ -9,7 +9,7 @@ use slewplan_solver::model::problem::{Code, Problem};
 use utoipa::ToSchema;
 
 /// Most problems of one input that are listed.
-const MOST_PROBLEMS: usize = 100;
+const MAX_PROBLEMS: usize = 100;
 /// When to come again, s, if the error itself does not know better.
 const RETRY_S: u32 = 10;
 /// The media type of every error.
@@ -167,9 +167,9 @@ impl ApiError {
             .any(|problem| problem.code == Code::MalformedJson);
         let detail = match problems.as_slice() {
             [only] => format!("{}: {}", place(only), only.message),
-            more if more.len() > MOST_PROBLEMS => {
+            more if more.len() > MAX_PROBLEMS => {
                 let count = more.len();
-                format!("{count} problems, the first {MOST_PROBLEMS} of them listed in errors")
+                format!("{count} problems, the first {MAX_PROBLEMS} of them listed in errors")
             }
             more => format!("{} problems, listed in errors", more.len()),
         };
@@ -205,7 +205,7 @@ impl ApiError {
 }
 
 fn listed(problems: &[Problem]) -> Vec<ProblemDocument<'_>> {
-    let first = problems.iter().take(MOST_PROBLEMS);
+    let first = problems.iter().take(MAX_PROBLEMS);
     first.map(ProblemDocument::from).collect()
 }
 

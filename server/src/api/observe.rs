@@ -12,7 +12,7 @@ use tracing::Instrument;
 use uuid::Uuid;
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
-const LONGEST_ID: usize = 64;
+const MAX_ID: usize = 64;
 
 /// Gives the request an id, logs and counts it.
 pub(super) async fn observe(State(app): State<App>, request: Request, next: Next) -> Response {
@@ -48,7 +48,7 @@ fn request_id(request: &Request) -> String {
         .and_then(|id| id.to_str().ok());
     let plain = |id: &&str| {
         !id.is_empty()
-            && id.len() <= LONGEST_ID
+            && id.len() <= MAX_ID
             && id
                 .bytes()
                 .all(|byte| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte))

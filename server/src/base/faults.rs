@@ -6,7 +6,7 @@ use slewplan_solver::run::stop::StopSignal;
 use std::time::Duration;
 
 /// Most memory that is taken on purpose, MiB.
-const MOST_BALLAST: usize = 2048;
+const MAX_BALLAST: usize = 2048;
 
 /// Fails if the name of a scenario asks for it.
 ///
@@ -24,7 +24,7 @@ pub(crate) fn strike(name: Option<&str>, pool: &SolverPool, stop: &StopSignal) {
         Some("fault:drop") => drop(FailsToDrop),
         Some("fault:memory") => {
             let mut ballast = Vec::new();
-            while !stop.is_set() && ballast.len() < MOST_BALLAST {
+            while !stop.is_set() && ballast.len() < MAX_BALLAST {
                 ballast.push(vec![1_u8; 1 << 20]);
                 std::thread::sleep(Duration::from_millis(5));
             }

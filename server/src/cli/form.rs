@@ -10,7 +10,7 @@ use slewplan_solver::model::plan::Flight;
 use slewplan_solver::model::scenario::Scenario;
 
 /// Most samples of a file: a week at three per second.
-const MOST_SAMPLES: usize = 2_000_000;
+const MAX_SAMPLES: usize = 2_000_000;
 
 impl ValueEnum for Form {
     fn value_variants<'a>() -> &'a [Self] {
@@ -101,7 +101,7 @@ impl Choices {
             wheel: self.wheel,
             object_name: self.object_name.clone(),
             object_id: self.object_id.clone(),
-            ..Options::new(MOST_SAMPLES)
+            ..Options::new(MAX_SAMPLES)
         }
     }
 }

@@ -10,7 +10,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Far above any real document, far below the memory of a small machine.
-const LARGEST_MIB: u64 = 256;
+const MAX_MIB: u64 = 256;
 
 /// The name of an input in messages.
 pub(super) fn name(path: &Path) -> String {
@@ -41,10 +41,10 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
         name: name(path),
         source,
     })?;
-    if bytes.len() as u64 > LARGEST_MIB << 20 {
+    if bytes.len() as u64 > MAX_MIB << 20 {
         return Err(Failure::TooLarge {
             name: name(path),
-            limit_mib: LARGEST_MIB,
+            limit_mib: MAX_MIB,
         });
     }
     Ok(bytes)
@@ -57,9 +57,7 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
         Box::new(File::open(path)?)
     };
     let mut bytes = Vec::new();
-    source
-        .take((LARGEST_MIB << 20) + 1)
-        .read_to_end(&mut bytes)?;
+    source.take((MAX_MIB << 20) + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Microseconds of a day.
 const DAY_US: i64 = 86_400_000_000;
-const LONGEST_CLIENT: usize = 64;
+const MAX_CLIENT: usize = 64;
 
 /// What `keys` takes.
 #[derive(Debug, clap::Args)]
@@ -70,11 +70,11 @@ async fn create(
     expires: Option<u32>,
 ) -> Result<Exit, Failure> {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"_.-".contains(&byte);
-    if client.is_empty() || client.len() > LONGEST_CLIENT || !client.bytes().all(plain) {
+    if client.is_empty() || client.len() > MAX_CLIENT || !client.bytes().all(plain) {
         return Err(Failure::Setting {
             name: "CLIENT",
             what: format!(
-                "{client:?} is not 1 to {LONGEST_CLIENT} letters, digits, dots, dashes and \
+                "{client:?} is not 1 to {MAX_CLIENT} letters, digits, dots, dashes and \
                  underscores"
             ),
         });

@@ -118,7 +118,7 @@ struct Line {
     elapsed_s: f64,
 }
 
-const SHORTEST_PAUSE: Duration = Duration::from_millis(100);
+const MIN_PAUSE: Duration = Duration::from_millis(100);
 
 impl JsonLines {
     fn new() -> Self {
@@ -146,7 +146,7 @@ impl Observer for JsonLines {
         let now = Instant::now();
         // Held while writing, so that lines do not mix.
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        if last.is_some_and(|(at, shown)| now - at < SHORTEST_PAUSE && !news(&shown, &progress)) {
+        if last.is_some_and(|(at, shown)| now - at < MIN_PAUSE && !news(&shown, &progress)) {
             return;
         }
         *last = Some((now, progress));

@@ -14,7 +14,7 @@ use std::fmt;
 
 /// Most members of an object: far more than any form has, few enough to look for each name in all of
 /// them.
-const MOST_MEMBERS: usize = 1000;
+const MAX_MEMBERS: usize = 1000;
 
 /// A name of an object and its value.
 pub(crate) type Member = (Box<str>, Node);
@@ -219,8 +219,8 @@ impl<'de> Visitor<'de> for NodeVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Node, A::Error> {
         let mut members = Vec::new();
         while let Some(member) = entries.next_entry()? {
-            if members.len() == MOST_MEMBERS {
-                let message = format!("an object of more than {MOST_MEMBERS} members");
+            if members.len() == MAX_MEMBERS {
+                let message = format!("an object of more than {MAX_MEMBERS} members");
                 return Err(A::Error::custom(message));
             }
             members.push(member);
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn syntax_errors_name_line_column_and_cause() {
-        let many = format!("{{{}", r#""a": 0, "#.repeat(MOST_MEMBERS + 1));
+        let many = format!("{{{}", r#""a": 0, "#.repeat(MAX_MEMBERS + 1));
         let cases: [(&[u8], &str, &str); 7] = [
             (many.as_bytes(), "line 1, column 80", "twenty members"),
             (b"", "line 1, column 0", "empty"),

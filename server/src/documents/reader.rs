@@ -4,7 +4,7 @@
 //! substitute, so that one pass finds everything that is wrong.
 
 use super::document::Node;
-use slewplan_solver::model::problem::{Code, MOST_KEPT, Problem};
+use slewplan_solver::model::problem::{Code, MAX_KEPT, Problem};
 use std::cell::RefCell;
 
 mod fields;
@@ -27,7 +27,7 @@ impl Sink {
 
     /// Whether there are very many.
     fn is_full(&self) -> bool {
-        self.0.borrow().len() >= MOST_KEPT
+        self.0.borrow().len() >= MAX_KEPT
     }
 
     /// All problems in the order of their discovery.

@@ -3,8 +3,8 @@
 use super::document::{self, Node};
 use super::reader::{Cursor, Fields, Sink};
 use super::{attitude, spacecraft};
-use slewplan_solver::model::problem::{Code, Faults, MOST_KEPT, Problem};
-use slewplan_solver::model::scenario::{MOST_CONES, MOST_TARGETS, Scenario, Validated};
+use slewplan_solver::model::problem::{Code, Faults, MAX_KEPT, Problem};
+use slewplan_solver::model::scenario::{MAX_CONES, MAX_TARGETS, Scenario, Validated};
 use slewplan_solver::model::spec::{
     Accuracy, AttitudeEquivalence, KeepOutSpec, OptionsSpec, ScenarioSpec, StateSpec, TargetSpec,
 };
@@ -46,7 +46,7 @@ pub(crate) fn examine(node: &Node, time_limit_s: Option<f64>) -> Result<Validate
             warnings: validated.warnings,
         },
         // What was replaced is not known in full.
-        Err(_) if problems.len() >= MOST_KEPT => Faults::default(),
+        Err(_) if problems.len() >= MAX_KEPT => Faults::default(),
         Err(faults) => faults,
     };
     let replaced = replaced(&problems);
@@ -177,11 +177,11 @@ fn scenario(fields: &Fields<'_>) -> ScenarioSpec {
         end: fields.optional("end").map(|cursor| state(&cursor)),
         targets: fields
             .required("targets")
-            .and_then(|targets| targets.each_of_at_most(MOST_TARGETS, target))
+            .and_then(|targets| targets.each_of_at_most(MAX_TARGETS, target))
             .unwrap_or_default(),
         keep_out: fields
             .optional("keep_out")
-            .and_then(|cones| cones.each_of_at_most(MOST_CONES, keep_out))
+            .and_then(|cones| cones.each_of_at_most(MAX_CONES, keep_out))
             .unwrap_or_default(),
         options: fields
             .optional("options")

@@ -113,7 +113,7 @@ fn gaps(parts: &[LegTable]) -> Vec<Misfit> {
     // No more than are worth reading: the number comes from a file.
     let missing: Vec<String> = (0..of)
         .filter(|number| !seen.contains_key(&(of, *number)))
-        .take(MOST_LISTED)
+        .take(MAX_LISTED)
         .map(|number| format!("{}/{of}", number + 1))
         .collect();
     if !missing.is_empty() {
@@ -125,7 +125,7 @@ fn gaps(parts: &[LegTable]) -> Vec<Misfit> {
 }
 
 /// Most missing parts that are listed.
-const MOST_LISTED: usize = 20;
+const MAX_LISTED: usize = 20;
 
 /// The rows of parts in their order in the whole table.
 fn interleaved(parts: &[LegTable]) -> Vec<LegRow> {

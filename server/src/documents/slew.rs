@@ -18,11 +18,11 @@ use slewplan_solver::slew::{
 };
 
 /// Most points of a sweep.
-pub(crate) const MOST_POINTS: usize = 200;
+pub(crate) const MAX_POINTS: usize = 200;
 /// Wall-clock limit without another one, s.
-const USUAL_LIMIT_S: f64 = 60.0;
+const DEFAULT_LIMIT_S: f64 = 60.0;
 /// Intervals of a command without their number.
-const USUAL_INTERVALS: usize = 24;
+const DEFAULT_INTERVALS: usize = 24;
 
 /// A valid request for one slew or several.
 #[derive(Debug)]
@@ -128,13 +128,13 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
             .optional("command")
             .and_then(|it| command(&it))
             .unwrap_or(Command::Free {
-                intervals: USUAL_INTERVALS,
+                intervals: DEFAULT_INTERVALS,
             }),
         allocation: allocation(&fields),
         ..ManoeuvreSpec::default()
     };
     let options = fields.optional("options");
-    let time_limit_s = options.map_or(Some(USUAL_LIMIT_S), |it| read_options(&it, &mut spec));
+    let time_limit_s = options.map_or(Some(DEFAULT_LIMIT_S), |it| read_options(&it, &mut spec));
     let asked = fields.optional("evidence");
     let evidence = asked.as_ref().and_then(Cursor::boolean).unwrap_or(false);
     if let Some(asked) = asked.filter(|_| evidence && sweep.is_some()) {
@@ -196,7 +196,7 @@ fn read_options(cursor: &Cursor<'_>, spec: &mut ManoeuvreSpec) -> Option<f64> {
     spec.momentum_authority = share("momentum_authority");
     // Here null is not the same as nothing: it lifts the limit.
     if fields.raw("time_limit_s").is_none() {
-        return Some(USUAL_LIMIT_S);
+        return Some(DEFAULT_LIMIT_S);
     }
     let limit = fields.optional("time_limit_s")?;
     let seconds = limit.number()?;
@@ -297,7 +297,7 @@ fn command(cursor: &Cursor<'_>) -> Option<Command> {
         });
     }
     let asked = fields.optional("intervals");
-    let intervals = asked.map_or(Some(USUAL_INTERVALS), |it| {
+    let intervals = asked.map_or(Some(DEFAULT_INTERVALS), |it| {
         it.integer()
             .map(|count| usize::try_from(count).unwrap_or(usize::MAX))
     })?;
@@ -328,11 +328,11 @@ fn read_sweep(cursor: &Cursor<'_>) -> Option<Sweep> {
         .or_else(|| weights.map(Sweep::Weights))
         .or_else(|| energies.map(Sweep::Energies))?;
     let (Sweep::Durations(values) | Sweep::Weights(values) | Sweep::Energies(values)) = &sweep;
-    if values.is_empty() || values.len() > MOST_POINTS {
+    if values.is_empty() || values.len() > MAX_POINTS {
         cursor.report(
             Code::WrongLength,
             format!("the sweep has {} values", values.len()),
-            format!("give 1 to {MOST_POINTS} values"),
+            format!("give 1 to {MAX_POINTS} values"),
         );
         return None;
     }

@@ -4,7 +4,7 @@ use super::document::Node;
 use super::reader::{Cursor, Fields, Sink};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
-use slewplan_solver::model::spacecraft::{MOST_BORESIGHTS, MOST_WHEELS};
+use slewplan_solver::model::spacecraft::{MAX_BORESIGHTS, MAX_WHEELS};
 use slewplan_solver::model::spec::{
     BoresightSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec,
 };
@@ -101,11 +101,11 @@ fn try_read(cursor: &Cursor<'_>) -> Option<SpacecraftSpec> {
             .and_then(|rate| rate.number()),
         wheels: fields
             .required("wheels")
-            .and_then(|wheels| wheels.each_of_at_most(MOST_WHEELS, wheel))
+            .and_then(|wheels| wheels.each_of_at_most(MAX_WHEELS, wheel))
             .unwrap_or_else(substitute_wheels),
         boresights: fields
             .optional("boresights")
-            .and_then(|boresights| boresights.each_of_at_most(MOST_BORESIGHTS, boresight))
+            .and_then(|boresights| boresights.each_of_at_most(MAX_BORESIGHTS, boresight))
             .unwrap_or_default(),
     })
 }

@@ -23,7 +23,7 @@ const FORGOTTEN: i64 = 256;
 const PAUSE: Duration = Duration::from_millis(20);
 /// Most bytes that are kept of a job: some minutes of processor time. What comes after that is
 /// solved again.
-const MOST_BYTES: usize = 128 << 20;
+const MAX_BYTES: usize = 128 << 20;
 
 /// The segments of a claim, as the solver's threads see them.
 #[derive(Debug)]
@@ -127,7 +127,7 @@ impl SegmentStore for SegmentCache {
             .shared
             .bytes
             .fetch_add(row.motion.len(), Ordering::Relaxed);
-        if before < MOST_BYTES {
+        if before < MAX_BYTES {
             self.shared.unwritten().push(row);
         }
     }

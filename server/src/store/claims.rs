@@ -13,7 +13,7 @@ use sqlx::sqlite::SqliteArguments;
 use sqlx::{Row, Sqlite};
 
 /// Attempts after which a job whose process dies each time is given up.
-const MOST_ATTEMPTS: i64 = 3;
+const MAX_ATTEMPTS: i64 = 3;
 
 /// The bound of a job that is told of another one (`?5`, or none): it never falls, unless the plan
 /// of such a duration contradicts it.
@@ -223,7 +223,7 @@ impl Store {
              WHERE state = 'running' AND (boot_id <> ?3 OR lease_until_us < ?2) RETURNING ",
             job_columns!()
         ))
-        .bind(MOST_ATTEMPTS)
+        .bind(MAX_ATTEMPTS)
         .bind(now_us)
         .bind(boot_id)
         .bind(EndCode::ProcessDied.as_str())

@@ -21,7 +21,7 @@ const TOO_LONG: i64 = 8 * STEP;
 /// made before anybody notices, and half a second where the log has 64 MB.
 const PAUSE: Duration = Duration::from_millis(2);
 /// Steps after which the wait is long enough.
-const MOST_STEPS: i64 = 8;
+const MAX_STEPS: i64 = 8;
 /// Longest wait for readers before the log begins anew, while nobody can write. Who reads longer makes
 /// a copy.
 const READERS: Duration = Duration::from_millis(50);
@@ -107,7 +107,7 @@ impl Folding {
 
 /// How long writers wait while a copy is made and the log has so many pages.
 fn pause(pages: i64) -> Duration {
-    let steps = ((pages - TOO_LONG) / STEP).clamp(0, MOST_STEPS);
+    let steps = ((pages - TOO_LONG) / STEP).clamp(0, MAX_STEPS);
     PAUSE * (1 << steps)
 }
 

@@ -55,7 +55,7 @@ const SAME_AXES: f64 = 1e-6;
 /// largest rates, rounded up: so that few kinds of ends occur.
 const SHARES: [f64; 2] = [0.25, 0.5];
 /// Most kinds of ends whose boxes are kept, some 1 MB each; others are prepared again for every leg.
-const MOST_KINDS: usize = 64;
+const MAX_KINDS: usize = 64;
 
 /// Lower bounds on the slews of one spacecraft. What two ends of a kind have in common is prepared
 /// when it is first needed, and shared between threads.
@@ -163,7 +163,7 @@ impl CertifiedBounds {
         // Not under the lock: two threads may prepare the same, with the same result.
         let fresh: Arc<[_]> = self.frames.iter().map(|frame| frame.bound(ends)).collect();
         let mut known = lock();
-        if known.len() < MOST_KINDS {
+        if known.len() < MAX_KINDS {
             known.insert(kind, Arc::clone(&fresh));
         }
         fresh

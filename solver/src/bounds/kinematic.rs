@@ -95,7 +95,7 @@ use std::f64::consts::PI;
 use words::{FIRST, Family, SingleWord};
 
 /// Most dwelling words of a ratio of rates: extreme ratios are refused rather than served slowly.
-const MOST_WORDS: usize = 200_000;
+const MAX_WORDS: usize = 200_000;
 /// Taken off a lower bound for the rounding of its last operations.
 const DEFLATION: f64 = 1e-9;
 
@@ -154,7 +154,7 @@ impl RateBox {
         let c: [f64; 3] = (raised / raised.norm()).into();
         let levels = Levels::new(c);
         let families = Family::all(&levels);
-        let mut singles = singular::words(&levels, longest_time(&c), MOST_WORDS)?;
+        let mut singles = singular::words(&levels, longest_time(&c), MAX_WORDS)?;
         let promising = singles.partition_point(|word| word.fixed == 0.0);
         let two_flips = families
             .iter()

@@ -10,7 +10,7 @@ mod rolling;
 mod tests;
 
 use crate::leg::profile::Profile;
-use crate::leg::transcription::{ControlPenalty, LEAST_TURN, Reserves, Scales, Transcription};
+use crate::leg::transcription::{ControlPenalty, MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
@@ -362,10 +362,10 @@ fn typical_angle(dynamics: &Dynamics, waypoints: &[Waypoint]) -> f64 {
             let change = pair[0].change_time(&pair[1], dynamics);
             turn.max(dynamics.turn_within(change))
         })
-        .filter(|angle| *angle > LEAST_TURN)
+        .filter(|angle| *angle > MIN_TURN)
         .collect();
     angles.sort_by(f64::total_cmp);
-    angles.get(angles.len() / 2).copied().unwrap_or(LEAST_TURN)
+    angles.get(angles.len() / 2).copied().unwrap_or(MIN_TURN)
 }
 
 fn scaled(profile: &Profile, scales: &Scales) -> Iterate {

@@ -33,12 +33,12 @@ mod tests;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 pub(crate) use reserves::Reserves;
 pub(crate) use rows::{Drift, Row};
-pub(crate) use scales::{LEAST_TURN, Scales};
+pub(crate) use scales::{MIN_TURN, Scales};
 
 use crate::leg::kinematics::{TurnMap, exact_turn};
 use crate::math::quaternion::{Quat, conjugate, imaginary, product};
 use crate::model::dynamics::Dynamics;
-use crate::model::spacecraft::MOST_ENABLED;
+use crate::model::spacecraft::MAX_ENABLED;
 use crate::nlp::{
     Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues, MAX_CONTROLS, MAX_STATES,
 };
@@ -48,7 +48,7 @@ use nodes::Node;
 use rows::LimitRow;
 
 /// The engine holds what the table above lists for as many wheels as a spacecraft may have.
-const _: () = assert!(3 + MOST_ENABLED <= MAX_STATES && MOST_ENABLED < MAX_CONTROLS);
+const _: () = assert!(3 + MAX_ENABLED <= MAX_STATES && MAX_ENABLED < MAX_CONTROLS);
 
 /// Weights of a penalty on controls, half of the square of how far they are from given ones.
 #[derive(Debug, Clone, Copy, Default)]

@@ -3,7 +3,7 @@
 //! A reader takes the findings by mutable reference, notes what it dislikes and returns `None` for
 //! a value that it cannot use, so that one fault neither hides nor invents another.
 
-use crate::model::problem::{Code, Faults, MOST_KEPT, Problem};
+use crate::model::problem::{Code, Faults, MAX_KEPT, Problem};
 use nalgebra::{Matrix3, Vector3};
 
 /// Problems and warnings, in the order in which they were found.
@@ -22,7 +22,7 @@ impl Findings {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) {
-        if self.problems.len() < MOST_KEPT {
+        if self.problems.len() < MAX_KEPT {
             let problem = Problem::new(pointer, code, message, hint);
             self.problems.push(problem);
         }
@@ -36,7 +36,7 @@ impl Findings {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) {
-        if self.warnings.len() < MOST_KEPT {
+        if self.warnings.len() < MAX_KEPT {
             let warning = Problem::new(pointer, code, message, hint);
             self.warnings.push(warning);
         }
@@ -197,12 +197,12 @@ mod tests {
     #[test]
     fn of_many_problems_the_first_are_kept() {
         let mut findings = Findings::default();
-        for i in 0..2 * MOST_KEPT {
+        for i in 0..2 * MAX_KEPT {
             findings.finite(&format!("/v/{i}"), f64::NAN);
         }
         let problems = findings.conclude::<()>(None).unwrap_err();
-        assert_eq!(problems.len(), MOST_KEPT);
-        assert_eq!(problems[MOST_KEPT - 1].pointer, "/v/999");
+        assert_eq!(problems.len(), MAX_KEPT);
+        assert_eq!(problems[MAX_KEPT - 1].pointer, "/v/999");
     }
 
     #[test]

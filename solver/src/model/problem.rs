@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// Most problems of one input that are kept: more help nobody, and each takes memory.
-pub const MOST_KEPT: usize = 1000;
+pub const MAX_KEPT: usize = 1000;
 /// Most names that a hint lists, and most characters of each.
 const NAMES_IN_A_HINT: usize = 10;
 const CHARACTERS_OF_A_NAME: usize = 40;

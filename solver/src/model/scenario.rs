@@ -11,8 +11,8 @@ mod order;
 mod state;
 mod target;
 
-pub use keep_out::MOST_CONES;
-pub use target::MOST_TARGETS;
+pub use keep_out::MAX_CONES;
+pub use target::MAX_TARGETS;
 
 use crate::model::attitude::Attitude;
 use crate::model::findings::Findings;

@@ -17,8 +17,8 @@
 mod inertia;
 mod wheels;
 
-pub(crate) use wheels::MOST_ENABLED;
-pub use wheels::MOST_WHEELS;
+pub(crate) use wheels::MAX_ENABLED;
+pub use wheels::MAX_WHEELS;
 
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
@@ -27,7 +27,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use std::collections::HashSet;
 
 /// Most boresights of a spacecraft.
-pub const MOST_BORESIGHTS: usize = 100;
+pub const MAX_BORESIGHTS: usize = 100;
 
 /// A valid wheel.
 #[derive(Debug, Clone, PartialEq)]
@@ -221,7 +221,7 @@ fn boresights(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<Vec<Boresight>> {
-    if !findings.at_most(pointer, specs.len(), MOST_BORESIGHTS) {
+    if !findings.at_most(pointer, specs.len(), MAX_BORESIGHTS) {
         return None;
     }
     let mut names = HashSet::new();

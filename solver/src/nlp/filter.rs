@@ -9,7 +9,7 @@ const GAMMA_PHI: f64 = 1e-5;
 /// Largest infeasibility that is ever admitted, as a multiple of that at the filter's reset and
 /// absolute: near a solution a better cost is not worth much of it.
 const RANGE: f64 = 1e4;
-const LEAST_RANGE: f64 = 1e-2;
+const MIN_RANGE: f64 = 1e-2;
 /// Sufficient decrease (Armijo) of the barrier cost.
 const ETA: f64 = 1e-4;
 
@@ -47,7 +47,7 @@ impl Filter {
     /// Empties the filter and sets its scales from a point's infeasibility.
     pub(super) fn reset(&mut self, theta: f64) {
         self.entries.clear();
-        self.theta_max = (RANGE * theta).max(LEAST_RANGE);
+        self.theta_max = (RANGE * theta).max(MIN_RANGE);
         self.theta_min = 1e-4 * theta.max(1.0);
     }
 

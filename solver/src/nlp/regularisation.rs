@@ -12,8 +12,8 @@ const MOST: f64 = 1e12;
 const TOO_SHORT: f64 = 0.1;
 /// Floor after the first such step, its most, and where a decaying floor ends.
 const FIRST_FLOOR: f64 = 1e-3;
-const MOST_FLOOR: f64 = 1.0;
-const LEAST_FLOOR: f64 = 1e-4;
+const MAX_FLOOR: f64 = 1.0;
+const MIN_FLOOR: f64 = 1e-4;
 
 /// The multiple of the identity, from iteration to iteration.
 #[derive(Debug, Clone, Copy, Default)]
@@ -50,8 +50,8 @@ impl Regularisation {
     /// Learns from the share of the longest possible step that was taken.
     pub(super) fn stepped(&mut self, share: f64) {
         self.floor = if share < TOO_SHORT {
-            (self.floor.max(self.last) * GROWTH).clamp(FIRST_FLOOR, MOST_FLOOR)
-        } else if self.floor > LEAST_FLOOR {
+            (self.floor.max(self.last) * GROWTH).clamp(FIRST_FLOOR, MAX_FLOOR)
+        } else if self.floor > MIN_FLOOR {
             self.floor / GROWTH
         } else {
             0.0

@@ -19,13 +19,13 @@ const MAX_STEP: f64 = 0.01;
 const TOLERANCE_DEG: f64 = 0.1;
 /// Flights of a Monte-Carlo run where no number is given, and at most.
 const RUNS: usize = 1000;
-const MOST_RUNS: usize = 100_000;
+const MAX_RUNS: usize = 100_000;
 /// Rates between which computers and loops are, 1/s.
 const RATES: (f64, f64) = (1e-3, 1e4);
 /// Most samples by which feedback can be late.
-const MOST_DELAY: usize = 100;
+const MAX_DELAY: usize = 100;
 /// Longest time of control after the end, s.
-const LONGEST_SETTLING: f64 = 1e6;
+const MAX_SETTLING: f64 = 1e6;
 
 /// How a plan is flown.
 #[derive(Debug, Clone)]
@@ -129,14 +129,13 @@ impl Settings {
         let delay = count(
             "delay_samples",
             spec.delay_samples.unwrap_or(0),
-            (0, MOST_DELAY),
+            (0, MAX_DELAY),
             pointer,
             findings,
         );
         let settle =
             findings.not_negative(&format!("{pointer}/settle_s"), spec.settle_s.unwrap_or(0.0));
-        let settle =
-            settle.and_then(|s| at_most("settle_s", s, LONGEST_SETTLING, pointer, findings));
+        let settle = settle.and_then(|s| at_most("settle_s", s, MAX_SETTLING, pointer, findings));
         let step = findings.positive(
             &format!("{pointer}/max_step_s"),
             spec.max_step_s.unwrap_or(MAX_STEP),
@@ -145,7 +144,7 @@ impl Settings {
         let runs = count(
             "runs",
             spec.runs.unwrap_or(RUNS),
-            (1, MOST_RUNS),
+            (1, MAX_RUNS),
             pointer,
             findings,
         );

@@ -6,7 +6,7 @@ use crate::model::problem::Code;
 use crate::nlp::{MAX_CONTROLS, MAX_STATES};
 
 /// Most intervals of a manoeuvre.
-pub(super) const MOST_INTERVALS: usize = 2000;
+pub(super) const MAX_INTERVALS: usize = 2000;
 /// Relative error of a duration as a multiple of the sampling period that is rounding.
 const MULTIPLE_TOLERANCE: f64 = 1e-9;
 
@@ -53,13 +53,13 @@ fn check_command(command: &Command, findings: &mut Findings) -> bool {
         Command::Free { intervals }
         | Command::Uniform { intervals }
         | Command::Smooth { intervals } => {
-            let valid = (2..=MOST_INTERVALS).contains(&intervals);
+            let valid = (2..=MAX_INTERVALS).contains(&intervals);
             if !valid {
                 findings.refuse(
                     "/command/intervals",
                     Code::OutOfRange,
                     format!("there are {intervals} intervals"),
-                    format!("give 2 to {MOST_INTERVALS} intervals"),
+                    format!("give 2 to {MAX_INTERVALS} intervals"),
                 );
             }
             valid
@@ -81,13 +81,13 @@ pub(super) fn check_multiple(
     };
     let samples = duration_s / period_s;
     let valid = (samples - samples.round()).abs() <= MULTIPLE_TOLERANCE * samples
-        && (2.0..=MOST_INTERVALS as f64).contains(&samples.round());
+        && (2.0..=MAX_INTERVALS as f64).contains(&samples.round());
     if !valid {
         findings.refuse(
             pointer,
             Code::OutOfRange,
             format!("{duration_s} s are {samples} samples of {period_s} s"),
-            format!("give a duration of 2 to {MOST_INTERVALS} whole samples"),
+            format!("give a duration of 2 to {MAX_INTERVALS} whole samples"),
         );
     }
     valid

@@ -11,7 +11,7 @@ use crate::nlp::Interruption;
 /// Relative error of the bill that ends the search.
 const ACCURACY: f64 = 1e-5;
 /// Durations tried, and the factor between them before the root is bracketed.
-const MOST_TRIALS: usize = 40;
+const MAX_TRIALS: usize = 40;
 const GROWTH: f64 = 1.25;
 
 /// A duration with the optimum in it.
@@ -53,7 +53,7 @@ pub(super) fn solve(
     };
     let mut high = attempt(shortest * GROWTH, None);
     let mut low: Option<Trial> = None;
-    for _ in 0..MOST_TRIALS {
+    for _ in 0..MAX_TRIALS {
         if stop().is_some() || high.excess.abs() <= ACCURACY {
             break;
         }

@@ -5,7 +5,7 @@
 //! many samples, one more is allowed. In its fixed time a manoeuvre for time alone takes the least
 //! effort.
 
-use super::choices::MOST_INTERVALS;
+use super::choices::MAX_INTERVALS;
 use super::flown::{self, effort};
 use super::ingredients::Ingredients;
 use super::motion::Motion;
@@ -14,7 +14,7 @@ use super::{Found, Hold, Manoeuvre, Objective, Plain, direct, in_continuous_time
 use crate::nlp::Interruption;
 
 /// Samples allowed beyond those of the continuous minimum.
-const MOST_EXTRA: usize = 12;
+const MAX_EXTRA: usize = 12;
 /// Share of a sample by which a duration may exceed a multiple of it as rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -37,9 +37,9 @@ pub(super) fn solve(
     };
     let shortest = continuous.solved.motion.duration() / period;
     let least = whole((shortest - ROUNDING).ceil()).max(2);
-    if least + MOST_EXTRA > MOST_INTERVALS {
+    if least + MAX_EXTRA > MAX_INTERVALS {
         continuous.refusal = Some(format!(
-            "a minimum of {:.6e} s would take more than {MOST_INTERVALS} samples of {period} s",
+            "a minimum of {:.6e} s would take more than {MAX_INTERVALS} samples of {period} s",
             continuous.solved.motion.duration()
         ));
         return continuous;
@@ -77,7 +77,7 @@ pub(super) fn solve(
     reason = "clamped to a range that fits"
 )]
 fn whole(number: f64) -> usize {
-    number.clamp(0.0, (MOST_INTERVALS + 1) as f64) as usize
+    number.clamp(0.0, (MAX_INTERVALS + 1) as f64) as usize
 }
 
 /// A manoeuvre on a clock.
@@ -97,9 +97,9 @@ impl Clock<'_> {
             }
             // Time weighs against effort, so that the shorter side of the optimum counts too.
             Objective::TimeAndEffort { .. } => {
-                (least.saturating_sub(1).max(2)..=least + MOST_EXTRA).collect()
+                (least.saturating_sub(1).max(2)..=least + MAX_EXTRA).collect()
             }
-            _ => (least..=least + MOST_EXTRA).collect(),
+            _ => (least..=least + MAX_EXTRA).collect(),
         }
     }
 

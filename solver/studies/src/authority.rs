@@ -13,7 +13,7 @@ use slewplan_solver::simulation::{Simulation, SimulationSpec, Spread};
 use slewplan_solver::tour::planner::{Run, solve};
 
 /// Most pairs of shares of one study: each is a plan and as many flights as asked for.
-pub const MOST_AUTHORITIES: usize = 200;
+pub const MAX_AUTHORITIES: usize = 200;
 
 /// Shares of every torque and speed limit that a plan may use.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +95,7 @@ pub fn study(
 
 fn check_shares(authorities: &[Authorities], pointer: &str, findings: &mut Findings) -> bool {
     let pointer = format!("{pointer}/authorities");
-    let mut valid = findings.at_most(&pointer, authorities.len(), MOST_AUTHORITIES);
+    let mut valid = findings.at_most(&pointer, authorities.len(), MAX_AUTHORITIES);
     if authorities.is_empty() {
         valid = false;
         findings.refuse(

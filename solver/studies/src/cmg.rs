@@ -47,7 +47,7 @@ const ALONG: f64 = 1e-9;
 const DEFINITE: f64 = 1e-9;
 
 /// Most circles of latitude of a singular surface: 80,000 states, some 12 MB for four gyroscopes.
-pub const MOST_SURFACE_ROWS: usize = 200;
+pub const MAX_SURFACE_ROWS: usize = 200;
 
 /// A rotor with its gimbal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -234,11 +234,11 @@ impl CmgCluster {
     }
 
     /// The singular surface of a pattern of signs over a grid with so many circles of latitude, the
-    /// poles left out, and twice as many meridians. More than [`MOST_SURFACE_ROWS`] count as these;
+    /// poles left out, and twice as many meridians. More than [`MAX_SURFACE_ROWS`] count as these;
     /// the surface says how many it has.
     #[must_use]
     pub fn singular_surface(&self, signs: &[bool], rows: usize) -> SingularSurface {
-        let rows = rows.min(MOST_SURFACE_ROWS);
+        let rows = rows.min(MAX_SURFACE_ROWS);
         let directions = grid(rows);
         SingularSurface {
             signs: signs.to_vec(),

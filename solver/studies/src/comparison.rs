@@ -47,7 +47,7 @@ pub const CUT_OFF: f64 = 0.001;
 /// Halvings of the interval of an advantage angle: to rounding.
 const BISECTIONS: usize = 60;
 /// Most entries of a list in a request.
-const MOST_ENTRIES: usize = 10_000;
+const MAX_ENTRIES: usize = 10_000;
 
 /// A published advantage angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -311,7 +311,7 @@ fn check_list(name: &str, values: &[f64], findings: &mut Findings) {
             "give at least one number",
         );
     }
-    findings.at_most(&pointer, values.len(), MOST_ENTRIES);
+    findings.at_most(&pointer, values.len(), MAX_ENTRIES);
     for (i, &value) in values.iter().enumerate() {
         findings.positive(&format!("{pointer}/{i}"), value);
     }

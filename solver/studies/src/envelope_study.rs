@@ -23,11 +23,11 @@ use slewplan_solver::wheels::allocation::{self, Allocation};
 use slewplan_solver::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
 
 /// Most turns of a study, each with two optimisations at most.
-pub const MOST_TURNS: usize = 100;
+pub const MAX_TURNS: usize = 100;
 /// Most demands of a study, each with a linear program.
-pub const MOST_DEMANDS: usize = 1000;
+pub const MAX_DEMANDS: usize = 1000;
 /// Turns below this angle, rad, are rounding.
-const LEAST_ANGLE: f64 = 1e-9;
+const MIN_ANGLE: f64 = 1e-9;
 
 /// A turn as a caller describes it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -145,8 +145,8 @@ impl EnvelopeStudy {
         let baselines = baselines
             .map_err(|problems| findings.include(problems))
             .ok();
-        findings.at_most("/turns", spec.turns.len(), MOST_TURNS);
-        findings.at_most("/demands_nm", spec.demands_nm.len(), MOST_DEMANDS);
+        findings.at_most("/turns", spec.turns.len(), MAX_TURNS);
+        findings.at_most("/demands_nm", spec.demands_nm.len(), MAX_DEMANDS);
         let vectors: Vec<_> = spec
             .turns
             .iter()
@@ -313,7 +313,7 @@ fn read_turn(spec: &TurnSpec, pointer: &str, findings: &mut Findings) -> Option<
     let (from, to) = (read(&spec.from, "from"), read(&spec.to, "to"));
     let (from, to) = (from?, to?);
     let vector = from.signed_turn_to(&to.nearest_sign(&from));
-    if vector.norm() < LEAST_ANGLE {
+    if vector.norm() < MIN_ANGLE {
         findings.refuse(
             pointer,
             Code::ZeroDirection,

@@ -7,8 +7,8 @@ use slewplan_solver::simulation::{SimulatedFlight, Simulation, SimulationSpec};
 use slewplan_solver::tour::planner::{self, Run};
 
 /// States that are kept when nothing is said about it, and at most.
-const USUAL_STATES: usize = 2_000;
-const MOST_STATES: usize = 10_000;
+const DEFAULT_STATES: usize = 2_000;
+const MAX_STATES: usize = 10_000;
 
 /// A valid request for a flight.
 #[derive(Debug)]
@@ -94,15 +94,15 @@ pub fn fly(study: &FlightStudy, run: Run<'_>) -> Result<Outcome, Vec<Problem>> {
 /// Which samples are kept: as asked for, or so many that a picture does not need more.
 fn keep_every(study: &FlightStudy, samples: usize) -> Result<usize, Vec<Problem>> {
     let Some(asked) = study.keep_every else {
-        return Ok(samples.div_ceil(USUAL_STATES).max(1));
+        return Ok(samples.div_ceil(DEFAULT_STATES).max(1));
     };
-    if samples / asked <= MOST_STATES {
+    if samples / asked <= MAX_STATES {
         return Ok(asked);
     }
     Err(vec![Problem::new(
         "/keep_every",
         Code::OutOfRange,
-        format!("the flight has {samples} samples, at most {MOST_STATES} can be kept"),
-        format!("give at least {}", samples.div_ceil(MOST_STATES)),
+        format!("the flight has {samples} samples, at most {MAX_STATES} can be kept"),
+        format!("give at least {}", samples.div_ceil(MAX_STATES)),
     )])
 }

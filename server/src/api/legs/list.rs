@@ -14,7 +14,7 @@ use slewplan_solver::model::problem::{Code, Problem};
 use utoipa::IntoParams;
 
 const DEFAULT_LIMIT: u16 = 50;
-const LARGEST_LIMIT: u16 = 200;
+const MAX_LIMIT: u16 = 200;
 /// What remains of an attitude that was written with six digits, degrees.
 const DEFAULT_TOLERANCE_DEG: f64 = 1e-3;
 
@@ -69,8 +69,8 @@ pub(in crate::api) async fn handler(
     Parameters(query): Parameters<Query>,
 ) -> Result<Json<StoredLegListDocument>, ApiError> {
     let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
-    if !(1..=LARGEST_LIMIT).contains(&limit) {
-        return Err(wrong(format!("limit is from 1 to {LARGEST_LIMIT}")));
+    if !(1..=MAX_LIMIT).contains(&limit) {
+        return Err(wrong(format!("limit is from 1 to {MAX_LIMIT}")));
     }
     let tolerance = query.tolerance_deg.unwrap_or(DEFAULT_TOLERANCE_DEG);
     if !(0.0..=180.0).contains(&tolerance) {

@@ -22,7 +22,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 
 /// Most legs of one query: the full matrix of 32 attitudes.
-pub(in crate::api) const MOST_PAIRS: usize = 1000;
+pub(in crate::api) const MAX_PAIRS: usize = 1000;
 /// With a start and two targets, the fourth of six pairs leads from the first target to the second.
 const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 
@@ -50,10 +50,10 @@ pub(in crate::api) async fn handler(
     body: JsonBody,
 ) -> Result<Json<LegAnswersDocument>, ApiError> {
     let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
-    let query = leg_query::read(&node, MOST_PAIRS).map_err(|refusal| match refusal {
+    let query = leg_query::read(&node, MAX_PAIRS).map_err(|refusal| match refusal {
         Refusal::Invalid(problems) => ApiError::input(problems),
         Refusal::TooMany(count) => {
-            let detail = format!("{count} legs; the limit is {MOST_PAIRS} (max_leg_pairs)");
+            let detail = format!("{count} legs; the limit is {MAX_PAIRS} (max_leg_pairs)");
             ApiError::new(ErrorCode::TooManyPairs, detail)
         }
     })?;

@@ -41,7 +41,7 @@ pub(in crate::api) async fn live() -> Json<Document> {
 /// are not tried more often than that.
 const FRESH: Duration = Duration::from_secs(1);
 /// Longest time for the trial of the solver, which takes milliseconds.
-const LONGEST_SOLVE: Duration = Duration::from_secs(5);
+const MAX_SOLVE: Duration = Duration::from_secs(5);
 
 /// The newest answer of the database and the solver, and since when it holds: why they cannot be
 /// used, if they cannot. Who asks meanwhile waits for it.
@@ -100,7 +100,7 @@ fn solves(pool: &SolverPool) -> bool {
     let Ok(valid) = documents::scenario::read(scenario.as_bytes(), None) else {
         return false;
     };
-    let stop = StopSignal::new().with_time_limit(LONGEST_SOLVE);
+    let stop = StopSignal::new().with_time_limit(MAX_SOLVE);
     let run = Run {
         pool,
         stop: &stop,

@@ -46,9 +46,9 @@ pub(in crate::api) async fn handler(State(app): State<App>) -> Json<Document> {
         job_memory_bytes: app.jobs().memory_limit(),
         queue_limit: app.jobs().queue_limits().all,
         client_queue_limit: app.jobs().queue_limits().client,
-        max_wait_s: create::LONGEST_WAIT_S,
-        max_leg_pairs: query::MOST_PAIRS,
-        max_leg_query_s: computing::LONGEST_S,
+        max_wait_s: create::MAX_WAIT_S,
+        max_leg_pairs: query::MAX_PAIRS,
+        max_leg_query_s: computing::MAX_S,
         solver_threads: app.0.pool.threads(),
     })
 }

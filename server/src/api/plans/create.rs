@@ -24,8 +24,8 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 /// Longest wait of a request for its plan, s.
-pub(in crate::api) const LONGEST_WAIT_S: u64 = 60;
-const LONGEST_KEY: usize = 255;
+pub(in crate::api) const MAX_WAIT_S: u64 = 60;
+const MAX_KEY: usize = 255;
 
 /// Parameters of a submission.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -214,9 +214,9 @@ fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, ApiError> {
         return Ok(None);
     };
     let visible = key.bytes().all(|byte| byte.is_ascii_graphic());
-    if key.is_empty() || key.len() > LONGEST_KEY || !visible {
+    if key.is_empty() || key.len() > MAX_KEY || !visible {
         let detail =
-            format!("an Idempotency-Key has 1 to {LONGEST_KEY} visible ASCII characters, no space");
+            format!("an Idempotency-Key has 1 to {MAX_KEY} visible ASCII characters, no space");
         return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
     }
     Ok(Some(key.to_owned()))
@@ -232,5 +232,5 @@ fn wait(headers: &HeaderMap) -> Option<Duration> {
         .flat_map(|value| value.split([',', ';']))
         .filter_map(|preference| preference.trim().strip_prefix("wait="))
         .find_map(|seconds| seconds.trim().parse::<u64>().ok())
-        .map(|seconds| Duration::from_secs(seconds.min(LONGEST_WAIT_S)))
+        .map(|seconds| Duration::from_secs(seconds.min(MAX_WAIT_S)))
 }

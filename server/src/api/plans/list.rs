@@ -13,7 +13,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 const DEFAULT_LIMIT: u16 = 50;
-const LARGEST_LIMIT: u16 = 200;
+const MAX_LIMIT: u16 = 200;
 
 /// What to list.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -49,8 +49,8 @@ pub(in crate::api) async fn handler(
 ) -> Result<Json<JobListDocument>, ApiError> {
     let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
     let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
-    if !(1..=LARGEST_LIMIT).contains(&limit) {
-        return Err(wrong(format!("limit is from 1 to {LARGEST_LIMIT}")));
+    if !(1..=MAX_LIMIT).contains(&limit) {
+        return Err(wrong(format!("limit is from 1 to {MAX_LIMIT}")));
     }
     let state = query
         .state

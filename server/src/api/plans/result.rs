@@ -20,7 +20,7 @@ const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
 /// Time after which a first plan is worth asking for again, s.
 const RETRY_S: u32 = 1;
 /// Most samples of an answer: some 80 MB of XML.
-const MOST_SAMPLES: usize = 200_000;
+const MAX_SAMPLES: usize = 200_000;
 
 /// Parameters of a result.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -74,7 +74,7 @@ impl Query {
             wheel: self.wheel.map(|wheel| wheel as usize),
             object_name: self.object_name.clone(),
             object_id: self.object_id.clone(),
-            ..Options::new(MOST_SAMPLES)
+            ..Options::new(MAX_SAMPLES)
         })
     }
 

@@ -12,7 +12,7 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::StatusCode;
 
-const LONGEST_NAME: usize = 64;
+const MAX_NAME: usize = 64;
 
 /// Store a spacecraft under a name
 ///
@@ -60,11 +60,11 @@ fn check_name(name: &str) -> Result<(), ApiError> {
         .bytes()
         .next()
         .is_some_and(|byte| plain(byte) && !b".-".contains(&byte));
-    if begins && name.len() <= LONGEST_NAME && name.bytes().all(plain) {
+    if begins && name.len() <= MAX_NAME && name.bytes().all(plain) {
         return Ok(());
     }
     let detail = format!(
-        "a name has 1 to {LONGEST_NAME} letters, digits, dots, dashes and underscores and does \
+        "a name has 1 to {MAX_NAME} letters, digits, dots, dashes and underscores and does \
          not begin with a dot or dash"
     );
     Err(ApiError::new(ErrorCode::InvalidParameter, detail))

@@ -24,10 +24,10 @@ fn what_is_left_out_has_its_usual_value() {
     let request = reading("").unwrap();
     assert_eq!(request.manoeuvre.objective(), Objective::MinimumTime);
     let free = Command::Free {
-        intervals: USUAL_INTERVALS,
+        intervals: DEFAULT_INTERVALS,
     };
     assert_eq!(request.manoeuvre.command(), free);
-    assert_eq!(request.time_limit_s, Some(USUAL_LIMIT_S));
+    assert_eq!(request.time_limit_s, Some(DEFAULT_LIMIT_S));
     assert!(!request.evidence && request.sweep.is_none());
     let without = reading(r#", "options": {"time_limit_s": null}"#).unwrap();
     assert_eq!(without.time_limit_s, None);

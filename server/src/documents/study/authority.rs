@@ -14,7 +14,7 @@ use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::tour::planner::Run;
 use slewplan_studies::authority::{
-    Authorities, AuthorityRow, AuthorityStudySpec, MOST_AUTHORITIES, RowOutcome, study,
+    Authorities, AuthorityRow, AuthorityStudySpec, MAX_AUTHORITIES, RowOutcome, study,
 };
 use utoipa::ToSchema;
 
@@ -59,7 +59,7 @@ pub(crate) fn read_node(node: &Node) -> Result<AuthorityStudy, Vec<Problem>> {
                 .unwrap_or_default(),
             authorities: fields
                 .required("authorities")
-                .and_then(|pairs| pairs.each_of_at_most(MOST_AUTHORITIES, authorities))
+                .and_then(|pairs| pairs.each_of_at_most(MAX_AUTHORITIES, authorities))
                 .map(|pairs| pairs.into_iter().flatten().collect())
                 .unwrap_or_default(),
         },

@@ -11,9 +11,9 @@ use slewplan_studies::comparison::{ComparisonSpec, Control, Laws, Radii, Radius,
 use slewplan_studies::market::PowerLaw;
 
 /// Most circles of latitude of the singular surfaces in an answer: eight surfaces of some 300 kB.
-pub(crate) const MOST_ROWS: usize = 40;
+pub(crate) const MAX_ROWS: usize = 40;
 /// Most entries of a list.
-pub(crate) const MOST_ENTRIES: usize = 1000;
+pub(crate) const MAX_ENTRIES: usize = 1000;
 
 /// Reads a comparison.
 ///
@@ -81,17 +81,17 @@ fn number(fields: &Fields<'_>, name: &str) -> Option<f64> {
 fn list(fields: &Fields<'_>, name: &str) -> Option<Vec<f64>> {
     let read = fields
         .optional(name)?
-        .each_of_at_most(MOST_ENTRIES, Cursor::number)?;
+        .each_of_at_most(MAX_ENTRIES, Cursor::number)?;
     read.into_iter().collect()
 }
 
 fn rows(cursor: &Cursor<'_>) -> Option<usize> {
     let count = usize::try_from(cursor.integer()?).unwrap_or(usize::MAX);
-    if count > MOST_ROWS {
+    if count > MAX_ROWS {
         cursor.report(
             Code::OutOfRange,
             format!("there are {count} rows"),
-            format!("give 1 to {MOST_ROWS} rows"),
+            format!("give 1 to {MAX_ROWS} rows"),
         );
         return None;
     }

@@ -9,7 +9,7 @@ use crate::documents::reader::{Cursor, Sink};
 use crate::documents::{attitude, spacecraft};
 use slewplan_solver::model::problem::Problem;
 use slewplan_studies::envelope_study::{
-    EnvelopeStudy, EnvelopeStudySpec, MOST_DEMANDS, MOST_TURNS, TurnSpec,
+    EnvelopeStudy, EnvelopeStudySpec, MAX_DEMANDS, MAX_TURNS, TurnSpec,
 };
 
 /// A valid study with what the caller should know about it.
@@ -69,11 +69,11 @@ fn decode(cursor: &Cursor<'_>) -> Option<EnvelopeStudySpec> {
         momentum_authority,
         turns: fields
             .optional("turns")
-            .and_then(|turns| turns.each_of_at_most(MOST_TURNS, turn))
+            .and_then(|turns| turns.each_of_at_most(MAX_TURNS, turn))
             .unwrap_or_default(),
         demands_nm: fields
             .optional("demands_nm")
-            .and_then(|demands| demands.each_of_at_most(MOST_DEMANDS, demand))
+            .and_then(|demands| demands.each_of_at_most(MAX_DEMANDS, demand))
             .unwrap_or_default(),
         time_optimal: fields
             .optional("time_optimal")

@@ -7,7 +7,7 @@ use slewplan_solver::simulation::{
 };
 
 /// Damping where none is given.
-const USUAL_DAMPING: f64 = 0.7;
+const DEFAULT_DAMPING: f64 = 0.7;
 
 /// Reads a simulation; what is left out has its usual value.
 pub(super) fn read(cursor: &Cursor<'_>) -> SimulationSpec {
@@ -161,7 +161,7 @@ fn pid_gains(cursor: &Cursor<'_>) -> Option<PidGainsSpec> {
 
 fn damping(fields: &Fields<'_>) -> f64 {
     let asked = fields.optional("damping").and_then(|it| it.number());
-    asked.unwrap_or(USUAL_DAMPING)
+    asked.unwrap_or(DEFAULT_DAMPING)
 }
 
 fn errors(cursor: &Cursor<'_>) -> ErrorsSpec {

@@ -12,11 +12,11 @@ use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
 /// Most dwelling words that are gone through.
-const MOST_WORDS: usize = 200_000;
+const MAX_WORDS: usize = 200_000;
 /// Most flips that are followed near an axis.
-const MOST_FLIPS: usize = 20_000;
+const MAX_FLIPS: usize = 20_000;
 /// Most cells of one proof.
-const MOST_CELLS: usize = 20_000_000;
+const MAX_CELLS: usize = 20_000_000;
 /// Cells narrower than this are given up.
 const NARROW: f64 = 1e-13;
 /// A motion counts as faster only by more than this share, which covers the last few operations.
@@ -68,7 +68,7 @@ impl Prover {
         // The turn about its own axis is a motion.
         proof.refuted_by(self.rates.eigenaxis(&q))?;
         if time > self.horizon {
-            self.dwelling = dwelling::words(&self.rates, time, MOST_WORDS)
+            self.dwelling = dwelling::words(&self.rates, time, MAX_WORDS)
                 .ok_or(Rejection::not_proved("too many extremals dwell"))?;
             self.horizon = time;
         }
@@ -101,7 +101,7 @@ impl Proof<'_> {
         let near = NearAxis::new(&self.q, axis);
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         let angle = angle_of(&self.q).low;
-        for arcs in 1..MOST_FLIPS {
+        for arcs in 1..MAX_FLIPS {
             let longest = (self.time / arcs as f64).next_up().min(Interval::PI.high);
             let open = [false, true]
                 .map(|negative| !near.proved(self.rates, longest, negative, self.time));
@@ -156,7 +156,7 @@ impl Proof<'_> {
         high: f64,
     ) -> Result<bool, Rejection> {
         self.cells += 1;
-        if self.cells > MOST_CELLS {
+        if self.cells > MAX_CELLS {
             return Err(Rejection::not_proved("the proof takes too long"));
         }
         let repeats = Interval::exactly(word.repeats());

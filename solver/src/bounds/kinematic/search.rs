@@ -16,7 +16,7 @@ const NARROW: f64 = 1e-9;
 /// Turn of the interior over half a cell below which the outer arcs are worth a look, rad.
 const CLOSE_LOOK: f64 = 0.25;
 /// Most flips that are followed near an axis; beyond, the bound of the tail is reported.
-const MOST_FLIPS: usize = 4096;
+const MAX_FLIPS: usize = 4096;
 /// Rounding allowance for angles that wrap, rad.
 const WRAP: f64 = 1e-9;
 /// What rounding takes from a cosine of one: a candidate that seems to miss by less is taken to
@@ -321,7 +321,7 @@ impl<'a> Search<'a> {
                     None => false,
                 };
                 let least = bounds[usize::from(backwards)];
-                if least >= self.upper * (1.0 - self.tolerance) || flips == MOST_FLIPS {
+                if least >= self.upper * (1.0 - self.tolerance) || flips == MAX_FLIPS {
                     self.keep(least);
                     continue;
                 }

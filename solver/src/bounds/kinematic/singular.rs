@@ -12,7 +12,7 @@ use crate::math::quaternion::{Quat, product};
 use std::f64::consts::{PI, TAU};
 
 /// Most arcs of an interior.
-const MOST_STEPS: usize = 500;
+const MAX_STEPS: usize = 500;
 /// A sequence of fixed arcs is no part of a shortest motion if it can be replaced by one shorter by
 /// this share.
 const CLEARLY_SHORTER: f64 = 1e-6;
@@ -145,7 +145,7 @@ impl Circle<'_> {
             self.words.extend(word);
         }
         // Refused rather than followed without end, should rounding make arcs vanish.
-        if steps.len() == MOST_STEPS {
+        if steps.len() == MAX_STEPS {
             return None;
         }
         let count = self.events.len();

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Most substeps of an interval.
 const MAX_SUBSTEPS: usize = 32;
 /// Substeps up to which the stages of an interval are kept on the stack.
-const USUAL_SUBSTEPS: usize = 2;
+const DEFAULT_SUBSTEPS: usize = 2;
 
 const STAGES: usize = 7;
 /// J. C. Butcher, "On Runge-Kutta processes of high order", 1964.
@@ -157,8 +157,8 @@ impl RungeKutta {
 
     /// The turn with derivatives, the second ones weighted by `mu`.
     pub(super) fn derivatives(&self, z: &TurnInputs, mu: &Quat) -> TurnDerivatives {
-        if self.substeps <= USUAL_SUBSTEPS {
-            let mut records = [StageRecord::default(); STAGES * USUAL_SUBSTEPS];
+        if self.substeps <= DEFAULT_SUBSTEPS {
+            let mut records = [StageRecord::default(); STAGES * DEFAULT_SUBSTEPS];
             self.sweep(z, mu, &mut records)
         } else {
             let mut records = vec![StageRecord::default(); STAGES * self.substeps];

@@ -20,7 +20,7 @@ const SLOWEST: f64 = 1e-3;
 /// Intervals of a ramp in a starting guess.
 const RAMP_INTERVALS: usize = 2;
 /// Share of the duration below which a coast is not worth nodes of its own.
-const LEAST_COAST: f64 = 1e-3;
+const MIN_COAST: f64 = 1e-3;
 /// Bow of a starting guess across the axis, as a share of the peak rate.
 const BOW: f64 = 0.1;
 
@@ -219,7 +219,7 @@ fn node_times(course: &BangCoastBang, intervals: usize) -> Vec<f64> {
     };
     let (ramp, end) = (course.ramp(), course.duration());
     let equal = end / intervals as f64;
-    let finer = ramp < equal * RAMP_INTERVALS as f64 && end - 2.0 * ramp > LEAST_COAST * end;
+    let finer = ramp < equal * RAMP_INTERVALS as f64 && end - 2.0 * ramp > MIN_COAST * end;
     let mut times: Vec<f64> = if finer && intervals > 2 * RAMP_INTERVALS {
         even(0.0, ramp, RAMP_INTERVALS)
             .chain(even(ramp, end - ramp, intervals - 2 * RAMP_INTERVALS))

@@ -20,7 +20,7 @@ impl Resolution {
         } else {
             0
         };
-        let usual = LEAST_INTERVALS + PER_SPARE_WHEEL * (dynamics.wheel_count() - 3) + bent;
+        let usual = MIN_INTERVALS + PER_SPARE_WHEEL * (dynamics.wheel_count() - 3) + bent;
         match accuracy {
             Accuracy::Standard => Self {
                 intervals: usual,
@@ -37,12 +37,12 @@ impl Resolution {
     /// from it, under a torque that does not turn with the stored momentum.
     pub(crate) fn intervals_of(&self, dynamics: &Dynamics, turn: f64) -> usize {
         let stray = if self.polished {
-            0.5 * MOST_STRAY
+            0.5 * MAX_STRAY
         } else {
-            MOST_STRAY
+            MAX_STRAY
         };
         let longest = (8.0 * stray / dynamics.straying()).sqrt();
-        self.intervals + parts_of(DETOUR * turn, longest, MOST_ALONG_LIMITS)
+        self.intervals + parts_of(DETOUR * turn, longest, MAX_ALONG_LIMITS)
     }
 }
 
@@ -57,7 +57,7 @@ pub(super) fn parts_of(turn: f64, longest: f64, most: usize) -> usize {
 
 /// Intervals of a leg with three wheels and without momentum: with more the measured durations of
 /// 171 legs gain less than 1e-4.
-const LEAST_INTERVALS: usize = 12;
+const MIN_INTERVALS: usize = 12;
 /// Further intervals for every further wheel, which switches at times of its own, and for stored
 /// momentum, which turns in the body while the torque of an interval does not. Of 90
 /// legs of the random suite with wheels to spare and without momentum, two per wheel leave two 0.11
@@ -66,10 +66,10 @@ const PER_SPARE_WHEEL: usize = 4;
 const WITH_MOMENTUM: usize = 6;
 /// How far a rate on its limit may stray from it on an interval, relative: the program takes it off,
 /// so that a third of it is lost at most.
-const MOST_STRAY: f64 = 1.1e-2;
+const MAX_STRAY: f64 = 1.1e-2;
 /// How much farther than about the eigenaxis the fastest slew turns, about.
 pub(super) const DETOUR: f64 = 1.3;
 /// Turn, rad, that rounding may add without adding a part.
 const SAME_TURN: f64 = 1e-9;
 /// Most intervals for rate limits; with more momentum than these resolve, limits are kept by reserves.
-const MOST_ALONG_LIMITS: usize = 240;
+const MAX_ALONG_LIMITS: usize = 240;

@@ -33,12 +33,12 @@ const SLOWEST_BRAKE: f64 = 0.1;
 /// for.
 const STRAY: f64 = 0.02;
 /// Longest turn over one interval, rad.
-const LONGEST_TURN: f64 = 0.1;
+const MAX_TURN: f64 = 0.1;
 /// Intervals of a ramp, and the fewest of a coast; even numbers.
 const RAMP: usize = 4;
-const LEAST_COAST: usize = 4;
+const MIN_COAST: usize = 4;
 /// Most pairs of intervals of a part of the motion.
-const MOST_PAIRS: usize = 2000;
+const MAX_PAIRS: usize = 2000;
 /// Share of the torque that moves the wheels of a body at rest.
 const SHIFT_TORQUE: f64 = 0.9;
 /// Rate, rad/s, below which a body rests.
@@ -178,7 +178,7 @@ impl Nominal {
         let pace = pace.max(SLOWEST_BRAKE);
         let duration = size / (dynamics.axis_acceleration(&(rate / size)) * pace.powi(2));
         let turn = 0.5 * size * duration;
-        let count = 2 * parts_of(turn, 2.0 * longest_turn(dynamics), MOST_PAIRS).max(1);
+        let count = 2 * parts_of(turn, 2.0 * longest_turn(dynamics), MAX_PAIRS).max(1);
         for node in (0..count).rev() {
             let share = node as f64 / count as f64;
             let turned = rate * (direction * 0.5 * duration * (1.0 - share.powi(2)));
@@ -301,8 +301,8 @@ fn flown(dynamics: &Dynamics, profile: &Profile, k: usize, from: &Attitude) -> A
 
 /// Times of the nodes after the first, s: an even number, the ramps cut evenly and the coast too.
 fn node_times(dynamics: &Dynamics, course: &BangCoastBang, angle: f64) -> Vec<f64> {
-    let turns = 2 * parts_of(angle, 2.0 * longest_turn(dynamics), MOST_PAIRS);
-    let coast = turns.max(LEAST_COAST);
+    let turns = 2 * parts_of(angle, 2.0 * longest_turn(dynamics), MAX_PAIRS);
+    let coast = turns.max(MIN_COAST);
     let parts = course.parts();
     let counts = [RAMP.max(turns / 2 * 2), coast, RAMP.max(turns / 2 * 2)];
     let mut times = Vec::new();
@@ -320,5 +320,5 @@ fn node_times(dynamics: &Dynamics, course: &BangCoastBang, angle: f64) -> Vec<f6
 fn longest_turn(dynamics: &Dynamics) -> f64 {
     (8.0 * 0.5 * STRAY / dynamics.straying())
         .sqrt()
-        .min(LONGEST_TURN)
+        .min(MAX_TURN)
 }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 /// Least unit of a rate limit's row, in units of a typical rate: in that of a limit near zero the
 /// row would be steeper than anything else by orders of magnitude.
-const LEAST_RATE_UNIT: f64 = 1e-2;
+const MIN_RATE_UNIT: f64 = 1e-2;
 
 /// The rows of one node.
 #[derive(Debug, Clone, Default)]
@@ -150,7 +150,7 @@ impl Transcription {
             let limit = self.dynamics.max_rate[axis];
             if limit.is_finite() && limit <= reachable[axis] {
                 // In units of the limit, but for an axis that is hardly allowed to turn at all.
-                let unit = limit.max(LEAST_RATE_UNIT * self.scales.rate);
+                let unit = limit.max(MIN_RATE_UNIT * self.scales.rate);
                 for sign in [1.0, -1.0] {
                     let limit = limit / unit;
                     rows.push(LimitRow {

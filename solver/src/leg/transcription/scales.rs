@@ -9,7 +9,7 @@ const INTERVAL_SHARE: f64 = 0.2;
 const PEAK_SHARE: f64 = 1.5;
 
 /// Turns, rad, below which there is none worth a unit.
-pub(crate) const LEAST_TURN: f64 = 1e-9;
+pub(crate) const MIN_TURN: f64 = 1e-9;
 
 /// Units of the scaled variables.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +27,7 @@ pub(crate) struct Scales {
 impl Scales {
     /// Units for legs that turn by a typical angle, rad, in a typical duration, s.
     pub(crate) fn for_legs(dynamics: &Dynamics, angle: f64, duration: f64) -> Self {
-        let angle = angle.clamp(LEAST_TURN, std::f64::consts::PI);
+        let angle = angle.clamp(MIN_TURN, std::f64::consts::PI);
         let rate = PEAK_SHARE * angle / duration;
         // Greatest momentum of a wheel per unit of rate about any axis.
         let per_rate = (&dynamics.axes_inverse * dynamics.inertia)
@@ -46,7 +46,7 @@ impl Scales {
 impl Dynamics {
     /// Time, s, that a guess takes at least: that of a turn which counts as none.
     pub(crate) fn least_duration(&self) -> f64 {
-        2.0 * (LEAST_TURN / self.axis_acceleration(&Vector3::x())).sqrt()
+        2.0 * (MIN_TURN / self.axis_acceleration(&Vector3::x())).sqrt()
     }
 
     /// The turn, rad, that a bang-bang in a time, s, makes: what a change of rates or momenta that

@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 /// Deviation from a rotation that rounding of a text form explains.
 const SILENT_DEVIATION: f64 = 1e-6;
 /// Deviation from a rotation beyond which the numbers mean something else.
-const LARGEST_DEVIATION: f64 = 1e-3;
+const MAX_DEVIATION: f64 = 1e-3;
 /// Sine of the angle to body Z below which a boresight lies along it.
 const ALONG_Z: f64 = 1e-6;
 
@@ -95,11 +95,11 @@ fn quaternion(xyzw: [f64; 4], pointer: &str, findings: &mut Findings) -> Option<
     }
     let norm = xyzw.iter().map(|c| c * c).sum::<f64>().sqrt();
     let deviation = (norm - 1.0).abs();
-    if deviation > LARGEST_DEVIATION {
+    if deviation > MAX_DEVIATION {
         findings.refuse(
             pointer,
             Code::QuaternionNorm,
-            format!("the norm is {norm}, it must be 1 within {LARGEST_DEVIATION:e}"),
+            format!("the norm is {norm}, it must be 1 within {MAX_DEVIATION:e}"),
             "divide the components by the norm; x, y, z is the vector part and w the scalar part",
         );
         return None;
@@ -153,12 +153,12 @@ fn matrix(rows: &[[f64; 3]; 3], pointer: &str, findings: &mut Findings) -> Optio
     let deviation = (matrix.transpose() * matrix - Matrix3::identity()).amax();
     let determinant = matrix.determinant();
     // Written so that an overflow to NaN is refused as well.
-    if !(deviation <= LARGEST_DEVIATION && determinant > 0.0) {
+    if !(deviation <= MAX_DEVIATION && determinant > 0.0) {
         findings.refuse(
             pointer,
             Code::MatrixNotRotation,
             format!(
-                "the columns are off orthonormal by {deviation:.3e} (allowed {LARGEST_DEVIATION:e}) \
+                "the columns are off orthonormal by {deviation:.3e} (allowed {MAX_DEVIATION:e}) \
                  and the determinant is {determinant:.6} (must be +1)"
             ),
             "give rows of the matrix whose columns are the body axes in the reference frame",

@@ -7,10 +7,10 @@ use crate::model::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
 use nalgebra::Vector3;
 
 /// Most keep-out cones of a scenario.
-pub const MOST_CONES: usize = 1000;
+pub const MAX_CONES: usize = 1000;
 
 pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
-    if !findings.at_most("/keep_out", spec.keep_out.len(), MOST_CONES) {
+    if !findings.at_most("/keep_out", spec.keep_out.len(), MAX_CONES) {
         return None;
     }
     // Read one by one first: collecting straight into an option would stop at the first fault.

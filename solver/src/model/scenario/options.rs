@@ -7,7 +7,7 @@ use crate::model::spec::OptionsSpec;
 /// Most further orders that may be asked for: each has to be proved.
 pub(crate) const MAX_ALTERNATIVES: usize = 100;
 /// Longest time limit, s: thirty years, well within what clocks can add.
-const LONGEST_TIME_LIMIT: f64 = 1e9;
+const MAX_TIME_LIMIT: f64 = 1e9;
 
 /// Checks every option; `false` after a fault.
 pub(super) fn check(options: &OptionsSpec, findings: &mut Findings) -> bool {
@@ -39,9 +39,9 @@ fn check_time_limit(limit: Option<f64>, findings: &mut Findings) -> bool {
     let Some(limit) = findings.finite("/options/time_limit_s", limit) else {
         return false;
     };
-    let valid = limit > 0.0 && limit <= LONGEST_TIME_LIMIT;
+    let valid = limit > 0.0 && limit <= MAX_TIME_LIMIT;
     if !valid {
-        let allowed = format!("above 0 s and at most {LONGEST_TIME_LIMIT:e} s, or null for none");
+        let allowed = format!("above 0 s and at most {MAX_TIME_LIMIT:e} s, or null for none");
         refuse("time_limit_s", &limit.to_string(), &allowed, findings);
     }
     valid

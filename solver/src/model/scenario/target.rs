@@ -10,7 +10,7 @@ use std::collections::HashSet;
 
 /// Most targets of a scenario: legs between all of them are more than any disk holds. What can be
 /// planned ends far below.
-pub const MOST_TARGETS: usize = 10_000;
+pub const MAX_TARGETS: usize = 10_000;
 /// Names by which legs call the ends of the tour.
 const RESERVED: [&str; 2] = ["start", "end"];
 
@@ -28,7 +28,7 @@ pub(super) fn read_all(
         );
         return None;
     }
-    if !findings.at_most("/targets", spec.targets.len(), MOST_TARGETS) {
+    if !findings.at_most("/targets", spec.targets.len(), MAX_TARGETS) {
         return None;
     }
     let mut ids = HashSet::new();

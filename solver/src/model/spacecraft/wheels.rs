@@ -9,9 +9,9 @@ use crate::model::wheel_axes;
 use nalgebra::{DMatrix, Matrix3};
 
 /// Most enabled wheels.
-pub(crate) const MOST_ENABLED: usize = 17;
+pub(crate) const MAX_ENABLED: usize = 17;
 /// Most wheels of a spacecraft, enabled or not.
-pub const MOST_WHEELS: usize = 100;
+pub const MAX_WHEELS: usize = 100;
 
 /// Reads the wheels, of which the enabled ones must span space, with the pseudo-inverse of their
 /// axes.
@@ -20,7 +20,7 @@ pub(super) fn read(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<(Vec<Wheel>, DMatrix<f64>)> {
-    if !findings.at_most(pointer, specs.len(), MOST_WHEELS) {
+    if !findings.at_most(pointer, specs.len(), MAX_WHEELS) {
         return None;
     }
     // Read one by one first: collecting straight into an option would stop at the first fault.
@@ -42,11 +42,11 @@ pub(super) fn read(
         );
         return None;
     }
-    if enabled > MOST_ENABLED {
+    if enabled > MAX_ENABLED {
         findings.refuse(
             pointer,
             Code::TooManyWheels,
-            format!("{enabled} wheels are enabled, at most {MOST_ENABLED} can be"),
+            format!("{enabled} wheels are enabled, at most {MAX_ENABLED} can be"),
             "set \"enabled\": false for wheels to spare; each keeps its start speed",
         );
         return None;

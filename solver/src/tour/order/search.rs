@@ -21,7 +21,7 @@ use tree::Tree;
 /// the most a large one later on. All are properties of the search, not of the machine: were they
 /// the number of threads, the nodes explored would depend on that.
 const FEWEST_NODES: u64 = 4;
-const MOST_NODES: u64 = 32;
+const MAX_NODES: u64 = 32;
 const EXPLORED_PER_NODE: u64 = 8;
 
 /// After so many nodes the most promising one is completed by the pair table and flown at once.
@@ -158,7 +158,7 @@ impl Search<'_> {
         if budget == 0 {
             return Some(SearchEnd::NodeLimit);
         }
-        let size = (explored / EXPLORED_PER_NODE).clamp(FEWEST_NODES, MOST_NODES);
+        let size = (explored / EXPLORED_PER_NODE).clamp(FEWEST_NODES, MAX_NODES);
         let tasks = self.take_round(size.min(budget));
         let answers = self.pool.map(&tasks, |task| self.evaluate(task));
         let mut interrupted = false;

@@ -20,7 +20,7 @@ const SEARCHED: u64 = 1280 << 10;
 /// Intervals of the legs of which that was measured; of more they take more.
 const MEASURED_INTERVALS: u64 = 18;
 /// Segments and nodes are bounded, bytes.
-const MOST_SEARCHED: u64 = 144 << 20;
+const MAX_SEARCHED: u64 = 144 << 20;
 
 /// Memory that solving a scenario may need, bytes: as a rule too much, by less than four times
 /// where it is worth counting.
@@ -47,7 +47,7 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
         0
     };
     let searched = if couples {
-        (targets * SEARCHED).min(MOST_SEARCHED)
+        (targets * SEARCHED).min(MAX_SEARCHED)
     } else {
         0
     };

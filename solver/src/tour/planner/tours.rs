@@ -31,7 +31,7 @@ use std::sync::{Arc, OnceLock};
 const STARTS: [Start; 2] = [Start::Eigenaxes, Start::Extremals];
 const STARTS_OF_LONGER: [Start; 3] = [Start::Shorter, Start::Eigenaxes, Start::Extremals];
 const START_OF_TOURS: [Start; 1] = [Start::AtRest];
-const USUAL_STARTS_OF_SHORT: usize = 2;
+const DEFAULT_STARTS_OF_SHORT: usize = 2;
 
 /// Tours over legs.
 pub(super) struct Tours<'a> {
@@ -262,7 +262,7 @@ impl<'a> Tours<'a> {
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
     fn solve_distinct(&self, route: &[Place], extent: Extent) -> Flown {
         let short = route.len() - 1 <= SHORT;
-        let usual = if short { USUAL_STARTS_OF_SHORT } else { 1 };
+        let usual = if short { DEFAULT_STARTS_OF_SHORT } else { 1 };
         let starts = match extent {
             Extent::Beginning if !short => &STARTS_OF_LONGER[..],
             Extent::Beginning | Extent::Piece => &STARTS,

@@ -5,7 +5,7 @@ use super::{plane_axes, rows};
 use nalgebra::Vector3;
 
 /// Volume spanned by three normals below which their planes do not meet in a point.
-const LEAST_SPAN: f64 = 1e-9;
+const MIN_SPAN: f64 = 1e-9;
 /// Distance relative to the body's size within which points are the same, or on a plane.
 const SAME: f64 = 1e-9;
 
@@ -57,7 +57,7 @@ fn vertices(planes: &[(Vector3<f64>, f64)]) -> Vec<Vector3<f64>> {
         for (j, second) in planes.iter().enumerate().skip(i + 1) {
             for third in &planes[j + 1..] {
                 let normals = rows([&first.0, &second.0, &third.0]);
-                if normals.determinant().abs() < LEAST_SPAN {
+                if normals.determinant().abs() < MIN_SPAN {
                     continue;
                 }
                 let distances = Vector3::new(first.1, second.1, third.1);

@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 /// Nodes of Gauss's rule: an error of `6.4^(-2 NODES)` on a piece.
 const NODES: usize = 13;
 /// The numbers that there are have less than so many units of `v`.
-const MOST_PIECES: u32 = 3000;
+const MAX_PIECES: u32 = 3000;
 /// Newton steps from Chebyshev's to Legendre's nodes, more than enough.
 const NEWTON_STEPS: usize = 8;
 
@@ -65,7 +65,7 @@ fn over_edge(a: &Vector2<f64>, b: &Vector2<f64>, d: f64, rule: &[(f64, f64)]) ->
     };
     let pieces = (end - begin).ceil().max(1.0);
     let half = 0.5 * (end - begin) / pieces;
-    let sum: f64 = (0..MOST_PIECES)
+    let sum: f64 = (0..MAX_PIECES)
         .map(f64::from)
         .take_while(|piece| *piece < pieces)
         .map(|piece| {

@@ -10,7 +10,7 @@ use nalgebra::{Rotation3, Vector3};
 /// Rows of the grid on which a search begins.
 const ROWS: usize = 40;
 /// Step at which a search ends, rad.
-const LEAST_STEP: f64 = 1e-11;
+const MIN_STEP: f64 = 1e-11;
 
 /// Where a singular surface ends: the direction is along a gimbal axis, and that rotor is free to
 /// point anywhere across it. The momenta are a circle of radius one.
@@ -105,7 +105,7 @@ impl CmgCluster {
             return f64::INFINITY;
         };
         let mut step = std::f64::consts::PI / ROWS as f64;
-        while step > LEAST_STEP {
+        while step > MIN_STEP {
             let turned = [Vector3::x(), Vector3::y(), Vector3::z()]
                 .into_iter()
                 .flat_map(|axis| [axis * step, axis * -step])

@@ -155,9 +155,9 @@ fn a_surface_has_an_end() {
         gimbals: CmgCluster::thesis().gimbals[..1].to_vec(),
     };
     let surface = single.singular_surface(&[true], usize::MAX);
-    assert_eq!(surface.rows, MOST_SURFACE_ROWS);
+    assert_eq!(surface.rows, MAX_SURFACE_ROWS);
     assert_eq!(
         surface.states.len(),
-        2 * MOST_SURFACE_ROWS * MOST_SURFACE_ROWS
+        2 * MAX_SURFACE_ROWS * MAX_SURFACE_ROWS
     );
 }

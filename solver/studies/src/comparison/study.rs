@@ -1,7 +1,7 @@
 //! The whole study of wheels against gyroscopes, with the tables that it rests on.
 
 use super::{Comparison, ComparisonSpec, Control, Laws, MassPoint, MassStudy, Radii};
-use crate::cmg::{CmgCluster, MOST_SURFACE_ROWS, SingularSurface};
+use crate::cmg::{CmgCluster, MAX_SURFACE_ROWS, SingularSurface};
 use crate::market::{Device, GYROSCOPES, PowerLaw, WHEELS};
 use nalgebra::Vector3;
 use slewplan_solver::model::findings::Findings;
@@ -27,7 +27,7 @@ pub struct StudySpec {
     pub curve_momenta_nms: Vec<f64>,
     /// Masses of a device (kg) at which arrays are compared.
     pub device_masses_kg: Vec<f64>,
-    /// Circles of latitude of the singular surfaces, at most [`MOST_SURFACE_ROWS`].
+    /// Circles of latitude of the singular surfaces, at most [`MAX_SURFACE_ROWS`].
     pub surface_rows: usize,
 }
 
@@ -238,12 +238,12 @@ fn check(spec: &StudySpec, findings: &mut Findings) {
             );
         }
     }
-    if !(1..=MOST_SURFACE_ROWS).contains(&spec.surface_rows) {
+    if !(1..=MAX_SURFACE_ROWS).contains(&spec.surface_rows) {
         findings.refuse(
             "/surface_rows",
             Code::OutOfRange,
             format!("there are {} rows", spec.surface_rows),
-            format!("give 1 to {MOST_SURFACE_ROWS} rows"),
+            format!("give 1 to {MAX_SURFACE_ROWS} rows"),
         );
     }
 }
@@ -289,7 +289,7 @@ mod tests {
     fn every_problem_is_found_once() {
         let mut spec = StudySpec {
             curve_momenta_nms: Vec::new(),
-            surface_rows: MOST_SURFACE_ROWS + 1,
+            surface_rows: MAX_SURFACE_ROWS + 1,
             device_masses_kg: vec![1.0, 1e300],
             ..StudySpec::default()
         };

@@ -21,7 +21,7 @@ use crate::tour::order::incumbents::Incumbents;
 use std::ops::RangeInclusive;
 
 /// Longest segment of a kick.
-const LONGEST_SEGMENT: usize = 30;
+const MAX_SEGMENT: usize = 30;
 /// An order is kept if it is longer than the best by at most this share of a mean leg at the first
 /// kick of a run, and by less and less until the last (threshold accepting, Dueck and Scheuer 1990).
 /// A constant share gets stuck 0.2 % higher where bends cost much.
@@ -90,7 +90,7 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
     /// Kicks, searches, and keeps the order or goes back.
     fn kick(&mut self, tolerance_s: f64, stop: &StopSignal) {
         let targets = self.kept.len() - 2;
-        let longest = LONGEST_SEGMENT.min(targets / 3);
+        let longest = MAX_SEGMENT.min(targets / 3);
         let lengths = [(); 3].map(|()| 1 + self.random.below(longest));
         let moving: usize = lengths.iter().sum();
         let first = 1 + self.random.below(targets - moving + 1);

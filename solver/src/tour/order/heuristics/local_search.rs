@@ -14,9 +14,9 @@ use crate::run::stop::StopSignal;
 use std::collections::VecDeque;
 
 /// A move must shorten the order by this share of its length, lest rounding makes it go in circles.
-const LEAST_GAIN: f64 = 1e-9;
+const MIN_GAIN: f64 = 1e-9;
 /// Longest segment that Or-opt moves, the length that the literature settled on.
-const LONGEST_SEGMENT: usize = 3;
+const MAX_SEGMENT: usize = 3;
 
 /// Says whether the rules allow an order.
 pub(in crate::tour::order) type Admits<'a> = &'a (dyn Fn(&[usize]) -> bool + Sync);
@@ -56,7 +56,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
             admits: task.admits,
             waiting: path.places().iter().copied().collect(),
             is_waiting: vec![true; task.cost.targets() + 2],
-            least_gain: LEAST_GAIN * path.length(),
+            least_gain: MIN_GAIN * path.length(),
             path,
         }
     }
@@ -189,7 +189,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
     fn shifts(&mut self, place: usize, choice: &mut Choice) {
         let here = self.path.position(place);
         let end = self.path.places().len() - 1;
-        for length in 1..=LONGEST_SEGMENT {
+        for length in 1..=MAX_SEGMENT {
             for begins in [true, false] {
                 // A single place is a segment that begins and ends there.
                 if here == 0 || here == end || (length == 1 && !begins) {

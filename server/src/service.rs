@@ -64,7 +64,7 @@ pub(crate) enum ServiceError {
         "--listen: {0} can be reached from other machines, and there are no keys; make one with \
          slewplan keys create, or let everybody in with --no-keys"
     )]
-    Exposed(SocketAddr),
+    NoKeysOnPublicAddress(SocketAddr),
     /// The operating system refused threads.
     #[error(transparent)]
     Pool(#[from] PoolError),
@@ -76,7 +76,7 @@ pub(crate) enum ServiceError {
     Disk,
     /// No connections are taken any more.
     #[error("internal error: the service has stopped listening; the log has the cause")]
-    Deaf,
+    ListenerStopped,
     /// The operating system.
     #[error("{what}: {source}")]
     System {
@@ -142,7 +142,7 @@ async fn access(settings: &Settings, store: &Store) -> Result<Access, ServiceErr
         tokio::spawn(await_first_key(store.clone(), open.clone()));
         return Ok(open);
     }
-    Err(ServiceError::Exposed(settings.listen))
+    Err(ServiceError::NoKeysOnPublicAddress(settings.listen))
 }
 
 /// Asks for keys as soon as there is one.
@@ -214,7 +214,7 @@ async fn serve<E: From<ServiceError>>(
         biased;
         () = ending.begun() => {}
         () = store.sync_failed() => return Err(ServiceError::Disk.into()),
-        _ = &mut serving => return Err(ServiceError::Deaf.into()),
+        _ = &mut serving => return Err(ServiceError::ListenerStopped.into()),
     }
     // Both at once: streams tell what becomes of the job that they follow.
     let finished = async { tokio::join!(worker.drain(), &mut serving) };

@@ -5,13 +5,12 @@
 //! transaction is open while anything is computed or sent.
 
 mod backup;
-mod claims;
 mod ends;
 mod error;
 mod events;
-mod folding;
 mod jobs;
 mod keys;
+mod leases;
 mod legs;
 mod packed;
 mod recent;
@@ -22,15 +21,16 @@ mod segments;
 mod spacecraft;
 #[cfg(test)]
 mod tests;
+mod wal_checkpoint;
 mod writing;
 
 pub(crate) use backup::backup;
-pub(crate) use claims::Claim;
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
 pub(crate) use events::{EventRow, TellJob};
 pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey};
+pub(crate) use leases::Lease;
 pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
 pub(crate) use packed::PackedPlan;
 pub(crate) use results::{NewIncumbent, ResultRow};
@@ -38,7 +38,6 @@ pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow};
 pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
-use folding::Folding;
 use recent::Recent;
 use sqlx::Connection as _;
 use sqlx::sqlite::{
@@ -49,6 +48,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::Notify;
+use wal_checkpoint::Folding;
 use writing::Alarm;
 
 /// Embedded when building.
@@ -126,7 +126,7 @@ impl Store {
             .pragma("temp_store", "memory")
             .pragma("trusted_schema", "off")
             .pragma("journal_size_limit", "67108864")
-            // Done by `folding`, which does not overlook a failing disk.
+            // Done by `wal_checkpoint`, which does not overlook a failing disk.
             .pragma("wal_autocheckpoint", "0");
         let writer = SqlitePoolOptions::new()
             .max_connections(1)
@@ -139,15 +139,15 @@ impl Store {
             .await?;
         check_version(&writer).await?;
         MIGRATOR.run(&writer).await?;
-        let folding = Folding::new(options.clone(), writer.clone());
-        let folder = folding.own();
+        let wal_checkpoint = Folding::new(options.clone(), writer.clone());
+        let folder = wal_checkpoint.own();
         let readers = SqlitePoolOptions::new()
             .max_connections(READERS)
             .acquire_timeout(PATIENCE)
             .connect_with(options.read_only(true).create_if_missing(false))
             .await?;
         let (alarm, written) = (Alarm::default(), Arc::default());
-        tokio::spawn(folding.keep_small(alarm.clone(), Arc::clone(&written)));
+        tokio::spawn(wal_checkpoint.keep_small(alarm.clone(), Arc::clone(&written)));
         Ok(Self {
             writer,
             readers,

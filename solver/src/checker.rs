@@ -14,26 +14,26 @@ mod integrator;
 mod keep_out;
 mod leg;
 mod limits;
-mod motion;
+mod number_format;
 mod order;
+mod propagated;
 mod ramped;
 mod samples;
 mod series;
 mod timeline;
 mod visits;
-mod wording;
 
 pub use keep_out::Intrusion;
 pub(crate) use leg::{Arrival, leg_faults};
-pub use motion::Motion;
-pub(crate) use ramped::{Moment, Ramp, fly_ramps};
+pub use propagated::PropagatedMotion;
+pub(crate) use ramped::{Moment, Ramp, propagate_ramps};
 
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Flight, Margins, State, Verification};
 use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 use dynamics::{Body, Snapshot};
-use integrator::{Flown, Interval, STEP_TOLERANCE};
+use integrator::{Interval, Propagation, STEP_TOLERANCE};
 use keep_out::Watch;
 use limits::{Limits, excess, margin};
 use samples::Sampler;
@@ -165,7 +165,7 @@ impl<'a> Observed<'a> {
         intervals: &[Interval<'_>],
         visits: &[Visit<'_>],
         total_s: f64,
-    ) -> Result<Flown, String> {
+    ) -> Result<Propagation, String> {
         let times = samples::times(intervals, visits, total_s);
         let mut sampler = Sampler::new(&times, &self.start);
         let (limits, watches) = (&mut self.limits, &mut self.watches);
@@ -189,14 +189,14 @@ impl<'a> Observed<'a> {
     fn report(
         mut self,
         scenario: &Scenario,
-        (torque_usage, flown, misses): (f64, Flown, &Misses),
+        (torque_usage, flown, misses): (f64, Propagation, &Misses),
         mut failures: Vec<String>,
     ) -> Report {
         failures.extend(self.limits.failures());
         if flown.momentum_drift > MOMENTUM_TOLERANCE {
             failures.push(format!(
                 "the integration lost momentum ({} of it), so that nothing it found counts",
-                wording::figure(flown.momentum_drift)
+                number_format::figure(flown.momentum_drift)
             ));
         }
         let options = scenario.options();

@@ -34,7 +34,7 @@ pub use monte_carlo::{PassageSpread, Percentiles, SaturationSpread, Spread};
 pub use outcome::{PassageError, Saturation, SimulatedFlight, SimulatedState, TrackingError};
 pub use spec::{ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, PidGainsSpec, SimulationSpec};
 
-use crate::checker::Motion;
+use crate::checker::PropagatedMotion;
 use crate::model::attitude::Attitude;
 use crate::model::findings::Findings;
 use crate::model::plan::Flight;
@@ -99,7 +99,7 @@ impl<'a> Simulation<'a> {
         scenario: &'a Scenario,
         flight: &'a Flight,
         settings: Settings,
-        motion: &Motion,
+        motion: &PropagatedMotion,
         findings: &mut Findings,
     ) -> Option<Self> {
         let course = Course::new(scenario, flight, motion, &settings);
@@ -340,7 +340,11 @@ struct OnBoard<'a> {
 }
 
 /// The plan's own motion; what keeps it from being flown is noted.
-fn motion(scenario: &Scenario, flight: &Flight, findings: &mut Findings) -> Option<Motion> {
+fn motion(
+    scenario: &Scenario,
+    flight: &Flight,
+    findings: &mut Findings,
+) -> Option<PropagatedMotion> {
     let total = flight.total_time_s;
     let slack = crate::checker::TIME_TOLERANCE * total;
     let mut arrivals = true;
@@ -355,7 +359,7 @@ fn motion(scenario: &Scenario, flight: &Flight, findings: &mut Findings) -> Opti
             );
         }
     }
-    let motion = Motion::of(scenario, flight);
+    let motion = PropagatedMotion::of(scenario, flight);
     let motion = motion.map_err(|sentences| {
         for sentence in sentences {
             refuse_flight(findings, &sentence);
@@ -367,7 +371,7 @@ fn motion(scenario: &Scenario, flight: &Flight, findings: &mut Findings) -> Opti
 /// Whether a flight is short enough, and at rest where it is to be held.
 fn fits(
     flight: &Flight,
-    motion: &Motion,
+    motion: &PropagatedMotion,
     settings: &Settings,
     pointer: &str,
     findings: &mut Findings,

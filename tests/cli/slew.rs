@@ -1,4 +1,4 @@
-//! `slewplan slew` on the manoeuvres of the sources.
+//! `slewplan slew` on the slews of the sources.
 
 use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};

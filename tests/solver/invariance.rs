@@ -4,7 +4,7 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::{Flight, Plan};
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, WheelSpec};
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_solver::slew::{self, Manoeuvre, ManoeuvreSpec};
+use slewplan_solver::slew::{self, Slew, SlewSpec};
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::planner::{self, Shard};
 use slewplan_tests::published_targets_spec;
@@ -144,13 +144,13 @@ fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
             attitude: attitude.clone(),
             ..spec.start.clone()
         };
-        let slew = ManoeuvreSpec {
+        let slew = SlewSpec {
             spacecraft: spec.spacecraft.clone(),
             start: state(&attitudes[from]),
             end: state(&attitudes[to]),
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         };
-        let slew = Manoeuvre::try_new(&slew).expect("valid").manoeuvre;
+        let slew = Slew::try_new(&slew).expect("valid").slew;
         let outcome = slew::solve(&slew, &StopSignal::new());
         assert!(outcome.solved, "{:?}", outcome.flown.failures);
         outcome.time_s

@@ -6,23 +6,23 @@
 //! to keep others out.
 
 mod body;
-mod roster;
-mod steady;
+mod connection_limit;
+mod write_timeout;
 
 pub(crate) use body::TooSlow;
 
 use crate::base::lifecycle::Shutdown;
 use axum::Router;
 use body::{Answer, Arriving};
+use connection_limit::{Roster, Seat};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
-use roster::{Roster, Seat};
 use std::pin::pin;
 use std::time::Duration;
-use steady::Steady;
 use tokio::net::{TcpListener, TcpStream};
+use write_timeout::Steady;
 
 /// Time for a request's head to arrive, counted from the end of the answer before it.
 const HEAD: Duration = Duration::from_secs(10);
@@ -34,11 +34,11 @@ const RECOVERY: Duration = Duration::from_millis(100);
 /// Takes connections until the service ends, then waits for the requests that are being answered.
 /// One of them is kept free, so that who comes next is not kept waiting for another to leave.
 pub(crate) async fn serve(listener: TcpListener, router: Router, shutdown: Shutdown, most: usize) {
-    let roster = Roster::new(most);
+    let connection_limit = Roster::new(most);
     let mut ending = shutdown.clone();
     loop {
         let taken = async {
-            let seat = roster.seat().await;
+            let seat = connection_limit.seat().await;
             (seat, listener.accept().await)
         };
         let (seat, accepted) = tokio::select! {
@@ -57,7 +57,7 @@ pub(crate) async fn serve(listener: TcpListener, router: Router, shutdown: Shutd
         }
     }
     drop(listener);
-    roster.emptied().await;
+    connection_limit.emptied().await;
 }
 
 /// One connection from its first byte to its last.

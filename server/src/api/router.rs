@@ -27,7 +27,7 @@ use utoipa_swagger_ui::SwaggerUi;
     tags(
         (name = "plans", description = "Planning jobs"),
         (name = "legs", description = "Leg times"),
-        (name = "slews", description = "Single manoeuvres with a choice of objective and command"),
+        (name = "slews", description = "Single slews with a choice of objective and command"),
         (name = "studies", description = "What the choice of an option leads to, and what wheels can do together"),
         (name = "spacecraft", description = "Stored spacecraft"),
         (name = "verify", description = "Independent verification"),

@@ -1,4 +1,4 @@
-//! `POST /v1/slews`: one manoeuvre, with a choice of objective and command model.
+//! `POST /v1/slews`: one slew, with a choice of objective and command model.
 
 use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, SlewBody};

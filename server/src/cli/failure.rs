@@ -92,7 +92,7 @@ impl Failure {
             | Self::TooLarge { .. }
             | Self::StandardInputTwice
             | Self::Setting { .. }
-            | Self::Service(ServiceError::Exposed(_))
+            | Self::Service(ServiceError::NoKeysOnPublicAddress(_))
             | Self::Invalid { .. }
             | Self::Misfits { .. } => Exit::Invalid,
             Self::Unwritable { .. }

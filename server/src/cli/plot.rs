@@ -91,9 +91,7 @@ fn draw_slew(answer: &WrittenSlews, arguments: &Arguments) -> Result<String, Fai
         })
     });
     let request = request.transpose()?;
-    let craft = request
-        .as_ref()
-        .map(|it| it.manoeuvre.scenario().spacecraft());
+    let craft = request.as_ref().map(|it| it.slew.scenario().spacecraft());
     plot::slew(answer, craft).map_err(wrong("DOCUMENT"))
 }
 

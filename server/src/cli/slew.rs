@@ -1,4 +1,4 @@
-//! `slewplan slew`: one manoeuvre with a choice of objective and command.
+//! `slewplan slew`: one slew with a choice of objective and command.
 
 use super::failure::Failure;
 use super::output::{self, Destination};

@@ -2,7 +2,7 @@
 
 use super::number::Number;
 use serde::Serialize;
-use slewplan_solver::tour::planner::{CheckedClaims, PlanClaims, Verdict};
+use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate, Verdict};
 
 /// What became of the claims of a plan.
 #[derive(Debug, Serialize)]
@@ -31,7 +31,7 @@ struct ClaimDocument {
 
 impl<'a> CertificationDocument<'a> {
     /// Claims with what became of them.
-    pub(crate) fn new(claims: &'a PlanClaims, checked: &CheckedClaims) -> Self {
+    pub(crate) fn new(claims: &'a PlanCertificate, checked: &CheckedCertificate) -> Self {
         let legs = claims.legs.iter().zip(&checked.legs);
         Self {
             confirmed: checked.confirmed(),

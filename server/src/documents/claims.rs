@@ -7,14 +7,14 @@ use super::reader::{Cursor, Fields, Sink};
 use slewplan_solver::model::plan::LowerBoundKind;
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
-use slewplan_solver::tour::planner::{LegClaim, PlanClaims};
+use slewplan_solver::tour::planner::{LegCertificate, PlanCertificate};
 
 /// Reads the claims of a plan for a scenario.
 ///
 /// # Errors
 ///
 /// Everything that is wrong with them, with pointers into the plan.
-pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<PlanClaims, Vec<Problem>> {
+pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<PlanCertificate, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
     let sink = Sink::default();
     let claims = decode(&Cursor::root(&node, &sink), scenario);
@@ -25,7 +25,7 @@ pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<PlanClaims, Vec<
     }
 }
 
-fn decode(root: &Cursor<'_>, scenario: &Scenario) -> Option<PlanClaims> {
+fn decode(root: &Cursor<'_>, scenario: &Scenario) -> Option<PlanCertificate> {
     let fields = root.open_object()?;
     let legs = fields
         .required("legs")
@@ -35,7 +35,7 @@ fn decode(root: &Cursor<'_>, scenario: &Scenario) -> Option<PlanClaims> {
     let kind = kind.and_then(|kind| kind.text());
     let bound = number(&fields, "lower_bound_s")
         .filter(|_| kind == Some(LowerBoundKind::Certified.as_str()));
-    Some(PlanClaims {
+    Some(PlanCertificate {
         legs: legs?,
         // Where both are claimed to be proved, so is the larger.
         lower_bound_s: proved.into_iter().chain(bound).reduce(f64::max),
@@ -43,11 +43,11 @@ fn decode(root: &Cursor<'_>, scenario: &Scenario) -> Option<PlanClaims> {
     })
 }
 
-fn read_leg(cursor: &Cursor<'_>, scenario: &Scenario) -> Option<LegClaim> {
+fn read_leg(cursor: &Cursor<'_>, scenario: &Scenario) -> Option<LegCertificate> {
     let fields = cursor.open_object()?;
     let from = place(&fields, "from", scenario);
     let to = place(&fields, "to", scenario);
-    Some(LegClaim {
+    Some(LegCertificate {
         lower_bound_s: number(&fields, "certified_lower_bound_s"),
         duration_s: number(&fields, "duration_s"),
         from: from?,

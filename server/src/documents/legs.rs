@@ -6,7 +6,7 @@ use super::number::Number;
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{LegRow, OfferedLeg, Shard};
+use slewplan_solver::tour::planner::{ImportedLeg, LegRow, Shard};
 
 pub(crate) mod read;
 
@@ -37,7 +37,7 @@ pub(crate) struct KeyedLeg {
     /// SHA-256 of the canonical text of the leg's problem, hex.
     pub(crate) key: String,
     /// The motion.
-    pub(crate) leg: OfferedLeg,
+    pub(crate) leg: ImportedLeg,
 }
 
 /// The key of a scenario: SHA-256 of its text with sorted members and all numbers written as

@@ -1,4 +1,4 @@
-//! Reading a slew: a manoeuvre, perhaps along a sweep.
+//! Reading a slew: a slew, perhaps along a sweep.
 //!
 //! First its shape, and only of a document of the right shape the meaning, each with all of its
 //! problems at once.
@@ -13,8 +13,7 @@ use super::{drives, scenario, spacecraft};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::spec::{AttitudeEquivalence, SpacecraftSpec};
 use slewplan_solver::slew::{
-    Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Sweep,
-    WheelAllocation,
+    Command, FinalWheels, Hold, Measure, Objective, Slew, SlewSpec, Sweep, WheelAllocation,
 };
 
 /// Most points of a sweep.
@@ -30,7 +29,7 @@ pub(crate) struct SlewRequest {
     /// A label, which nothing depends on.
     pub(crate) name: Option<String>,
     /// What is flown.
-    pub(crate) manoeuvre: Manoeuvre,
+    pub(crate) slew: Slew,
     /// Values along which it is solved again and again.
     pub(crate) sweep: Option<Sweep>,
     /// Whether the evidence of optimality is asked for.
@@ -41,10 +40,10 @@ pub(crate) struct SlewRequest {
     pub(crate) warnings: Vec<Problem>,
 }
 
-/// What a document says beside the manoeuvre.
+/// What a document says beside the slew.
 struct Read {
     name: Option<String>,
-    spec: ManoeuvreSpec,
+    spec: SlewSpec,
     sweep: Option<Sweep>,
     evidence: bool,
     time_limit_s: Option<f64>,
@@ -72,10 +71,10 @@ pub(crate) fn read_node(node: &Node) -> Result<SlewRequest, Vec<Problem>> {
     let Some(read) = read.filter(|_| problems.is_empty()) else {
         return Err(problems);
     };
-    let valid = Manoeuvre::try_new(&read.spec)?;
+    let valid = Slew::try_new(&read.spec)?;
     Ok(SlewRequest {
         name: read.name,
-        manoeuvre: valid.manoeuvre,
+        slew: valid.slew,
         warnings: valid.warnings,
         sweep: read.sweep,
         evidence: read.evidence,
@@ -103,7 +102,7 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
     let sweep = fields.optional("sweep");
     let sweep = sweep.map(|cursor| read_sweep(&cursor));
     let swept = sweep.as_ref().and_then(Option::as_ref);
-    let mut spec = ManoeuvreSpec {
+    let mut spec = SlewSpec {
         spacecraft: fields
             .required("spacecraft")
             .map_or_else(SpacecraftSpec::default, |it| spacecraft::read(&it)),
@@ -131,7 +130,7 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
                 intervals: DEFAULT_INTERVALS,
             }),
         allocation: allocation(&fields),
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     };
     let options = fields.optional("options");
     let time_limit_s = options.map_or(Some(DEFAULT_LIMIT_S), |it| read_options(&it, &mut spec));
@@ -170,7 +169,7 @@ fn allocation(fields: &Fields<'_>) -> WheelAllocation {
 }
 
 /// Reads the options into a description; returns the time limit.
-fn read_options(cursor: &Cursor<'_>, spec: &mut ManoeuvreSpec) -> Option<f64> {
+fn read_options(cursor: &Cursor<'_>, spec: &mut SlewSpec) -> Option<f64> {
     let known = &[
         "attitude_equivalence",
         "torque_authority",

@@ -76,11 +76,11 @@ impl Observer for Watch<'_> {
     }
 }
 
-/// Records reports until the reporter is dropped or the claim is lost. The legs that a report rests
+/// Records reports until the reporter is dropped or the lease is lost. The legs that a report rests
 /// on are written before it: whoever takes the job over does not solve them again.
 pub(super) async fn record(
     jobs: Jobs,
-    claim: JobRow,
+    lease: JobRow,
     legs: Unwritten,
     mut reports: watch::Receiver<Report>,
 ) {
@@ -100,14 +100,14 @@ pub(super) async fn record(
                 incumbent.filter(|plan| !kept.as_ref().is_some_and(|k| Arc::ptr_eq(k, plan)));
             let written = jobs
                 .store()
-                .progress(&claim, &progress, fresh.as_deref(), now_us());
+                .progress(&lease, &progress, fresh.as_deref(), now_us());
             match written.await {
                 Ok(true) => {
                     kept = fresh.or(kept);
                     jobs.changed();
                 }
                 Ok(false) => return,
-                Err(error) => tracing::warn!(job_id = claim.id, %error, "progress not recorded"),
+                Err(error) => tracing::warn!(job_id = lease.id, %error, "progress not recorded"),
             }
             recorded = Some(progress);
         }

@@ -25,7 +25,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// solved again.
 const MAX_BYTES: usize = 128 << 20;
 
-/// The segments of a claim, as the solver's threads see them.
+/// The segments of a lease, as the solver's threads see them.
 #[derive(Debug)]
 pub(super) struct SegmentCache {
     shared: Arc<Shared>,
@@ -38,7 +38,7 @@ pub(super) struct SegmentCache {
 #[derive(Debug)]
 struct Shared {
     store: Store,
-    claim: JobRow,
+    lease: JobRow,
     unwritten: Mutex<Vec<SegmentRow>>,
     /// Bytes that were kept or shall be.
     bytes: AtomicUsize,
@@ -52,12 +52,12 @@ impl Shared {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes what there is; `false` when the claim has been lost.
+    /// Writes what there is; `false` when the lease has been lost.
     async fn write(&self) -> Result<bool, StoreError> {
         let segments = std::mem::take(&mut *self.unwritten());
         for batch in segments.chunks(BATCH) {
             self.wrote.store(true, Ordering::Relaxed);
-            if !self.store.put_segments(&self.claim, batch).await? {
+            if !self.store.put_segments(&self.lease, batch).await? {
                 return Ok(false);
             }
             tokio::time::sleep(PAUSE).await;
@@ -67,9 +67,9 @@ impl Shared {
 }
 
 impl SegmentCache {
-    /// The segments of a claim, for threads outside of the runtime.
-    pub(super) fn new(store: Store, runtime: &Handle, claim: JobRow) -> Self {
-        let known = runtime.block_on(store.segments(claim.sequence));
+    /// The segments of a lease, for threads outside of the runtime.
+    pub(super) fn new(store: Store, runtime: &Handle, lease: JobRow) -> Self {
+        let known = runtime.block_on(store.segments(lease.sequence));
         let known = known.unwrap_or_else(|error| {
             tracing::warn!(%error, "what an earlier attempt has solved cannot be looked up");
             Vec::new()
@@ -80,7 +80,7 @@ impl SegmentCache {
         Self {
             shared: Arc::new(Shared {
                 store,
-                claim,
+                lease,
                 unwritten: Mutex::default(),
                 bytes: AtomicUsize::new(bytes),
                 wrote: AtomicBool::new(false),
@@ -90,7 +90,7 @@ impl SegmentCache {
         }
     }
 
-    /// Writes from time to time, until it is aborted or the claim is lost.
+    /// Writes from time to time, until it is aborted or the lease is lost.
     pub(super) fn writing(&self) -> impl Future<Output = ()> + use<> {
         let shared = Arc::clone(&self.shared);
         async move {
@@ -151,7 +151,7 @@ pub(crate) async fn forget(store: Store) {
 fn packed(name: &str, segment: &StoredSegment) -> SegmentRow {
     let attitudes = segment.attitudes_xyzw.iter().flatten();
     let momenta = segment.wheel_momenta_nms.iter().flatten();
-    let prices = segment.passing_prices_s_per_nms.iter().flatten();
+    let prices = segment.costates_s_per_nms.iter().flatten();
     let numbers = attitudes.chain(momenta).chain(&segment.lengths_s);
     let wheels = segment.wheel_momenta_nms.first().map_or(0, Vec::len) as u64;
     let words = numbers.chain(prices).map(|number| number.to_bits());
@@ -184,7 +184,7 @@ fn unpacked(row: &SegmentRow) -> Option<StoredSegment> {
         attitudes_xyzw: attitudes.as_chunks().0.to_vec(),
         wheel_momenta_nms: by_wheels(momenta),
         lengths_s: lengths.to_vec(),
-        passing_prices_s_per_nms: by_wheels(prices),
+        costates_s_per_nms: by_wheels(prices),
     })
 }
 
@@ -201,7 +201,7 @@ mod tests {
                 vec![-0.0, f64::MIN_POSITIVE],
             ],
             lengths_s: vec![1.5, 0.1 + 0.2],
-            passing_prices_s_per_nms: vec![vec![-90.0, 1.0 / 7.0]],
+            costates_s_per_nms: vec![vec![-90.0, 1.0 / 7.0]],
         }
     }
 

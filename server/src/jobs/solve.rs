@@ -16,7 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
 /// What a job is solved with.
-pub(super) struct Means<'a> {
+pub(super) struct JobContext<'a> {
     /// Where the work is done.
     pub(super) pool: &'a SolverPool,
     /// Requests of callers.
@@ -31,7 +31,7 @@ pub(super) struct Means<'a> {
     pub(super) memory: &'a MemoryGuard,
 }
 
-impl Means<'_> {
+impl JobContext<'_> {
     /// What has stopped the solve.
     fn interruption(&self) -> Interruption {
         match self.memory.exceeded() {
@@ -44,8 +44,8 @@ impl Means<'_> {
 }
 
 /// Solves a scenario as stored. A panic costs this job and no other.
-pub(super) fn solve(scenario: &[u8], means: &Means<'_>) -> Ended {
-    catch_unwind(AssertUnwindSafe(|| attempt(scenario, means))).unwrap_or_else(|_| broken())
+pub(super) fn solve(scenario: &[u8], context: &JobContext<'_>) -> Ended {
+    catch_unwind(AssertUnwindSafe(|| attempt(scenario, context))).unwrap_or_else(|_| broken())
 }
 
 /// The end of a job that met an error of ours.
@@ -57,21 +57,21 @@ pub(super) fn broken() -> Ended {
     )
 }
 
-fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
+fn attempt(scenario: &[u8], context: &JobContext<'_>) -> Ended {
     let Validated { scenario, warnings } = match documents::scenario::read(scenario, None) {
         Ok(valid) => valid,
         // It was valid when it was accepted: another version of the program reads it now.
         Err(problems) => return refused(JobState::Failed, &problems),
     };
     #[cfg(feature = "faults")]
-    crate::base::faults::strike(scenario.name(), means.pool, means.stop);
-    let observer = means.reporter.observer(&warnings);
+    crate::base::faults::strike(scenario.name(), context.pool, context.stop);
+    let observer = context.reporter.observer(&warnings);
     let run = Run {
-        pool: means.pool,
-        stop: means.stop,
+        pool: context.pool,
+        stop: context.stop,
         observer: &observer,
-        legs: means.legs,
-        segments: means.segments,
+        legs: context.legs,
+        segments: context.segments,
     };
     let outcome = planner::solve(&scenario, run);
     #[cfg(feature = "faults")]
@@ -79,7 +79,7 @@ fn attempt(scenario: &[u8], means: &Means<'_>) -> Ended {
     if run.stop.reason() == Some(StopReason::Cancelled) {
         return without_plan(JobState::Cancelled, None, "abandoned on request");
     }
-    let stopped = means.interruption().reason();
+    let stopped = context.interruption().reason();
     let document = documents::plan::document(&outcome, slice::from_ref(&stopped), &warnings);
     match serde_json::to_vec(&document) {
         Ok(document) => Ended {

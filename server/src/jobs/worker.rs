@@ -1,15 +1,15 @@
 //! The bridge between the asynchronous service and the solver's threads.
 //!
-//! One plain thread claims a job, solves it on the pool and records its end. The database is
+//! One plain thread leases a job, solves it on the pool and records its end. The database is
 //! reached through the handle of the runtime; nothing is computed on the runtime's threads.
 
 use super::memory::MemoryGuard;
 use super::progress::{Reporter, record};
 use super::segments::{self, SegmentCache};
-use super::solve::{self, Means};
+use super::solve::{self, JobContext};
 use super::{Active, Jobs};
 use crate::base::clock::now_us;
-use crate::store::{Claim, Ended, JobRow, JobState, StoreError};
+use crate::store::{Ended, JobRow, JobState, Lease, StoreError};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use std::io;
@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::task::AbortHandle;
 
-/// How long a claim lasts without a beat, and how often it beats.
+/// How long a lease lasts without a beat, and how often it beats.
 const LEASE: Duration = Duration::from_secs(10);
 const BEAT: Duration = Duration::from_secs(2);
 /// Pause after a failure of the database before it is asked again.
@@ -93,7 +93,7 @@ impl Bench {
     fn run(&self) {
         while !self.draining.load(Ordering::SeqCst) {
             match self.runtime.block_on(self.next()) {
-                Ok(Some(claim)) => self.contain(&claim),
+                Ok(Some(lease)) => self.contain(&lease),
                 Ok(None) => {}
                 Err(error) => {
                     tracing::error!(%error, "no job can be claimed");
@@ -103,32 +103,32 @@ impl Bench {
         }
     }
 
-    /// Waits for a job and claims it; `None` when it is time to look around.
-    async fn next(&self) -> Result<Option<Claim>, StoreError> {
+    /// Waits for a job and leases it; `None` when it is time to look around.
+    async fn next(&self) -> Result<Option<Lease>, StoreError> {
         let now = now_us();
-        let claim = self
+        let lease = self
             .jobs
             .store()
-            .claim(&self.boot_id, lease_end(now), now)
+            .lease(&self.boot_id, lease_end(now), now)
             .await?;
-        if claim.is_none() {
+        if lease.is_none() {
             // A notification that came before this wait is kept for it.
             let _ = tokio::time::timeout(POLL, self.jobs.0.queued.notified()).await;
         }
-        Ok(claim)
+        Ok(lease)
     }
 
     /// Works on a job; whatever goes wrong, the thread goes on to the next.
-    fn contain(&self, claim: &Claim) {
-        if catch_unwind(AssertUnwindSafe(|| self.work(claim))).is_err() {
-            self.conclude(&claim.job, &solve::broken());
+    fn contain(&self, lease: &Lease) {
+        if catch_unwind(AssertUnwindSafe(|| self.work(lease))).is_err() {
+            self.conclude(&lease.job, &solve::broken());
         }
         self.jobs.set_active(None);
         self.jobs.changed();
     }
 
-    fn work(&self, claim: &Claim) {
-        let job = &claim.job;
+    fn work(&self, lease: &Lease) {
+        let job = &lease.job;
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
         tracing::info!(targets = job.targets, "solve begins");
@@ -153,7 +153,7 @@ impl Bench {
         let writing = self.runtime.spawn(segments.writing());
         let writing = Attendant(writing.abort_handle());
         let memory = MemoryGuard::watch(&self.runtime, self.jobs.memory_limit(), stop.clone());
-        let means = Means {
+        let context = JobContext {
             pool: &self.pool,
             stop: &stop,
             reporter: &reporter,
@@ -161,7 +161,7 @@ impl Bench {
             segments: &segments,
             memory: &memory,
         };
-        let ended = solve::solve(&claim.scenario, &means);
+        let ended = solve::solve(&lease.scenario, &context);
         drop(memory);
         // Legs are written before the end is told: whoever asks then finds them.
         drop(legs);
@@ -179,7 +179,7 @@ impl Bench {
         self.jobs.job_tally().ended(&ended, solved_s);
     }
 
-    /// Obeys requests that came between the claim and the moment when the signal was in place.
+    /// Obeys requests that came between the lease and the moment when the signal was in place.
     fn catch_up(&self, job: &JobRow, stop: &StopSignal) {
         match self.runtime.block_on(self.jobs.store().job(&job.id)) {
             Ok(Some(job)) => {
@@ -198,7 +198,7 @@ impl Bench {
         }
     }
 
-    /// Records the end; tries again until the database takes it or the claim is lost.
+    /// Records the end; tries again until the database takes it or the lease is lost.
     fn conclude(&self, job: &JobRow, ended: &Ended) {
         let interrupted =
             self.draining.load(Ordering::SeqCst) && ended.state == JobState::Cancelled;
@@ -246,17 +246,17 @@ fn lease_end(now_us: i64) -> i64 {
     now_us.saturating_add(i64::try_from(LEASE.as_micros()).unwrap_or(i64::MAX))
 }
 
-/// Prolongs the lease of a claim; a lost claim is not worked on any longer.
-async fn beat(jobs: Jobs, claim: JobRow, stop: StopSignal) {
+/// Prolongs the lease of a lease; a lost lease is not worked on any longer.
+async fn beat(jobs: Jobs, lease: JobRow, stop: StopSignal) {
     loop {
         tokio::time::sleep(BEAT).await;
-        match jobs.store().beat(&claim, lease_end(now_us())).await {
+        match jobs.store().beat(&lease, lease_end(now_us())).await {
             Ok(true) => {}
             Ok(false) => {
                 stop.cancel();
                 return;
             }
-            Err(error) => tracing::warn!(job_id = claim.id, %error, "lease not prolonged"),
+            Err(error) => tracing::warn!(job_id = lease.id, %error, "lease not prolonged"),
         }
     }
 }

@@ -6,7 +6,7 @@
 //! frame, which is what CCSDS, STK and Basilisk ask for.
 
 use crate::base::clock;
-use slewplan_solver::checker::Motion;
+use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::plan::Flight;
 use slewplan_solver::model::scenario::Scenario;
 
@@ -185,8 +185,9 @@ pub(crate) fn write(
     options: &Options,
 ) -> Result<String, ExportError> {
     check(format, scenario, options)?;
-    let motion =
-        || Motion::of(scenario, flight).map_err(|why| ExportError::NotFlown(why.join("; ")));
+    let motion = || {
+        PropagatedMotion::of(scenario, flight).map_err(|why| ExportError::NotFlown(why.join("; ")))
+    };
     let spacing = options.spacing.unwrap_or(Spacing::Tolerance(TOLERANCE));
     let sampling = Sampling {
         spacing,

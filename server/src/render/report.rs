@@ -3,7 +3,7 @@
 use slewplan_solver::model::plan::{Margins, Outcome, Verification};
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Scenario;
-use slewplan_solver::tour::planner::{CheckedClaims, PlanClaims};
+use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate};
 
 mod certification;
 mod figures;
@@ -43,6 +43,6 @@ pub(crate) fn verification(
 }
 
 /// The text of a plan's claims and what became of them.
-pub(crate) fn certification(claims: &PlanClaims, checked: &CheckedClaims) -> String {
+pub(crate) fn certification(claims: &PlanCertificate, checked: &CheckedCertificate) -> String {
     certification::claims(claims, checked)
 }

@@ -100,7 +100,7 @@ pub(crate) struct JobRow {
     pub(crate) code: Option<String>,
     /// How often it has been begun.
     pub(crate) attempt: i64,
-    /// Number of its newest claim.
+    /// Number of its newest lease.
     pub(crate) fence: i64,
     /// When a stop was asked for.
     pub(crate) stop_requested_us: Option<i64>,

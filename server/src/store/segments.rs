@@ -29,18 +29,18 @@ impl Store {
         .await?)
     }
 
-    /// Remembers segments of a claim, all of them or none; `false` when the claim has been lost.
+    /// Remembers segments of a lease, all of them or none; `false` when the lease has been lost.
     pub(crate) async fn put_segments(
         &self,
-        claim: &JobRow,
+        lease: &JobRow,
         segments: &[SegmentRow],
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let held: Option<i64> = sqlx::query_scalar(
             "SELECT sequence FROM jobs WHERE sequence = ? AND fence = ? AND state = 'running'",
         )
-        .bind(claim.sequence)
-        .bind(claim.fence)
+        .bind(lease.sequence)
+        .bind(lease.fence)
         .fetch_optional(&mut *transaction)
         .await?;
         if held.is_none() {
@@ -51,7 +51,7 @@ impl Store {
                 "INSERT OR REPLACE INTO segments (job, name, solver_version, intervals, motion) \
                  VALUES (?, ?, ?, ?, ?)",
             )
-            .bind(claim.sequence)
+            .bind(lease.sequence)
             .bind(&segment.name)
             .bind(SOLVER_VERSION)
             .bind(segment.intervals)

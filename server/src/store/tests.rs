@@ -1,4 +1,4 @@
-//! What a claim that was lost must not do, what is kept for its successor, and what failures of
+//! What a lease that was lost must not do, what is kept for its successor, and what failures of
 //! the disk must not do.
 
 mod bounds;
@@ -8,7 +8,7 @@ mod queue;
 mod races;
 
 use super::{
-    Claim, Ended, JobRow, JobState, NewIncumbent, PackedPlan, ProgressRow, QueueLimits, ResultRow,
+    Ended, JobRow, JobState, Lease, NewIncumbent, PackedPlan, ProgressRow, QueueLimits, ResultRow,
     SegmentRow, Store, StoreError, Submission, Submitted,
 };
 
@@ -26,8 +26,8 @@ fn plan(total_time_s: f64) -> NewIncumbent {
     }
 }
 
-/// Whether a better plan of a claim was taken in.
-async fn improve(store: &Store, claim: &JobRow, total_time_s: f64) -> bool {
+/// Whether a better plan of a lease was taken in.
+async fn improve(store: &Store, lease: &JobRow, total_time_s: f64) -> bool {
     let progress = ProgressRow {
         stage: "search",
         done: 1,
@@ -36,7 +36,7 @@ async fn improve(store: &Store, claim: &JobRow, total_time_s: f64) -> bool {
         lower_bound_s: Some(10.0),
     };
     let plan = plan(total_time_s);
-    let written = store.progress(claim, &progress, Some(&plan), 3).await;
+    let written = store.progress(lease, &progress, Some(&plan), 3).await;
     written.expect("tried")
 }
 
@@ -72,9 +72,9 @@ async fn submitted(store: &Store) {
     assert!(matches!(queued, Submitted::New(_)));
 }
 
-async fn claim(store: &Store, boot_id: &str) -> Claim {
-    let claim = store.claim(boot_id, 1_000, 2).await.expect("claimed");
-    claim.expect("a job waits")
+async fn lease(store: &Store, boot_id: &str) -> Lease {
+    let lease = store.lease(boot_id, 1_000, 2).await.expect("claimed");
+    lease.expect("a job waits")
 }
 
 async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
@@ -106,9 +106,9 @@ fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
 fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let lost = claim(&store, "first").await.job;
+        let lost = lease(&store, "first").await.job;
         store.recover("second", 3).await.expect("recovered");
-        let newest = claim(&store, "second").await.job;
+        let newest = lease(&store, "second").await.job;
         assert!(!improve(&store, &lost, 20.0).await);
         assert!(result(&store).await.1.is_none());
         assert!(improve(&store, &newest, 30.0).await);
@@ -132,10 +132,10 @@ async fn told(store: &Store) -> Vec<String> {
 fn every_state_of_a_job_is_told() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let lost = claim(&store, "first").await.job;
+        let lost = lease(&store, "first").await.job;
         let recovered = store.recover("second", 3).await.expect("recovered");
         assert_eq!((recovered.queued, recovered.cancelled), (1, 0));
-        claim(&store, "second").await;
+        lease(&store, "second").await;
         store.request_cancel(ID, 5).await.expect("cancelled");
         let recovered = store.recover("third", 6).await.expect("recovered");
         assert_eq!((recovered.queued, recovered.cancelled), (0, 1));
@@ -161,8 +161,8 @@ fn what_is_cancelled_before_it_begins_is_told() {
 fn a_beat_prolongs_the_lease_for_all_to_see() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
-        assert!(store.beat(&claim, 9_000).await.expect("tried"));
+        let lease = lease(&store, "first").await.job;
+        assert!(store.beat(&lease, 9_000).await.expect("tried"));
         let lease = sqlx::query_scalar("SELECT lease_until_us FROM jobs");
         let lease: i64 = lease.fetch_one(&store.readers).await.expect("read");
         assert_eq!(lease, 9_000);
@@ -174,7 +174,7 @@ fn a_beat_prolongs_the_lease_for_all_to_see() {
 fn the_log_is_folded_while_much_is_written() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
+        let lease = lease(&store, "first").await.job;
         // Some 64 MB in all, none of which is worth keeping.
         for round in 0..64 {
             let segment = SegmentRow {
@@ -182,7 +182,7 @@ fn the_log_is_folded_while_much_is_written() {
                 intervals: 2,
                 motion: vec![round; 1 << 20],
             };
-            let taken = store.put_segments(&claim, &[segment]).await;
+            let taken = store.put_segments(&lease, &[segment]).await;
             assert!(taken.expect("tried"));
         }
         let [_, (_, log)] = store.sizes();
@@ -194,12 +194,12 @@ fn the_log_is_folded_while_much_is_written() {
 fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let first = claim(&store, "first").await.job;
+        let first = lease(&store, "first").await.job;
         for total in [30.0, 20.0] {
             assert!(improve(&store, &first, total).await);
         }
         store.recover("second", 4).await.expect("recovered");
-        let second = claim(&store, "second").await.job;
+        let second = lease(&store, "second").await.job;
         assert_eq!((second.attempt, second.incumbent_s), (2, Some(20.0)));
         assert!(improve(&store, &second, 30.0).await);
         let (state, kept) = result(&store).await;
@@ -220,7 +220,7 @@ fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
 fn an_abandoned_job_has_no_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let first = claim(&store, "first").await.job;
+        let first = lease(&store, "first").await.job;
         assert!(improve(&store, &first, 20.0).await);
         store.request_cancel(ID, 4).await.expect("noted");
         store.recover("second", 5).await.expect("recovered");
@@ -239,11 +239,11 @@ fn what_was_solved_is_there_for_the_next_attempt_and_gone_after_the_last() {
     };
     on_a_store(|store| async move {
         submitted(&store).await;
-        let lost = claim(&store, "first").await.job;
+        let lost = lease(&store, "first").await.job;
         let kept = [segment.clone()];
         assert!(store.put_segments(&lost, &kept).await.expect("written"));
         store.recover("second", 3).await.expect("recovered");
-        let second = claim(&store, "second").await.job;
+        let second = lease(&store, "second").await.job;
         let late = [SegmentRow {
             motion: vec![8; 24],
             ..segment.clone()
@@ -305,9 +305,9 @@ fn a_full_disk_costs_only_what_is_written_while_it_is_full() {
 fn a_damaged_plan_is_noticed_and_not_served() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
+        let lease = lease(&store, "first").await.job;
         let end = ended(JobState::Stopped, Some(plan(20.0)));
-        assert!(store.finish(&claim, &end, 3).await.expect("written"));
+        assert!(store.finish(&lease, &end, 3).await.expect("written"));
         sqlx::query("UPDATE results SET document = x'7b7d'")
             .execute(&store.writer)
             .await
@@ -322,9 +322,9 @@ fn only_what_ended_before_is_forgotten() {
     on_a_store(|store| async move {
         submitted(&store).await;
         assert_eq!(store.forget_ended(100, 9).await.expect("tried"), 0);
-        let claim = claim(&store, "first").await.job;
+        let lease = lease(&store, "first").await.job;
         let end = ended(JobState::Stopped, Some(plan(20.0)));
-        assert!(store.finish(&claim, &end, 50).await.expect("written"));
+        assert!(store.finish(&lease, &end, 50).await.expect("written"));
         assert_eq!(store.forget_ended(50, 9).await.expect("tried"), 0);
         assert_eq!(store.forget_ended(51, 9).await.expect("done"), 1);
         assert!(store.result(ID).await.expect("read").is_none());

@@ -7,8 +7,8 @@
 
 use super::NOT_COMPUTED;
 use super::dynamics::{Body, Snapshot, norm, to_reference};
+use super::number_format::figure;
 use super::series::Expansion;
-use super::wording::figure;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
@@ -68,7 +68,7 @@ pub(super) struct Step<'a> {
 
 /// What is known after the flight.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Flown {
+pub(super) struct Propagation {
     /// Accepted steps.
     pub(super) steps: usize,
     /// Largest change of the total momentum in the reference frame, relative to its parts.
@@ -86,7 +86,7 @@ pub(super) fn fly(
     intervals: &[Interval<'_>],
     tolerance: f64,
     mut observe: impl FnMut(&Step<'_>),
-) -> Result<Flown, String> {
+) -> Result<Propagation, String> {
     let mut state = start;
     let mut budget = MAX_EXTRA_STEPS;
     let mut ledger = Ledger::open(body, &state);
@@ -197,14 +197,14 @@ impl Ledger {
         self.steps += 1;
     }
 
-    fn close(self) -> Flown {
+    fn close(self) -> Propagation {
         // Numbers near the largest overflow in between; what cannot be told is no success.
         let momentum_drift = match self.drift / self.scale {
             _ if self.drift == 0.0 => 0.0,
             ratio if ratio.is_finite() => ratio,
             _ => NOT_COMPUTED,
         };
-        Flown {
+        Propagation {
             steps: self.steps,
             momentum_drift,
         }

@@ -3,7 +3,7 @@
 use super::dynamics::{Quaternion, to_reference};
 use super::extremum::{critical_points, root};
 use super::integrator::Step;
-use super::wording::figure;
+use super::number_format::figure;
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::KeepOut;
 

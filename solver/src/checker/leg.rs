@@ -3,7 +3,7 @@
 use super::dynamics::{Body, Quaternion, Snapshot, conjugate, product};
 use super::integrator::{STEP_TOLERANCE, fly};
 use super::limits::{self, Limits};
-use super::wording::figure;
+use super::number_format::figure;
 use super::{ATTITUDE_TOLERANCE, RATE_TOLERANCE, timeline};
 use crate::model::plan::{Flight, State};
 use crate::model::scenario::Scenario;

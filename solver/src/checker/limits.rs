@@ -2,7 +2,7 @@
 
 use super::extremum::critical_points;
 use super::integrator::Step;
-use super::wording::figure;
+use super::number_format::figure;
 use super::{LIMIT_TOLERANCE, NOT_COMPUTED};
 use crate::model::plan::Flight;
 use crate::model::scenario::Scenario;

@@ -1,6 +1,6 @@
 //! Flights whose torques are linear in time, with wheels that follow laws of their own.
 //!
-//! What a tour never has: the commands of a single manoeuvre may be held linearly, some wheels may
+//! What a tour never has: the commands of a single slew may be held linearly, some wheels may
 //! return to a speed by themselves, and friction may take its share of a motor's torque.
 
 use super::dynamics::{Body, Snapshot};
@@ -69,7 +69,7 @@ impl Moment<'_> {
 /// # Errors
 ///
 /// Sentences about what keeps the flight from being flown.
-pub(crate) fn fly_ramps(
+pub(crate) fn propagate_ramps(
     scenario: &Scenario,
     drives: &[Drive],
     ramps: &[Ramp],

@@ -2,7 +2,7 @@
 
 use super::TIME_TOLERANCE;
 use super::integrator::Interval;
-use super::wording::figure;
+use super::number_format::figure;
 use crate::model::plan::{Control, Flight};
 use crate::model::spacecraft::Wheel;
 

@@ -2,8 +2,8 @@
 
 use super::dynamics::{Quaternion, Snapshot, conjugate, norm, product};
 use super::integrator::Interval;
+use super::number_format::figure;
 use super::order::misplaced;
-use super::wording::figure;
 use super::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, NOT_COMPUTED, RATE_TOLERANCE, REST_TORQUE_TOLERANCE,
     SNAP, TIME_TOLERANCE,

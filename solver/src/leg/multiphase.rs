@@ -103,7 +103,7 @@ const LIMIT_TOLERANCE: f64 = 1e-7;
 
 /// A solved flight.
 #[derive(Debug, Clone)]
-pub(crate) struct Flown {
+pub(crate) struct LegSolution {
     /// How the NLP ended.
     pub(crate) status: NlpStatus,
     /// The motion; of use only when converged.
@@ -116,10 +116,10 @@ pub(crate) struct Flown {
     pub(crate) infeasibility: f64,
     /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: what the legs
     /// before it save per momentum with which it is passed, and what the legs after it lose.
-    pub(crate) passing_prices: Vec<DVector<f64>>,
+    pub(crate) costates: Vec<DVector<f64>>,
 }
 
-impl Flown {
+impl LegSolution {
     /// A flight of which not even a guess is known.
     pub(crate) fn nowhere() -> Self {
         Self {
@@ -128,7 +128,7 @@ impl Flown {
             intervals: Vec::new(),
             iterations: 0,
             infeasibility: f64::MAX,
-            passing_prices: Vec::new(),
+            costates: Vec::new(),
         }
     }
 
@@ -138,7 +138,7 @@ impl Flown {
             profile: self.profile.reversed(),
             intervals: self.intervals.iter().rev().copied().collect(),
             // What was saved is lost, but the momenta have changed their sign too.
-            passing_prices: self.passing_prices.iter().rev().cloned().collect(),
+            costates: self.costates.iter().rev().cloned().collect(),
             ..*self
         }
     }
@@ -155,7 +155,7 @@ impl Flown {
     }
 
     /// Whether it beats another flight: converged ones beat all others, ties go to the other.
-    pub(crate) fn improves(&self, other: &Flown) -> bool {
+    pub(crate) fn improves(&self, other: &LegSolution) -> bool {
         match (self.duration(), other.duration()) {
             (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
             (Some(_), None) => true,
@@ -174,7 +174,7 @@ pub(crate) fn fly(
     intervals: &[usize],
     guess: &Profile,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Flown {
+) -> LegSolution {
     Flight::new(dynamics, waypoints, intervals, guess).solve(from_a_guess(dynamics), stop)
 }
 
@@ -195,9 +195,9 @@ pub(crate) fn polish(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
-    mut flown: Flown,
+    mut flown: LegSolution,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Flown {
+) -> LegSolution {
     for _ in 0..POLISH_ROUNDS {
         let Some(before) = flown.least_duration() else {
             break;
@@ -227,7 +227,7 @@ struct Flight<'a> {
     iterate: Iterate,
     /// Interval that ends at each waypoint between two legs.
     arrivals: Vec<usize>,
-    flown: Flown,
+    flown: LegSolution,
 }
 
 impl<'a> Flight<'a> {
@@ -248,19 +248,19 @@ impl<'a> Flight<'a> {
             chain,
             iterate: scaled(guess, &scales),
             arrivals: arrivals(intervals),
-            flown: Flown {
+            flown: LegSolution {
                 status: NlpStatus::IterationLimit,
                 profile: guess.clone(),
                 intervals: intervals.to_vec(),
                 iterations: 0,
                 infeasibility: f64::MAX,
-                passing_prices: Vec::new(),
+                costates: Vec::new(),
             },
         }
     }
 
     /// Solves one phase after the other, and the last one until its solution can be flown.
-    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> Flown {
+    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
         if !self.passes(phases, stop) {
             return self.flown;
         }
@@ -317,7 +317,7 @@ impl<'a> Flight<'a> {
 
     /// Multipliers of the links that end between two legs: were each of the two to have its own copy
     /// of the state, these would be what makes the copies equal.
-    fn passing_prices(&self) -> Vec<DVector<f64>> {
+    fn costates(&self) -> Vec<DVector<f64>> {
         let states = 3 + self.dynamics.wheel_count();
         let unit = self.scales.time / self.scales.momentum;
         let of_momenta = |&interval: &usize| {
@@ -330,13 +330,13 @@ impl<'a> Flight<'a> {
     /// Runs the engine from where the flight is; whether it converges.
     fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
-        self.flown = Flown {
+        self.flown = LegSolution {
             status: report.status,
             profile: physical(&self.iterate, &self.scales, self.dynamics.wheel_count()),
             intervals: std::mem::take(&mut self.flown.intervals),
             iterations: self.flown.iterations + report.iterations,
             infeasibility: report.infeasibility,
-            passing_prices: self.passing_prices(),
+            costates: self.costates(),
         };
         report.status == NlpStatus::Converged
     }

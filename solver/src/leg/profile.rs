@@ -61,7 +61,7 @@ impl Profile {
     }
 
     /// No motion at all, in no time.
-    pub(crate) fn standstill(attitude: Attitude, wheels: DVector<f64>, intervals: usize) -> Self {
+    pub(crate) fn zero_length(attitude: Attitude, wheels: DVector<f64>, intervals: usize) -> Self {
         Self {
             attitudes: vec![attitude; intervals + 1],
             wheels: vec![wheels; intervals + 1],

@@ -5,26 +5,26 @@ mod centred;
 pub(crate) mod eigenaxis;
 pub(crate) mod extremal;
 mod resolution;
-pub(crate) mod standstill;
 mod starts;
 mod steered;
 #[cfg(test)]
 mod tests;
+pub(crate) mod zero_length;
 
-use crate::leg::multiphase::{Flown, fly, polish};
+use crate::leg::multiphase::{LegSolution, fly, polish};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::nlp::{Interruption, NlpStatus};
 use arrival::Arrival;
-use eigenaxis::{EigenaxisSlew, Side};
+use eigenaxis::{EigenaxisSlew, Perturbation};
 use extremal::KinematicExtremals;
 use nalgebra::{DVector, Vector3};
 pub(crate) use resolution::Resolution;
-use standstill::standstill;
 use starts::Starts;
 use steered::steered;
+use zero_length::zero_length;
 
 /// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
 const EIGENAXIS_TOLERANCE: f64 = 1e-6;
@@ -33,7 +33,7 @@ const SAME_MOMENTUM: f64 = 1e-9;
 
 /// A slew between two waypoints.
 #[derive(Clone, Copy)]
-pub(crate) struct SlewProblem<'a> {
+pub(crate) struct LegProblem<'a> {
     /// The spacecraft with its momentum.
     pub(crate) dynamics: &'a Dynamics,
     /// Where it begins.
@@ -52,9 +52,9 @@ pub(crate) struct SlewProblem<'a> {
 
 /// The best solution of a slew.
 #[derive(Debug, Clone)]
-pub(crate) struct Slew {
+pub(crate) struct LegOutcome {
     /// The best converged flight, or one that tells why there is none.
-    pub(crate) flown: Flown,
+    pub(crate) flown: LegSolution,
     /// NLPs solved.
     pub(crate) solves: u64,
 }
@@ -62,12 +62,12 @@ pub(crate) struct Slew {
 /// Solves a slew from one guess after the other, until its duration is so close to a bound from
 /// below, s, that no other is worth its time.
 pub(crate) fn solve(
-    slew: &SlewProblem<'_>,
+    slew: &LegProblem<'_>,
     bound: Option<f64>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Slew {
-    if let Some(flown) = standstill(slew) {
-        return Slew { flown, solves: 0 };
+) -> LegOutcome {
+    if let Some(flown) = zero_length(slew) {
+        return LegOutcome { flown, solves: 0 };
     }
     let (mut flown, mut solves) = Starts::new(slew, bound, stop).best();
     if stop().is_none()
@@ -94,10 +94,10 @@ pub(crate) fn solve(
         let intervals = flown.intervals.clone();
         flown = polish(slew.dynamics, &waypoints, &intervals, flown, stop);
     }
-    Slew { flown, solves }
+    LegOutcome { flown, solves }
 }
 
-impl SlewProblem<'_> {
+impl LegProblem<'_> {
     /// Intervals of the slew.
     pub(crate) fn intervals(&self) -> usize {
         let turn = self.arrival.turn(&self.from.attitude, &self.to.attitude);
@@ -106,12 +106,12 @@ impl SlewProblem<'_> {
 
     /// A flight that no program has made shorter: slowly about the eigenaxis. `None` where the wheels
     /// cannot hold the momentum along the way.
-    pub(crate) fn constructed(&self) -> Option<Flown> {
+    pub(crate) fn constructed(&self) -> Option<LegSolution> {
         steered(self)
     }
 
     /// Flies from a guess.
-    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> Flown {
+    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
         self.fly_in(&[self.intervals()], guess, stop)
     }
 
@@ -121,7 +121,7 @@ impl SlewProblem<'_> {
         intervals: &[usize],
         guess: &Profile,
         stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Flown {
+    ) -> LegSolution {
         let waypoints = self.waypoints(guess);
         fly(self.dynamics, &waypoints, intervals, guess, stop)
     }
@@ -130,12 +130,12 @@ impl SlewProblem<'_> {
     /// another flight is slower than it: from the exact slew, or the slew itself.
     fn eigenaxis_at_worst(
         &self,
-        flown: &Flown,
+        flown: &LegSolution,
         stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Option<Flown> {
+    ) -> Option<LegSolution> {
         let eigenaxis = self.eigenaxis();
         let allowed = eigenaxis.course.duration() * (1.0 + EIGENAXIS_TOLERANCE);
-        let fast = |flown: &Flown| flown.duration().is_some_and(|time| time <= allowed);
+        let fast = |flown: &LegSolution| flown.duration().is_some_and(|time| time <= allowed);
         if fast(flown) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
             return None;
         }
@@ -145,13 +145,13 @@ impl SlewProblem<'_> {
             // With momentum its torque is not piecewise constant.
             return solved.improves(flown).then_some(solved);
         }
-        Some(Flown {
+        Some(LegSolution {
             status: NlpStatus::Converged,
             profile: exact,
             intervals: vec![self.intervals()],
             iterations: solved.iterations,
             infeasibility: 0.0,
-            passing_prices: Vec::new(),
+            costates: Vec::new(),
         })
     }
 
@@ -191,8 +191,8 @@ impl SlewProblem<'_> {
         self.extremals.guess(self)
     }
 
-    /// A guess from the slew about the eigenaxis, bowed to one side.
-    pub(crate) fn bowed(&self, side: Side) -> Profile {
+    /// A guess from the slew about the eigenaxis, perturbed_eigenaxis to one side.
+    pub(crate) fn perturbed_eigenaxis(&self, side: Perturbation) -> Profile {
         let intervals = self.intervals();
         let slew = self.eigenaxis().lasting(self.least_duration());
         slew.guess(self.dynamics, intervals, side)

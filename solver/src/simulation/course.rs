@@ -6,7 +6,7 @@
 use super::controller::Desired;
 use super::settings::Settings;
 use super::spec::FeedForward;
-use crate::checker::Motion;
+use crate::checker::PropagatedMotion;
 use crate::model::plan::{Control, Flight};
 use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
@@ -71,7 +71,7 @@ impl Course {
     pub(super) fn new(
         scenario: &Scenario,
         flight: &Flight,
-        motion: &Motion,
+        motion: &PropagatedMotion,
         settings: &Settings,
     ) -> Option<Self> {
         let plan = Plan {
@@ -239,7 +239,7 @@ struct Interval<'a> {
 struct Plan<'a> {
     scenario: &'a Scenario,
     flight: &'a Flight,
-    motion: &'a Motion,
+    motion: &'a PropagatedMotion,
 }
 
 impl<'a> Plan<'a> {

@@ -1,8 +1,8 @@
 //! Solutions of one program from one guess after the other.
 
-use super::motion::Motion;
+use super::motion::SlewMotion;
 use super::solving::{Solved, Task};
-use super::{Found, Manoeuvre, Plain, flown, starts};
+use super::{Found, Plain, Slew, propagated, starts};
 use crate::nlp::Interruption;
 
 /// Shares of effort in the objectives of a continuation to the fastest motion.
@@ -10,13 +10,13 @@ const EFFORT_SHARES: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 /// Solves one program: from a neighbour, or from the best of the usual guesses.
 pub(super) fn direct(
-    manoeuvre: &Manoeuvre,
+    slew: &Slew,
     plain: &Plain,
-    neighbour: Option<&Motion>,
+    neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
     let mut attempts = Attempts {
-        manoeuvre,
+        slew,
         plain,
         stop,
         best: None,
@@ -37,7 +37,7 @@ pub(super) fn direct(
 
 /// The best solution so far, and what it took.
 struct Attempts<'a> {
-    manoeuvre: &'a Manoeuvre,
+    slew: &'a Slew,
     plain: &'a Plain,
     stop: &'a dyn Fn() -> Option<Interruption>,
     best: Option<Solved>,
@@ -47,12 +47,12 @@ struct Attempts<'a> {
 
 impl Attempts<'_> {
     /// Solves the program from a guess; whether it converges.
-    fn converges_from(&mut self, guess: &Motion) -> bool {
+    fn converges_from(&mut self, guess: &SlewMotion) -> bool {
         let plain = self.plain;
         let mut solved = self.solve(plain, guess);
-        if plain.ingredients.bills() && plain.ingredients.budget.is_none() {
+        if plain.cost_weights.bills() && plain.cost_weights.budget.is_none() {
             // The program's own bill is low by a different amount for every motion.
-            solved.cost = flown::fly(self.manoeuvre, &solved.motion).energies.bill_j;
+            solved.cost = propagated::fly(self.slew, &solved.motion).energies.bill_j;
         }
         let converged = solved.converged();
         if self.best.as_ref().is_none_or(|best| solved.improves(best)) {
@@ -62,14 +62,14 @@ impl Attempts<'_> {
     }
 
     /// Solves this program, or one that leads to it, from a guess.
-    fn solve(&mut self, plain: &Plain, guess: &Motion) -> Solved {
+    fn solve(&mut self, plain: &Plain, guess: &SlewMotion) -> Solved {
         let task = Task {
-            vehicle: self.manoeuvre.vehicle(),
-            ends: self.manoeuvre.ends_towards(guess),
+            vehicle: self.slew.vehicle(),
+            ends: self.slew.ends_towards(guess),
             shape: plain.shape.clone(),
-            ingredients: plain.ingredients,
+            cost_weights: plain.cost_weights,
         };
-        let solved = task.solve(&plain.meshed(guess, self.manoeuvre), self.stop);
+        let solved = task.solve(&plain.meshed(guess, self.slew), self.stop);
         self.starts += 1;
         self.iterations += solved.iterations;
         solved
@@ -77,13 +77,10 @@ impl Attempts<'_> {
 
     fn try_usual_guesses(&mut self) {
         let Self {
-            manoeuvre,
-            plain,
-            stop,
-            ..
+            slew, plain, stop, ..
         } = *self;
         let mut guesses: Vec<_> = self.optimum_of_proxy().into_iter().collect();
-        guesses.extend(starts::of(manoeuvre, plain.ingredients, stop));
+        guesses.extend(starts::of(slew, plain.cost_weights, stop));
         let mut converged = false;
         for guess in &guesses {
             converged |= self.converges_from(guess);
@@ -91,15 +88,15 @@ impl Attempts<'_> {
                 return;
             }
         }
-        if !converged && plain.ingredients.hurries() {
+        if !converged && plain.cost_weights.hurries() {
             self.continue_in_effort(&guesses[0]);
         }
     }
 
     /// The motion that the smooth proxy of a bill leads to.
-    fn optimum_of_proxy(&mut self) -> Option<Motion> {
-        let proxy = self.plain.proxy(self.manoeuvre)?;
-        let found = direct(self.manoeuvre, &proxy, None, self.stop);
+    fn optimum_of_proxy(&mut self) -> Option<SlewMotion> {
+        let proxy = self.plain.proxy(self.slew)?;
+        let found = direct(self.slew, &proxy, None, self.stop);
         self.starts += found.starts;
         self.iterations += found.iterations;
         found.solved.converged().then_some(found.solved.motion)
@@ -109,10 +106,10 @@ impl Attempts<'_> {
     /// Continuation Methods, 2003): where only time counts, some torques may make no difference, and
     /// effort tells them apart. The last program that converges takes longer than the fastest motion
     /// by its share of effort at most.
-    fn continue_in_effort(&mut self, guess: &Motion) {
+    fn continue_in_effort(&mut self, guess: &SlewMotion) {
         let mut last: Option<Solved> = None;
         for share in EFFORT_SHARES {
-            let weighted = self.plain.with_effort(self.manoeuvre, share, guess);
+            let weighted = self.plain.with_effort(self.slew, share, guess);
             let from = last.as_ref().map_or(guess, |last| &last.motion);
             let solved = self.solve(&weighted, from);
             if !solved.converged() {

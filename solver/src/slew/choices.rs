@@ -1,17 +1,17 @@
-//! Whether objective, command and conditions of a manoeuvre are valid and go with its wheels.
+//! Whether objective, command and conditions of a slew are valid and go with its wheels.
 
-use super::spec::{Command, FinalWheels, Hold, ManoeuvreSpec, Measure, Objective, WheelAllocation};
+use super::spec::{Command, FinalWheels, Hold, Measure, Objective, SlewSpec, WheelAllocation};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::nlp::{MAX_CONTROLS, MAX_STATES};
 
-/// Most intervals of a manoeuvre.
+/// Most intervals of a slew.
 pub(super) const MAX_INTERVALS: usize = 2000;
 /// Relative error of a duration as a multiple of the sampling period that is rounding.
 const MULTIPLE_TOLERANCE: f64 = 1e-9;
 
 /// Checks all choices; `false` after a fault.
-pub(super) fn check(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+pub(super) fn check(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let checks = [
         check_objective(&spec.objective, findings),
         check_command(&spec.command, findings),
@@ -94,7 +94,7 @@ pub(super) fn check_multiple(
 }
 
 /// Energy needs the motors of all commanded wheels.
-fn check_motors(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+fn check_motors(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let needed = matches!(
         spec.objective,
         Objective::Energy { .. } | Objective::MinimumTimeAtEnergy { .. }
@@ -117,7 +117,7 @@ fn check_motors(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
 }
 
 /// The engine is built for so many variables per interval.
-fn check_size(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+fn check_size(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let lawful = |i: usize| {
         spec.drives
             .get(i)
@@ -159,7 +159,7 @@ fn check_size(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
     valid
 }
 
-fn check_final_wheels(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+fn check_final_wheels(spec: &SlewSpec, findings: &mut Findings) -> bool {
     if spec.final_wheels != FinalWheels::Given {
         return true;
     }
@@ -185,7 +185,7 @@ fn check_final_wheels(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
 }
 
 /// Whether a speed law moves any wheel.
-fn drifts(spec: &ManoeuvreSpec) -> bool {
+fn drifts(spec: &SlewSpec) -> bool {
     let start = spec.start.wheel_speed_rad_s.as_deref().unwrap_or(&[]);
     spec.drives.iter().enumerate().any(|(i, drive)| {
         drive.speed_law.as_ref().is_some_and(|law| {
@@ -196,7 +196,7 @@ fn drifts(spec: &ManoeuvreSpec) -> bool {
 }
 
 /// A wheel that is out of order follows no law.
-fn check_laws(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+fn check_laws(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let mut valid = true;
     for (i, wheel) in spec.spacecraft.wheels.iter().enumerate() {
         let lawful = spec
@@ -217,7 +217,7 @@ fn check_laws(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
 }
 
 /// The pseudo-inverse leaves null-space momentum alone, so nothing is left to choose at the end.
-fn check_allocation(spec: &ManoeuvreSpec, findings: &mut Findings) -> bool {
+fn check_allocation(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let valid = spec.allocation == WheelAllocation::Free || spec.final_wheels != FinalWheels::Given;
     if !valid {
         findings.refuse(

@@ -36,7 +36,7 @@ mod costate;
 use super::flow::Sample;
 use super::program::Program;
 use super::solving::Solved;
-use super::{Manoeuvre, Outcome, WheelAllocation, interruption};
+use super::{Slew, SlewOutcome, WheelAllocation, interruption};
 use crate::nlp::{Chain, Layout};
 use crate::run::stop::StopSignal;
 use controls::Controls;
@@ -100,20 +100,20 @@ pub struct IntervalEvidence {
 ///
 /// The solution is polished before, which takes a few iterations more.
 #[must_use]
-pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option<Evidence> {
+pub fn of(slew: &Slew, outcome: &SlewOutcome, stop: &StopSignal) -> Option<Evidence> {
     if !outcome.solved {
         return None;
     }
     let polished = outcome
         .solution
-        .polished(manoeuvre.vehicle(), &|| interruption(stop));
+        .polished(slew.vehicle(), &|| interruption(stop));
     if stop.is_set() || !polished.converged() {
         return None;
     }
-    let plain = Running::new(manoeuvre.vehicle(), &polished.program.ingredients, 0.0);
+    let plain = Running::new(slew.vehicle(), &polished.program.cost_weights, 0.0);
     let witness = Witness {
-        manoeuvre,
-        controls: Controls::new(manoeuvre.allocation(), &plain),
+        slew,
+        controls: Controls::new(slew.allocation(), &plain),
         solved: &polished,
         layout: Layout::of(&polished.program),
     };
@@ -121,7 +121,7 @@ pub fn of(manoeuvre: &Manoeuvre, outcome: &Outcome, stop: &StopSignal) -> Option
 }
 
 struct Witness<'a> {
-    manoeuvre: &'a Manoeuvre,
+    slew: &'a Slew,
     controls: Controls,
     solved: &'a Solved,
     layout: Layout,
@@ -177,7 +177,7 @@ impl Witness<'_> {
             |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).fold(0.0, f64::max) / scale;
         let (limited, right) = (sum(&|t| t.limited[0]), sum(&|t| t.limited[1]));
         Evidence {
-            controls: self.manoeuvre.allocation(),
+            controls: self.slew.allocation(),
             average_spread: spread(&|t| (t.evidence.hamiltonian[0] - hamiltonian).abs()),
             pointwise_spread: spread(&|t| furthest(t.evidence.hamiltonian, hamiltonian)),
             variation: spread(&|t| furthest(t.alone, alone)),
@@ -201,14 +201,14 @@ impl Witness<'_> {
         } else {
             0.0
         };
-        program.ingredients.energy + spent
+        program.cost_weights.energy + spent
     }
 
     fn stretch(&self, k: usize) -> Stretch<'_> {
-        let vehicle = self.manoeuvre.vehicle();
+        let vehicle = self.slew.vehicle();
         let motion = &self.solved.motion;
         let price = self.energy_price(k);
-        let running = Running::new(vehicle, &self.program().ingredients, price);
+        let running = Running::new(vehicle, &self.program().cost_weights, price);
         let begin: f64 = motion.lengths[..k].iter().sum();
         let samples = vehicle.samples(motion, k, begin, 2 * PARTS);
         Stretch {

@@ -5,7 +5,7 @@
 //! time, `W(t) = speed + (W(0) - speed) exp(-rate t)`, so it is a locked wheel whose momentum
 //! drifts. The program has a clock for it among its states.
 
-use super::motion::Motion;
+use super::motion::SlewMotion;
 use crate::leg::kinematics::exact_flow;
 use crate::leg::multiphase::excess_inside;
 use crate::math::quaternion::{Quat, rotate_back};
@@ -90,7 +90,7 @@ pub(super) struct Sample {
 
 impl Vehicle {
     /// Wheel momenta on an interval at a share `s` of it, N m s.
-    fn momenta(motion: &Motion, k: usize, s: f64) -> DVector<f64> {
+    fn momenta(motion: &SlewMotion, k: usize, s: f64) -> DVector<f64> {
         let length = motion.lengths[k];
         let (begin, end) = (&motion.begin[k], &motion.end[k]);
         &motion.momenta[k] + begin * (length * (s - 0.5 * s * s)) + end * (length * 0.5 * s * s)
@@ -106,7 +106,7 @@ impl Vehicle {
     /// The turn over a part of an interval that begins at a time, s, in an attitude.
     fn turn(
         &self,
-        motion: &Motion,
+        motion: &SlewMotion,
         k: usize,
         time: f64,
         (from, to, q): (f64, f64, &Attitude),
@@ -122,7 +122,7 @@ impl Vehicle {
     }
 
     /// The exact turn over every interval, from its first node.
-    pub(super) fn turns(&self, motion: &Motion) -> Vec<Quat> {
+    pub(super) fn turns(&self, motion: &SlewMotion) -> Vec<Quat> {
         let times = motion.times();
         (0..motion.lengths.len())
             .map(|k| self.turn(motion, k, times[k], (0.0, 1.0, &motion.attitudes[k])))
@@ -132,7 +132,7 @@ impl Vehicle {
     /// The motion at the ends of equal parts of an interval, the first and the last included.
     pub(super) fn samples(
         &self,
-        motion: &Motion,
+        motion: &SlewMotion,
         k: usize,
         begin: f64,
         parts: usize,
@@ -166,7 +166,7 @@ impl Vehicle {
 
     /// Relative excess inside every interval over the limits of [`Dynamics::limit_shares`], where it
     /// is larger than at both ends, and over the motor torques.
-    pub(super) fn excesses(&self, motion: &Motion) -> (Vec<f64>, Vec<f64>) {
+    pub(super) fn excesses(&self, motion: &SlewMotion) -> (Vec<f64>, Vec<f64>) {
         let times = motion.times();
         let (mut shares, mut torques) = (Vec::new(), Vec::new());
         for k in 0..motion.lengths.len() {

@@ -10,7 +10,7 @@ use nalgebra::DVector;
 
 /// States at nodes and the torques between them, of the commanded wheels.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Motion {
+pub(super) struct SlewMotion {
     /// Attitude at every node, continuous in sign.
     pub(super) attitudes: Vec<Attitude>,
     /// Wheel momenta at every node, N m s.
@@ -23,7 +23,7 @@ pub(super) struct Motion {
     pub(super) end: Vec<DVector<f64>>,
 }
 
-impl Motion {
+impl SlewMotion {
     /// A motion under constant torques.
     pub(super) fn of_profile(profile: &Profile) -> Self {
         let torques: Vec<_> = profile

@@ -1,4 +1,4 @@
-//! The nonlinear program of a manoeuvre: a [`Transcription`] with other courses of torque, other
+//! The nonlinear program of a slew: a [`Transcription`] with other courses of torque, other
 //! lengths and other costs around it.
 //!
 //! The transcription is used for what it knows: the conditions on states at nodes, and the attitude
@@ -11,8 +11,8 @@ mod allocation;
 mod chain;
 mod listing;
 
+use super::cost_weights::CostWeights;
 use super::flow::{Followers, Vehicle};
-use super::ingredients::Ingredients;
 use super::jet::Jet;
 use super::shape::{Course, Lengths, Shape};
 use super::terms::{BEGIN, DrivenWheel, END, LENGTH, SPEED, TURN, TURN_END, WheelState};
@@ -33,7 +33,7 @@ pub(super) struct LengthPenalty {
 /// Units of what is neither state nor control.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Units {
-    /// Of the cost, in that of the ingredients.
+    /// Of the cost, in that of the cost_weights.
     pub(super) cost: f64,
     /// Of energies, J.
     pub(super) energy: f64,
@@ -46,7 +46,7 @@ pub(super) struct Program {
     pub(super) shape: Shape,
     pub(super) scales: Scales,
     pub(super) units: Units,
-    pub(super) ingredients: Ingredients,
+    pub(super) cost_weights: CostWeights,
     wheels: Vec<DrivenWheel>,
     /// Speed of each wheel in a state, rad/s.
     speeds: Vec<Row>,
@@ -98,7 +98,7 @@ impl Program {
         waypoints: &[Waypoint; 2],
         intervals: usize,
         shape: Shape,
-        (ingredients, units): (Ingredients, Units),
+        (cost_weights, units): (CostWeights, Units),
     ) -> Self {
         let (dynamics, drives) = (&vehicle.dynamics, &vehicle.drives);
         let base = Transcription::new(dynamics, scales, waypoints, &[intervals]);
@@ -146,7 +146,7 @@ impl Program {
             shape,
             scales,
             units,
-            ingredients,
+            cost_weights,
         }
     }
 
@@ -201,7 +201,7 @@ impl Program {
 
     /// Fills the slacks and the account of an iterate with what its motion takes.
     pub(super) fn fill_energies(&self, iterate: &mut Iterate) {
-        if !self.ingredients.uses_energy() {
+        if !self.cost_weights.uses_energy() {
             return;
         }
         let layout = Layout::of(self);
@@ -233,7 +233,7 @@ impl Program {
     /// Whether any term divides by the length of an interval.
     fn divides_by_length(&self) -> bool {
         self.shape.course == Course::Steps
-            && (self.ingredients.effort > 0.0 || self.ingredients.uses_energy())
+            && (self.cost_weights.effort > 0.0 || self.cost_weights.uses_energy())
     }
 
     fn torque_unit(&self) -> f64 {

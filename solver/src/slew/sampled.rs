@@ -2,15 +2,15 @@
 //!
 //! First the minimum in continuous time; then its duration is rounded up to the clock, and torque
 //! held linearly; then it is held constant, from the motion before. Where no motion is found in so
-//! many samples, one more is allowed. In its fixed time a manoeuvre for time alone takes the least
+//! many samples, one more is allowed. In its fixed time a slew for time alone takes the least
 //! effort.
 
 use super::choices::MAX_INTERVALS;
-use super::flown::{self, effort};
-use super::ingredients::Ingredients;
-use super::motion::Motion;
+use super::cost_weights::CostWeights;
+use super::motion::SlewMotion;
+use super::propagated::{self, effort};
 use super::shape::{Course, Lengths};
-use super::{Found, Hold, Manoeuvre, Objective, Plain, direct, in_continuous_time};
+use super::{Found, Hold, Objective, Plain, Slew, direct, in_continuous_time};
 use crate::nlp::Interruption;
 
 /// Samples allowed beyond those of the continuous minimum.
@@ -18,19 +18,19 @@ const MAX_EXTRA: usize = 12;
 /// Share of a sample by which a duration may exceed a multiple of it as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Solves a sampled manoeuvre.
+/// Solves a sampled slew.
 pub(super) fn solve(
-    manoeuvre: &Manoeuvre,
+    slew: &Slew,
     (period, hold): (f64, Hold),
-    neighbour: Option<&Motion>,
+    neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
-    let mut continuous = in_continuous_time(manoeuvre, neighbour, stop);
+    let mut continuous = in_continuous_time(slew, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
         return continuous;
     }
     let clock = Clock {
-        manoeuvre,
+        slew,
         period,
         hold,
         stop,
@@ -80,9 +80,9 @@ fn whole(number: f64) -> usize {
     number.clamp(0.0, (MAX_INTERVALS + 1) as f64) as usize
 }
 
-/// A manoeuvre on a clock.
+/// A slew on a clock.
 struct Clock<'a> {
-    manoeuvre: &'a Manoeuvre,
+    slew: &'a Slew,
     period: f64,
     hold: Hold,
     stop: &'a dyn Fn() -> Option<Interruption>,
@@ -91,7 +91,7 @@ struct Clock<'a> {
 impl Clock<'_> {
     /// Numbers of samples to try, given the least that the continuous minimum admits.
     fn candidates(&self, least: usize) -> Vec<usize> {
-        match self.manoeuvre.objective() {
+        match self.slew.objective() {
             Objective::Energy { duration_s, .. } => {
                 vec![whole((duration_s / self.period).round())]
             }
@@ -104,38 +104,38 @@ impl Clock<'_> {
     }
 
     /// What is minimised once the number of samples is fixed.
-    fn ingredients(&self, duration: f64) -> Ingredients {
-        match self.manoeuvre.objective() {
-            Objective::MinimumTime => Ingredients {
+    fn cost_weights(&self, duration: f64) -> CostWeights {
+        match self.slew.objective() {
+            Objective::MinimumTime => CostWeights {
                 time: 0.0,
                 effort: 1.0,
                 duration: Some(duration),
-                ..Ingredients::TIME
+                ..CostWeights::TIME
             },
-            Objective::TimeAndEffort { weight } => Ingredients {
+            Objective::TimeAndEffort { weight } => CostWeights {
                 effort: weight,
                 duration: Some(duration),
-                ..Ingredients::TIME
+                ..CostWeights::TIME
             },
             Objective::Energy { measure, .. } | Objective::MinimumTimeAtEnergy { measure, .. } => {
-                Ingredients::energy_in(duration, measure)
+                CostWeights::energy_in(duration, measure)
             }
         }
     }
 
     /// The optimum in so many samples: held linearly, and from there held constant.
-    fn hold(&self, samples: usize, guess: &Motion) -> Found {
+    fn hold(&self, samples: usize, guess: &SlewMotion) -> Found {
         let duration = samples as f64 * self.period;
-        let ingredients = self.ingredients(duration);
-        let solve = |course: Course, guess: &Motion| {
+        let cost_weights = self.cost_weights(duration);
+        let solve = |course: Course, guess: &SlewMotion| {
             let lengths = Lengths::Given(vec![self.period; samples]);
             let plain = Plain {
-                shape: self.manoeuvre.shape(course, lengths, &ingredients),
+                shape: self.slew.shape(course, lengths, &cost_weights),
                 lasting: Some(duration),
                 intervals: samples,
-                ingredients,
+                cost_weights,
             };
-            direct(self.manoeuvre, &plain, Some(guess), self.stop)
+            direct(self.slew, &plain, Some(guess), self.stop)
         };
         let linear = solve(Course::Ramps, guess);
         if self.hold == Hold::Linear {
@@ -151,12 +151,12 @@ impl Clock<'_> {
         solve(Course::Steps, guess).after(&linear)
     }
 
-    /// Whether a solution answers the manoeuvre.
+    /// Whether a solution answers the slew.
     fn is_answer(&self, found: &Found) -> bool {
         found.solved.converged()
-            && match self.manoeuvre.objective() {
+            && match self.slew.objective() {
                 Objective::MinimumTimeAtEnergy { energy_j, .. } => {
-                    let flown = flown::fly(self.manoeuvre, &found.solved.motion);
+                    let flown = propagated::fly(self.slew, &found.solved.motion);
                     flown.energies.bill_j <= energy_j
                 }
                 _ => true,
@@ -165,7 +165,7 @@ impl Clock<'_> {
 
     fn value(&self, found: &Found) -> f64 {
         let motion = &found.solved.motion;
-        match self.manoeuvre.objective() {
+        match self.slew.objective() {
             Objective::TimeAndEffort { weight } => motion.duration() + weight * effort(motion),
             _ => motion.duration(),
         }

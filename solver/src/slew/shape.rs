@@ -1,4 +1,4 @@
-//! Which variables the program of a manoeuvre has.
+//! Which variables the program of a slew has.
 //!
 //! | part of a state | when |
 //! |---|---|

@@ -1,8 +1,8 @@
 //! From a guess to a motion that flies: solve, correct the turns, keep reserves, solve again.
 
+use super::cost_weights::CostWeights;
 use super::flow::Vehicle;
-use super::ingredients::Ingredients;
-use super::motion::Motion;
+use super::motion::SlewMotion;
 use super::program::{LengthPenalty, Program, Units};
 use super::shape::{Lengths, Shape};
 use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
@@ -93,14 +93,14 @@ pub(super) struct Task<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) ends: [Waypoint; 2],
     pub(super) shape: Shape,
-    pub(super) ingredients: Ingredients,
+    pub(super) cost_weights: CostWeights,
 }
 
 /// What came of it.
 #[derive(Debug, Clone)]
 pub(super) struct Solved {
     pub(super) status: NlpStatus,
-    pub(super) motion: Motion,
+    pub(super) motion: SlewMotion,
     /// `a T + b integral u'u + c E` as the program counts it.
     pub(super) cost: f64,
     pub(super) iterations: usize,
@@ -147,7 +147,11 @@ impl Solved {
 
 impl Task<'_> {
     /// Solves from a guess with as many intervals as the program is to have.
-    pub(super) fn solve(&self, guess: &Motion, stop: &dyn Fn() -> Option<Interruption>) -> Solved {
+    pub(super) fn solve(
+        &self,
+        guess: &SlewMotion,
+        stop: &dyn Fn() -> Option<Interruption>,
+    ) -> Solved {
         let own = self.shape.lengths == Lengths::Own;
         if !own {
             return self.solve_in(&WITHOUT_LENGTHS, guess, stop);
@@ -164,7 +168,7 @@ impl Task<'_> {
     fn solve_in(
         &self,
         phases: &[Phase],
-        guess: &Motion,
+        guess: &SlewMotion,
         stop: &dyn Fn() -> Option<Interruption>,
     ) -> Solved {
         let program = self.program(guess);
@@ -184,7 +188,7 @@ impl Task<'_> {
         run.solved
     }
 
-    fn program(&self, guess: &Motion) -> Program {
+    fn program(&self, guess: &SlewMotion) -> Program {
         let dynamics = &self.vehicle.dynamics;
         let angle = self.ends[0]
             .attitude
@@ -201,7 +205,7 @@ impl Task<'_> {
             &self.ends,
             guess.lengths.len(),
             self.shape.clone(),
-            (self.ingredients, units),
+            (self.cost_weights, units),
         );
         let energy = program.energy_of(&guess.iterate(&program));
         let wheels = dynamics.wheel_count() as f64;
@@ -214,10 +218,10 @@ impl Task<'_> {
             .zip(&guess.lengths)
             .map(|(u, length)| u.norm_squared() * length)
             .sum();
-        let ingredients = &self.ingredients;
-        let cost = ingredients.time * guess.duration()
-            + ingredients.effort * effort
-            + ingredients.energy * energy;
+        let cost_weights = &self.cost_weights;
+        let cost = cost_weights.time * guess.duration()
+            + cost_weights.effort * effort
+            + cost_weights.energy * energy;
         if cost > 0.0 {
             program.units.cost = cost / COST_OF_GUESS;
         }
@@ -235,7 +239,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn pass(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) {
         for phase in phases {
-            let penalty = if self.solved.program.ingredients.bills() {
+            let penalty = if self.solved.program.cost_weights.bills() {
                 BILLED_PENALTY
             } else {
                 phase.length_penalty
@@ -346,13 +350,13 @@ impl Run<'_> {
             .solve(&solved.program, &mut solved.iterate, stop);
         solved.status = report.status;
         solved.iterations += report.iterations;
-        solved.motion = Motion::of_iterate(&solved.iterate, &solved.program);
+        solved.motion = SlewMotion::of_iterate(&solved.iterate, &solved.program);
         solved.cost = cost(&solved.program, &solved.iterate);
         solved.converged()
     }
 }
 
-/// The cost of an iterate without penalties, in the unit of the ingredients.
+/// The cost of an iterate without penalties, in the unit of the cost_weights.
 fn cost(program: &Program, iterate: &Iterate) -> f64 {
     let (layout, mut values) = (Layout::of(program), values_of(program));
     let mut sum = 0.0;

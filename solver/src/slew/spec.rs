@@ -1,9 +1,9 @@
-//! Descriptions of manoeuvres, and manoeuvres that are valid by construction.
+//! Descriptions of slews, and slews that are valid by construction.
 
 use super::choices;
+use super::cost_weights::CostWeights;
 use super::flow::{Followers, Vehicle};
-use super::ingredients::Ingredients;
-use super::motion::Motion;
+use super::motion::SlewMotion;
 use super::shape::{Course, Lengths, Shape};
 use crate::leg::solve::arrival::Arrival;
 use crate::model::attitude::Attitude;
@@ -128,9 +128,9 @@ impl WheelAllocation {
     }
 }
 
-/// A manoeuvre as a caller describes it.
+/// A slew as a caller describes it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ManoeuvreSpec {
+pub struct SlewSpec {
     /// The spacecraft.
     pub spacecraft: SpacecraftSpec,
     /// One drive per wheel, or none for ideal ones.
@@ -155,7 +155,7 @@ pub struct ManoeuvreSpec {
     pub momentum_authority: f64,
 }
 
-impl Default for ManoeuvreSpec {
+impl Default for SlewSpec {
     fn default() -> Self {
         Self {
             spacecraft: SpacecraftSpec::default(),
@@ -173,9 +173,9 @@ impl Default for ManoeuvreSpec {
     }
 }
 
-/// A valid manoeuvre.
+/// A valid slew.
 #[derive(Debug, Clone)]
-pub struct Manoeuvre {
+pub struct Slew {
     scenario: Scenario,
     drives: Vec<Drive>,
     vehicle: Vehicle,
@@ -186,23 +186,23 @@ pub struct Manoeuvre {
     command: Command,
 }
 
-/// A valid manoeuvre with what the caller should know about it.
+/// A valid slew with what the caller should know about it.
 #[derive(Debug, Clone)]
 pub struct Validated {
-    /// The manoeuvre.
-    pub manoeuvre: Manoeuvre,
+    /// The slew.
+    pub slew: Slew,
     /// Doubts that do not stand in the way.
     pub warnings: Vec<Problem>,
 }
 
-impl Manoeuvre {
+impl Slew {
     /// Validates a description and collects every problem. Pointers are those of the fields:
     /// `/spacecraft`, `/drives`, `/start`, `/end`, `/objective`, `/command`, `/allocation`, `/options`.
     ///
     /// # Errors
     ///
     /// All problems at once.
-    pub fn try_new(spec: &ManoeuvreSpec) -> Result<Validated, Vec<Problem>> {
+    pub fn try_new(spec: &SlewSpec) -> Result<Validated, Vec<Problem>> {
         let mut problems = Vec::new();
         let scenario = Scenario::try_new(&scenario_spec(spec));
         let wheels = spec.spacecraft.wheels.len();
@@ -218,12 +218,12 @@ impl Manoeuvre {
             return Err(problems);
         };
         Ok(Validated {
-            manoeuvre: Self::assemble(spec, scenario.scenario, drives),
+            slew: Self::assemble(spec, scenario.scenario, drives),
             warnings: scenario.warnings,
         })
     }
 
-    fn assemble(spec: &ManoeuvreSpec, scenario: Scenario, drives: Vec<Drive>) -> Self {
+    fn assemble(spec: &SlewSpec, scenario: Scenario, drives: Vec<Drive>) -> Self {
         let dynamics = Dynamics::of(&scenario);
         let start = scenario.start();
         let mut followers = Followers::default();
@@ -332,7 +332,7 @@ impl Manoeuvre {
     }
 
     /// Both ends, the second with the sign at which a motion arrives.
-    pub(super) fn ends_towards(&self, motion: &Motion) -> [Waypoint; 2] {
+    pub(super) fn ends_towards(&self, motion: &SlewMotion) -> [Waypoint; 2] {
         let mut ends = self.ends.clone();
         if let Some(last) = motion.attitudes.last() {
             ends[1].attitude = self.arrival.signed(&ends[1].attitude, last);
@@ -345,28 +345,28 @@ impl Manoeuvre {
         self.arrival.turn(attitude, &self.ends[1].attitude)
     }
 
-    /// The program's ingredients in continuous time.
-    pub(super) fn ingredients(&self) -> Ingredients {
+    /// The program's cost_weights in continuous time.
+    pub(super) fn cost_weights(&self) -> CostWeights {
         match self.objective {
-            Objective::MinimumTime => Ingredients::TIME,
-            Objective::TimeAndEffort { weight } => Ingredients {
+            Objective::MinimumTime => CostWeights::TIME,
+            Objective::TimeAndEffort { weight } => CostWeights {
                 effort: weight,
-                ..Ingredients::TIME
+                ..CostWeights::TIME
             },
             Objective::Energy {
                 duration_s,
                 measure,
-            } => Ingredients::energy_in(duration_s, measure),
-            Objective::MinimumTimeAtEnergy { energy_j, measure } => Ingredients {
+            } => CostWeights::energy_in(duration_s, measure),
+            Objective::MinimumTimeAtEnergy { energy_j, measure } => CostWeights {
                 measure,
                 budget: Some(energy_j),
-                ..Ingredients::TIME
+                ..CostWeights::TIME
             },
         }
     }
 
     /// The variables of a program for it.
-    pub(super) fn shape(&self, course: Course, lengths: Lengths, of: &Ingredients) -> Shape {
+    pub(super) fn shape(&self, course: Course, lengths: Lengths, of: &CostWeights) -> Shape {
         Shape {
             wheels: self.vehicle.dynamics.wheel_count(),
             course,
@@ -378,7 +378,7 @@ impl Manoeuvre {
         }
     }
 
-    /// The same manoeuvre at every point of a sweep.
+    /// The same slew at every point of a sweep.
     pub(super) fn along(&self, sweep: &super::Sweep) -> Result<Vec<Self>, Vec<Problem>> {
         let mut findings = Findings::default();
         let (values, field) = match sweep {
@@ -436,8 +436,8 @@ fn fixed(rate: &Vector3<f64>) -> [RateCondition; 3] {
     [0, 1, 2].map(|axis| RateCondition::Fixed(rate[axis]))
 }
 
-/// The manoeuvre as a scenario without targets; wheels with a law of their own are no actuators.
-fn scenario_spec(spec: &ManoeuvreSpec) -> ScenarioSpec {
+/// The slew as a scenario without targets; wheels with a law of their own are no actuators.
+fn scenario_spec(spec: &SlewSpec) -> ScenarioSpec {
     let mut spacecraft = spec.spacecraft.clone();
     for (wheel, drive) in spacecraft.wheels.iter_mut().zip(&spec.drives) {
         wheel.enabled &= drive.speed_law.is_none();

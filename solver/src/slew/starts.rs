@@ -1,50 +1,51 @@
-//! Guesses for a manoeuvre: the fastest motion, and slews about the eigenaxis bowed to either side.
+//! Guesses for a slew: the fastest motion, and slews about the eigenaxis perturbed_eigenaxis to either side.
 
-use super::Manoeuvre;
-use super::ingredients::Ingredients;
-use super::motion::Motion;
-use crate::leg::solve::eigenaxis::Side;
+use super::Slew;
+use super::cost_weights::CostWeights;
+use super::motion::SlewMotion;
+use crate::leg::solve::eigenaxis::Perturbation;
 use crate::leg::solve::extremal::KinematicExtremals;
-use crate::leg::solve::{self, Resolution, SlewProblem};
+use crate::leg::solve::{self, LegProblem, Resolution};
 use crate::model::spec::Accuracy;
 use crate::nlp::Interruption;
 
 /// The guesses, best first: minimum time has one, since the fastest motion is itself the best of
 /// several; what is smooth, or may not use all torques, may have more than one minimum.
 pub(super) fn of(
-    manoeuvre: &Manoeuvre,
-    ingredients: Ingredients,
+    slew: &Slew,
+    cost_weights: CostWeights,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Vec<Motion> {
-    let vehicle = manoeuvre.vehicle();
+) -> Vec<SlewMotion> {
+    let vehicle = slew.vehicle();
     let dynamics = &vehicle.dynamics;
-    let ends = manoeuvre.ends();
-    let null = dynamics.null_component(manoeuvre.start_momenta());
-    let problem = SlewProblem {
+    let ends = slew.ends();
+    let null = dynamics.null_component(slew.start_momenta());
+    let problem = LegProblem {
         dynamics,
         from: &ends[0],
         to: &ends[1],
-        arrival: manoeuvre.arrival(),
+        arrival: slew.arrival(),
         null: &null,
         extremals: &KinematicExtremals::of(dynamics),
         resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
     let fastest = solve::solve(&problem, None, stop).flown;
     let converged = fastest.duration().is_some();
-    let fastest = Motion::of_profile(&fastest.profile);
+    let fastest = SlewMotion::of_profile(&fastest.profile);
     let mut guesses = vec![match &vehicle.kept {
         Some(null) => fastest.keeping(null, dynamics),
         None => fastest,
     }];
     // Where the pseudo-inverse shares torques out, the fastest motion is another problem's.
-    if !converged || !ingredients.hurries() || vehicle.kept.is_some() {
-        let bowed = [Side::Far, Side::Near].map(|side| Motion::of_profile(&problem.bowed(side)));
-        guesses.extend(bowed);
+    if !converged || !cost_weights.hurries() || vehicle.kept.is_some() {
+        let perturbed_eigenaxis = [Perturbation::Far, Perturbation::Near]
+            .map(|side| SlewMotion::of_profile(&problem.perturbed_eigenaxis(side)));
+        guesses.extend(perturbed_eigenaxis);
     }
     guesses
 }
 
-impl Manoeuvre {
+impl Slew {
     /// Intervals that resolve a motion in minimum time.
     pub(super) fn usual_intervals(&self) -> usize {
         let resolution = Resolution::of(Accuracy::Standard, &self.vehicle().dynamics);

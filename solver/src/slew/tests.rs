@@ -1,4 +1,4 @@
-//! Manoeuvres with published answers, and the derivatives of their programs.
+//! Slews with published answers, and the derivatives of their programs.
 
 mod allocation;
 mod craft;

@@ -83,7 +83,7 @@ pub struct StoredSegment {
     /// Time between nodes, s.
     pub lengths_s: Vec<f64>,
     /// Costates of the momenta at every place between two of its legs, s per N m s.
-    pub passing_prices_s_per_nms: Vec<Vec<f64>>,
+    pub costates_s_per_nms: Vec<Vec<f64>>,
 }
 
 /// Remembers the segments of the tours of one scenario, so that a search that begins again, because

@@ -17,7 +17,7 @@
 //!   `head(parent) + d(parent's last, l)`, with `d` the pair bounds; `head` of the root is 0.
 //! - What comes after is a path from `l` through all of `R` (and to the end). Each of its legs
 //!   lasts at least its pair bound, so all of it lasts at least `rest(l, R)`, the shortest such
-//!   path in the pair table ([`remainder`]: dynamic programming over subsets, or the spanning tree
+//!   path in the pair table ([`completion`]: dynamic programming over subsets, or the spanning tree
 //!   relaxation of it when there are many targets).
 //!
 //! Hence `head(p) + rest(l, R)` is a lower bound of every completion of `p`. So is the parent's
@@ -29,7 +29,7 @@
 //! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
 //!
 //! Where legs couple and a search goes on, better bounds of what comes after are asked for, and where
-//! that is not enough, bounds of whole orders that begin with a prefix ([`charges`], [`priced`]).
+//! that is not enough, bounds of whole orders that begin with a prefix ([`triple_bounds`], [`lagrangian`]).
 //!
 //! # Symmetry
 //!
@@ -50,18 +50,18 @@
 //! nodes explored before, evaluates them in parallel and merges the answers in that order. Unless
 //! the search is stopped from outside, nothing in the result depends on the number of threads.
 
-pub mod charges;
+pub mod completion;
 mod exhaustive;
 mod frontier;
 mod heuristics;
 mod incumbents;
+pub mod lagrangian;
 mod node;
-pub mod priced;
-pub mod remainder;
 mod search;
 mod table;
 #[cfg(test)]
 mod tests;
+pub mod triple_bounds;
 
 pub use exhaustive::exhaustive;
 pub use heuristics::short_order;
@@ -98,7 +98,7 @@ pub enum Evaluation {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TourEvaluation {
     /// The order can be flown in this time, s.
-    Flown(f64),
+    LegSolution(f64),
     /// The evaluation did not converge; the order may or may not be good.
     Unresolved,
     /// The evaluation was interrupted by the stop signal.
@@ -155,7 +155,7 @@ pub trait TourModel: Sync {
     /// state there saves the slews before it, at the margin, and costs those after it. `None` where
     /// the order does not resolve or the model knows no states. In a symmetric model those backwards
     /// are the same.
-    fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
         let _ = order;
         None
     }
@@ -164,7 +164,7 @@ pub trait TourModel: Sync {
     /// in which it is reached costs by the second price, less what that in which the first is left
     /// costs by the first; where there is no price, no more than the time. In any tour with this leg.
     /// Expensive.
-    fn priced_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+    fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
         let _ = prices;
         Evaluation::Value(self.pair_bound(leg[0], leg[1]))
     }

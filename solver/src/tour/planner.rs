@@ -2,18 +2,18 @@
 
 mod assemble;
 mod canonical;
+mod certificate;
 mod certified;
-mod claims;
 mod conclude;
 mod extent;
 mod first;
 mod fixed_order;
+mod from_store;
+mod imported;
+mod lagrangian;
 mod legs;
 mod memory;
-mod offered;
 mod places;
-mod priced;
-mod recall;
 mod segments;
 mod starts;
 mod summed;
@@ -34,7 +34,7 @@ use crate::tour::legs::{LegKind, LegStore, SegmentStore};
 use crate::tour::order::{FlownOrder, Place, SearchSettings, exhaustive, search};
 use crate::wheels::envelope::{OutsideEnvelope, momentum_problems, outside_envelope};
 use certified::tour_bound;
-use conclude::Conclusions;
+use conclude::PlanBuilder;
 use first::{first_order, first_tour};
 use legs::LegSolver;
 use places::Places;
@@ -42,10 +42,12 @@ use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
 use tours::Tours;
 
-pub use claims::{CheckedClaims, LegClaim, Objection, Obstacle, PlanClaims, Verdict, certify_plan};
+pub use certificate::{
+    CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict, certify_plan,
+};
 pub use fixed_order::{BoundFrom, OrderError, fly_order};
+pub use imported::{ImportedLeg, LegCheck};
 pub use memory::memory_estimate;
-pub use offered::{LegCheck, OfferedLeg};
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]
@@ -108,7 +110,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let pairs = tour_pairs(&places);
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
-    let mut conclusions = Conclusions::new(&tours, run, begin);
+    let mut conclusions = PlanBuilder::new(&tours, run, begin);
     solver.tell_begin();
     let prove = || {
         let bounds = solver.certified_table(LegKind::LowerBound, &pairs);

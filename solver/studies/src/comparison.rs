@@ -4,7 +4,7 @@
 //! Four pyramids of devices of the same momentum `h` turn the same spacecraft, sized so that wheels
 //! with eigenaxis control just reach a required rate (equation 272). A pyramid counts with a sphere:
 //! its body momentum and torque are multiples of a device's ([`Radii`]; equations 270 and 271), the
-//! torque of a device follows from its momentum by a law fitted to the market ([`crate::market`]).
+//! torque of a device follows from its momentum by a law fitted to the catalogue ([`crate::catalogue`]).
 //! A slew is bang-coast-bang within rate and acceleration:
 //!
 //! ```text
@@ -37,7 +37,7 @@ pub use mass::{MassPoint, MassStudy};
 pub use radii::{Control, Radii, Radius};
 pub use study::{AdvantageCurve, MarketFit, PyramidEnvelopes, SingularStates, Study, StudySpec};
 
-use crate::market::{GYROSCOPES, PowerLaw, WHEELS};
+use crate::catalogue::{GYROSCOPES, PowerLaw, WHEELS};
 use slewplan_solver::math::bang_coast_bang::BangCoastBang;
 use slewplan_solver::model::findings::Findings;
 use slewplan_solver::model::problem::{Code, Problem};

@@ -16,9 +16,7 @@ use slewplan_solver::model::spacecraft::Spacecraft;
 use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, SpacecraftSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_solver::slew::{
-    self, FinalWheels, Manoeuvre, ManoeuvreSpec, Outcome, WheelAllocation,
-};
+use slewplan_solver::slew::{self, FinalWheels, Slew, SlewOutcome, SlewSpec, WheelAllocation};
 use slewplan_solver::wheels::allocation::{self, Allocation};
 use slewplan_solver::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
 
@@ -69,7 +67,7 @@ struct Turn {
     /// Axis times angle, body axes, rad.
     vector: Vector3<f64>,
     /// The slews to optimise.
-    manoeuvres: Vec<Manoeuvre>,
+    slews: Vec<Slew>,
 }
 
 /// What a study finds.
@@ -173,12 +171,12 @@ impl EnvelopeStudy {
             return Err(beyond);
         }
         let turns = vectors.into_iter().zip(&spec.turns).map(|(vector, turn)| {
-            let manoeuvres = if spec.time_optimal {
+            let slews = if spec.time_optimal {
                 fastest(spec, turn)?
             } else {
                 Vec::new()
             };
-            Ok(Turn { vector, manoeuvres })
+            Ok(Turn { vector, slews })
         });
         let study = Self {
             turns: turns.collect::<Result<_, Vec<Problem>>>()?,
@@ -210,17 +208,17 @@ impl EnvelopeStudy {
         let envelopes = self.baselines.envelopes();
         let slews = self.baselines.slews(&turn.vector).into_iter().flatten();
         let mut time_optimal = Vec::new();
-        for manoeuvre in &turn.manoeuvres {
+        for slew in &turn.slews {
             if stop.is_set() {
                 break;
             }
-            let outcome = slew::solve(manoeuvre, stop);
+            let outcome = slew::solve(slew, stop);
             // What was interrupted says nothing.
             if stop.is_set() && !outcome.solved {
                 break;
             }
             time_optimal.push(TimeOptimalSlew {
-                allocation: manoeuvre.allocation(),
+                allocation: slew.allocation(),
                 found: outcome
                     .solved
                     .then(|| (outcome.time_s, self.path_of(&outcome))),
@@ -236,7 +234,7 @@ impl EnvelopeStudy {
         }
     }
 
-    fn path_of(&self, outcome: &Outcome) -> EnvelopePath {
+    fn path_of(&self, outcome: &SlewOutcome) -> EnvelopePath {
         // Torques on intervals of free length are constant.
         let pieces = outcome.flown.pieces.iter().map(|piece| Control {
             start_s: piece.start_s,
@@ -326,7 +324,7 @@ fn read_turn(spec: &TurnSpec, pointer: &str, findings: &mut Findings) -> Option<
 }
 
 /// The slews that are to be optimised for a valid turn.
-fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Manoeuvre>, Vec<Problem>> {
+fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Slew>, Vec<Problem>> {
     let at = |attitude: &AttitudeSpec| StateSpec {
         attitude: attitude.clone(),
         ..StateSpec::default()
@@ -334,7 +332,7 @@ fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Manoeuvre>, 
     WheelAllocation::ALL
         .into_iter()
         .map(|allocation| {
-            let spec = ManoeuvreSpec {
+            let spec = SlewSpec {
                 spacecraft: spec.spacecraft.clone(),
                 start: at(&turn.from),
                 end: at(&turn.to),
@@ -342,9 +340,9 @@ fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Manoeuvre>, 
                 torque_authority: spec.torque_authority,
                 momentum_authority: spec.momentum_authority,
                 allocation,
-                ..ManoeuvreSpec::default()
+                ..SlewSpec::default()
             };
-            Ok(Manoeuvre::try_new(&spec)?.manoeuvre)
+            Ok(Slew::try_new(&spec)?.slew)
         })
         .collect()
 }

@@ -1,6 +1,6 @@
 //! Bodies on their way: requests that have to arrive in time, answers whose end is noticed.
 
-use super::roster::Place;
+use super::connection_limit::Place;
 use axum::body::{Body, Bytes, HttpBody};
 use hyper::body::{Frame, Incoming, SizeHint};
 use std::error::Error;

@@ -4,7 +4,7 @@ use super::inputs::{Equivalence, SpacecraftOrReference, State};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// One manoeuvre, or the same along a sweep. Numbers are SI with the unit in the field name.
+/// One slew, or the same along a sweep. Numbers are SI with the unit in the field name.
 #[derive(Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::api) struct SlewBody {

@@ -3,7 +3,7 @@
 use crate::documents::legs::KeyedLeg;
 use crate::store::leg_key;
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
-use slewplan_solver::tour::planner::OfferedLeg;
+use slewplan_solver::tour::planner::ImportedLeg;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct Recorder<'a> {
     legs: &'a dyn LegStore,
     /// By their keys, in the order in which a file has them.
-    seen: Mutex<BTreeMap<String, OfferedLeg>>,
+    seen: Mutex<BTreeMap<String, ImportedLeg>>,
 }
 
 impl<'a> Recorder<'a> {
@@ -33,7 +33,7 @@ impl<'a> Recorder<'a> {
     }
 
     fn note(&self, identity: &str, leg: &StoredLeg) {
-        let motion = OfferedLeg {
+        let motion = ImportedLeg {
             attitudes_xyzw: leg.attitudes_xyzw.clone(),
             wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
             lengths_s: leg.lengths_s.clone(),

@@ -8,7 +8,7 @@ use super::super::reader::{Cursor, Fields, Sink};
 use super::{KeyedLeg, LegTable};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{LegRow, OfferedLeg, Shard};
+use slewplan_solver::tour::planner::{ImportedLeg, LegRow, Shard};
 
 const KEY_DIGITS: usize = 64;
 
@@ -163,7 +163,7 @@ fn motion(cursor: &Cursor<'_>) -> Option<KeyedLeg> {
     let wheel_momenta_nms = momenta.and_then(|list| list.all(Cursor::any_numbers));
     Some(KeyedLeg {
         key: key?,
-        leg: OfferedLeg {
+        leg: ImportedLeg {
             attitudes_xyzw: attitudes_xyzw?,
             wheel_momenta_nms: wheel_momenta_nms?,
             lengths_s: lengths_s?,

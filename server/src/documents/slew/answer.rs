@@ -7,7 +7,9 @@ use crate::documents::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::slew::evidence::{Evidence, IntervalEvidence};
-use slewplan_solver::slew::{Energies, Flown, Objective, Outcome, Piece, Sweep, WheelAllocation};
+use slewplan_solver::slew::{
+    Energies, Objective, Piece, PropagatedSlew, SlewOutcome, Sweep, WheelAllocation,
+};
 use utoipa::ToSchema;
 
 /// Solved slews: one, or one for every value of a sweep.
@@ -138,7 +140,7 @@ impl<'a> SlewAnswerDocument<'a> {
     /// The answer to a request: its outcomes with their evidence, in the order of the sweep.
     pub(crate) fn new(
         request: &'a SlewRequest,
-        outcomes: &'a [(Outcome, Option<Evidence>)],
+        outcomes: &'a [(SlewOutcome, Option<Evidence>)],
         complete: bool,
     ) -> Self {
         let warnings: &[Problem] = &request.warnings;
@@ -169,10 +171,10 @@ impl<'a> SlewDocument<'a> {
     fn new(
         request: &SlewRequest,
         swept: Option<f64>,
-        (outcome, evidence): &'a (Outcome, Option<Evidence>),
+        (outcome, evidence): &'a (SlewOutcome, Option<Evidence>),
     ) -> Self {
         let flown = &outcome.flown;
-        let motors = request.manoeuvre.all_drives().iter();
+        let motors = request.slew.all_drives().iter();
         let Energies { proxy_j, bill_j } = flown.energies;
         let known = motors.clone().any(|drive| drive.motor.is_some());
         let energy = |value: f64| known.then_some(Number(value));
@@ -181,7 +183,7 @@ impl<'a> SlewDocument<'a> {
             solved: outcome.solved,
             status: &outcome.status,
             objective: Number(outcome.objective),
-            objective_unit: match request.manoeuvre.objective() {
+            objective_unit: match request.slew.objective() {
                 Objective::Energy { .. } => "J",
                 Objective::MinimumTime
                 | Objective::TimeAndEffort { .. }
@@ -204,8 +206,8 @@ impl<'a> SlewDocument<'a> {
     }
 }
 
-impl<'a> From<&'a Flown> for FlightDocument<'a> {
-    fn from(flown: &'a Flown) -> Self {
+impl<'a> From<&'a PropagatedSlew> for FlightDocument<'a> {
+    fn from(flown: &'a PropagatedSlew) -> Self {
         Self {
             attitude_error_rad: Number(flown.attitude_error_rad),
             rate_error_rad_s: Number(flown.rate_error_rad_s),

@@ -22,11 +22,11 @@ fn reading(rest: &str) -> Result<SlewRequest, Vec<(String, Code)>> {
 #[test]
 fn what_is_left_out_has_its_usual_value() {
     let request = reading("").unwrap();
-    assert_eq!(request.manoeuvre.objective(), Objective::MinimumTime);
+    assert_eq!(request.slew.objective(), Objective::MinimumTime);
     let free = Command::Free {
         intervals: DEFAULT_INTERVALS,
     };
-    assert_eq!(request.manoeuvre.command(), free);
+    assert_eq!(request.slew.command(), free);
     assert_eq!(request.time_limit_s, Some(DEFAULT_LIMIT_S));
     assert!(!request.evidence && request.sweep.is_none());
     let without = reading(r#", "options": {"time_limit_s": null}"#).unwrap();
@@ -38,7 +38,7 @@ fn a_sweep_brings_the_value_of_the_objective() {
     let rest = r#", "objective": {"kind": "time_and_effort"}, "sweep": {"weights": [0.1, 1]}"#;
     let request = reading(rest).unwrap();
     let first = Objective::TimeAndEffort { weight: 0.1 };
-    assert_eq!(request.manoeuvre.objective(), first);
+    assert_eq!(request.slew.objective(), first);
     assert_eq!(request.sweep, Some(Sweep::Weights(vec![0.1, 1.0])));
 }
 

@@ -7,8 +7,8 @@ pub(crate) use answer::ComparisonAnswerDocument;
 use crate::documents::document::{self, Node};
 use crate::documents::reader::{Cursor, Fields, Sink};
 use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_studies::catalogue::PowerLaw;
 use slewplan_studies::comparison::{ComparisonSpec, Control, Laws, Radii, Radius, StudySpec};
-use slewplan_studies::market::PowerLaw;
 
 /// Most circles of latitude of the singular surfaces in an answer: eight surfaces of some 300 kB.
 pub(crate) const MAX_ROWS: usize = 40;

@@ -1,7 +1,7 @@
 //! At which times to sample, so that what a reader puts between the samples is close enough.
 
 use super::ExportError;
-use slewplan_solver::checker::Motion;
+use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::State;
 
@@ -50,7 +50,7 @@ pub(super) struct Sampling {
 
 /// Times from the first to the last knot, strictly increasing, all knots among them.
 pub(super) fn times(
-    motion: &Motion,
+    motion: &PropagatedMotion,
     knots: &[f64],
     Sampling { spacing, most }: Sampling,
 ) -> Result<Vec<f64>, ExportError> {
@@ -109,7 +109,7 @@ fn multiples(
 /// measurement gives the number; every part is then looked at, and their number grows until all
 /// of them keep the tolerance.
 fn parts(
-    motion: &Motion,
+    motion: &PropagatedMotion,
     (begin, end): (f64, f64),
     tolerance: f64,
     most: usize,
@@ -134,7 +134,7 @@ fn parts(
 /// Largest error of interpolation over equal parts of a gap; `None` when a part turns too far for
 /// it to be told.
 fn worst(
-    motion: &Motion,
+    motion: &PropagatedMotion,
     (begin, end): (f64, f64),
     parts: f64,
 ) -> Result<Option<f64>, ExportError> {

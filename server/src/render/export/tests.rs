@@ -6,7 +6,7 @@ use super::sampling::Sampling;
 use super::trajectory::{Kind, Trajectory};
 use super::{ExportError, Format, Options, Spacing, write};
 use crate::documents;
-use slewplan_solver::checker::Motion;
+use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::plan::{Control, Flight, Passage};
 use slewplan_solver::model::scenario::Scenario;
 
@@ -100,7 +100,7 @@ fn written(format: Format, options: &Options) -> String {
 
 fn with_trajectory(spacing: Spacing, look: impl Fn(&Trajectory<'_>)) {
     let (scenario, flight) = (labelled(), flight());
-    let motion = Motion::of(&scenario, &flight).unwrap();
+    let motion = PropagatedMotion::of(&scenario, &flight).unwrap();
     let sampling = Sampling {
         spacing,
         most: 10_000,

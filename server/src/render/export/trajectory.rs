@@ -3,7 +3,7 @@
 use super::ExportError;
 use super::sampling::{self, CLOSEST_S, Sampling};
 use nalgebra::Vector3;
-use slewplan_solver::checker::Motion;
+use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::plan::{Flight, State};
 
 /// A sampled flight.
@@ -46,7 +46,7 @@ impl<'a> Trajectory<'a> {
     /// Samples a motion.
     pub(super) fn of(
         flight: &'a Flight,
-        motion: &Motion,
+        motion: &PropagatedMotion,
         sampling: Sampling,
     ) -> Result<Self, ExportError> {
         let mut segments = Vec::new();
@@ -107,7 +107,7 @@ fn knots(flight: &Flight, begin: f64, end: f64) -> Vec<f64> {
     knots
 }
 
-fn sample(flight: &Flight, motion: &Motion, time_s: f64) -> Result<Sample, ExportError> {
+fn sample(flight: &Flight, motion: &PropagatedMotion, time_s: f64) -> Result<Sample, ExportError> {
     let state = motion.state(time_s).ok_or(ExportError::NotFinite)?;
     let acceleration = motion.acceleration(time_s).ok_or(ExportError::NotFinite)?;
     let controls = &flight.controls;

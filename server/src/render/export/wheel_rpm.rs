@@ -5,7 +5,7 @@
 //! benches read. Command `k` is due at `k` periods; the last one is at or after the end.
 
 use super::{ExportError, Options, PERIOD_S, Spacing};
-use slewplan_solver::checker::Motion;
+use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::scenario::Scenario;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -17,7 +17,7 @@ fn rpm(speed_rad_s: f64) -> f64 {
 
 /// The commands until the end of the flight.
 pub(super) fn commands(
-    motion: &Motion,
+    motion: &PropagatedMotion,
     total_time_s: f64,
     options: &Options,
 ) -> Result<String, ExportError> {

@@ -145,15 +145,18 @@ fn torque_over_momentum(study: &WrittenComparison) -> Chart {
             curve(points, colour, Stroke::Dots),
         ]
     };
-    let market = &study.market;
+    let catalogue = &study.market;
     Chart {
         title: "Torque of a device, N m".to_owned(),
         across: "its momentum, N m s".to_owned(),
         logarithms: true,
-        curves: [(&market.wheel, WHEELS), (&market.gyroscope, GYROSCOPES)]
-            .into_iter()
-            .flat_map(of_fit)
-            .collect(),
+        curves: [
+            (&catalogue.wheel, WHEELS),
+            (&catalogue.gyroscope, GYROSCOPES),
+        ]
+        .into_iter()
+        .flat_map(of_fit)
+        .collect(),
         marks: Vec::new(),
         levels: Vec::new(),
     }

@@ -6,14 +6,14 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize)]
 pub(crate) struct WrittenComparison {
     pub(super) angles_rad: Vec<f64>,
-    pub(super) market: Market,
+    pub(super) market: Catalogue,
     pub(super) sizes: Vec<Size>,
     pub(super) advantage: Advantage,
     pub(super) mass: Mass,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Market {
+pub(super) struct Catalogue {
     pub(super) wheel: Fit,
     pub(super) gyroscope: Fit,
 }

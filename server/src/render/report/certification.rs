@@ -2,13 +2,13 @@
 
 use super::table::aligned;
 use crate::documents::certification::{name, reason};
-use slewplan_solver::tour::planner::{CheckedClaims, PlanClaims, Verdict};
+use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate, Verdict};
 
 /// Head of the numbers, which stand to the right below it.
 const BOUND: &str = "claimed bound [s]";
 
 /// One row for every leg and one for all tours, under the verdict on the whole.
-pub(super) fn claims(claims: &PlanClaims, checked: &CheckedClaims) -> String {
+pub(super) fn claims(claims: &PlanCertificate, checked: &CheckedCertificate) -> String {
     let all = || checked.legs.iter().chain([&checked.tour]);
     let count = |of: fn(&Verdict) -> bool| all().filter(|verdict| of(verdict)).count();
     let verdict = if checked.confirmed() {

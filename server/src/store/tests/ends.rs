@@ -1,6 +1,6 @@
 //! What the end of a job leaves: plans, bounds and codes.
 
-use super::{ID, claim, ended, improve, json, on_a_store, plan, result, submitted};
+use super::{ID, ended, improve, json, lease, on_a_store, plan, result, submitted};
 use crate::store::{EndCode, Ended, JobRow, JobState, PackedPlan, ProgressRow, Store};
 
 async fn job(store: &Store) -> JobRow {
@@ -22,7 +22,7 @@ fn failed() -> Ended {
 }
 
 /// Tells of a bound beside an incumbent.
-async fn bounded(store: &Store, claim: &JobRow, incumbent_s: f64, lower_bound_s: f64) {
+async fn bounded(store: &Store, lease: &JobRow, incumbent_s: f64, lower_bound_s: f64) {
     let progress = ProgressRow {
         stage: "search",
         done: 1,
@@ -30,7 +30,7 @@ async fn bounded(store: &Store, claim: &JobRow, incumbent_s: f64, lower_bound_s:
         incumbent_s: Some(incumbent_s),
         lower_bound_s: Some(lower_bound_s),
     };
-    let written = store.progress(claim, &progress, None, 3).await;
+    let written = store.progress(lease, &progress, None, 3).await;
     assert!(written.expect("tried"));
 }
 
@@ -43,10 +43,10 @@ async fn kept_plans(store: &Store) -> i64 {
 fn a_failure_takes_no_plan_away() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
-        assert!(improve(&store, &claim, 20.0).await);
+        let lease = lease(&store, "first").await.job;
+        assert!(improve(&store, &lease, 20.0).await);
         let before = result(&store).await.1.expect("a plan");
-        assert!(store.finish(&claim, &failed(), 4).await.expect("written"));
+        assert!(store.finish(&lease, &failed(), 4).await.expect("written"));
         let (state, kept) = result(&store).await;
         let kept = kept.expect("the plan is still there");
         assert_eq!((state, kept.is_final), (JobState::Failed, false));
@@ -61,8 +61,8 @@ fn a_failure_takes_no_plan_away() {
 fn without_a_plan_the_reasons_are_the_result() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
-        assert!(store.finish(&claim, &failed(), 4).await.expect("written"));
+        let lease = lease(&store, "first").await.job;
+        assert!(store.finish(&lease, &failed(), 4).await.expect("written"));
         let (state, reasons) = result(&store).await;
         let reasons = reasons.expect("reasons");
         assert_eq!((state, reasons.is_final), (JobState::Failed, true));
@@ -74,11 +74,11 @@ fn without_a_plan_the_reasons_are_the_result() {
 fn a_bound_falls_neither_at_the_end_nor_with_another_attempt() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let first = claim(&store, "first").await.job;
+        let first = lease(&store, "first").await.job;
         assert!(improve(&store, &first, 20.0).await);
         bounded(&store, &first, 20.0, 15.0).await;
         store.recover("second", 4).await.expect("recovered");
-        let second = claim(&store, "second").await.job;
+        let second = lease(&store, "second").await.job;
         assert_eq!(second.lower_bound_s, Some(15.0));
         bounded(&store, &second, 30.0, 11.0).await;
         assert_eq!(job(&store).await.lower_bound_s, Some(15.0));
@@ -95,11 +95,11 @@ fn a_bound_falls_neither_at_the_end_nor_with_another_attempt() {
 fn no_bound_is_above_the_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
-        bounded(&store, &claim, 20.0, 21.0).await;
+        let lease = lease(&store, "first").await.job;
+        bounded(&store, &lease, 20.0, 21.0).await;
         assert_eq!(job(&store).await.lower_bound_s, Some(20.0));
         let end = ended(JobState::Stopped, Some(plan(12.0)));
-        assert!(store.finish(&claim, &end, 4).await.expect("written"));
+        assert!(store.finish(&lease, &end, 4).await.expect("written"));
         assert_eq!(job(&store).await.lower_bound_s, Some(12.0));
     });
 }
@@ -108,8 +108,8 @@ fn no_bound_is_above_the_plan() {
 fn a_job_without_a_bound_ends_without_one() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let claim = claim(&store, "first").await.job;
-        assert!(store.finish(&claim, &failed(), 4).await.expect("written"));
+        let lease = lease(&store, "first").await.job;
+        assert!(store.finish(&lease, &failed(), 4).await.expect("written"));
         let job = job(&store).await;
         assert_eq!((job.incumbent_s, job.lower_bound_s), (None, None));
     });
@@ -120,8 +120,8 @@ fn a_job_that_is_given_up_keeps_its_plan_and_says_why() {
     on_a_store(|store| async move {
         submitted(&store).await;
         for (boot, next) in [("a", "b"), ("b", "c"), ("c", "d")] {
-            let claim = claim(&store, boot).await.job;
-            assert!(improve(&store, &claim, 20.0).await);
+            let lease = lease(&store, boot).await.job;
+            assert!(improve(&store, &lease, 20.0).await);
             store.recover(next, 4).await.expect("recovered");
         }
         let (state, kept) = result(&store).await;
@@ -139,7 +139,7 @@ fn a_job_that_is_given_up_keeps_its_plan_and_says_why() {
 fn what_is_abandoned_leaves_no_plan_behind() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let first = claim(&store, "first").await.job;
+        let first = lease(&store, "first").await.job;
         assert!(improve(&store, &first, 20.0).await);
         assert!(store.release(&first, 4).await.expect("released"));
         assert_eq!(kept_plans(&store).await, 1);
@@ -148,7 +148,7 @@ fn what_is_abandoned_leaves_no_plan_behind() {
         assert!(store.delete(ID).await.expect("deleted"));
 
         submitted(&store).await;
-        let running = claim(&store, "first").await.job;
+        let running = lease(&store, "first").await.job;
         assert!(improve(&store, &running, 20.0).await);
         store.request_cancel(ID, 6).await.expect("noted");
         // The process ends before its worker has noticed.

@@ -1,6 +1,6 @@
 //! What a worker may write that was taken for dead and comes back: nothing.
 
-use super::{ID, claim, ended, improve, on_a_store, plan, submitted};
+use super::{ID, ended, improve, lease, on_a_store, plan, submitted};
 use crate::store::{JobRow, JobState, SegmentRow, Store};
 
 /// Everything that is recorded of the job and what belongs to it, as text.
@@ -28,24 +28,24 @@ fn segment(content: u8) -> [SegmentRow; 1] {
     }]
 }
 
-/// What of all that a worker writes was taken from a claim, other than its end.
-async fn taken_midway(store: &Store, claim: &JobRow, content: u8) -> [bool; 3] {
+/// What of all that a worker writes was taken from a lease, other than its end.
+async fn taken_midway(store: &Store, lease: &JobRow, content: u8) -> [bool; 3] {
     [
-        store.beat(claim, 9_000).await.expect("tried"),
-        improve(store, claim, f64::from(content)).await,
+        store.beat(lease, 9_000).await.expect("tried"),
+        improve(store, lease, f64::from(content)).await,
         store
-            .put_segments(claim, &segment(content))
+            .put_segments(lease, &segment(content))
             .await
             .expect("tried"),
     ]
 }
 
-/// What of the ways to end a claim was taken.
-async fn taken_at_the_end(store: &Store, claim: &JobRow, state: JobState) -> [bool; 2] {
+/// What of the ways to end a lease was taken.
+async fn taken_at_the_end(store: &Store, lease: &JobRow, state: JobState) -> [bool; 2] {
     let end = ended(state, Some(plan(20.0)));
     [
-        store.finish(claim, &end, 6).await.expect("tried"),
-        store.release(claim, 7).await.expect("tried"),
+        store.finish(lease, &end, 6).await.expect("tried"),
+        store.release(lease, 7).await.expect("tried"),
     ]
 }
 
@@ -63,10 +63,10 @@ async fn refused(store: &Store, stale: &JobRow) {
 fn nothing_of_a_stale_claim_is_taken_at_any_stage_of_its_successor() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let stale = claim(&store, "first").await.job;
+        let stale = lease(&store, "first").await.job;
         store.recover("second", 3).await.expect("recovered");
         refused(&store, &stale).await;
-        let newest = claim(&store, "second").await.job;
+        let newest = lease(&store, "second").await.job;
         assert_eq!((newest.attempt, newest.fence), (2, stale.fence + 1));
         refused(&store, &stale).await;
         assert_eq!(taken_midway(&store, &newest, 30).await, [true; 3]);
@@ -86,9 +86,9 @@ fn nothing_of_a_stale_claim_is_taken_at_any_stage_of_its_successor() {
 fn a_claim_of_the_same_process_is_stale_too_once_it_was_given_back() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        let stale = claim(&store, "only").await.job;
+        let stale = lease(&store, "only").await.job;
         assert!(store.release(&stale, 3).await.expect("given back"));
-        let newest = claim(&store, "only").await.job;
+        let newest = lease(&store, "only").await.job;
         // The attempt did not count: nothing but the fence tells the two apart.
         assert_eq!((newest.attempt, newest.fence), (1, stale.fence + 1));
         refused(&store, &stale).await;

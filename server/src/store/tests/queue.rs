@@ -1,6 +1,6 @@
 //! How many jobs may wait.
 
-use super::{claim, on_a_store, submission};
+use super::{lease, on_a_store, submission};
 use crate::store::{QueueLimits, Store, Submission, Submitted};
 
 /// What became of the submission of a job of this number.
@@ -26,7 +26,7 @@ fn a_queue_takes_exactly_as_many_as_may_wait() {
             assert!(matches!(answer, Submitted::QueueFull), "{answer:?}");
         }
         // A job that runs waits no longer.
-        claim(&store, "worker").await;
+        lease(&store, "worker").await;
         let answer = submit(&store, 5, "b", limits).await;
         assert!(matches!(answer, Submitted::New(_)), "{answer:?}");
         let answer = submit(&store, 6, "b", limits).await;

@@ -2,7 +2,7 @@
 //!
 //! `SLEWPLAN_RACES` says how many races there are.
 
-use super::{ID, claim, ended, json, plan, result, state_of, submitted};
+use super::{ID, ended, json, lease, plan, result, state_of, submitted};
 use crate::store::{JobState, Store};
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ fn wait(round: u64, step: u64) -> Duration {
 /// stale one did, and whether the rescuer did.
 async fn race(stale: &Store, rescuer: &Store, round: u64) -> (bool, bool) {
     submitted(stale).await;
-    let lost = claim(stale, "stale").await.job;
+    let lost = lease(stale, "stale").await.job;
     let late = async {
         tokio::time::sleep(wait(round, 769)).await;
         let end = ended(JobState::Stopped, Some(plan(20.0)));
@@ -28,7 +28,7 @@ async fn race(stale: &Store, rescuer: &Store, round: u64) -> (bool, bool) {
     let rescue = async {
         tokio::time::sleep(wait(round, 1_013)).await;
         rescuer.recover("rescuer", 4).await.expect("recovered");
-        let found = rescuer.claim("rescuer", 1_000, 6).await.expect("tried");
+        let found = rescuer.lease("rescuer", 1_000, 6).await.expect("tried");
         let Some(found) = found else { return false };
         let end = ended(JobState::Succeeded, Some(plan(30.0)));
         rescuer.finish(&found.job, &end, 7).await.expect("tried")

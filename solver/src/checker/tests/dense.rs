@@ -1,13 +1,13 @@
 //! The motion between the nodes of a plan.
 
-use super::super::{Motion, verify};
+use super::super::{PropagatedMotion, verify};
 use super::build::{EFFECTIVE_X, HALF, TORQUE, angle, bang_bang, scenario, target, valid};
 
 #[test]
 fn the_motion_is_that_of_the_verification_and_of_the_closed_form() {
     let scenario = valid(&scenario(vec![target("a", angle(HALF))]));
     let flight = bang_bang();
-    let motion = Motion::of(&scenario, &flight).unwrap();
+    let motion = PropagatedMotion::of(&scenario, &flight).unwrap();
     for state in verify(&scenario, &flight).states {
         let found = motion.state(state.time_s).unwrap();
         assert!(found.attitude.angle_to(&state.attitude) < 1e-14);
@@ -28,7 +28,7 @@ fn the_motion_is_that_of_the_verification_and_of_the_closed_form() {
 #[test]
 fn at_a_switch_the_acceleration_is_the_one_that_follows_and_the_ends_are_held() {
     let scenario = valid(&scenario(vec![target("a", angle(HALF))]));
-    let motion = Motion::of(&scenario, &bang_bang()).unwrap();
+    let motion = PropagatedMotion::of(&scenario, &bang_bang()).unwrap();
     let expected = TORQUE / EFFECTIVE_X;
     for (time, sign) in [
         (0.0, 1.0),
@@ -53,6 +53,10 @@ fn what_cannot_be_flown_has_no_motion() {
     let mut nothing = bang_bang();
     (nothing.total_time_s, nothing.controls) = (0.0, Vec::new());
     for flight in [gap, nothing] {
-        assert!(!Motion::of(&scenario, &flight).unwrap_err().is_empty());
+        assert!(
+            !PropagatedMotion::of(&scenario, &flight)
+                .unwrap_err()
+                .is_empty()
+        );
     }
 }

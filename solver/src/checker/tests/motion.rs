@@ -3,7 +3,7 @@
 use super::super::dynamics::{
     Body, Quaternion, Snapshot, conjugate, norm, product, quaternion_derivative, to_reference,
 };
-use super::super::integrator::{Flown, Interval, STEP_TOLERANCE, fly};
+use super::super::integrator::{Interval, Propagation, STEP_TOLERANCE, fly};
 use super::super::series::{Expansion, ORDER};
 use crate::model::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
@@ -213,7 +213,7 @@ fn momentum_survives_a_tour_with_bias() {
         slope: &[],
     };
     let intervals = [interval(0.0, 30.0), interval(30.0, 500.0)];
-    let Flown {
+    let Propagation {
         steps,
         momentum_drift,
     } = fly(

@@ -1,7 +1,7 @@
 //! Linear torques and wheels with laws against the classical Runge-Kutta method.
 
 use super::build::scenario;
-use crate::checker::ramped::{Ramp, fly_ramps};
+use crate::checker::ramped::{Ramp, propagate_ramps};
 use crate::model::drive::{Drive, SpeedLaw};
 use crate::model::scenario::Scenario;
 use nalgebra::{Matrix3, Vector3};
@@ -79,7 +79,7 @@ fn ramps_and_laws_follow_the_plain_equations() {
     };
     let ramps = [ramp(0.0, 11.0), ramp(11.0, LENGTH)];
     let mut impulse = 0.0;
-    let flight = fly_ramps(&scenario, &drives, &ramps, |moment| {
+    let flight = propagate_ramps(&scenario, &drives, &ramps, |moment| {
         let ends = moment.torque(0, 0.0) + moment.torque(0, moment.length_s);
         impulse += 0.5 * moment.length_s * ends;
     })

@@ -1,7 +1,7 @@
 //! Flights that are not flights of the scenario, each refused in words.
 
 use super::super::dynamics::Snapshot;
-use super::super::integrator::Flown;
+use super::super::integrator::Propagation;
 use super::super::visits::{Misses, Visit, inspect};
 use super::super::{MOMENTUM_TOLERANCE, NOT_COMPUTED, Observed};
 use super::build::{
@@ -238,7 +238,7 @@ fn a_motion_beyond_all_numbers_is_refused() {
 fn an_integration_that_loses_momentum_is_not_believed() {
     let scenario = valid(&spec());
     for (share, passed) in [(0.5, true), (2.0, false)] {
-        let flown = Flown {
+        let flown = Propagation {
             steps: 1,
             momentum_drift: share * MOMENTUM_TOLERANCE,
         };

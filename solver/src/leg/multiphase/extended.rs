@@ -7,7 +7,7 @@
 //! minima that are as good: those of the former flight's, which were the best of several starts.
 
 use super::rolling::fly_from_windows;
-use super::{Flight, Flown, fly, from_a_guess};
+use super::{Flight, LegSolution, fly, from_a_guess};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
@@ -25,7 +25,7 @@ pub(crate) fn fly_on(
     intervals: &[usize],
     motion: &Profile,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Flown {
+) -> LegSolution {
     let held = intervals.len().saturating_sub(TAIL);
     let begin: usize = intervals[..held].iter().sum();
     let tail = motion.part(begin..motion.intervals());

@@ -8,7 +8,7 @@
 //! in flights of 10 legs, 55 in flights of 100, instead of 37 and 80. Durations are as good, and the
 //! longer ones a little better.
 
-use super::{Flight, Flown, Phase, fly, from_a_guess};
+use super::{Flight, LegSolution, Phase, fly, from_a_guess};
 use crate::leg::profile::Profile;
 use crate::leg::transcription::ControlPenalty;
 use crate::model::dynamics::Dynamics;
@@ -38,7 +38,7 @@ pub(crate) fn fly_rolling(
     intervals: &[usize],
     guess: &Profile,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Flown {
+) -> LegSolution {
     if intervals.len() > SHORT {
         let motion = roll(dynamics, waypoints, intervals, guess, stop);
         let whole = motion
@@ -58,7 +58,7 @@ pub(super) fn fly_from_windows(
     intervals: &[usize],
     motion: &Profile,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Option<Flown> {
+) -> Option<LegSolution> {
     let flight = Flight::new(dynamics, waypoints, intervals, motion);
     let flown = flight.solve(&FROM_WINDOWS, stop);
     (flown.status == NlpStatus::Converged || flown.status.is_interrupted()).then_some(flown)

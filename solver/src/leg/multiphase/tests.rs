@@ -1,7 +1,7 @@
 //! The interior point against the second engine, on slews.
 
 use super::*;
-use crate::leg::solve::eigenaxis::{EigenaxisSlew, Side};
+use crate::leg::solve::eigenaxis::{EigenaxisSlew, Perturbation};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 use crate::model::waypoint::WheelCondition;
@@ -63,7 +63,7 @@ impl Leg {
         let [from, to] = &self.ends;
         let eigenaxis =
             EigenaxisSlew::fastest(&self.dynamics, &from.attitude, &to.attitude, &self.null);
-        let guess = eigenaxis.guess(&self.dynamics, INTERVALS, Side::Near);
+        let guess = eigenaxis.guess(&self.dynamics, INTERVALS, Perturbation::Near);
         let angle = typical_angle(&self.dynamics, &self.ends);
         let scales = Scales::for_legs(&self.dynamics, angle, guess.duration());
         let mut chain = Transcription::new(&self.dynamics, scales, &self.ends, &[INTERVALS]);
@@ -284,28 +284,38 @@ fn legs_priced_by_a_flight_add_up_to_it() {
         place(turned(0.9, 0.1), [free, free, rest]),
         place(turned(1.2, 0.9), [rest; 3]),
     ];
-    let bowed = |legs: &[Waypoint]| {
+    let perturbed_eigenaxis = |legs: &[Waypoint]| {
         let mut guess = Profile::empty();
         for pair in legs.windows(2) {
             let null = DVector::zeros(0);
             let (from, to) = (&pair[0].attitude, &pair[1].attitude);
             let slew = EigenaxisSlew::fastest(&dynamics, from, to, &null);
-            guess.append(&slew.guess(&dynamics, 12, Side::Near));
+            guess.append(&slew.guess(&dynamics, 12, Perturbation::Near));
         }
         guess
     };
-    let flown = fly(&dynamics, &route, &[12; 3], &bowed(&route), &|| None);
+    let flown = fly(
+        &dynamics,
+        &route,
+        &[12; 3],
+        &perturbed_eigenaxis(&route),
+        &|| None,
+    );
     let whole_s = flown.duration().expect("converges");
     let mut alone_s = 0.0;
     let mut priced_s = 0.0;
     for leg in 0..3 {
         let mut ends = [route[leg].clone(), route[leg + 1].clone()];
-        let alone = fly(&dynamics, &ends, &[12], &bowed(&ends), &|| None);
+        let alone = fly(
+            &dynamics,
+            &ends,
+            &[12],
+            &perturbed_eigenaxis(&ends),
+            &|| None,
+        );
         alone_s += alone.duration().expect("converges");
-        ends[0].price = leg
-            .checked_sub(1)
-            .map(|joint| -&flown.passing_prices[joint]);
-        ends[1].price = flown.passing_prices.get(leg).cloned();
+        ends[0].price = leg.checked_sub(1).map(|joint| -&flown.costates[joint]);
+        ends[1].price = flown.costates.get(leg).cloned();
         let priced = fly(&dynamics, &ends, &[12], &alone.profile, &|| None);
         priced_s += priced.duration().expect("converges");
         let wheels = [&priced.profile.wheels[0], &priced.profile.wheels[12]];

@@ -26,14 +26,14 @@ const BOW: f64 = 0.1;
 
 /// To which side a guess bows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Side {
+pub(crate) enum Perturbation {
     /// To one.
     Near,
     /// To the other.
     Far,
 }
 
-impl Side {
+impl Perturbation {
     fn sign(self) -> f64 {
         match self {
             Self::Near => 1.0,
@@ -183,7 +183,12 @@ impl EigenaxisSlew {
     ///
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
     /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
-    pub(crate) fn guess(&self, dynamics: &Dynamics, intervals: usize, side: Side) -> Profile {
+    pub(crate) fn guess(
+        &self,
+        dynamics: &Dynamics,
+        intervals: usize,
+        side: Perturbation,
+    ) -> Profile {
         let times = node_times(&self.course, intervals);
         let peak = self.course.rate();
         let across = self.across(dynamics);
@@ -195,7 +200,7 @@ impl EigenaxisSlew {
             let (attitude, rate, _) = self.state(dynamics, *time);
             let phase = std::f64::consts::PI * time / self.course.duration();
             // Exactly zero at both ends, where the rates are given.
-            let bowed = rate
+            let perturbed_eigenaxis = rate
                 + if node < intervals {
                     bow * phase.sin()
                 } else {
@@ -203,7 +208,7 @@ impl EigenaxisSlew {
                 };
             profile
                 .wheels
-                .push(dynamics.wheels_at(&attitude, &bowed, &self.null));
+                .push(dynamics.wheels_at(&attitude, &perturbed_eigenaxis, &self.null));
             profile.attitudes.push(attitude);
         }
         profile.lengths = times.windows(2).map(|t| t[1] - t[0]).collect();

@@ -7,7 +7,7 @@
 //! last ramp, so it begins and ends at rest and lasts one ramp longer. Its rate is linear between the
 //! beginnings and ends of the ramps, where its nodes are.
 
-use super::SlewProblem;
+use super::LegProblem;
 use crate::bounds::kinematic::{RateArc, RateBox};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
@@ -62,7 +62,7 @@ impl KinematicExtremals {
 
     /// The guess for a slew; `None` where the extremal leads to the other sign of the quaternion, or
     /// there is none: no turn at all, or extreme rates.
-    pub(super) fn guess(&self, slew: &SlewProblem<'_>) -> Option<Profile> {
+    pub(super) fn guess(&self, slew: &LegProblem<'_>) -> Option<Profile> {
         let turn = slew.from.attitude.turn_to(&slew.to.attitude);
         let guess = self.ramped(&turn)?.lasting(slew.least_duration());
         let guess = guess.sampled(slew);
@@ -110,7 +110,7 @@ impl Ramped {
     }
 
     /// The motion at its nodes.
-    fn sampled(&self, slew: &SlewProblem<'_>) -> Profile {
+    fn sampled(&self, slew: &LegProblem<'_>) -> Profile {
         let times = self.node_times(slew.intervals());
         let mut profile = Profile::empty();
         for time in &times {

@@ -1,10 +1,10 @@
 //! Where the programs of a slew start, and how many of them are worth their time.
 
-use super::SlewProblem;
+use super::LegProblem;
 use super::arrival::Arrival;
-use super::eigenaxis::{EigenaxisSlew, Side};
+use super::eigenaxis::{EigenaxisSlew, Perturbation};
 use super::resolution::{DETOUR, Resolution};
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::Interruption;
@@ -29,17 +29,17 @@ const MAX_GAP_WITH_MOMENTUM: f64 = 0.03;
 
 /// The best flight so far, and what it took.
 pub(super) struct Starts<'a> {
-    slew: &'a SlewProblem<'a>,
+    slew: &'a LegProblem<'a>,
     /// A duration, s, that no slew undercuts.
     bound: Option<f64>,
     stop: &'a dyn Fn() -> Option<Interruption>,
-    best: Option<Flown>,
+    best: Option<LegSolution>,
     solves: u64,
 }
 
 impl<'a> Starts<'a> {
     pub(super) fn new(
-        slew: &'a SlewProblem<'a>,
+        slew: &'a LegProblem<'a>,
         bound: Option<f64>,
         stop: &'a dyn Fn() -> Option<Interruption>,
     ) -> Self {
@@ -53,7 +53,7 @@ impl<'a> Starts<'a> {
     }
 
     /// The best flight from all guesses that are worth their time, and how many programs it took.
-    pub(super) fn best(mut self) -> (Flown, u64) {
+    pub(super) fn best(mut self) -> (LegSolution, u64) {
         for guess in guesses(self.slew) {
             self.fly(self.slew, &guess);
             if self.are_enough() {
@@ -68,7 +68,7 @@ impl<'a> Starts<'a> {
         (best, self.solves)
     }
 
-    fn fly(&mut self, slew: &SlewProblem<'_>, guess: &Profile) {
+    fn fly(&mut self, slew: &LegProblem<'_>, guess: &Profile) {
         let flown = slew.fly(guess, self.stop);
         self.solves += 1;
         if self.best.as_ref().is_none_or(|best| flown.improves(best)) {
@@ -84,7 +84,7 @@ impl<'a> Starts<'a> {
         } else {
             MAX_GAP
         };
-        let duration = self.best.as_ref().and_then(Flown::duration);
+        let duration = self.best.as_ref().and_then(LegSolution::duration);
         let both = self.bound.zip(duration);
         both.is_some_and(|(bound, duration)| duration <= (1.0 + gap) * bound)
             || (self.stop)().is_some()
@@ -105,31 +105,34 @@ impl<'a> Starts<'a> {
     /// Turns to the other sign of the end, where momentum may make that way the faster one.
     fn go_the_long_way(&mut self) {
         if let Some(there) = long_way_round(self.slew) {
-            let long = SlewProblem {
+            let long = LegProblem {
                 to: &there,
                 arrival: Arrival::Quaternion,
                 ..*self.slew
             };
-            self.fly(&long, &long.bowed(Side::Far));
+            self.fly(&long, &long.perturbed_eigenaxis(Perturbation::Far));
         }
     }
 }
 
 /// The first guesses, the most promising one first.
-fn guesses<'s>(slew: &'s SlewProblem<'_>) -> impl Iterator<Item = Profile> + use<'s> {
-    let bowed = [Side::Far, Side::Near].into_iter();
-    let bowed = bowed.map(|side| slew.bowed(side));
-    slew.extremal().into_iter().chain(bowed).take(MAX_GUESSES)
+fn guesses<'s>(slew: &'s LegProblem<'_>) -> impl Iterator<Item = Profile> + use<'s> {
+    let perturbed_eigenaxis = [Perturbation::Far, Perturbation::Near].into_iter();
+    let perturbed_eigenaxis = perturbed_eigenaxis.map(|side| slew.perturbed_eigenaxis(side));
+    slew.extremal()
+        .into_iter()
+        .chain(perturbed_eigenaxis)
+        .take(MAX_GUESSES)
 }
 
 /// The same slew with the intervals that a flight needs, if those are clearly more than it has.
-fn finer<'a>(slew: &SlewProblem<'a>, flown: &Flown) -> Option<SlewProblem<'a>> {
+fn finer<'a>(slew: &LegProblem<'a>, flown: &LegSolution) -> Option<LegProblem<'a>> {
     flown.duration()?;
     let attitudes = flown.profile.attitudes.windows(2);
     let turned: f64 = attitudes.map(|q| q[0].signed_turn_to(&q[1]).norm()).sum();
     let needed = slew.resolution.intervals_of(slew.dynamics, turned / DETOUR);
     let given = flown.profile.intervals();
-    (needed as f64 > MIN_REFINEMENT * given as f64).then(|| SlewProblem {
+    (needed as f64 > MIN_REFINEMENT * given as f64).then(|| LegProblem {
         resolution: Resolution {
             intervals: slew.resolution.intervals + needed - given,
             ..slew.resolution
@@ -140,7 +143,7 @@ fn finer<'a>(slew: &SlewProblem<'a>, flown: &Flown) -> Option<SlewProblem<'a>> {
 
 /// The end with the sign to which the turn is longer than half a turn, where either sign counts
 /// and momentum may make that way the faster one.
-fn long_way_round(slew: &SlewProblem<'_>) -> Option<Waypoint> {
+fn long_way_round(slew: &LegProblem<'_>) -> Option<Waypoint> {
     if slew.arrival != Arrival::Rotation || !slew.dynamics.has_momentum() {
         return None;
     }

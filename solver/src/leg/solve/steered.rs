@@ -8,11 +8,11 @@
 //! the momenta at their ends are, those in their middle can be chosen such that the attitude at the
 //! second end is met exactly, three equations with three unknowns.
 
-use super::SlewProblem;
+use super::LegProblem;
 use super::centred::centred;
 use super::resolution::parts_of;
 use crate::leg::kinematics::{TurnInputs, exact_turn};
-use crate::leg::multiphase::{Flown, keeps_limits_inside};
+use crate::leg::multiphase::{LegSolution, keeps_limits_inside};
 use crate::leg::profile::Profile;
 use crate::math::bang_coast_bang::BangCoastBang;
 use crate::model::attitude::Attitude;
@@ -57,17 +57,17 @@ struct Nominal {
 }
 
 /// The flight; `None` where no pace is slow enough, or the state at an end is not within limits.
-pub(super) fn steered(slew: &SlewProblem<'_>) -> Option<Flown> {
+pub(super) fn steered(slew: &LegProblem<'_>) -> Option<LegSolution> {
     (0..PACES).find_map(|step| {
         let pace = FASTEST * SLOWER.powi(step);
         let profile = nominal(slew, pace)?.followed(slew.dynamics)?;
-        flies(slew.dynamics, &profile).then(|| Flown {
+        flies(slew.dynamics, &profile).then(|| LegSolution {
             status: NlpStatus::Constructed,
             intervals: vec![profile.intervals()],
             profile,
             iterations: 0,
             infeasibility: 0.0,
-            passing_prices: Vec::new(),
+            costates: Vec::new(),
         })
     })
 }
@@ -87,7 +87,7 @@ fn flies(dynamics: &Dynamics, profile: &Profile) -> bool {
         && keeps_limits_inside(dynamics, profile)
 }
 
-fn nominal(slew: &SlewProblem<'_>, pace: f64) -> Option<Nominal> {
+fn nominal(slew: &LegProblem<'_>, pace: f64) -> Option<Nominal> {
     let dynamics = slew.dynamics;
     let mut motion = Nominal::at(slew.from.attitude, state_at(slew, slew.from)?);
     motion.brake(dynamics, pace);
@@ -108,7 +108,7 @@ fn nominal(slew: &SlewProblem<'_>, pace: f64) -> Option<Nominal> {
 }
 
 /// The wheel momenta with which an end is passed as slowly as its conditions admit.
-fn state_at(slew: &SlewProblem<'_>, end: &Waypoint) -> Option<DVector<f64>> {
+fn state_at(slew: &LegProblem<'_>, end: &Waypoint) -> Option<DVector<f64>> {
     let dynamics = slew.dynamics;
     let rate = Vector3::from_fn(|axis, _| slowest(end.rate[axis]));
     match &end.wheels {

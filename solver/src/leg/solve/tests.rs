@@ -45,7 +45,7 @@ fn fly_between(
     arrival: Arrival,
 ) -> (f64, Attitude) {
     let null = &DVector::zeros(dynamics.wheel_count() - 3);
-    let slew = SlewProblem {
+    let slew = LegProblem {
         dynamics,
         from,
         to,
@@ -118,7 +118,7 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
         at_rest(Attitude::from_rotation_vector(turn)),
     );
     let dynamics = dynamics(|_| {});
-    let slew = SlewProblem {
+    let slew = LegProblem {
         dynamics: &dynamics,
         from: &from,
         to: &to,
@@ -128,13 +128,13 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
         resolution: Resolution::of(Accuracy::Standard, &dynamics),
     };
     let eigenaxis = slew.eigenaxis();
-    let failed = Flown {
+    let failed = LegSolution {
         status: NlpStatus::IterationLimit,
         profile: eigenaxis.exact(&dynamics, slew.intervals()),
         intervals: vec![slew.intervals()],
         iterations: 0,
         infeasibility: 1.0,
-        passing_prices: Vec::new(),
+        costates: Vec::new(),
     };
     let instead = slew.eigenaxis_at_worst(&failed, &|| None);
     let duration = instead.and_then(|flown| flown.duration());
@@ -145,7 +145,7 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
         rate: [RateCondition::Fixed(0.01); 3],
         ..to.clone()
     };
-    let slew = SlewProblem {
+    let slew = LegProblem {
         to: &moving,
         ..slew
     };
@@ -168,7 +168,7 @@ fn the_published_leg_and_the_roll_that_traps_local_solvers() {
     let roll = rest_to_rest(&dynamics, h, n);
     assert!(roll <= 53.99, "{roll}");
     // From the first start alone: about the eigenaxis itself solvers stay at 55.3 s.
-    let slew = SlewProblem {
+    let slew = LegProblem {
         dynamics: &dynamics,
         from: &at_rest(h),
         to: &at_rest(n),

@@ -36,7 +36,7 @@ const ROUNDING: f64 = 1e-9;
 /// Squared share of a direction that is left of it where it lies in the span of others.
 const SPANNED: f64 = 1e-18;
 
-/// The controls of a manoeuvre.
+/// The controls of a slew.
 pub(super) enum Controls {
     /// The torque of every wheel.
     Wheels,

@@ -3,8 +3,8 @@
 use crate::model::drive::Drive;
 use crate::model::dynamics::Dynamics;
 use crate::slew::Measure;
+use crate::slew::cost_weights::CostWeights;
 use crate::slew::flow::{Sample, Vehicle};
-use crate::slew::ingredients::Ingredients;
 
 /// Share of a limit from which on it counts as active.
 pub(super) const NEAR: f64 = 0.999;
@@ -12,16 +12,16 @@ pub(super) const NEAR: f64 = 0.999;
 /// What torques cost at moments of one price, and where they are limited.
 pub(super) struct Running<'a> {
     vehicle: &'a Vehicle,
-    ingredients: &'a Ingredients,
+    cost_weights: &'a CostWeights,
     /// What energy costs, unit of the objective per J.
     price: f64,
 }
 
 impl<'a> Running<'a> {
-    pub(super) fn new(vehicle: &'a Vehicle, ingredients: &'a Ingredients, price: f64) -> Self {
+    pub(super) fn new(vehicle: &'a Vehicle, cost_weights: &'a CostWeights, price: f64) -> Self {
         Self {
             vehicle,
-            ingredients,
+            cost_weights,
             price,
         }
     }
@@ -39,7 +39,7 @@ impl<'a> Running<'a> {
 
     /// Whether a wheel's energy counts in the running cost at a moment.
     fn counts(&self, power: f64) -> bool {
-        self.ingredients.measure == Measure::Proxy || power > 0.0
+        self.cost_weights.measure == Measure::Proxy || power > 0.0
     }
 
     /// `dl / dW` of a wheel.
@@ -56,7 +56,7 @@ impl<'a> Running<'a> {
         };
         let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
         if self.counts(motor.power(given, speed)) {
-            let share = self.ingredients.share(motor.efficiency);
+            let share = self.cost_weights.share(motor.efficiency);
             self.price * share * (heat * viscous + given + viscous * speed)
         } else {
             0.0
@@ -66,11 +66,11 @@ impl<'a> Running<'a> {
     /// `dl / du` of a wheel.
     pub(super) fn by_torque(&self, wheel: usize, at: &Sample) -> f64 {
         let (torque, speed) = (at.torques[wheel], at.speeds[wheel]);
-        let effort = 2.0 * self.ingredients.effort * torque;
+        let effort = 2.0 * self.cost_weights.effort * torque;
         let motor = self.priced(wheel).map_or(0.0, |(drive, motor)| {
             let given = drive.motor_torque(torque, speed);
             let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
-            let share = self.ingredients.share(motor.efficiency);
+            let share = self.cost_weights.share(motor.efficiency);
             if self.counts(motor.power(given, speed)) {
                 self.price * share * (heat + speed)
             } else {
@@ -82,13 +82,13 @@ impl<'a> Running<'a> {
 
     /// The running cost of one wheel as a function of its torque, N m.
     pub(super) fn of_wheel(&self, wheel: usize, torque: f64, at: &Sample) -> f64 {
-        let effort = self.ingredients.effort * torque * torque;
+        let effort = self.cost_weights.effort * torque * torque;
         let Some((drive, motor)) = self.priced(wheel) else {
             return effort;
         };
         let speed = at.speeds[wheel];
         let power = motor.power(drive.motor_torque(torque, speed), speed);
-        let share = self.ingredients.share(motor.efficiency);
+        let share = self.cost_weights.share(motor.efficiency);
         effort
             + if self.counts(power) {
                 self.price * share * power
@@ -101,13 +101,13 @@ impl<'a> Running<'a> {
     pub(super) fn value(&self, at: &Sample) -> f64 {
         let wheels = 0..at.speeds.len();
         let torques: f64 = wheels.map(|w| self.of_wheel(w, at.torques[w], at)).sum();
-        let idle = if self.ingredients.measure == Measure::Bill {
+        let idle = if self.cost_weights.measure == Measure::Bill {
             let motors = self.vehicle.drives.iter().filter_map(|drive| drive.motor);
             self.price * motors.map(|motor| motor.quiescent_power).sum::<f64>()
         } else {
             0.0
         };
-        self.ingredients.time + torques + idle
+        self.cost_weights.time + torques + idle
     }
 
     /// The range of commanded torques that the motor's limits leave, N m.

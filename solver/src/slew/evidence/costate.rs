@@ -35,7 +35,7 @@ impl Witness<'_> {
         let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
         let unit = program.units.cost;
         let wheels = program.shape.wheels;
-        let time = if self.manoeuvre.vehicle().followers.move_at_all() {
+        let time = if self.slew.vehicle().followers.move_at_all() {
             let per_second = unit / program.scales.time;
             (lambda[program.shape.clock_at()] - self.price_of_duration()) * per_second
         } else {

@@ -189,7 +189,7 @@ impl Program {
     /// The duration, s, where it is a condition: lengths that are given sum up to it anyway.
     fn clocked_duration(&self) -> Option<f64> {
         let free = self.shape.clock && self.shape.length_variable().is_some();
-        self.ingredients.duration.filter(|_| free)
+        self.cost_weights.duration.filter(|_| free)
     }
 
     /// The equality at the last node that prescribes the duration, if one does.

@@ -15,7 +15,7 @@ impl Program {
     pub(super) fn terms<'a>(&self, link: &'a Link<'a>, mut show: impl FnMut(&Term<'a>)) {
         let shape = &self.shape;
         let mut row = self.base.state_inequalities(link.node);
-        let ingredients = &self.ingredients;
+        let cost_weights = &self.cost_weights;
         for wheel in 0..shape.wheels {
             let state = self.wheel_state(wheel, link);
             let mut emit = |place, jet| {
@@ -51,13 +51,13 @@ impl Program {
                 Place::Gap(3 + wheel),
                 state.impulse() * self.scales.momentum.recip(),
             );
-            if ingredients.effort > 0.0 {
+            if cost_weights.effort > 0.0 {
                 emit(
                     Place::Cost,
-                    state.effort() * (ingredients.effort / self.units.cost),
+                    state.effort() * (cost_weights.effort / self.units.cost),
                 );
             }
-            if ingredients.uses_energy() {
+            if cost_weights.uses_energy() {
                 let energy = self.wheels[wheel].energy(&state);
                 if shape.slacks {
                     let (place, jet) = limit(energy * -self.units.energy.recip());
@@ -71,10 +71,10 @@ impl Program {
 
     /// Energy as far as it is not a slack.
     fn spend(&self, energy: &Jet, emit: &mut impl FnMut(Place, Jet)) {
-        if self.ingredients.energy > 0.0 {
+        if self.cost_weights.energy > 0.0 {
             emit(
                 Place::Cost,
-                *energy * (self.ingredients.energy / self.units.cost),
+                *energy * (self.cost_weights.energy / self.units.cost),
             );
         }
         if self.shape.account {
@@ -110,7 +110,7 @@ impl Program {
     /// Where the rows of the rates in the middle of an interval begin.
     pub(super) fn middle_rows_at(&self, node: usize) -> usize {
         let plain = if node == self.base.intervals() {
-            usize::from(self.ingredients.budget.is_some())
+            usize::from(self.cost_weights.budget.is_some())
         } else {
             usize::from(self.limits_length())
                 + if self.shape.slacks {
@@ -140,7 +140,7 @@ impl Program {
         let (shape, states) = (&self.shape, self.shape.states());
         let mut row = self.wheel_rows_at(node, shape.wheels);
         if node == self.base.intervals() {
-            if let Some(budget) = self.ingredients.budget {
+            if let Some(budget) = self.cost_weights.budget {
                 show(Place::Inequality(row), None, budget / self.units.energy);
                 show(Place::Inequality(row), Some(shape.account_at()), -1.0);
             }
@@ -166,7 +166,7 @@ impl Program {
         show(
             Place::Cost,
             length,
-            given * self.ingredients.time * self.scales.time / self.units.cost,
+            given * self.cost_weights.time * self.scales.time / self.units.cost,
         );
         if shape.lengths == Lengths::Shared {
             show(Place::Gap(shape.shared_at()), Some(shape.shared_at()), 1.0);
@@ -182,7 +182,7 @@ impl Program {
                 1.0,
             );
         }
-        if shape.account && self.ingredients.bills() {
+        if shape.account && self.cost_weights.bills() {
             let idle = self.quiescent_power * self.scales.time / self.units.energy;
             show(Place::Gap(shape.account_at()), length, given * idle);
         }
@@ -198,8 +198,8 @@ impl Program {
                 show(Place::Inequality(energy_row), slack, 1.0);
                 show(Place::Inequality(row + wheel), slack, 1.0);
                 let price = self.slack_price(wheel);
-                if self.ingredients.energy > 0.0 {
-                    let weight = self.ingredients.energy / self.units.cost;
+                if self.cost_weights.energy > 0.0 {
+                    let weight = self.cost_weights.energy / self.units.cost;
                     show(Place::Cost, slack, price * weight);
                 }
                 if shape.account {

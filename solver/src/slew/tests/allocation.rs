@@ -1,16 +1,14 @@
-//! Manoeuvres whose torques the pseudo-inverse shares out.
+//! Slews whose torques the pseudo-inverse shares out.
 
 use super::craft::{OLRAC_AXIS, olrac, pyramid, pyramid_end, solved, turn};
 use crate::model::problem::Code;
 use crate::model::spec::StateSpec;
-use crate::slew::{
-    Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Objective, WheelAllocation,
-};
+use crate::slew::{Command, FinalWheels, Hold, Objective, Slew, SlewSpec, WheelAllocation};
 use nalgebra::DVector;
 
 /// The pyramid's slew from and to null-space momentum, in each way of sharing torque out.
-fn slew(allocation: WheelAllocation, command: Command) -> ManoeuvreSpec {
-    ManoeuvreSpec {
+fn slew(allocation: WheelAllocation, command: Command) -> SlewSpec {
+    SlewSpec {
         spacecraft: pyramid(),
         start: StateSpec {
             wheel_speed_rad_s: Some(vec![60.0, -60.0, 60.0, -60.0]),
@@ -20,14 +18,14 @@ fn slew(allocation: WheelAllocation, command: Command) -> ManoeuvreSpec {
         final_wheels: FinalWheels::NullSpaceOfStart,
         command,
         allocation,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     }
 }
 
 /// Greatest part of a torque that the pseudo-inverse would not have asked for, N m.
-fn greatest_stray(spec: &ManoeuvreSpec) -> f64 {
-    let valid = Manoeuvre::try_new(spec).expect("a valid manoeuvre");
-    let dynamics = &valid.manoeuvre.vehicle().dynamics;
+fn greatest_stray(spec: &SlewSpec) -> f64 {
+    let valid = Slew::try_new(spec).expect("a valid slew");
+    let dynamics = &valid.slew.vehicle().dynamics;
     let pieces = solved(spec).flown.pieces;
     let torques = pieces
         .iter()
@@ -64,7 +62,7 @@ fn torques_are_those_of_the_pseudo_inverse_whatever_the_command() {
 #[test]
 fn the_published_slew_takes_between_the_eigenaxis_and_the_free_optimum() {
     let time = |allocation| {
-        let spec = ManoeuvreSpec {
+        let spec = SlewSpec {
             start: StateSpec::default(),
             ..slew(allocation, Command::Free { intervals: 40 })
         };
@@ -81,13 +79,13 @@ fn the_published_slew_takes_between_the_eigenaxis_and_the_free_optimum() {
 fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
     // Where only effort is weighed and no limit is met, nothing along the null space is of use.
     let objective = |allocation| {
-        solved(&ManoeuvreSpec {
+        solved(&SlewSpec {
             spacecraft: olrac(5),
             end: turn(OLRAC_AXIS, 1.25),
             objective: Objective::TimeAndEffort { weight: 1e3 },
             command: Command::Uniform { intervals: 24 },
             allocation,
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         })
         .objective
     };
@@ -103,7 +101,7 @@ fn speeds_at_the_end_cannot_be_given() {
     );
     given.final_wheels = FinalWheels::Given;
     given.end.wheel_speed_rad_s = Some(vec![0.0; 4]);
-    let problems = Manoeuvre::try_new(&given).expect_err("a conflict");
+    let problems = Slew::try_new(&given).expect_err("a conflict");
     let found: Vec<_> = problems
         .iter()
         .map(|p| (p.pointer.as_str(), p.code))

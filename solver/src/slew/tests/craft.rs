@@ -3,7 +3,7 @@
 use crate::model::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 use crate::model::spec::{AttitudeSpec, SpacecraftSpec, StateSpec, WheelSpec};
 use crate::run::stop::StopSignal;
-use crate::slew::{Manoeuvre, ManoeuvreSpec, Outcome, solve};
+use crate::slew::{Slew, SlewOutcome, SlewSpec, solve};
 
 pub(super) fn wheel(axis: [f64; 3], inertia: f64, torque: f64, speed: Option<f64>) -> WheelSpec {
     WheelSpec {
@@ -33,11 +33,9 @@ pub(super) fn turn(axis: [f64; 3], angle: f64) -> StateSpec {
 }
 
 /// Solves and demands an answer.
-pub(super) fn solved(spec: &ManoeuvreSpec) -> Outcome {
-    let manoeuvre = Manoeuvre::try_new(spec)
-        .expect("a valid manoeuvre")
-        .manoeuvre;
-    let outcome = solve(&manoeuvre, &StopSignal::new());
+pub(super) fn solved(spec: &SlewSpec) -> SlewOutcome {
+    let slew = Slew::try_new(spec).expect("a valid slew").slew;
+    let outcome = solve(&slew, &StopSignal::new());
     println!(
         "{:?} {:?}: {} {:?} time {:.4} effort {:.5} proxy {:.4} bill {:.4} continuous {:?} | att {:.2e} rate {:.2e} torque {:.1e} speed {:.1e} rate {:.1e} | {} starts {} iterations",
         spec.objective,
@@ -134,7 +132,7 @@ pub(super) fn lro_drives() -> Vec<DriveSpec> {
     vec![drive; 4]
 }
 
-/// Where its manoeuvre ends.
+/// Where its slew ends.
 pub(super) fn lro_end() -> StateSpec {
     StateSpec {
         attitude: AttitudeSpec::Quaternion([-0.8026, 0.1498, -0.2264, 0.5312]),
@@ -186,7 +184,7 @@ pub(super) fn biros(pyramid: bool) -> (SpacecraftSpec, Vec<DriveSpec>, StateSpec
     (spacecraft, drives, start)
 }
 
-/// Where its manoeuvre ends.
+/// Where its slew ends.
 pub(super) fn biros_end() -> StateSpec {
     StateSpec {
         attitude: AttitudeSpec::Matrix([

@@ -6,15 +6,15 @@ use crate::leg::transcription::Scales;
 use crate::model::drive::{DriveSpec, SpeedLawSpec};
 use crate::model::spec::{SpacecraftSpec, StateSpec};
 use crate::nlp::{Chain, Iterate, Layout, Link, LinkModel, LinkMultipliers, models_of};
-use crate::slew::ingredients::Ingredients;
-use crate::slew::motion::Motion;
+use crate::slew::cost_weights::CostWeights;
+use crate::slew::motion::SlewMotion;
 use crate::slew::program::{LengthPenalty, Program, Units};
 use crate::slew::shape::{Course, Lengths, Shape};
-use crate::slew::{Manoeuvre, ManoeuvreSpec, Measure, WheelAllocation};
+use crate::slew::{Measure, Slew, SlewSpec, WheelAllocation};
 use nalgebra::{DVector, Vector3};
 
 /// Four wheels with friction and motors, one that follows a law, stored momentum, rate limits.
-fn manoeuvre(allocation: WheelAllocation) -> Manoeuvre {
+fn slew(allocation: WheelAllocation) -> Slew {
     let mut drives = lro_drives();
     for drive in &mut drives {
         drive.coulomb_friction_nm = Some(0.004);
@@ -28,7 +28,7 @@ fn manoeuvre(allocation: WheelAllocation) -> Manoeuvre {
         ..DriveSpec::default()
     });
     let small = |axis| wheel(axis, 0.01, 0.1, Some(300.0));
-    let spec = ManoeuvreSpec {
+    let spec = SlewSpec {
         spacecraft: SpacecraftSpec {
             inertia_kg_m2: [[9.0, 0.4, -0.2], [0.4, 8.0, 0.3], [-0.2, 0.3, 7.0]],
             max_body_rate_rad_s: [Some(0.5), None, None],
@@ -48,17 +48,15 @@ fn manoeuvre(allocation: WheelAllocation) -> Manoeuvre {
             ..StateSpec::default()
         },
         allocation,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     };
-    Manoeuvre::try_new(&spec)
-        .expect("a valid manoeuvre")
-        .manoeuvre
+    Slew::try_new(&spec).expect("a valid slew").slew
 }
 
 /// A wild motion of two intervals.
-fn motion() -> Motion {
+fn motion() -> SlewMotion {
     let at = |v: [f64; 3]| crate::model::attitude::Attitude::from_rotation_vector(Vector3::from(v));
-    Motion::of_profile(&Profile {
+    SlewMotion::of_profile(&Profile {
         attitudes: vec![
             at([0.1, -0.2, 0.1]),
             at([0.3, -0.25, 0.2]),
@@ -73,21 +71,21 @@ fn motion() -> Motion {
     })
 }
 
-fn shapes(manoeuvre: &Manoeuvre) -> Vec<(Shape, Ingredients)> {
-    let effort = Ingredients {
+fn shapes(slew: &Slew) -> Vec<(Shape, CostWeights)> {
+    let effort = CostWeights {
         effort: 3.0,
-        ..Ingredients::TIME
+        ..CostWeights::TIME
     };
-    let budget = |measure| Ingredients {
+    let budget = |measure| CostWeights {
         measure,
         budget: Some(4.0),
-        ..Ingredients::TIME
+        ..CostWeights::TIME
     };
-    let within = |duration| Ingredients {
+    let within = |duration| CostWeights {
         duration: Some(duration),
         ..effort
     };
-    let energy = |measure| Ingredients::energy_in(16.0, measure);
+    let energy = |measure| CostWeights::energy_in(16.0, measure);
     let given = Lengths::Given(vec![7.0, 9.0]);
     [
         (Course::Steps, Lengths::Own, effort),
@@ -100,7 +98,7 @@ fn shapes(manoeuvre: &Manoeuvre) -> Vec<(Shape, Ingredients)> {
         (Course::Ramps, Lengths::Own, budget(Measure::Bill)),
         (Course::Ramps, given, energy(Measure::Bill)),
     ]
-    .map(|(course, lengths, of)| (manoeuvre.shape(course, lengths, &of), of))
+    .map(|(course, lengths, of)| (slew.shape(course, lengths, &of), of))
     .to_vec()
 }
 
@@ -114,8 +112,8 @@ struct Fixture {
 }
 
 impl Fixture {
-    fn new(manoeuvre: &Manoeuvre, (shape, ingredients): (Shape, Ingredients), node: usize) -> Self {
-        let vehicle = manoeuvre.vehicle();
+    fn new(slew: &Slew, (shape, cost_weights): (Shape, CostWeights), node: usize) -> Self {
+        let vehicle = slew.vehicle();
         let scales = Scales::for_legs(&vehicle.dynamics, 0.8, 16.0);
         let units = Units {
             cost: 3.0,
@@ -125,10 +123,10 @@ impl Fixture {
         let mut program = Program::new(
             vehicle,
             scales,
-            manoeuvre.ends(),
+            slew.ends(),
             2,
             shape,
-            (ingredients, units),
+            (cost_weights, units),
         );
         program.penalty = LengthPenalty {
             weight: 0.3,
@@ -248,10 +246,10 @@ impl Fixture {
 #[test]
 fn derivatives_of_every_shape_match_finite_differences() {
     for allocation in [WheelAllocation::Free, WheelAllocation::PseudoInverse] {
-        let manoeuvre = manoeuvre(allocation);
-        for of in shapes(&manoeuvre) {
+        let slew = slew(allocation);
+        for of in shapes(&slew) {
             for node in 0..3 {
-                let fixture = Fixture::new(&manoeuvre, of.clone(), node);
+                let fixture = Fixture::new(&slew, of.clone(), node);
                 fixture.check_first();
                 fixture.check_second();
             }
@@ -262,15 +260,15 @@ fn derivatives_of_every_shape_match_finite_differences() {
 #[test]
 fn a_wheel_under_a_law_is_no_actuator() {
     let (spacecraft, drives, start) = biros(true);
-    let spec = ManoeuvreSpec {
+    let spec = SlewSpec {
         spacecraft,
         drives,
         start,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     };
-    let manoeuvre = Manoeuvre::try_new(&spec).expect("valid").manoeuvre;
-    assert_eq!(manoeuvre.vehicle().dynamics.wheel_count(), 3);
-    let stored = manoeuvre.vehicle().dynamics.locked_momentum;
+    let slew = Slew::try_new(&spec).expect("valid").slew;
+    assert_eq!(slew.vehicle().dynamics.wheel_count(), 3);
+    let stored = slew.vehicle().dynamics.locked_momentum;
     assert!(
         (stored - Vector3::new(0.0, 0.0, -0.194)).norm() < 1e-4,
         "{stored}"

@@ -4,7 +4,7 @@ use super::craft::{biros, biros_end, lro_drives, solved};
 use crate::model::drive::SpeedLawSpec;
 use crate::run::stop::StopSignal;
 use crate::slew::evidence::{self, Evidence};
-use crate::slew::{Command, Manoeuvre, ManoeuvreSpec, Measure, Objective};
+use crate::slew::{Command, Measure, Objective, Slew, SlewSpec};
 use nalgebra::Vector3;
 
 /// Speeds of the wheels with laws, rad/s: at the start, and where the law leads.
@@ -14,7 +14,7 @@ const RATE: f64 = 0.1;
 
 /// A slew whose wheels with laws are ahead by a time, s, in what is otherwise the same state: momenta
 /// of the commanded wheels and of the whole.
-fn ahead(by: f64, objective: Objective, command: Command) -> ManoeuvreSpec {
+fn ahead(by: f64, objective: Objective, command: Command) -> SlewSpec {
     let (spacecraft, mut drives, mut start) = biros(true);
     for drive in &mut drives[..3] {
         drive.motor.clone_from(&lro_drives()[0].motor);
@@ -29,32 +29,31 @@ fn ahead(by: f64, objective: Objective, command: Command) -> ManoeuvreSpec {
     let spins = spacecraft.wheels[3..].iter();
     let spins = spins.map(|wheel| Vector3::from(wheel.axis) * wheel.inertia_kg_m2);
     let taken = spins.sum::<Vector3<f64>>() * (held - SPEEDS[0]);
-    let plain = ManoeuvreSpec {
+    let plain = SlewSpec {
         spacecraft: spacecraft.clone(),
         drives,
         start: start.clone(),
         end: biros_end(),
         objective,
         command,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     };
-    let manoeuvre = Manoeuvre::try_new(&plain).expect("valid").manoeuvre;
+    let slew = Slew::try_new(&plain).expect("valid").slew;
     // The body takes the other side of what the wheels with laws have taken.
-    let rate = -(manoeuvre.vehicle().dynamics.inertia_inverse * taken);
+    let rate = -(slew.vehicle().dynamics.inertia_inverse * taken);
     let mut speeds = vec![held; 7];
     for (speed, wheel) in speeds.iter_mut().zip(&spacecraft.wheels[..3]) {
         *speed = -Vector3::from(wheel.axis).dot(&rate);
     }
     start.body_rate_rad_s = Some(rate.into());
     start.wheel_speed_rad_s = Some(speeds);
-    ManoeuvreSpec { start, ..plain }
+    SlewSpec { start, ..plain }
 }
 
-fn evidence_for(spec: &ManoeuvreSpec) -> Evidence {
-    let manoeuvre = Manoeuvre::try_new(spec).expect("valid").manoeuvre;
+fn evidence_for(spec: &SlewSpec) -> Evidence {
+    let slew = Slew::try_new(spec).expect("valid").slew;
     let outcome = solved(spec);
-    let found =
-        evidence::of(&manoeuvre, &outcome, &StopSignal::new()).expect("a polished solution");
+    let found = evidence::of(&slew, &outcome, &StopSignal::new()).expect("a polished solution");
     println!(
         "H {:.3e} scale {:.4} averages {:.2e} pointwise {:.2e} alone {:.2e} gap {:.2e} defect {:.2e}",
         found.hamiltonian,

@@ -1,15 +1,15 @@
 //! OLRAC: time with weighted effort.
 
 use super::craft::{OLRAC_AXIS, olrac, solved, turn};
-use crate::slew::{Command, ManoeuvreSpec, Objective, Outcome};
+use crate::slew::{Command, Objective, SlewOutcome, SlewSpec};
 
-fn olrac_slew(wheels: usize, angle: f64, weight: f64, command: Command) -> Outcome {
-    solved(&ManoeuvreSpec {
+fn olrac_slew(wheels: usize, angle: f64, weight: f64, command: Command) -> SlewOutcome {
+    solved(&SlewSpec {
         spacecraft: olrac(wheels),
         end: turn(OLRAC_AXIS, angle),
         objective: Objective::TimeAndEffort { weight },
         command,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     })
 }
 
@@ -37,7 +37,7 @@ fn time_and_effort_is_no_worse_than_published() {
 
 /// How far the torques are from straight lines in time: root mean square of what is left over that
 /// of the torques, all wheels together, and the greatest distance over the widest range of a wheel.
-fn bend(outcome: &Outcome) -> [f64; 2] {
+fn bend(outcome: &SlewOutcome) -> [f64; 2] {
     let pieces = &outcome.flown.pieces;
     let times: Vec<f64> = pieces
         .iter()

@@ -1,21 +1,21 @@
 //! The energy thesis: the proxy, the bill, and times at a given energy.
 
 use super::craft::{lro, lro_drives, lro_end, solved};
-use crate::slew::{Command, FinalWheels, ManoeuvreSpec, Measure, Objective, Outcome};
+use crate::slew::{Command, FinalWheels, Measure, Objective, SlewOutcome, SlewSpec};
 
 /// The duration and the bill of the slew about the eigenaxis.
 const EIGENAXIS_S: f64 = 910.1;
 const EIGENAXIS_J: f64 = 28.12;
 
-fn lro_slew(objective: Objective, command: Command) -> Outcome {
-    solved(&ManoeuvreSpec {
+fn lro_slew(objective: Objective, command: Command) -> SlewOutcome {
+    solved(&SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
         end: lro_end(),
         final_wheels: FinalWheels::Given,
         objective,
         command,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     })
 }
 

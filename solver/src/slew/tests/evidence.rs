@@ -6,19 +6,19 @@ use super::craft::{
 use crate::run::stop::StopSignal;
 use crate::slew::evidence::{self, Evidence};
 use crate::slew::{
-    Command, FinalWheels, Manoeuvre, ManoeuvreSpec, Measure, Objective, WheelAllocation, solve,
+    Command, FinalWheels, Measure, Objective, Slew, SlewSpec, WheelAllocation, solve,
 };
 
-fn evidence_for(spec: &ManoeuvreSpec) -> Evidence {
-    let manoeuvre = Manoeuvre::try_new(spec).expect("valid").manoeuvre;
+fn evidence_for(spec: &SlewSpec) -> Evidence {
+    let slew = Slew::try_new(spec).expect("valid").slew;
     let stop = StopSignal::new();
-    let outcome = solve(&manoeuvre, &stop);
+    let outcome = solve(&slew, &stop);
     assert!(
         outcome.solved,
         "{} {:?}",
         outcome.status, outcome.flown.failures
     );
-    let evidence = evidence::of(&manoeuvre, &outcome, &stop).expect("a polished solution");
+    let evidence = evidence::of(&slew, &outcome, &stop).expect("a polished solution");
     println!(
         "{:?} {:?} {:.4} s: H {:.3e} scale {:.4} averages {:.2e} pointwise {:.2e} alone {:.2e} gap {:.2e} defect {:.2e} complementarity {:.2e} switching {:.4}",
         spec.objective,
@@ -37,29 +37,29 @@ fn evidence_for(spec: &ManoeuvreSpec) -> Evidence {
     evidence
 }
 
-fn fastest(intervals: usize) -> [ManoeuvreSpec; 3] {
+fn fastest(intervals: usize) -> [SlewSpec; 3] {
     let (spacecraft, _, start) = biros(false);
     let command = Command::Free { intervals };
     [
-        ManoeuvreSpec {
+        SlewSpec {
             spacecraft,
             start,
             end: biros_end(),
             command,
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         },
-        ManoeuvreSpec {
+        SlewSpec {
             spacecraft: olrac(3),
             end: turn(OLRAC_AXIS, 1.25),
             command,
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         },
-        ManoeuvreSpec {
+        SlewSpec {
             spacecraft: lro(),
             end: lro_end(),
             final_wheels: FinalWheels::Given,
             command,
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         },
     ]
 }
@@ -79,7 +79,7 @@ fn the_hamiltonian_of_minimum_time_is_constant() {
 
 #[test]
 fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
-    let at = |duration_s: f64| ManoeuvreSpec {
+    let at = |duration_s: f64| SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
         end: lro_end(),
@@ -89,12 +89,12 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
             measure: Measure::Proxy,
         },
         command: Command::Uniform { intervals: 80 },
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     };
     let evidence = evidence_for(&at(910.0));
     let energy = |duration: f64| {
-        let manoeuvre = Manoeuvre::try_new(&at(duration)).expect("valid").manoeuvre;
-        solve(&manoeuvre, &StopSignal::new()).objective
+        let slew = Slew::try_new(&at(duration)).expect("valid").slew;
+        solve(&slew, &StopSignal::new()).objective
     };
     let added = energy(912.0) - energy(908.0);
     assert!(
@@ -106,14 +106,14 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
 }
 
 /// The pyramid's published slew, by the pseudo-inverse.
-fn shared_out(command: Command) -> ManoeuvreSpec {
-    ManoeuvreSpec {
+fn shared_out(command: Command) -> SlewSpec {
+    SlewSpec {
         spacecraft: pyramid(),
         end: pyramid_end(),
         final_wheels: FinalWheels::NullSpaceOfStart,
         command,
         allocation: WheelAllocation::PseudoInverse,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     }
 }
 
@@ -134,13 +134,13 @@ fn torques_of_the_pseudo_inverse_are_chosen_together() {
 #[test]
 fn effort_by_the_pseudo_inverse_makes_the_switching_function_vanish() {
     // Away from limits the torque on all wheels together is where the Hamiltonian is flat.
-    let evidence = evidence_for(&ManoeuvreSpec {
+    let evidence = evidence_for(&SlewSpec {
         spacecraft: olrac(5),
         end: turn(OLRAC_AXIS, 1.25),
         objective: Objective::TimeAndEffort { weight: 1e3 },
         command: Command::Uniform { intervals: 40 },
         allocation: WheelAllocation::PseudoInverse,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     });
     let costates = evidence
         .intervals

@@ -2,18 +2,18 @@
 
 use super::craft::{biros, biros_end, diagonal, solved, turn};
 use crate::model::spec::SpacecraftSpec;
-use crate::slew::{Command, Hold, ManoeuvreSpec, Objective, Outcome};
+use crate::slew::{Command, Hold, Objective, SlewOutcome, SlewSpec};
 
-fn biros_slew(pyramid: bool, command: Command) -> Outcome {
+fn biros_slew(pyramid: bool, command: Command) -> SlewOutcome {
     let (spacecraft, drives, start) = biros(pyramid);
-    solved(&ManoeuvreSpec {
+    solved(&SlewSpec {
         spacecraft,
         drives,
         start,
         end: biros_end(),
         objective: Objective::MinimumTime,
         command,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     })
 }
 
@@ -59,7 +59,7 @@ fn continuous_torques_take_little_longer_than_jumps() {
 #[test]
 fn thirty_degrees_about_ten_take_ten_seconds() {
     let (spacecraft, drives, start) = biros(false);
-    let outcome = solved(&ManoeuvreSpec {
+    let outcome = solved(&SlewSpec {
         spacecraft: SpacecraftSpec {
             inertia_kg_m2: diagonal([10.0, 10.0, 10.0]),
             wheels: spacecraft.wheels,
@@ -70,7 +70,7 @@ fn thirty_degrees_about_ten_take_ten_seconds() {
         end: turn([0.0, 0.0, 1.0], 30_f64.to_radians()),
         objective: Objective::MinimumTime,
         command: TWO_HERTZ,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     });
     assert!((outcome.time_s - 10.0).abs() < 1e-9, "{}", outcome.time_s);
 }

@@ -8,12 +8,11 @@ use crate::model::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 use crate::model::spec::StateSpec;
 use crate::run::stop::StopSignal;
 use crate::slew::{
-    Command, FinalWheels, Hold, Manoeuvre, ManoeuvreSpec, Measure, Objective, Sweep, solve,
-    trade_curve,
+    Command, FinalWheels, Hold, Measure, Objective, Slew, SlewSpec, Sweep, solve, trade_curve,
 };
 
-fn thrifty(command: Command, measure: Measure) -> ManoeuvreSpec {
-    ManoeuvreSpec {
+fn thrifty(command: Command, measure: Measure) -> SlewSpec {
+    SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
         end: lro_end(),
@@ -23,7 +22,7 @@ fn thrifty(command: Command, measure: Measure) -> ManoeuvreSpec {
             measure,
         },
         command,
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     }
 }
 
@@ -98,13 +97,13 @@ fn a_wheel_that_returns_to_its_speed_is_carried_along() {
         },
     ];
     for command in commands {
-        let outcome = solved(&ManoeuvreSpec {
+        let outcome = solved(&SlewSpec {
             spacecraft: spacecraft.clone(),
             drives: drives.clone(),
             start: start.clone(),
             end: biros_end(),
             command,
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         });
         let end = outcome.flown.states.last().expect("an end");
         let held = -100.0 - 100.0 * (-0.05 * outcome.time_s).exp();
@@ -124,13 +123,13 @@ fn friction_costs_time_where_it_is_made_up_for() {
             ..DriveSpec::default()
         };
         let drives = compensated.map_or(Vec::new(), |_| vec![drive; 3]);
-        let outcome = solved(&ManoeuvreSpec {
+        let outcome = solved(&SlewSpec {
             spacecraft,
             drives,
             start,
             end: biros_end(),
             command: Command::Free { intervals: 40 },
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         });
         assert!(outcome.flown.torque_excess < 1e-6);
         outcome.time_s
@@ -146,7 +145,7 @@ fn friction_costs_time_where_it_is_made_up_for() {
 
 #[test]
 fn a_pinned_null_space_returns_and_costs_time() {
-    let spec = |final_wheels| ManoeuvreSpec {
+    let spec = |final_wheels| SlewSpec {
         spacecraft: pyramid(),
         start: StateSpec {
             // Along the null space: no momentum in sum.
@@ -156,7 +155,7 @@ fn a_pinned_null_space_returns_and_costs_time() {
         end: pyramid_end(),
         final_wheels,
         command: Command::Free { intervals: 40 },
-        ..ManoeuvreSpec::default()
+        ..SlewSpec::default()
     };
     let free = solved(&spec(FinalWheels::Free));
     let pinned = solved(&spec(FinalWheels::NullSpaceOfStart));
@@ -184,11 +183,11 @@ fn a_failed_wheel_is_done_without() {
         if let Some(failed) = failed {
             spacecraft.wheels[failed].enabled = false;
         }
-        let outcome = solved(&ManoeuvreSpec {
+        let outcome = solved(&SlewSpec {
             spacecraft,
             end: turn(OLRAC_AXIS, 1.25),
             command: Command::Free { intervals: 32 },
-            ..ManoeuvreSpec::default()
+            ..SlewSpec::default()
         });
         let idle = failed.map_or(0.0, |i| {
             let torques = outcome
@@ -207,9 +206,9 @@ fn a_failed_wheel_is_done_without() {
 #[test]
 fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
     let spec = thrifty(Command::Uniform { intervals: 60 }, Measure::Proxy);
-    let manoeuvre = Manoeuvre::try_new(&spec).expect("valid").manoeuvre;
+    let slew = Slew::try_new(&spec).expect("valid").slew;
     let sweep = Sweep::Durations(vec![800.0, 850.0, 900.0, 1000.0, 1200.0]);
-    let curve = trade_curve(&manoeuvre, &sweep, &StopSignal::new()).expect("a valid sweep");
+    let curve = trade_curve(&slew, &sweep, &StopSignal::new()).expect("a valid sweep");
     assert_eq!(curve.len(), 5);
     assert!(curve.iter().all(|outcome| outcome.solved));
     assert!(
@@ -223,7 +222,7 @@ fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
     assert!((curve[2].objective / alone - 1.0).abs() < 1e-4);
 
     let wrong = trade_curve(
-        &manoeuvre,
+        &slew,
         &Sweep::Weights(vec![1.0, f64::NAN]),
         &StopSignal::new(),
     );
@@ -242,7 +241,7 @@ fn all_problems_are_told_at_once() {
     };
     spec.end.wheel_speed_rad_s = None;
     spec.torque_authority = 2.0;
-    let problems = Manoeuvre::try_new(&spec).expect_err("nothing is right");
+    let problems = Slew::try_new(&spec).expect_err("nothing is right");
     let pointers: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
     for wanted in [
         "/spacecraft/inertia_kg_m2",
@@ -263,10 +262,10 @@ fn what_cannot_be_done_is_told_and_a_stop_is_obeyed() {
         duration_s: 600.0,
         measure: Measure::Proxy,
     };
-    let manoeuvre = Manoeuvre::try_new(&spec).expect("valid").manoeuvre;
-    let outcome = solve(&manoeuvre, &StopSignal::new());
+    let slew = Slew::try_new(&spec).expect("valid").slew;
+    let outcome = solve(&slew, &StopSignal::new());
     assert!(!outcome.solved, "faster than the fastest");
     let stopped = StopSignal::new();
     stopped.cancel();
-    assert_eq!(solve(&manoeuvre, &stopped).status, "cancelled");
+    assert_eq!(solve(&slew, &stopped).status, "cancelled");
 }

@@ -17,7 +17,7 @@ pub fn exhaustive(
     let answers = pool.map(&orders, |order| model.tour(order));
     let mut best = Incumbents::new(alternatives, 0.0);
     for (order, answer) in orders.into_iter().zip(answers) {
-        if let TourEvaluation::Flown(duration_s) = answer {
+        if let TourEvaluation::LegSolution(duration_s) = answer {
             best.offer(FlownOrder { order, duration_s });
         }
     }

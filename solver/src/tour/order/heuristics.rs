@@ -8,8 +8,8 @@ mod path;
 #[cfg(test)]
 mod tests;
 
-use super::charges::Charges;
-use super::remainder::Remainder;
+use super::completion::Remainder;
+use super::triple_bounds::TripleBounds;
 use super::{PairTable, TourModel};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
@@ -37,11 +37,11 @@ pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize
 /// A few different orders that are short in the pair table, best guess first.
 pub(super) fn candidates(
     table: &PairTable,
-    remainder: &Remainder,
+    completion: &Remainder,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
     let all: Vec<usize> = (0..table.targets()).collect();
-    let mut orders = match remainder {
+    let mut orders = match completion {
         _ if all.is_empty() => return Vec::new(),
         Remainder::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
         Remainder::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
@@ -74,7 +74,7 @@ pub(super) struct SearchEffort {
 
 /// Orders that are shorter than one in what is known of legs and their couplings, best first.
 pub(super) fn shorter_orders(
-    costs: &Charges,
+    costs: &TripleBounds,
     rules: &OrderRules,
     order: &[usize],
     effort: &SearchEffort,
@@ -107,12 +107,12 @@ fn searched(
 /// A short completion of a prefix that an admitted order begins with.
 pub(super) fn complete(
     table: &PairTable,
-    remainder: &Remainder,
+    completion: &Remainder,
     prefix: &[usize],
     remaining: &[usize],
     stop: &StopSignal,
 ) -> Vec<usize> {
-    let completion = match remainder {
+    let completion = match completion {
         Remainder::Exact(subsets) => {
             subsets.shortest_order(table, table.last_place(prefix), remaining)
         }

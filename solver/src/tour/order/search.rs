@@ -67,8 +67,8 @@ struct Search<'a> {
     next_probe: u64,
     /// Whether the bounds of longer paths have been asked for.
     tightened: bool,
-    /// Whether legs have been priced.
-    priced: bool,
+    /// Whether legs have been lagrangian.
+    lagrangian: bool,
     tree: Tree,
     account: Account<'a>,
 }
@@ -90,12 +90,12 @@ pub fn search(
         node_limit: settings.node_limit.unwrap_or(u64::MAX),
         next_probe: PROBE_NODES,
         tightened: false,
-        priced: false,
+        lagrangian: false,
         tree: Tree::new(model, settings, stop),
         account: Account::new(observer),
     };
     for flown in known {
-        let answer = TourEvaluation::Flown(flown.duration_s);
+        let answer = TourEvaluation::LegSolution(flown.duration_s);
         search.tree.record_candidate(&flown.order, answer);
         search.account.is_told(flown.duration_s);
     }
@@ -150,8 +150,8 @@ impl Search<'_> {
             self.tightened = true;
             self.tighten();
         }
-        if explored >= PRICE_NODES && !self.priced {
-            self.priced = true;
+        if explored >= PRICE_NODES && !self.lagrangian {
+            self.lagrangian = true;
             self.price();
         }
         let budget = self.node_limit.saturating_sub(explored);
@@ -208,7 +208,7 @@ impl Search<'_> {
         }
         match self.model.tour(order) {
             // A duration that is no number is no result.
-            TourEvaluation::Flown(duration_s) if !duration_s.is_finite() => {
+            TourEvaluation::LegSolution(duration_s) if !duration_s.is_finite() => {
                 TourEvaluation::Unresolved
             }
             answer => answer,
@@ -220,7 +220,9 @@ impl Search<'_> {
         match answer {
             Answer::Prefix(Evaluation::Value(bound_s)) => self.tree.bounded(node, Some(bound_s)),
             Answer::Prefix(Evaluation::Unresolved) => self.tree.bounded(node, None),
-            Answer::Tour(TourEvaluation::Flown(duration_s)) => self.tree.flown(&node, duration_s),
+            Answer::Tour(TourEvaluation::LegSolution(duration_s)) => {
+                self.tree.flown(&node, duration_s)
+            }
             Answer::Tour(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
             Answer::Prefix(Evaluation::Stopped) | Answer::Tour(TourEvaluation::Stopped) => {
                 self.tree.put_back(node);

@@ -1,11 +1,11 @@
 //! The search against exhaustive enumeration, on cost models that couple neighbouring legs.
 
 mod anytime;
-mod charges;
 mod exactness;
+mod lagrangian;
 mod models;
-mod priced;
 mod rules;
+mod triple_bounds;
 
 use models::SplitMix;
 pub(super) use models::{RandomModel, unit};

@@ -2,7 +2,7 @@
 
 use super::torques::{SHORTEST, torques};
 use super::tours::Tours;
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{Control, Flight, Leg, Passage};
 use crate::tour::order::Place;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ struct Assembly<'a> {
 pub(super) fn assemble(
     tours: &Tours<'_>,
     route: &[Place],
-    segments: &[Arc<Flown>],
+    segments: &[Arc<LegSolution>],
 ) -> (Flight, Vec<Leg>) {
     let total: f64 = segments.iter().map(|flown| flown.profile.duration()).sum();
     let mut assembly = Assembly {
@@ -49,7 +49,13 @@ pub(super) fn assemble(
 }
 
 impl Assembly<'_> {
-    fn fly_leg(&mut self, from: Place, to: Place, flown: &Flown, range: std::ops::Range<usize>) {
+    fn fly_leg(
+        &mut self,
+        from: Place,
+        to: Place,
+        flown: &LegSolution,
+        range: std::ops::Range<usize>,
+    ) {
         let begin = self.clock;
         for (length, torque) in torques(&flown.profile, range, self.shortest) {
             self.push(length, torque.iter().copied());

@@ -3,7 +3,7 @@
 use super::places::Places;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
-use crate::leg::solve::{Resolution, SlewProblem};
+use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
@@ -90,8 +90,8 @@ impl CanonicalLeg {
     }
 
     /// The problem to solve, with the guesses for its spacecraft.
-    pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> SlewProblem<'a> {
-        SlewProblem {
+    pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> LegProblem<'a> {
+        LegProblem {
             dynamics: &self.dynamics,
             from: &self.from,
             to: &self.to,

@@ -4,7 +4,7 @@
 //! slew lasts at least its certified bound, which holds whatever comes before and after it. So the
 //! shortest way through all targets in the table of these bounds, service times added, is a bound
 //! on all tours in all orders that the scenario admits. The search finds that way; up to
-//! [`crate::tour::order::remainder::EXACT_TARGETS`] targets its first step is exact, beyond it stops
+//! [`crate::tour::order::completion::EXACT_TARGETS`] targets its first step is exact, beyond it stops
 //! after some work with the bound that it has by then.
 
 use super::places::Places;

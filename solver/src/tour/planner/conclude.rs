@@ -6,7 +6,7 @@ use super::tables::LegTable;
 use super::tours::Tours;
 use super::work::{History, search_work};
 use crate::checker;
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
     Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Statistics,
 };
@@ -27,7 +27,7 @@ const ROUNDING_OF_SUMS: f64 = 1e-13;
 const ROUNDING: f64 = 1e-6;
 
 /// Makes plans of orders, while a search goes on and at its end.
-pub(super) struct Conclusions<'a> {
+pub(super) struct PlanBuilder<'a> {
     tours: &'a Tours<'a>,
     /// No tour takes less, s, proved.
     certified: Option<f64>,
@@ -51,7 +51,7 @@ struct VerifiedFlight {
     report: checker::Report,
 }
 
-impl<'a> Conclusions<'a> {
+impl<'a> PlanBuilder<'a> {
     /// Plans of tours.
     pub(super) fn new(tours: &'a Tours<'a>, run: Run<'a>, begin: Instant) -> Self {
         Self {
@@ -197,7 +197,11 @@ impl<'a> Conclusions<'a> {
     }
 
     /// The flight of solved segments, when the checker agrees with it.
-    fn checked(&self, route: &[Place], flown: &[Arc<Flown>]) -> Result<VerifiedFlight, Problem> {
+    fn checked(
+        &self,
+        route: &[Place],
+        flown: &[Arc<LegSolution>],
+    ) -> Result<VerifiedFlight, Problem> {
         let (flight, legs) = assemble(self.tours, route, flown);
         let report = checker::verify(self.tours.places.scenario, &flight);
         if !report.verification.passed {
@@ -276,7 +280,7 @@ impl<'a> Conclusions<'a> {
     }
 }
 
-impl Conclusions<'_> {
+impl PlanBuilder<'_> {
     /// The work so far, without its history.
     fn statistics(&self, search: &SearchStatistics) -> Statistics {
         let [legs_solved, legs_from_cache, legs] = self.tours.legs.work();
@@ -367,7 +371,7 @@ impl Conclusions<'_> {
     }
 }
 
-impl SearchObserver for Conclusions<'_> {
+impl SearchObserver for PlanBuilder<'_> {
     fn progress(&self, progress: Progress) {
         self.run.observer.progress(Progress {
             lower_bound_s: progress.lower_bound_s.map(|bound| self.raised(bound)),

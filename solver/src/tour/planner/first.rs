@@ -19,7 +19,7 @@ pub(super) fn first_order(tours: &Tours<'_>, stop: &StopSignal) -> Option<Vec<us
 /// Flies the tour of an order; none when it does not converge or the solve is stopped.
 pub(super) fn first_tour(tours: &Tours<'_>, order: Vec<usize>) -> Option<FlownOrder> {
     match tours.tour(&order) {
-        TourEvaluation::Flown(duration_s) => Some(FlownOrder { order, duration_s }),
+        TourEvaluation::LegSolution(duration_s) => Some(FlownOrder { order, duration_s }),
         TourEvaluation::Unresolved | TourEvaluation::Stopped => None,
     }
 }

@@ -1,7 +1,7 @@
 //! The targets in an order that is given.
 
 use super::certified::route_bound;
-use super::conclude::Conclusions;
+use super::conclude::PlanBuilder;
 use super::legs::LegSolver;
 use super::places::Places;
 use super::tours::Tours;
@@ -85,13 +85,13 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
         tours.know(solver.table(LegKind::LowerBound, &pairs));
     }
     match tours.tour(order) {
-        TourEvaluation::Flown(duration_s) => {
+        TourEvaluation::LegSolution(duration_s) => {
             let order = order.to_vec();
             let flown = FlownOrder { order, duration_s };
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
             // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            let mut conclusions = Conclusions::new(&tours, run, begin);
+            let mut conclusions = PlanBuilder::new(&tours, run, begin);
             conclusions.prove(certified);
             if bound == BoundFrom::Legs {
                 conclusions.compare_with_rest(&flown);

@@ -4,12 +4,12 @@
 //! in a table, between tables of one solve, and, through the store, between solves.
 
 use super::canonical::CanonicalLeg;
+use super::from_store::{attitudes_of, leg_from_store, momenta_of};
 use super::places::Places;
-use super::recall::{attitudes_of, momenta_of, recalled_leg};
 use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
 use super::verified::{flies, flight_faults};
 use super::{Run, interruption};
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
@@ -153,11 +153,11 @@ impl<'a> LegSolver<'a> {
     }
 
     /// The leg of a kind between two places, solved if it was not before.
-    pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> Flown {
+    pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
         let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
-            let stored = self.recall(&canonical);
+            let stored = self.from_store(&canonical);
             let from_store = stored.is_some();
             let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
             self.remember(&canonical, &leg, from_store);
@@ -235,7 +235,7 @@ impl<'a> LegSolver<'a> {
             if self.is_abandoned() {
                 return;
             }
-            if let Some(stored) = self.recall(leg) {
+            if let Some(stored) = self.from_store(leg) {
                 self.remember(leg, &Arc::new(stored), true);
             } else if !self.stop.is_set() {
                 self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
@@ -245,8 +245,8 @@ impl<'a> LegSolver<'a> {
     }
 
     /// A leg from the store.
-    fn recall(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
-        let mut stored = recall(self.run.legs.get(&leg.identity)?)?;
+    fn from_store(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
+        let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
         let faults = flight_faults(self.places, leg, &stored.flown.profile);
         if !faults.is_empty() {
             let identity = leg.identity.clone();
@@ -387,8 +387,8 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
-fn recall(stored: StoredLeg) -> Option<SolvedLeg> {
-    let flown = recalled_leg(
+fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
+    let flown = leg_from_store(
         &stored.attitudes_xyzw,
         stored.wheel_momenta_nms,
         stored.lengths_s,

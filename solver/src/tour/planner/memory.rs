@@ -7,8 +7,8 @@
 use crate::leg::solve::Resolution;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::{RateCondition, Scenario, Target};
-use crate::tour::order::priced::{PRICED_TARGETS, PricedPaths};
-use crate::tour::order::remainder::EXACT_TARGETS;
+use crate::tour::order::completion::EXACT_TARGETS;
+use crate::tour::order::lagrangian::{LagrangianPaths, PRICED_TARGETS};
 use std::f64::consts::FRAC_PI_2;
 
 /// What the smallest solve takes with its plan, what each pair of places adds, and what a search
@@ -40,7 +40,7 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
         scenario.targets().iter().any(turns) || scenario.spacecraft().enabled_wheels().count() > 3;
     let subsets = if count <= EXACT_TARGETS {
         // One duration for every subset and its first target; where legs charge each other, the
-        // table with charges beside the one before.
+        // table with triple_bounds beside the one before.
         let tables = if couples { 2 } else { 1 };
         (targets << targets) * 8 * tables * 9 / 8
     } else {
@@ -51,9 +51,9 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     } else {
         0
     };
-    // Of a hard search over few targets, the states of priced legs.
-    let priced = if couples && count <= PRICED_TARGETS {
-        PricedPaths::bytes(count)
+    // Of a hard search over few targets, the states of lagrangian legs.
+    let lagrangian = if couples && count <= PRICED_TARGETS {
+        LagrangianPaths::bytes(count)
     } else {
         0
     };
@@ -61,5 +61,5 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     let resolution = Resolution::of(scenario.options().accuracy, &dynamics);
     let intervals = resolution.intervals_of(&dynamics, FRAC_PI_2) as u64;
     let pair = PAIR * intervals.max(MEASURED_INTERVALS) / MEASURED_INTERVALS;
-    LEAST + places * places * pair + subsets + searched + priced
+    LEAST + places * places * pair + subsets + searched + lagrangian
 }

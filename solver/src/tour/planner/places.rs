@@ -3,8 +3,8 @@
 use crate::bounds::certified::CertifiedBounds;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
-use crate::leg::solve::standstill::SAME_ATTITUDE;
-use crate::leg::solve::{Resolution, SlewProblem};
+use crate::leg::solve::zero_length::SAME_ATTITUDE;
+use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::{RateCondition, Scenario};
@@ -153,8 +153,8 @@ impl<'a> Places<'a> {
     }
 
     /// The slew between two waypoints.
-    pub(super) fn slew<'s>(&'s self, from: &'s Waypoint, to: &'s Waypoint) -> SlewProblem<'s> {
-        SlewProblem {
+    pub(super) fn slew<'s>(&'s self, from: &'s Waypoint, to: &'s Waypoint) -> LegProblem<'s> {
+        LegProblem {
             dynamics: &self.dynamics,
             from,
             to,

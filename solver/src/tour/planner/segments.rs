@@ -8,7 +8,7 @@
 //! needed, with the same result.
 
 use super::extent::Segment;
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 const GENERATION: usize = 1 << 18;
 
 /// Flights by their segments.
-type Generation = HashMap<Segment, Arc<Flown>>;
+type Generation = HashMap<Segment, Arc<LegSolution>>;
 
 #[derive(Default)]
 struct Generations {
@@ -34,7 +34,7 @@ pub(super) struct Segments(Mutex<Generations>);
 
 impl Segments {
     /// The flight of a segment, when it is remembered.
-    pub(super) fn get(&self, segment: &Segment) -> Option<Arc<Flown>> {
+    pub(super) fn get(&self, segment: &Segment) -> Option<Arc<LegSolution>> {
         let mut generations = self.lock();
         if let Some(flown) = generations.young.get(segment) {
             return Some(Arc::clone(flown));
@@ -45,7 +45,7 @@ impl Segments {
     }
 
     /// Remembers a flight.
-    pub(super) fn put(&self, segment: Segment, flown: &Arc<Flown>) {
+    pub(super) fn put(&self, segment: Segment, flown: &Arc<LegSolution>) {
         self.lock().insert(segment, Arc::clone(flown));
     }
 
@@ -56,7 +56,7 @@ impl Segments {
 }
 
 impl Generations {
-    fn insert(&mut self, segment: Segment, flown: Arc<Flown>) {
+    fn insert(&mut self, segment: Segment, flown: Arc<LegSolution>) {
         if self.intervals >= GENERATION {
             self.old = std::mem::take(&mut self.young);
             self.intervals = 0;
@@ -78,10 +78,10 @@ mod tests {
     #[test]
     fn what_is_asked_for_stays_and_what_is_not_is_forgotten() {
         let length = GENERATION / 4;
-        let motion = Profile::standstill(Attitude::identity(), DVector::zeros(3), length);
-        let flown = Arc::new(Flown {
+        let motion = Profile::zero_length(Attitude::identity(), DVector::zeros(3), length);
+        let flown = Arc::new(LegSolution {
             profile: motion,
-            ..Flown::nowhere()
+            ..LegSolution::nowhere()
         });
         let segments = Segments::default();
         let segment = |i| Segment::new(&[Place::Start, Place::Target(i)], Extent::Piece);

@@ -2,9 +2,9 @@
 
 use super::extent::Extent;
 use super::tours::Tours;
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
-use crate::leg::solve::eigenaxis::Side;
+use crate::leg::solve::eigenaxis::Perturbation;
 use crate::nlp::NlpStatus;
 use crate::tour::legs::LegKind;
 use crate::tour::order::Place;
@@ -25,11 +25,11 @@ pub(super) enum Start {
 
 impl Tours<'_> {
     /// A flight along a route that no program has made shorter; none where a leg cannot be constructed.
-    pub(super) fn constructed(&self, route: &[Place]) -> Option<Vec<Arc<Flown>>> {
+    pub(super) fn constructed(&self, route: &[Place]) -> Option<Vec<Arc<LegSolution>>> {
         let segments = self.split(route).into_iter().map(|segment| {
-            let mut whole = Flown {
+            let mut whole = LegSolution {
                 status: NlpStatus::Constructed,
-                ..Flown::nowhere()
+                ..LegSolution::nowhere()
             };
             for pair in segment.windows(2) {
                 let [from, to] = [pair[0], pair[1]].map(|place| self.places.waypoint(place));
@@ -67,10 +67,12 @@ impl Tours<'_> {
         for pair in route.windows(2) {
             let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
             let slew = self.places.slew(&from, &to);
-            let bowed = || slew.bowed(Side::Near);
+            let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
             let leg = match start {
-                Start::Shorter | Start::Eigenaxes => bowed(),
-                Start::Extremals => slew.extremal().unwrap_or_else(|| slew.bowed(Side::Far)),
+                Start::Shorter | Start::Eigenaxes => perturbed_eigenaxis(),
+                Start::Extremals => slew
+                    .extremal()
+                    .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
                 Start::AtRest => {
                     let leg = self.legs.lone(LegKind::RestToRest, pair[0], pair[1]);
                     leg.duration()?;

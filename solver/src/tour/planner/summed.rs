@@ -53,6 +53,6 @@ impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for SummedTours<'_, F> {
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
-        TourEvaluation::Flown(self.along(&self.places.route(order, true)))
+        TourEvaluation::LegSolution(self.along(&self.places.route(order, true)))
     }
 }

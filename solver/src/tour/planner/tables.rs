@@ -1,7 +1,7 @@
 //! Tables of legs between places.
 
 use super::places::Places;
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::model::attitude::Attitude;
 use crate::tour::order::Place;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct SolvedLeg {
     /// The motion, from the identity attitude, and how it ended.
-    pub(super) flown: Flown,
+    pub(super) flown: LegSolution,
     /// No slew with its conditions takes less, s.
     pub(super) certified: Option<f64>,
     /// NLPs solved for it.
@@ -31,7 +31,7 @@ pub(super) struct CertifiedLeg {
 /// A solved leg between two places.
 #[derive(Debug, Clone)]
 pub(super) struct TabledLeg {
-    /// The solution that it shares with all legs of the same canonical form.
+    /// The solution that it multipliers with all legs of the same canonical form.
     pub(super) leg: Arc<SolvedLeg>,
     /// Whether that is flown backwards.
     pub(super) mirrored: bool,
@@ -39,7 +39,7 @@ pub(super) struct TabledLeg {
 
 impl TabledLeg {
     /// The motion from an attitude, and how it ended.
-    pub(super) fn from(&self, begin: &Attitude) -> Flown {
+    pub(super) fn from(&self, begin: &Attitude) -> LegSolution {
         let solution = &self.leg.flown;
         let mut profile = if self.mirrored {
             solution.profile.reversed()
@@ -51,10 +51,10 @@ impl TabledLeg {
                 *attitude = begin.then_in_body(&first.turn_to(attitude));
             }
         }
-        Flown {
+        LegSolution {
             profile,
             intervals: solution.intervals.clone(),
-            passing_prices: Vec::new(),
+            costates: Vec::new(),
             ..*solution
         }
     }

@@ -7,14 +7,14 @@
 //! flight is still remembered or has to be solved again.
 
 use super::extent::{Extent, SHORT, Segment};
+use super::from_store::{segment_from_store, stored_segment};
 use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
-use super::recall::{recalled_segment, stored_segment};
 use super::segments::Segments;
 use super::starts::Start;
 use super::tables::{CertifiedTable, LegTable};
-use crate::leg::multiphase::{Flown, fly, fly_on, fly_rolling, polish};
+use crate::leg::multiphase::{LegSolution, fly, fly_on, fly_rolling, polish};
 use crate::leg::profile::Profile;
 use crate::model::order_rules::OrderRules;
 use crate::model::waypoint::Waypoint;
@@ -101,7 +101,7 @@ impl<'a> Tours<'a> {
     ///
     /// Of an order and its reverse, where they are equally good, one is flown, and the other is that
     /// flight backwards.
-    pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<Flown>> {
+    pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<LegSolution>> {
         let Some(reverse) = self.better_backwards(route) else {
             return self.fly_segments(route, Extent::Tour);
         };
@@ -131,7 +131,7 @@ impl<'a> Tours<'a> {
         smaller.then_some(reverse)
     }
 
-    fn fly_segments(&self, route: &[Place], extent: Extent) -> Vec<Arc<Flown>> {
+    fn fly_segments(&self, route: &[Place], extent: Extent) -> Vec<Arc<LegSolution>> {
         let mut flown = Vec::new();
         let segments = self.split(route);
         let last = segments.len().saturating_sub(1);
@@ -165,7 +165,7 @@ impl<'a> Tours<'a> {
     }
 
     /// The flight of a segment: of a whole tour the one that it has as a piece, if there is one.
-    pub(super) fn segment(&self, route: &[Place], extent: Extent) -> Arc<Flown> {
+    pub(super) fn segment(&self, route: &[Place], extent: Extent) -> Arc<LegSolution> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
         }
@@ -187,11 +187,11 @@ impl<'a> Tours<'a> {
     }
 
     /// A segment that an earlier attempt at the same scenario has solved, or else solved now.
-    fn recall_or_solve(&self, segment: &Segment) -> Flown {
+    fn recall_or_solve(&self, segment: &Segment) -> LegSolution {
         let (store, name) = (self.legs.segments(), segment.name());
         let intervals = self.intervals(&segment.route);
         let known = store.get(&name);
-        let known = known.and_then(|known| recalled_segment(known, intervals.clone()));
+        let known = known.and_then(|known| segment_from_store(known, intervals.clone()));
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(segment);
             // When stopped perhaps not all starts have been tried.
@@ -204,7 +204,7 @@ impl<'a> Tours<'a> {
     }
 
     /// The leg with free ends between two places: of the table, where there is one already.
-    pub(super) fn free_leg(&self, from: Place, to: Place) -> Flown {
+    pub(super) fn free_leg(&self, from: Place, to: Place) -> LegSolution {
         let known = self.free().and_then(|free| free.get(from, to));
         known.map_or_else(
             || self.legs.lone(LegKind::LowerBound, from, to),
@@ -216,7 +216,7 @@ impl<'a> Tours<'a> {
     /// it: a flight that passes both, one after the other, passes the one already when it passes the
     /// stricter one, and is never shorter than a flight that does so once. A program with both would
     /// have a leg of no length, which no torque can change.
-    fn solve_segment(&self, segment: &Segment) -> Flown {
+    fn solve_segment(&self, segment: &Segment) -> LegSolution {
         let route = &segment.route;
         let mut distinct: Vec<Place> = Vec::new();
         // The legs that lead to them, and those that lead nowhere.
@@ -260,7 +260,7 @@ impl<'a> Tours<'a> {
     }
 
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
-    fn solve_distinct(&self, route: &[Place], extent: Extent) -> Flown {
+    fn solve_distinct(&self, route: &[Place], extent: Extent) -> LegSolution {
         let short = route.len() - 1 <= SHORT;
         let usual = if short { DEFAULT_STARTS_OF_SHORT } else { 1 };
         let starts = match extent {
@@ -290,9 +290,9 @@ impl<'a> Tours<'a> {
         best
     }
 
-    fn solve_from(&self, route: &[Place], start: Start) -> Flown {
+    fn solve_from(&self, route: &[Place], start: Start) -> LegSolution {
         let Some((guess, intervals)) = self.guess(route, start) else {
-            return Flown::nowhere();
+            return LegSolution::nowhere();
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
@@ -307,11 +307,11 @@ impl<'a> Tours<'a> {
         });
         let failed = flown.duration().is_none() && !flown.status.is_interrupted();
         if start == Start::AtRest && failed && self.admits_rest(route) {
-            return Flown {
+            return LegSolution {
                 status: NlpStatus::Constructed,
                 profile: guess,
                 intervals,
-                passing_prices: Vec::new(),
+                costates: Vec::new(),
                 ..flown
             };
         }
@@ -345,7 +345,7 @@ impl<'a> Tours<'a> {
     }
 
     /// Duration of the flown segments of a route with settle and dwell, or how a solve failed.
-    fn duration(&self, route: &[Place], segments: &[Arc<Flown>]) -> Result<f64, NlpStatus> {
+    fn duration(&self, route: &[Place], segments: &[Arc<LegSolution>]) -> Result<f64, NlpStatus> {
         let mut total: f64 = route
             .iter()
             .map(|place| self.places.service_time(*place))
@@ -357,7 +357,7 @@ impl<'a> Tours<'a> {
     }
 
     /// The duration as a bound, which a flight that is no minimum does not give.
-    fn evaluation(&self, route: &[Place], segments: &[Arc<Flown>]) -> Evaluation {
+    fn evaluation(&self, route: &[Place], segments: &[Arc<LegSolution>]) -> Evaluation {
         if segments
             .iter()
             .any(|flown| flown.status == NlpStatus::Constructed)
@@ -428,18 +428,18 @@ impl TourModel for Tours<'_> {
         !waypoint.is_fixed(&self.places.dynamics)
     }
 
-    fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
         self.prices_of(order)
     }
 
-    fn priced_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+    fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
         self.price_leg(leg, prices)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         let route = self.places.route(order, true);
         match self.duration(&route, &self.fly_route(&route)) {
-            Ok(duration) => TourEvaluation::Flown(duration),
+            Ok(duration) => TourEvaluation::LegSolution(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,
         }

@@ -7,11 +7,11 @@
 //!
 //! The thesis prints a crossover of 0.898 kg per device and not the fits it rests on. Its printed laws
 //! and radii with the fits of momentum over mass to its tables give 0.908 kg, one per cent more;
-//! the law of torque fitted to its table of gyroscopes gives 1.036 kg (see [`crate::market`] for the
+//! the law of torque fitted to its table of gyroscopes gives 1.036 kg (see [`crate::catalogue`] for the
 //! points that the table lacks).
 
 use super::{Control, Laws, Radii};
-use crate::market::{GYROSCOPES, PowerLaw, WHEELS};
+use crate::catalogue::{GYROSCOPES, PowerLaw, WHEELS};
 
 /// Devices of a pyramid.
 const DEVICES: f64 = 4.0;

@@ -1,8 +1,8 @@
 //! The whole study of wheels against gyroscopes, with the tables that it rests on.
 
 use super::{Comparison, ComparisonSpec, Control, Laws, MassPoint, MassStudy, Radii};
+use crate::catalogue::{Device, GYROSCOPES, PowerLaw, WHEELS};
 use crate::cmg::{CmgCluster, MAX_SURFACE_ROWS, SingularSurface};
-use crate::market::{Device, GYROSCOPES, PowerLaw, WHEELS};
 use nalgebra::Vector3;
 use slewplan_solver::model::findings::Findings;
 use slewplan_solver::model::problem::{Code, Problem};

@@ -3,12 +3,12 @@
 use crate::documents::number::Number;
 use serde::Serialize;
 use slewplan_solver::wheels::array::Figures;
+use slewplan_studies::catalogue::{Device, PowerLaw};
 use slewplan_studies::cmg::SingularSurface;
 use slewplan_studies::comparison::{
     Advantage, AdvantageCurve, Agility, CUT_OFF, Control, Durations, MarketFit, MassPoint,
     MassStudy, PUBLISHED_ANGLES, Radius, SingularStates, SizeComparison, Study,
 };
-use slewplan_studies::market::{Device, PowerLaw};
 use utoipa::ToSchema;
 
 /// Wheels against control moment gyroscopes. Controls are `rw_eigenaxis`, `rw_pseudo_optimal`,
@@ -22,7 +22,7 @@ pub(crate) struct ComparisonAnswerDocument {
     radii: Vec<RadiusDocument>,
     envelopes: EnvelopesDocument,
     singular_states: SingularStatesDocument,
-    market: MarketDocument,
+    market: CatalogueDocument,
     sizes: Vec<SizeDocument>,
     /// Share of the angle that slews leave out for `with_cut_off_rad`, as in the published study.
     cut_off: Number,
@@ -100,7 +100,7 @@ struct SingularStateDocument {
 /// Devices of the tables, and laws of torque (N m) over momentum (N m s) fitted to them.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = ComparisonMarket)]
-struct MarketDocument {
+struct CatalogueDocument {
     wheel: FitDocument,
     gyroscope: FitDocument,
 }
@@ -241,7 +241,7 @@ impl ComparisonAnswerDocument {
                 pseudo_inverse: study.envelopes.pseudo_inverse.into(),
             },
             singular_states: (&study.singular).into(),
-            market: MarketDocument {
+            market: CatalogueDocument {
                 wheel: FitDocument::new(of.laws.wheel, study.wheel_fit, wheels),
                 gyroscope: FitDocument::new(of.laws.gyroscope, study.gyroscope_fit, gyroscopes),
             },

@@ -76,7 +76,7 @@ proptest! {
         let room = if share < 0.6 { 1.0 } else { 0.0 };
         let from = end(Attitude::identity(), rates[0] * room);
         let to = end(Attitude::from_rotation_vector(turn.into()), -rates[1] * room);
-        let slew = SlewProblem {
+        let slew = LegProblem {
             dynamics: &dynamics,
             from: &from,
             to: &to,

@@ -1,7 +1,7 @@
 //! What an order costs: its legs, and what consecutive legs cost each other.
 
 use crate::tour::order::PairTable;
-use crate::tour::order::charges::Charges;
+use crate::tour::order::triple_bounds::TripleBounds;
 
 /// Relative difference of the two ways of a leg that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -29,7 +29,7 @@ pub(in crate::tour::order) trait OrderCost: Sync {
 }
 
 /// The pair bounds with what is known of triples: near to what an order takes.
-impl OrderCost for Charges {
+impl OrderCost for TripleBounds {
     fn targets(&self) -> usize {
         self.table().targets()
     }
@@ -76,7 +76,7 @@ pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f6
 /// symmetric as can be.
 ///
 /// Every target is entered exactly once, so that a charge taken off all legs into it changes all
-/// orders by the same. The charges are those of the spanning tree relaxation: the dwell at a
+/// orders by the same. The triple_bounds are those of the spanning tree relaxation: the dwell at a
 /// target, part of every leg into it, drops out whole.
 #[derive(Debug)]
 pub(super) struct Legs {
@@ -95,20 +95,20 @@ impl Legs {
             costs: vec![0.0; places * places],
             symmetric: true,
         };
-        let mut charges = vec![0.0; places];
+        let mut triple_bounds = vec![0.0; places];
         for &a in order {
             let skews = order
                 .iter()
                 .filter(|&&b| b != a)
                 .map(|&b| cost.leg(b, a) - cost.leg(a, b));
-            charges[a] = skews.sum::<f64>() / order.len() as f64;
+            triple_bounds[a] = skews.sum::<f64>() / order.len() as f64;
         }
         for &to in order {
             // The way back along an outer leg is never gone. What it costs is how far apart the two are.
-            legs.set_both(from, to, cost.leg(from, to) - charges[to]);
+            legs.set_both(from, to, cost.leg(from, to) - triple_bounds[to]);
             legs.set_both(to, end, cost.leg(to, end));
             for &other in order.iter().filter(|&&other| other != to) {
-                legs.costs[other * places + to] = cost.leg(other, to) - charges[to];
+                legs.costs[other * places + to] = cost.leg(other, to) - triple_bounds[to];
             }
         }
         legs.set_both(from, end, cost.leg(from, end));

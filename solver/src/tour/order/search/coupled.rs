@@ -9,10 +9,10 @@ use super::Search;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::charges::{ChargedSubsets, Charges, Effort};
+use crate::tour::order::completion::{EXACT_TARGETS, SpanningTrees};
 use crate::tour::order::heuristics::SearchEffort;
-use crate::tour::order::priced::PricedPaths;
-use crate::tour::order::remainder::{EXACT_TARGETS, SpanningTrees};
+use crate::tour::order::lagrangian::LagrangianPaths;
+use crate::tour::order::triple_bounds::{Effort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{PairTable, SearchEnd, TourModel};
 
 /// Steps of an ascent at most.
@@ -33,11 +33,11 @@ const FLOWN: usize = 2;
 /// Bounds from several places in a row.
 pub(super) enum Couplings {
     /// With the rest of an order relaxed to a tree.
-    Trees(Box<Charges>),
+    Trees(Box<TripleBounds>),
     /// With a shortest path in its place.
-    Paths(Box<ChargedSubsets>),
+    Paths(Box<TripleBoundSubsets>),
     /// With that and with legs that pay each other for the states they meet in.
-    Priced(Box<ChargedSubsets>, Box<PricedPaths>),
+    Priced(Box<TripleBoundSubsets>, Box<LagrangianPaths>),
 }
 
 impl Couplings {
@@ -49,26 +49,26 @@ impl Couplings {
         pool: &SolverPool,
         stop: &StopSignal,
     ) -> Option<Self> {
-        let mut charges = Charges::new(model, table, &SpanningTrees::new(table))?;
+        let mut triple_bounds = TripleBounds::new(model, table, &SpanningTrees::new(table))?;
         let targets = table.targets();
         let effort = Effort {
             triples: TRIPLES_OF_FEW * targets,
             fives: FIVES_OF_FEW * targets,
             steps: STEPS,
         };
-        charges.raise(model, &effort, pool, stop);
-        let subsets = ChargedSubsets::new(charges, rules, stop);
+        triple_bounds.raise(model, &effort, pool, stop);
+        let subsets = TripleBoundSubsets::new(triple_bounds, rules, stop);
         Some(Self::Paths(Box::new(subsets)))
     }
 
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.
     pub(super) fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
         match self {
-            Self::Trees(charges) => charges.bound(from, remaining),
+            Self::Trees(triple_bounds) => triple_bounds.bound(from, remaining),
             Self::Paths(subsets) => subsets.bound(from, remaining),
-            Self::Priced(subsets, priced) => {
+            Self::Priced(subsets, lagrangian) => {
                 let charged = subsets.bound(from, remaining);
-                charged.max(priced.bound(from, remaining))
+                charged.max(lagrangian.bound(from, remaining))
             }
         }
     }
@@ -77,7 +77,7 @@ impl Couplings {
     pub(super) fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
         match self {
             Self::Trees(_) | Self::Paths(_) => 0.0,
-            Self::Priced(_, priced) => priced.whole(prefix, remaining),
+            Self::Priced(_, lagrangian) => lagrangian.whole(prefix, remaining),
         }
     }
 }
@@ -90,18 +90,18 @@ impl Search<'_> {
         }
         let table = self.tree.table();
         let targets = table.targets();
-        let mut charges = Charges::new(self.model, table, &SpanningTrees::new(table))?;
+        let mut triple_bounds = TripleBounds::new(self.model, table, &SpanningTrees::new(table))?;
         for round in 0..ROUNDS {
             let effort = Effort {
                 triples: TRIPLES_OF_MANY * targets,
                 fives: FIVES_OF_MANY * targets,
                 steps: STEPS,
             };
-            charges.raise(self.model, &effort, self.pool, self.stop);
-            self.tree.bound_root(charges.root_bound());
+            triple_bounds.raise(self.model, &effort, self.pool, self.stop);
+            self.tree.bound_root(triple_bounds.root_bound());
             self.account.report(&self.tree);
             for order in 0..ORDERS_PER_ROUND {
-                self.improve_orders(&mut charges, round * ORDERS_PER_ROUND + order);
+                self.improve_orders(&mut triple_bounds, round * ORDERS_PER_ROUND + order);
                 if self.stop.is_set() {
                     break;
                 }
@@ -110,20 +110,20 @@ impl Search<'_> {
                 break;
             }
         }
-        self.tree.couple(Couplings::Trees(Box::new(charges)));
+        self.tree.couple(Couplings::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
     }
 
     /// Searches for orders that are short in all that is known of couplings, flies them, and learns
     /// what was unknown of their triples.
-    fn improve_orders(&mut self, charges: &mut Charges, seed: u64) {
+    fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, seed: u64) {
         let effort = SearchEffort {
             kicks_per_target: KICKS,
             alternatives: FLOWN - 1,
             seed,
         };
-        let orders = self.tree.short_orders(charges, &effort, self.stop);
-        charges.ask_along(&orders, self.model, self.pool, self.stop);
+        let orders = self.tree.short_orders(triple_bounds, &effort, self.stop);
+        triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
         self.fly_new(&orders);
         self.account.hand_over(&self.tree);
         self.account.report(&self.tree);

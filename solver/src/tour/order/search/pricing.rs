@@ -3,7 +3,7 @@
 
 use super::Search;
 use super::coupled::Couplings;
-use crate::tour::order::priced::{PRICED_TARGETS, PricedLegs, PricedPaths};
+use crate::tour::order::lagrangian::{LagrangianLegs, LagrangianPaths, PRICED_TARGETS};
 
 /// Rounds at most, and orders flown in each.
 const ROUNDS: usize = 24;
@@ -22,8 +22,8 @@ impl Search<'_> {
             return;
         }
         let rules = self.tree.rules().clone();
-        let mut legs = PricedLegs::new(self.model, self.tree.table());
-        let mut paths = PricedPaths::new(&legs, &rules);
+        let mut legs = LagrangianLegs::new(self.model, self.tree.table());
+        let mut paths = LagrangianPaths::new(&legs, &rules);
         let mut best = legs.clone();
         // The best bound after each round.
         let mut bounds = vec![f64::NEG_INFINITY];
@@ -53,8 +53,8 @@ impl Search<'_> {
         if (is_best || paths.fill(&best, self.pool, self.stop))
             && let Some(Couplings::Paths(charged)) = self.tree.decouple()
         {
-            let priced = Couplings::Priced(charged, Box::new(paths));
-            self.tree.couple(priced);
+            let lagrangian = Couplings::Priced(charged, Box::new(paths));
+            self.tree.couple(lagrangian);
         }
     }
 

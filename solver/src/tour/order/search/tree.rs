@@ -4,12 +4,12 @@ use super::coupled::Couplings;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::charges::Charges;
+use crate::tour::order::completion::Remainder;
 use crate::tour::order::frontier::Frontier;
 use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::incumbents::Incumbents;
 use crate::tour::order::node::Node;
-use crate::tour::order::remainder::Remainder;
+use crate::tour::order::triple_bounds::TripleBounds;
 use crate::tour::order::{
     FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
 };
@@ -25,7 +25,7 @@ pub(super) struct Tree {
     symmetric: bool,
     /// The orders that are searched: with symmetry half of those that are admitted.
     rules: OrderRules,
-    remainder: Remainder,
+    completion: Remainder,
     /// Bounds from several places in a row, once they have been asked for.
     couplings: Option<Couplings>,
     /// No order lasts less, s, by what is known before the root is opened.
@@ -56,7 +56,7 @@ impl Tree {
         }
         Self {
             symmetric,
-            remainder: Remainder::new(&table, &rules, stop),
+            completion: Remainder::new(&table, &rules, stop),
             rules,
             couplings: None,
             root_s: 0.0,
@@ -74,7 +74,7 @@ impl Tree {
 
     /// Orders worth flying first.
     pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
-        heuristics::candidates(&self.table, &self.remainder, stop)
+        heuristics::candidates(&self.table, &self.completion, stop)
     }
 
     /// Takes in an order flown before the search reached it.
@@ -82,7 +82,7 @@ impl Tree {
         let duration = match answer {
             TourEvaluation::Stopped => return,
             TourEvaluation::Unresolved => None,
-            TourEvaluation::Flown(duration_s) => Some(duration_s),
+            TourEvaluation::LegSolution(duration_s) => Some(duration_s),
         };
         self.statistics.tours += 1;
         match duration {
@@ -127,7 +127,7 @@ impl Tree {
     /// Orders that are short by some costs, from the best one flown so far; the best first.
     pub(super) fn short_orders(
         &self,
-        costs: &Charges,
+        costs: &TripleBounds,
         effort: &SearchEffort,
         stop: &StopSignal,
     ) -> Vec<Vec<usize>> {
@@ -144,7 +144,7 @@ impl Tree {
 
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.
     fn rest(&self, from: usize, remaining: &[usize]) -> f64 {
-        let pairs = self.remainder.bound(&self.table, from, remaining);
+        let pairs = self.completion.bound(&self.table, from, remaining);
         let couplings = self.couplings.as_ref();
         couplings.map_or(pairs, |known| pairs.max(known.bound(from, remaining)))
     }
@@ -207,8 +207,13 @@ impl Tree {
             return None;
         }
         let remaining = node.remaining(self.table.targets());
-        let order =
-            heuristics::complete(&self.table, &self.remainder, &node.prefix, &remaining, stop);
+        let order = heuristics::complete(
+            &self.table,
+            &self.completion,
+            &node.prefix,
+            &remaining,
+            stop,
+        );
         self.is_new(&order).then_some(order)
     }
 

@@ -312,7 +312,7 @@ fn every_better_order_is_handed_over_once_before_it_is_told() {
         let durations: Vec<f64> = improved.iter().map(|order| order.duration_s).collect();
         assert!(durations.windows(2).all(|pair| pair[1] < pair[0]));
         for order in &improved {
-            let flown = TourEvaluation::Flown(order.duration_s);
+            let flown = TourEvaluation::LegSolution(order.duration_s);
             assert_eq!(model.tour(&order.order), flown, "seed {seed}");
         }
         let told = recorder.told();

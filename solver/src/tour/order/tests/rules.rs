@@ -4,9 +4,9 @@ use super::models::SplitMix;
 use super::{RandomModel, alternatives, pool, run};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
+use crate::tour::order::completion::{Remainder, SpanningTrees, SubsetTable};
 use crate::tour::order::exhaustive::permutations;
 use crate::tour::order::heuristics::{candidates, complete};
-use crate::tour::order::remainder::{Remainder, SpanningTrees, SubsetTable};
 use crate::tour::order::{PairTable, SearchEnd, SearchSettings, exhaustive};
 
 /// Any rules at all, feasible or not.
@@ -134,15 +134,15 @@ fn orders_flown_early_keep_the_rules_whatever_their_number() {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
-        let remainder = Remainder::new(&table, table.rules(), &StopSignal::new());
-        let orders = candidates(&table, &remainder, &stop);
+        let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+        let orders = candidates(&table, &completion, &stop);
         assert!(!orders.is_empty());
         for order in &orders {
             assert!(order.len() == targets && model.rules.admits(order));
         }
         let prefix = &model.rules.some_order(&[]).expect("an order")[..4];
         let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
-        let order = complete(&table, &remainder, prefix, &remaining, &stop);
+        let order = complete(&table, &completion, prefix, &remaining, &stop);
         assert!(order.starts_with(prefix) && model.rules.admits(&order));
         // The model refuses to be asked for what the rules do not admit.
         let settings = SearchSettings {

@@ -51,10 +51,10 @@ fn plan_with_bound(share: f64) -> (Plan, Vec<Contradiction>) {
     let places = Places::of(&scenario);
     let legs = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &legs, &stop);
-    let TourEvaluation::Flown(duration_s) = tours.tour(&[0, 1]) else {
+    let TourEvaluation::LegSolution(duration_s) = tours.tour(&[0, 1]) else {
         panic!("the order is flown");
     };
-    let mut conclusions = Conclusions::new(&tours, run, Instant::now());
+    let mut conclusions = PlanBuilder::new(&tours, run, Instant::now());
     conclusions.prove(Some(share * duration_s));
     let best = FlownOrder {
         order: vec![0, 1],

@@ -2,10 +2,10 @@
 
 use super::models::{Bends, Legs, RandomCost};
 use crate::run::stop::StopSignal;
+use crate::tour::order::completion::SpanningTrees;
 use crate::tour::order::heuristics::cost::{OrderCost, length};
 use crate::tour::order::heuristics::iterated::IteratedSearch;
 use crate::tour::order::heuristics::local_search::OrderTask;
-use crate::tour::order::remainder::SpanningTrees;
 use crate::tour::order::{FlownOrder, PairTable};
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -21,9 +21,9 @@ impl Passage {
     }
 }
 
-/// Excesses of triples over their pair bounds, and of five places in a row over these.
+/// CouplingGaps of triples over their pair bounds, and of five places in a row over these.
 #[derive(Debug)]
-pub(super) struct Excesses {
+pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
     couples: Vec<bool>,
@@ -34,7 +34,7 @@ pub(super) struct Excesses {
     fives: HashMap<[usize; 5], f64>,
 }
 
-impl Excesses {
+impl CouplingGaps {
     /// Nothing known yet.
     pub(super) fn new(model: &dyn TourModel) -> Self {
         let targets = model.target_count();

@@ -1,6 +1,6 @@
 //! Motions as plain data, and back.
 
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::nlp::NlpStatus;
@@ -19,44 +19,47 @@ pub(super) fn momenta_of(profile: &Profile) -> Vec<Vec<f64>> {
 }
 
 /// A segment to be stored.
-pub(super) fn stored_segment(flown: &Flown) -> StoredSegment {
+pub(super) fn stored_segment(flown: &LegSolution) -> StoredSegment {
     let profile = &flown.profile;
-    let prices = flown.passing_prices.iter();
+    let prices = flown.costates.iter();
     StoredSegment {
         attitudes_xyzw: attitudes_of(profile),
         wheel_momenta_nms: momenta_of(profile),
         lengths_s: profile.lengths.clone(),
-        passing_prices_s_per_nms: prices.map(|price| price.as_slice().to_vec()).collect(),
+        costates_s_per_nms: prices.map(|price| price.as_slice().to_vec()).collect(),
     }
 }
 
 /// The flight of a stored segment, as it was solved; `None` when its numbers do not fit together.
-pub(super) fn recalled_segment(stored: StoredSegment, intervals: Vec<usize>) -> Option<Flown> {
+pub(super) fn segment_from_store(
+    stored: StoredSegment,
+    intervals: Vec<usize>,
+) -> Option<LegSolution> {
     let (wheels, lengths) = (stored.wheel_momenta_nms, stored.lengths_s);
-    let prices = stored.passing_prices_s_per_nms.into_iter();
-    Some(Flown {
-        passing_prices: prices.map(DVector::from_vec).collect(),
-        ..recalled(&stored.attitudes_xyzw, wheels, lengths, intervals)?
+    let prices = stored.costates_s_per_nms.into_iter();
+    Some(LegSolution {
+        costates: prices.map(DVector::from_vec).collect(),
+        ..from_store(&stored.attitudes_xyzw, wheels, lengths, intervals)?
     })
 }
 
 /// The flight of one leg, with as many intervals as it was solved with.
-pub(super) fn recalled_leg(
+pub(super) fn leg_from_store(
     attitudes_xyzw: &[[f64; 4]],
     wheel_momenta_nms: Vec<Vec<f64>>,
     lengths_s: Vec<f64>,
-) -> Option<Flown> {
+) -> Option<LegSolution> {
     let intervals = vec![lengths_s.len()];
-    recalled(attitudes_xyzw, wheel_momenta_nms, lengths_s, intervals)
+    from_store(attitudes_xyzw, wheel_momenta_nms, lengths_s, intervals)
 }
 
 /// The flight of stored numbers, as it was solved; `None` when they do not fit together.
-fn recalled(
+fn from_store(
     attitudes_xyzw: &[[f64; 4]],
     wheel_momenta_nms: Vec<Vec<f64>>,
     lengths_s: Vec<f64>,
     intervals: Vec<usize>,
-) -> Option<Flown> {
+) -> Option<LegSolution> {
     let attitudes: Option<Vec<_>> = attitudes_xyzw
         .iter()
         .map(|xyzw| Attitude::from_unit_xyzw(*xyzw))
@@ -71,12 +74,12 @@ fn recalled(
     let fits = profile.attitudes.len() == all + 1
         && profile.wheels.len() == all + 1
         && profile.intervals() == all;
-    fits.then_some(Flown {
+    fits.then_some(LegSolution {
         status: NlpStatus::Converged,
         profile,
         intervals,
         iterations: 0,
         infeasibility: 0.0,
-        passing_prices: Vec::new(),
+        costates: Vec::new(),
     })
 }

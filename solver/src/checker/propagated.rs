@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 /// The integrated motion of a flight: the steps of the verification, kept as the polynomials that
 /// they are, so that a state between two steps is as accurate as one at a step.
 #[derive(Debug)]
-pub struct Motion {
+pub struct PropagatedMotion {
     steps: Vec<KeptStep>,
 }
 
@@ -22,7 +22,7 @@ struct KeptStep {
     expansion: Expansion,
 }
 
-impl Motion {
+impl PropagatedMotion {
     /// Integrates a flight from the scenario's start. Limits and targets are not looked at.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl Motion {
 
     /// The state at a time, s; before the start that of the start, after the end that of the end.
     /// The sign of the quaternion is continuous from the start's. `None` when it is no attitude,
-    /// which no flight ends in that [`Motion::of`] accepts.
+    /// which no flight ends in that [`PropagatedMotion::of`] accepts.
     #[must_use]
     pub fn state(&self, time_s: f64) -> Option<State> {
         let (step, since) = self.step_at(time_s)?;

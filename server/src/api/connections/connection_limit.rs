@@ -154,10 +154,10 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn the_longest_waiting_leaves_and_the_answered_stay() {
-        let roster = Roster::new(3);
+        let connection_limit = Roster::new(3);
         let mut seats = Vec::new();
         for _ in 0..3 {
-            seats.push(roster.seat().await);
+            seats.push(connection_limit.seat().await);
             tokio::time::advance(Duration::from_secs(1)).await;
         }
         // Whoever sits on the first came last: it has waited least.
@@ -167,7 +167,7 @@ mod tests {
             seats[2].asked_to_leave().await;
             seats.pop();
         };
-        let (newcomer, ()) = tokio::join!(roster.seat(), leaves);
+        let (newcomer, ()) = tokio::join!(connection_limit.seat(), leaves);
         assert_eq!(newcomer.number, 3);
     }
 }

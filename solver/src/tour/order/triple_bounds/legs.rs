@@ -1,15 +1,15 @@
 //! Legs and pairs of legs with the directions forgotten.
 
-use super::excesses::Excesses;
+use super::coupling_gaps::CouplingGaps;
 use crate::tour::order::PairTable;
 
-/// Legs with the entry charges of [`crate::tour::order::remainder::SpanningTrees`] taken off, s.
+/// Legs with the entry triple_bounds of [`crate::tour::order::completion::SpanningTrees`] taken off, s.
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug)]
 pub(super) struct Legs {
     table: PairTable,
-    charges: Vec<f64>,
+    triple_bounds: Vec<f64>,
     /// The lesser of the two charged legs between two places; from the start and to the end there
     /// is only one.
     edges: Vec<f64>,
@@ -18,11 +18,11 @@ pub(super) struct Legs {
 }
 
 impl Legs {
-    pub(super) fn new(table: &PairTable, charges: &[f64]) -> Self {
+    pub(super) fn new(table: &PairTable, triple_bounds: &[f64]) -> Self {
         let (targets, places) = (table.targets(), table.targets() + 2);
         let mut legs = Self {
             table: table.clone(),
-            charges: charges.to_vec(),
+            triple_bounds: triple_bounds.to_vec(),
             edges: vec![0.0; places * places],
             slack: vec![0.0; places * places],
         };
@@ -48,53 +48,63 @@ impl Legs {
 
     /// What is taken off every leg into a target, s.
     pub(super) fn charge(&self, target: usize) -> f64 {
-        self.charges[target]
+        self.triple_bounds[target]
     }
 
     /// A leg into a target without its charge, s.
     pub(super) fn charged(&self, from: usize, to: usize) -> f64 {
-        self.table.bound(from, to) - self.charges[to]
+        self.table.bound(from, to) - self.triple_bounds[to]
     }
 
     /// The lesser of the two directions, s.
     pub(super) fn edge(&self, a: usize, b: usize) -> f64 {
-        self.edges[a * (self.charges.len() + 2) + b]
+        self.edges[a * (self.triple_bounds.len() + 2) + b]
     }
 
     /// What passing a target between two places costs beyond half of either edge, s, on a path that
     /// comes from `entry`: from there every leg is taken as it is, and nothing leads there. The
     /// lesser of the directions that are possible, and infinite when none is.
-    pub(super) fn passing(&self, excesses: &Excesses, entry: usize, path: [usize; 3]) -> f64 {
+    pub(super) fn passing(
+        &self,
+        coupling_gaps: &CouplingGaps,
+        entry: usize,
+        path: [usize; 3],
+    ) -> f64 {
         let [a, via, b] = path;
-        let forth = self.directed(excesses, entry, [a, via, b]);
-        forth.min(self.directed(excesses, entry, [b, via, a]))
+        let forth = self.directed(coupling_gaps, entry, [a, via, b]);
+        forth.min(self.directed(coupling_gaps, entry, [b, via, a]))
     }
 
     /// The same of a target with two places before and after it; what five places in a row exceed
     /// their halves by counts a quarter.
-    pub(super) fn passing_five(&self, excesses: &Excesses, entry: usize, path: [usize; 5]) -> f64 {
+    pub(super) fn passing_five(
+        &self,
+        coupling_gaps: &CouplingGaps,
+        entry: usize,
+        path: [usize; 5],
+    ) -> f64 {
         let directed = |path: [usize; 5]| {
             let [first, from, via, to, last] = path;
             if first == self.table.end() || last == entry {
                 return f64::INFINITY;
             }
-            self.directed(excesses, entry, [from, via, to]) + 0.25 * excesses.five(path)
+            self.directed(coupling_gaps, entry, [from, via, to]) + 0.25 * coupling_gaps.five(path)
         };
         let [a, b, c, d, e] = path;
         directed(path).min(directed([e, d, c, b, a]))
     }
 
-    fn directed(&self, excesses: &Excesses, entry: usize, path: [usize; 3]) -> f64 {
+    fn directed(&self, coupling_gaps: &CouplingGaps, entry: usize, path: [usize; 3]) -> f64 {
         let [from, via, to] = path;
         if to == entry || from == self.table.end() {
             return f64::INFINITY;
         }
-        let places = self.charges.len() + 2;
+        let places = self.triple_bounds.len() + 2;
         let first = if from == entry {
             0.0
         } else {
             self.slack[from * places + via]
         };
-        0.5 * (first + self.slack[via * places + to] + excesses.triple(from, via, to))
+        0.5 * (first + self.slack[via * places + to] + coupling_gaps.triple(from, via, to))
     }
 }

@@ -7,7 +7,7 @@ use super::interruption;
 use super::tours::Tours;
 use crate::leg::multiphase::fly;
 use crate::leg::profile::Profile;
-use crate::leg::solve::eigenaxis::Side;
+use crate::leg::solve::eigenaxis::Perturbation;
 use crate::nlp::NlpStatus;
 use crate::tour::order::{Evaluation, Place, Price};
 use nalgebra::DVector;
@@ -15,7 +15,7 @@ use nalgebra::DVector;
 impl Tours<'_> {
     /// The prices at the targets between the legs of an order by its flight.
     ///
-    /// None with a resolution that polishes: a priced leg is not polished, and as a bound would be
+    /// None with a resolution that polishes: a lagrangian leg is not polished, and as a bound would be
     /// too long by what that gains.
     pub(super) fn prices_of(&self, order: &[usize]) -> Option<Vec<Price>> {
         if self.places.resolution.polished {
@@ -30,10 +30,10 @@ impl Tours<'_> {
             if !prices.is_empty() || places[0] != Place::Start {
                 prices.push(vec![0.0; self.places.dynamics.wheel_count()]);
             }
-            if segment.passing_prices.len() + 2 != places.len() {
+            if segment.costates.len() + 2 != places.len() {
                 return None;
             }
-            prices.extend(segment.passing_prices.iter().map(|p| p.as_slice().to_vec()));
+            prices.extend(segment.costates.iter().map(|p| p.as_slice().to_vec()));
         }
         (prices.len() + 2 == route.len()).then_some(prices)
     }
@@ -48,8 +48,8 @@ impl Tours<'_> {
         let service = self.places.service_time(to);
         let [begin, end] = prices.map(|price| price.map(DVector::from_column_slice));
         // What takes no time says nothing of how to use some.
-        let bowed = (self.bowed(leg), self.intervals(&leg));
-        let motions = [(free.profile, free.intervals), bowed].into_iter();
+        let perturbed_eigenaxis = (self.perturbed_eigenaxis(leg), self.intervals(&leg));
+        let motions = [(free.profile, free.intervals), perturbed_eigenaxis].into_iter();
         for (motion, intervals) in motions.filter(|(motion, _)| motion.duration() > 0.0) {
             let mut waypoints = self.program(&leg, &motion, &intervals);
             waypoints[0].price = begin.as_ref().map(|price| -price);
@@ -80,10 +80,12 @@ impl Tours<'_> {
         Evaluation::Value(free_s - most + service)
     }
 
-    /// The slew about the eigenaxis, bowed.
-    fn bowed(&self, leg: [Place; 2]) -> Profile {
+    /// The slew about the eigenaxis, perturbed_eigenaxis.
+    fn perturbed_eigenaxis(&self, leg: [Place; 2]) -> Profile {
         let [from, to] = leg.map(|place| self.places.waypoint(place));
-        self.places.slew(&from, &to).bowed(Side::Near)
+        self.places
+            .slew(&from, &to)
+            .perturbed_eigenaxis(Perturbation::Near)
     }
 
     /// The most that a price can pay, s; infinite where momenta are not limited.

@@ -1,7 +1,7 @@
 //! The slew between two ends that one state meets: nothing moves and no time passes.
 
-use super::SlewProblem;
-use crate::leg::multiphase::Flown;
+use super::LegProblem;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
@@ -16,7 +16,7 @@ const SAME_RATE: f64 = 1e-10;
 const SAME_MOMENTUM: f64 = 1e-9;
 
 /// No motion at all, where that meets both ends; no slew is faster.
-pub(super) fn standstill(slew: &SlewProblem<'_>) -> Option<Flown> {
+pub(super) fn zero_length(slew: &LegProblem<'_>) -> Option<LegSolution> {
     let ends = [slew.from, slew.to];
     let turn = slew.arrival.turn(&slew.from.attitude, &slew.to.attitude);
     if turn > SAME_ATTITUDE || ends.iter().any(|end| end.price.is_some()) {
@@ -29,18 +29,18 @@ pub(super) fn standstill(slew: &SlewProblem<'_>) -> Option<Flown> {
     };
     let within = ends.iter().any(|end| end.is_fixed(slew.dynamics))
         || slew.dynamics.speed_usage(&rate, &wheels) <= 1.0;
-    (within && ends.iter().all(met)).then(|| Flown {
+    (within && ends.iter().all(met)).then(|| LegSolution {
         status: NlpStatus::Converged,
-        profile: Profile::standstill(slew.from.attitude, wheels, slew.intervals()),
+        profile: Profile::zero_length(slew.from.attitude, wheels, slew.intervals()),
         intervals: vec![slew.intervals()],
         iterations: 0,
         infeasibility: 0.0,
-        passing_prices: Vec::new(),
+        costates: Vec::new(),
     })
 }
 
 /// The wheel momenta, N m s, of the state that meets both ends, if there is one.
-fn wheels(slew: &SlewProblem<'_>) -> DVector<f64> {
+fn wheels(slew: &LegProblem<'_>) -> DVector<f64> {
     let conditions = [&slew.from.wheels, &slew.to.wheels];
     let fixed = |condition: &&WheelCondition| match condition {
         WheelCondition::Fixed(momenta) => Some(momenta.clone()),
@@ -69,7 +69,7 @@ fn contains(condition: RateCondition, rate: f64) -> bool {
     least - SAME_RATE <= rate && rate <= greatest + SAME_RATE
 }
 
-fn held(slew: &SlewProblem<'_>, condition: &WheelCondition, wheels: &DVector<f64>) -> bool {
+fn held(slew: &LegProblem<'_>, condition: &WheelCondition, wheels: &DVector<f64>) -> bool {
     let off = match condition {
         WheelCondition::Free => return true,
         WheelCondition::Fixed(held) => wheels - held,

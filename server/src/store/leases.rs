@@ -1,6 +1,6 @@
 //! The life of a job while a process works on it.
 //!
-//! A claim carries a number, its fence. Whatever a claim writes later is written only while it is
+//! A lease carries a number, its fence. Whatever a lease writes later is written only while it is
 //! still the newest one: a worker that was taken for dead cannot overwrite its successor.
 
 use super::rows::job_columns;
@@ -29,7 +29,7 @@ macro_rules! bound_beside {
 
 /// A job that this process works on.
 #[derive(Debug)]
-pub(crate) struct Claim {
+pub(crate) struct Lease {
     /// The job as claimed.
     pub(crate) job: JobRow,
     /// Its scenario as JSON.
@@ -49,12 +49,12 @@ pub(crate) struct Recovered {
 
 impl Store {
     /// Claims the job that waits longest.
-    pub(crate) async fn claim(
+    pub(crate) async fn lease(
         &self,
         boot_id: &str,
         lease_until_us: i64,
         now_us: i64,
-    ) -> Result<Option<Claim>, StoreError> {
+    ) -> Result<Option<Lease>, StoreError> {
         let mut transaction = self.begin().await?;
         let row = sqlx::query(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, \
@@ -74,19 +74,19 @@ impl Store {
         let Some(row) = row else {
             return Ok(None);
         };
-        let claim = Claim {
+        let lease = Lease {
             job: JobRow::of(&row)?,
             scenario: row.try_get("scenario")?,
         };
-        events::append(&mut transaction, "state", &claim.job, now_us).await?;
+        events::append(&mut transaction, "state", &lease.job, now_us).await?;
         transaction.commit().await?;
-        Ok(Some(claim))
+        Ok(Some(lease))
     }
 
-    /// Prolongs the lease of a claim; `false` when it has been lost.
+    /// Prolongs the lease of a lease; `false` when it has been lost.
     pub(crate) async fn beat(
         &self,
-        claim: &JobRow,
+        lease: &JobRow,
         lease_until_us: i64,
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
@@ -95,8 +95,8 @@ impl Store {
              WHERE sequence = ? AND fence = ? AND state = 'running'",
         )
         .bind(lease_until_us)
-        .bind(claim.sequence)
-        .bind(claim.fence)
+        .bind(lease.sequence)
+        .bind(lease.fence)
         .execute(&mut *transaction)
         .await?;
         transaction.commit().await?;
@@ -104,12 +104,12 @@ impl Store {
     }
 
     /// Records progress with its event, and the plan of a better order if there is one; `false`
-    /// when the claim has been lost.
+    /// when the lease has been lost.
     ///
     /// What an earlier attempt knew stays: incumbents never rise and bounds never fall.
     pub(crate) async fn progress(
         &self,
-        claim: &JobRow,
+        lease: &JobRow,
         progress: &ProgressRow,
         incumbent: Option<&NewIncumbent>,
         now_us: i64,
@@ -127,32 +127,32 @@ impl Store {
         .bind(progress.total)
         .bind(progress.incumbent_s)
         .bind(progress.lower_bound_s)
-        .bind(claim.sequence)
-        .bind(claim.fence);
+        .bind(lease.sequence)
+        .bind(lease.fence);
         let Some(_) = changed(&mut transaction, update, "progress", now_us).await? else {
             return Ok(false);
         };
         if let Some(incumbent) = incumbent {
-            results::keep(&mut transaction, claim.sequence, incumbent).await?;
+            results::keep(&mut transaction, lease.sequence, incumbent).await?;
         }
         transaction.commit().await?;
         Ok(true)
     }
 
-    /// Records the end of a claim: state, result and event together; `false` when it has been lost.
+    /// Records the end of a lease: state, result and event together; `false` when it has been lost.
     ///
     /// A cancellation that was acknowledged meanwhile wins. Of an end that came early, the better
     /// plan of an earlier attempt is the result. An end without a plan takes nothing away: the best
     /// plan so far can be read as before.
     pub(crate) async fn finish(
         &self,
-        claim: &JobRow,
+        lease: &JobRow,
         ended: &Ended,
         now_us: i64,
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let kept = if ended.early {
-            results::better(&mut transaction, claim.sequence, ended).await?
+            results::better(&mut transaction, lease.sequence, ended).await?
         } else {
             None
         };
@@ -173,22 +173,22 @@ impl Store {
         .bind(ended.incumbent_s)
         .bind(ended.lower_bound_s)
         .bind(now_us)
-        .bind(claim.sequence)
-        .bind(claim.fence);
+        .bind(lease.sequence)
+        .bind(lease.fence);
         let Some(job) = changed(&mut transaction, update, "state", now_us).await? else {
             return Ok(false);
         };
         if job.state()? == JobState::Cancelled {
-            results::forget(&mut transaction, claim.sequence).await?;
+            results::forget(&mut transaction, lease.sequence).await?;
         } else {
-            results::conclude(&mut transaction, claim.sequence, ended).await?;
+            results::conclude(&mut transaction, lease.sequence, ended).await?;
         }
         transaction.commit().await?;
         Ok(true)
     }
 
-    /// Gives a claim back unfinished; the attempt does not count.
-    pub(crate) async fn release(&self, claim: &JobRow, now_us: i64) -> Result<bool, StoreError> {
+    /// Gives a lease back unfinished; the attempt does not count.
+    pub(crate) async fn release(&self, lease: &JobRow, now_us: i64) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let update = sqlx::query(concat!(
             "UPDATE jobs SET state = 'queued', attempt = attempt - 1, boot_id = NULL, \
@@ -196,8 +196,8 @@ impl Store {
              RETURNING ",
             job_columns!()
         ))
-        .bind(claim.sequence)
-        .bind(claim.fence);
+        .bind(lease.sequence)
+        .bind(lease.fence);
         let released = changed(&mut transaction, update, "state", now_us).await?;
         transaction.commit().await?;
         Ok(released.is_some())
@@ -248,7 +248,7 @@ impl Store {
 }
 
 /// Changes a job that is claimed, with the event that tells of it; the job as it is then, `None`
-/// when the claim has been lost.
+/// when the lease has been lost.
 async fn changed(
     transaction: &mut Writing,
     update: Query<'_, Sqlite, SqliteArguments>,

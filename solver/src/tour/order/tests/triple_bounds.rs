@@ -3,8 +3,8 @@
 use super::anytime::StopsInside;
 use super::{RandomModel, pool};
 use crate::run::stop::StopSignal;
-use crate::tour::order::charges::{ChargedSubsets, Charges, Effort};
-use crate::tour::order::remainder::SpanningTrees;
+use crate::tour::order::completion::SpanningTrees;
+use crate::tour::order::triple_bounds::{Effort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{Evaluation, PairTable, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -37,11 +37,11 @@ fn models() -> impl Iterator<Item = RandomModel> {
     })
 }
 
-fn prepared(model: &dyn TourModel) -> (PairTable, SpanningTrees, Charges) {
+fn prepared(model: &dyn TourModel) -> (PairTable, SpanningTrees, TripleBounds) {
     let table = PairTable::new(model);
     let trees = SpanningTrees::new(&table);
-    let charges = Charges::new(model, &table, &trees).expect("legs are coupled");
-    (table, trees, charges)
+    let triple_bounds = TripleBounds::new(model, &table, &trees).expect("legs are coupled");
+    (table, trees, triple_bounds)
 }
 
 /// What the bound relaxes of a way, s, when all is known: a penalty counts half, and three quarters
@@ -88,15 +88,18 @@ fn no_bound_exceeds_the_cheapest_way() {
         if case % 4 == 0 {
             model.fails = some_paths;
         }
-        let (table, _, mut charges) = prepared(&model);
-        let before = charges.root_bound();
-        charges.raise(&model, &EFFORT, &pool, &StopSignal::new());
-        assert!(charges.root_bound() >= before, "case {case}");
+        let (table, _, mut triple_bounds) = prepared(&model);
+        let before = triple_bounds.root_bound();
+        triple_bounds.raise(&model, &EFFORT, &pool, &StopSignal::new());
+        assert!(triple_bounds.root_bound() >= before, "case {case}");
         model.fails = |_| false;
         let all: Vec<usize> = (0..table.targets()).collect();
-        // The shares kept are those of the best bound.
-        let root = charges.bound(table.start(), &all);
-        assert!((charges.root_bound() - root).abs() <= 1e-9, "case {case}");
+        // The multipliers kept are those of the best bound.
+        let root = triple_bounds.bound(table.start(), &all);
+        assert!(
+            (triple_bounds.root_bound() - root).abs() <= 1e-9,
+            "case {case}"
+        );
         let mut parts = vec![(table.start(), Place::Start, all.clone())];
         for &from in &all {
             for size in 0..all.len() {
@@ -104,10 +107,11 @@ fn no_bound_exceeds_the_cheapest_way() {
                 parts.push((from, Place::Target(from), others.take(size).collect()));
             }
         }
-        let bound =
-            |(from, _, remaining): &(usize, Place, Vec<usize>)| charges.bound(*from, remaining);
+        let bound = |(from, _, remaining): &(usize, Place, Vec<usize>)| {
+            triple_bounds.bound(*from, remaining)
+        };
         let trees: Vec<f64> = parts.iter().map(bound).collect();
-        let subsets = ChargedSubsets::new(charges, table.rules(), &StopSignal::new());
+        let subsets = TripleBoundSubsets::new(triple_bounds, table.rules(), &StopSignal::new());
         for ((from, place, remaining), tree) in parts.into_iter().zip(trees) {
             let least = cheapest(&model, &[place], &remaining);
             let path = subsets.bound(from, &remaining);
@@ -124,15 +128,15 @@ fn triples_raise_the_bound_of_held_and_karp_and_fives_raise_that() {
         let kinds = [RandomModel::new, RandomModel::reversible];
         let mut model = kinds[seed % 2](8, seed % 4 < 2, seed as u64);
         model.known_share = 1.0;
-        let (table, trees, mut charges) = prepared(&model);
+        let (table, trees, mut triple_bounds) = prepared(&model);
         let all: Vec<usize> = (0..8).collect();
         let mut bound = trees.bound(&table, table.start(), &all);
-        assert!(charges.root_bound() >= bound - 1e-9, "seed {seed}");
+        assert!(triple_bounds.root_bound() >= bound - 1e-9, "seed {seed}");
         for fives in [0, EFFORT.fives] {
             let effort = Effort { fives, ..EFFORT };
-            charges.raise(&model, &effort, &pool, &StopSignal::new());
-            assert!(charges.root_bound() > bound * 1.005, "seed {seed}");
-            bound = charges.root_bound();
+            triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());
+            assert!(triple_bounds.root_bound() > bound * 1.005, "seed {seed}");
+            bound = triple_bounds.root_bound();
         }
     }
 }
@@ -143,9 +147,9 @@ fn nothing_depends_on_the_number_of_threads() {
         let model = RandomModel::new(20, seed % 2 == 0, seed);
         let some: Vec<usize> = (3..17).collect();
         let results = [1, 2, 3].map(|threads| {
-            let (_, _, mut charges) = prepared(&model);
-            let raised = charges.raise(&model, &EFFORT, &pool(threads), &StopSignal::new());
-            let bounds = [charges.root_bound(), charges.bound(0, &some)];
+            let (_, _, mut triple_bounds) = prepared(&model);
+            let raised = triple_bounds.raise(&model, &EFFORT, &pool(threads), &StopSignal::new());
+            let bounds = [triple_bounds.root_bound(), triple_bounds.bound(0, &some)];
             (raised, bounds.map(f64::to_bits))
         });
         assert!(results.iter().all(|result| *result == results[0]));
@@ -166,14 +170,14 @@ fn counting(stop: &StopSignal, stop_at: usize) -> StopsInside<'_> {
 fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
     let stop = StopSignal::new();
     let model = counting(&stop, 10);
-    let (_, _, mut charges) = prepared(&model);
-    let before = charges.root_bound();
-    let raised = charges.raise(&model, &EFFORT, &pool(2), &stop);
+    let (_, _, mut triple_bounds) = prepared(&model);
+    let before = triple_bounds.root_bound();
+    let raised = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop);
     assert!(!raised.settled && raised.steps < EFFORT.steps);
     // The other worker may be past its look at the signal.
     assert!(model.evaluations.load(Ordering::Relaxed) <= 11);
-    assert!(charges.root_bound() >= before);
-    let again = charges.raise(&model, &EFFORT, &pool(2), &stop);
+    assert!(triple_bounds.root_bound() >= before);
+    let again = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop);
     assert_eq!((again.steps, again.triples), (0, 0));
 }
 
@@ -181,9 +185,9 @@ fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
 fn no_more_is_asked_than_allowed_and_nothing_twice() {
     let stop = StopSignal::new();
     let model = counting(&stop, usize::MAX);
-    let (_, _, mut charges) = prepared(&model);
+    let (_, _, mut triple_bounds) = prepared(&model);
     let mut passages = 0;
-    let mut bound = charges.root_bound();
+    let mut bound = triple_bounds.root_bound();
     for (triples, fives) in [
         (0, 0),
         (1, 1),
@@ -197,14 +201,14 @@ fn no_more_is_asked_than_allowed_and_nothing_twice() {
             fives,
             ..EFFORT
         };
-        let raised = charges.raise(&model, &effort, &pool(2), &stop);
+        let raised = triple_bounds.raise(&model, &effort, &pool(2), &stop);
         assert!(raised.triples <= triples && raised.fives <= fives);
         passages += raised.triples + raised.fives;
         // One direction for what begins at the start or ends at the end, two for all others.
         let asked = model.evaluations.load(Ordering::Relaxed);
         assert!((passages..=2 * passages).contains(&asked));
-        assert!(charges.root_bound() >= bound);
-        bound = charges.root_bound();
+        assert!(triple_bounds.root_bound() >= bound);
+        bound = triple_bounds.root_bound();
     }
     // There are 12 targets, each with 11 others, start and end around it.
     assert!(passages <= 12 * (13 * 12 / 2 - 1) + 11);
@@ -214,8 +218,8 @@ fn no_more_is_asked_than_allowed_and_nothing_twice() {
 fn estimates_lie_between_the_pairs_and_the_flight() {
     let mut model = RandomModel::new(6, true, 2);
     model.known_share = 1.0;
-    let (table, _, mut charges) = prepared(&model);
-    charges.raise(&model, &EFFORT, &pool(2), &StopSignal::new());
+    let (table, _, mut triple_bounds) = prepared(&model);
+    triple_bounds.raise(&model, &EFFORT, &pool(2), &StopSignal::new());
     let mut raised = 0;
     let mut order: Vec<usize> = (0..6).collect();
     for turn in 0..6 {
@@ -224,9 +228,9 @@ fn estimates_lie_between_the_pairs_and_the_flight() {
         path.extend(&order);
         path.push(table.end());
         let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
-        let excess = |triple: &[usize]| charges.excess(triple[0], triple[1], triple[2]);
+        let excess = |triple: &[usize]| triple_bounds.excess(triple[0], triple[1], triple[2]);
         let estimate = pairs + path.windows(3).map(excess).sum::<f64>();
-        let TourEvaluation::Flown(duration) = model.tour(&order) else {
+        let TourEvaluation::LegSolution(duration) = model.tour(&order) else {
             panic!("the model resolves");
         };
         assert!(pairs <= estimate && estimate <= duration + 1e-9);
@@ -240,5 +244,5 @@ fn where_nothing_couples_there_are_no_charges() {
     let mut model = RandomModel::new(5, true, 1);
     model.couples = |_| false;
     let table = PairTable::new(&model);
-    assert!(Charges::new(&model, &table, &SpanningTrees::new(&table)).is_none());
+    assert!(TripleBounds::new(&model, &table, &SpanningTrees::new(&table)).is_none());
 }

@@ -28,64 +28,64 @@
 //!
 //! # The relaxation
 //!
-//! Charges at entry are taken off and directions forgotten as in
+//! TripleBounds at entry are taken off and directions forgotten as in
 //! [`SpanningTrees`]: an edge `e` is the lesser of its two charged legs, and
-//! a tour costs at least its charges, its edges and what passing each of its targets costs:
+//! a tour costs at least its triple_bounds, its edges and what passing each of its targets costs:
 //! `1/2 (X_j + what the two legs exceed their edges by) + 1/4 Z_j`, in the direction in which this is
 //! less. (A leg between targets is passed at both of its ends, each of which takes half of what it
 //! exceeds its edge by; a leg from the start or into the end is its own edge.)
 //!
 //! Now every target `j` takes over a share `r_j(i)` of the edge to each place `i`, whatever its sign,
 //! and pays it itself when it has `i` for a neighbour: every tour still pays the same. To tell apart
-//! what lies beyond a neighbour there are outer shares `s_i(h)`: taken off the edge from target `i` to
+//! what lies beyond a neighbour there are outer multipliers `s_i(h)`: taken off the edge from target `i` to
 //! place `h`, and paid by the other neighbour of `i` if that is a target, else by `i` itself: by
 //! exactly one target again.
 //!
 //! Then let every target choose for itself the cheapest two neighbours and places beyond them, and
 //! let the edges, less what is taken off, be chosen as a least tree with two outer edges. Both
-//! choices were free to be those of the tour, so their sum is a bound for any shares (Lagrangian
-//! decomposition, Guignard and Kim 1987). Shares `-p_j` that are the same for all `i` are node prices:
+//! choices were free to be those of the tour, so their sum is a bound for any multipliers (Lagrangian
+//! decomposition, Guignard and Kim 1987). Multipliers `-p_j` that are the same for all `i` are node prices:
 //! there the ascent begins, at the bound of Held and Karp.
 
 mod ascent;
 mod choice;
-mod excesses;
+mod coupling_gaps;
 mod legs;
+mod multipliers;
 mod ranking;
-mod shares;
 mod subsets;
 
 pub use ascent::{Effort, Raised};
-pub use subsets::ChargedSubsets;
+pub use subsets::TripleBoundSubsets;
 
-use super::remainder::least_tree::{cheapest, least_tree};
-use super::remainder::{LegCosts, SpanningTrees};
+use super::completion::least_tree::{cheapest, least_tree};
+use super::completion::{LegCosts, SpanningTrees};
 use super::{PairTable, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use choice::Part;
-use excesses::{Excesses, Passage};
+use coupling_gaps::{CouplingGaps, Passage};
 use legs::Legs;
+use multipliers::Multipliers;
 use ranking::Ranking;
-use shares::Shares;
 use std::collections::BTreeSet;
 
 /// Bounds from triples, for places numbered as in [`PairTable`].
 #[derive(Debug)]
-pub struct Charges {
+pub struct TripleBounds {
     legs: Legs,
-    excesses: Excesses,
-    shares: Shares,
+    coupling_gaps: CouplingGaps,
+    multipliers: Multipliers,
     /// Places around each target by the least that they cost it as neighbours.
     near: Ranking,
-    /// Places around each target by the outer shares of the edges to them.
+    /// Places around each target by the outer multipliers of the edges to them.
     far: Ranking,
     root_s: f64,
     symmetric: bool,
 }
 
-impl Charges {
-    /// Shares to begin with, which know no triple yet; `None` where no target couples its legs, so
+impl TripleBounds {
+    /// Multipliers to begin with, which know no triple yet; `None` where no target couples its legs, so
     /// that triples tell nothing.
     #[must_use]
     pub fn new(model: &dyn TourModel, table: &PairTable, trees: &SpanningTrees) -> Option<Self> {
@@ -93,17 +93,17 @@ impl Charges {
         if !(0..targets).any(|via| model.couples(via)) {
             return None;
         }
-        let mut charges = Self {
-            legs: Legs::new(table, trees.charges()),
-            excesses: Excesses::new(model),
-            shares: Shares::of_prices(trees.prices()),
+        let mut triple_bounds = Self {
+            legs: Legs::new(table, trees.triple_bounds()),
+            coupling_gaps: CouplingGaps::new(model),
+            multipliers: Multipliers::of_prices(trees.prices()),
             near: Ranking::new(targets),
             far: Ranking::new(targets),
             root_s: 0.0,
             symmetric: model.is_symmetric(),
         };
-        charges.settle();
-        Some(charges)
+        triple_bounds.settle();
+        Some(triple_bounds)
     }
 
     /// Lower bound, s, of all tours.
@@ -143,17 +143,17 @@ impl Charges {
             path.extend(order);
             path.push(table.end());
             let triples = path.windows(3).map(Passage::new);
-            unknown.extend(triples.filter(|triple| self.excesses.is_open(triple)));
+            unknown.extend(triples.filter(|triple| self.coupling_gaps.is_open(triple)));
         }
         let unknown: Vec<Passage> = unknown.into_iter().collect();
-        self.excesses.ask(&unknown, table, model, pool, stop);
+        self.coupling_gaps.ask(&unknown, table, model, pool, stop);
     }
 
     /// What passing a target between two others adds to the two legs, s, as far as it is known.
     /// Summed over an order, unlike in a bound, all of it counts: a leg may be delayed by the one before
     /// and the one after it independently.
     pub(super) fn excess(&self, from: usize, via: usize, to: usize) -> f64 {
-        self.excesses.triple(from, via, to)
+        self.coupling_gaps.triple(from, via, to)
     }
 
     /// Whether every triple takes as long backwards.
@@ -166,14 +166,14 @@ impl Charges {
         self.legs.table()
     }
 
-    /// Bounds all tours by the shares as they are.
+    /// Bounds all tours by the multipliers as they are.
     fn settle(&mut self) {
         self.rank();
         let all: Vec<usize> = (0..self.targets()).collect();
         self.root_s = self.root_s.max(self.bound(self.legs.table().start(), &all));
     }
 
-    /// What the targets of a part cost at the least, with their shares and charges, s.
+    /// What the targets of a part cost at the least, with their multipliers and triple_bounds, s.
     fn passing(&self, part: &Part<'_>) -> f64 {
         let cost = |&via: &usize| self.legs.charge(via) + self.choice(part, via).cost;
         part.targets.iter().map(cost).sum()
@@ -181,12 +181,12 @@ impl Charges {
 
     /// The first leg of a part less what the target takes over, s.
     fn first(&self, entry: usize, to: usize) -> f64 {
-        self.legs.charged(entry, to) - self.shares.taken(to, entry)
+        self.legs.charged(entry, to) - self.multipliers.taken(to, entry)
     }
 }
 
 /// Edges between targets, and into the end, less what the targets take over.
-impl LegCosts for Charges {
+impl LegCosts for TripleBounds {
     fn targets(&self) -> usize {
         self.legs.table().targets()
     }
@@ -194,7 +194,7 @@ impl LegCosts for Charges {
     fn cost(&self, from: usize, to: usize) -> f64 {
         let taken = |target: usize, place: usize| {
             if target < self.targets() {
-                self.shares.taken(target, place)
+                self.multipliers.taken(target, place)
             } else {
                 0.0
             }

@@ -94,7 +94,7 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn who_reads_slowly_gets_everything_and_who_does_not_read_is_cut_off() {
         let (near, mut far) = duplex(4);
-        let mut steady = Steady::new(near);
+        let mut write_timeout = Steady::new(near);
         let reader = tokio::spawn(async move {
             let mut read = [0; 8];
             for byte in &mut read {
@@ -103,10 +103,13 @@ mod tests {
             }
             (read, far)
         });
-        steady.write_all(b"12345678").await.expect("written");
+        write_timeout.write_all(b"12345678").await.expect("written");
         let (read, _far) = reader.await.expect("read");
         assert_eq!(&read, b"12345678");
-        let error = steady.write_all(b"12345678").await.expect_err("stalled");
+        let error = write_timeout
+            .write_all(b"12345678")
+            .await
+            .expect_err("stalled");
         assert_eq!(error.kind(), io::ErrorKind::TimedOut);
     }
 }

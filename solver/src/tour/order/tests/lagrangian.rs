@@ -3,7 +3,7 @@
 use super::{SplitMix, alternatives, pool, run, unit};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
-use crate::tour::order::priced::{PricedLegs, PricedPaths};
+use crate::tour::order::lagrangian::{LagrangianLegs, LagrangianPaths};
 use crate::tour::order::{
     Evaluation, PairTable, Place, Price, TourEvaluation, TourModel, exhaustive,
 };
@@ -123,10 +123,10 @@ impl TourModel for MeetingModel {
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         assert!(self.rules.admits(order));
-        TourEvaluation::Flown(self.along(&self.path(order, true)))
+        TourEvaluation::LegSolution(self.along(&self.path(order, true)))
     }
 
-    fn passing_prices(&self, order: &[usize]) -> Option<Vec<Price>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
         let path = self.path(order, true);
         let price = |p: &[usize]| {
             let (end, begin) = (self.leg(p[0], p[1])[1], self.leg(p[1], p[2])[2]);
@@ -136,7 +136,7 @@ impl TourModel for MeetingModel {
     }
 
     /// The least over the states at both ends: at what suits or at the ends of their range.
-    fn priced_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+    fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
         let [time, end, begin] = self.leg(self.number(leg[0]), self.number(leg[1]));
         let [left, reached] = prices.map(|price| price.map_or(0.0, |price| price[0]));
         let least = |suits: f64, price: f64| {
@@ -175,7 +175,7 @@ fn models(targets: usize, seed: u64) -> [MeetingModel; 3] {
     ]
 }
 
-/// Whatever the prices, no bound exceeds what it is of, and the shortest order by priced legs is that
+/// Whatever the prices, no bound exceeds what it is of, and the shortest order by lagrangian legs is that
 /// of least bound.
 #[test]
 fn prices_bound_all_orders_from_below() {
@@ -183,8 +183,8 @@ fn prices_bound_all_orders_from_below() {
     for seed in 0..6_usize {
         for model in models(6, seed as u64) {
             let table = PairTable::new(&model);
-            let mut legs = PricedLegs::new(&model, &table);
-            let mut paths = PricedPaths::new(&legs, &model.rules);
+            let mut legs = LagrangianLegs::new(&model, &table);
+            let mut paths = LagrangianPaths::new(&legs, &model.rules);
             let all = permutations(6);
             let admitted: Vec<&Vec<usize>> = all
                 .iter()
@@ -232,8 +232,8 @@ fn learned_prices_close_most_of_the_gap() {
         for model in models(7, seed) {
             let best_s = exhaustive(&model, 0, &pool)[0].duration_s;
             let table = PairTable::new(&model);
-            let mut legs = PricedLegs::new(&model, &table);
-            let mut paths = PricedPaths::new(&legs, &model.rules);
+            let mut legs = LagrangianLegs::new(&model, &table);
+            let mut paths = LagrangianPaths::new(&legs, &model.rules);
             assert!(paths.fill(&legs, &pool, &stop));
             let pairs_s = paths.root_bound();
             let mut bound_s = pairs_s;
@@ -252,8 +252,8 @@ fn learned_prices_close_most_of_the_gap() {
 fn a_stopped_lesson_changes_nothing() {
     let (pool, stop) = (pool(2), StopSignal::new());
     let model = MeetingModel::new(6, true, 1);
-    let mut legs = PricedLegs::new(&model, &PairTable::new(&model));
-    let mut paths = PricedPaths::new(&legs, &model.rules);
+    let mut legs = LagrangianLegs::new(&model, &PairTable::new(&model));
+    let mut paths = LagrangianPaths::new(&legs, &model.rules);
     assert!(paths.fill(&legs, &pool, &stop));
     let (orders, before) = (paths.orders(3), paths.root_bound());
     stop.request();

@@ -22,7 +22,7 @@
 //! # All tours at once
 //!
 //! The least sum over all orders is a shortest path through states `(h, i, j, R)`, with `R` what
-//! remains ([`PricedPaths`]): exact, whatever the prices.
+//! remains ([`LagrangianPaths`]): exact, whatever the prices.
 //!
 //! # Learning prices
 //!
@@ -33,15 +33,15 @@
 
 mod paths;
 
-pub use paths::PricedPaths;
+pub use paths::LagrangianPaths;
 
-use super::remainder::EXACT_TARGETS;
+use super::completion::EXACT_TARGETS;
 use super::{Evaluation, PairTable, Place, Price, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Up to so many targets legs are priced: the table of paths has some `n^3 2^n / 8` entries of four
+/// Up to so many targets legs are lagrangian: the table of paths has some `n^3 2^n / 8` entries of four
 /// bytes, 160 MB for sixteen targets and half of it for every target less.
 pub const PRICED_TARGETS: usize = 16;
 // With the numbers of start, end and nobody a row is no longer than that of a table of subsets.
@@ -59,7 +59,7 @@ struct Mean {
 /// Places are numbered as in [`PairTable`]; one more number stands for no neighbour, which pays and
 /// is paid nothing.
 #[derive(Debug, Clone)]
-pub struct PricedLegs {
+pub struct LagrangianLegs {
     table: PairTable,
     has_end: bool,
     /// Whether every leg costs the same backwards, between the same neighbours and with start and end
@@ -70,7 +70,7 @@ pub struct PricedLegs {
     costs: Vec<[f64; EXACT_TARGETS]>,
 }
 
-impl PricedLegs {
+impl LagrangianLegs {
     /// No prices yet.
     #[must_use]
     pub fn new(model: &dyn TourModel, table: &PairTable) -> Self {
@@ -136,7 +136,7 @@ impl PricedLegs {
         let mut prices = self.prices.clone();
         let mut moved = BTreeSet::new();
         for order in orders {
-            let Some(flight) = model.passing_prices(order) else {
+            let Some(flight) = model.costates(order) else {
                 continue;
             };
             let path = self.path_of(order);
@@ -194,7 +194,7 @@ impl PricedLegs {
         let cost = if at_ends == [None; 2] {
             Evaluation::Value(self.table.bound(from, to))
         } else {
-            model.priced_leg([from, to].map(|place| self.place(place)), at_ends)
+            model.lagrangian_leg([from, to].map(|place| self.place(place)), at_ends)
         };
         match cost {
             Evaluation::Value(cost) => Some(cost),

@@ -1,9 +1,9 @@
 //! What targets take over of their edges.
 
-/// By rows, one for each target, a value for each place: shares and outer shares, s, or a direction
+/// By rows, one for each target, a value for each place: multipliers and outer multipliers, s, or a direction
 /// in them.
 #[derive(Debug, Clone)]
-pub(super) struct Shares {
+pub(super) struct Multipliers {
     places: usize,
     /// What the target pays when it has the place for a neighbour.
     pub(super) near: Vec<f64>,
@@ -11,7 +11,7 @@ pub(super) struct Shares {
     pub(super) outer: Vec<f64>,
 }
 
-impl Shares {
+impl Multipliers {
     /// All zero.
     pub(super) fn zero(targets: usize) -> Self {
         let places = targets + 2;
@@ -24,11 +24,15 @@ impl Shares {
 
     /// What of every edge at a target makes up for its price, s.
     pub(super) fn of_prices(prices: &[f64]) -> Self {
-        let mut shares = Self::zero(prices.len());
-        for (row, price) in shares.near.chunks_exact_mut(shares.places).zip(prices) {
+        let mut multipliers = Self::zero(prices.len());
+        for (row, price) in multipliers
+            .near
+            .chunks_exact_mut(multipliers.places)
+            .zip(prices)
+        {
             row.fill(-price);
         }
-        shares
+        multipliers
     }
 
     pub(super) fn near(&self, target: usize, place: usize) -> f64 {

@@ -3,7 +3,7 @@
 //! A path from `l` through the set `R` to the end is an edge out of `l`, a path through `R` and an
 //! edge into the end. Three steps lead to a bound on its length:
 //!
-//! 1. *Entry charges.* Every target of `R` is entered exactly once, so a charge `v_j` may be taken
+//! 1. *Entry triple_bounds.* Every target of `R` is entered exactly once, so a charge `v_j` may be taken
 //!    off every leg into `j` and added to the bound once. It is chosen to make what is left as
 //!    symmetric as it can be; a dwell at `j`, which is part of every leg into `j`, drops out whole.
 //! 2. *Trees.* Directions are forgotten: an edge of `R` weighs the lesser of its two legs. The path
@@ -22,10 +22,10 @@ const STEP_DECAY: f64 = 0.97;
 /// First step, as a share of the mean leg of the tree.
 const FIRST_STEP: f64 = 0.5;
 
-/// Charges and prices of every target, s.
+/// TripleBounds and prices of every target, s.
 #[derive(Debug)]
 pub struct SpanningTrees {
-    charges: Vec<f64>,
+    triple_bounds: Vec<f64>,
     prices: Vec<f64>,
     /// The lesser of the two charged legs between every two targets, by rows.
     edges: Vec<f64>,
@@ -40,14 +40,14 @@ struct Tree {
 }
 
 impl SpanningTrees {
-    /// Finds charges and prices for paths from the start through all targets.
+    /// Finds triple_bounds and prices for paths from the start through all targets.
     #[must_use]
     pub fn new(table: &PairTable) -> Self {
         let targets = table.targets();
-        let charges = entry_charges(table);
+        let triple_bounds = entry_charges(table);
         let mut trees = Self {
-            edges: undirected(table, &charges),
-            charges,
+            edges: undirected(table, &triple_bounds),
+            triple_bounds,
             prices: vec![0.0; targets],
         };
         let all: Vec<usize> = (0..targets).collect();
@@ -71,8 +71,8 @@ impl SpanningTrees {
     }
 
     /// What every leg into a target is relieved of, s.
-    pub(in crate::tour::order) fn charges(&self) -> &[f64] {
-        &self.charges
+    pub(in crate::tour::order) fn triple_bounds(&self) -> &[f64] {
+        &self.triple_bounds
     }
 
     /// What every leg at a target is raised by, s.
@@ -95,11 +95,11 @@ impl SpanningTrees {
         let mut degrees = vec![0; count];
         let mut bound: f64 = remaining
             .iter()
-            .map(|&target| self.charges[target] - 2.0 * self.prices[target])
+            .map(|&target| self.triple_bounds[target] - 2.0 * self.prices[target])
             .sum();
         for outer in [
             cheapest(remaining, |to| {
-                table.bound(from, to) - self.charges[to] + self.prices[to]
+                table.bound(from, to) - self.triple_bounds[to] + self.prices[to]
             }),
             cheapest(remaining, |last| {
                 table.bound(last, table.end()) + self.prices[last]
@@ -119,21 +119,21 @@ impl SpanningTrees {
 
     /// Weight of an edge between two targets, s.
     fn edge(&self, a: usize, b: usize) -> f64 {
-        self.edges[a * self.charges.len() + b] + self.prices[a] + self.prices[b]
+        self.edges[a * self.triple_bounds.len() + b] + self.prices[a] + self.prices[b]
     }
 }
 
 /// The lesser of the two charged legs between every two targets, by rows, s.
-fn undirected(table: &PairTable, charges: &[f64]) -> Vec<f64> {
-    let leg = |from: usize, to: usize| table.bound(from, to) - charges[to];
-    let targets = charges.len();
+fn undirected(table: &PairTable, triple_bounds: &[f64]) -> Vec<f64> {
+    let leg = |from: usize, to: usize| table.bound(from, to) - triple_bounds[to];
+    let targets = triple_bounds.len();
     (0..targets * targets)
         .map(|place| (place / targets, place % targets))
         .map(|(a, b)| leg(a, b).min(leg(b, a)))
         .collect()
 }
 
-/// The charges that make the table most nearly symmetric in the sense of least squares, s.
+/// The triple_bounds that make the table most nearly symmetric in the sense of least squares, s.
 fn entry_charges(table: &PairTable) -> Vec<f64> {
     let targets = table.targets();
     (0..targets)

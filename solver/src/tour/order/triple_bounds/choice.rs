@@ -1,6 +1,6 @@
 //! The neighbours that a target chooses for itself.
 
-use super::Charges;
+use super::TripleBounds;
 
 /// The part of a tour that a bound is of.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(super) struct Part<'a> {
 pub(super) struct Choice {
     /// The two neighbours.
     pub(super) ends: [usize; 2],
-    /// The outer shares that the target pays: of which target, and of its edge to which place.
+    /// The outer multipliers that the target pays: of which target, and of its edge to which place.
     pub(super) beyond: [[usize; 2]; 2],
     pub(super) cost: f64,
 }
@@ -52,29 +52,32 @@ impl<'a> Part<'a> {
     }
 }
 
-impl Charges {
-    /// Ranks the places around all targets by the shares as they are.
+impl TripleBounds {
+    /// Ranks the places around all targets by the multipliers as they are.
     pub(super) fn rank(&mut self) {
         let Self {
-            shares, near, far, ..
+            multipliers,
+            near,
+            far,
+            ..
         } = self;
         let targets = self.legs.table().targets();
         for of in 0..targets {
-            far.rank(of, |place| shares.outer(of, place));
+            far.rank(of, |place| multipliers.outer(of, place));
         }
         for via in 0..targets {
             near.rank(via, |place| {
                 let of = if place < targets { place } else { via };
-                shares.near(via, place) + far.least(of)
+                multipliers.near(via, place) + far.least(of)
             });
         }
     }
 
     /// The cheapest neighbours of a target of a part, and places beyond them: the least sum of their
-    /// shares and of what passing the target between them costs.
+    /// multipliers and of what passing the target between them costs.
     ///
-    /// Exact, though most pairs are never looked at: they come in the order of their shares with
-    /// the least outer shares that they could come with, so once these alone reach the best cost
+    /// Exact, though most pairs are never looked at: they come in the order of their multipliers with
+    /// the least outer multipliers that they could come with, so once these alone reach the best cost
     /// all later pairs do. What passing costs is not negative.
     pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> Choice {
         let mut best = Choice {
@@ -85,9 +88,9 @@ impl Charges {
         let inner = |&place: &usize| part.admitted[place] && place != part.entry;
         let mut places = self.near.row(via).filter(inner);
         let cost = |place| self.near.cost(via, place);
-        // With the place that the part comes from, be that a target or not, no target shares the
+        // With the place that the part comes from, be that a target or not, no target multipliers the
         // edge beyond: in the ranking it has no place.
-        let entry = self.shares.near(via, part.entry) + self.far.least(via);
+        let entry = self.multipliers.near(via, part.entry) + self.far.least(via);
         for other in places.clone() {
             if entry + cost(other) >= best.cost {
                 break;
@@ -115,9 +118,11 @@ impl Charges {
     /// Betters a choice by one of these neighbours and the cheapest places beyond them.
     fn choose_beyond(&self, part: &Part<'_>, via: usize, ends: [usize; 2], best: &mut Choice) {
         let [one, other] = ends;
-        let excesses = &self.excesses;
-        let passing = self.legs.passing(excesses, part.entry, [one, via, other]);
-        let near = self.shares.near(via, one) + self.shares.near(via, other) + passing;
+        let coupling_gaps = &self.coupling_gaps;
+        let passing = self
+            .legs
+            .passing(coupling_gaps, part.entry, [one, via, other]);
+        let near = self.multipliers.near(via, one) + self.multipliers.near(via, other) + passing;
         let truncated = part.is_outer(one) || part.is_outer(other);
         for (first, first_s) in self.beyond(part, via, one, other) {
             for (rank, (last, last_s)) in self.beyond(part, via, other, one).enumerate() {
@@ -133,7 +138,7 @@ impl Charges {
                         continue;
                     }
                     let path = [first[1], one, via, other, last[1]];
-                    cost += self.legs.passing_five(excesses, part.entry, path) - passing;
+                    cost += self.legs.passing_five(coupling_gaps, part.entry, path) - passing;
                 }
                 if cost < best.cost {
                     *best = Choice {
@@ -146,7 +151,7 @@ impl Charges {
         }
     }
 
-    /// The outer shares that a target may have to pay on the side of one neighbour, cheapest first.
+    /// The outer multipliers that a target may have to pay on the side of one neighbour, cheapest first.
     /// Next to the start or the end it is the one that this would have to pay if it were a target.
     fn beyond(
         &self,
@@ -177,15 +182,15 @@ mod tests {
     use crate::run::pool::SolverPool;
     use crate::run::stop::StopSignal;
     use crate::tour::order::PairTable;
-    use crate::tour::order::charges::Effort;
-    use crate::tour::order::remainder::{LegCosts, SpanningTrees};
+    use crate::tour::order::completion::{LegCosts, SpanningTrees};
     use crate::tour::order::tests::RandomModel;
+    use crate::tour::order::triple_bounds::Effort;
     use std::num::NonZeroUsize;
 
     /// The cheapest choice by trying all.
-    fn least(charges: &Charges, part: &Part<'_>, via: usize) -> f64 {
-        let others = || (0..=charges.end()).filter(|&p| p != via && part.admitted[p]);
-        let (shares, legs) = (&charges.shares, &charges.legs);
+    fn least(triple_bounds: &TripleBounds, part: &Part<'_>, via: usize) -> f64 {
+        let others = || (0..=triple_bounds.end()).filter(|&p| p != via && part.admitted[p]);
+        let (multipliers, legs) = (&triple_bounds.multipliers, &triple_bounds.legs);
         let sides = |one: usize, other: usize| -> Vec<[usize; 2]> {
             if part.is_outer(one) {
                 return vec![[via, other]];
@@ -199,17 +204,17 @@ mod tests {
             if one >= other || (part.is_outer(one) && part.is_outer(other) && !lone) {
                 continue;
             }
-            let near = shares.near(via, one) + shares.near(via, other);
+            let near = multipliers.near(via, one) + multipliers.near(via, other);
             for [of, first] in sides(one, other) {
                 for [to, last] in sides(other, one) {
-                    let outer = shares.outer(of, first) + shares.outer(to, last);
+                    let outer = multipliers.outer(of, first) + multipliers.outer(to, last);
                     let passing = if of == via || to == via {
-                        legs.passing(&charges.excesses, part.entry, [one, via, other])
+                        legs.passing(&triple_bounds.coupling_gaps, part.entry, [one, via, other])
                     } else if first == last {
                         f64::INFINITY
                     } else {
                         let path = [first, one, via, other, last];
-                        legs.passing_five(&charges.excesses, part.entry, path)
+                        legs.passing_five(&triple_bounds.coupling_gaps, part.entry, path)
                     };
                     least = least.min(near + outer + passing);
                 }
@@ -226,19 +231,20 @@ mod tests {
             let model = kinds[seed % 2](8, seed % 4 < 2, seed as u64);
             let table = PairTable::new(&model);
             let trees = SpanningTrees::new(&table);
-            let mut charges = Charges::new(&model, &table, &trees).expect("legs are coupled");
+            let mut triple_bounds =
+                TripleBounds::new(&model, &table, &trees).expect("legs are coupled");
             let effort = Effort {
                 triples: 300,
                 fives: 300,
                 steps: 70,
             };
-            charges.raise(&model, &effort, &pool, &StopSignal::new());
+            triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());
             for (entry, size) in [(table.start(), 8), (7, 7), (7, 4), (7, 2), (7, 1)] {
                 let targets: Vec<usize> = (0..size).collect();
                 let part = Part::new(entry, table.end(), &targets);
                 for &via in &targets {
-                    let found = charges.choice(&part, via).cost;
-                    let expected = least(&charges, &part, via);
+                    let found = triple_bounds.choice(&part, via).cost;
+                    let expected = least(&triple_bounds, &part, via);
                     assert!(
                         (found - expected).abs() < 1e-9,
                         "seed {seed}, {size} targets"

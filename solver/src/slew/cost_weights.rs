@@ -11,7 +11,7 @@ use super::Measure;
 
 /// Weights and prescriptions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ingredients {
+pub(super) struct CostWeights {
     /// `a`.
     pub(super) time: f64,
     /// `b`, per (N m)^2.
@@ -26,7 +26,7 @@ pub(super) struct Ingredients {
     pub(super) budget: Option<f64>,
 }
 
-impl Ingredients {
+impl CostWeights {
     /// Minimum time.
     pub(super) const TIME: Self = Self {
         time: 1.0,

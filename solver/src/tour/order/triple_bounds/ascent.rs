@@ -1,14 +1,14 @@
-//! Raising the bound: subgradient ascent over the shares, and asking for the passages that matter.
+//! Raising the bound: subgradient ascent over the multipliers, and asking for the passages that matter.
 
-use super::Charges;
+use super::TripleBounds;
 use super::choice::{Choice, Part};
-use super::excesses::Passage;
-use super::shares::Shares;
+use super::coupling_gaps::Passage;
+use super::multipliers::Multipliers;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::TourModel;
-use crate::tour::order::remainder::LegCosts;
-use crate::tour::order::remainder::least_tree::{cheapest, least_tree};
+use crate::tour::order::completion::LegCosts;
+use crate::tour::order::completion::least_tree::{cheapest, least_tree};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ const STEP_DECAY: f64 = 0.7;
 const PATIENCE: usize = 6;
 /// Share of its direction that a step keeps for the next: the choices jump to and fro.
 const MOMENTUM: f64 = 0.85;
-/// Weight of prices, which raise all shares of a target, beside that of single shares.
+/// Weight of prices, which raise all multipliers of a target, beside that of single multipliers.
 const PRICE_WEIGHT: f64 = 0.5;
 /// So many steps go by between asking the model, and so many questions per target are asked at
 /// once: those that were chosen most often.
@@ -37,7 +37,7 @@ pub struct Effort {
     /// Triples to ask for at most, each in both directions.
     pub triples: usize,
     /// Five places in a row, and triples in them, to ask for at most once triples alone no longer
-    /// help; with 0 the outer shares stay as they are.
+    /// help; with 0 the outer multipliers stay as they are.
     pub fives: usize,
     /// Steps of the ascent at most, with triples and again with fives: some 400, and four per
     /// target. With far fewer, fives gain nothing: the bound falls before it rises.
@@ -74,26 +74,26 @@ struct Climb {
 
 /// An ascent under way.
 struct Ascent<'a> {
-    charges: &'a mut Charges,
+    triple_bounds: &'a mut TripleBounds,
     width: Width,
     part: Part<'a>,
-    /// Edges between targets, by rows, less the shares taken over, s.
+    /// Edges between targets, by rows, less the multipliers taken over, s.
     weights: Vec<f64>,
-    /// Direction of the next step in the shares and in the prices.
-    heading: Shares,
+    /// Direction of the next step in the multipliers and in the prices.
+    heading: Multipliers,
     price_heading: Vec<f64>,
     step: f64,
     /// Steps since the bound last rose.
     stale: usize,
     best_s: f64,
-    best: Shares,
+    best: Multipliers,
     /// The best bound since the model was last asked, s.
     level_s: f64,
     /// How often open passages were chosen since the model was last asked.
     wanted: BTreeMap<Passage, usize>,
 }
 
-/// The two relaxed choices for some shares.
+/// The two relaxed choices for some multipliers.
 struct Choices {
     bound: f64,
     /// What each target chooses.
@@ -102,9 +102,9 @@ struct Choices {
     edges: Vec<[usize; 2]>,
 }
 
-impl Charges {
+impl TripleBounds {
     /// Raises the bound as far as it rises within the effort or until the solve is stopped. It
-    /// never falls. May be called again, to go on from the best shares.
+    /// never falls. May be called again, to go on from the best multipliers.
     pub fn raise(
         &mut self,
         model: &dyn TourModel,
@@ -112,9 +112,11 @@ impl Charges {
         pool: &SolverPool,
         stop: &StopSignal,
     ) -> Raised {
-        let ask = |charges: &mut Self, passages: &[Passage]| {
-            let table = charges.legs.table();
-            charges.excesses.ask(passages, table, model, pool, stop);
+        let ask = |triple_bounds: &mut Self, passages: &[Passage]| {
+            let table = triple_bounds.legs.table();
+            triple_bounds
+                .coupling_gaps
+                .ask(passages, table, model, pool, stop);
         };
         let triples = self.climb(Width::Triples, effort.triples, effort.steps, ask, stop);
         if effort.fives == 0 || stop.is_set() {
@@ -155,7 +157,7 @@ impl Charges {
             if climb.settled || climb.steps.is_multiple_of(STEPS_PER_BATCH) {
                 let wanted = ascent.most_wanted(limit - climb.asked);
                 if !wanted.is_empty() {
-                    ask(ascent.charges, &wanted);
+                    ask(ascent.triple_bounds, &wanted);
                     climb.asked += wanted.len();
                     climb.settled = false;
                     // What is known now is another function to climb: it may first go down.
@@ -167,39 +169,39 @@ impl Charges {
             }
             ascent.advance(&choices);
         }
-        self.shares = ascent.best;
+        self.multipliers = ascent.best;
         self.settle();
         climb
     }
 }
 
 impl<'a> Ascent<'a> {
-    fn new(charges: &'a mut Charges, width: Width, all: &'a [usize], step: f64) -> Self {
+    fn new(triple_bounds: &'a mut TripleBounds, width: Width, all: &'a [usize], step: f64) -> Self {
         let targets = all.len();
         Self {
-            part: Part::new(charges.legs.table().start(), charges.end(), all),
+            part: Part::new(triple_bounds.legs.table().start(), triple_bounds.end(), all),
             weights: vec![0.0; targets * targets],
-            heading: Shares::zero(targets),
+            heading: Multipliers::zero(targets),
             price_heading: vec![0.0; targets],
             step,
             stale: 0,
             level_s: f64::NEG_INFINITY,
-            best_s: charges.root_s,
-            best: charges.shares.clone(),
+            best_s: triple_bounds.root_s,
+            best: triple_bounds.multipliers.clone(),
             wanted: BTreeMap::new(),
             width,
-            charges,
+            triple_bounds,
         }
     }
 
-    /// Both choices for the shares as they are.
+    /// Both choices for the multipliers as they are.
     fn choose(&mut self) -> Choices {
-        self.charges.rank();
-        let charges = &*self.charges;
+        self.triple_bounds.rank();
+        let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
         for a in 0..targets {
             for b in 0..a {
-                let weight = charges.cost(a, b);
+                let weight = triple_bounds.cost(a, b);
                 self.weights[a * targets + b] = weight;
                 self.weights[b * targets + a] = weight;
             }
@@ -210,12 +212,12 @@ impl<'a> Ascent<'a> {
             edges: Vec::with_capacity(targets + 1),
         };
         for &via in self.part.targets {
-            let choice = charges.choice(&self.part, via);
-            choices.bound += charges.legs.charge(via) + choice.cost;
+            let choice = triple_bounds.choice(&self.part, via);
+            choices.bound += triple_bounds.legs.charge(via) + choice.cost;
             choices.targets.push(choice);
         }
-        for outer in [self.part.entry, charges.end()] {
-            let cost = |target| charges.cost(target, outer);
+        for outer in [self.part.entry, triple_bounds.end()] {
+            let cost = |target| triple_bounds.cost(target, outer);
             let (target, weight) = cheapest(self.part.targets, cost);
             choices.bound += weight;
             choices.edges.push([target, outer]);
@@ -227,13 +229,13 @@ impl<'a> Ascent<'a> {
         choices
     }
 
-    /// Keeps the best shares, shortens the step when they no longer get better, and notes what it
+    /// Keeps the best multipliers, shortens the step when they no longer get better, and notes what it
     /// would help to know.
     fn judge(&mut self, choices: &Choices) {
         self.stale += 1;
         if choices.bound > self.best_s {
             self.best_s = choices.bound;
-            self.best.clone_from(&self.charges.shares);
+            self.best.clone_from(&self.triple_bounds.multipliers);
         }
         if choices.bound > self.level_s {
             self.level_s = choices.bound;
@@ -251,10 +253,10 @@ impl<'a> Ascent<'a> {
 
     /// What would tell more about what a target chose.
     fn open_passage(&self, via: usize, choice: &Choice) -> Option<Passage> {
-        let excesses = &self.charges.excesses;
+        let coupling_gaps = &self.triple_bounds.coupling_gaps;
         let [a, b] = choice.ends;
         let triple = Passage::new(&[a, via, b]);
-        if excesses.is_open(&triple) {
+        if coupling_gaps.is_open(&triple) {
             return Some(triple);
         }
         if self.width == Width::Triples {
@@ -262,7 +264,7 @@ impl<'a> Ascent<'a> {
         }
         let [first, last] = choice.path_beyond()?;
         let five = Passage::new(&[first, a, via, b, last]);
-        excesses.is_open(&five).then_some(five)
+        coupling_gaps.is_open(&five).then_some(five)
     }
 
     /// Takes the passages that were chosen most often.
@@ -299,8 +301,8 @@ impl<'a> Ascent<'a> {
                 }
             }
         }
-        let shares = &mut self.charges.shares;
-        let near = shares.near.chunks_exact_mut(targets + 2);
+        let multipliers = &mut self.triple_bounds.multipliers;
+        let near = multipliers.near.chunks_exact_mut(targets + 2);
         let headings = self.heading.near.chunks_exact(targets + 2);
         for ((near, headings), price) in near.zip(headings).zip(&self.price_heading) {
             for (share, heading) in near.iter_mut().zip(headings) {
@@ -308,7 +310,7 @@ impl<'a> Ascent<'a> {
             }
         }
         if self.width == Width::Fives {
-            for (share, heading) in shares.outer.iter_mut().zip(&self.heading.outer) {
+            for (share, heading) in multipliers.outer.iter_mut().zip(&self.heading.outer) {
                 *share += self.step * heading;
             }
         }

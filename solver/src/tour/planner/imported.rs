@@ -7,15 +7,15 @@
 
 use super::all_pairs;
 use super::canonical::CanonicalLeg;
+use super::from_store::leg_from_store;
 use super::legs::{certify, end_of, stored};
 use super::places::Places;
-use super::recall::recalled_leg;
 use super::tables::SolvedLeg;
 use super::verified::{flight_faults, node_faults};
 use crate::checker::{END_SPEED_TOLERANCE, RATE_TOLERANCE};
-use crate::leg::multiphase::Flown;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
-use crate::leg::solve::standstill::SAME_ATTITUDE;
+use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::run::pool::SolverPool;
@@ -33,7 +33,7 @@ const MAX_INTERVALS: usize = 500;
 
 /// The motion of a leg, in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OfferedLeg {
+pub struct ImportedLeg {
     /// Attitude at every node relative to the begin, scalar-last unit quaternions.
     pub attitudes_xyzw: Vec<[f64; 4]>,
     /// Momentum of every enabled wheel about its axis at every node, N m s.
@@ -90,11 +90,11 @@ impl<'a> LegCheck<'a> {
     /// # Errors
     ///
     /// Sentences about everything that is wrong with it.
-    pub fn check(&self, identity: &str, offered: OfferedLeg) -> Result<StoredLeg, Vec<String>> {
+    pub fn check(&self, identity: &str, imported: ImportedLeg) -> Result<StoredLeg, Vec<String>> {
         let leg = self.legs.get(identity);
         let leg = leg.ok_or_else(|| vec!["the scenario has no such leg".to_owned()])?;
-        let solve_time = offered.solve_time_s;
-        let flown = motion(leg, offered)?;
+        let solve_time = imported.solve_time_s;
+        let flown = motion(leg, imported)?;
         let profile = &flown.profile;
         let mut faults = self.faults(leg, profile);
         if faults.is_empty() {
@@ -149,10 +149,10 @@ impl<'a> LegCheck<'a> {
     }
 }
 
-/// The motion of an offered leg, when its numbers fit together.
-fn motion(leg: &CanonicalLeg, offered: OfferedLeg) -> Result<Flown, Vec<String>> {
+/// The motion of an imported leg, when its numbers fit together.
+fn motion(leg: &CanonicalLeg, imported: ImportedLeg) -> Result<LegSolution, Vec<String>> {
     let wheels = leg.dynamics.wheel_count();
-    let momenta = &offered.wheel_momenta_nms;
+    let momenta = &imported.wheel_momenta_nms;
     let mut faults = Vec::new();
     if momenta.iter().any(|node| node.len() != wheels) {
         faults.push(format!("not every node has momenta of {wheels} wheels"));
@@ -165,17 +165,17 @@ fn motion(leg: &CanonicalLeg, offered: OfferedLeg) -> Result<Flown, Vec<String>>
         faults.push("a momentum is not finite".into());
     }
     let is_time = |length: &f64| length.is_finite() && *length >= 0.0;
-    if !offered.lengths_s.iter().all(is_time) {
+    if !imported.lengths_s.iter().all(is_time) {
         faults.push("a time between nodes is negative or not finite".into());
     }
-    let intervals = offered.lengths_s.len();
+    let intervals = imported.lengths_s.len();
     if intervals > MAX_INTERVALS {
         faults.push(format!("it has more than {MAX_INTERVALS} intervals"));
     }
-    let flown = recalled_leg(
-        &offered.attitudes_xyzw,
-        offered.wheel_momenta_nms,
-        offered.lengths_s,
+    let flown = leg_from_store(
+        &imported.attitudes_xyzw,
+        imported.wheel_momenta_nms,
+        imported.lengths_s,
     );
     if flown.is_none() {
         let nodes = intervals + 1;

@@ -28,9 +28,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a plan claims to be proved.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct PlanClaims {
+pub struct PlanCertificate {
     /// Its legs.
-    pub legs: Vec<LegClaim>,
+    pub legs: Vec<LegCertificate>,
     /// No tour takes less, s, in any order that the scenario admits; `None` where nothing is claimed.
     pub lower_bound_s: Option<f64>,
     /// How long the plan takes, s, when it says so.
@@ -39,7 +39,7 @@ pub struct PlanClaims {
 
 /// What a plan claims of a leg.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LegClaim {
+pub struct LegCertificate {
     /// `start` or a target's identifier.
     pub from: String,
     /// A target's identifier or `end`.
@@ -117,14 +117,14 @@ pub enum Obstacle {
 
 /// What became of the claims of a plan.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CheckedClaims {
+pub struct CheckedCertificate {
     /// Of its legs, in the order of the claims.
     pub legs: Vec<Verdict>,
     /// Of all tours.
     pub tour: Verdict,
 }
 
-impl CheckedClaims {
+impl CheckedCertificate {
     /// Whether something is claimed and all of it is proved.
     #[must_use]
     pub fn confirmed(&self) -> bool {
@@ -139,7 +139,11 @@ impl CheckedClaims {
 /// Takes some 10 ms for every claimed leg, and as much for every distinct leg that a tour may fly
 /// when something is claimed of tours, divided among the workers. The store of legs is not asked.
 #[must_use]
-pub fn certify_plan(scenario: &Scenario, claims: &PlanClaims, run: Run<'_>) -> CheckedClaims {
+pub fn certify_plan(
+    scenario: &Scenario,
+    claims: &PlanCertificate,
+    run: Run<'_>,
+) -> CheckedCertificate {
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
     let distinct = match claims.lower_bound_s {
@@ -164,7 +168,7 @@ pub fn certify_plan(scenario: &Scenario, claims: &PlanClaims, run: Run<'_>) -> C
         verdict
     });
     let tour = second.of_tours(claims, &pairs, &distinct);
-    CheckedClaims { legs, tour }
+    CheckedCertificate { legs, tour }
 }
 
 /// The legs between pairs of places, equal ones once.
@@ -203,7 +207,7 @@ struct SecondProof<'a> {
 }
 
 impl SecondProof<'_> {
-    fn of_leg(&self, claim: &LegClaim) -> Verdict {
+    fn of_leg(&self, claim: &LegCertificate) -> Verdict {
         let Some(bound) = claim.lower_bound_s else {
             return Verdict::NoClaim;
         };
@@ -225,7 +229,7 @@ impl SecondProof<'_> {
 
     fn of_tours(
         &self,
-        claims: &PlanClaims,
+        claims: &PlanCertificate,
         pairs: &[(Place, Place)],
         distinct: &Distinct,
     ) -> Verdict {

@@ -1,10 +1,10 @@
 //! The flight of a solution, as an independent integration finds it, and what it takes.
 
-use super::motion::Motion;
-use super::spec::{Manoeuvre, Measure};
+use super::motion::SlewMotion;
+use super::spec::{Measure, Slew};
 use crate::checker::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
-    RATE_TOLERANCE, Ramp, fly_ramps,
+    RATE_TOLERANCE, Ramp, propagate_ramps,
 };
 use crate::model::drive::Drive;
 use crate::model::plan::State;
@@ -57,7 +57,7 @@ impl Energies {
 
 /// A solution with what its independent integration found.
 #[derive(Debug, Clone)]
-pub struct Flown {
+pub struct PropagatedSlew {
     /// The commands; they tile the time from zero to the end.
     pub pieces: Vec<Piece>,
     /// States at the begin of every piece that takes time, and at the end.
@@ -81,7 +81,7 @@ pub struct Flown {
 }
 
 /// Integral of the squared torques, (N m)² s.
-pub(super) fn effort(motion: &Motion) -> f64 {
+pub(super) fn effort(motion: &SlewMotion) -> f64 {
     let torques = motion.begin.iter().zip(&motion.end);
     torques
         .zip(&motion.lengths)
@@ -90,19 +90,19 @@ pub(super) fn effort(motion: &Motion) -> f64 {
 }
 
 /// Flies a motion.
-pub(super) fn fly(manoeuvre: &Manoeuvre, motion: &Motion) -> Flown {
-    let scenario = manoeuvre.scenario();
-    let ramps = ramps(manoeuvre, motion);
-    let drives = manoeuvre.all_drives();
+pub(super) fn fly(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
+    let scenario = slew.scenario();
+    let ramps = ramps(slew, motion);
+    let drives = slew.all_drives();
     let mut energies = Energies::default();
-    let flight = fly_ramps(scenario, drives, &ramps, |moment| {
-        for actuator in &manoeuvre.vehicle().dynamics.actuators {
+    let flight = propagate_ramps(scenario, drives, &ramps, |moment| {
+        for actuator in &slew.vehicle().dynamics.actuators {
             let spent = spent(&drives[actuator.index], actuator.index, moment);
             energies.proxy_j += spent.proxy_j;
             energies.bill_j += spent.bill_j;
         }
     });
-    let mut flown = Flown {
+    let mut flown = PropagatedSlew {
         pieces: ramps.iter().map(piece).collect(),
         states: Vec::new(),
         energies,
@@ -122,9 +122,9 @@ pub(super) fn fly(manoeuvre: &Manoeuvre, motion: &Motion) -> Flown {
         }
     };
     if let (Some(end), Some(wanted)) = (flight.states.last(), scenario.end()) {
-        flown.attitude_error_rad = manoeuvre.missed_by(&end.attitude);
+        flown.attitude_error_rad = slew.missed_by(&end.attitude);
         flown.rate_error_rad_s = (end.body_rate_rad_s - wanted.rate).norm();
-        flown.wheel_speed_error_rad_s = speed_error(manoeuvre, end);
+        flown.wheel_speed_error_rad_s = speed_error(slew, end);
     }
     flown.torque_excess = excess(flight.torque_usage);
     flown.wheel_speed_excess = excess(flight.wheel_usage.unwrap_or(0.0));
@@ -132,7 +132,7 @@ pub(super) fn fly(manoeuvre: &Manoeuvre, motion: &Motion) -> Flown {
     flown.failures = flight.failures;
     flown.failures.extend(faults(&flown, flight.momentum_drift));
     flown.states = flight.states;
-    flown.failures.extend(speed_fault(manoeuvre, &flown));
+    flown.failures.extend(speed_fault(slew, &flown));
     flown
 }
 
@@ -147,7 +147,7 @@ fn excess(usage: f64) -> f64 {
 }
 
 /// Sentences about the end and the torques; speeds and rates have their own.
-fn faults(flown: &Flown, momentum_drift: f64) -> Vec<String> {
+fn faults(flown: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
     let too_large = [
         (
             flown.attitude_error_rad,
@@ -184,8 +184,8 @@ fn faults(flown: &Flown, momentum_drift: f64) -> Vec<String> {
 
 /// A sentence when the wheels miss their prescribed speeds, measured by the least limit or, where
 /// nothing is limited, by the fastest wheel.
-fn speed_fault(manoeuvre: &Manoeuvre, flown: &Flown) -> Option<String> {
-    let actuators = manoeuvre.vehicle().dynamics.actuators.iter();
+fn speed_fault(slew: &Slew, flown: &PropagatedSlew) -> Option<String> {
+    let actuators = slew.vehicle().dynamics.actuators.iter();
     let least = actuators
         .map(|wheel| wheel.max_speed)
         .fold(f64::INFINITY, f64::min);
@@ -201,10 +201,10 @@ fn speed_fault(manoeuvre: &Manoeuvre, flown: &Flown) -> Option<String> {
 }
 
 /// The greatest error of a prescribed final speed, rad/s.
-fn speed_error(manoeuvre: &Manoeuvre, end: &State) -> f64 {
-    let dynamics = &manoeuvre.vehicle().dynamics;
+fn speed_error(slew: &Slew, end: &State) -> f64 {
+    let dynamics = &slew.vehicle().dynamics;
     let momenta = dynamics.wheels_of_speeds(&end.body_rate_rad_s, &end.wheel_speed_rad_s);
-    let WheelCondition::Fixed(wanted) = &manoeuvre.ends()[1].wheels else {
+    let WheelCondition::Fixed(wanted) = &slew.ends()[1].wheels else {
         return 0.0;
     };
     let errors = dynamics
@@ -225,10 +225,10 @@ fn piece(ramp: &Ramp) -> Piece {
     }
 }
 
-fn ramps(manoeuvre: &Manoeuvre, motion: &Motion) -> Vec<Ramp> {
-    let dynamics = &manoeuvre.vehicle().dynamics;
+fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
+    let dynamics = &slew.vehicle().dynamics;
     let of_all = |torques: &nalgebra::DVector<f64>| {
-        let mut all = vec![0.0; manoeuvre.all_drives().len()];
+        let mut all = vec![0.0; slew.all_drives().len()];
         for (wheel, torque) in dynamics.actuators.iter().zip(torques.iter()) {
             all[wheel.index] = *torque;
         }

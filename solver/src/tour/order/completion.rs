@@ -11,7 +11,7 @@ use super::PairTable;
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 
-/// Up to so many targets the remainder is exact. The table has `n 2^n` entries: 160 MiB and a quarter
+/// Up to so many targets the completion is exact. The table has `n 2^n` entries: 160 MiB and a quarter
 /// of a second for twenty targets, half of the one and of the other for every target less.
 pub const EXACT_TARGETS: usize = 20;
 

@@ -98,7 +98,7 @@ impl Folding {
         Ok(())
     }
 
-    /// The log after some kind of folding, which readers may keep from being complete.
+    /// The log after some kind of wal_checkpoint, which readers may keep from being complete.
     async fn checkpoint(&self, kind: &'static str) -> Result<Log, StoreError> {
         let (_, pages, folded): (i64, i64, i64) = sqlx::query_as(kind).fetch_one(&self.own).await?;
         Ok(Log { pages, folded })

@@ -1,18 +1,18 @@
-//! The shortest orders by priced legs: dynamic programming over subsets with two places remembered.
+//! The shortest orders by lagrangian legs: dynamic programming over subsets with two places remembered.
 
-use super::PricedLegs;
+use super::LagrangianLegs;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::remainder::EXACT_TARGETS;
-use crate::tour::order::remainder::subsets::{Admitted, least_sum, mask, members};
+use crate::tour::order::completion::EXACT_TARGETS;
+use crate::tour::order::completion::subsets::{Admitted, least_sum, mask, members};
 
 /// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum of
 /// all legs from `i` on, when `h, i, j` were visited last and the targets `R` remain. Of the prices
 /// as they were when it was filled.
 #[derive(Debug)]
-pub struct PricedPaths {
-    legs: PricedLegs,
+pub struct LagrangianPaths {
+    legs: LagrangianLegs,
     admitted: Admitted,
     /// For every set `R` that is not empty, by its others `h, i, j` in rows: rounded down, so that
     /// all are bounds.
@@ -20,7 +20,7 @@ pub struct PricedPaths {
     root_s: f64,
 }
 
-impl PricedPaths {
+impl LagrangianPaths {
     /// Memory of the table for so many targets, bytes.
     #[must_use]
     pub fn bytes(targets: usize) -> u64 {
@@ -32,7 +32,7 @@ impl PricedPaths {
 
     /// A table for the orders that some rules admit, to be filled.
     #[must_use]
-    pub fn new(legs: &PricedLegs, rules: &OrderRules) -> Self {
+    pub fn new(legs: &LagrangianLegs, rules: &OrderRules) -> Self {
         let targets = legs.table.targets();
         Self {
             legs: legs.clone(),
@@ -45,7 +45,7 @@ impl PricedPaths {
     /// Fills the table anew: some `n^4 2^n / 16` steps. When the solve is stopped meanwhile it
     /// answers `false` and is of no use.
     #[must_use]
-    pub fn fill(&mut self, legs: &PricedLegs, pool: &SolverPool, stop: &StopSignal) -> bool {
+    pub fn fill(&mut self, legs: &LagrangianLegs, pool: &SolverPool, stop: &StopSignal) -> bool {
         self.legs.clone_from(legs);
         let targets = legs.table.targets();
         // With fewer than three others there is no state.

@@ -1,11 +1,11 @@
 //! The shortest time in which the optimum of the smooth proxy is billed no more than a given energy
 //! (the energy thesis's EEERT): a root of the bill as a function of the time.
 
-use super::flown;
-use super::ingredients::Ingredients;
-use super::motion::Motion;
+use super::cost_weights::CostWeights;
+use super::motion::SlewMotion;
+use super::propagated;
 use super::shape::Lengths;
-use super::{Found, Manoeuvre, Measure, Plain, direct, starts};
+use super::{Found, Measure, Plain, Slew, direct, starts};
 use crate::nlp::Interruption;
 
 /// Relative error of the bill that ends the search.
@@ -24,22 +24,22 @@ struct Trial {
 
 /// Solves for the time.
 pub(super) fn solve(
-    manoeuvre: &Manoeuvre,
+    slew: &Slew,
     energy: f64,
-    neighbour: Option<&Motion>,
+    neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
     let guess = neighbour.cloned().or_else(|| {
-        let guesses = starts::of(manoeuvre, Ingredients::TIME, stop);
+        let guesses = starts::of(slew, CostWeights::TIME, stop);
         guesses.into_iter().next()
     });
-    let shortest = guess.as_ref().map_or(1.0, Motion::duration);
+    let shortest = guess.as_ref().map_or(1.0, SlewMotion::duration);
     let (mut starts, mut iterations) = (0, 0);
-    let mut attempt = |duration: f64, guess: Option<&Motion>| {
-        let found = in_time(manoeuvre, duration, guess, stop);
+    let mut attempt = |duration: f64, guess: Option<&SlewMotion>| {
+        let found = in_time(slew, duration, guess, stop);
         starts += found.starts;
         iterations += found.iterations;
-        let bill = flown::fly(manoeuvre, &found.solved.motion).energies.bill_j;
+        let bill = propagated::fly(slew, &found.solved.motion).energies.bill_j;
         let excess = if found.solved.converged() {
             (bill / energy).ln()
         } else {
@@ -105,18 +105,18 @@ fn between(low: &Trial, high: &Trial) -> f64 {
 
 /// The optimum of the proxy in a time.
 fn in_time(
-    manoeuvre: &Manoeuvre,
+    slew: &Slew,
     duration: f64,
-    guess: Option<&Motion>,
+    guess: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
-    let mut plain = Plain::of(manoeuvre);
-    plain.ingredients = Ingredients::energy_in(duration, Measure::Proxy);
+    let mut plain = Plain::of(slew);
+    plain.cost_weights = CostWeights::energy_in(duration, Measure::Proxy);
     plain.lasting = Some(duration);
     let lengths = match plain.shape.lengths {
         Lengths::Own => Lengths::Own,
         _ => Lengths::Given(vec![duration / plain.intervals as f64; plain.intervals]),
     };
-    plain.shape = manoeuvre.shape(plain.shape.course, lengths, &plain.ingredients);
-    direct(manoeuvre, &plain, guess, stop)
+    plain.shape = slew.shape(plain.shape.course, lengths, &plain.cost_weights);
+    direct(slew, &plain, guess, stop)
 }

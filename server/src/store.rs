@@ -31,7 +31,7 @@ pub(crate) use events::{EventRow, TellJob};
 pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey};
 pub(crate) use leases::Lease;
-pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
+pub(crate) use legs::{LegFilter, LegRow, NewLeg, key as leg_key};
 pub(crate) use packed::PackedPlan;
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow};

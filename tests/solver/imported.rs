@@ -1,9 +1,10 @@
 //! Legs that were solved elsewhere: taken bit for bit when they fly, refused when they do not.
 
+use slewplan_solver::model::motion::Motion;
 use slewplan_solver::model::spec::{AttitudeEquivalence, ScenarioSpec};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
-use slewplan_solver::tour::planner::{ImportedLeg, LegCheck, Run, Shard, leg_table};
+use slewplan_solver::tour::planner::{LegCheck, Run, Shard, leg_table};
 use slewplan_tests::random::Generator;
 use slewplan_tests::schedules::{Rates, Region, schedule};
 use slewplan_tests::solving::{on_threads, pool, scenario_of};
@@ -12,7 +13,7 @@ use std::collections::HashMap;
 use std::sync::Mutex;
 
 /// What makes a leg one that does not fly.
-type Spoil = fn(&mut ImportedLeg);
+type Spoil = fn(&mut Motion);
 
 const WHOLE: Shard = Shard { index: 0, of: 1 };
 
@@ -40,26 +41,17 @@ fn solved(spec: &ScenarioSpec, kind: LegKind) -> HashMap<String, StoredLeg> {
     memory.0.into_inner().expect("nobody panics")
 }
 
-fn imported(leg: &StoredLeg) -> ImportedLeg {
-    ImportedLeg {
-        attitudes_xyzw: leg.attitudes_xyzw.clone(),
-        wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
-        lengths_s: leg.lengths_s.clone(),
-        solve_time_s: leg.solve_time_s,
-    }
-}
-
 /// What becomes of a leg that is imported for a scenario.
 fn judged(
     spec: &ScenarioSpec,
     kind: LegKind,
     identity: &str,
-    leg: ImportedLeg,
+    leg: &StoredLeg,
 ) -> Result<StoredLeg, Vec<String>> {
     let (scenario, pool, stop) = (scenario_of(spec), pool(1), StopSignal::new());
     let wanted = |other: &str| other == identity;
     let check = LegCheck::new(&scenario, kind, &wanted, (&pool, &stop)).expect("nobody stops it");
-    check.check(identity, leg)
+    check.check(identity, leg.motion.clone(), leg.solve_time_s)
 }
 
 fn quaternions() -> ScenarioSpec {
@@ -77,7 +69,7 @@ fn what_the_solver_found_is_taken_as_it_is() {
     for (number, spec) in scenarios.enumerate() {
         for kind in [LegKind::RestToRest, LegKind::LowerBound] {
             for (identity, leg) in solved(&spec, kind) {
-                let taken = judged(&spec, kind, &identity, imported(&leg));
+                let taken = judged(&spec, kind, &identity, &leg);
                 assert_eq!(taken.as_ref(), Ok(&leg), "scenario {number}, {kind:?}");
                 count += 1;
             }
@@ -137,13 +129,13 @@ fn what_does_not_fly_is_refused_with_a_reason() {
         ("negative", |leg| leg.lengths_s[1] = -1.0),
     ];
     for (reason, spoil) in cases {
-        let mut spoilt = imported(leg);
-        spoil(&mut spoilt);
-        let faults = judged(&spec, kind, identity, spoilt).expect_err(reason);
+        let mut spoilt = leg.clone();
+        spoil(&mut spoilt.motion);
+        let faults = judged(&spec, kind, identity, &spoilt).expect_err(reason);
         assert!(faults.join("; ").contains(reason), "{reason}: {faults:?}");
     }
     let other = legs.keys().find(|key| *key != identity).expect("another");
-    assert!(judged(&spec, kind, other, imported(leg)).is_err());
-    let unknown = judged(&spec, kind, "another problem", imported(leg));
+    assert!(judged(&spec, kind, other, leg).is_err());
+    let unknown = judged(&spec, kind, "another problem", leg);
     assert!(unknown.expect_err("unknown")[0].contains("no such leg"));
 }

@@ -89,7 +89,7 @@ fn what_comes_back_changed_ends_in_a_failure_with_a_name() {
     };
     solved(&memory);
     for segment in memory.segments().values_mut() {
-        for length in &mut segment.lengths_s {
+        for length in &mut segment.motion.lengths_s {
             *length *= 0.9;
         }
     }

@@ -3,8 +3,8 @@
 pub(crate) mod upkeep;
 
 use crate::base::clock::now_us;
-use crate::store::{LegTrajectory, NewLeg, Store};
-use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
+use crate::store::{NewLeg, Store};
+use slewplan_solver::tour::legs::{LegStore, StoredLeg};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::runtime::Handle;
@@ -99,27 +99,16 @@ impl LegStore for LegCache {
             &self.tally.misses
         };
         tally.fetch_add(1, Ordering::Relaxed);
-        let (row, spacecraft, trajectory) = leg?;
-        Some(StoredLeg {
-            spacecraft,
-            kind: kind(&row.kind)?,
-            turn_xyzw: row.turn_xyzw(),
-            body_momentum_nms: row.momentum(),
-            reversible: row.reversible,
-            duration_s: row.duration_s,
-            certified_lower_bound_s: row.certified_lower_bound_s,
-            status: row.status,
-            solve_time_s: row.solve_time_s,
-            attitudes_xyzw: trajectory.attitudes_xyzw,
-            wheel_momenta_nms: trajectory.wheel_momenta_nms,
-            lengths_s: trajectory.lengths_s,
-        })
+        leg
     }
 
     fn put(&self, identity: &str, leg: &StoredLeg) {
         let waiting = {
             let mut unwritten = self.unwritten.legs();
-            unwritten.push(new_leg(identity, leg));
+            unwritten.push(NewLeg {
+                identity: identity.to_owned(),
+                leg: leg.clone(),
+            });
             unwritten.len()
         };
         if waiting >= BATCH {
@@ -132,31 +121,4 @@ impl Drop for LegCache {
     fn drop(&mut self) {
         self.runtime.block_on(self.unwritten.write());
     }
-}
-
-/// A leg as the database keeps it.
-pub(crate) fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
-    NewLeg {
-        identity: identity.to_owned(),
-        spacecraft: leg.spacecraft.clone(),
-        kind: leg.kind.as_str(),
-        turn_xyzw: leg.turn_xyzw,
-        momentum: leg.body_momentum_nms,
-        reversible: leg.reversible,
-        duration_s: leg.duration_s,
-        certified_lower_bound_s: leg.certified_lower_bound_s,
-        solve_time_s: leg.solve_time_s,
-        status: leg.status.clone(),
-        trajectory: LegTrajectory {
-            attitudes_xyzw: leg.attitudes_xyzw.clone(),
-            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
-            lengths_s: leg.lengths_s.clone(),
-        },
-    }
-}
-
-fn kind(text: &str) -> Option<LegKind> {
-    [LegKind::RestToRest, LegKind::LowerBound]
-        .into_iter()
-        .find(|kind| kind.as_str() == text)
 }

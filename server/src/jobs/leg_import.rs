@@ -8,7 +8,6 @@ use crate::base::clock::now_us;
 use crate::documents;
 use crate::documents::document::Node;
 use crate::documents::legs::{KeyedLeg, LegTable};
-use crate::jobs::leg_cache::new_leg;
 use crate::store::{NewLeg, Store, StoreError, leg_key};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
@@ -140,10 +139,10 @@ fn judge(
     check: &LegCheck<'_>,
     identities: &HashMap<String, &str>,
     index: usize,
-    motion: &KeyedLeg,
+    given: &KeyedLeg,
 ) -> Result<NewLeg, Problem> {
     let place = format!("/trajectories/{index}");
-    let Some(identity) = identities.get(&motion.key) else {
+    let Some(identity) = identities.get(&given.key) else {
         return Err(Problem::new(
             format!("{place}/key"),
             Code::UnknownReference,
@@ -151,8 +150,11 @@ fn judge(
             "take the file as slewplan legs wrote it",
         ));
     };
-    match check.check(identity, motion.leg.clone()) {
-        Ok(leg) => Ok(new_leg(identity, &leg)),
+    match check.check(identity, given.motion.clone(), given.solve_time_s) {
+        Ok(leg) => Ok(NewLeg {
+            identity: (*identity).to_owned(),
+            leg,
+        }),
         Err(faults) => Err(Problem::new(
             place,
             Code::LegRefused,

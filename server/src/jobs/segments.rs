@@ -7,6 +7,7 @@
 //! reading took a tenth of the time that it saved), and forgotten after the end of the job.
 
 use crate::store::{JobRow, SegmentRow, Store, StoreError};
+use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{SegmentStore, StoredSegment};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -149,16 +150,16 @@ pub(crate) async fn forget(store: Store) {
 
 /// The number of wheels, attitudes, momenta, lengths and prices one after the other.
 fn packed(name: &str, segment: &StoredSegment) -> SegmentRow {
-    let attitudes = segment.attitudes_xyzw.iter().flatten();
-    let momenta = segment.wheel_momenta_nms.iter().flatten();
+    let attitudes = segment.motion.attitudes_xyzw.iter().flatten();
+    let momenta = segment.motion.wheel_momenta_nms.iter().flatten();
     let prices = segment.costates_s_per_nms.iter().flatten();
-    let numbers = attitudes.chain(momenta).chain(&segment.lengths_s);
-    let wheels = segment.wheel_momenta_nms.first().map_or(0, Vec::len) as u64;
+    let numbers = attitudes.chain(momenta).chain(&segment.motion.lengths_s);
+    let wheels = segment.motion.wheel_momenta_nms.first().map_or(0, Vec::len) as u64;
     let words = numbers.chain(prices).map(|number| number.to_bits());
     let words = std::iter::once(wheels).chain(words);
     SegmentRow {
         name: name.to_owned(),
-        intervals: i64::try_from(segment.lengths_s.len()).unwrap_or(i64::MAX),
+        intervals: i64::try_from(segment.motion.lengths_s.len()).unwrap_or(i64::MAX),
         motion: words.flat_map(u64::to_le_bytes).collect(),
     }
 }
@@ -181,9 +182,11 @@ fn unpacked(row: &SegmentRow) -> Option<StoredSegment> {
     }
     let by_wheels = |numbers: &[f64]| numbers.chunks(wheels).map(<[f64]>::to_vec).collect();
     Some(StoredSegment {
-        attitudes_xyzw: attitudes.as_chunks().0.to_vec(),
-        wheel_momenta_nms: by_wheels(momenta),
-        lengths_s: lengths.to_vec(),
+        motion: Motion {
+            attitudes_xyzw: attitudes.as_chunks().0.to_vec(),
+            wheel_momenta_nms: by_wheels(momenta),
+            lengths_s: lengths.to_vec(),
+        },
         costates_s_per_nms: by_wheels(prices),
     })
 }
@@ -194,13 +197,15 @@ mod tests {
 
     fn segment() -> StoredSegment {
         StoredSegment {
-            attitudes_xyzw: vec![[0.1, 0.2, -0.3, 1.0 / 3.0]; 3],
-            wheel_momenta_nms: vec![
-                vec![1e-300, -2.5],
-                vec![0.1, 7.0],
-                vec![-0.0, f64::MIN_POSITIVE],
-            ],
-            lengths_s: vec![1.5, 0.1 + 0.2],
+            motion: Motion {
+                attitudes_xyzw: vec![[0.1, 0.2, -0.3, 1.0 / 3.0]; 3],
+                wheel_momenta_nms: vec![
+                    vec![1e-300, -2.5],
+                    vec![0.1, 7.0],
+                    vec![-0.0, f64::MIN_POSITIVE],
+                ],
+                lengths_s: vec![1.5, 0.1 + 0.2],
+            },
             costates_s_per_nms: vec![vec![-90.0, 1.0 / 7.0]],
         }
     }

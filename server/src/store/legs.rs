@@ -3,7 +3,8 @@
 mod upkeep;
 
 use super::{Store, StoreError};
-use serde::{Deserialize, Serialize};
+use slewplan_solver::model::motion::Motion;
+use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 use sqlx::{FromRow, Row, SqliteConnection};
 
 /// Legs of other versions of the solver are not found, replaced when they are solved again, and
@@ -18,37 +19,8 @@ const ROUNDING: f64 = 1e-14;
 pub(crate) struct NewLeg {
     /// Canonical text of its problem.
     pub(crate) identity: String,
-    /// Canonical text of the spacecraft.
-    pub(crate) spacecraft: String,
-    /// The kind of table for which it was solved.
-    pub(crate) kind: &'static str,
-    /// The turn from begin to end, scalar-last quaternion.
-    pub(crate) turn_xyzw: [f64; 4],
-    /// Total momentum in body axes at the begin, N m s.
-    pub(crate) momentum: [f64; 3],
-    /// Whether it can be flown backwards.
-    pub(crate) reversible: bool,
-    /// Minimum time, s.
-    pub(crate) duration_s: f64,
-    /// No slew with its conditions takes less, s, proved.
-    pub(crate) certified_lower_bound_s: Option<f64>,
-    /// Wall-clock time of the solve, s.
-    pub(crate) solve_time_s: f64,
-    /// How the solve ended.
-    pub(crate) status: String,
-    /// The motion.
-    pub(crate) trajectory: LegTrajectory,
-}
-
-/// The motion of a leg.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LegTrajectory {
-    /// Attitude at every node relative to the begin, scalar-last quaternions.
-    pub(crate) attitudes_xyzw: Vec<[f64; 4]>,
-    /// Momentum of every enabled wheel about its axis at every node, N m s.
-    pub(crate) wheel_momenta_nms: Vec<Vec<f64>>,
-    /// Time between nodes, s.
-    pub(crate) lengths_s: Vec<f64>,
+    /// The leg.
+    pub(crate) leg: StoredLeg,
 }
 
 /// A remembered leg without its motion.
@@ -95,6 +67,27 @@ impl LegRow {
     pub(crate) fn momentum(&self) -> [f64; 3] {
         [self.momentum_x, self.momentum_y, self.momentum_z]
     }
+
+    /// The leg with what its row does not hold.
+    fn stored(self, spacecraft: String, motion: Motion) -> Result<StoredLeg, StoreError> {
+        let kinds = [LegKind::RestToRest, LegKind::LowerBound];
+        let kind = kinds.into_iter().find(|kind| kind.as_str() == self.kind);
+        Ok(StoredLeg {
+            spacecraft,
+            kind: kind.ok_or_else(|| StoreError::Inconsistent {
+                table: "legs",
+                what: format!("there is no kind {}", self.kind),
+            })?,
+            turn_xyzw: self.turn_xyzw(),
+            body_momentum_nms: self.momentum(),
+            reversible: self.reversible,
+            duration_s: self.duration_s,
+            certified_lower_bound_s: self.certified_lower_bound_s,
+            status: self.status,
+            solve_time_s: self.solve_time_s,
+            motion,
+        })
+    }
 }
 
 macro_rules! leg_columns {
@@ -126,10 +119,7 @@ pub(crate) fn key(identity: &str) -> String {
 
 impl Store {
     /// A leg that this version of the solver would solve the same.
-    pub(crate) async fn known_leg(
-        &self,
-        identity: &str,
-    ) -> Result<Option<(LegRow, String, LegTrajectory)>, StoreError> {
+    pub(crate) async fn known_leg(&self, identity: &str) -> Result<Option<StoredLeg>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT document, trajectory, ",
             leg_columns!(),
@@ -143,12 +133,9 @@ impl Store {
         .fetch_optional(&self.readers)
         .await?;
         row.map(|row| {
-            let trajectory = read_trajectory(row.try_get("trajectory")?)?;
-            Ok((
-                LegRow::from_row(&row)?,
-                row.try_get("document")?,
-                trajectory,
-            ))
+            let motion = read_motion(row.try_get("trajectory")?)?;
+            let spacecraft = row.try_get("document")?;
+            LegRow::from_row(&row)?.stored(spacecraft, motion)
         })
         .transpose()
     }
@@ -165,10 +152,7 @@ impl Store {
     }
 
     /// A leg by its key, with its motion.
-    pub(crate) async fn leg(
-        &self,
-        key: &str,
-    ) -> Result<Option<(LegRow, LegTrajectory)>, StoreError> {
+    pub(crate) async fn leg(&self, key: &str) -> Result<Option<(LegRow, Motion)>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT trajectory, ",
             leg_columns!(),
@@ -180,7 +164,7 @@ impl Store {
         row.map(|row| {
             Ok((
                 LegRow::from_row(&row)?,
-                read_trajectory(row.try_get("trajectory")?)?,
+                read_motion(row.try_get("trajectory")?)?,
             ))
         })
         .transpose()
@@ -221,7 +205,7 @@ impl Store {
     }
 }
 
-fn read_trajectory(json: &[u8]) -> Result<LegTrajectory, StoreError> {
+fn read_motion(json: &[u8]) -> Result<Motion, StoreError> {
     serde_json::from_slice(json).map_err(|error| StoreError::Inconsistent {
         table: "legs",
         what: error.to_string(),
@@ -230,14 +214,13 @@ fn read_trajectory(json: &[u8]) -> Result<LegTrajectory, StoreError> {
 
 async fn put_leg(
     connection: &mut SqliteConnection,
-    leg: &NewLeg,
+    NewLeg { identity, leg }: &NewLeg,
     now_us: i64,
 ) -> Result<u64, StoreError> {
-    let trajectory =
-        serde_json::to_vec(&leg.trajectory).map_err(|error| StoreError::Inconsistent {
-            table: "legs",
-            what: error.to_string(),
-        })?;
+    let trajectory = serde_json::to_vec(&leg.motion).map_err(|error| StoreError::Inconsistent {
+        table: "legs",
+        what: error.to_string(),
+    })?;
     let spacecraft = key(&leg.spacecraft);
     sqlx::query("INSERT INTO leg_spacecraft (key, document) VALUES (?, ?) ON CONFLICT DO NOTHING")
         .bind(&spacecraft)
@@ -255,11 +238,11 @@ async fn put_leg(
          solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
          created_us = excluded.created_us WHERE solver_version <> excluded.solver_version",
     )
-    .bind(key(&leg.identity))
-    .bind(&leg.identity)
+    .bind(key(identity))
+    .bind(identity)
     .bind(spacecraft)
-    .bind(leg.kind);
-    for number in leg.turn_xyzw.into_iter().chain(leg.momentum) {
+    .bind(leg.kind.as_str());
+    for number in leg.turn_xyzw.into_iter().chain(leg.body_momentum_nms) {
         query = query.bind(number);
     }
     let done = query

@@ -1,6 +1,7 @@
 //! A motion as the optimiser sees it: states at nodes and the time between them.
 
 use crate::model::attitude::Attitude;
+use crate::model::motion::Motion;
 use nalgebra::DVector;
 use std::ops::Range;
 
@@ -87,5 +88,33 @@ impl Profile {
             wheels: self.wheels.iter().rev().map(|h| -h).collect(),
             lengths: self.lengths.iter().rev().copied().collect(),
         }
+    }
+}
+
+impl From<&Profile> for Motion {
+    fn from(profile: &Profile) -> Self {
+        let momenta = profile.wheels.iter();
+        Self {
+            attitudes_xyzw: profile.attitudes.iter().map(Attitude::xyzw).collect(),
+            wheel_momenta_nms: momenta.map(|h| h.as_slice().to_vec()).collect(),
+            lengths_s: profile.lengths.clone(),
+        }
+    }
+}
+
+impl Profile {
+    /// The motion of these numbers, bit for bit; `None` unless there is one unit quaternion and one
+    /// vector of momenta a node.
+    pub(crate) fn from_motion(motion: Motion) -> Option<Self> {
+        let attitudes = motion.attitudes_xyzw.into_iter();
+        let attitudes: Option<Vec<_>> = attitudes.map(Attitude::from_unit_xyzw).collect();
+        let wheels = motion.wheel_momenta_nms.into_iter();
+        let profile = Self {
+            attitudes: attitudes?,
+            wheels: wheels.map(DVector::from_vec).collect(),
+            lengths: motion.lengths_s,
+        };
+        let nodes = profile.intervals() + 1;
+        (profile.attitudes.len() == nodes && profile.wheels.len() == nodes).then_some(profile)
     }
 }

@@ -46,7 +46,7 @@ pub use certificate::{
     CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict, certify_plan,
 };
 pub use fixed_order::{BoundFrom, OrderError, fly_order};
-pub use imported::{ImportedLeg, LegCheck};
+pub use imported::LegCheck;
 pub use memory::memory_estimate;
 
 /// What a solve needs from its surroundings.

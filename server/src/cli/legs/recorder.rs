@@ -3,7 +3,6 @@
 use crate::documents::legs::KeyedLeg;
 use crate::store::leg_key;
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
-use slewplan_solver::tour::planner::ImportedLeg;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct Recorder<'a> {
     legs: &'a dyn LegStore,
     /// By their keys, in the order in which a file has them.
-    seen: Mutex<BTreeMap<String, ImportedLeg>>,
+    seen: Mutex<BTreeMap<String, KeyedLeg>>,
 }
 
 impl<'a> Recorder<'a> {
@@ -27,20 +26,18 @@ impl<'a> Recorder<'a> {
     pub(super) fn into_motions(self) -> Vec<KeyedLeg> {
         let seen = self.seen.into_inner();
         let seen = seen.unwrap_or_else(PoisonError::into_inner);
-        seen.into_iter()
-            .map(|(key, leg)| KeyedLeg { key, leg })
-            .collect()
+        seen.into_values().collect()
     }
 
     fn note(&self, identity: &str, leg: &StoredLeg) {
-        let motion = ImportedLeg {
-            attitudes_xyzw: leg.attitudes_xyzw.clone(),
-            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
-            lengths_s: leg.lengths_s.clone(),
+        let key = leg_key(identity);
+        let known = KeyedLeg {
+            key: key.clone(),
+            motion: leg.motion.clone(),
             solve_time_s: leg.solve_time_s,
         };
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.insert(leg_key(identity), motion);
+        seen.insert(key, known);
     }
 }
 

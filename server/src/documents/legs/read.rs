@@ -6,9 +6,10 @@
 use super::super::document::Node;
 use super::super::reader::{Cursor, Fields, Sink};
 use super::{KeyedLeg, LegTable};
+use slewplan_solver::model::motion::Motion;
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{ImportedLeg, LegRow, Shard};
+use slewplan_solver::tour::planner::{LegRow, Shard};
 
 const KEY_DIGITS: usize = 64;
 
@@ -163,12 +164,12 @@ fn motion(cursor: &Cursor<'_>) -> Option<KeyedLeg> {
     let wheel_momenta_nms = momenta.and_then(|list| list.all(Cursor::any_numbers));
     Some(KeyedLeg {
         key: key?,
-        leg: ImportedLeg {
+        motion: Motion {
             attitudes_xyzw: attitudes_xyzw?,
             wheel_momenta_nms: wheel_momenta_nms?,
             lengths_s: lengths_s?,
-            solve_time_s: solve_time_s?,
         },
+        solve_time_s: solve_time_s?,
     })
 }
 

@@ -2,24 +2,24 @@
 
 use super::on_a_store;
 use crate::store::spacecraft::KEPT_VERSIONS;
-use crate::store::{LegFilter, LegTrajectory, NewLeg, Store};
+use crate::store::{LegFilter, NewLeg, Store};
+use slewplan_solver::model::motion::Motion;
+use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 
 fn leg(number: u8, spacecraft: &str) -> NewLeg {
     NewLeg {
         identity: format!("leg {number}"),
-        spacecraft: spacecraft.to_owned(),
-        kind: "rest_to_rest",
-        turn_xyzw: [0.0, 0.0, 0.0, 1.0],
-        momentum: [0.0; 3],
-        reversible: false,
-        duration_s: number.into(),
-        certified_lower_bound_s: None,
-        solve_time_s: 0.1,
-        status: "converged".into(),
-        trajectory: LegTrajectory {
-            attitudes_xyzw: Vec::new(),
-            wheel_momenta_nms: Vec::new(),
-            lengths_s: Vec::new(),
+        leg: StoredLeg {
+            spacecraft: spacecraft.to_owned(),
+            kind: LegKind::RestToRest,
+            turn_xyzw: [0.0, 0.0, 0.0, 1.0],
+            body_momentum_nms: [0.0; 3],
+            reversible: false,
+            duration_s: number.into(),
+            certified_lower_bound_s: None,
+            solve_time_s: 0.1,
+            status: "converged".into(),
+            motion: Motion::default(),
         },
     }
 }
@@ -66,10 +66,8 @@ fn legs_of_other_versions_are_forgotten_some_at_a_time() {
 #[test]
 fn legs_are_found_by_their_turn_within_the_tolerance() {
     on_a_store(|store| async move {
-        let turned = NewLeg {
-            turn_xyzw: [0.1_f64.sin(), 0.0, 0.0, 0.1_f64.cos()],
-            ..leg(1, "a")
-        };
+        let mut turned = leg(1, "a");
+        turned.leg.turn_xyzw = [0.1_f64.sin(), 0.0, 0.0, 0.1_f64.cos()];
         store.put_legs(&[turned], 1).await.expect("stored");
         // It is 0.2 rad away.
         for (tolerance, count) in [(0.19, 0), (0.21, 1)] {

@@ -4,7 +4,7 @@
 //! in a table, between tables of one solve, and, through the store, between solves.
 
 use super::canonical::CanonicalLeg;
-use super::from_store::{attitudes_of, leg_from_store, momenta_of};
+use super::from_store::leg_from_store;
 use super::places::Places;
 use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
 use super::verified::{flies, flight_faults};
@@ -380,19 +380,13 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
         certified_lower_bound_s: solved.certified,
         status: solved.flown.status.as_str().into(),
         solve_time_s: solved.solve_time,
-        attitudes_xyzw: attitudes_of(profile),
-        wheel_momenta_nms: momenta_of(profile),
-        lengths_s: profile.lengths.clone(),
+        motion: profile.into(),
     }
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
 fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
-    let flown = leg_from_store(
-        &stored.attitudes_xyzw,
-        stored.wheel_momenta_nms,
-        stored.lengths_s,
-    )?;
+    let flown = leg_from_store(stored.motion)?;
     Some(SolvedLeg {
         flown,
         certified: stored.certified_lower_bound_s,

@@ -109,7 +109,8 @@ impl From<Exit> for ExitCode {
 }
 
 /// Runs the program on the arguments of the process.
-pub(crate) fn run() -> ExitCode {
+#[must_use]
+pub fn run() -> ExitCode {
     let command = Arguments::parse().command;
     let exit = match panics::contain(|| dispatch(&command)) {
         Ok(Ok(exit)) => exit,

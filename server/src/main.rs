@@ -1,13 +1,4 @@
-//! The `slewplan` binary: multi-target attitude scheduling as a command and as a service.
-
-mod api;
-mod base;
-mod cli;
-mod documents;
-mod jobs;
-mod render;
-mod service;
-mod store;
+//! The `slewplan` binary.
 
 use std::process::ExitCode;
 
@@ -17,5 +8,5 @@ use std::process::ExitCode;
 static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;
 
 fn main() -> ExitCode {
-    cli::run()
+    slewplan_server::run()
 }

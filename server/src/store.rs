@@ -12,6 +12,7 @@ mod jobs;
 mod keys;
 mod leases;
 mod legs;
+mod migrations;
 mod packed;
 mod recent;
 mod results;
@@ -50,9 +51,6 @@ use std::time::Duration;
 use tokio::sync::Notify;
 use wal_checkpoint::Folding;
 use writing::Alarm;
-
-/// Embedded when building.
-static MIGRATOR: sqlx::migrate::Migrator = sqlx::migrate!("../migrations");
 
 /// Older versions can corrupt the write-ahead log when a writer and a checkpoint meet.
 const OLDEST_SQLITE: i32 = 3_051_003;
@@ -138,7 +136,7 @@ impl Store {
             .connect_with(options.clone())
             .await?;
         check_version(&writer).await?;
-        MIGRATOR.run(&writer).await?;
+        migrations::migrator().run(&writer).await?;
         let wal_checkpoint = Folding::new(options.clone(), writer.clone());
         let folder = wal_checkpoint.own();
         let readers = SqlitePoolOptions::new()

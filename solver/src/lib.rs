@@ -19,11 +19,12 @@
 //!
 //! # The way
 //!
-//! [`scenario::Scenario::try_new`] turns a description into a scenario that is valid by
-//! construction, or lists all that is wrong. [`planner::solve`] then solves the tables of leg
+//! [`model::scenario::Scenario::try_new`] turns a description into a scenario that is valid by
+//! construction, or lists all that is wrong. [`tour::planner::solve`] then solves the tables of leg
 //! times, searches the order by branch and bound with multi-phase nonlinear programs as nodes and
 //! leaves, and hands the winner to [`checker::verify`], which integrates the full dynamics again
-//! with code of its own. The mathematics, the symbols and the module map are in `solver/README.md`.
+//! with code of its own. The mathematics and the symbols are in `solver/docs/mathematics.md`, the map of
+//! the modules and a glossary in `ARCHITECTURE.md`, further programs in `solver/examples`.
 //!
 //! # Example
 //!

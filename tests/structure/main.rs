@@ -4,6 +4,8 @@
 //! itself. Of a folder inside a room that has a line of its own, that line counts. Tests may use
 //! anything. `cargo test -p slewplan-tests --test structure -- --nocapture` prints what is used.
 
+mod pages;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -32,16 +32,17 @@
 //! the sweep as a proximal penalty whose centre is iterated to the exact multiplier, which keeps
 //! the factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
 
+mod barrier;
 mod breakdown;
-pub(crate) mod chain;
+mod chain;
 mod convergence;
 mod dense;
 mod filter;
 mod interior_point;
+mod interruption;
 mod iterate;
 mod line_search;
 mod merit;
-mod model;
 mod newton;
 mod regularisation;
 mod restoration;
@@ -50,15 +51,16 @@ mod riccati;
 #[cfg(test)]
 pub(crate) mod second_engine;
 mod settings;
+mod status;
 #[cfg(test)]
 pub(crate) mod tests;
+mod trial;
 
-pub(crate) use chain::{Chain, Link, LinkMultipliers};
+#[cfg(test)]
+pub(crate) use chain::models_of;
+pub(crate) use chain::{Chain, Link, LinkModel, LinkMultipliers, LinkValues, values_of};
 pub(crate) use interior_point::InteriorPoint;
 pub(crate) use iterate::{Iterate, Layout};
-#[cfg(test)]
-pub(crate) use model::models_of;
-pub(crate) use model::values_of;
-pub(crate) use model::{LinkModel, LinkValues};
 pub(crate) use riccati::{MAX_CONTROLS, MAX_STATES};
-pub(crate) use settings::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity, Settings};
+pub(crate) use settings::Settings;
+pub(crate) use status::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity};

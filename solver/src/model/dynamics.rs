@@ -12,7 +12,9 @@
 //! use are taken off here, so nothing downstream knows of them.
 
 use crate::model::attitude::Attitude;
-use crate::model::scenario::Scenario;
+use crate::model::scenario::Start;
+use crate::model::spacecraft::Spacecraft;
+use crate::model::spec::OptionsSpec;
 use crate::model::wheel_axes::greatest_share;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
@@ -33,7 +35,26 @@ pub(crate) struct Actuator {
     pub(crate) max_speed: f64,
 }
 
-/// The dynamics of one scenario's spacecraft with its momentum.
+/// Shares of the wheels' limits that a plan may use, in `(0, 1]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Authority {
+    /// Of every torque limit.
+    pub(crate) torque: f64,
+    /// Of every speed limit.
+    pub(crate) momentum: f64,
+}
+
+impl Authority {
+    /// The shares that options of a solve allow.
+    pub(crate) fn of(options: &OptionsSpec) -> Self {
+        Self {
+            torque: options.torque_authority,
+            momentum: options.momentum_authority,
+        }
+    }
+}
+
+/// The dynamics of one spacecraft with its momentum.
 #[derive(Debug, Clone)]
 pub(crate) struct Dynamics {
     /// The enabled wheels.
@@ -70,26 +91,24 @@ pub(crate) fn along(axes: &Matrix3<f64>, quantity: impl Fn(&Vector3<f64>) -> f64
 }
 
 impl Dynamics {
-    /// The dynamics of a scenario.
-    pub(crate) fn of(scenario: &Scenario) -> Self {
-        let spacecraft = scenario.spacecraft();
-        let options = scenario.options();
+    /// The dynamics of a spacecraft with the momentum of a state; `authority` is what a plan may use
+    /// of its limits.
+    pub(crate) fn of(spacecraft: &Spacecraft, start: &Start, authority: Authority) -> Self {
         let actuators: Vec<Actuator> = spacecraft
             .enabled_wheels()
             .map(|(index, wheel)| Actuator {
                 index,
                 axis: wheel.axis,
                 inertia: wheel.inertia,
-                min_torque: wheel.min_torque * options.torque_authority,
-                max_torque: wheel.max_torque * options.torque_authority,
-                max_speed: wheel.max_speed * options.momentum_authority,
+                min_torque: wheel.min_torque * authority.torque,
+                max_torque: wheel.max_torque * authority.torque,
+                max_speed: wheel.max_speed * authority.momentum,
             })
             .collect();
         let columns: Vec<_> = actuators.iter().map(|wheel| wheel.axis).collect();
         let axes = Matrix3xX::from_columns(&columns);
         let axes_inverse = spacecraft.axes_inverse().clone();
         let null_space = null_space(&axes, &axes_inverse);
-        let start = scenario.start();
         let spins = spacecraft.wheels().iter().zip(&start.wheel_speed);
         let (mut locked_momentum, mut turnover) = (Vector3::zeros(), 0.0);
         for (wheel, speed) in spins {
@@ -100,7 +119,7 @@ impl Dynamics {
             }
         }
         turnover += (spacecraft.inertia() * start.rate).norm();
-        let mut momentum = scenario.momentum();
+        let mut momentum = start.momentum(spacecraft);
         if momentum.norm() <= NEGLIGIBLE_MOMENTUM * turnover {
             momentum = Vector3::zeros();
         }

@@ -56,6 +56,14 @@ pub struct Start {
     pub wheel_speed: Vec<f64>,
 }
 
+impl Start {
+    /// Total angular momentum of a spacecraft in this state, in the reference frame, N m s.
+    pub(crate) fn momentum(&self, spacecraft: &Spacecraft) -> Vector3<f64> {
+        let in_body = spacecraft.body_momentum(self.rate, &self.wheel_speed);
+        self.attitude.to_reference(in_body)
+    }
+}
+
 /// What must hold at the end of the tour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct End {
@@ -245,7 +253,7 @@ impl Scenario {
     /// Total angular momentum in the reference frame, N m s: a constant of the motion.
     #[must_use]
     pub fn momentum(&self) -> Vector3<f64> {
-        momentum_at(&self.spacecraft, &self.start)
+        self.start.momentum(&self.spacecraft)
     }
 }
 
@@ -256,12 +264,6 @@ pub struct Validated {
     pub scenario: Scenario,
     /// Doubts that do not stand in the way.
     pub warnings: Vec<Problem>,
-}
-
-/// Total angular momentum of a start in the reference frame, N m s.
-fn momentum_at(spacecraft: &Spacecraft, start: &Start) -> Vector3<f64> {
-    let in_body = spacecraft.body_momentum(start.rate, &start.wheel_speed);
-    start.attitude.to_reference(in_body)
 }
 
 #[cfg(test)]

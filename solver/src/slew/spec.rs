@@ -8,7 +8,7 @@ use super::shape::{Course, Lengths, Shape};
 use crate::leg::solve::arrival::Arrival;
 use crate::model::attitude::Attitude;
 use crate::model::drive::{Drive, DriveSpec};
-use crate::model::dynamics::Dynamics;
+use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::{RateCondition, Scenario};
@@ -224,8 +224,9 @@ impl Slew {
     }
 
     fn assemble(spec: &SlewSpec, scenario: Scenario, drives: Vec<Drive>) -> Self {
-        let dynamics = Dynamics::of(&scenario);
         let start = scenario.start();
+        let authority = Authority::of(scenario.options());
+        let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
         let mut followers = Followers::default();
         let wheels = scenario.spacecraft().wheels().iter();
         for ((wheel, drive), speed) in wheels.zip(&drives).zip(&start.wheel_speed) {

@@ -88,7 +88,7 @@ impl Posed {
 /// Every seventh pair of the start and the 18 targets of experiment C: 25 legs.
 fn published_legs() -> Vec<Leg> {
     let spec = crate::model::scenario::reference::experiment_a();
-    let dynamics = Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario);
+    let dynamics = Scenario::try_new(&spec).expect("valid").scenario.dynamics();
     let about = |axis: Vector3<f64>, degrees: f64| {
         Attitude::from_rotation_vector(axis * degrees.to_radians())
     };
@@ -169,7 +169,7 @@ fn random_leg(case: usize, runner: &mut TestRunner) -> Leg {
     let scenario = Scenario::try_new(&spec).expect("a valid scenario").scenario;
     let to = Attitude::from_rotation_vector(turn * angle);
     let name = format!("random {case}, {angle:.3} rad");
-    Leg::new(name, &Dynamics::of(&scenario), [Attitude::identity(), to])
+    Leg::new(name, &scenario.dynamics(), [Attitude::identity(), to])
 }
 
 fn sample<S: Strategy>(strategy: &S, runner: &mut TestRunner) -> S::Value {
@@ -266,7 +266,7 @@ fn the_inner_loop_of_a_leg_allocates_nothing() {
 #[test]
 fn legs_priced_by_a_flight_add_up_to_it() {
     let spec = crate::model::scenario::reference::experiment_a();
-    let dynamics = Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario);
+    let dynamics = Scenario::try_new(&spec).expect("valid").scenario.dynamics();
     let turned = |x: f64, z: f64| {
         Attitude::from_rotation_vector(Vector3::z() * z)
             .then_in_body(&Attitude::from_rotation_vector(Vector3::x() * x))

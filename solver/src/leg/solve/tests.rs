@@ -15,7 +15,10 @@ const J_EFF_Z: f64 = 9.63 - 0.000_169;
 fn dynamics(change: impl FnOnce(&mut ScenarioSpec)) -> Dynamics {
     let mut spec = crate::model::scenario::reference::experiment_a();
     change(&mut spec);
-    Dynamics::of(&Scenario::try_new(&spec).expect("a valid scenario").scenario)
+    Scenario::try_new(&spec)
+        .expect("a valid scenario")
+        .scenario
+        .dynamics()
 }
 
 fn at_rest(attitude: Attitude) -> Waypoint {

@@ -50,7 +50,10 @@ fn dynamics(biased: bool) -> Dynamics {
         }],
         ..ScenarioSpec::default()
     };
-    Dynamics::of(&Scenario::try_new(&spec).expect("a valid scenario").scenario)
+    Scenario::try_new(&spec)
+        .expect("a valid scenario")
+        .scenario
+        .dynamics()
 }
 
 fn transcription(dynamics: &Dynamics) -> Transcription {

@@ -1,7 +1,7 @@
 //! The states at the start and at the end.
 
 use super::limits::{Limits, exceeds};
-use super::{End, Start, momentum_at};
+use super::{End, Start};
 use crate::model::attitude::Attitude;
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
@@ -157,7 +157,7 @@ pub(super) fn end_conserves_momentum(
     let Some(speeds) = &end.wheel_speed else {
         return momentum_is_finite(&(spacecraft.inertia() * end.rate), "/end", findings);
     };
-    let conserved = end.attitude.to_body(momentum_at(spacecraft, start));
+    let conserved = end.attitude.to_body(start.momentum(spacecraft));
     let given = spacecraft.body_momentum(end.rate, speeds);
     let terms = spacecraft.wheels().iter().zip(speeds);
     let stored: f64 = terms

@@ -4,7 +4,7 @@
 //! is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`. The
 //! controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
 
-use crate::nlp::model::LinkModel;
+use crate::nlp::chain::LinkModel;
 
 /// A row-major matrix.
 pub(super) type Matrix<const ROWS: usize, const COLUMNS: usize> = [[f64; COLUMNS]; ROWS];

@@ -5,7 +5,7 @@
 //! goes on remembering until their bounds are reached.
 
 use crate::leg::solve::Resolution;
-use crate::model::dynamics::Dynamics;
+use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario, Target};
 use crate::tour::order::completion::EXACT_TARGETS;
 use crate::tour::order::lagrangian::{LagrangianPaths, PRICED_TARGETS};
@@ -57,7 +57,8 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     } else {
         0
     };
-    let dynamics = Dynamics::of(scenario);
+    let authority = Authority::of(scenario.options());
+    let dynamics = Dynamics::of(scenario.spacecraft(), scenario.start(), authority);
     let resolution = Resolution::of(scenario.options().accuracy, &dynamics);
     let intervals = resolution.intervals_of(&dynamics, FRAC_PI_2) as u64;
     let pair = PAIR * intervals.max(MEASURED_INTERVALS) / MEASURED_INTERVALS;

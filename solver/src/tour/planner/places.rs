@@ -6,7 +6,7 @@ use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
-use crate::model::dynamics::Dynamics;
+use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::AttitudeEquivalence;
 use crate::model::waypoint::{Waypoint, WheelCondition};
@@ -33,8 +33,9 @@ pub(super) struct Places<'a> {
 
 impl<'a> Places<'a> {
     pub(super) fn of(scenario: &'a Scenario) -> Self {
-        let dynamics = Dynamics::of(scenario);
         let start = scenario.start();
+        let authority = Authority::of(scenario.options());
+        let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
         Self {

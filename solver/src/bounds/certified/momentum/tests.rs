@@ -58,7 +58,7 @@ fn no_motion_leaves_a_box_and_the_boxes_are_not_idle() {
     let (mut fullest, mut samples) = ([[0.0_f64; 2]; 2], 0);
     for case in 0..60 {
         let scenario = spacecraft(&mut random, case % 3 > 0);
-        let dynamics = Dynamics::of(&scenario);
+        let dynamics = scenario.dynamics();
         let bounds = CertifiedBounds::of(&dynamics);
         let drifting = bounds.momentum.iter().flat_map(|bounds| &bounds.frames);
         let boxes: Vec<(Frame, f64)> = drifting
@@ -95,13 +95,13 @@ fn no_motion_leaves_a_box_and_the_boxes_are_not_idle() {
 
 #[test]
 fn axes_that_differ_are_all_tried() {
-    let frames = |scenario: &Scenario| CertifiedBounds::of(&Dynamics::of(scenario)).frames.len();
+    let frames = |scenario: &Scenario| CertifiedBounds::of(&scenario.dynamics()).frames.len();
     let orthogonal = Scenario::try_new(&experiment_a()).expect("valid").scenario;
     assert_eq!(frames(&orthogonal), 1);
     let mut random = SplitMix::new(23);
     let all = (0..20).map(|_| spacecraft(&mut random, false));
     // A locked wheel may turn.
-    let still = all.filter(|scenario| !Dynamics::of(scenario).has_momentum());
+    let still = all.filter(|scenario| !scenario.dynamics().has_momentum());
     let counts: Vec<_> = still.map(|scenario| frames(&scenario)).collect();
     assert!(
         counts.len() > 5 && counts.iter().all(|frames| *frames == 2),

@@ -1,27 +1,27 @@
 //! From a scenario to a verified plan.
 
+mod additive_tours;
 mod assemble;
 mod canonical;
 mod certificate;
-mod certified;
-mod conclude;
-mod extent;
-mod first;
+mod first_tour;
 mod fixed_order;
 mod from_store;
+mod guesses;
+mod history;
 mod imported;
 mod lagrangian;
 mod legs;
 mod memory;
 mod places;
-mod segments;
-mod starts;
-mod summed;
+mod plan_builder;
+mod segment_cache;
+mod segment_key;
 mod tables;
 mod torques;
+mod tour_bound;
 mod tours;
 mod verified;
-mod work;
 
 use crate::model::plan::Outcome;
 use crate::model::problem::{Code, Problem};
@@ -31,21 +31,22 @@ use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
-use crate::tour::order::{FlownOrder, Place, SearchSettings, exhaustive, search};
+use crate::tour::order::{Place, SearchSettings, SolvedOrder, exhaustive, search};
 use crate::wheels::envelope::{OutsideEnvelope, momentum_problems, outside_envelope};
-use certified::tour_bound;
-use conclude::PlanBuilder;
-use first::{first_order, first_tour};
+use first_tour::{first_order, first_tour};
 use legs::LegSolver;
 use places::Places;
+use plan_builder::PlanBuilder;
 use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
+use tour_bound::tour_bound;
 use tours::Tours;
 
 pub use certificate::{
-    CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict, certify_plan,
+    CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict,
+    verify_certificate,
 };
-pub use fixed_order::{BoundFrom, OrderError, fly_order};
+pub use fixed_order::{BoundFrom, OrderError, solve_order};
 pub use imported::{ImportedLeg, LegCheck};
 pub use memory::memory_estimate;
 
@@ -58,9 +59,9 @@ pub struct Run<'a> {
     pub stop: &'a StopSignal,
     /// Told about progress.
     pub observer: &'a dyn Observer,
-    /// Asked for legs before they are solved, and told about solved ones.
+    /// Asked for legs before they are solved, and reported about solved ones.
     pub legs: &'a dyn LegStore,
-    /// Asked for segments of this scenario's tours before they are solved, and told about solved
+    /// Asked for segments of this scenario's tours before they are solved, and reported about solved
     /// ones.
     pub segments: &'a dyn SegmentStore,
 }
@@ -110,12 +111,12 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let pairs = tour_pairs(&places);
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
-    let mut conclusions = PlanBuilder::new(&tours, run, begin);
-    solver.tell_begin();
+    let mut builder = PlanBuilder::new(&tours, run, begin);
+    solver.report_begin();
     let prove = || {
         let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
         let certified = tour_bound(&places, &bounds, run.pool, &stop);
-        tours.prove(bounds);
+        tours.set_certified_bounds(bounds);
         certified
     };
     let order = first_order(&tours, &stop);
@@ -123,23 +124,23 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         && places.dynamics.has_momentum()
     {
         // With momentum a first tour may take its time, or find no end.
-        conclusions.construct(order);
+        builder.construct(order);
     }
     // Whichever is sooner done.
     let few = scenario.targets().len() <= FEW;
     if few {
-        conclusions.prove(prove());
+        builder.set_certified_bound(prove());
     }
     let first = order.and_then(|order| first_tour(&tours, order));
     if let Some(first) = &first {
-        conclusions.announce(first);
-        solver.tell(Some(first.duration_s), conclusions.proved());
+        builder.announce(first);
+        solver.report_bounds(Some(first.duration_s), builder.certified_bound());
     }
     if !few {
-        conclusions.prove(prove());
+        builder.set_certified_bound(prove());
     }
-    solver.tell(None, conclusions.proved());
-    tours.know(solver.table(LegKind::LowerBound, &pairs));
+    solver.report_bounds(None, builder.certified_bound());
+    tours.set_free_legs(solver.table(LegKind::LowerBound, &pairs));
     let settings = SearchSettings {
         alternatives: scenario.options().alternatives,
         relative_gap: scenario.options().relative_gap,
@@ -147,14 +148,14 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         ..SearchSettings::default()
     };
     let known: Vec<_> = first.into_iter().collect();
-    let found = search(&tours, &known, &settings, run.pool, &stop, &conclusions);
+    let found = search(&tours, &known, &settings, run.pool, &stop, &builder);
     match &found.best {
         Some(best) => {
-            conclusions.compare_with_rest(best);
-            conclusions.outcome(best, &found)
+            builder.compare_with_rest(best);
+            builder.outcome(best, &found)
         }
-        None => conclusions
-            .constructed(found.statistics)
+        None => builder
+            .constructed_outcome(found.statistics)
             .unwrap_or_else(|| {
                 if stop.is_set() {
                     Outcome::StoppedEmpty
@@ -171,7 +172,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
 /// For a handful of targets only. Orders that do not converge, or are not reached before the stop
 /// signal, are left out.
 #[must_use]
-pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
+pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<SolvedOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let solver = LegSolver::new(&places, run, &stop);
@@ -307,7 +308,7 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .iter()
         .flat_map(|from| all.iter().map(move |to| (*from, *to)))
         .filter_map(|(from, to)| {
-            let leg = &tours.free()?.get(from, to)?.leg;
+            let leg = &tours.free_legs()?.get(from, to)?.leg;
             leg.flown.duration().is_none().then(|| {
                 let reason = outside(tours, from, to).map(|outside| format!("; {outside}"));
                 let message = format!(

@@ -5,12 +5,12 @@ use crate::model::order_rules::OrderRules;
 use crate::tour::order::{Evaluation, Place, TourEvaluation, TourModel};
 
 /// Tours over slews of given durations, s, with settle and dwell.
-pub(super) struct SummedTours<'a, F> {
+pub(super) struct AdditiveTours<'a, F> {
     places: &'a Places<'a>,
     slew: F,
 }
 
-impl<'a, F: Fn(Place, Place) -> f64 + Sync> SummedTours<'a, F> {
+impl<'a, F: Fn(Place, Place) -> f64 + Sync> AdditiveTours<'a, F> {
     /// Tours over slews that take so long, s, from one place to another.
     pub(super) fn new(places: &'a Places<'a>, slew: F) -> Self {
         Self { places, slew }
@@ -23,7 +23,7 @@ impl<'a, F: Fn(Place, Place) -> f64 + Sync> SummedTours<'a, F> {
     }
 }
 
-impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for SummedTours<'_, F> {
+impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for AdditiveTours<'_, F> {
     fn target_count(&self) -> usize {
         self.places.scenario.targets().len()
     }
@@ -53,6 +53,6 @@ impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for SummedTours<'_, F> {
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
-        TourEvaluation::LegSolution(self.along(&self.places.route(order, true)))
+        TourEvaluation::Solved(self.along(&self.places.route(order, true)))
     }
 }

@@ -1,6 +1,6 @@
 //! From solved segments to a flight that can be checked and flown.
 
-use super::torques::{SHORTEST, torques};
+use super::torques::{MIN_PIECE_SHARE, torques};
 use super::tours::Tours;
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{Control, Flight, Leg, Passage};
@@ -27,12 +27,12 @@ pub(super) fn assemble(
     let mut assembly = Assembly {
         tours,
         clock: 0.0,
-        shortest: SHORTEST * total,
+        shortest: MIN_PIECE_SHARE * total,
         controls: Vec::new(),
         passages: Vec::new(),
         legs: Vec::new(),
     };
-    for (places, flown) in tours.split(route).iter().zip(segments) {
+    for (places, flown) in tours.places.split(route).iter().zip(segments) {
         let mut begin = 0;
         for (pair, intervals) in places.windows(2).zip(&flown.intervals) {
             assembly.fly_leg(pair[0], pair[1], flown, begin..begin + intervals);

@@ -15,9 +15,9 @@ mod premises;
 
 use super::Run;
 use super::canonical::CanonicalLeg;
-use super::certified::tour_bound;
 use super::places::Places;
 use super::tables::{CertifiedLeg, CertifiedTable, Table};
+use super::tour_bound::tour_bound;
 use super::tour_pairs;
 use crate::bounds::certify::{self, Rejection};
 use crate::model::scenario::Scenario;
@@ -54,7 +54,7 @@ pub struct LegCertificate {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
     /// There is none.
-    NoClaim,
+    NoBound,
     /// It is proved.
     Confirmed,
     /// It is wrong, or no proof was found.
@@ -77,7 +77,7 @@ pub enum Objection {
     NoSuchLeg,
     /// The scenario leaves rates or accelerations without limits.
     #[error("nothing is proved of such slews: their rates are not limited")]
-    Unfounded,
+    UnlimitedRates,
     /// What a proof rests on is not what the scenario says.
     #[error("a proof would take for granted {what}, which the scenario does not support")]
     Premises {
@@ -94,7 +94,7 @@ pub enum Objection {
     },
     /// The legs do not add up to it.
     #[error("the proved bounds of {proved} of {legs} legs add up to {supported_s} s at least")]
-    AboveTours {
+    AboveTourBound {
         /// The shortest way through all targets in the table of proved bounds, s.
         supported_s: f64,
         /// Legs with a proved bound.
@@ -129,7 +129,7 @@ impl CheckedCertificate {
     #[must_use]
     pub fn confirmed(&self) -> bool {
         let claims = || self.legs.iter().chain([&self.tour]);
-        let fine = |claim: &Verdict| matches!(claim, Verdict::Confirmed | Verdict::NoClaim);
+        let fine = |claim: &Verdict| matches!(claim, Verdict::Confirmed | Verdict::NoBound);
         claims().all(fine) && claims().any(|claim| *claim == Verdict::Confirmed)
     }
 }
@@ -139,18 +139,18 @@ impl CheckedCertificate {
 /// Takes some 10 ms for every claimed leg, and as much for every distinct leg that a tour may fly
 /// when something is claimed of tours, divided among the workers. The store of legs is not asked.
 #[must_use]
-pub fn certify_plan(
+pub fn verify_certificate(
     scenario: &Scenario,
-    claims: &PlanCertificate,
+    certificate: &PlanCertificate,
     run: Run<'_>,
 ) -> CheckedCertificate {
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let distinct = match claims.lower_bound_s {
-        Some(_) if !places.dynamics.has_momentum() => Distinct::of(&places, &pairs),
-        _ => Distinct::default(),
+    let distinct = match certificate.lower_bound_s {
+        Some(_) if !places.dynamics.has_momentum() => DistinctLegs::of(&places, &pairs),
+        _ => DistinctLegs::default(),
     };
-    let second = SecondProof {
+    let verifier = CertificateVerifier {
         places: &places,
         named: places
             .all()
@@ -160,26 +160,26 @@ pub fn certify_plan(
         flown: pairs.iter().copied().collect(),
         run,
         done: AtomicU64::new(0),
-        total: (claims.legs.len() + distinct.legs.len()) as u64,
+        total: (certificate.legs.len() + distinct.legs.len()) as u64,
     };
-    let legs = run.pool.map(&claims.legs, |claim| {
-        let verdict = second.of_leg(claim);
-        second.tell();
+    let legs = run.pool.map(&certificate.legs, |claim| {
+        let verdict = verifier.verify_leg(claim);
+        verifier.report_progress();
         verdict
     });
-    let tour = second.of_tours(claims, &pairs, &distinct);
+    let tour = verifier.verify_tour_bound(certificate, &pairs, &distinct);
     CheckedCertificate { legs, tour }
 }
 
 /// The legs between pairs of places, equal ones once.
 #[derive(Default)]
-struct Distinct {
+struct DistinctLegs {
     legs: Vec<((Place, Place), CanonicalLeg)>,
     /// Which of them each pair is.
     of_pair: Vec<usize>,
 }
 
-impl Distinct {
+impl DistinctLegs {
     fn of(places: &Places<'_>, pairs: &[(Place, Place)]) -> Self {
         let (mut distinct, mut known) = (Self::default(), HashMap::new());
         for pair in pairs {
@@ -196,7 +196,7 @@ impl Distinct {
 }
 
 /// Proves claims about the legs and tours of a scenario.
-struct SecondProof<'a> {
+struct CertificateVerifier<'a> {
     places: &'a Places<'a>,
     named: HashMap<String, Place>,
     /// The legs that a tour may fly.
@@ -206,10 +206,10 @@ struct SecondProof<'a> {
     total: u64,
 }
 
-impl SecondProof<'_> {
-    fn of_leg(&self, claim: &LegCertificate) -> Verdict {
+impl CertificateVerifier<'_> {
+    fn verify_leg(&self, claim: &LegCertificate) -> Verdict {
         let Some(bound) = claim.lower_bound_s else {
-            return Verdict::NoClaim;
+            return Verdict::NoBound;
         };
         let ends = self.named.get(&claim.from).zip(self.named.get(&claim.to));
         let Some(pair) = ends
@@ -218,30 +218,30 @@ impl SecondProof<'_> {
         else {
             return Verdict::Rejected(Objection::NoSuchLeg);
         };
-        if let Some(early) = self.without_proof(bound, claim.duration_s) {
+        if let Some(early) = self.early_verdict(bound, claim.duration_s) {
             return early;
         }
-        match self.proved(pair, &canonical(self.places, pair), Some(bound)) {
+        match self.prove_leg(pair, &canonical(self.places, pair), Some(bound)) {
             Ok(_) => Verdict::Confirmed,
             Err(objection) => Verdict::Rejected(objection),
         }
     }
 
-    fn of_tours(
+    fn verify_tour_bound(
         &self,
-        claims: &PlanCertificate,
+        certificate: &PlanCertificate,
         pairs: &[(Place, Place)],
-        distinct: &Distinct,
+        distinct: &DistinctLegs,
     ) -> Verdict {
-        let Some(bound) = claims.lower_bound_s else {
-            return Verdict::NoClaim;
+        let Some(bound) = certificate.lower_bound_s else {
+            return Verdict::NoBound;
         };
-        if let Some(early) = self.without_proof(bound, claims.total_time_s) {
+        if let Some(early) = self.early_verdict(bound, certificate.total_time_s) {
             return early;
         }
         let bounds = self.run.pool.map(&distinct.legs, |(pair, leg)| {
-            let bound = (!self.run.stop.is_set()).then(|| self.proved(*pair, leg, None).ok());
-            self.tell();
+            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(*pair, leg, None).ok());
+            self.report_progress();
             bound.flatten()
         });
         let entry = |index: &usize| CertifiedLeg {
@@ -258,13 +258,13 @@ impl SecondProof<'_> {
             return Verdict::NotChecked(Obstacle::Stopped);
         }
         let Some(supported_s) = supported_s else {
-            return Verdict::Rejected(Objection::Unfounded);
+            return Verdict::Rejected(Objection::UnlimitedRates);
         };
         if bound <= supported_s {
             return Verdict::Confirmed;
         }
         let proved = distinct.of_pair.iter().filter(|i| bounds[**i].is_some());
-        Verdict::Rejected(Objection::AboveTours {
+        Verdict::Rejected(Objection::AboveTourBound {
             supported_s,
             proved: proved.count(),
             legs: pairs.len(),
@@ -273,7 +273,7 @@ impl SecondProof<'_> {
 
     /// The verdict on a bound, s, that can be told before anything is proved: what has this
     /// duration, s, is in the plan.
-    fn without_proof(&self, bound: f64, duration_s: Option<f64>) -> Option<Verdict> {
+    fn early_verdict(&self, bound: f64, duration_s: Option<f64>) -> Option<Verdict> {
         if let Some(duration_s) = duration_s.filter(|duration| bound > *duration) {
             return Some(Verdict::Rejected(Objection::AboveDuration { duration_s }));
         }
@@ -286,26 +286,26 @@ impl SecondProof<'_> {
 
     /// A bound on the leg between two places that has been proved, s: the given one, or that of the
     /// solver.
-    fn proved(
+    fn prove_leg(
         &self,
         (from, to): (Place, Place),
         leg: &CanonicalLeg,
         bound: Option<f64>,
     ) -> Result<f64, Objection> {
         let certificate = self.places.certified.certificate(&leg.from, &leg.to);
-        let (axes, mut certificate) = certificate.ok_or(Objection::Unfounded)?;
+        let (axes, mut certificate) = certificate.ok_or(Objection::UnlimitedRates)?;
         let flown = if leg.mirrored { [to, from] } else { [from, to] };
         premises::check(self.places.scenario, flown, &axes, &certificate)
             .map_err(|what| Objection::Premises { what })?;
         let known_s = certificate.duration_s;
         certificate.duration_s = bound.unwrap_or(known_s);
-        match certify::check(&certificate) {
+        match certify::verify(&certificate) {
             Ok(()) => Ok(certificate.duration_s),
             Err(rejection) => Err(Objection::NotProved { known_s, rejection }),
         }
     }
 
-    fn tell(&self) {
+    fn report_progress(&self) {
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done: self.done.fetch_add(1, Ordering::Relaxed) + 1,

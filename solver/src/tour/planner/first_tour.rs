@@ -1,15 +1,15 @@
 //! A first tour, before any leg is solved: short in the durations of slews about the eigenaxis.
 
-use super::summed::SummedTours;
+use super::additive_tours::AdditiveTours;
 use super::tours::Tours;
 use crate::run::stop::StopSignal;
-use crate::tour::order::{FlownOrder, TourEvaluation, TourModel, short_order};
+use crate::tour::order::{SolvedOrder, TourEvaluation, TourModel, short_order};
 
 /// An order that is short in the durations of slews about the eigenaxis; none when the solve is
 /// stopped.
 pub(super) fn first_order(tours: &Tours<'_>, stop: &StopSignal) -> Option<Vec<usize>> {
     let places = tours.places;
-    let eigenaxes = SummedTours::new(places, |from, to| {
+    let eigenaxes = AdditiveTours::new(places, |from, to| {
         let (begin, end) = (places.waypoint(from), places.waypoint(to));
         places.slew(&begin, &end).eigenaxis().course.duration()
     });
@@ -17,9 +17,9 @@ pub(super) fn first_order(tours: &Tours<'_>, stop: &StopSignal) -> Option<Vec<us
 }
 
 /// Flies the tour of an order; none when it does not converge or the solve is stopped.
-pub(super) fn first_tour(tours: &Tours<'_>, order: Vec<usize>) -> Option<FlownOrder> {
+pub(super) fn first_tour(tours: &Tours<'_>, order: Vec<usize>) -> Option<SolvedOrder> {
     match tours.tour(&order) {
-        TourEvaluation::LegSolution(duration_s) => Some(FlownOrder { order, duration_s }),
+        TourEvaluation::Solved(duration_s) => Some(SolvedOrder { order, duration_s }),
         TourEvaluation::Unresolved | TourEvaluation::Stopped => None,
     }
 }

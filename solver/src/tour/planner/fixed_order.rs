@@ -1,15 +1,15 @@
 //! The targets in an order that is given.
 
-use super::certified::route_bound;
-use super::conclude::PlanBuilder;
 use super::legs::LegSolver;
 use super::places::Places;
+use super::plan_builder::PlanBuilder;
+use super::tour_bound::route_bound;
 use super::tours::Tours;
 use super::{Run, feasibility_problems, limited, unsolved};
 use crate::model::plan::Outcome;
 use crate::model::scenario::Scenario;
 use crate::tour::legs::LegKind;
-use crate::tour::order::{FlownOrder, Place, TourEvaluation, TourModel};
+use crate::tour::order::{Place, SolvedOrder, TourEvaluation, TourModel};
 use std::time::Instant;
 
 /// Where the bound on the tours along a given order comes from.
@@ -47,7 +47,7 @@ pub enum OrderError {
 ///
 /// When `order` does not name every target exactly once, or breaks
 /// [`Scenario::order_rules`].
-pub fn fly_order(
+pub fn solve_order(
     scenario: &Scenario,
     order: &[usize],
     bound: BoundFrom,
@@ -78,25 +78,25 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
     let pairs = legs_of(&places, &route);
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = route_bound(&places, &bounds, &route);
-    solver.tell(None, certified);
+    solver.report_bounds(None, certified);
     let tours = Tours::new(&places, &solver, &stop);
-    tours.prove(bounds);
+    tours.set_certified_bounds(bounds);
     if bound == BoundFrom::Legs {
-        tours.know(solver.table(LegKind::LowerBound, &pairs));
+        tours.set_free_legs(solver.table(LegKind::LowerBound, &pairs));
     }
     match tours.tour(order) {
-        TourEvaluation::LegSolution(duration_s) => {
+        TourEvaluation::Solved(duration_s) => {
             let order = order.to_vec();
-            let flown = FlownOrder { order, duration_s };
+            let flown = SolvedOrder { order, duration_s };
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
             // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            let mut conclusions = PlanBuilder::new(&tours, run, begin);
-            conclusions.prove(certified);
+            let mut builder = PlanBuilder::new(&tours, run, begin);
+            builder.set_certified_bound(certified);
             if bound == BoundFrom::Legs {
-                conclusions.compare_with_rest(&flown);
+                builder.compare_with_rest(&flown);
             }
-            conclusions.given(&flown, lower_bound_s)
+            builder.fixed_order_outcome(&flown, lower_bound_s)
         }
         TourEvaluation::Stopped => Outcome::StoppedEmpty,
         TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),

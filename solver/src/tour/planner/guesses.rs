@@ -1,7 +1,8 @@
-//! Motions that the program of a segment starts from, or that stand in for its solution.
+//! Motions along a route, joined leg by leg: initial guesses of a segment's program, and flights
+//! that need no program.
 
-use super::extent::Extent;
-use super::tours::Tours;
+use super::legs::LegSolver;
+use super::places::Places;
 use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::leg::solve::eigenaxis::Perturbation;
@@ -10,78 +11,88 @@ use crate::tour::legs::LegKind;
 use crate::tour::order::Place;
 use std::sync::Arc;
 
-/// What a segment starts from.
+/// How the initial guess of a segment is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Start {
-    /// The flight without the last leg.
+pub(super) enum InitialGuess {
+    /// The solution of the segment without its last leg, and a perturbed eigenaxis slew for that.
     Shorter,
-    /// Slews about the eigenaxis.
+    /// Perturbed eigenaxis slews.
     Eigenaxes,
     /// Extremals of the kinematic problem.
     Extremals,
-    /// Legs from rest to rest: where all of it admits rest, that is a flight already.
+    /// Legs from rest to rest: feasible as they are where every place admits rest.
     AtRest,
 }
 
-impl Tours<'_> {
-    /// A flight along a route that no program has made shorter; none where a leg cannot be constructed.
-    pub(super) fn constructed(&self, route: &[Place]) -> Option<Vec<Arc<LegSolution>>> {
-        let segments = self.split(route).into_iter().map(|segment| {
-            let mut whole = LegSolution {
-                status: NlpStatus::Constructed,
-                ..LegSolution::nowhere()
-            };
-            for pair in segment.windows(2) {
-                let [from, to] = [pair[0], pair[1]].map(|place| self.places.waypoint(place));
-                let leg = self.places.slew(&from, &to).constructed()?;
-                whole.profile.append(&leg.profile);
-                whole.intervals.extend(leg.intervals);
+/// A feasible flight along a route, constructed without solving a program: one solution for each
+/// segment. `None` where a leg cannot be constructed.
+pub(super) fn constructed(places: &Places<'_>, route: &[Place]) -> Option<Vec<Arc<LegSolution>>> {
+    let segments = places.split(route).into_iter().map(|segment| {
+        let mut whole = LegSolution {
+            status: NlpStatus::Constructed,
+            ..LegSolution::nowhere()
+        };
+        for pair in segment.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place));
+            let leg = places.slew(&from, &to).constructed()?;
+            whole.profile.append(&leg.profile);
+            whole.intervals.extend(leg.intervals);
+        }
+        Some(Arc::new(whole))
+    });
+    segments.collect()
+}
+
+/// Whether the conditions at all places of a route admit rest there.
+pub(super) fn admits_rest(places: &Places<'_>, route: &[Place]) -> bool {
+    route.windows(2).all(|pair| {
+        let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
+        places.slew(&from, &to).begins_and_ends_at_rest()
+    })
+}
+
+/// The legs of a route joined end to end, and the number of intervals of each; `None` where a leg
+/// from rest to rest has no solution. For [`InitialGuess::Shorter`] see [`extended`].
+pub(super) fn joined(
+    legs: &LegSolver<'_>,
+    route: &[Place],
+    kind: InitialGuess,
+) -> Option<(Profile, Vec<usize>)> {
+    let places = legs.places();
+    let mut guess = Profile::empty();
+    let mut intervals = Vec::new();
+    for pair in route.windows(2) {
+        let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
+        let slew = places.slew(&from, &to);
+        let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
+        let leg = match kind {
+            InitialGuess::Shorter | InitialGuess::Eigenaxes => perturbed_eigenaxis(),
+            InitialGuess::Extremals => slew
+                .extremal()
+                .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
+            InitialGuess::AtRest => {
+                let leg = legs.leg(LegKind::RestToRest, pair[0], pair[1]);
+                leg.duration()?;
+                leg.profile
             }
-            Some(Arc::new(whole))
-        });
-        segments.collect()
+        };
+        guess.append(&leg);
+        intervals.push(leg.intervals());
     }
+    Some((guess, intervals))
+}
 
-    /// Whether a route may be flown from rest to rest at all of its places.
-    pub(super) fn admits_rest(&self, route: &[Place]) -> bool {
-        route.windows(2).all(|pair| {
-            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-            self.places.slew(&from, &to).begins_and_ends_at_rest()
-        })
-    }
-
-    /// A motion to start a segment from: legs joined end to end, and the intervals of each. `None`
-    /// where there is none.
-    pub(super) fn guess(&self, route: &[Place], start: Start) -> Option<(Profile, Vec<usize>)> {
-        if let (Start::Shorter, [before @ .., _]) = (start, route) {
-            let shorter = self.segment(before, Extent::Beginning);
-            shorter.duration()?;
-            let (mut guess, mut intervals) = (shorter.profile.clone(), shorter.intervals.clone());
-            let (last, its) = self.guess(&route[before.len() - 1..], Start::Eigenaxes)?;
-            guess.append(&last);
-            intervals.extend(its);
-            return Some((guess, intervals));
-        }
-        let mut guess = Profile::empty();
-        let mut intervals = Vec::new();
-        for pair in route.windows(2) {
-            let (from, to) = (self.places.waypoint(pair[0]), self.places.waypoint(pair[1]));
-            let slew = self.places.slew(&from, &to);
-            let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
-            let leg = match start {
-                Start::Shorter | Start::Eigenaxes => perturbed_eigenaxis(),
-                Start::Extremals => slew
-                    .extremal()
-                    .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
-                Start::AtRest => {
-                    let leg = self.legs.lone(LegKind::RestToRest, pair[0], pair[1]);
-                    leg.duration()?;
-                    leg.profile
-                }
-            };
-            guess.append(&leg);
-            intervals.push(leg.intervals());
-        }
-        Some((guess, intervals))
-    }
+/// The solution of all but the last leg of a route, with a perturbed eigenaxis slew as its last leg;
+/// `None` where that solution did not converge.
+pub(super) fn extended(
+    legs: &LegSolver<'_>,
+    shorter: &LegSolution,
+    last_leg: &[Place],
+) -> Option<(Profile, Vec<usize>)> {
+    shorter.duration()?;
+    let (mut guess, mut intervals) = (shorter.profile.clone(), shorter.intervals.clone());
+    let (last, its) = joined(legs, last_leg, InitialGuess::Eigenaxes)?;
+    guess.append(&last);
+    intervals.extend(its);
+    Some((guess, intervals))
 }

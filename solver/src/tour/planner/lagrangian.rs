@@ -9,7 +9,7 @@ use crate::leg::multiphase::fly;
 use crate::leg::profile::Profile;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::nlp::NlpStatus;
-use crate::tour::order::{Evaluation, Place, Price};
+use crate::tour::order::{Costate, Evaluation, Place};
 use nalgebra::DVector;
 
 impl Tours<'_> {
@@ -17,14 +17,14 @@ impl Tours<'_> {
     ///
     /// None with a resolution that polishes: a lagrangian leg is not polished, and as a bound would be
     /// too long by what that gains.
-    pub(super) fn prices_of(&self, order: &[usize]) -> Option<Vec<Price>> {
+    pub(super) fn flight_costates(&self, order: &[usize]) -> Option<Vec<Costate>> {
         if self.places.resolution.polished {
             return None;
         }
         let route = self.places.route(order, true);
-        let flown = self.fly_route(&route);
+        let flown = self.solve_route(&route);
         let mut prices = Vec::with_capacity(order.len());
-        for (segment, places) in flown.iter().zip(self.split(&route)) {
+        for (segment, places) in flown.iter().zip(self.places.split(&route)) {
             segment.duration()?;
             // Where a segment begins, nothing is free.
             if !prices.is_empty() || places[0] != Place::Start {
@@ -39,7 +39,11 @@ impl Tours<'_> {
     }
 
     /// The least of a leg's duration and what its ends cost, s: from its motion with free ends.
-    pub(super) fn price_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+    pub(super) fn solve_lagrangian_leg(
+        &self,
+        leg: [Place; 2],
+        prices: [Option<&[f64]>; 2],
+    ) -> Evaluation {
         let [from, to] = leg;
         let free = self.free_leg(from, to);
         let Some(free_s) = free.least_duration() else {

@@ -6,8 +6,8 @@
 use super::canonical::CanonicalLeg;
 use super::from_store::{attitudes_of, leg_from_store, momenta_of};
 use super::places::Places;
-use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
-use super::verified::{flies, flight_faults};
+use super::tables::{CertifiedLeg, CertifiedTable, SolvedLeg, SolvedTable, Table, TabulatedLeg};
+use super::verified::{flight_faults, is_feasible};
 use super::{Run, interruption};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
@@ -28,11 +28,11 @@ pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
-    known: Remembered<Arc<SolvedLeg>>,
-    certified: Remembered<CertifiedLeg>,
-    /// What a first tour takes and what none undercuts, s, as far as it is known: told with the
+    known: ByIdentity<Arc<SolvedLeg>>,
+    certified: ByIdentity<CertifiedLeg>,
+    /// What a first tour takes and what none undercuts, s, as far as it is known: reported with the
     /// progress.
-    told: Mutex<(Option<f64>, Option<f64>)>,
+    reported: Mutex<(Option<f64>, Option<f64>)>,
     /// Legs solved.
     solved: AtomicU64,
     /// Legs taken from the store.
@@ -44,7 +44,7 @@ pub(super) struct LegSolver<'a> {
 }
 
 /// What has been found out, by the identity of the leg.
-type Remembered<T> = Mutex<HashMap<String, T>>;
+type ByIdentity<T> = Mutex<HashMap<String, T>>;
 
 impl<'a> LegSolver<'a> {
     pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
@@ -52,9 +52,9 @@ impl<'a> LegSolver<'a> {
             places,
             run,
             stop,
-            known: Remembered::default(),
-            certified: Remembered::default(),
-            told: Mutex::default(),
+            known: ByIdentity::default(),
+            certified: ByIdentity::default(),
+            reported: Mutex::default(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
@@ -73,23 +73,23 @@ impl<'a> LegSolver<'a> {
     }
 
     /// Tells that work has begun.
-    pub(super) fn tell_begin(&self) {
-        self.tell_done(0, None);
+    pub(super) fn report_begin(&self) {
+        self.report_progress(0, None);
     }
 
     /// Tells the duration of a first tour and a bound on all tours, s, now and with the progress of
     /// the legs from now on.
-    pub(super) fn tell(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
+    pub(super) fn report_bounds(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
         {
-            let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-            *told = (incumbent_s.or(told.0), lower_bound_s.or(told.1));
+            let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
+            *reported = (incumbent_s.or(reported.0), lower_bound_s.or(reported.1));
         }
-        self.tell_done(0, None);
+        self.report_progress(0, None);
     }
 
-    fn tell_done(&self, done: u64, total: Option<u64>) {
-        let told = self.told.lock();
-        let (incumbent_s, lower_bound_s) = *told.unwrap_or_else(PoisonError::into_inner);
+    fn report_progress(&self, done: u64, total: Option<u64>) {
+        let reported = self.reported.lock();
+        let (incumbent_s, lower_bound_s) = *reported.unwrap_or_else(PoisonError::into_inner);
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done,
@@ -122,12 +122,18 @@ impl<'a> LegSolver<'a> {
 
     /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
     /// out of the table.
-    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
-        self.fill(kind, pairs, |done, total| self.tell_done(done, Some(total)))
+    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
+        self.fill(kind, pairs, |done, total| {
+            self.report_progress(done, Some(total))
+        })
     }
 
     /// The same, without telling of a stage that is over.
-    pub(super) fn late_table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+    pub(super) fn table_without_progress(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> SolvedTable {
         self.fill(kind, pairs, |_, _| {})
     }
 
@@ -136,13 +142,13 @@ impl<'a> LegSolver<'a> {
         kind: LegKind,
         pairs: &[(Place, Place)],
         tell: impl Fn(u64, u64) + Sync,
-    ) -> LegTable {
+    ) -> SolvedTable {
         let canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
-            Some(TabledLeg {
+            Some(TabulatedLeg {
                 leg: Arc::clone(known.get(&canonical.identity)?),
                 mirrored: canonical.mirrored,
             })
@@ -153,21 +159,21 @@ impl<'a> LegSolver<'a> {
     }
 
     /// The leg of a kind between two places, solved if it was not before.
-    pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
+    pub(super) fn leg(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
         let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
             let stored = self.from_store(&canonical);
             let from_store = stored.is_some();
             let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
-            self.remember(&canonical, &leg, from_store);
+            self.keep(&canonical, &leg, from_store);
             leg
         });
-        let placed = TabledLeg {
+        let placed = TabulatedLeg {
             leg,
             mirrored: canonical.mirrored,
         };
-        placed.from(&self.places.waypoint(from).attitude)
+        placed.from_attitude(&self.places.waypoint(from).attitude)
     }
 
     /// A table of [`Self::certified_legs`].
@@ -236,9 +242,9 @@ impl<'a> LegSolver<'a> {
                 return;
             }
             if let Some(stored) = self.from_store(leg) {
-                self.remember(leg, &Arc::new(stored), true);
+                self.keep(leg, &Arc::new(stored), true);
             } else if !self.stop.is_set() {
-                self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
+                self.keep(leg, &Arc::new(self.solve(kind, leg)), false);
             }
             tell(done.fetch_add(1, Relaxed) + 1, total);
         });
@@ -289,7 +295,7 @@ impl<'a> LegSolver<'a> {
     }
 
     /// Keeps a leg unless it was interrupted.
-    fn remember(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
+    fn keep(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
         if solved.flown.status.is_interrupted() {
             return;
         }
@@ -303,7 +309,7 @@ impl<'a> LegSolver<'a> {
     }
 }
 
-fn lock<T>(remembered: &Remembered<T>) -> MutexGuard<'_, HashMap<String, T>> {
+fn lock<T>(remembered: &ByIdentity<T>) -> MutexGuard<'_, HashMap<String, T>> {
     // Whoever panicked has left the map whole.
     remembered.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -353,7 +359,7 @@ fn solve(
         .lower_bound;
     let problem = leg.problem(&places.extremals);
     let mut solved = solve::solve(&problem, certified, &|| interruption(stop));
-    if solved.flown.duration().is_some() && !flies(places, leg, &solved.flown.profile) {
+    if solved.flown.duration().is_some() && !is_feasible(places, leg, &solved.flown.profile) {
         solved.flown.status = NlpStatus::NumericalError(Breakdown {
             stage: solved.flown.profile.intervals(),
             quantity: Quantity::Flight,

@@ -7,20 +7,20 @@
 use crate::leg::solve::Resolution;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::{RateCondition, Scenario, Target};
-use crate::tour::order::completion::EXACT_TARGETS;
-use crate::tour::order::lagrangian::{LagrangianPaths, PRICED_TARGETS};
+use crate::tour::order::completion::MAX_EXACT_TARGETS;
+use crate::tour::order::lagrangian::{LagrangianPaths, MAX_LAGRANGIAN_TARGETS};
 use std::f64::consts::FRAC_PI_2;
 
 /// What the smallest solve takes with its plan, what each pair of places adds, and what a search
 /// remembers for each target at most within a minute on two cores. Measured as growth of the
 /// resident memory, with a quarter as much again, bytes.
-const LEAST: u64 = 3 << 20;
-const PAIR: u64 = 5 << 10;
-const SEARCHED: u64 = 1280 << 10;
+const BASE_BYTES: u64 = 3 << 20;
+const PAIR_BYTES: u64 = 5 << 10;
+const SEARCH_BYTES_PER_TARGET: u64 = 1280 << 10;
 /// Intervals of the legs of which that was measured; of more they take more.
 const MEASURED_INTERVALS: u64 = 18;
-/// Segments and nodes are bounded, bytes.
-const MAX_SEARCHED: u64 = 144 << 20;
+/// SegmentCache and nodes are bounded, bytes.
+const MAX_SEARCH_BYTES: u64 = 144 << 20;
 
 /// Memory that solving a scenario may need, bytes: as a rule too much, by less than four times
 /// where it is worth counting.
@@ -38,7 +38,7 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     };
     let couples =
         scenario.targets().iter().any(turns) || scenario.spacecraft().enabled_wheels().count() > 3;
-    let subsets = if count <= EXACT_TARGETS {
+    let subsets = if count <= MAX_EXACT_TARGETS {
         // One duration for every subset and its first target; where legs charge each other, the
         // table with triple_bounds beside the one before.
         let tables = if couples { 2 } else { 1 };
@@ -47,12 +47,12 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
         0
     };
     let searched = if couples {
-        (targets * SEARCHED).min(MAX_SEARCHED)
+        (targets * SEARCH_BYTES_PER_TARGET).min(MAX_SEARCH_BYTES)
     } else {
         0
     };
     // Of a hard search over few targets, the states of lagrangian legs.
-    let lagrangian = if couples && count <= PRICED_TARGETS {
+    let lagrangian = if couples && count <= MAX_LAGRANGIAN_TARGETS {
         LagrangianPaths::bytes(count)
     } else {
         0
@@ -60,6 +60,6 @@ pub fn memory_estimate(scenario: &Scenario) -> u64 {
     let dynamics = Dynamics::of(scenario);
     let resolution = Resolution::of(scenario.options().accuracy, &dynamics);
     let intervals = resolution.intervals_of(&dynamics, FRAC_PI_2) as u64;
-    let pair = PAIR * intervals.max(MEASURED_INTERVALS) / MEASURED_INTERVALS;
-    LEAST + places * places * pair + subsets + searched + lagrangian
+    let pair = PAIR_BYTES * intervals.max(MEASURED_INTERVALS) / MEASURED_INTERVALS;
+    BASE_BYTES + places * places * pair + subsets + searched + lagrangian
 }

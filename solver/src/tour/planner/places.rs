@@ -72,6 +72,21 @@ impl<'a> Places<'a> {
             .collect()
     }
 
+    /// Cuts a route into segments at every waypoint that leaves nothing free: what comes before and
+    /// after it are separate problems.
+    pub(super) fn split<'r>(&self, route: &'r [Place]) -> Vec<&'r [Place]> {
+        let mut segments = Vec::new();
+        let mut begin = 0;
+        for (i, place) in route.iter().enumerate().skip(1) {
+            let last = i + 1 == route.len();
+            if last || self.waypoint(*place).is_fixed(&self.dynamics) {
+                segments.push(&route[begin..=i]);
+                begin = i;
+            }
+        }
+        segments
+    }
+
     /// Identifier of a place.
     pub(super) fn name(&self, place: Place) -> String {
         match place {

@@ -2,9 +2,10 @@
 
 use super::Run;
 use super::assemble::assemble;
-use super::tables::LegTable;
+use super::guesses::constructed;
+use super::history::{History, search_work};
+use super::tables::SolvedTable;
 use super::tours::Tours;
-use super::work::{History, search_work};
 use crate::checker;
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
@@ -15,7 +16,7 @@ use crate::run::contradiction::{Contradiction, slack};
 use crate::run::progress::{Progress, Stage};
 use crate::tour::legs::LegKind;
 use crate::tour::order::{
-    FlownOrder, Incumbent, Place, SearchObserver, SearchResult, SearchStatistics,
+    Incumbent, Place, SearchObserver, SearchResult, SearchStatistics, SolvedOrder,
 };
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -37,9 +38,9 @@ pub(super) struct PlanBuilder<'a> {
     /// plan at once.
     last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
     /// A tour that was flown without a program, for want of a better one.
-    constructed: Option<(FlownOrder, VerifiedFlight)>,
+    constructed: Option<(SolvedOrder, VerifiedFlight)>,
     /// The legs of the final order from rest to rest.
-    rest: Option<LegTable>,
+    rest: Option<SolvedTable>,
     history: History,
 }
 
@@ -67,12 +68,12 @@ impl<'a> PlanBuilder<'a> {
     }
 
     /// Takes in a proved bound on all tours, s.
-    pub(super) fn prove(&mut self, certified: Option<f64>) {
+    pub(super) fn set_certified_bound(&mut self, certified: Option<f64>) {
         self.certified = certified;
     }
 
     /// That bound, when there is one and no flight has contradicted any.
-    pub(super) fn proved(&self) -> Option<f64> {
+    pub(super) fn certified_bound(&self) -> Option<f64> {
         self.certified
             .filter(|_| self.tours.legs.bounds_are_trusted())
     }
@@ -81,24 +82,24 @@ impl<'a> PlanBuilder<'a> {
     /// constructed.
     pub(super) fn construct(&mut self, order: Vec<usize>) {
         let route = self.tours.places.route(&order, true);
-        let flown = self.tours.constructed(&route);
-        let Some(flight) = flown.and_then(|flown| self.checked(&route, &flown).ok()) else {
+        let flown = constructed(self.tours.places, &route);
+        let Some(flight) = flown.and_then(|flown| self.verify_flight(&route, &flown).ok()) else {
             return;
         };
-        let best = FlownOrder {
+        let best = SolvedOrder {
             duration_s: flight.flight.total_time_s,
             order,
         };
-        self.remember(&best.order, &flight);
+        self.keep_flight(&best.order, &flight);
         self.announce(&best);
-        self.forget();
+        self.drop_flight();
         self.constructed = Some((best, flight));
     }
 
     /// The plan of the constructed flight, for a search that has ended with none.
-    pub(super) fn constructed(&self, statistics: SearchStatistics) -> Option<Outcome> {
+    pub(super) fn constructed_outcome(&self, statistics: SearchStatistics) -> Option<Outcome> {
         let (best, flight) = self.constructed.as_ref()?;
-        self.remember(&best.order, flight);
+        self.keep_flight(&best.order, flight);
         let only = Incumbent {
             best,
             alternatives: &[],
@@ -110,7 +111,7 @@ impl<'a> PlanBuilder<'a> {
     }
 
     /// Tells of a first tour, before anything is known of others.
-    pub(super) fn announce(&self, first: &FlownOrder) {
+    pub(super) fn announce(&self, first: &SolvedOrder) {
         self.improved(&Incumbent {
             best: first,
             alternatives: &[],
@@ -121,30 +122,36 @@ impl<'a> PlanBuilder<'a> {
 
     /// Solves the legs of the final order from rest to rest, to be compared with in its plan; not
     /// when the solve is to stop.
-    pub(super) fn compare_with_rest(&mut self, order: &FlownOrder) {
+    pub(super) fn compare_with_rest(&mut self, order: &SolvedOrder) {
         if self.tours.stop.is_set() {
             return;
         }
         let route = self.tours.places.route(&order.order, true);
         let pairs: Vec<_> = route.windows(2).map(|leg| (leg[0], leg[1])).collect();
-        self.rest = Some(self.tours.legs.late_table(LegKind::RestToRest, &pairs));
+        self.rest = Some(
+            self.tours
+                .legs
+                .table_without_progress(LegKind::RestToRest, &pairs),
+        );
     }
 
     /// The plan of the best order of a search that has ended.
-    pub(super) fn outcome(&self, best: &FlownOrder, found: &SearchResult) -> Outcome {
+    pub(super) fn outcome(&self, best: &SolvedOrder, found: &SearchResult) -> Outcome {
         self.run.observer.progress(Progress {
             stage: Stage::Verify,
             done: 0,
             total: None,
             incumbent_s: Some(best.duration_s),
-            lower_bound_s: Some(self.raised(found.lower_bound_s)),
+            lower_bound_s: Some(self.best_bound(found.lower_bound_s)),
         });
         let gap = self.tours.places.scenario.options().relative_gap;
         let asked_for = best.duration_s * (1.0 - gap);
         // The flight may contradict a bound.
         let _ = self.verified(&best.order);
         let trusted = self.tours.legs.bounds_are_trusted();
-        let certified = self.proved().is_some_and(|bound| bound >= asked_for);
+        let certified = self
+            .certified_bound()
+            .is_some_and(|bound| bound >= asked_for);
         let optimality = if trusted && (certified || found.best_is_proven(gap)) {
             Optimality::Optimal
         } else {
@@ -160,7 +167,7 @@ impl<'a> PlanBuilder<'a> {
     }
 
     /// The plan of an order that was given and not searched for, with the sum of its legs as bound.
-    pub(super) fn given(&self, order: &FlownOrder, lower_bound_s: f64) -> Outcome {
+    pub(super) fn fixed_order_outcome(&self, order: &SolvedOrder, lower_bound_s: f64) -> Outcome {
         let only = Incumbent {
             best: order,
             alternatives: &[],
@@ -172,32 +179,32 @@ impl<'a> PlanBuilder<'a> {
 
     /// The flight of an order, verified.
     fn verified(&self, order: &[usize]) -> Result<VerifiedFlight, Problem> {
-        if let Some((known, flight)) = self.last().as_ref()
+        if let Some((known, flight)) = self.last_flight().as_ref()
             && known == order
         {
             return Ok(flight.clone());
         }
         let route = self.tours.places.route(order, true);
         // Every segment is remembered from its evaluation: nothing is solved here.
-        let flight = self.checked(&route, &self.tours.fly_route(&route))?;
-        self.remember(order, &flight);
+        let flight = self.verify_flight(&route, &self.tours.solve_route(&route))?;
+        self.keep_flight(order, &flight);
         Ok(flight)
     }
 
-    fn last(&self) -> MutexGuard<'_, Option<(Vec<usize>, VerifiedFlight)>> {
+    fn last_flight(&self) -> MutexGuard<'_, Option<(Vec<usize>, VerifiedFlight)>> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn remember(&self, order: &[usize], flight: &VerifiedFlight) {
-        *self.last() = Some((order.to_vec(), flight.clone()));
+    fn keep_flight(&self, order: &[usize], flight: &VerifiedFlight) {
+        *self.last_flight() = Some((order.to_vec(), flight.clone()));
     }
 
-    fn forget(&self) {
-        *self.last() = None;
+    fn drop_flight(&self) {
+        *self.last_flight() = None;
     }
 
     /// The flight of solved segments, when the checker agrees with it.
-    fn checked(
+    fn verify_flight(
         &self,
         route: &[Place],
         flown: &[Arc<LegSolution>],
@@ -214,7 +221,7 @@ impl<'a> PlanBuilder<'a> {
             legs,
             report,
         };
-        self.compare_with_bounds(route, &verified);
+        self.check_bounds(route, &verified);
         Ok(verified)
     }
 
@@ -239,7 +246,7 @@ impl<'a> PlanBuilder<'a> {
             (0.0, kind)
         };
         let route = self.tours.places.route(&order.best.order, true);
-        self.compare(&mut legs, &route);
+        self.annotate_legs(&mut legs, &route);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
         let history = self.history.with(total, bound);
         Ok(Plan {
@@ -252,7 +259,7 @@ impl<'a> PlanBuilder<'a> {
                 0.0
             },
             lower_bound_kind,
-            certified_lower_bound_s: self.proved(),
+            certified_lower_bound_s: self.certified_bound(),
             alternatives: order
                 .alternatives
                 .iter()
@@ -271,9 +278,9 @@ impl<'a> PlanBuilder<'a> {
                 ..self.statistics(&order.statistics)
             },
             warnings: self
-                .distrust()
+                .contradiction_warning()
                 .into_iter()
-                .chain(doubts(order, optimality))
+                .chain(search_warnings(order, optimality))
                 .chain(report.keep_out)
                 .collect(),
         })
@@ -299,17 +306,17 @@ impl PlanBuilder<'_> {
     }
 
     /// Puts beside the legs of a route what is proved of them, and the legs from rest to rest.
-    fn compare(&self, legs: &mut [Leg], route: &[Place]) {
+    fn annotate_legs(&self, legs: &mut [Leg], route: &[Place]) {
         for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
             let rest = self.rest.as_ref();
-            let proved = self.tours.proved(pair[0], pair[1]);
+            let proved = self.tours.certified_bound(pair[0], pair[1]);
             leg.certified_lower_bound_s = proved.filter(|_| self.tours.legs.bounds_are_trusted());
             leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
         }
     }
 
     /// A doubt about bounds that a flight has contradicted.
-    fn distrust(&self) -> Option<Problem> {
+    fn contradiction_warning(&self) -> Option<Problem> {
         let trusted = self.tours.legs.bounds_are_trusted();
         (!trusted).then(|| {
             let message = "a flight was faster than a certified bound, so that no bound is given";
@@ -319,7 +326,7 @@ impl PlanBuilder<'_> {
     }
 
     /// Compares a flight with the certified bounds of its legs and of all tours.
-    fn compare_with_bounds(&self, route: &[Place], flown: &VerifiedFlight) {
+    fn check_bounds(&self, route: &[Place], flown: &VerifiedFlight) {
         let (tours, places) = (self.tours, &self.tours.places);
         let total = flown.flight.total_time_s;
         let contradicted = |leg, bound_s, flown_s| {
@@ -332,7 +339,7 @@ impl PlanBuilder<'_> {
         };
         let mut all_slack = 0.0;
         for (leg, pair) in flown.legs.iter().zip(route.windows(2)) {
-            let Some(bound_s) = tours.proved(pair[0], pair[1]) else {
+            let Some(bound_s) = tours.certified_bound(pair[0], pair[1]) else {
                 continue;
             };
             let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place).attitude);
@@ -351,8 +358,8 @@ impl PlanBuilder<'_> {
     }
 
     /// A bound, s, or the certified one where that is larger.
-    fn raised(&self, bound: f64) -> f64 {
-        self.proved()
+    fn best_bound(&self, bound: f64) -> f64 {
+        self.certified_bound()
             .map_or(bound, |certified| certified.max(bound))
     }
 
@@ -361,7 +368,7 @@ impl PlanBuilder<'_> {
     fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
         let gap = self.tours.places.scenario.options().relative_gap;
         let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
-        match self.proved() {
+        match self.certified_bound() {
             Some(certified) if certified >= enough => {
                 (certified.min(total), LowerBoundKind::Certified)
             }
@@ -374,7 +381,7 @@ impl PlanBuilder<'_> {
 impl SearchObserver for PlanBuilder<'_> {
     fn progress(&self, progress: Progress) {
         self.run.observer.progress(Progress {
-            lower_bound_s: progress.lower_bound_s.map(|bound| self.raised(bound)),
+            lower_bound_s: progress.lower_bound_s.map(|bound| self.best_bound(bound)),
             ..progress
         });
     }
@@ -397,7 +404,10 @@ fn outcome(plan: Result<Plan, Problem>) -> Outcome {
 }
 
 /// What the search itself casts doubt on.
-fn doubts(order: &Incumbent<'_>, optimality: Optimality) -> impl Iterator<Item = Problem> + use<> {
+fn search_warnings(
+    order: &Incumbent<'_>,
+    optimality: Optimality,
+) -> impl Iterator<Item = Problem> + use<> {
     let contradicted = order.statistics.bounds_contradicted;
     let contradicted = (contradicted > 0).then(|| {
         let message =

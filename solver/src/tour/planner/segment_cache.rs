@@ -7,7 +7,7 @@
 //! forgotten unless they were asked for meanwhile. What is forgotten is solved again when it is
 //! needed, with the same result.
 
-use super::extent::Segment;
+use super::segment_key::SegmentKey;
 use crate::leg::multiphase::LegSolution;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -15,10 +15,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// Intervals of the motions of a generation. An interval with three wheels takes some 150 bytes, so
 /// both generations together take 100 MB at most, whatever the number of targets: 40 000 segments of
 /// eight legs, 1 700 tours of two hundred.
-const GENERATION: usize = 1 << 18;
+const MAX_GENERATION_INTERVALS: usize = 1 << 18;
 
 /// Flights by their segments.
-type Generation = HashMap<Segment, Arc<LegSolution>>;
+type Generation = HashMap<SegmentKey, Arc<LegSolution>>;
 
 #[derive(Default)]
 struct Generations {
@@ -30,11 +30,11 @@ struct Generations {
 
 /// The memory of a search.
 #[derive(Default)]
-pub(super) struct Segments(Mutex<Generations>);
+pub(super) struct SegmentCache(Mutex<Generations>);
 
-impl Segments {
+impl SegmentCache {
     /// The flight of a segment, when it is remembered.
-    pub(super) fn get(&self, segment: &Segment) -> Option<Arc<LegSolution>> {
+    pub(super) fn get(&self, segment: &SegmentKey) -> Option<Arc<LegSolution>> {
         let mut generations = self.lock();
         if let Some(flown) = generations.young.get(segment) {
             return Some(Arc::clone(flown));
@@ -45,7 +45,7 @@ impl Segments {
     }
 
     /// Remembers a flight.
-    pub(super) fn put(&self, segment: Segment, flown: &Arc<LegSolution>) {
+    pub(super) fn put(&self, segment: SegmentKey, flown: &Arc<LegSolution>) {
         self.lock().insert(segment, Arc::clone(flown));
     }
 
@@ -56,8 +56,8 @@ impl Segments {
 }
 
 impl Generations {
-    fn insert(&mut self, segment: Segment, flown: Arc<LegSolution>) {
-        if self.intervals >= GENERATION {
+    fn insert(&mut self, segment: SegmentKey, flown: Arc<LegSolution>) {
+        if self.intervals >= MAX_GENERATION_INTERVALS {
             self.old = std::mem::take(&mut self.young);
             self.intervals = 0;
         }
@@ -68,7 +68,7 @@ impl Generations {
 
 #[cfg(test)]
 mod tests {
-    use super::super::extent::Extent;
+    use super::super::segment_key::SegmentKind;
     use super::*;
     use crate::leg::profile::Profile;
     use crate::model::attitude::Attitude;
@@ -77,14 +77,14 @@ mod tests {
 
     #[test]
     fn what_is_asked_for_stays_and_what_is_not_is_forgotten() {
-        let length = GENERATION / 4;
+        let length = MAX_GENERATION_INTERVALS / 4;
         let motion = Profile::zero_length(Attitude::identity(), DVector::zeros(3), length);
         let flown = Arc::new(LegSolution {
             profile: motion,
             ..LegSolution::nowhere()
         });
-        let segments = Segments::default();
-        let segment = |i| Segment::new(&[Place::Start, Place::Target(i)], Extent::Piece);
+        let segments = SegmentCache::default();
+        let segment = |i| SegmentKey::new(&[Place::Start, Place::Target(i)], SegmentKind::Piece);
         for i in 0..16 {
             segments.put(segment(i), &flown);
             assert!(segments.get(&segment(0)).is_some());

@@ -3,11 +3,11 @@
 use crate::tour::order::Place;
 
 /// Legs up to which the beginning of a tour is solved as any piece of one is.
-pub(super) const SHORT: usize = 3;
+pub(super) const MAX_SHORT_LEGS: usize = 3;
 
 /// What a segment is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Extent {
+pub(super) enum SegmentKind {
     /// The beginning of longer ones, free where it ends: its duration is a bound.
     Beginning,
     /// A piece of a tour: its duration is a bound.
@@ -18,20 +18,20 @@ pub(super) enum Extent {
 
 /// A segment: its places, and what it is part of as far as that makes a difference.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct Segment {
-    pub(super) extent: Extent,
+pub(super) struct SegmentKey {
+    pub(super) segment_key: SegmentKind,
     pub(super) route: Vec<Place>,
 }
 
-impl Segment {
+impl SegmentKey {
     /// The segment of a route.
-    pub(super) fn new(route: &[Place], extent: Extent) -> Self {
-        let short = route.len() <= SHORT + 1;
+    pub(super) fn new(route: &[Place], segment_key: SegmentKind) -> Self {
+        let short = route.len() <= MAX_SHORT_LEGS + 1;
         Self {
-            extent: if extent == Extent::Beginning && short {
-                Extent::Piece
+            segment_key: if segment_key == SegmentKind::Beginning && short {
+                SegmentKind::Piece
             } else {
-                extent
+                segment_key
             },
             route: route.to_vec(),
         }
@@ -39,10 +39,10 @@ impl Segment {
 
     /// Its name in a store.
     pub(super) fn name(&self) -> String {
-        let kind = match self.extent {
-            Extent::Beginning => "beginning",
-            Extent::Piece => "piece",
-            Extent::Tour => "tour",
+        let kind = match self.segment_key {
+            SegmentKind::Beginning => "beginning",
+            SegmentKind::Piece => "piece",
+            SegmentKind::Tour => "tour",
         };
         let places = self.route.iter().map(|place| match place {
             Place::Start => "start".to_owned(),

@@ -30,16 +30,16 @@ pub(super) struct CertifiedLeg {
 
 /// A solved leg between two places.
 #[derive(Debug, Clone)]
-pub(super) struct TabledLeg {
+pub(super) struct TabulatedLeg {
     /// The solution that it multipliers with all legs of the same canonical form.
     pub(super) leg: Arc<SolvedLeg>,
     /// Whether that is flown backwards.
     pub(super) mirrored: bool,
 }
 
-impl TabledLeg {
+impl TabulatedLeg {
     /// The motion from an attitude, and how it ended.
-    pub(super) fn from(&self, begin: &Attitude) -> LegSolution {
+    pub(super) fn from_attitude(&self, begin: &Attitude) -> LegSolution {
         let solution = &self.leg.flown;
         let mut profile = if self.mirrored {
             solution.profile.reversed()
@@ -67,11 +67,11 @@ pub(super) struct Table<T> {
 }
 
 /// Solved legs.
-pub(super) type LegTable = Table<TabledLeg>;
+pub(super) type SolvedTable = Table<TabulatedLeg>;
 /// Certified legs.
 pub(super) type CertifiedTable = Table<CertifiedLeg>;
 
-impl LegTable {
+impl SolvedTable {
     /// Minimum time of the leg between two places, s, where it is solved.
     pub(super) fn duration(&self, from: Place, to: Place) -> Option<f64> {
         self.get(from, to)
@@ -86,7 +86,7 @@ impl CertifiedTable {
     }
 
     /// Whether anything is proved of any leg.
-    pub(super) fn says_anything(&self) -> bool {
+    pub(super) fn has_bounds(&self) -> bool {
         let mut known = self.entries.iter().flatten();
         known.any(|leg| leg.lower_bound.is_some())
     }

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// Intervals shorter than this share of the whole flight are joined to their neighbour: the torque
 /// in them is a quotient of two vanishing numbers.
-pub(super) const SHORTEST: f64 = 1e-9;
+pub(super) const MIN_PIECE_SHARE: f64 = 1e-9;
 
 /// Lengths, s, and wheel torques, N m, over some intervals of a motion; none of the pieces is
 /// shorter than `shortest`, s, unless all of them together are.

@@ -4,11 +4,11 @@
 //! slew lasts at least its certified bound, which holds whatever comes before and after it. So the
 //! shortest way through all targets in the table of these bounds, service times added, is a bound
 //! on all tours in all orders that the scenario admits. The search finds that way; up to
-//! [`crate::tour::order::completion::EXACT_TARGETS`] targets its first step is exact, beyond it stops
+//! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets its first step is exact, beyond it stops
 //! after some work with the bound that it has by then.
 
+use super::additive_tours::AdditiveTours;
 use super::places::Places;
-use super::summed::SummedTours;
 use super::tables::CertifiedTable;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Progress;
@@ -26,8 +26,8 @@ const DEFLATION: f64 = 3e-9;
 fn certified_tours<'a>(
     places: &'a Places<'a>,
     bounds: &'a CertifiedTable,
-) -> SummedTours<'a, impl Fn(Place, Place) -> f64 + Sync> {
-    SummedTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
+) -> AdditiveTours<'a, impl Fn(Place, Place) -> f64 + Sync> {
+    AdditiveTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
 }
 
 /// A duration, s, that no tour undercuts, in whatever order the scenario admits; legs of which nothing is proved count
@@ -38,7 +38,7 @@ pub(super) fn tour_bound(
     pool: &SolverPool,
     stop: &StopSignal,
 ) -> Option<f64> {
-    if !bounds.says_anything() {
+    if !bounds.has_bounds() {
         return None;
     }
     let targets = places.scenario.targets().len() as u64;
@@ -59,10 +59,10 @@ pub(super) fn route_bound(
     route: &[Place],
 ) -> Option<f64> {
     let sum = || certified_tours(places, bounds).along(route);
-    bounds.says_anything().then(|| sum() * (1.0 - DEFLATION))
+    bounds.has_bounds().then(|| sum() * (1.0 - DEFLATION))
 }
 
-/// Nobody is told how this search goes.
+/// Nobody is reported how this search goes.
 struct Unobserved;
 
 impl SearchObserver for Unobserved {

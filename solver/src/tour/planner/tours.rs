@@ -1,19 +1,19 @@
 //! What the order search asks of the slews: bounds and durations of tours.
 //!
 //! A waypoint that leaves nothing free separates the slews before and after it, so a tour falls
-//! into segments between such waypoints, each a multi-phase problem of its own. Segments recur in
+//! into segments between such waypoints, each a multi-phase problem of its own. SegmentCache recur in
 //! many orders and are remembered. A segment that may go on is flown on from the flight of the same
 //! segment without its last place: what it comes to follows from its places alone, whether that
 //! flight is still remembered or has to be solved again.
 
-use super::extent::{Extent, SHORT, Segment};
 use super::from_store::{segment_from_store, stored_segment};
+use super::guesses::{InitialGuess, admits_rest, extended, joined};
 use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
-use super::segments::Segments;
-use super::starts::Start;
-use super::tables::{CertifiedTable, LegTable};
+use super::segment_cache::SegmentCache;
+use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
+use super::tables::{CertifiedTable, SolvedTable};
 use crate::leg::multiphase::{LegSolution, fly, fly_on, fly_rolling, polish};
 use crate::leg::profile::Profile;
 use crate::model::order_rules::OrderRules;
@@ -21,16 +21,20 @@ use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::LegKind;
-use crate::tour::order::{Evaluation, Place, Price, TourEvaluation, TourModel};
+use crate::tour::order::{Costate, Evaluation, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 /// The starts of a segment, and how many are tried when all goes well: a short segment has local
 /// minima that longer ones inherit. A tour is a piece of itself, and is flown from rest to rest where
 /// that piece finds no flight.
-const STARTS: [Start; 2] = [Start::Eigenaxes, Start::Extremals];
-const STARTS_OF_LONGER: [Start; 3] = [Start::Shorter, Start::Eigenaxes, Start::Extremals];
-const START_OF_TOURS: [Start; 1] = [Start::AtRest];
+const STARTS: [InitialGuess; 2] = [InitialGuess::Eigenaxes, InitialGuess::Extremals];
+const STARTS_OF_LONGER: [InitialGuess; 3] = [
+    InitialGuess::Shorter,
+    InitialGuess::Eigenaxes,
+    InitialGuess::Extremals,
+];
+const START_OF_TOURS: [InitialGuess; 1] = [InitialGuess::AtRest];
 const DEFAULT_STARTS_OF_SHORT: usize = 2;
 
 /// Tours over legs.
@@ -40,12 +44,12 @@ pub(super) struct Tours<'a> {
     /// Certified bounds of legs with free ends, s, once they are known.
     certified: OnceLock<CertifiedTable>,
     /// Legs with free ends, once they are solved: bounds.
-    free: OnceLock<LegTable>,
+    free: OnceLock<SolvedTable>,
     /// Whether orders are as good backwards.
     symmetric: bool,
     pub(super) stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
-    segments: Segments,
+    segments: SegmentCache,
 }
 
 impl<'a> Tours<'a> {
@@ -62,28 +66,28 @@ impl<'a> Tours<'a> {
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
-            segments: Segments::default(),
+            segments: SegmentCache::default(),
         }
     }
 
     /// Takes in the certified bounds of the legs; those of the first call count.
-    pub(super) fn prove(&self, certified: CertifiedTable) {
+    pub(super) fn set_certified_bounds(&self, certified: CertifiedTable) {
         self.certified.get_or_init(|| certified);
     }
 
     /// No slew between two places takes less, s; `None` where nothing is proved.
-    pub(super) fn proved(&self, from: Place, to: Place) -> Option<f64> {
+    pub(super) fn certified_bound(&self, from: Place, to: Place) -> Option<f64> {
         self.certified.get().and_then(|legs| legs.bound(from, to))
     }
 
     /// Takes in the legs with free ends, which bound all tours better than the certified bounds;
     /// those of the first call count.
-    pub(super) fn know(&self, free: LegTable) {
+    pub(super) fn set_free_legs(&self, free: SolvedTable) {
         self.free.get_or_init(|| free);
     }
 
     /// The legs with free ends, when they are known.
-    pub(super) fn free(&self) -> Option<&LegTable> {
+    pub(super) fn free_legs(&self) -> Option<&SolvedTable> {
         self.free.get()
     }
 
@@ -101,11 +105,11 @@ impl<'a> Tours<'a> {
     ///
     /// Of an order and its reverse, where they are equally good, one is flown, and the other is that
     /// flight backwards.
-    pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<LegSolution>> {
-        let Some(reverse) = self.better_backwards(route) else {
-            return self.fly_segments(route, Extent::Tour);
+    pub(super) fn solve_route(&self, route: &[Place]) -> Vec<Arc<LegSolution>> {
+        let Some(reverse) = self.preferred_reverse(route) else {
+            return self.solve_segments(route, SegmentKind::Tour);
         };
-        let mut flown = self.fly_segments(&reverse, Extent::Tour);
+        let mut flown = self.solve_segments(&reverse, SegmentKind::Tour);
         if flown.iter().all(|segment| segment.duration().is_some()) {
             flown.reverse();
             for segment in &mut flown {
@@ -116,7 +120,7 @@ impl<'a> Tours<'a> {
     }
 
     /// The reverse of a route, when that is the one of the two to be flown.
-    fn better_backwards(&self, route: &[Place]) -> Option<Vec<Place>> {
+    fn preferred_reverse(&self, route: &[Place]) -> Option<Vec<Place>> {
         if !self.symmetric {
             return None;
         }
@@ -131,16 +135,16 @@ impl<'a> Tours<'a> {
         smaller.then_some(reverse)
     }
 
-    fn fly_segments(&self, route: &[Place], extent: Extent) -> Vec<Arc<LegSolution>> {
+    fn solve_segments(&self, route: &[Place], segment_key: SegmentKind) -> Vec<Arc<LegSolution>> {
         let mut flown = Vec::new();
-        let segments = self.split(route);
+        let segments = self.places.split(route);
         let last = segments.len().saturating_sub(1);
         for (i, segment) in segments.into_iter().enumerate() {
-            let extent = match extent {
-                Extent::Beginning if i < last => Extent::Piece,
-                _ => extent,
+            let segment_key = match segment_key {
+                SegmentKind::Beginning if i < last => SegmentKind::Piece,
+                _ => segment_key,
             };
-            let solved = self.segment(segment, extent);
+            let solved = self.segment(segment, segment_key);
             let flies = solved.duration().is_some();
             flown.push(solved);
             if !flies {
@@ -150,36 +154,22 @@ impl<'a> Tours<'a> {
         flown
     }
 
-    /// Cuts a route at every waypoint that leaves nothing free.
-    pub(super) fn split<'r>(&self, route: &'r [Place]) -> Vec<&'r [Place]> {
-        let mut segments = Vec::new();
-        let mut begin = 0;
-        for (i, place) in route.iter().enumerate().skip(1) {
-            let last = i + 1 == route.len();
-            if last || self.places.waypoint(*place).is_fixed(&self.places.dynamics) {
-                segments.push(&route[begin..=i]);
-                begin = i;
-            }
-        }
-        segments
-    }
-
     /// The flight of a segment: of a whole tour the one that it has as a piece, if there is one.
-    pub(super) fn segment(&self, route: &[Place], extent: Extent) -> Arc<LegSolution> {
+    pub(super) fn segment(&self, route: &[Place], segment_key: SegmentKind) -> Arc<LegSolution> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
         }
-        let segment = Segment::new(route, extent);
+        let segment = SegmentKey::new(route, segment_key);
         if let Some(flown) = self.segments.get(&segment) {
             return flown;
         }
-        if extent == Extent::Tour {
-            let piece = self.segment(route, Extent::Piece);
+        if segment_key == SegmentKind::Tour {
+            let piece = self.segment(route, SegmentKind::Piece);
             if piece.duration().is_some() || piece.status.is_interrupted() {
                 return piece;
             }
         }
-        let flown = Arc::new(self.recall_or_solve(&segment));
+        let flown = Arc::new(self.stored_or_solved(&segment));
         if flown.duration().is_some() {
             self.segments.put(segment, &flown);
         }
@@ -187,7 +177,7 @@ impl<'a> Tours<'a> {
     }
 
     /// A segment that an earlier attempt at the same scenario has solved, or else solved now.
-    fn recall_or_solve(&self, segment: &Segment) -> LegSolution {
+    fn stored_or_solved(&self, segment: &SegmentKey) -> LegSolution {
         let (store, name) = (self.legs.segments(), segment.name());
         let intervals = self.intervals(&segment.route);
         let known = store.get(&name);
@@ -205,10 +195,10 @@ impl<'a> Tours<'a> {
 
     /// The leg with free ends between two places: of the table, where there is one already.
     pub(super) fn free_leg(&self, from: Place, to: Place) -> LegSolution {
-        let known = self.free().and_then(|free| free.get(from, to));
+        let known = self.free_legs().and_then(|free| free.get(from, to));
         known.map_or_else(
-            || self.legs.lone(LegKind::LowerBound, from, to),
-            |leg| leg.from(&self.places.waypoint(from).attitude),
+            || self.legs.leg(LegKind::LowerBound, from, to),
+            |leg| leg.from_attitude(&self.places.waypoint(from).attitude),
         )
     }
 
@@ -216,7 +206,7 @@ impl<'a> Tours<'a> {
     /// it: a flight that passes both, one after the other, passes the one already when it passes the
     /// stricter one, and is never shorter than a flight that does so once. A program with both would
     /// have a leg of no length, which no torque can change.
-    fn solve_segment(&self, segment: &Segment) -> LegSolution {
+    fn solve_segment(&self, segment: &SegmentKey) -> LegSolution {
         let route = &segment.route;
         let mut distinct: Vec<Place> = Vec::new();
         // The legs that lead to them, and those that lead nowhere.
@@ -244,7 +234,7 @@ impl<'a> Tours<'a> {
         let mut flown = match distinct[..] {
             [place] => self.free_leg(place, place),
             [from, to] => self.free_leg(from, to),
-            _ => self.solve_distinct(&distinct, segment.extent),
+            _ => self.solve_distinct(&distinct, segment.segment_key),
         };
         if flown.duration().is_some() {
             // All of them at one place: the leg itself is the first pause.
@@ -260,13 +250,13 @@ impl<'a> Tours<'a> {
     }
 
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
-    fn solve_distinct(&self, route: &[Place], extent: Extent) -> LegSolution {
-        let short = route.len() - 1 <= SHORT;
+    fn solve_distinct(&self, route: &[Place], segment_key: SegmentKind) -> LegSolution {
+        let short = route.len() - 1 <= MAX_SHORT_LEGS;
         let usual = if short { DEFAULT_STARTS_OF_SHORT } else { 1 };
-        let starts = match extent {
-            Extent::Beginning if !short => &STARTS_OF_LONGER[..],
-            Extent::Beginning | Extent::Piece => &STARTS,
-            Extent::Tour => &START_OF_TOURS,
+        let starts = match segment_key {
+            SegmentKind::Beginning if !short => &STARTS_OF_LONGER[..],
+            SegmentKind::Beginning | SegmentKind::Piece => &STARTS,
+            SegmentKind::Tour => &START_OF_TOURS,
         };
         let mut best = self.solve_from(route, starts[0]);
         for (tried, &start) in starts.iter().enumerate().skip(1) {
@@ -290,7 +280,7 @@ impl<'a> Tours<'a> {
         best
     }
 
-    fn solve_from(&self, route: &[Place], start: Start) -> LegSolution {
+    fn solve_from(&self, route: &[Place], start: InitialGuess) -> LegSolution {
         let Some((guess, intervals)) = self.guess(route, start) else {
             return LegSolution::nowhere();
         };
@@ -298,15 +288,15 @@ impl<'a> Tours<'a> {
         let dynamics = &self.places.dynamics;
         let waypoints = self.program(route, &guess, &intervals);
         let fly = match start {
-            Start::Shorter => fly_on,
-            Start::Eigenaxes => fly_rolling,
-            Start::Extremals | Start::AtRest => fly,
+            InitialGuess::Shorter => fly_on,
+            InitialGuess::Eigenaxes => fly_rolling,
+            InitialGuess::Extremals | InitialGuess::AtRest => fly,
         };
         let flown = fly(dynamics, &waypoints, &intervals, &guess, &|| {
             interruption(self.stop)
         });
         let failed = flown.duration().is_none() && !flown.status.is_interrupted();
-        if start == Start::AtRest && failed && self.admits_rest(route) {
+        if start == InitialGuess::AtRest && failed && admits_rest(self.places, route) {
             return LegSolution {
                 status: NlpStatus::Constructed,
                 profile: guess,
@@ -316,6 +306,18 @@ impl<'a> Tours<'a> {
             };
         }
         flown
+    }
+
+    /// The initial guess of a route and the number of intervals of each of its legs; `None` where there
+    /// is none.
+    fn guess(&self, route: &[Place], kind: InitialGuess) -> Option<(Profile, Vec<usize>)> {
+        match (kind, route) {
+            (InitialGuess::Shorter, [before @ .., _]) => {
+                let shorter = self.segment(before, SegmentKind::Beginning);
+                extended(self.legs, &shorter, &route[before.len() - 1..])
+            }
+            _ => joined(self.legs, route, kind),
+        }
     }
 
     /// The waypoints of a route, with the signs at which a motion of so many intervals between them
@@ -390,15 +392,15 @@ impl TourModel for Tours<'_> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let solved = self.free().and_then(|free| free.duration(from, to));
-        let proved = self.proved(from, to);
+        let solved = self.free_legs().and_then(|free| free.duration(from, to));
+        let proved = self.certified_bound(from, to);
         let known = solved.into_iter().chain(proved).reduce(f64::max);
         known.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
         let route = self.places.route(prefix, false);
-        self.evaluation(&route, &self.fly_segments(&route, Extent::Beginning))
+        self.evaluation(&route, &self.solve_segments(&route, SegmentKind::Beginning))
     }
 
     fn path_bound(&self, path: &[Place]) -> Evaluation {
@@ -415,7 +417,7 @@ impl TourModel for Tours<'_> {
         {
             route.reverse();
         }
-        match self.evaluation(&route, &self.fly_segments(&route, Extent::Piece)) {
+        match self.evaluation(&route, &self.solve_segments(&route, SegmentKind::Piece)) {
             Evaluation::Value(duration) => {
                 Evaluation::Value(duration - self.places.service_time(path[0]))
             }
@@ -428,18 +430,18 @@ impl TourModel for Tours<'_> {
         !waypoint.is_fixed(&self.places.dynamics)
     }
 
-    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
-        self.prices_of(order)
+    fn costates(&self, order: &[usize]) -> Option<Vec<Costate>> {
+        self.flight_costates(order)
     }
 
     fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
-        self.price_leg(leg, prices)
+        self.solve_lagrangian_leg(leg, prices)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         let route = self.places.route(order, true);
-        match self.duration(&route, &self.fly_route(&route)) {
-            Ok(duration) => TourEvaluation::LegSolution(duration),
+        match self.duration(&route, &self.solve_route(&route)) {
+            Ok(duration) => TourEvaluation::Solved(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,
         }

@@ -2,7 +2,7 @@
 
 use super::canonical::CanonicalLeg;
 use super::places::Places;
-use super::torques::{SHORTEST, torques};
+use super::torques::{MIN_PIECE_SHARE, torques};
 use crate::checker::{ATTITUDE_TOLERANCE, Arrival, leg_faults};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
@@ -12,7 +12,7 @@ use nalgebra::{DVector, Vector3};
 
 /// Whether a solved leg flies as it says: from where it begins to the attitude and the rates where
 /// it is to end, within all limits.
-pub(super) fn flies(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> bool {
+pub(super) fn is_feasible(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> bool {
     flight_faults(places, leg, profile).is_empty()
 }
 
@@ -44,7 +44,7 @@ pub(super) fn node_faults(
     leg: &CanonicalLeg,
     profile: &Profile,
 ) -> Vec<String> {
-    let shortest = SHORTEST * profile.duration();
+    let shortest = MIN_PIECE_SHARE * profile.duration();
     let mut faults = Vec::new();
     for k in 0..profile.intervals() {
         let part = profile.part(k..k + 1);
@@ -102,7 +102,7 @@ fn state(
 fn flight(places: &Places<'_>, profile: &Profile) -> Flight {
     let mut clock = 0.0;
     let mut controls = Vec::with_capacity(profile.intervals());
-    let shortest = SHORTEST * profile.duration();
+    let shortest = MIN_PIECE_SHARE * profile.duration();
     for (duration, torque) in torques(profile, 0..profile.intervals(), shortest) {
         controls.push(Control {
             start_s: clock,

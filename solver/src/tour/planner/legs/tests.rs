@@ -61,7 +61,7 @@ fn a_bound_above_a_fresh_flight_is_told_and_taken_from_it() {
 #[test]
 fn a_leg_that_is_asked_for_again_is_not_solved_again() {
     contradictions(|legs| {
-        let ask = || legs.lone(LegKind::LowerBound, ENDS[0], ENDS[1]).duration();
+        let ask = || legs.leg(LegKind::LowerBound, ENDS[0], ENDS[1]).duration();
         let first = ask();
         let [solved, stored, programs] = legs.work();
         assert!(first.is_some() && programs > 0);

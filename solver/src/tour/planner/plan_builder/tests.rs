@@ -51,12 +51,12 @@ fn plan_with_bound(share: f64) -> (Plan, Vec<Contradiction>) {
     let places = Places::of(&scenario);
     let legs = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &legs, &stop);
-    let TourEvaluation::LegSolution(duration_s) = tours.tour(&[0, 1]) else {
+    let TourEvaluation::Solved(duration_s) = tours.tour(&[0, 1]) else {
         panic!("the order is flown");
     };
-    let mut conclusions = PlanBuilder::new(&tours, run, Instant::now());
-    conclusions.prove(Some(share * duration_s));
-    let best = FlownOrder {
+    let mut builder = PlanBuilder::new(&tours, run, Instant::now());
+    builder.set_certified_bound(Some(share * duration_s));
+    let best = SolvedOrder {
         order: vec![0, 1],
         duration_s,
     };
@@ -68,7 +68,7 @@ fn plan_with_bound(share: f64) -> (Plan, Vec<Contradiction>) {
         end: crate::tour::order::SearchEnd::Exhausted,
         statistics: SearchStatistics::default(),
     };
-    let Outcome::Planned(plan) = conclusions.outcome(&best, &found) else {
+    let Outcome::Planned(plan) = builder.outcome(&best, &found) else {
         panic!("the order flies");
     };
     (*plan, listener.0.into_inner().expect("no panic"))
@@ -242,7 +242,7 @@ fn whoever_wants_the_best_so_far_asks_the_store_and_whoever_cancels_does_not() {
 
 #[test]
 fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
-    let best = FlownOrder {
+    let best = SolvedOrder {
         order: vec![0],
         duration_s: 1.0,
     };
@@ -257,8 +257,8 @@ fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
         },
     };
     let told = |contradicted, unresolved, optimality| {
-        let doubts = doubts(&with(contradicted, unresolved), optimality);
-        doubts.map(|doubt| doubt.code).collect::<Vec<_>>()
+        let search_warnings = search_warnings(&with(contradicted, unresolved), optimality);
+        search_warnings.map(|doubt| doubt.code).collect::<Vec<_>>()
     };
     assert_eq!(told(0, 0, Optimality::Feasible), []);
     assert_eq!(told(2, 3, Optimality::Optimal), [Code::BoundContradicted]);

@@ -106,7 +106,7 @@ pub enum TourEvaluation {
 }
 
 /// What a unit more of each quantity of the state in which a target is passed is worth, s.
-pub type Costate = Vec<f64>;
+pub type PassageCostate = Vec<f64>;
 
 /// All that the search knows of slews.
 ///
@@ -155,7 +155,7 @@ pub trait TourModel: Sync {
     /// state there saves the slews before it, at the margin, and costs those after it. `None` where
     /// the order does not resolve or the model knows no states. In a symmetric model those backwards
     /// are the same.
-    fn costates(&self, order: &[usize]) -> Option<Vec<Costate>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         let _ = order;
         None
     }

@@ -36,7 +36,7 @@ mod paths;
 pub use paths::LagrangianPaths;
 
 use super::completion::MAX_EXACT_TARGETS;
-use super::{Costate, Evaluation, PairTable, Place, TourModel};
+use super::{Evaluation, PairTable, PassageCostate, Place, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,7 +50,7 @@ const _: () = assert!(MAX_LAGRANGIAN_TARGETS + 3 <= MAX_EXACT_TARGETS);
 /// A price with the number of flights that it is the mean of.
 #[derive(Debug, Clone)]
 struct Mean {
-    price: Costate,
+    price: PassageCostate,
     flights: f64,
 }
 
@@ -254,14 +254,14 @@ impl LagrangianLegs {
 
 impl Mean {
     /// The mean of nothing.
-    fn new(price: &Costate) -> Self {
+    fn new(price: &PassageCostate) -> Self {
         Self {
             price: vec![0.0; price.len()],
             flights: 0.0,
         }
     }
 
-    fn take_in(&mut self, price: &Costate) {
+    fn take_in(&mut self, price: &PassageCostate) {
         self.flights += 1.0;
         for (mean, price) in self.price.iter_mut().zip(price) {
             *mean += (price - *mean) / self.flights;

@@ -9,7 +9,7 @@ use crate::leg::multiphase::fly;
 use crate::leg::profile::Profile;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::nlp::NlpStatus;
-use crate::tour::order::{Costate, Evaluation, Place};
+use crate::tour::order::{Evaluation, PassageCostate, Place};
 use nalgebra::DVector;
 
 impl Tours<'_> {
@@ -17,7 +17,7 @@ impl Tours<'_> {
     ///
     /// None with a resolution that polishes: a lagrangian leg is not polished, and as a bound would be
     /// too long by what that gains.
-    pub(super) fn flight_costates(&self, order: &[usize]) -> Option<Vec<Costate>> {
+    pub(super) fn flight_costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         if self.places.resolution.polished {
             return None;
         }

@@ -390,7 +390,7 @@ impl SearchObserver for PlanBuilder<'_> {
         // One that does not fly is kept back; the end of the search tells if it stays the best.
         let kind = LowerBoundKind::NlpRelaxation;
         if let Ok(plan) = self.plan(incumbent, Optimality::Feasible, kind) {
-            self.history.note(&plan.statistics.history);
+            self.history.replace(&plan.statistics.history);
             self.run.observer.incumbent(&plan);
         }
     }

@@ -1,45 +1,47 @@
-//! What a segment of a tour is part of, which decides how it is solved.
+//! What identifies a segment of a tour: its route, and what it is a part of, which decides how it is
+//! solved.
 
 use crate::tour::order::Place;
 
-/// Legs up to which the beginning of a tour is solved as any piece of one is.
+/// Number of legs up to which the beginning of a tour is solved in the same way as any other piece.
 pub(super) const MAX_SHORT_LEGS: usize = 3;
 
-/// What a segment is part of.
+/// What a segment is a part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum SegmentKind {
-    /// The beginning of longer ones, free where it ends: its duration is a bound.
+    /// The beginning of a tour, with a free end: its minimum duration is a lower bound, and longer
+    /// beginnings start from its solution.
     Beginning,
-    /// A piece of a tour: its duration is a bound.
+    /// Any piece of a tour: its minimum duration is a lower bound.
     Piece,
-    /// A tour: any flight is better than none.
+    /// A piece of a whole tour: a feasible flight is useful even if it is no minimum.
     Tour,
 }
 
-/// A segment: its places, and what it is part of as far as that makes a difference.
+/// A segment: its places, and its kind as far as that makes a difference.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct SegmentKey {
-    pub(super) segment_key: SegmentKind,
+    pub(super) kind: SegmentKind,
     pub(super) route: Vec<Place>,
 }
 
 impl SegmentKey {
-    /// The segment of a route.
-    pub(super) fn new(route: &[Place], segment_key: SegmentKind) -> Self {
+    /// The key of a route. Short beginnings have the key of a piece.
+    pub(super) fn new(route: &[Place], kind: SegmentKind) -> Self {
         let short = route.len() <= MAX_SHORT_LEGS + 1;
         Self {
-            segment_key: if segment_key == SegmentKind::Beginning && short {
+            kind: if kind == SegmentKind::Beginning && short {
                 SegmentKind::Piece
             } else {
-                segment_key
+                kind
             },
             route: route.to_vec(),
         }
     }
 
-    /// Its name in a store.
+    /// The name under which it is stored.
     pub(super) fn name(&self) -> String {
-        let kind = match self.segment_key {
+        let kind = match self.kind {
             SegmentKind::Beginning => "beginning",
             SegmentKind::Piece => "piece",
             SegmentKind::Tour => "tour",
@@ -49,7 +51,7 @@ impl SegmentKey {
             Place::Target(index) => index.to_string(),
             Place::End => "end".to_owned(),
         });
-        let words: Vec<_> = std::iter::once(kind.to_owned()).chain(places).collect();
-        words.join(" ")
+        let parts: Vec<_> = std::iter::once(kind.to_owned()).chain(places).collect();
+        parts.join(" ")
     }
 }

@@ -1,7 +1,7 @@
 //! What the order search asks of the slews: bounds and durations of tours.
 //!
 //! A waypoint that leaves nothing free separates the slews before and after it, so a tour falls
-//! into segments between such waypoints, each a multi-phase problem of its own. SegmentCache recur in
+//! into segments between such waypoints, each a multi-phase problem of its own. SolvedSegments recur in
 //! many orders and are remembered. A segment that may go on is flown on from the flight of the same
 //! segment without its last place: what it comes to follows from its places alone, whether that
 //! flight is still remembered or has to be solved again.
@@ -11,8 +11,8 @@ use super::guesses::{InitialGuess, admits_rest, extended, joined};
 use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
-use super::segment_cache::SegmentCache;
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
+use super::solved_segments::SolvedSegments;
 use super::tables::{CertifiedTable, SolvedTable};
 use crate::leg::multiphase::{LegSolution, fly, fly_on, fly_rolling, polish};
 use crate::leg::profile::Profile;
@@ -21,7 +21,7 @@ use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::LegKind;
-use crate::tour::order::{Costate, Evaluation, Place, TourEvaluation, TourModel};
+use crate::tour::order::{Evaluation, PassageCostate, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -49,7 +49,7 @@ pub(super) struct Tours<'a> {
     symmetric: bool,
     pub(super) stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
-    segments: SegmentCache,
+    segments: SolvedSegments,
 }
 
 impl<'a> Tours<'a> {
@@ -66,7 +66,7 @@ impl<'a> Tours<'a> {
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
-            segments: SegmentCache::default(),
+            segments: SolvedSegments::default(),
         }
     }
 
@@ -135,16 +135,16 @@ impl<'a> Tours<'a> {
         smaller.then_some(reverse)
     }
 
-    fn solve_segments(&self, route: &[Place], segment_key: SegmentKind) -> Vec<Arc<LegSolution>> {
+    fn solve_segments(&self, route: &[Place], kind: SegmentKind) -> Vec<Arc<LegSolution>> {
         let mut flown = Vec::new();
         let segments = self.places.split(route);
         let last = segments.len().saturating_sub(1);
         for (i, segment) in segments.into_iter().enumerate() {
-            let segment_key = match segment_key {
+            let kind = match kind {
                 SegmentKind::Beginning if i < last => SegmentKind::Piece,
-                _ => segment_key,
+                _ => kind,
             };
-            let solved = self.segment(segment, segment_key);
+            let solved = self.segment(segment, kind);
             let flies = solved.duration().is_some();
             flown.push(solved);
             if !flies {
@@ -155,15 +155,15 @@ impl<'a> Tours<'a> {
     }
 
     /// The flight of a segment: of a whole tour the one that it has as a piece, if there is one.
-    pub(super) fn segment(&self, route: &[Place], segment_key: SegmentKind) -> Arc<LegSolution> {
+    pub(super) fn segment(&self, route: &[Place], kind: SegmentKind) -> Arc<LegSolution> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
         }
-        let segment = SegmentKey::new(route, segment_key);
+        let segment = SegmentKey::new(route, kind);
         if let Some(flown) = self.segments.get(&segment) {
             return flown;
         }
-        if segment_key == SegmentKind::Tour {
+        if kind == SegmentKind::Tour {
             let piece = self.segment(route, SegmentKind::Piece);
             if piece.duration().is_some() || piece.status.is_interrupted() {
                 return piece;
@@ -234,7 +234,7 @@ impl<'a> Tours<'a> {
         let mut flown = match distinct[..] {
             [place] => self.free_leg(place, place),
             [from, to] => self.free_leg(from, to),
-            _ => self.solve_distinct(&distinct, segment.segment_key),
+            _ => self.solve_distinct(&distinct, segment.kind),
         };
         if flown.duration().is_some() {
             // All of them at one place: the leg itself is the first pause.
@@ -250,10 +250,10 @@ impl<'a> Tours<'a> {
     }
 
     /// The best of several starts: a chain of legs has local minima that none of its legs has.
-    fn solve_distinct(&self, route: &[Place], segment_key: SegmentKind) -> LegSolution {
+    fn solve_distinct(&self, route: &[Place], kind: SegmentKind) -> LegSolution {
         let short = route.len() - 1 <= MAX_SHORT_LEGS;
         let usual = if short { DEFAULT_STARTS_OF_SHORT } else { 1 };
-        let starts = match segment_key {
+        let starts = match kind {
             SegmentKind::Beginning if !short => &STARTS_OF_LONGER[..],
             SegmentKind::Beginning | SegmentKind::Piece => &STARTS,
             SegmentKind::Tour => &START_OF_TOURS,
@@ -430,7 +430,7 @@ impl TourModel for Tours<'_> {
         !waypoint.is_fixed(&self.places.dynamics)
     }
 
-    fn costates(&self, order: &[usize]) -> Option<Vec<Costate>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         self.flight_costates(order)
     }
 

@@ -1,20 +1,17 @@
-//! What casts doubt on a plan, and what a plan no longer says then.
+//! Contradicted bounds and unsolved orders: warnings of a plan, and bounds that it no longer gives.
 
 use super::*;
 use crate::model::plan::LowerBoundKind;
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
-use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegStore, NoStore, StoredLeg};
 use crate::tour::order::TourEvaluation;
 use crate::tour::order::TourModel;
-use crate::tour::planner::legs::LegSolver;
-use crate::tour::planner::places::Places;
-use std::num::NonZeroUsize;
+use crate::tour::planner::tests::with_leg_solver;
 
-/// Keeps contradictions.
+/// Records contradictions.
 #[derive(Default)]
 struct Listener(Mutex<Vec<Contradiction>>);
 
@@ -26,7 +23,7 @@ impl Observer for Listener {
     }
 }
 
-/// Two targets at rest.
+/// Two targets without rate conditions of single axes.
 fn scenario() -> Scenario {
     let mut spec = experiment_a();
     spec.targets.truncate(2);
@@ -36,52 +33,47 @@ fn scenario() -> Scenario {
     Scenario::try_new(&spec).expect("valid").scenario
 }
 
-/// The plan of an order with a certified bound of a share of what it takes, and what was contradicted.
-fn plan_with_bound(share: f64) -> (Plan, Vec<Contradiction>) {
+/// The plan of an order whose certified bound is a multiple of its duration, and the contradictions
+/// reported.
+fn plan_with_bound(factor: f64) -> (Plan, Vec<Contradiction>) {
     let (scenario, listener) = (scenario(), Listener::default());
-    let pool = SolverPool::new(NonZeroUsize::new(1)).expect("a thread");
     let stop = StopSignal::new();
-    let run = Run {
-        pool: &pool,
-        stop: &stop,
-        observer: &listener,
-        legs: &NoStore,
-        segments: &NoStore,
-    };
-    let places = Places::of(&scenario);
-    let legs = LegSolver::new(&places, run, &stop);
-    let tours = Tours::new(&places, &legs, &stop);
-    let TourEvaluation::Solved(duration_s) = tours.tour(&[0, 1]) else {
-        panic!("the order is flown");
-    };
-    let mut builder = PlanBuilder::new(&tours, run, Instant::now());
-    builder.set_certified_bound(Some(share * duration_s));
-    let best = SolvedOrder {
-        order: vec![0, 1],
-        duration_s,
-    };
-    let found = SearchResult {
-        best: Some(best.clone()),
-        alternatives: Vec::new(),
-        lower_bound_s: duration_s,
-        complete: true,
-        end: crate::tour::order::SearchEnd::Exhausted,
-        statistics: SearchStatistics::default(),
-    };
-    let Outcome::Planned(plan) = builder.outcome(&best, &found) else {
-        panic!("the order flies");
-    };
-    (*plan, listener.0.into_inner().expect("no panic"))
+    let plan = with_leg_solver(&scenario, &listener, &NoStore, &stop, |legs, run| {
+        let tours = Tours::new(legs.places(), legs, &stop);
+        let TourEvaluation::Solved(duration_s) = tours.tour(&[0, 1]) else {
+            panic!("the order has a tour");
+        };
+        let mut builder = PlanBuilder::new(&tours, run, Instant::now());
+        builder.set_certified_bound(Some(factor * duration_s));
+        let best = SolvedOrder {
+            order: vec![0, 1],
+            duration_s,
+        };
+        let found = SearchResult {
+            best: Some(best.clone()),
+            alternatives: Vec::new(),
+            lower_bound_s: duration_s,
+            complete: true,
+            end: crate::tour::order::SearchEnd::Exhausted,
+            statistics: SearchStatistics::default(),
+        };
+        match builder.outcome(&best, &found) {
+            Outcome::Planned(plan) => *plan,
+            other => panic!("no plan: {other:?}"),
+        }
+    });
+    (plan, listener.0.into_inner().expect("no panic"))
 }
 
 #[test]
-fn a_bound_above_the_flight_is_told_and_given_to_nobody() {
-    let (plan, told) = plan_with_bound(0.98);
-    assert_eq!((plan.optimality, told), (Optimality::Optimal, Vec::new()));
+fn a_certified_bound_above_the_duration_is_reported_and_not_in_the_plan() {
+    let (plan, reported) = plan_with_bound(0.98);
+    let expected = (Optimality::Optimal, Vec::new());
+    assert_eq!((plan.optimality, reported), expected);
     assert!(plan.certified_lower_bound_s.is_some() && plan.warnings.is_empty());
-    // The tolerances of a flight are no contradiction.
+    // An excess within the tolerances of a flight is no contradiction.
     assert_eq!(plan_with_bound(1.0 + 3e-6).1, []);
-    let (plan, told) = plan_with_bound(1.001);
+    let (plan, reported) = plan_with_bound(1.001);
     let [
         Contradiction::Tour {
             route,
@@ -89,9 +81,9 @@ fn a_bound_above_the_flight_is_told_and_given_to_nobody() {
             bound_s,
             flown_s,
         },
-    ] = &told[..]
+    ] = &reported[..]
     else {
-        panic!("{told:?}");
+        panic!("{reported:?}");
     };
     assert_eq!((route.len(), leg), (4, &None));
     assert!(bound_s > flown_s);
@@ -107,17 +99,27 @@ fn a_bound_above_the_flight_is_told_and_given_to_nobody() {
     assert_eq!(plan.warnings[0].code, Code::BoundContradicted);
 }
 
-/// Gives every leg the motion of one that it has been given before, or a bound that is too large.
-struct Wrong {
+/// A store that answers every identity with the first leg stored, its certified bound replaced by a
+/// multiple of its duration.
+struct FaultyStore {
     first: Mutex<Option<StoredLeg>>,
-    stretched: f64,
+    bound_factor: f64,
 }
 
-impl LegStore for Wrong {
+impl FaultyStore {
+    fn new(bound_factor: f64) -> Self {
+        Self {
+            first: Mutex::default(),
+            bound_factor,
+        }
+    }
+}
+
+impl LegStore for FaultyStore {
     fn get(&self, _: &str) -> Option<StoredLeg> {
         let known = self.first.lock().expect("no panic").clone()?;
         Some(StoredLeg {
-            certified_lower_bound_s: Some(self.stretched * known.duration_s),
+            certified_lower_bound_s: Some(self.bound_factor * known.duration_s),
             ..known
         })
     }
@@ -130,65 +132,52 @@ impl LegStore for Wrong {
     }
 }
 
-#[test]
-fn a_stored_leg_that_its_flight_contradicts_is_told_and_not_used() {
-    let scenario = scenario();
-    let pool = SolverPool::new(NonZeroUsize::new(1)).expect("a thread");
-    let stop = StopSignal::new();
-    let duration = |store: &Wrong, listener: &Listener, to: usize| {
-        let run = Run {
-            pool: &pool,
-            stop: &stop,
-            observer: listener,
-            legs: store,
-            segments: &NoStore,
-        };
-        let places = Places::of(&scenario);
-        let legs = LegSolver::new(&places, run, &stop);
-        let pair = (Place::Start, Place::Target(to));
+/// Duration and certified bound, s, of the rest-to-rest leg to a target.
+fn leg_from(store: &FaultyStore, listener: &Listener, target: usize) -> (f64, Option<f64>) {
+    let (scenario, stop) = (scenario(), StopSignal::new());
+    with_leg_solver(&scenario, listener, store, &stop, |legs, _| {
+        let pair = (Place::Start, Place::Target(target));
         let table = legs.table(LegKind::RestToRest, &[pair]);
         let leg = &table.get(pair.0, pair.1).expect("a leg").leg;
         (leg.flown.duration().expect("converged"), leg.certified)
-    };
-    let store = Wrong {
-        first: Mutex::default(),
-        stretched: 0.9,
-    };
-    let listener = Listener::default();
-    let (first, _) = duration(&store, &listener, 0);
-    let (again, certified) = duration(&store, &listener, 0);
-    assert!((again - first).abs() <= 0.0 && certified == Some(0.9 * first));
-    assert_eq!(listener.0.lock().expect("no panic").len(), 0);
-    let (other, _) = duration(&store, &listener, 1);
-    let (right, _) = duration(
-        &Wrong {
-            first: Mutex::default(),
-            stretched: 1.0,
-        },
-        &listener,
-        1,
-    );
-    assert!((other - right).abs() <= 0.0, "{other} {right}");
-    let told = std::mem::take(&mut *listener.0.lock().expect("no panic"));
-    assert!(
-        matches!(&told[..], [Contradiction::StoredLeg { .. }]),
-        "{told:?}"
-    );
-    let store = Wrong {
-        stretched: 1.01,
-        ..store
-    };
-    let (kept, certified) = duration(&store, &listener, 0);
-    assert!((kept - first).abs() <= 0.0 && certified.is_none());
-    let told = listener.0.into_inner().expect("no panic");
-    assert!(matches!(&told[..], [Contradiction::Leg { .. }]), "{told:?}");
+    })
 }
 
-/// Counts what is asked for.
-#[derive(Default)]
-struct Asked(Mutex<Vec<String>>);
+#[test]
+fn a_stored_leg_with_another_motion_or_a_false_bound_is_reported_and_not_used() {
+    let (store, listener) = (FaultyStore::new(0.9), Listener::default());
+    let (first, _) = leg_from(&store, &listener, 0);
+    let (again, certified) = leg_from(&store, &listener, 0);
+    assert!((again - first).abs() <= 0.0 && certified == Some(0.9 * first));
+    assert_eq!(listener.0.lock().expect("no panic").len(), 0);
+    // The motion to another target is refused, and the leg is solved instead.
+    let (other, _) = leg_from(&store, &listener, 1);
+    let (right, _) = leg_from(&FaultyStore::new(1.0), &listener, 1);
+    assert!((other - right).abs() <= 0.0, "{other} {right}");
+    let reported = std::mem::take(&mut *listener.0.lock().expect("no panic"));
+    assert!(
+        matches!(&reported[..], [Contradiction::StoredLeg { .. }]),
+        "{reported:?}"
+    );
+    // A bound above the duration is dropped, and the motion is kept.
+    let store = FaultyStore {
+        bound_factor: 1.01,
+        ..store
+    };
+    let (kept, certified) = leg_from(&store, &listener, 0);
+    assert!((kept - first).abs() <= 0.0 && certified.is_none());
+    let reported = listener.0.into_inner().expect("no panic");
+    assert!(
+        matches!(&reported[..], [Contradiction::Leg { .. }]),
+        "{reported:?}"
+    );
+}
 
-impl LegStore for Asked {
+/// An empty store that records the identities it is asked for.
+#[derive(Default)]
+struct RecordingStore(Mutex<Vec<String>>);
+
+impl LegStore for RecordingStore {
     fn get(&self, identity: &str) -> Option<StoredLeg> {
         self.0.lock().expect("no panic").push(identity.into());
         None
@@ -197,51 +186,42 @@ impl LegStore for Asked {
     fn put(&self, _: &str, _: &StoredLeg) {}
 }
 
-#[test]
-fn whoever_wants_the_best_so_far_asks_the_store_and_whoever_cancels_does_not() {
-    let scenario = scenario();
-    let pool = SolverPool::new(NonZeroUsize::new(1)).expect("a thread");
-    let asked = |stop: &StopSignal| {
-        let store = Asked::default();
-        let run = Run {
-            pool: &pool,
-            stop,
-            observer: &Listener::default(),
-            legs: &store,
-            segments: &NoStore,
-        };
-        let places = Places::of(&scenario);
-        let legs = LegSolver::new(&places, run, stop);
-        let (start, first, second) = (Place::Start, Place::Target(0), Place::Target(1));
-        // Two of the four are one problem, as without momentum a slew may be flown backwards.
-        let pairs = [
-            (start, first),
-            (first, second),
-            (second, first),
-            (start, second),
-        ];
+/// Numbers of store look-ups, of legs in the table, and of legs solved.
+fn lookups_and_solves(stop: &StopSignal) -> (usize, usize, u64) {
+    let store = RecordingStore::default();
+    let listener = Listener::default();
+    let (start, first, second) = (Place::Start, Place::Target(0), Place::Target(1));
+    // Two of the four are one problem: without momentum a leg is reversible.
+    let pairs = [
+        (start, first),
+        (first, second),
+        (second, first),
+        (start, second),
+    ];
+    let (known, solved) = with_leg_solver(&scenario(), &listener, &store, stop, |legs, _| {
         let table = legs.table(LegKind::RestToRest, &pairs);
         let known = pairs
             .iter()
-            .filter(|(from, to)| table.get(*from, *to).is_some())
-            .count();
-        (
-            store.0.lock().expect("no panic").len(),
-            known,
-            legs.work()[0],
-        )
-    };
-    assert_eq!(asked(&StopSignal::new()), (3, 4, 3));
-    let stop = StopSignal::new();
-    stop.request();
-    assert_eq!(asked(&stop), (3, 0, 0));
-    let stop = StopSignal::new();
-    stop.cancel();
-    assert_eq!(asked(&stop), (0, 0, 0));
+            .filter(|(from, to)| table.get(*from, *to).is_some());
+        (known.count(), legs.work()[0])
+    });
+    let lookups = store.0.lock().expect("no panic").len();
+    (lookups, known, solved)
 }
 
 #[test]
-fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
+fn a_request_to_stop_still_reads_the_store_and_a_cancellation_does_not() {
+    assert_eq!(lookups_and_solves(&StopSignal::new()), (3, 4, 3));
+    let stop = StopSignal::new();
+    stop.request();
+    assert_eq!(lookups_and_solves(&stop), (3, 0, 0));
+    let stop = StopSignal::new();
+    stop.cancel();
+    assert_eq!(lookups_and_solves(&stop), (0, 0, 0));
+}
+
+#[test]
+fn contradicted_bounds_and_orders_without_a_solution_give_warnings() {
     let best = SolvedOrder {
         order: vec![0],
         duration_s: 1.0,
@@ -256,11 +236,11 @@ fn contradicted_bounds_and_orders_without_a_solution_cast_doubt() {
             ..SearchStatistics::default()
         },
     };
-    let told = |contradicted, unresolved, optimality| {
-        let search_warnings = search_warnings(&with(contradicted, unresolved), optimality);
-        search_warnings.map(|doubt| doubt.code).collect::<Vec<_>>()
+    let codes = |contradicted, unresolved, optimality| {
+        let warnings = search_warnings(&with(contradicted, unresolved), optimality);
+        warnings.map(|warning| warning.code).collect::<Vec<_>>()
     };
-    assert_eq!(told(0, 0, Optimality::Feasible), []);
-    assert_eq!(told(2, 3, Optimality::Optimal), [Code::BoundContradicted]);
-    assert_eq!(told(0, 3, Optimality::Feasible), [Code::SlewNotSolved]);
+    assert_eq!(codes(0, 0, Optimality::Feasible), []);
+    assert_eq!(codes(2, 3, Optimality::Optimal), [Code::BoundContradicted]);
+    assert_eq!(codes(0, 3, Optimality::Feasible), [Code::SlewNotSolved]);
 }

@@ -1,39 +1,39 @@
-//! Solved segments of tours, remembered within bounds.
+//! A cache of solved segments in bounded memory.
 //!
-//! A route is solved in different ways as a part of different things, and the answers may differ, so
-//! a segment is both: what is found does not depend on what was asked for before.
+//! The same route is solved differently as a beginning, a piece or a whole tour, and the solutions may
+//! differ. The key holds both, so that a result never depends on earlier look-ups.
 //!
-//! Two generations: when the younger one is full it becomes the older one, whose segments are
-//! forgotten unless they were asked for meanwhile. What is forgotten is solved again when it is
-//! needed, with the same result.
+//! The cache has two generations. When the young one is full it becomes the old one, and the segments
+//! of the previous old generation are dropped; a look-up moves a segment to the young generation. A
+//! dropped segment is solved again when it is needed, with the same result.
 
 use super::segment_key::SegmentKey;
 use crate::leg::multiphase::LegSolution;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Intervals of the motions of a generation. An interval with three wheels takes some 150 bytes, so
-/// both generations together take 100 MB at most, whatever the number of targets: 40 000 segments of
-/// eight legs, 1 700 tours of two hundred.
+/// Intervals of the motions of one generation. An interval with three wheels takes some 150 bytes, so
+/// that both generations together take at most 100 MB, whatever the number of targets: 40 000 segments
+/// of eight legs, or 1 700 tours of two hundred.
 const MAX_GENERATION_INTERVALS: usize = 1 << 18;
 
-/// Flights by their segments.
+/// Solutions by the keys of their segments.
 type Generation = HashMap<SegmentKey, Arc<LegSolution>>;
 
 #[derive(Default)]
 struct Generations {
     young: Generation,
     old: Generation,
-    /// Intervals of the young ones.
+    /// Intervals of the motions in `young`.
     intervals: usize,
 }
 
-/// The memory of a search.
+/// The solved segments of one search.
 #[derive(Default)]
-pub(super) struct SegmentCache(Mutex<Generations>);
+pub(super) struct SolvedSegments(Mutex<Generations>);
 
-impl SegmentCache {
-    /// The flight of a segment, when it is remembered.
+impl SolvedSegments {
+    /// The solution of a segment, when the cache holds it.
     pub(super) fn get(&self, segment: &SegmentKey) -> Option<Arc<LegSolution>> {
         let mut generations = self.lock();
         if let Some(flown) = generations.young.get(segment) {
@@ -44,13 +44,13 @@ impl SegmentCache {
         Some(flown)
     }
 
-    /// Remembers a flight.
+    /// Adds a solution.
     pub(super) fn put(&self, segment: SegmentKey, flown: &Arc<LegSolution>) {
         self.lock().insert(segment, Arc::clone(flown));
     }
 
     fn lock(&self) -> MutexGuard<'_, Generations> {
-        // Whoever panicked has left the maps whole.
+        // A panic under the lock leaves the maps consistent.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -76,14 +76,14 @@ mod tests {
     use nalgebra::DVector;
 
     #[test]
-    fn what_is_asked_for_stays_and_what_is_not_is_forgotten() {
+    fn segments_that_are_looked_up_stay_and_others_are_dropped() {
         let length = MAX_GENERATION_INTERVALS / 4;
         let motion = Profile::zero_length(Attitude::identity(), DVector::zeros(3), length);
         let flown = Arc::new(LegSolution {
             profile: motion,
             ..LegSolution::nowhere()
         });
-        let segments = SegmentCache::default();
+        let segments = SolvedSegments::default();
         let segment = |i| SegmentKey::new(&[Place::Start, Place::Target(i)], SegmentKind::Piece);
         for i in 0..16 {
             segments.put(segment(i), &flown);

@@ -1,7 +1,7 @@
-//! The tables of leg times.
+//! Solves legs between places, one by one and in tables.
 //!
-//! Pairs of places are reduced to canonical legs first, so that equal problems are solved once:
-//! in a table, between tables of one solve, and, through the store, between solves.
+//! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a table,
+//! between the tables of one solve and, through the store, between solves.
 
 use super::canonical::CanonicalLeg;
 use super::from_store::{attitudes_of, leg_from_store, momenta_of};
@@ -23,27 +23,27 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Solves canonical legs and remembers them for the tables and tours of one solve.
+/// Solves canonical legs and keeps them for the tables and tours of one solve.
 pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
     known: ByIdentity<Arc<SolvedLeg>>,
     certified: ByIdentity<CertifiedLeg>,
-    /// What a first tour takes and what none undercuts, s, as far as it is known: reported with the
+    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report of
     /// progress.
     reported: Mutex<(Option<f64>, Option<f64>)>,
-    /// Legs solved.
+    /// Number of legs solved.
     solved: AtomicU64,
-    /// Legs taken from the store.
+    /// Number of legs taken from the store.
     from_store: AtomicU64,
-    /// NLPs solved for them.
+    /// Number of NLPs solved for legs.
     nlp_solves: AtomicU64,
-    /// Claims that a flight has contradicted.
+    /// Number of certified bounds that a flight has contradicted.
     contradictions: AtomicU64,
 }
 
-/// What has been found out, by the identity of the leg.
+/// Results by the identity of the leg.
 type ByIdentity<T> = Mutex<HashMap<String, T>>;
 
 impl<'a> LegSolver<'a> {
@@ -62,23 +62,23 @@ impl<'a> LegSolver<'a> {
         }
     }
 
-    /// The places between which the legs are.
+    /// The places whose legs are solved.
     pub(super) fn places(&self) -> &'a Places<'a> {
         self.places
     }
 
-    /// Where the segments of tours are remembered beyond this solve.
+    /// The store of tour segments.
     pub(super) fn segments(&self) -> &'a dyn SegmentStore {
         self.run.segments
     }
 
-    /// Tells that work has begun.
+    /// Reports that work has begun.
     pub(super) fn report_begin(&self) {
         self.report_progress(0, None);
     }
 
-    /// Tells the duration of a first tour and a bound on all tours, s, now and with the progress of
-    /// the legs from now on.
+    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all later
+    /// progress of the legs.
     pub(super) fn report_bounds(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
         {
             let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
@@ -99,17 +99,17 @@ impl<'a> LegSolver<'a> {
         });
     }
 
-    /// The work so far: legs solved, legs from the store, NLPs.
+    /// Numbers of legs solved, of legs from the store, and of NLPs.
     pub(super) fn work(&self) -> [u64; 3] {
         [&self.solved, &self.from_store, &self.nlp_solves].map(|count| count.load(Relaxed))
     }
 
-    /// Counts a program of one slew that is no leg to keep.
+    /// Counts the NLP of a leg that is not kept.
     pub(super) fn count_solve(&self) {
         self.nlp_solves.fetch_add(1, Relaxed);
     }
 
-    /// Takes note of a contradiction: no certified bound counts from now on.
+    /// Reports a contradiction. From now on no certified bound is trusted.
     pub(super) fn contradicted(&self, contradiction: &Contradiction) {
         self.contradictions.fetch_add(1, Relaxed);
         self.run.observer.contradicted(contradiction);
@@ -120,15 +120,15 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
-    /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
-    /// out of the table.
+    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal are
+    /// missing from the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
         self.fill(kind, pairs, |done, total| {
             self.report_progress(done, Some(total))
         })
     }
 
-    /// The same, without telling of a stage that is over.
+    /// The same without reports of progress, for use after the stage of the legs.
     pub(super) fn table_without_progress(
         &self,
         kind: LegKind,
@@ -158,7 +158,7 @@ impl<'a> LegSolver<'a> {
         Table::new(self.places, entries)
     }
 
-    /// The leg of a kind between two places, solved if it was not before.
+    /// The leg of a kind between two places, solved if it is not known.
     pub(super) fn leg(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
         let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
@@ -186,8 +186,8 @@ impl<'a> LegSolver<'a> {
         Table::new(self.places, pairs.iter().copied().zip(legs))
     }
 
-    /// What is proved of the legs of a kind between pairs of places, without any program; nothing
-    /// where the stop signal prevents it.
+    /// Certified bounds on the legs of a kind between pairs of places; no leg is solved. `None` for
+    /// pairs not reached before the stop signal.
     pub(super) fn certified_legs(
         &self,
         kind: LegKind,
@@ -213,15 +213,15 @@ impl<'a> LegSolver<'a> {
         CanonicalLeg::of(self.places, &from, &to)
     }
 
-    /// The legs of many pairs; those that the stop signal prevents are left out.
+    /// The canonical legs of many pairs; `None` for pairs not reached before the stop signal.
     fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<Option<CanonicalLeg>> {
         self.run.pool.map(pairs, |(from, to)| {
             (!self.is_abandoned()).then(|| self.canonical(kind, *from, *to))
         })
     }
 
-    /// Whether not even known legs are wanted any more: whoever asks for the best so far still
-    /// takes what the store has.
+    /// Whether the solve is cancelled or out of time, so that not even stored legs are of use. After a
+    /// request for the best plan so far they still are.
     fn is_abandoned(&self) -> bool {
         let reason = self.stop.reason();
         reason.is_some_and(|reason| reason != StopReason::Requested)
@@ -237,7 +237,7 @@ impl<'a> LegSolver<'a> {
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
         self.run.pool.map(&missing, |leg| {
-            // Asking the store takes time too, for thousands of legs too much of it.
+            // With thousands of legs, store look-ups alone would delay the stop noticeably.
             if self.is_abandoned() {
                 return;
             }
@@ -250,7 +250,7 @@ impl<'a> LegSolver<'a> {
         });
     }
 
-    /// A leg from the store.
+    /// A leg from the store, if its motion passes verification.
     fn from_store(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
         let faults = flight_faults(self.places, leg, &stored.flown.profile);
@@ -265,7 +265,7 @@ impl<'a> LegSolver<'a> {
         Some(stored)
     }
 
-    /// Takes the certified bound from a leg that was flown in less.
+    /// Drops the certified bound of a leg whose duration is below it, and reports the contradiction.
     fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
         let Some((bound_s, flown_s)) = solved.certified.zip(solved.flown.duration()) else {
             return;
@@ -287,14 +287,14 @@ impl<'a> LegSolver<'a> {
         let mut fresh = solve(self.places, leg, bound, self.stop);
         self.compare_with_bound(leg, &mut fresh);
         if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
-            // At once, so that a solve that is killed has not worked in vain; but not when
-            // stopped, since then perhaps not all starts have been tried.
+            // Stored at once, so that a killed process loses little work. A stopped solve may have
+            // skipped starts, and its leg is not stored.
             self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
         }
         fresh
     }
 
-    /// Keeps a leg unless it was interrupted.
+    /// Keeps a leg for this solve unless its solve was interrupted.
     fn keep(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
         if solved.flown.status.is_interrupted() {
             return;
@@ -310,11 +310,11 @@ impl<'a> LegSolver<'a> {
 }
 
 fn lock<T>(remembered: &ByIdentity<T>) -> MutexGuard<'_, HashMap<String, T>> {
-    // Whoever panicked has left the map whole.
+    // A panic under the lock leaves the map consistent.
     remembered.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The legs of which nothing is known, each of them once.
+/// The legs that are not known yet, without repetitions.
 fn missing_from<'c, T>(
     known: &HashMap<String, T>,
     legs: &'c [Option<CanonicalLeg>],
@@ -326,7 +326,7 @@ fn missing_from<'c, T>(
         .collect()
 }
 
-/// A place under the conditions of a kind of leg.
+/// The waypoint of a place in a leg of this kind.
 pub(super) fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
     match kind {
         LegKind::RestToRest | LegKind::Certified => places.at_rest(place),
@@ -334,7 +334,7 @@ pub(super) fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoi
     }
 }
 
-/// What is proved of a leg.
+/// Computes the certified bound of a leg.
 pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     let begin = Instant::now();
     CertifiedLeg {
@@ -345,8 +345,8 @@ pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     }
 }
 
-/// Solves a leg, refines it until it can be flown, and has it flown by the checker. What has been
-/// certified of it before is not computed again.
+/// Solves a leg, refines it until the checker accepts it, and verifies it. A bound certified before
+/// is not computed again.
 fn solve(
     places: &Places<'_>,
     leg: &CanonicalLeg,

@@ -1,4 +1,5 @@
-//! From the best orders of a search to plans: flown once more for their torques, and verified.
+//! From the orders that a search finds to plans: torques assembled, verified by the checker, and
+//! compared with the certified bounds.
 
 use super::Run;
 use super::assemble::assemble;
@@ -22,24 +23,24 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// What the order of additions does to a duration.
+/// Relative rounding error of a sum of durations that depends on the order of its terms.
 const ROUNDING_OF_SUMS: f64 = 1e-13;
-/// Certified bounds are rounded down to six digits at least.
+/// Relative rounding of certified bounds, which keep at least six digits.
 const ROUNDING: f64 = 1e-6;
 
-/// Makes plans of orders, while a search goes on and at its end.
+/// Makes plans of orders, during a search and at its end.
 pub(super) struct PlanBuilder<'a> {
     tours: &'a Tours<'a>,
-    /// No tour takes less, s, proved.
+    /// Certified lower bound on all tours, s.
     certified: Option<f64>,
     run: Run<'a>,
     begin: Instant,
-    /// The order whose flight was verified last, with that flight: a search that is stopped has its
-    /// plan at once.
+    /// The order whose flight was verified last, with that flight: a stopped search need not assemble
+    /// it again.
     last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
-    /// A tour that was flown without a program, for want of a better one.
+    /// A tour constructed without solving a program, used if the search finds none.
     constructed: Option<(SolvedOrder, VerifiedFlight)>,
-    /// The legs of the final order from rest to rest.
+    /// The rest-to-rest legs of the final order.
     rest: Option<SolvedTable>,
     history: History,
 }
@@ -53,7 +54,7 @@ struct VerifiedFlight {
 }
 
 impl<'a> PlanBuilder<'a> {
-    /// Plans of tours.
+    /// A builder for the plans of a solve that began at this instant.
     pub(super) fn new(tours: &'a Tours<'a>, run: Run<'a>, begin: Instant) -> Self {
         Self {
             tours,
@@ -67,23 +68,24 @@ impl<'a> PlanBuilder<'a> {
         }
     }
 
-    /// Takes in a proved bound on all tours, s.
+    /// Sets the certified lower bound on all tours, s.
     pub(super) fn set_certified_bound(&mut self, certified: Option<f64>) {
         self.certified = certified;
     }
 
-    /// That bound, when there is one and no flight has contradicted any.
+    /// The certified lower bound on all tours, s, unless a flight has contradicted a certified bound.
     pub(super) fn certified_bound(&self) -> Option<f64> {
         self.certified
             .filter(|_| self.tours.legs.bounds_are_trusted())
     }
 
-    /// Constructs a flight of an order, leg by leg, and tells of it; nothing where a leg cannot be
-    /// constructed.
+    /// Constructs a flight of an order, leg by leg, and reports it. Does nothing when a leg cannot be
+    /// constructed or the flight fails its verification.
     pub(super) fn construct(&mut self, order: Vec<usize>) {
         let route = self.tours.places.route(&order, true);
-        let flown = constructed(self.tours.places, &route);
-        let Some(flight) = flown.and_then(|flown| self.verify_flight(&route, &flown).ok()) else {
+        let segments = constructed(self.tours.places, &route);
+        let Some(flight) = segments.and_then(|segments| self.verify_flight(&route, &segments).ok())
+        else {
             return;
         };
         let best = SolvedOrder {
@@ -96,7 +98,7 @@ impl<'a> PlanBuilder<'a> {
         self.constructed = Some((best, flight));
     }
 
-    /// The plan of the constructed flight, for a search that has ended with none.
+    /// The plan of the constructed flight, for a search that ends without an order.
     pub(super) fn constructed_outcome(&self, statistics: SearchStatistics) -> Option<Outcome> {
         let (best, flight) = self.constructed.as_ref()?;
         self.keep_flight(&best.order, flight);
@@ -110,7 +112,7 @@ impl<'a> PlanBuilder<'a> {
         Some(outcome(self.plan(&only, Optimality::Feasible, kind)))
     }
 
-    /// Tells of a first tour, before anything is known of others.
+    /// Reports a first tour, before there is a bound on others.
     pub(super) fn announce(&self, first: &SolvedOrder) {
         self.improved(&Incumbent {
             best: first,
@@ -120,8 +122,8 @@ impl<'a> PlanBuilder<'a> {
         });
     }
 
-    /// Solves the legs of the final order from rest to rest, to be compared with in its plan; not
-    /// when the solve is to stop.
+    /// Solves the rest-to-rest legs of the final order, with which its plan compares the tour's legs;
+    /// skipped when the solve is to stop.
     pub(super) fn compare_with_rest(&mut self, order: &SolvedOrder) {
         if self.tours.stop.is_set() {
             return;
@@ -135,7 +137,7 @@ impl<'a> PlanBuilder<'a> {
         );
     }
 
-    /// The plan of the best order of a search that has ended.
+    /// The plan of the best order at the end of a search.
     pub(super) fn outcome(&self, best: &SolvedOrder, found: &SearchResult) -> Outcome {
         self.run.observer.progress(Progress {
             stage: Stage::Verify,
@@ -145,13 +147,13 @@ impl<'a> PlanBuilder<'a> {
             lower_bound_s: Some(self.best_bound(found.lower_bound_s)),
         });
         let gap = self.tours.places.scenario.options().relative_gap;
-        let asked_for = best.duration_s * (1.0 - gap);
-        // The flight may contradict a bound.
+        let needed_s = best.duration_s * (1.0 - gap);
+        // Verification may find that the flight contradicts a bound. Its failure is reported below.
         let _ = self.verified(&best.order);
         let trusted = self.tours.legs.bounds_are_trusted();
         let certified = self
             .certified_bound()
-            .is_some_and(|bound| bound >= asked_for);
+            .is_some_and(|bound| bound >= needed_s);
         let optimality = if trusted && (certified || found.best_is_proven(gap)) {
             Optimality::Optimal
         } else {
@@ -166,7 +168,7 @@ impl<'a> PlanBuilder<'a> {
         outcome(self.plan(&last, optimality, LowerBoundKind::NlpRelaxation))
     }
 
-    /// The plan of an order that was given and not searched for, with the sum of its legs as bound.
+    /// The plan of a prescribed order, with the sum of its legs' bounds as the lower bound.
     pub(super) fn fixed_order_outcome(&self, order: &SolvedOrder, lower_bound_s: f64) -> Outcome {
         let only = Incumbent {
             best: order,
@@ -177,7 +179,7 @@ impl<'a> PlanBuilder<'a> {
         outcome(self.plan(&only, Optimality::Feasible, LowerBoundKind::PairTable))
     }
 
-    /// The flight of an order, verified.
+    /// The verified flight of an order.
     fn verified(&self, order: &[usize]) -> Result<VerifiedFlight, Problem> {
         if let Some((known, flight)) = self.last_flight().as_ref()
             && known == order
@@ -185,7 +187,7 @@ impl<'a> PlanBuilder<'a> {
             return Ok(flight.clone());
         }
         let route = self.tours.places.route(order, true);
-        // Every segment is remembered from its evaluation: nothing is solved here.
+        // The segments are cached since their evaluation: nothing is solved here.
         let flight = self.verify_flight(&route, &self.tours.solve_route(&route))?;
         self.keep_flight(order, &flight);
         Ok(flight)
@@ -203,17 +205,18 @@ impl<'a> PlanBuilder<'a> {
         *self.last_flight() = None;
     }
 
-    /// The flight of solved segments, when the checker agrees with it.
+    /// Assembles the flight of solved segments and verifies it.
     fn verify_flight(
         &self,
         route: &[Place],
-        flown: &[Arc<LegSolution>],
+        segments: &[Arc<LegSolution>],
     ) -> Result<VerifiedFlight, Problem> {
-        let (flight, legs) = assemble(self.tours, route, flown);
+        let (flight, legs) = assemble(self.tours, route, segments);
         let report = checker::verify(self.tours.places.scenario, &flight);
         if !report.verification.passed {
             let message = report.verification.failures.join("; ");
-            let hint = "report the scenario: a plan that does not fly is a defect of the solver";
+            let hint =
+                "report the scenario: a plan that fails verification is a defect of the solver";
             return Err(Problem::new("", Code::VerificationFailed, message, hint));
         }
         let verified = VerifiedFlight {
@@ -242,7 +245,7 @@ impl<'a> PlanBuilder<'a> {
         let (bound, lower_bound_kind) = if self.tours.legs.bounds_are_trusted() {
             self.bound(order.lower_bound_s, kind, total)
         } else {
-            // Certified bounds have been part of the search's own.
+            // The search's bound rests on the contradicted bounds too.
             (0.0, kind)
         };
         let route = self.tours.places.route(&order.best.order, true);
@@ -288,7 +291,7 @@ impl<'a> PlanBuilder<'a> {
 }
 
 impl PlanBuilder<'_> {
-    /// The work so far, without its history.
+    /// The work so far; the history is left empty.
     fn statistics(&self, search: &SearchStatistics) -> Statistics {
         let [legs_solved, legs_from_cache, legs] = self.tours.legs.work();
         let segments = self.tours.solves.load(Ordering::Relaxed);
@@ -305,7 +308,7 @@ impl PlanBuilder<'_> {
         }
     }
 
-    /// Puts beside the legs of a route what is proved of them, and the legs from rest to rest.
+    /// Adds to the legs of a route their certified bounds and their rest-to-rest durations.
     fn annotate_legs(&self, legs: &mut [Leg], route: &[Place]) {
         for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
             let rest = self.rest.as_ref();
@@ -315,20 +318,21 @@ impl PlanBuilder<'_> {
         }
     }
 
-    /// A doubt about bounds that a flight has contradicted.
+    /// The warning that a flight has contradicted a certified bound.
     fn contradiction_warning(&self) -> Option<Problem> {
         let trusted = self.tours.legs.bounds_are_trusted();
         (!trusted).then(|| {
-            let message = "a flight was faster than a certified bound, so that no bound is given";
+            let message = "a flight was faster than a certified bound; the plan gives no bound";
             let hint = "report the scenario: a bound that does not hold is a defect of the solver";
             Problem::new("", Code::BoundContradicted, message, hint)
         })
     }
 
-    /// Compares a flight with the certified bounds of its legs and of all tours.
-    fn check_bounds(&self, route: &[Place], flown: &VerifiedFlight) {
+    /// Compares a flight with the certified bounds on its legs and on all tours, and reports
+    /// contradictions.
+    fn check_bounds(&self, route: &[Place], verified: &VerifiedFlight) {
         let (tours, places) = (self.tours, &self.tours.places);
-        let total = flown.flight.total_time_s;
+        let total = verified.flight.total_time_s;
         let contradicted = |leg, bound_s, flown_s| {
             tours.legs.contradicted(&Contradiction::Tour {
                 route: route.iter().map(|place| places.name(*place)).collect(),
@@ -338,7 +342,7 @@ impl PlanBuilder<'_> {
             });
         };
         let mut all_slack = 0.0;
-        for (leg, pair) in flown.legs.iter().zip(route.windows(2)) {
+        for (leg, pair) in verified.legs.iter().zip(route.windows(2)) {
             let Some(bound_s) = tours.certified_bound(pair[0], pair[1]) else {
                 continue;
             };
@@ -357,14 +361,14 @@ impl PlanBuilder<'_> {
         }
     }
 
-    /// A bound, s, or the certified one where that is larger.
+    /// The larger of a bound and the certified one, s.
     fn best_bound(&self, bound: f64) -> f64 {
         self.certified_bound()
             .map_or(bound, |certified| certified.max(bound))
     }
 
-    /// The bound of a plan of this duration, s, and its kind. A certified bound that equals another
-    /// one up to rounding, or proves alone that the plan is within the gap asked for, is worth more.
+    /// The bound of a plan of this duration, s, and its kind. A certified bound is preferred when it
+    /// equals the other one up to rounding, or proves alone that the plan is within the requested gap.
     fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
         let gap = self.tours.places.scenario.options().relative_gap;
         let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
@@ -387,7 +391,8 @@ impl SearchObserver for PlanBuilder<'_> {
     }
 
     fn improved(&self, incumbent: &Incumbent<'_>) {
-        // One that does not fly is kept back; the end of the search tells if it stays the best.
+        // A plan that fails verification is not reported here; if it stays the best, the search ends
+        // with that failure.
         let kind = LowerBoundKind::NlpRelaxation;
         if let Ok(plan) = self.plan(incumbent, Optimality::Feasible, kind) {
             self.history.replace(&plan.statistics.history);
@@ -403,7 +408,7 @@ fn outcome(plan: Result<Plan, Problem>) -> Outcome {
     }
 }
 
-/// What the search itself casts doubt on.
+/// Warnings that follow from the counts of a search.
 fn search_warnings(
     order: &Incumbent<'_>,
     optimality: Optimality,
@@ -411,14 +416,14 @@ fn search_warnings(
     let contradicted = order.statistics.bounds_contradicted;
     let contradicted = (contradicted > 0).then(|| {
         let message =
-            format!("{contradicted} orders were flown faster than a lower bound had allowed");
+            format!("the tours of {contradicted} orders are shorter than their lower bounds");
         let hint = "take the bound as an estimate: a relaxed problem ended in a local minimum";
         Problem::new("", Code::BoundContradicted, message, hint)
     });
     let unresolved = order.statistics.tours_unresolved;
     let unresolved = (unresolved > 0 && optimality == Optimality::Feasible).then(|| {
         let message = format!(
-            "for {unresolved} orders no program ended in a solution, so that they are not ruled out"
+            "the programs of {unresolved} orders found no solution; these orders are not ruled out"
         );
         Problem::new("/targets", Code::SlewNotSolved, message, super::SLEW_HINT)
     });

@@ -36,17 +36,17 @@ impl SolvedSegments {
     /// The solution of a segment, when the cache holds it.
     pub(super) fn get(&self, segment: &SegmentKey) -> Option<Arc<LegSolution>> {
         let mut generations = self.lock();
-        if let Some(flown) = generations.young.get(segment) {
-            return Some(Arc::clone(flown));
+        if let Some(solution) = generations.young.get(segment) {
+            return Some(Arc::clone(solution));
         }
-        let (segment, flown) = generations.old.remove_entry(segment)?;
-        generations.insert(segment, Arc::clone(&flown));
-        Some(flown)
+        let (segment, solution) = generations.old.remove_entry(segment)?;
+        generations.insert(segment, Arc::clone(&solution));
+        Some(solution)
     }
 
     /// Adds a solution.
-    pub(super) fn put(&self, segment: SegmentKey, flown: &Arc<LegSolution>) {
-        self.lock().insert(segment, Arc::clone(flown));
+    pub(super) fn put(&self, segment: SegmentKey, solution: &Arc<LegSolution>) {
+        self.lock().insert(segment, Arc::clone(solution));
     }
 
     fn lock(&self) -> MutexGuard<'_, Generations> {
@@ -56,13 +56,13 @@ impl SolvedSegments {
 }
 
 impl Generations {
-    fn insert(&mut self, segment: SegmentKey, flown: Arc<LegSolution>) {
+    fn insert(&mut self, segment: SegmentKey, solution: Arc<LegSolution>) {
         if self.intervals >= MAX_GENERATION_INTERVALS {
             self.old = std::mem::take(&mut self.young);
             self.intervals = 0;
         }
-        self.intervals += flown.profile.intervals();
-        self.young.insert(segment, flown);
+        self.intervals += solution.profile.intervals();
+        self.young.insert(segment, solution);
     }
 }
 
@@ -79,14 +79,14 @@ mod tests {
     fn segments_that_are_looked_up_stay_and_others_are_dropped() {
         let length = MAX_GENERATION_INTERVALS / 4;
         let motion = Profile::zero_length(Attitude::identity(), DVector::zeros(3), length);
-        let flown = Arc::new(LegSolution {
+        let solution = Arc::new(LegSolution {
             profile: motion,
             ..LegSolution::nowhere()
         });
         let segments = SolvedSegments::default();
         let segment = |i| SegmentKey::new(&[Place::Start, Place::Target(i)], SegmentKind::Piece);
         for i in 0..16 {
-            segments.put(segment(i), &flown);
+            segments.put(segment(i), &solution);
             assert!(segments.get(&segment(0)).is_some());
         }
         assert!(segments.get(&segment(1)).is_none());

@@ -1,11 +1,10 @@
-//! A proved bound on the whole tour, before any program has been solved.
+//! A certified lower bound on whole tours, before any program is solved.
 //!
-//! Cut a tour where it arrives at a target or the end, and leave out settling and dwelling: each
-//! slew lasts at least its certified bound, which holds whatever comes before and after it. So the
-//! shortest way through all targets in the table of these bounds, service times added, is a bound
-//! on all tours in all orders that the scenario admits. The search finds that way; up to
-//! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets its first step is exact, beyond it stops
-//! after some work with the bound that it has by then.
+//! Each leg of a tour lasts at least its certified bound, which holds whatever comes before and after
+//! the leg. So the shortest path through all targets in the table of these bounds, with settle and dwell
+//! times added, bounds all tours in all orders that the scenario admits. The order search finds a bound
+//! on that path: exact up to [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, and beyond
+//! that number the bound reached within a node limit.
 
 use super::additive_tours::AdditiveTours;
 use super::places::Places;
@@ -15,14 +14,14 @@ use crate::run::progress::Progress;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{Incumbent, Place, SearchObserver, SearchSettings, search};
 
-/// Nodes of the search times the third power of the number of targets: a fraction of a second.
-const EFFORT: u64 = 50_000_000;
-/// How far from the shortest way the search may end: nothing beside the gap of the bounds.
+/// Node limit of the search times the cube of the number of targets: a fraction of a second.
+const NODES_TIMES_TARGETS_CUBED: u64 = 50_000_000;
+/// Relative gap at which the search may end; small beside the gap of the certified bounds.
 const GAP: f64 = 2e-4;
-/// Share taken off for orders that the search takes to be equal, and for rounding.
+/// Relative reduction of the bound, for orders that the search treats as ties and for rounding.
 const DEFLATION: f64 = 3e-9;
 
-/// Tours whose slews take as long as their certified bounds; those of which nothing is proved, no time.
+/// Tours whose legs take as long as their certified bounds, and no time where nothing is proved.
 fn certified_tours<'a>(
     places: &'a Places<'a>,
     bounds: &'a CertifiedTable,
@@ -30,8 +29,8 @@ fn certified_tours<'a>(
     AdditiveTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
 }
 
-/// A duration, s, that no tour undercuts, in whatever order the scenario admits; legs of which nothing is proved count
-/// nothing. `None` when that is all of them.
+/// Certified lower bound on the duration of all tours, s, over all orders that the scenario admits. A leg
+/// without a proved bound counts as 0; `None` when no leg has one.
 pub(super) fn tour_bound(
     places: &Places<'_>,
     bounds: &CertifiedTable,
@@ -43,7 +42,7 @@ pub(super) fn tour_bound(
     }
     let targets = places.scenario.targets().len() as u64;
     let settings = SearchSettings {
-        node_limit: Some(EFFORT / targets.pow(3).max(1)),
+        node_limit: Some(NODES_TIMES_TARGETS_CUBED / targets.pow(3).max(1)),
         relative_gap: GAP,
         ..SearchSettings::default()
     };
@@ -52,7 +51,7 @@ pub(super) fn tour_bound(
     Some(found.lower_bound_s * (1.0 - DEFLATION))
 }
 
-/// The same of the tours along one route.
+/// The same for the tours along one route.
 pub(super) fn route_bound(
     places: &Places<'_>,
     bounds: &CertifiedTable,
@@ -62,7 +61,7 @@ pub(super) fn route_bound(
     bounds.has_bounds().then(|| sum() * (1.0 - DEFLATION))
 }
 
-/// Nobody is reported how this search goes.
+/// Ignores the progress of this search.
 struct Unobserved;
 
 impl SearchObserver for Unobserved {

@@ -215,7 +215,7 @@ fn certificates(generator: &mut Generator, good: usize, bad: usize) -> usize {
     for _ in 0..good {
         let certificate = certificate(generator);
         let started = Instant::now();
-        let answer = certify::check(&certificate);
+        let answer = certify::verify(&certificate);
         times.push(started.elapsed().as_secs_f64() * 1e3);
         if let Err(rejection) = answer {
             println!("not confirmed: {rejection}: {certificate:?}");
@@ -232,7 +232,7 @@ fn certificates(generator: &mut Generator, good: usize, bad: usize) -> usize {
     for number in 0..bad {
         let mut damaged = certificate(generator);
         damage(&mut damaged, number % 5);
-        let reason = match certify::check(&damaged) {
+        let reason = match certify::verify(&damaged) {
             Ok(()) => {
                 println!("confirmed though damaged, {}: {damaged:?}", number % 5);
                 faults += 1;

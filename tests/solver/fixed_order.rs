@@ -2,14 +2,14 @@
 
 use slewplan_solver::model::plan::{LowerBoundKind, Optimality, Outcome, Plan};
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, fly_order};
+use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, solve_order};
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, on_threads, plan_of, planned, scenario_of};
 use slewplan_tests::{experiment_a_spec, target};
 
 fn flown(spec: &ScenarioSpec, order: &[usize], effort: BoundFrom) -> Plan {
     let scenario = scenario_of(spec);
-    let outcome = on_threads(2, |run| fly_order(&scenario, order, effort, run));
+    let outcome = on_threads(2, |run| solve_order(&scenario, order, effort, run));
     planned(outcome.expect("an order of the targets"))
 }
 
@@ -98,7 +98,7 @@ fn lists_that_are_no_order_of_the_targets_are_refused() {
         vec![0, 1, 2, 3, 4, 5, 5],
     ] {
         let answer = on_threads(1, |run| {
-            fly_order(&scenario, &wrong, BoundFrom::Certificates, run)
+            solve_order(&scenario, &wrong, BoundFrom::Certificates, run)
         });
         assert_eq!(answer.err(), Some(error.clone()), "{wrong:?}");
     }
@@ -111,7 +111,7 @@ fn an_order_through_a_rest_that_the_wheels_cannot_hold_is_infeasible() {
     spec.targets = vec![target("turned", [45.0, 0.0, 45.0])];
     let scenario = scenario_of(&spec);
     let outcome = on_threads(1, |run| {
-        fly_order(&scenario, &[0], BoundFrom::Certificates, run)
+        solve_order(&scenario, &[0], BoundFrom::Certificates, run)
     });
     assert!(matches!(outcome, Ok(Outcome::Infeasible(_))), "{outcome:?}");
 }

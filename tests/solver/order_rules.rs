@@ -2,7 +2,7 @@
 
 use slewplan_solver::model::plan::{Optimality, Plan};
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, fly_order};
+use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, solve_order};
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, published_targets_spec};
 
@@ -68,7 +68,7 @@ fn a_given_order_has_to_keep_the_rules() {
     let fly = |order: &str| {
         let order = indices(order);
         on_threads(2, |run| {
-            fly_order(&scenario, &order, BoundFrom::Certificates, run)
+            solve_order(&scenario, &order, BoundFrom::Certificates, run)
         })
     };
     for wrong in ["cabfde", "acdbfe", "acfdbe"] {

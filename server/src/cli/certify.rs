@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         legs: &NoStore,
         segments: &NoStore,
     };
-    let checked = planner::certify_plan(&scenario, &claims, run);
+    let checked = planner::verify_certificate(&scenario, &claims, run);
     drop(observer);
     output::print(&if arguments.summary || stdout().is_terminal() {
         report::certification(&claims, &checked)

@@ -7,7 +7,7 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::{AttitudeSpec, TargetSpec};
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
-use slewplan_solver::tour::planner::{BoundFrom, Run, fly_order};
+use slewplan_solver::tour::planner::{BoundFrom, Run, solve_order};
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
@@ -56,7 +56,7 @@ fn fly(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
         };
         let fly = |tour: &Scenario, run| {
             let order: Vec<usize> = (0..tour.targets().len()).collect();
-            planned(fly_order(tour, &order, effort, run).expect("an order"))
+            planned(solve_order(tour, &order, effort, run).expect("an order"))
         };
         let phases: usize = tours.iter().map(|tour| fly(tour, filling).legs.len()).sum();
         let run = match given {

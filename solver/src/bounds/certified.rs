@@ -61,22 +61,22 @@ const MAX_KINDS: usize = 64;
 /// when it is first needed, and shared between threads.
 #[derive(Debug)]
 pub(crate) struct CertifiedBounds {
-    frames: Vec<Frame>,
+    frames: Vec<BodyFrame>,
     /// With momentum, these are used instead.
     momentum: Option<MomentumBounds>,
-    prepared: Mutex<HashMap<Ends, Arc<[Option<SlewBound>]>>>,
+    prepared: Mutex<HashMap<EndKey, Arc<[Option<SlewBound>]>>>,
 }
 
 /// What no motion exceeds, seen from axes fixed in the body.
 #[derive(Debug, Clone, Copy)]
-struct Frame {
+struct BodyFrame {
     /// Its axes as columns, in body axes.
     axes: Matrix3<f64>,
     limits: SlewLimits,
 }
 
 /// Bit patterns of what the rates do not exceed at begin and end, per body axis.
-type Ends = [[u64; 3]; 2];
+type EndKey = [[u64; 3]; 2];
 
 impl CertifiedBounds {
     /// The bounds of a spacecraft with its momentum.
@@ -91,7 +91,9 @@ impl CertifiedBounds {
         let frames = if momentum.is_some() {
             Vec::new()
         } else {
-            axes.iter().map(|axes| Frame::of(dynamics, *axes)).collect()
+            axes.iter()
+                .map(|axes| BodyFrame::of(dynamics, *axes))
+                .collect()
         };
         Self {
             frames,
@@ -155,7 +157,7 @@ impl CertifiedBounds {
     }
 
     fn prepared(&self, ends: &[Vector3<f64>; 2]) -> Arc<[Option<SlewBound>]> {
-        let kind: Ends = ends.map(|end| end.map(f64::to_bits).into());
+        let kind: EndKey = ends.map(|end| end.map(f64::to_bits).into());
         let lock = || self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&kind) {
             return Arc::clone(known);
@@ -170,7 +172,7 @@ impl CertifiedBounds {
     }
 }
 
-impl Frame {
+impl BodyFrame {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>) -> Self {
         let rate = |axis: &Vector3<f64>| {
             dynamics

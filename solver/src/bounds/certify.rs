@@ -1,6 +1,6 @@
 //! A slow second proof of the bounds that [`crate::bounds::kinematic`] claims.
 //!
-//! [`check`] takes a [`Certificate`] and proves what it claims again, in intervals that are rounded
+//! [`verify`] takes a [`Certificate`] and proves what it claims again, in intervals that are rounded
 //! outwards, with nothing of the fast search: another list of extremals, another way through them,
 //! another integral. It confirms, or says why not: a motion that is faster than claimed, or that no
 //! proof was found. A certificate comes from
@@ -21,14 +21,14 @@
 //! let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
 //! let turn = Attitude::from_rotation_vector(Vector3::new(0.4, -0.9, 0.7));
 //! let mut certificate = bound.certificate(&[turn], 1e-4);
-//! assert_eq!(certify::check(&certificate), Ok(()));
+//! assert_eq!(certify::verify(&certificate), Ok(()));
 //! certificate.duration_s *= 1.001;
-//! assert!(matches!(certify::check(&certificate), Err(Rejection::Link { .. })));
+//! assert!(matches!(certify::verify(&certificate), Err(Rejection::Link { .. })));
 //! ```
 //!
 //! # What is proved
 //!
-//! 1. **Turns** ([`check_turn`]). A motion of least time exists and is one of the extremals that the
+//! 1. **Turns** ([`verify_turn`]). A motion of least time exists and is one of the extremals that the
 //!    docs of [`crate::bounds::kinematic`] derive from Pontryagin's principle. Taken as given are from
 //!    there: the folded costate runs on a circle and is reflected where a component vanishes, so that
 //!    arcs between flips last equally long; it may rest on saddles only; all dwells can be moved to
@@ -41,10 +41,10 @@
 //!    * a dwell with arcs before and after it whose durations follow from the costate (`dwelling`).
 //!
 //!    All orders of axes and all octants are gone through, whether an extremal is like that or not:
-//!    each word is a motion within the box, so words too many do no harm. For each, the range of the
+//!    each sequence is a motion within the box, so sequences too many do no harm. For each, the range of the
 //!    unknown is halved until every part is refuted: `c_0 . P c_f` is not what the target asks for,
-//!    or the outer arcs that close the word (`closing`) are negative, too long, or make the word take
-//!    the claimed time. Words of many flips are refuted together (`near_axis`).
+//!    or the outer arcs that close the sequence (`terminal_arcs`) are negative, too long, or make the sequence take
+//!    the claimed time. Sequences of many flips are refuted together (`near_axis`).
 //! 2. **The link** to the duration: `s(T)` is bounded from above (`link`).
 //!
 //! Within a part about the middle of a range of half-width `b`, interiors differ by Taylor's theorem,
@@ -55,19 +55,19 @@
 //! Nearly equal rates are moved apart by raising them, by 4e-7 at most, which makes what is proved
 //! stronger; certificates leave 2e-6 of room.
 
-mod closing;
 mod dwelling;
 mod interval;
 mod link;
 mod near_axis;
 mod prover;
 mod rates;
+mod sequence;
+mod terminal_arcs;
 #[cfg(test)]
 mod tests;
 mod turn;
-mod word;
 
-use crate::bounds::kinematic::certificate::{Certificate, ClaimedTurn};
+use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
 use interval::Interval;
 use nalgebra::Vector3;
 use prover::Prover;
@@ -116,7 +116,7 @@ impl Rejection {
 /// # Errors
 ///
 /// The first [`Rejection`] that was met; the link is looked at first.
-pub fn check(certificate: &Certificate) -> Result<(), Rejection> {
+pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
     let Certificate {
         limits,
         ends,
@@ -164,7 +164,7 @@ pub fn check(certificate: &Certificate) -> Result<(), Rejection> {
 /// # Errors
 ///
 /// A [`Rejection`] that says why it is not confirmed.
-pub fn check_turn(box_rad_s: &Vector3<f64>, claimed: &ClaimedTurn) -> Result<(), Rejection> {
+pub fn verify_turn(box_rad_s: &Vector3<f64>, claimed: &CertifiedTurn) -> Result<(), Rejection> {
     let Some(mut prover) = Prover::new(box_rad_s) else {
         return Err(Rejection::Malformed {
             what: "the box must be positive and finite",

@@ -19,27 +19,27 @@
 //! transversal unless `|M_k| / c_k = |M_l| / c_l`, the saddle of `h` on which `M` is parallel to a
 //! face diagonal. Hence:
 //!
-//! * **regular** words: a first arc, interior arcs of one duration `D`, a last arc; neither outer arc
+//! * **regular** sequences: a first arc, interior arcs of one duration `D`, a last arc; neither outer arc
 //!   is longer than `D`. The gap between two walls lies about an axis `i` that never flips (three
 //!   *vertex* families, `D` down to zero), or, once the walls of the largest rates have vanished, on
 //!   the far side of that axis, or is all of the circle but one wall;
-//! * **singular** words on the level of a saddle: there `M` may rest, which forces a rate parallel to
+//! * **singular** sequences on the level of a saddle: there `M` may rest, which forces a rate parallel to
 //!   the face diagonal; between visits the arcs have durations that the level fixes. A dwell of
 //!   length `d` is a turn by `exp(d h A)` *in space*; these commute, so all dwells of an extremal can
 //!   be moved to the first visit without changing its end or its time;
 //! * turns about one body axis at its full rate (`M` along it), and one or two arcs.
 //!
-//! Each has at most three free durations. Every word with non-negative durations is a motion within
-//! the box, so words too many, or ranges too wide, change nothing; only a missing one would.
+//! Each has at most three free durations. Every sequence with non-negative durations is a motion within
+//! the box, so sequences too many, or ranges too wide, change nothing; only a missing one would.
 //!
-//! Words are left out for three reasons. Their fixed arcs last longer than *every* turn needs at most
+//! Sequences are left out for three reasons. Their fixed arcs last longer than *every* turn needs at most
 //! (`longest_time`). Some of their fixed arcs can be replaced by a clearly faster turn, so that no
-//! shortest motion contains them. Vertex words of many flips keep `M` in a narrow cone about the axis,
+//! shortest motion contains them. Vertex sequences of many flips keep `M` in a narrow cone about the axis,
 //! of half-angle `e`; then the swing away from it stays below `2 e` and the rate of twist below
-//! `c_i + tan(e) hypot(c_j, c_k)`, which bounds their time from below (`Search::by_twist`); the bound
+//! `c_i + tan(e) hypot(c_j, c_k)`, which bounds their time from below (`SequenceSearch::by_twist`); the bound
 //! rises with the number of flips and ends the enumeration.
 //!
-//! # One equation per word
+//! # One equation per sequence
 //!
 //! With the interior `P(p)` of the parameter `p` (`D` or the dwell), `R = exp(t_0 c_0) P exp(t_f c_f)`
 //! and the first and last turns leave `c_0` and `c_f` as they are, so
@@ -50,14 +50,14 @@
 //!
 //! For one free arc this is a sinusoid with closed roots; else cells `[p - b, p + b]` shrink by
 //! `|f''| <= (sum of the speeds)^2`, which bounds second derivatives of any product of rotations. The
-//! outer arcs then follow in closed form (`closing`). Over a cell the interior stays within the angle
+//! outer arcs then follow in closed form (`terminal_arcs`). Over a cell the interior stays within the angle
 //! `|velocity| b + (sum of the speeds)^2 b^2 / 2` of its centre, which encloses the outer arcs and so
 //! the time. Cells whose time is no less than the best motion's are dropped; the least bound of the
 //! cells that were kept, or the best time if that is less, is a lower bound on `V`.
 //!
 //! # Rounding
 //!
-//! Quaternions of words are products of at most some thousand turns, correct to 1e-12; the equation
+//! Quaternions of sequences are products of at most some thousand turns, correct to 1e-12; the equation
 //! is tested with a margin of 1e-10 rad, which also widens what is known of the interior, so it is
 //! not lost to rounding. `C1 + C2 <= 1` is used instead of being recomputed, so outer arcs are as good
 //! as the interior. Nearly equal rates are raised to equality (`V` only falls). Results are deflated
@@ -71,31 +71,31 @@
 //! decomposition `q = q_swing q_twist` about a body axis.
 
 pub mod certificate;
-mod closing;
 mod drift;
 mod extremal;
 mod interior;
 mod levels;
 pub mod limits;
 pub mod ramps;
-mod rise;
+mod rate_envelope;
 mod search;
+mod sequences;
 mod singular;
+mod terminal_arcs;
 #[cfg(test)]
 mod tests;
 mod turns;
-mod words;
 
 use crate::math::quaternion::Quat;
 use crate::model::attitude::Attitude;
 use levels::{EQUAL, Levels};
 use nalgebra::Vector3;
-use search::Search;
+use search::SequenceSearch;
+use sequences::{ClosedFormSequence, FIRST, SequenceFamily};
 use std::f64::consts::PI;
-use words::{FIRST, Family, SingleWord};
 
-/// Most dwelling words of a ratio of rates: extreme ratios are refused rather than served slowly.
-const MAX_WORDS: usize = 200_000;
+/// Most dwelling sequences of a ratio of rates: extreme ratios are refused rather than served slowly.
+const MAX_SEQUENCES: usize = 200_000;
 /// Taken off a lower bound for the rounding of its last operations.
 const DEFLATION: f64 = 1e-9;
 
@@ -110,10 +110,10 @@ pub struct RateBox {
     stretch: f64,
     /// The least normalised rate.
     slowest: f64,
-    /// Words of gaps.
-    families: Vec<Family>,
-    /// Words with one free arc, those without fixed arcs first, then by the sum of these.
-    singles: Vec<SingleWord>,
+    /// Sequences of gaps.
+    families: Vec<SequenceFamily>,
+    /// Sequences with one free arc, those without fixed arcs first, then by the sum of these.
+    closed_forms: Vec<ClosedFormSequence>,
     /// How many of them are tried before the families.
     promising: usize,
 }
@@ -153,20 +153,20 @@ impl RateBox {
         let speed = raised.norm() * largest;
         let c: [f64; 3] = (raised / raised.norm()).into();
         let levels = Levels::new(c);
-        let families = Family::all(&levels);
-        let mut singles = singular::words(&levels, longest_time(&c), MAX_WORDS)?;
-        let promising = singles.partition_point(|word| word.fixed == 0.0);
+        let families = SequenceFamily::all(&levels);
+        let mut closed_forms = singular::sequences(&levels, longest_time(&c), MAX_SEQUENCES)?;
+        let promising = closed_forms.partition_point(|sequence| sequence.fixed == 0.0);
         let two_flips = families
             .iter()
             .flat_map(|family| (0..FIRST.len()).filter_map(|first| family.two_flips(&c, first)));
-        singles.splice(promising..promising, two_flips);
+        closed_forms.splice(promising..promising, two_flips);
         Some(Self {
-            promising: singles.partition_point(|word| word.fixed == 0.0),
+            promising: closed_forms.partition_point(|sequence| sequence.fixed == 0.0),
             speed,
             stretch: (0..3).fold(1.0, |most, i| f64::max(most, c[i] * speed / rates[i])),
             slowest: c[0].min(c[1]).min(c[2]),
             families,
-            singles,
+            closed_forms,
             levels,
         })
     }
@@ -179,7 +179,7 @@ impl RateBox {
     #[must_use]
     pub fn query(&self, turn: &Attitude, tolerance: f64) -> ShortestTurn {
         let q = canonical(turn);
-        let mut search = Search::new(self, &q, tolerance);
+        let mut search = SequenceSearch::new(self, &q, tolerance);
         search.run();
         let arcs: Vec<RateArc> = extremal::arcs(self, &q, search.best)
             .into_iter()
@@ -200,12 +200,12 @@ impl RateBox {
     /// The lower value of [`Self::query`] alone, s; nothing is allocated.
     #[must_use]
     pub fn lower_bound(&self, turn: &Attitude, tolerance: f64) -> f64 {
-        let mut search = Search::new(self, &canonical(turn), tolerance);
+        let mut search = SequenceSearch::new(self, &canonical(turn), tolerance);
         search.run();
         self.lower(&search)
     }
 
-    fn lower(&self, search: &Search<'_>) -> f64 {
+    fn lower(&self, search: &SequenceSearch<'_>) -> f64 {
         let kept = search.lower.min(search.upper).max(search.floor());
         kept * (1.0 - DEFLATION) / self.speed
     }

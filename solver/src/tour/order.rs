@@ -98,7 +98,7 @@ pub enum Evaluation {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TourEvaluation {
     /// The order can be flown in this time, s.
-    LegSolution(f64),
+    Solved(f64),
     /// The evaluation did not converge; the order may or may not be good.
     Unresolved,
     /// The evaluation was interrupted by the stop signal.
@@ -106,7 +106,7 @@ pub enum TourEvaluation {
 }
 
 /// What a unit more of each quantity of the state in which a target is passed is worth, s.
-pub type Price = Vec<f64>;
+pub type PassageCostate = Vec<f64>;
 
 /// All that the search knows of slews.
 ///
@@ -155,7 +155,7 @@ pub trait TourModel: Sync {
     /// state there saves the slews before it, at the margin, and costs those after it. `None` where
     /// the order does not resolve or the model knows no states. In a symmetric model those backwards
     /// are the same.
-    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         let _ = order;
         None
     }
@@ -184,9 +184,9 @@ pub trait SearchObserver: Sync {
 #[derive(Debug, Clone, Copy)]
 pub struct Incumbent<'a> {
     /// The best order.
-    pub best: &'a FlownOrder,
+    pub best: &'a SolvedOrder,
     /// The next best orders.
-    pub alternatives: &'a [FlownOrder],
+    pub alternatives: &'a [SolvedOrder],
     /// No order lasts less, s, provided that the model's bounds are admissible.
     pub lower_bound_s: f64,
     /// The work so far.
@@ -221,7 +221,7 @@ impl Default for SearchSettings {
 
 /// An order with its duration.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FlownOrder {
+pub struct SolvedOrder {
     /// Indices of the targets in visiting order.
     pub order: Vec<usize>,
     /// Duration of the tour, s.
@@ -269,9 +269,9 @@ pub struct SearchStatistics {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchResult {
     /// The best order found.
-    pub best: Option<FlownOrder>,
+    pub best: Option<SolvedOrder>,
     /// The next best orders found, at most as many as asked for.
-    pub alternatives: Vec<FlownOrder>,
+    pub alternatives: Vec<SolvedOrder>,
     /// No order lasts less, s, provided that the model's bounds are admissible.
     pub lower_bound_s: f64,
     /// Whether the tree was exhausted within the gap: best and alternatives are proven.

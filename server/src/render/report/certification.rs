@@ -25,7 +25,7 @@ pub(super) fn claims(claims: &PlanCertificate, checked: &CheckedCertificate) -> 
     format!(
         "{verdict}: {} of {} claims proved a second time, {} rejected\n\n{}",
         count(|verdict| *verdict == Verdict::Confirmed),
-        count(|verdict| *verdict != Verdict::NoClaim),
+        count(|verdict| *verdict != Verdict::NoBound),
         count(|verdict| matches!(verdict, Verdict::Rejected(_))),
         aligned(4, &rows)
     )

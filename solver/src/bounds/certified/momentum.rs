@@ -23,7 +23,7 @@
 //! narrow, and zero, the plain box that contains all rates, does better where rates have limits of
 //! their own.
 
-use super::{Frame, allowed_rate};
+use super::{BodyFrame, allowed_rate};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
@@ -36,13 +36,13 @@ mod tests;
 /// Bounds on the slews of a spacecraft with momentum.
 #[derive(Debug)]
 pub(super) struct MomentumBounds {
-    frames: Vec<Drifting>,
+    frames: Vec<DriftingFrame>,
 }
 
 /// What no motion exceeds, relative to a drift.
 #[derive(Debug)]
-struct Drifting {
-    frame: Frame,
+struct DriftingFrame {
+    frame: BodyFrame,
     /// `k`, 1/(kg m²).
     share: f64,
     bound: SlewBound,
@@ -57,7 +57,7 @@ impl MomentumBounds {
             .flat_map(|axes| shares.map(|share| (*axes, share)));
         Self {
             frames: all
-                .filter_map(|(axes, share)| Drifting::of(dynamics, axes, share))
+                .filter_map(|(axes, share)| DriftingFrame::of(dynamics, axes, share))
                 .collect(),
         }
     }
@@ -74,7 +74,7 @@ impl MomentumBounds {
         self.frames
             .iter()
             .filter_map(|drifting| {
-                let Drifting {
+                let DriftingFrame {
                     frame,
                     share,
                     bound,
@@ -92,7 +92,7 @@ impl MomentumBounds {
     }
 }
 
-impl Drifting {
+impl DriftingFrame {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>, share: f64) -> Option<Self> {
         let drift = share * dynamics.momentum.norm();
         let rate = |axis: &Vector3<f64>| {
@@ -108,7 +108,7 @@ impl Drifting {
             accelerations_rad_s2: along(&axes, acceleration),
         };
         Some(Self {
-            frame: Frame { axes, limits },
+            frame: BodyFrame { axes, limits },
             share,
             bound: SlewBound::new(limits, EndRates::at_rest())?,
         })

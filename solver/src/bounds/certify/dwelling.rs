@@ -1,4 +1,4 @@
-//! The words that dwell, from the motion of the costate itself.
+//! The sequences that dwell, from the motion of the costate itself.
 //!
 //! On the level of the saddle `M_j = 0` let the costate leave it in an octant with signs `s`. With
 //! `n` the corner of the octant (length one), `M(t) = h n + cos t (M - h n) + sin t M x n`, and the
@@ -16,17 +16,17 @@
 
 use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped, octants};
-use super::turn::{IDENTITY, Turn, Vector, about, product};
-use super::word::{Interior, Word};
+use super::sequence::{ArcSequence, InteriorArcs};
+use super::turn::{IDENTITY, QuatInterval, VectorInterval, about, product};
 
 /// A stretch of fixed arcs is no part of a shortest motion if its turn can be made in a time that is
 /// shorter at all; the share keeps clear of ties.
 const SHORTER: f64 = 1e-6;
 
-/// Arcs of known duration, in order.
-type Arcs = Vec<(Octant, Interval)>;
+/// FixedArcs of known duration, in order.
+type FixedArcs = Vec<(Octant, Interval)>;
 
-/// Collects the words of one saddle.
+/// Collects the sequences of one saddle.
 struct Saddle<'a> {
     rates: &'a Rates,
     /// The axis whose rate is zero during the dwell.
@@ -34,20 +34,20 @@ struct Saddle<'a> {
     /// Times beyond this are of no interest.
     horizon: f64,
     limit: usize,
-    words: Vec<Word>,
+    sequences: Vec<ArcSequence>,
 }
 
-/// All words with a dwell whose fixed arcs last less than the horizon: `None` if there are more than
+/// All sequences with a dwell whose fixed arcs last less than the horizon: `None` if there are more than
 /// the limit.
-pub(super) fn words(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<Word>> {
-    let mut words = Vec::new();
+pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<ArcSequence>> {
+    let mut sequences = Vec::new();
     for axis in 0..3 {
         let mut saddle = Saddle {
             rates,
             axis,
             horizon,
             limit,
-            words,
+            sequences,
         };
         // The octant in which the costate comes to the saddle: directly in the first arc, or from
         // a flip.
@@ -57,9 +57,9 @@ pub(super) fn words(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<Wor
                 saddle.begin(flipped(octant, wall), Some((octant, time)))?;
             }
         }
-        words = saddle.words;
+        sequences = saddle.sequences;
     }
-    Some(words)
+    Some(sequences)
 }
 
 impl Saddle<'_> {
@@ -91,10 +91,10 @@ impl Saddle<'_> {
         found
     }
 
-    /// Words whose dwell follows an arc in an octant, fixed if there is a duration, else the first.
+    /// Sequences whose dwell follows an arc in an octant, fixed if there is a duration, else the first.
     fn begin(&mut self, first: Octant, fixed: Option<(Octant, Interval)>) -> Option<()> {
         let arrives = fixed.map_or(first, |(octant, _)| octant);
-        let before: Arcs = fixed.into_iter().collect();
+        let before: FixedArcs = fixed.into_iter().collect();
         let lasted = fixed.map_or(Interval::ZERO, |(_, time)| time);
         for leaves in [arrives, flipped(arrives, self.axis)] {
             self.follow(first, &before, leaves, &mut Vec::new(), lasted)?;
@@ -102,13 +102,13 @@ impl Saddle<'_> {
         Some(())
     }
 
-    /// Words that leave a visit in an octant.
+    /// Sequences that leave a visit in an octant.
     fn follow(
         &mut self,
         first: Octant,
-        before: &Arcs,
+        before: &FixedArcs,
         leaves: Octant,
-        after: &mut Arcs,
+        after: &mut FixedArcs,
         lasted: Interval,
     ) -> Option<()> {
         self.add(first, before, after, leaves, lasted)?;
@@ -134,12 +134,12 @@ impl Saddle<'_> {
     fn add(
         &mut self,
         first: Octant,
-        before: &Arcs,
-        after: &Arcs,
+        before: &FixedArcs,
+        after: &FixedArcs,
         last: Octant,
         fixed: Interval,
     ) -> Option<()> {
-        if self.words.len() == self.limit {
+        if self.sequences.len() == self.limit {
             return None;
         }
         // The face is that of the octant before the dwell.
@@ -148,14 +148,14 @@ impl Saddle<'_> {
         rate[self.axis] = Interval::ZERO;
         let (k, l) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
         let speed = rate[k].length(rate[l]);
-        let direction: Vector = rate.map(|w| w / speed);
+        let direction: VectorInterval = rate.map(|w| w / speed);
         let [x, y, z] = direction;
         let (before, after) = (self.turn(before), self.turn(after));
-        self.words.push(Word {
+        self.sequences.push(ArcSequence {
             first,
             last,
             fixed,
-            interior: Interior::Dwelling {
+            interior: InteriorArcs::Dwelling {
                 even: product(&before, &after),
                 odd: product(&product(&before, &[x, y, z, Interval::ZERO]), &after),
                 speed,
@@ -164,14 +164,14 @@ impl Saddle<'_> {
         Some(())
     }
 
-    fn turn(&self, arcs: &[(Octant, Interval)]) -> Turn {
+    fn turn(&self, arcs: &[(Octant, Interval)]) -> QuatInterval {
         arcs.iter().fold(IDENTITY, |all, (octant, time)| {
             product(&all, &about(&self.rates.corner(*octant), *time))
         })
     }
 
     /// Whether a shorter turn replaces some of the last arcs.
-    fn replaceable(&self, arcs: &Arcs) -> bool {
+    fn replaceable(&self, arcs: &FixedArcs) -> bool {
         (0..arcs.len()).any(|from| {
             let lasts = arcs[from..]
                 .iter()

@@ -14,7 +14,7 @@ const NARROW: f64 = 1e-14;
 const FINE: f64 = 1e-6;
 
 /// The integral that is to be bounded.
-struct Rise<'a> {
+struct LinkIntegrand<'a> {
     limits: &'a SlewLimits,
     ends: &'a EndRates,
     rates: &'a Vector3<f64>,
@@ -28,7 +28,7 @@ pub(super) fn at_most(
     rates: &Vector3<f64>,
     duration: f64,
 ) -> f64 {
-    let rise = Rise {
+    let integrand = LinkIntegrand {
         limits,
         ends,
         rates,
@@ -39,7 +39,7 @@ pub(super) fn at_most(
     while let Some((from, to)) = open.pop() {
         let middle = 0.5 * (from + to);
         let narrow = to - from <= NARROW * duration || middle <= from || middle >= to;
-        match rise.piece(from, to, narrow) {
+        match integrand.piece(from, to, narrow) {
             Some(area) => sum = sum + area,
             None => open.extend([(from, middle), (middle, to)]),
         }
@@ -47,7 +47,7 @@ pub(super) fn at_most(
     sum.high
 }
 
-impl Rise<'_> {
+impl LinkIntegrand<'_> {
     /// The three bounds on the rate of an axis, linear in the time.
     fn bounds(&self, axis: usize, at: f64) -> [Interval; 3] {
         let exactly = Interval::exactly;

@@ -1,6 +1,6 @@
-//! Words with many flips: all at once, near a body axis.
+//! Sequences with many flips: all at once, near a body axis.
 //!
-//! In a word whose axes `j`, `k` flip in turn, arcs of duration `D`, the costate (length one) has
+//! In a sequence whose axes `j`, `k` flip in turn, arcs of duration `D`, the costate (length one) has
 //! `M_j = 0` at one flip and `M_k = 0` a time `D` later. As `m_k' = +-(m_i c_j - m_j c_i)` for the
 //! sizes `m`, with `s` a bound on `hypot(m_j, m_k)` all along, `|m_k'| <= max(c_j, s c_i)`, so `m_k`
 //! is at most that times the time left until it vanishes, and likewise `m_j` since it vanished; the
@@ -18,14 +18,14 @@
 //! ```
 //!
 //! of which the second term is at most `tan(swing / 2) hypot(w_j, w_k)` (Cauchy and Schwarz), the
-//! *drift*. The bounds fall with `D`, so they hold for all words of more flips, too, and in the limit
+//! *drift*. The bounds fall with `D`, so they hold for all sequences of more flips, too, and in the limit
 //! for the turn about the axis alone.
 
 use super::interval::Interval;
 use super::rates::Rates;
-use super::turn::{Turn, swing, twist};
+use super::turn::{QuatInterval, swing, twist};
 
-/// A target as words near an axis see it.
+/// A target as sequences near an axis see it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearAxis {
     /// Swing away from the axis, at least.
@@ -36,7 +36,7 @@ pub(super) struct NearAxis {
 }
 
 impl NearAxis {
-    pub(super) fn new(q: &Turn, axis: usize) -> Self {
+    pub(super) fn new(q: &QuatInterval, axis: usize) -> Self {
         let twist = twist(q, axis);
         Self {
             swing: swing(q, axis).low,
@@ -45,7 +45,7 @@ impl NearAxis {
         }
     }
 
-    /// Whether words whose interior arcs last at most so long, with a rate of the given sign about
+    /// Whether sequences whose interior arcs last at most so long, with a rate of the given sign about
     /// the axis, take the time at least.
     pub(super) fn proved(&self, rates: &Rates, longest: f64, negative: bool, time: f64) -> bool {
         let c = &rates.c;

@@ -1,7 +1,7 @@
 //! The box of rates, scaled so that its corners have length one.
 
 use super::interval::Interval;
-use super::turn::{Turn, Vector, angle_of};
+use super::turn::{QuatInterval, VectorInterval, angle_of};
 use nalgebra::Vector3;
 
 /// Rates are raised until each exceeds the next smaller one by this share: then no two saddles of the
@@ -26,7 +26,7 @@ pub(super) fn flipped(mut octant: Octant, axis: usize) -> Octant {
 #[derive(Debug, Clone)]
 pub(super) struct Rates {
     /// Rates over the length of all three.
-    pub(super) c: Vector,
+    pub(super) c: VectorInterval,
     /// That length, rad/s.
     pub(super) speed: Interval,
     /// How much larger than the given rates these are at most, as a factor.
@@ -55,7 +55,7 @@ impl Rates {
     }
 
     /// The rate vector of an octant.
-    pub(super) fn corner(&self, octant: Octant) -> Vector {
+    pub(super) fn corner(&self, octant: Octant) -> VectorInterval {
         [0, 1, 2].map(|i| if octant[i] { -self.c[i] } else { self.c[i] })
     }
 
@@ -66,7 +66,7 @@ impl Rates {
 
     /// A time that the turn about its own axis does not exceed: `max |x_i| / c_i` for the rotation
     /// vector `x`.
-    pub(super) fn eigenaxis(&self, q: &Turn) -> f64 {
+    pub(super) fn eigenaxis(&self, q: &QuatInterval) -> f64 {
         let angle = angle_of(q);
         let length = q[0].length(q[1]).length(q[2]);
         if length.low <= 0.0 {

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 /// Share by which least times are lowered before they are claimed. It leaves an independent proof
 /// in intervals room for its own rounding, and for rates that it raises a little so that no two are
 /// nearly equal (see [`crate::bounds::certify`]).
-pub(super) const ROOM: f64 = 2e-6;
+pub(super) const PROOF_MARGIN: f64 = 2e-6;
 
 /// A turn with a time that no motion within a box of rates undercuts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ClaimedTurn {
+pub struct CertifiedTurn {
     /// The turn, body axes at its beginning; either sign of the quaternion.
     pub turn: Attitude,
     /// The claim, s: no motion with `|w_i| <= box_i` that makes the turn is faster.
@@ -33,7 +33,7 @@ pub struct Certificate {
     /// The box of rates `p` whose least times bound the duration, rad/s.
     pub box_rad_s: Vector3<f64>,
     /// The turns, each in the body axes where the one before ended.
-    pub turns: Vec<ClaimedTurn>,
+    pub turns: Vec<CertifiedTurn>,
     /// The claim, s.
     pub duration_s: f64,
 }

@@ -17,8 +17,8 @@
 //! excluded, by whatever box, the next step starts there.
 
 use super::limits::EndRates;
-use super::ramps::{DEFLATION, SlewBound, claimable, rounded_down};
-use super::rise::Rise;
+use super::ramps::{DEFLATION, SlewBound, certifiable_time, rounded_down};
+use super::rate_envelope::RateEnvelope;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
@@ -43,19 +43,25 @@ impl SlewBound {
         ends: EndRates,
         tolerance: f64,
     ) -> f64 {
-        let rise = Rise { ends, ..self.rise };
+        let envelope = RateEnvelope {
+            ends,
+            ..self.envelope
+        };
         let at_end = turn.to_body(*drift_rad_s);
         let mut excluded = 0.0;
         for _ in 0..STEPS {
             let left = Attitude::from_rotation_vector(-drift_rad_s * excluded).then_in_body(turn);
             let next = self.boxes.iter().fold(excluded, |next, (rates, table)| {
-                let least = claimable(table, &left, tolerance);
+                let least = certifiable_time(table, &left, tolerance);
                 if least * rates.min() < NO_TURN {
                     return next;
                 }
                 let speed = |drift: &Vector3<f64>| drift.abs().component_div(rates).max();
                 let slope = speed(drift_rad_s).min(speed(&at_end));
-                f64::max(next, rise.longest_short_of(rates, least, slope, excluded))
+                f64::max(
+                    next,
+                    envelope.longest_short_of(rates, least, slope, excluded),
+                )
             });
             let done = next - excluded <= tolerance * next;
             excluded = next;

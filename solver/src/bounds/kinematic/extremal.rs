@@ -1,29 +1,29 @@
 //! The motion behind an upper bound: its arcs, made to reach the target.
 
 use super::RateBox;
-use super::closing::{IMAGES, image_of};
 use super::search::Candidate;
+use super::sequences::{FIRST, InteriorArc, corner};
+use super::terminal_arcs::{IMAGES, image_of};
 use super::turns::{about, best_axis_sequence, dot, eigenaxis_time, rotation_vector};
-use super::words::{FIRST, Step, corner};
 use crate::math::quaternion::{Quat, conjugate, product, rotate_back};
 use nalgebra::{Matrix3, Vector3};
 
-/// Newton steps that make a word reach its target.
+/// Newton steps that make a sequence reach its target.
 const POLISHING: usize = 6;
 /// A miss that is left alone, rad.
 const REACHED: f64 = 1e-12;
-/// Damping of the Newton steps, for words whose arcs do not span all directions: the misses that a
+/// Damping of the Newton steps, for sequences whose arcs do not span all directions: the misses that a
 /// search leaves, 1e-7 rad, then move no duration by more than 1e-3.
 const DAMPING: f64 = 1e-9;
-/// Arcs shorter than this are left out, rad.
+/// TimedArcs shorter than this are left out, rad.
 const NO_ARC: f64 = 1e-13;
 
-/// Arcs at constant rate, normalised: rate vector and duration.
-pub(super) type Arcs = Vec<([f64; 3], f64)>;
+/// TimedArcs at constant rate, normalised: rate vector and duration.
+pub(super) type TimedArcs = Vec<([f64; 3], f64)>;
 
 /// The arcs of the best motion that a search found; the last one covers what Newton's method has
 /// left of the miss, so that the target is reached whatever happens.
-pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
+pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
     let c = &table.levels.c;
     let mut arcs = match best {
         Candidate::Eigenaxis => Vec::new(),
@@ -35,17 +35,17 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
                 (rate, angle.abs() / c[axis])
             })
             .collect(),
-        Candidate::Single {
-            word,
+        Candidate::ClosedForm {
+            sequence,
             image,
             outer,
             parameter,
         } => {
-            let word = &table.singles[word];
-            let steps = Word {
-                first: word.first,
-                last: word.last,
-                steps: word.steps.clone(),
+            let sequence = &table.closed_forms[sequence];
+            let steps = CandidateSequence {
+                first: sequence.first,
+                last: sequence.last,
+                steps: sequence.steps.clone(),
             };
             steps.polished(c, q, image, outer, parameter)
         }
@@ -59,7 +59,7 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
         } => {
             let family = &table.families[family];
             let steps = family.steps(c, first, flips);
-            Word {
+            CandidateSequence {
                 first,
                 last: family.octant(first, flips),
                 steps,
@@ -86,13 +86,13 @@ pub(super) fn turn_of(arcs: &[([f64; 3], f64)]) -> Quat {
         })
 }
 
-struct Word {
+struct CandidateSequence {
     first: usize,
     last: usize,
-    steps: Vec<Step>,
+    steps: Vec<InteriorArc>,
 }
 
-impl Word {
+impl CandidateSequence {
     /// Its arcs for durations near the given ones, the fastest when a miss is made up for.
     fn polished(
         &self,
@@ -101,7 +101,7 @@ impl Word {
         image: usize,
         outer: [f64; 2],
         parameter: f64,
-    ) -> Arcs {
+    ) -> TimedArcs {
         let target = image_of(q, image);
         let mut best = (f64::INFINITY, Vec::new());
         let mut durations = Vector3::new(outer[0], parameter, outer[1]);
@@ -132,7 +132,7 @@ impl Word {
         best.1
     }
 
-    fn arcs(&self, c: &[f64; 3], durations: &Vector3<f64>) -> Arcs {
+    fn arcs(&self, c: &[f64; 3], durations: &Vector3<f64>) -> TimedArcs {
         let interior = self
             .steps
             .iter()

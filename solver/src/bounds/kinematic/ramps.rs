@@ -38,9 +38,9 @@
 //! `T`, from `r` (long slews) to the shape of `a` (short ones at rest). Any choice is valid.
 
 use super::RateBox;
-use super::certificate::{Certificate, ClaimedTurn, ROOM};
+use super::certificate::{Certificate, CertifiedTurn, PROOF_MARGIN};
 use super::limits::{EndRates, SlewLimits};
-use super::rise::Rise;
+use super::rate_envelope::RateEnvelope;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
@@ -54,7 +54,7 @@ pub(super) const DEFLATION: f64 = 1e-9;
 /// Lower bounds on slews of one kind: built once per spacecraft and kind of ends.
 #[derive(Debug, Clone)]
 pub struct SlewBound {
-    pub(super) rise: Rise,
+    pub(super) envelope: RateEnvelope,
     /// Boxes with their rates, that of the limits first.
     pub(super) boxes: Vec<(Vector3<f64>, RateBox)>,
 }
@@ -74,12 +74,12 @@ impl SlewBound {
         }
         let rates = limits.rates_rad_s;
         let mut bound = Self {
-            rise: Rise { limits, ends },
+            envelope: RateEnvelope { limits, ends },
             boxes: vec![(rates, RateBox::new(rates)?)],
         };
         let longest = rates.component_div(&limits.accelerations_rad_s2).max();
         for duration in DURATIONS {
-            let candidate = bound.rise.mean_rates(duration * longest);
+            let candidate = bound.envelope.mean_rates(duration * longest);
             let known = bound.boxes.iter().any(|(other, _)| {
                 let ratio = candidate.component_div(other);
                 ratio.max() < ratio.min() * (1.0 + SAME_SHAPE)
@@ -110,13 +110,13 @@ impl SlewBound {
     pub fn certificate(&self, turns: &[Attitude], tolerance: f64) -> Certificate {
         let (index, duration_s) = self.best(turns, tolerance);
         let (box_rad_s, table) = &self.boxes[index];
-        let claimed = |turn: &Attitude| ClaimedTurn {
+        let claimed = |turn: &Attitude| CertifiedTurn {
             turn: *turn,
-            least_s: claimable(table, turn, tolerance),
+            least_s: certifiable_time(table, turn, tolerance),
         };
         Certificate {
-            limits: self.rise.limits,
-            ends: self.rise.ends,
+            limits: self.envelope.limits,
+            ends: self.envelope.ends,
             box_rad_s: *box_rad_s,
             turns: turns.iter().map(claimed).collect(),
             duration_s,
@@ -129,9 +129,9 @@ impl SlewBound {
         for (index, (rates, table)) in self.boxes.iter().enumerate() {
             let least: f64 = turns
                 .iter()
-                .map(|turn| claimable(table, turn, tolerance))
+                .map(|turn| certifiable_time(table, turn, tolerance))
                 .sum();
-            let duration = self.rise.duration_of(rates, least);
+            let duration = self.envelope.duration_of(rates, least);
             if duration > best.1 {
                 best = (index, duration);
             }
@@ -141,8 +141,8 @@ impl SlewBound {
 }
 
 /// A lower bound on the least time of a turn that leaves its proof some room.
-pub(super) fn claimable(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
-    table.lower_bound(turn, tolerance) * (1.0 - ROOM)
+pub(super) fn certifiable_time(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
+    table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN)
 }
 
 /// Seven digits, never more than the number.

@@ -1,13 +1,13 @@
-//! Branch and bound over the words of one target.
+//! Branch and bound over the sequences of one target.
 
 use super::RateBox;
-use super::closing::{Closing, IMAGES, Probes};
-use super::interior::{Interior, MARGIN, where_zero};
+use super::interior::{InteriorTurn, MARGIN, where_zero};
 use super::levels::others;
+use super::sequences::{ClosedFormSequence, FIRST, SequenceFamily, corner};
+use super::terminal_arcs::{IMAGES, Probes, TerminalArcs};
 use super::turns::{
     best_axis_sequence, cross, dot, eigenaxis_time, rotate, small_angle_bound, twist_and_swing,
 };
-use super::words::{FIRST, Family, SingleWord, corner};
 use crate::math::quaternion::Quat;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -24,26 +24,26 @@ const WRAP: f64 = 1e-9;
 /// bounds and of this time.
 const ROUNDED_AWAY: f64 = 1e-15;
 /// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
-/// thousand times faster than another, words have thousands of flips and a query would take minutes.
+/// thousand times faster than another, sequences have thousands of flips and a query would take minutes.
 const MAX_CELLS: usize = 100_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
 
-/// Which word, and how long its parts are (normalised).
+/// Which sequence, and how long its parts are (normalised).
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Candidate {
     /// The turn about its own axis.
     Eigenaxis,
     /// Three turns about body axes.
     Axes,
-    /// A word of the table.
-    Single {
-        word: usize,
+    /// A sequence of the table.
+    ClosedForm {
+        sequence: usize,
         image: usize,
         outer: [f64; 2],
         parameter: f64,
     },
-    /// A two-flip or longer word of a family.
+    /// A two-flip or longer sequence of a family.
     Family {
         family: usize,
         first: usize,
@@ -55,7 +55,7 @@ pub(super) enum Candidate {
 }
 
 /// The state of a query; everything of fixed size.
-pub(super) struct Search<'a> {
+pub(super) struct SequenceSearch<'a> {
     table: &'a RateBox,
     q: Quat,
     /// Twist about each axis, in `[0, 2 pi)`, and swing away from it, rad.
@@ -63,7 +63,7 @@ pub(super) struct Search<'a> {
     probes: Probes,
     stack: [(f64, f64); STACK],
     tolerance: f64,
-    /// Least time of a kept leaf.
+    /// Least time of a kept bound_cell.
     pub(super) lower: f64,
     pub(super) upper: f64,
     pub(super) best: Candidate,
@@ -71,7 +71,7 @@ pub(super) struct Search<'a> {
     pub(super) cells: usize,
 }
 
-impl<'a> Search<'a> {
+impl<'a> SequenceSearch<'a> {
     pub(super) fn new(table: &'a RateBox, q: &Quat, tolerance: f64) -> Self {
         let c = &table.levels.c;
         let (eigenaxis, axes) = (eigenaxis_time(q, c), best_axis_sequence(q, c).0);
@@ -94,27 +94,27 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Goes through all words that can matter.
+    /// Goes through all sequences that can matter.
     pub(super) fn run(&mut self) {
         let table = self.table;
         self.two_arcs();
-        let (short, long) = table.singles.split_at(table.promising);
-        for (index, word) in short.iter().enumerate() {
-            self.single(word, index);
+        let (short, long) = table.closed_forms.split_at(table.promising);
+        for (index, sequence) in short.iter().enumerate() {
+            self.search_closed_form(sequence, index);
         }
         let floor = self.floor();
         for index in 0..table.families.len() {
             self.family(index, floor);
         }
-        for (index, word) in long.iter().enumerate() {
-            if word.fixed >= self.upper {
+        for (index, sequence) in long.iter().enumerate() {
+            if sequence.fixed >= self.upper {
                 break;
             }
-            self.single(word, table.promising + index);
+            self.search_closed_form(sequence, table.promising + index);
         }
         if self.is_spent() {
             // Of what was not looked at nothing else is known.
-            self.keep(self.swing_time().max(floor));
+            self.keep_bound(self.swing_time().max(floor));
         }
     }
 
@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
         angle.max(small_angle_bound(&self.q, &self.table.levels.c))
     }
 
-    /// Words of one and two arcs; the first flips of the three vertex families are all there are.
+    /// Sequences of one and two arcs; the first flips of the three vertex families are all there are.
     fn two_arcs(&mut self) {
         let c = self.table.levels.c;
         for (family, image) in (0..3).flat_map(|family| (0..4).map(move |image| (family, image))) {
@@ -152,8 +152,8 @@ impl<'a> Search<'a> {
                 if (value - probe.target).abs() > MARGIN {
                     continue;
                 }
-                if let Some(closing) = probe.close(&Interior::NONE.turn, MARGIN) {
-                    let word = move |outer| Candidate::Family {
+                if let Some(terminal) = probe.terminal_arcs(&InteriorTurn::NONE.turn, MARGIN) {
+                    let sequence = move |outer| Candidate::Family {
                         family,
                         first,
                         flips: 1,
@@ -161,29 +161,29 @@ impl<'a> Search<'a> {
                         outer,
                         parameter: 0.0,
                     };
-                    self.leaf(&closing, 0.0, 0.0, f64::INFINITY, word);
+                    self.bound_cell(&terminal, 0.0, 0.0, f64::INFINITY, sequence);
                 }
             }
         }
     }
 
     /// Takes the centre of a cell as a candidate, and bounds the cell: whether it must be split.
-    fn leaf(
+    fn bound_cell(
         &mut self,
-        closing: &Closing,
+        terminal: &TerminalArcs,
         least_interior: f64,
         interior: f64,
         cap: f64,
-        word: impl Fn([f64; 2]) -> Candidate,
+        sequence: impl Fn([f64; 2]) -> Candidate,
     ) -> bool {
-        let Some(least) = closing.least(cap) else {
+        let Some(least) = terminal.least(cap) else {
             return false;
         };
         let bound = least_interior + 2.0 * least;
         if bound >= self.upper {
             return false;
         }
-        for (first, last, cosine) in closing.candidates() {
+        for (first, last, cosine) in terminal.candidates() {
             let mut time = interior + 2.0 * (first + last);
             let missing = 1.0 - cosine;
             if missing > ROUNDED_AWAY {
@@ -192,7 +192,7 @@ impl<'a> Search<'a> {
             }
             if time < self.upper {
                 self.upper = time;
-                self.best = word([2.0 * first, 2.0 * last]);
+                self.best = sequence([2.0 * first, 2.0 * last]);
             }
         }
         if bound < self.upper * (1.0 - self.tolerance) {
@@ -202,15 +202,15 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// A word whose equation is a sinusoid: its roots in closed form.
-    fn single(&mut self, word: &SingleWord, index: usize) {
+    /// A sequence whose equation is a sinusoid: its roots in closed form.
+    fn search_closed_form(&mut self, sequence: &ClosedFormSequence, index: usize) {
         for image in 0..4 {
-            if word.fixed + word.range.0 >= self.upper {
+            if sequence.fixed + sequence.range.0 >= self.upper {
                 return;
             }
-            let target = self.probes.of(image, word.first, word.last).target;
-            let cosine = (target - word.offset) / word.amplitude;
-            let margin = MARGIN / word.amplitude;
+            let target = self.probes.of(image, sequence.first, sequence.last).target;
+            let cosine = (target - sequence.offset) / sequence.amplitude;
+            let margin = MARGIN / sequence.amplitude;
             if cosine.abs() > 1.0 + margin {
                 continue;
             }
@@ -227,7 +227,7 @@ impl<'a> Search<'a> {
                 );
                 (0.5 * (wide + narrow), 0.5 * (wide - narrow) + WRAP)
             };
-            for angle in [word.phase - middle, word.phase + middle] {
+            for angle in [sequence.phase - middle, sequence.phase + middle] {
                 let angle = angle.rem_euclid(TAU);
                 // Next to a full turn the parameter may in truth be next to nothing.
                 let angle = if angle + half >= TAU {
@@ -235,14 +235,14 @@ impl<'a> Search<'a> {
                 } else {
                     angle
                 };
-                self.single_cells(word, index, image, angle, half);
+                self.closed_form_cells(sequence, index, image, angle, half);
             }
         }
     }
 
-    fn single_cells(
+    fn closed_form_cells(
         &mut self,
-        word: &SingleWord,
+        sequence: &ClosedFormSequence,
         index: usize,
         image: usize,
         angle: f64,
@@ -253,40 +253,40 @@ impl<'a> Search<'a> {
         while open > 0 && !self.is_spent() {
             open -= 1;
             let (angle, half) = self.stack[open];
-            let least = ((angle - half) / word.speed).max(word.range.0);
-            let most = ((angle + half) / word.speed).min(word.range.1);
-            if least > most || word.fixed + least >= self.upper {
+            let least = ((angle - half) / sequence.speed).max(sequence.range.0);
+            let most = ((angle + half) / sequence.speed).min(sequence.range.1);
+            if least > most || sequence.fixed + least >= self.upper {
                 continue;
             }
             self.cells += 1;
             let (sin, cos) = (0.5 * angle).sin_cos();
-            let interior = [0, 1, 2, 3].map(|i| cos * word.even[i] + sin * word.odd[i]);
-            let probe = self.probes.of(image, word.first, word.last);
-            let Some(closing) = probe.close(&interior, 0.5 * (half + MARGIN)) else {
+            let interior = [0, 1, 2, 3].map(|i| cos * sequence.even[i] + sin * sequence.odd[i]);
+            let probe = self.probes.of(image, sequence.first, sequence.last);
+            let Some(terminal) = probe.terminal_arcs(&interior, 0.5 * (half + MARGIN)) else {
                 continue;
             };
-            let parameter = (angle / word.speed).clamp(least, most);
-            let cap = if word.capped {
+            let parameter = (angle / sequence.speed).clamp(least, most);
+            let cap = if sequence.capped {
                 0.5 * most + WRAP
             } else {
                 f64::INFINITY
             };
-            let candidate = move |outer| Candidate::Single {
-                word: index,
+            let candidate = move |outer| Candidate::ClosedForm {
+                sequence: index,
                 image,
                 outer,
                 parameter,
             };
-            let split = self.leaf(
-                &closing,
-                word.fixed + least,
-                word.fixed + parameter,
+            let split = self.bound_cell(
+                &terminal,
+                sequence.fixed + least,
+                sequence.fixed + parameter,
                 cap,
                 candidate,
             );
             if split {
                 if half < NARROW || open + 2 > STACK {
-                    self.keep(word.fixed + least + closing_floor(&closing, cap));
+                    self.keep_bound(sequence.fixed + least + least_terminal_time(&terminal, cap));
                     continue;
                 }
                 self.stack[open] = (angle - 0.5 * half, 0.5 * half);
@@ -296,14 +296,14 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn keep(&mut self, bound: f64) {
+    fn keep_bound(&mut self, bound: f64) {
         self.lower = self.lower.min(bound);
     }
 
-    /// The words of a gap, by their number of flips, until none can be shorter.
+    /// The sequences of a gap, by their number of flips, until none can be shorter.
     fn family(&mut self, index: usize, floor: f64) {
         let family = &self.table.families[index];
-        // Words with two flips are among the singles.
+        // Sequences with two flips are among the closed_forms.
         for flips in 3.. {
             let arcs = (flips - 1) as f64;
             let longest = family.range.1.min(self.upper / arcs);
@@ -322,7 +322,7 @@ impl<'a> Search<'a> {
                 };
                 let least = bounds[usize::from(backwards)];
                 if least >= self.upper * (1.0 - self.tolerance) || flips == MAX_FLIPS {
-                    self.keep(least);
+                    self.keep_bound(least);
                     continue;
                 }
                 any = true;
@@ -337,7 +337,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Least times of words near an axis whose arcs last at most so long, when the rate about the
+    /// Least times of sequences near an axis whose arcs last at most so long, when the rate about the
     /// axis is positive and when it is negative: infinite if the target swings too far from it.
     fn by_twist(&self, axis: usize, longest: f64) -> [f64; 2] {
         let levels = &self.table.levels;
@@ -362,8 +362,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn family_cells(&mut self, family: &Family, word: [usize; 4], range: (f64, f64)) {
-        let [index, first, flips, image] = word;
+    fn family_cells(&mut self, family: &SequenceFamily, sequence: [usize; 4], range: (f64, f64)) {
+        let [index, first, flips, image] = sequence;
         let c = self.table.levels.c;
         let arcs = (flips - 1) as f64;
         let last = family.octant(first, flips);
@@ -380,24 +380,25 @@ impl<'a> Search<'a> {
             }
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             self.cells += 1;
-            let interior = Interior::of(&c, family, first, flips, middle);
+            let interior = InteriorTurn::of(&c, family, first, flips, middle);
             let tip = rotate(&interior.turn, &end);
             let value = dot(&begin, &tip) - target;
             let slope = dot(&begin, &cross(&interior.velocity, &tip));
             // |f''| <= (sum of the speeds)^2.
-            let bend = arcs * arcs;
-            if value.abs() > slope.abs() * half + 0.5 * bend * half * half + MARGIN {
+            let curvature = arcs * arcs;
+            if value.abs() > slope.abs() * half + 0.5 * curvature * half * half + MARGIN {
                 continue;
             }
             if open + 6 > STACK {
-                self.keep(arcs * low);
+                self.keep_bound(arcs * low);
                 continue;
             }
             if arcs * half < CLOSE_LOOK {
                 let speed = dot(&interior.velocity, &interior.velocity).sqrt();
-                let eta = speed * half + 0.5 * bend * half * half;
+                let eta = speed * half + 0.5 * curvature * half * half;
                 let probe = self.probes.of(image, first, last);
-                let Some(closing) = probe.close(&interior.turn, 0.5 * (eta + MARGIN)) else {
+                let Some(terminal) = probe.terminal_arcs(&interior.turn, 0.5 * (eta + MARGIN))
+                else {
                     continue;
                 };
                 let cap = 0.5 * high + WRAP;
@@ -409,15 +410,18 @@ impl<'a> Search<'a> {
                     outer,
                     parameter: middle,
                 };
-                if !self.leaf(&closing, arcs * low, arcs * middle, cap, candidate) {
+                if !self.bound_cell(&terminal, arcs * low, arcs * middle, cap, candidate) {
                     continue;
                 }
                 if half < NARROW {
-                    self.keep(arcs * low + closing_floor(&closing, cap));
+                    self.keep_bound(arcs * low + least_terminal_time(&terminal, cap));
                     continue;
                 }
             }
-            for (from, to) in where_zero(value, slope, bend, half).into_iter().flatten() {
+            for (from, to) in where_zero(value, slope, curvature, half)
+                .into_iter()
+                .flatten()
+            {
                 // A cell that hardly shrank is halved.
                 if to - from > 1.2 * half {
                     let cut = 0.5 * (from + to);
@@ -434,6 +438,6 @@ impl<'a> Search<'a> {
 }
 
 /// Least time of the outer arcs of a cell.
-fn closing_floor(closing: &Closing, cap: f64) -> f64 {
-    2.0 * closing.least(cap).unwrap_or(0.0)
+fn least_terminal_time(terminal: &TerminalArcs, cap: f64) -> f64 {
+    2.0 * terminal.least(cap).unwrap_or(0.0)
 }

@@ -131,7 +131,7 @@ fn no_motion_beats_the_bound() {
                 answer.lower_s <= time * (1.0 + 1e-12),
                 "{answer:?} against {time}: {arcs:?}"
             );
-            // Extremals are words: the search must not miss what is as fast.
+            // Extremals are sequences: the search must not miss what is as fast.
             if kind.is_extremal() {
                 assert!(
                     answer.upper_s <= time * (1.0 + 1e-4) + 1e-6 / rates[0],

@@ -13,7 +13,7 @@ use crate::run::stop::StopSignal;
 
 /// Up to so many targets the completion is exact. The table has `n 2^n` entries: 160 MiB and a quarter
 /// of a second for twenty targets, half of the one and of the other for every target less.
-pub const EXACT_TARGETS: usize = 20;
+pub const MAX_EXACT_TARGETS: usize = 20;
 
 /// Costs of legs between places numbered as in [`PairTable`], s.
 pub trait LegCosts {
@@ -41,19 +41,19 @@ impl LegCosts for PairTable {
 
 /// Bounds what comes after a prefix.
 #[derive(Debug)]
-pub enum Remainder {
+pub enum CompletionBound {
     /// The shortest path in the pair table.
     Exact(SubsetTable),
     /// A relaxation of the shortest path.
     Relaxed(SpanningTrees),
 }
 
-impl Remainder {
+impl CompletionBound {
     /// Prepares the bounds over a pair table, for the orders that some rules admit; the weaker ones
     /// when stopped.
     #[must_use]
     pub fn new(table: &PairTable, rules: &OrderRules, stop: &StopSignal) -> Self {
-        let few = table.targets() <= EXACT_TARGETS;
+        let few = table.targets() <= MAX_EXACT_TARGETS;
         let exact = few.then(|| SubsetTable::new(table, rules, stop)).flatten();
         exact.map_or_else(|| Self::Relaxed(SpanningTrees::new(table)), Self::Exact)
     }
@@ -143,11 +143,11 @@ mod tests {
     fn a_stop_leaves_the_bounds_of_trees() {
         let table = PairTable::new(&RandomModel::new(14, false, 3));
         let stop = StopSignal::new();
-        let exact = Remainder::new(&table, table.rules(), &stop);
-        assert!(matches!(exact, Remainder::Exact(_)));
+        let exact = CompletionBound::new(&table, table.rules(), &stop);
+        assert!(matches!(exact, CompletionBound::Exact(_)));
         stop.request();
-        let relaxed = Remainder::new(&table, table.rules(), &stop);
-        assert!(matches!(relaxed, Remainder::Relaxed(_)));
+        let relaxed = CompletionBound::new(&table, table.rules(), &stop);
+        assert!(matches!(relaxed, CompletionBound::Relaxed(_)));
         let all: Vec<usize> = (0..14).collect();
         let bounds = [relaxed, exact].map(|bounds| bounds.bound(&table, table.start(), &all));
         assert!(

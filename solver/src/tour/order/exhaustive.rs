@@ -1,7 +1,7 @@
 //! Every order, flown: the answer that tests hold the search against.
 
 use super::incumbents::Incumbents;
-use super::{FlownOrder, TourEvaluation, TourModel};
+use super::{SolvedOrder, TourEvaluation, TourModel};
 use crate::run::pool::SolverPool;
 
 /// Flies all orders that the rules admit, n! at most, and lists the best and so many alternatives, best first. Orders that do not
@@ -11,14 +11,14 @@ pub fn exhaustive(
     model: &dyn TourModel,
     alternatives: usize,
     pool: &SolverPool,
-) -> Vec<FlownOrder> {
+) -> Vec<SolvedOrder> {
     let mut orders = permutations(model.target_count());
     orders.retain(|order| model.rules().admits(order));
     let answers = pool.map(&orders, |order| model.tour(order));
     let mut best = Incumbents::new(alternatives, 0.0);
     for (order, answer) in orders.into_iter().zip(answers) {
-        if let TourEvaluation::LegSolution(duration_s) = answer {
-            best.offer(FlownOrder { order, duration_s });
+        if let TourEvaluation::Solved(duration_s) = answer {
+            best.offer(SolvedOrder { order, duration_s });
         }
     }
     best.into_orders()

@@ -1,6 +1,6 @@
 //! The open nodes, in order of their bounds, in bounded memory.
 
-use super::node::Node;
+use super::node::SearchNode;
 use std::collections::BTreeSet;
 
 /// Memory for open nodes when nothing else is asked for: enough for some 300 000 nodes of twenty
@@ -9,37 +9,37 @@ pub(super) const DEFAULT_BYTES: usize = 64 << 20;
 
 /// At least this many nodes are kept, whatever the memory: fewer could not even hold the children
 /// of one node and a few of their siblings.
-const FEWEST_NODES: usize = 16;
+const MIN_NODES: usize = 16;
 
 /// The open nodes.
 #[derive(Debug)]
 pub(super) struct Frontier {
-    nodes: BTreeSet<Node>,
+    nodes: BTreeSet<SearchNode>,
     capacity: usize,
 }
 
 impl Frontier {
     /// An empty frontier for so many targets within so many bytes.
     pub(super) fn new(targets: usize, bytes: usize) -> Self {
-        let node_bytes = size_of::<Node>() + targets * size_of::<usize>();
+        let node_bytes = size_of::<SearchNode>() + targets * size_of::<usize>();
         Self {
             nodes: BTreeSet::new(),
-            capacity: (bytes / node_bytes).max(FEWEST_NODES),
+            capacity: (bytes / node_bytes).max(MIN_NODES),
         }
     }
 
     /// Adds a node.
-    pub(super) fn insert(&mut self, node: Node) {
+    pub(super) fn insert(&mut self, node: SearchNode) {
         self.nodes.insert(node);
     }
 
     /// Takes the node of the smallest bound.
-    pub(super) fn pop(&mut self) -> Option<Node> {
+    pub(super) fn pop(&mut self) -> Option<SearchNode> {
         self.nodes.pop_first()
     }
 
     /// Takes the worst node if there are more than fit.
-    pub(super) fn pop_excess(&mut self) -> Option<Node> {
+    pub(super) fn pop_excess(&mut self) -> Option<SearchNode> {
         if self.nodes.len() > self.capacity {
             self.nodes.pop_last()
         } else {
@@ -48,7 +48,10 @@ impl Frontier {
     }
 
     /// Takes out all nodes for which this holds.
-    pub(super) fn take_if(&mut self, mut hopeless: impl FnMut(&Node) -> bool) -> Vec<Node> {
+    pub(super) fn take_if(
+        &mut self,
+        mut hopeless: impl FnMut(&SearchNode) -> bool,
+    ) -> Vec<SearchNode> {
         self.nodes.extract_if(.., |node| hopeless(node)).collect()
     }
 
@@ -67,10 +70,10 @@ impl Frontier {
 mod tests {
     use super::*;
 
-    fn node(bound: f64, prefix: &[usize]) -> Node {
-        Node {
+    fn node(bound: f64, prefix: &[usize]) -> SearchNode {
+        SearchNode {
             prefix: prefix.to_vec(),
-            ..Node::root(bound)
+            ..SearchNode::root(bound)
         }
     }
 
@@ -89,12 +92,12 @@ mod tests {
     #[test]
     fn the_worst_nodes_are_the_excess() {
         let mut frontier = Frontier::new(100, 0);
-        for target in 0..FEWEST_NODES + 2 {
+        for target in 0..MIN_NODES + 2 {
             frontier.insert(node(target as f64, &[target]));
         }
         let dropped: Vec<_> = std::iter::from_fn(|| frontier.pop_excess()).collect();
         assert_eq!(dropped.len(), 2);
-        assert!(dropped.iter().all(|node| node.prefix[0] >= FEWEST_NODES));
+        assert!(dropped.iter().all(|node| node.prefix[0] >= MIN_NODES));
         assert_eq!(frontier.bound().total_cmp(&0.0), std::cmp::Ordering::Equal);
     }
 }

@@ -8,7 +8,7 @@ mod path;
 #[cfg(test)]
 mod tests;
 
-use super::completion::Remainder;
+use super::completion::CompletionBound;
 use super::triple_bounds::TripleBounds;
 use super::{PairTable, TourModel};
 use crate::model::order_rules::OrderRules;
@@ -37,14 +37,14 @@ pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize
 /// A few different orders that are short in the pair table, best guess first.
 pub(super) fn candidates(
     table: &PairTable,
-    completion: &Remainder,
+    completion: &CompletionBound,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
     let all: Vec<usize> = (0..table.targets()).collect();
     let mut orders = match completion {
         _ if all.is_empty() => return Vec::new(),
-        Remainder::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
-        Remainder::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
+        CompletionBound::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
+        CompletionBound::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
     };
     // Slews are nearly symmetric in time, and legs that are free at the targets are not: the
     // shortest order of the table is often best flown backwards.
@@ -107,16 +107,16 @@ fn searched(
 /// A short completion of a prefix that an admitted order begins with.
 pub(super) fn complete(
     table: &PairTable,
-    completion: &Remainder,
+    completion: &CompletionBound,
     prefix: &[usize],
     remaining: &[usize],
     stop: &StopSignal,
 ) -> Vec<usize> {
     let completion = match completion {
-        Remainder::Exact(subsets) => {
+        CompletionBound::Exact(subsets) => {
             subsets.shortest_order(table, table.last_place(prefix), remaining)
         }
-        Remainder::Relaxed(_) => {
+        CompletionBound::Relaxed(_) => {
             let built = nearest_neighbours(table, prefix, remaining);
             let kicks = COMPLETION_KICKS * built.len();
             let mut found = iterated(table, prefix, &built, 0, kicks, stop);

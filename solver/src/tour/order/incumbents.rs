@@ -1,6 +1,6 @@
 //! The best orders flown so far.
 
-use super::FlownOrder;
+use super::SolvedOrder;
 use std::cmp::Ordering;
 
 /// Durations that differ by less than about this share are equal: far below what an evaluation
@@ -14,7 +14,7 @@ pub(super) fn tie_class(duration_s: f64) -> f64 {
 }
 
 /// Shorter first, ties in lexicographic order of the indices.
-fn rank(a: &FlownOrder, b: &FlownOrder) -> Ordering {
+fn rank(a: &SolvedOrder, b: &SolvedOrder) -> Ordering {
     tie_class(a.duration_s)
         .total_cmp(&tie_class(b.duration_s))
         .then_with(|| a.order.cmp(&b.order))
@@ -23,7 +23,7 @@ fn rank(a: &FlownOrder, b: &FlownOrder) -> Ordering {
 /// The best orders, best first, at most a fixed number of them.
 #[derive(Debug)]
 pub(super) struct Incumbents {
-    orders: Vec<FlownOrder>,
+    orders: Vec<SolvedOrder>,
     capacity: usize,
     relative_gap: f64,
 }
@@ -39,7 +39,7 @@ impl Incumbents {
     }
 
     /// Takes in an order; says whether it is now among the best. An order counts once.
-    pub(super) fn offer(&mut self, order: FlownOrder) -> bool {
+    pub(super) fn offer(&mut self, order: SolvedOrder) -> bool {
         let place = self
             .orders
             .partition_point(|known| rank(known, &order) == Ordering::Less);
@@ -85,12 +85,12 @@ impl Incumbents {
     }
 
     /// The orders so far, best first.
-    pub(super) fn orders(&self) -> &[FlownOrder] {
+    pub(super) fn orders(&self) -> &[SolvedOrder] {
         &self.orders
     }
 
     /// The orders, best first.
-    pub(super) fn into_orders(self) -> Vec<FlownOrder> {
+    pub(super) fn into_orders(self) -> Vec<SolvedOrder> {
         self.orders
     }
 }
@@ -99,8 +99,8 @@ impl Incumbents {
 mod tests {
     use super::*;
 
-    fn flown(order: &[usize], duration_s: f64) -> FlownOrder {
-        FlownOrder {
+    fn flown(order: &[usize], duration_s: f64) -> SolvedOrder {
+        SolvedOrder {
             order: order.to_vec(),
             duration_s,
         }

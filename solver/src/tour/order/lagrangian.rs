@@ -35,22 +35,22 @@ mod paths;
 
 pub use paths::LagrangianPaths;
 
-use super::completion::EXACT_TARGETS;
-use super::{Evaluation, PairTable, Place, Price, TourModel};
+use super::completion::MAX_EXACT_TARGETS;
+use super::{Evaluation, PairTable, PassageCostate, Place, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Up to so many targets legs are lagrangian: the table of paths has some `n^3 2^n / 8` entries of four
 /// bytes, 160 MB for sixteen targets and half of it for every target less.
-pub const PRICED_TARGETS: usize = 16;
+pub const MAX_LAGRANGIAN_TARGETS: usize = 16;
 // With the numbers of start, end and nobody a row is no longer than that of a table of subsets.
-const _: () = assert!(PRICED_TARGETS + 3 <= EXACT_TARGETS);
+const _: () = assert!(MAX_LAGRANGIAN_TARGETS + 3 <= MAX_EXACT_TARGETS);
 
 /// A price with the number of flights that it is the mean of.
 #[derive(Debug, Clone)]
 struct Mean {
-    price: Price,
+    price: PassageCostate,
     flights: f64,
 }
 
@@ -67,7 +67,7 @@ pub struct LagrangianLegs {
     symmetric: bool,
     prices: BTreeMap<[usize; 3], Mean>,
     /// Rows of the last of four places, by the first three.
-    costs: Vec<[f64; EXACT_TARGETS]>,
+    costs: Vec<[f64; MAX_EXACT_TARGETS]>,
 }
 
 impl LagrangianLegs {
@@ -86,7 +86,7 @@ impl LagrangianLegs {
             for (from, to) in (0..numbers).flat_map(|from| (0..numbers).map(move |to| (from, to))) {
                 let is_leg = from.max(to) < legs.nobody();
                 let bound = if is_leg { table.bound(from, to) } else { 0.0 };
-                legs.costs.push([bound; EXACT_TARGETS]);
+                legs.costs.push([bound; MAX_EXACT_TARGETS]);
             }
         }
         legs
@@ -103,7 +103,7 @@ impl LagrangianLegs {
     }
 
     /// Costs of a leg by the place after it, s.
-    fn row(&self, path: [usize; 3]) -> &[f64; EXACT_TARGETS] {
+    fn row(&self, path: [usize; 3]) -> &[f64; MAX_EXACT_TARGETS] {
         &self.costs[self.index(path)]
     }
 
@@ -254,14 +254,14 @@ impl LagrangianLegs {
 
 impl Mean {
     /// The mean of nothing.
-    fn new(price: &Price) -> Self {
+    fn new(price: &PassageCostate) -> Self {
         Self {
             price: vec![0.0; price.len()],
             flights: 0.0,
         }
     }
 
-    fn take_in(&mut self, price: &Price) {
+    fn take_in(&mut self, price: &PassageCostate) {
         self.flights += 1.0;
         for (mean, price) in self.price.iter_mut().zip(price) {
             *mean += (price - *mean) / self.flights;

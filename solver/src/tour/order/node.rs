@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 /// A partial order with what is known about its completions.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct SearchNode {
     /// The fixed first targets; all of them in a leaf.
     pub(super) prefix: Vec<usize>,
     /// Lower bound of the time until the last fixed target is left, s.
@@ -15,7 +15,7 @@ pub(super) struct Node {
     pub(super) evaluated: bool,
 }
 
-impl Node {
+impl SearchNode {
     /// The node of all orders.
     pub(super) fn root(bound: f64) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl Node {
 }
 
 /// Smallest bound first, then by the indices of the prefix.
-impl Ord for Node {
+impl Ord for SearchNode {
     fn cmp(&self, other: &Self) -> Ordering {
         self.bound
             .total_cmp(&other.bound)
@@ -52,16 +52,16 @@ impl Ord for Node {
     }
 }
 
-impl PartialOrd for Node {
+impl PartialOrd for SearchNode {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Node {
+impl PartialEq for SearchNode {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Node {}
+impl Eq for SearchNode {}

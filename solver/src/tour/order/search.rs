@@ -1,26 +1,26 @@
 //! The loop: best-first in rounds.
 
-mod account;
 mod coupled;
-mod pricing;
+mod lagrangian;
+mod reporter;
 mod tree;
 
-use super::node::Node;
+use super::node::SearchNode;
 use super::{
-    Evaluation, FlownOrder, SearchEnd, SearchObserver, SearchResult, SearchSettings,
+    Evaluation, SearchEnd, SearchObserver, SearchResult, SearchSettings, SolvedOrder,
     TourEvaluation, TourModel,
 };
 use crate::run::pool::SolverPool;
 use crate::run::stop::{StopReason, StopSignal};
-use account::Account;
-use tree::Tree;
+use reporter::SearchReporter;
+use tree::SearchTree;
 
 /// Fewest and most nodes evaluated per round, and their share of the nodes explored before. The later
 /// nodes of a round are evaluated without the knowledge that the earlier ones bring, so a part of
 /// them is wasted: the share bounds that part, the fewest occupy a small machine from the beginning,
 /// the most a large one later on. All are properties of the search, not of the machine: were they
 /// the number of threads, the nodes explored would depend on that.
-const FEWEST_NODES: u64 = 4;
+const MIN_NODES: u64 = 4;
 const MAX_NODES: u64 = 32;
 const EXPLORED_PER_NODE: u64 = 8;
 
@@ -33,22 +33,22 @@ const PROBE_NODES: u64 = 24;
 const TIGHTEN_NODES: u64 = 160;
 
 /// After so many nodes it prices the legs.
-const PRICE_NODES: u64 = 960;
+const LAGRANGIAN_NODES: u64 = 960;
 
 /// What is evaluated in a round.
-enum Task {
-    Node(Node),
+enum RoundTask {
+    Node(SearchNode),
     Probe(Vec<usize>),
 }
 
-/// Answer to a task.
+/// TaskResult to a task.
 #[derive(Clone, Copy)]
-enum Answer {
+enum TaskResult {
     Prefix(Evaluation),
     Tour(TourEvaluation),
 }
 
-impl Answer {
+impl TaskResult {
     fn is_stopped(self) -> bool {
         matches!(
             self,
@@ -58,7 +58,7 @@ impl Answer {
 }
 
 /// A search under way.
-struct Search<'a> {
+struct OrderSearch<'a> {
     model: &'a dyn TourModel,
     pool: &'a SolverPool,
     stop: &'a StopSignal,
@@ -69,21 +69,21 @@ struct Search<'a> {
     tightened: bool,
     /// Whether legs have been lagrangian.
     lagrangian: bool,
-    tree: Tree,
-    account: Account<'a>,
+    tree: SearchTree,
+    reporter: SearchReporter<'a>,
 }
 
 /// Searches the best orders; some may have been flown before.
 #[must_use]
 pub fn search(
     model: &dyn TourModel,
-    known: &[FlownOrder],
+    known: &[SolvedOrder],
     settings: &SearchSettings,
     pool: &SolverPool,
     stop: &StopSignal,
     observer: &dyn SearchObserver,
 ) -> SearchResult {
-    let mut search = Search {
+    let mut search = OrderSearch {
         model,
         pool,
         stop,
@@ -91,44 +91,44 @@ pub fn search(
         next_probe: PROBE_NODES,
         tightened: false,
         lagrangian: false,
-        tree: Tree::new(model, settings, stop),
-        account: Account::new(observer),
+        tree: SearchTree::new(model, settings, stop),
+        reporter: SearchReporter::new(observer),
     };
     for flown in known {
-        let answer = TourEvaluation::LegSolution(flown.duration_s);
+        let answer = TourEvaluation::Solved(flown.duration_s);
         search.tree.record_candidate(&flown.order, answer);
-        search.account.is_told(flown.duration_s);
+        search.reporter.is_told(flown.duration_s);
     }
     let mut end = search
-        .fly_candidates()
-        .or_else(|| search.work_on_couplings());
-    search.tree.plant();
+        .evaluate_candidates()
+        .or_else(|| search.bound_and_improve_orders());
+    search.tree.open_root();
     while end.is_none() {
-        search.account.hand_over(&search.tree);
-        search.account.report(&search.tree);
+        search.reporter.announce(&search.tree);
+        search.reporter.report(&search.tree);
         end = search.explore_round();
     }
-    search.account.report(&search.tree);
+    search.reporter.report(&search.tree);
     search
-        .account
+        .reporter
         .finish(search.tree, end.unwrap_or(SearchEnd::Exhausted))
 }
 
-impl Search<'_> {
+impl OrderSearch<'_> {
     /// Flies the orders that the pair table recommends, for a first incumbent.
-    fn fly_candidates(&mut self) -> Option<SearchEnd> {
+    fn evaluate_candidates(&mut self) -> Option<SearchEnd> {
         let candidates = self.tree.candidates(self.stop);
-        let interrupted = self.fly_new(&candidates);
+        let interrupted = self.evaluate_new(&candidates);
         interrupted.then(|| self.stopped())
     }
 
     /// Flies the orders that have not been flown; whether that was interrupted.
-    fn fly_new(&mut self, orders: &[Vec<usize>]) -> bool {
+    fn evaluate_new(&mut self, orders: &[Vec<usize>]) -> bool {
         let fresh: Vec<&Vec<usize>> = orders
             .iter()
             .filter(|order| self.tree.is_new(order))
             .collect();
-        let answers = self.pool.map(&fresh, |order| self.fly(order));
+        let answers = self.pool.map(&fresh, |order| self.evaluate_order(order));
         let mut interrupted = false;
         for (order, answer) in fresh.into_iter().zip(answers) {
             interrupted |= answer == TourEvaluation::Stopped;
@@ -150,23 +150,23 @@ impl Search<'_> {
             self.tightened = true;
             self.tighten();
         }
-        if explored >= PRICE_NODES && !self.lagrangian {
+        if explored >= LAGRANGIAN_NODES && !self.lagrangian {
             self.lagrangian = true;
-            self.price();
+            self.raise_lagrangian_bound();
         }
         let budget = self.node_limit.saturating_sub(explored);
         if budget == 0 {
             return Some(SearchEnd::NodeLimit);
         }
-        let size = (explored / EXPLORED_PER_NODE).clamp(FEWEST_NODES, MAX_NODES);
+        let size = (explored / EXPLORED_PER_NODE).clamp(MIN_NODES, MAX_NODES);
         let tasks = self.take_round(size.min(budget));
         let answers = self.pool.map(&tasks, |task| self.evaluate(task));
         let mut interrupted = false;
         for (task, answer) in tasks.into_iter().zip(answers) {
             interrupted |= answer.is_stopped();
             match task {
-                Task::Node(node) => self.merge(node, answer),
-                Task::Probe(order) => self.merge_probe(&order, answer),
+                RoundTask::Node(node) => self.merge(node, answer),
+                RoundTask::Probe(order) => self.merge_probe(&order, answer),
             }
         }
         self.tree.tidy();
@@ -174,7 +174,7 @@ impl Search<'_> {
     }
 
     /// The nodes of the next round, and now and then an order to probe.
-    fn take_round(&mut self, size: u64) -> Vec<Task> {
+    fn take_round(&mut self, size: u64) -> Vec<RoundTask> {
         let nodes = self.tree.take_round(size, self.pool, self.stop);
         let explored = self.tree.statistics().nodes_explored;
         let mut probe = None;
@@ -187,28 +187,30 @@ impl Search<'_> {
         }
         nodes
             .into_iter()
-            .map(Task::Node)
-            .chain(probe.map(Task::Probe))
+            .map(RoundTask::Node)
+            .chain(probe.map(RoundTask::Probe))
             .collect()
     }
 
     /// Asks the model.
-    fn evaluate(&self, task: &Task) -> Answer {
+    fn evaluate(&self, task: &RoundTask) -> TaskResult {
         match task {
-            Task::Probe(order) => Answer::Tour(self.fly(order)),
-            Task::Node(node) if self.tree.is_leaf(node) => Answer::Tour(self.fly(&node.prefix)),
-            Task::Node(_) if self.stop.is_set() => Answer::Prefix(Evaluation::Stopped),
-            Task::Node(node) => Answer::Prefix(self.model.prefix_bound(&node.prefix)),
+            RoundTask::Probe(order) => TaskResult::Tour(self.evaluate_order(order)),
+            RoundTask::Node(node) if self.tree.is_leaf(node) => {
+                TaskResult::Tour(self.evaluate_order(&node.prefix))
+            }
+            RoundTask::Node(_) if self.stop.is_set() => TaskResult::Prefix(Evaluation::Stopped),
+            RoundTask::Node(node) => TaskResult::Prefix(self.model.prefix_bound(&node.prefix)),
         }
     }
 
-    fn fly(&self, order: &[usize]) -> TourEvaluation {
+    fn evaluate_order(&self, order: &[usize]) -> TourEvaluation {
         if self.stop.is_set() {
             return TourEvaluation::Stopped;
         }
         match self.model.tour(order) {
             // A duration that is no number is no result.
-            TourEvaluation::LegSolution(duration_s) if !duration_s.is_finite() => {
+            TourEvaluation::Solved(duration_s) if !duration_s.is_finite() => {
                 TourEvaluation::Unresolved
             }
             answer => answer,
@@ -216,23 +218,25 @@ impl Search<'_> {
     }
 
     /// Puts the answer to a node into the tree.
-    fn merge(&mut self, node: Node, answer: Answer) {
+    fn merge(&mut self, node: SearchNode, answer: TaskResult) {
         match answer {
-            Answer::Prefix(Evaluation::Value(bound_s)) => self.tree.bounded(node, Some(bound_s)),
-            Answer::Prefix(Evaluation::Unresolved) => self.tree.bounded(node, None),
-            Answer::Tour(TourEvaluation::LegSolution(duration_s)) => {
-                self.tree.flown(&node, duration_s)
+            TaskResult::Prefix(Evaluation::Value(bound_s)) => {
+                self.tree.bounded(node, Some(bound_s))
             }
-            Answer::Tour(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
-            Answer::Prefix(Evaluation::Stopped) | Answer::Tour(TourEvaluation::Stopped) => {
+            TaskResult::Prefix(Evaluation::Unresolved) => self.tree.bounded(node, None),
+            TaskResult::Tour(TourEvaluation::Solved(duration_s)) => {
+                self.tree.leaf_solved(&node, duration_s)
+            }
+            TaskResult::Tour(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
+            TaskResult::Prefix(Evaluation::Stopped) | TaskResult::Tour(TourEvaluation::Stopped) => {
                 self.tree.put_back(node);
             }
         }
     }
 
     /// Puts the answer to a probe into the tree.
-    fn merge_probe(&mut self, order: &[usize], answer: Answer) {
-        if let Answer::Tour(answer) = answer {
+    fn merge_probe(&mut self, order: &[usize], answer: TaskResult) {
+        if let TaskResult::Tour(answer) = answer {
             self.tree.record_candidate(order, answer);
         }
     }

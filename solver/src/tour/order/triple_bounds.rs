@@ -4,7 +4,7 @@
 //!
 //! Let `t_0 .. t_n` be the times that the legs of a tour take, `t_0` out of the start, `t_n` into the
 //! end, and let target `j` lie between the legs `a` and `b`. With pair bounds `d` and the model's
-//! bound of the path `(pred j, j, succ j)`, `t_a + t_b >= d_a + d_b + X_j`, where the excess
+//! bound of the path `(pred j, j, succ j)`, `t_a + t_b >= d_a + d_b + X_j`, where the coupling_gap
 //! `X_j >= 0` is 0 when the triple is unknown. Summed over the targets, every leg counts twice but
 //! for the outer two, so adding those and halving,
 //!
@@ -50,12 +50,12 @@
 mod ascent;
 mod choice;
 mod coupling_gaps;
-mod legs;
 mod multipliers;
 mod ranking;
 mod subsets;
+mod undirected_legs;
 
-pub use ascent::{Effort, Raised};
+pub use ascent::{AscentEffort, AscentWork};
 pub use subsets::TripleBoundSubsets;
 
 use super::completion::least_tree::{cheapest, least_tree};
@@ -64,16 +64,16 @@ use super::{PairTable, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use choice::Part;
-use coupling_gaps::{CouplingGaps, Passage};
-use legs::Legs;
+use coupling_gaps::{CouplingGaps, ShortPath};
 use multipliers::Multipliers;
 use ranking::Ranking;
 use std::collections::BTreeSet;
+use undirected_legs::UndirectedLegs;
 
 /// Bounds from triples, for places numbered as in [`PairTable`].
 #[derive(Debug)]
 pub struct TripleBounds {
-    legs: Legs,
+    legs: UndirectedLegs,
     coupling_gaps: CouplingGaps,
     multipliers: Multipliers,
     /// Places around each target by the least that they cost it as neighbours.
@@ -94,9 +94,9 @@ impl TripleBounds {
             return None;
         }
         let mut triple_bounds = Self {
-            legs: Legs::new(table, trees.triple_bounds()),
+            legs: UndirectedLegs::new(table, trees.entry_offsets()),
             coupling_gaps: CouplingGaps::new(model),
-            multipliers: Multipliers::of_prices(trees.prices()),
+            multipliers: Multipliers::of_potentials(trees.potentials()),
             near: Ranking::new(targets),
             far: Ranking::new(targets),
             root_s: 0.0,
@@ -142,17 +142,17 @@ impl TripleBounds {
             let mut path = vec![table.start()];
             path.extend(order);
             path.push(table.end());
-            let triples = path.windows(3).map(Passage::new);
+            let triples = path.windows(3).map(ShortPath::new);
             unknown.extend(triples.filter(|triple| self.coupling_gaps.is_open(triple)));
         }
-        let unknown: Vec<Passage> = unknown.into_iter().collect();
+        let unknown: Vec<ShortPath> = unknown.into_iter().collect();
         self.coupling_gaps.ask(&unknown, table, model, pool, stop);
     }
 
     /// What passing a target between two others adds to the two legs, s, as far as it is known.
     /// Summed over an order, unlike in a bound, all of it counts: a leg may be delayed by the one before
     /// and the one after it independently.
-    pub(super) fn excess(&self, from: usize, via: usize, to: usize) -> f64 {
+    pub(super) fn coupling_gap(&self, from: usize, via: usize, to: usize) -> f64 {
         self.coupling_gaps.triple(from, via, to)
     }
 
@@ -175,13 +175,13 @@ impl TripleBounds {
 
     /// What the targets of a part cost at the least, with their multipliers and triple_bounds, s.
     fn passing(&self, part: &Part<'_>) -> f64 {
-        let cost = |&via: &usize| self.legs.charge(via) + self.choice(part, via).cost;
+        let cost = |&via: &usize| self.legs.entry_offset(via) + self.choice(part, via).cost;
         part.targets.iter().map(cost).sum()
     }
 
     /// The first leg of a part less what the target takes over, s.
     fn first(&self, entry: usize, to: usize) -> f64 {
-        self.legs.charged(entry, to) - self.multipliers.taken(to, entry)
+        self.legs.reduced(entry, to) - self.multipliers.taken(to, entry)
     }
 }
 

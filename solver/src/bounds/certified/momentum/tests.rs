@@ -61,7 +61,7 @@ fn no_motion_leaves_a_box_and_the_boxes_are_not_idle() {
         let dynamics = scenario.dynamics();
         let bounds = CertifiedBounds::of(&dynamics);
         let drifting = bounds.momentum.iter().flat_map(|bounds| &bounds.frames);
-        let boxes: Vec<(Frame, f64)> = drifting
+        let boxes: Vec<(BodyFrame, f64)> = drifting
             .map(|drifting| (drifting.frame, drifting.share))
             .chain(bounds.frames.iter().map(|frame| (*frame, 0.0)))
             .collect();

@@ -4,7 +4,7 @@
 //! `j` is any target that the rules admit once all but `R` have been visited; infinite where there
 //! is none.
 
-use super::{EXACT_TARGETS, LegCosts};
+use super::{LegCosts, MAX_EXACT_TARGETS};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 
@@ -66,7 +66,7 @@ impl SubsetTable {
             }
             rest.resize(rest.len() + (1 << targets), f64::INFINITY);
         }
-        let legs: Vec<[f64; EXACT_TARGETS]> = (0..targets)
+        let legs: Vec<[f64; MAX_EXACT_TARGETS]> = (0..targets)
             .map(|from| row(targets, |to| costs.cost(from, to)))
             .collect();
         let place = |from: usize, set: usize| (from << targets) + set;
@@ -78,7 +78,7 @@ impl SubsetTable {
             if set % SETS_PER_LOOK == 0 && stop.is_set() {
                 return None;
             }
-            let mut after = [f64::INFINITY; EXACT_TARGETS];
+            let mut after = [f64::INFINITY; MAX_EXACT_TARGETS];
             for to in members(admitted.next(set)) {
                 after[to] = rest[place(to, set & !(1 << to))];
             }
@@ -155,8 +155,8 @@ impl SubsetTable {
 }
 
 /// A number for every target, and infinity beyond the last.
-fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; EXACT_TARGETS] {
-    let mut row = [f64::INFINITY; EXACT_TARGETS];
+fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; MAX_EXACT_TARGETS] {
+    let mut row = [f64::INFINITY; MAX_EXACT_TARGETS];
     for (to, slot) in row.iter_mut().enumerate().take(targets) {
         *slot = entry(to);
     }
@@ -165,7 +165,10 @@ fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; EXACT_TARGETS] {
 
 /// The least sum of two entries at the same place; four at a time, which halves the time that the
 /// whole table takes.
-pub(in crate::tour::order) fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
+pub(in crate::tour::order) fn least_sum(
+    a: &[f64; MAX_EXACT_TARGETS],
+    b: &[f64; MAX_EXACT_TARGETS],
+) -> f64 {
     let mut least = [f64::INFINITY; 4];
     for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
         for lane in 0..4 {

@@ -18,12 +18,12 @@ pub(in crate::tour::order) trait OrderCost: Sync {
     fn leg(&self, from: usize, to: usize) -> f64;
 
     /// What passing `via` between the two others adds to the two legs, s.
-    fn bend(&self, _from: usize, _via: usize, _to: usize) -> f64 {
+    fn coupling(&self, _from: usize, _via: usize, _to: usize) -> f64 {
         0.0
     }
 
-    /// Whether every bend between targets costs the same both ways.
-    fn bends_alike_both_ways(&self) -> bool {
+    /// Whether every coupling between targets costs the same both ways.
+    fn couplings_are_symmetric(&self) -> bool {
         true
     }
 }
@@ -38,11 +38,11 @@ impl OrderCost for TripleBounds {
         self.table().bound(from, to)
     }
 
-    fn bend(&self, from: usize, via: usize, to: usize) -> f64 {
-        self.excess(from, via, to)
+    fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
+        self.coupling_gap(from, via, to)
     }
 
-    fn bends_alike_both_ways(&self) -> bool {
+    fn couplings_are_symmetric(&self) -> bool {
         self.is_symmetric()
     }
 }
@@ -57,7 +57,7 @@ impl OrderCost for PairTable {
     }
 }
 
-/// Cost of the way from a place through some targets and to the end, s. A bend at the first place
+/// Cost of the way from a place through some targets and to the end, s. A coupling at the first place
 /// is not part of it.
 pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f64 {
     let mut sum = 0.0;
@@ -65,7 +65,7 @@ pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f6
     let mut at = from;
     for &to in order.iter().chain([&(cost.targets() + 1)]) {
         sum += cost.leg(at, to);
-        sum += before.map_or(0.0, |before| cost.bend(before, at, to));
+        sum += before.map_or(0.0, |before| cost.coupling(before, at, to));
         before = Some(at);
         at = to;
     }
@@ -76,16 +76,16 @@ pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f6
 /// symmetric as can be.
 ///
 /// Every target is entered exactly once, so that a charge taken off all legs into it changes all
-/// orders by the same. The triple_bounds are those of the spanning tree relaxation: the dwell at a
+/// orders by the same. The entry_offsets are those of the spanning tree relaxation: the dwell at a
 /// target, part of every leg into it, drops out whole.
 #[derive(Debug)]
-pub(super) struct Legs {
+pub(super) struct ReducedLegs {
     places: usize,
     costs: Vec<f64>,
     symmetric: bool,
 }
 
-impl Legs {
+impl ReducedLegs {
     /// Reads the legs of a cost.
     pub(super) fn new<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> Self {
         let places = cost.targets() + 2;
@@ -95,20 +95,20 @@ impl Legs {
             costs: vec![0.0; places * places],
             symmetric: true,
         };
-        let mut triple_bounds = vec![0.0; places];
+        let mut entry_offsets = vec![0.0; places];
         for &a in order {
             let skews = order
                 .iter()
                 .filter(|&&b| b != a)
                 .map(|&b| cost.leg(b, a) - cost.leg(a, b));
-            triple_bounds[a] = skews.sum::<f64>() / order.len() as f64;
+            entry_offsets[a] = skews.sum::<f64>() / order.len() as f64;
         }
         for &to in order {
             // The way back along an outer leg is never gone. What it costs is how far apart the two are.
-            legs.set_both(from, to, cost.leg(from, to) - triple_bounds[to]);
+            legs.set_both(from, to, cost.leg(from, to) - entry_offsets[to]);
             legs.set_both(to, end, cost.leg(to, end));
             for &other in order.iter().filter(|&&other| other != to) {
-                legs.costs[other * places + to] = cost.leg(other, to) - triple_bounds[to];
+                legs.costs[other * places + to] = cost.leg(other, to) - entry_offsets[to];
             }
         }
         legs.set_both(from, end, cost.leg(from, end));

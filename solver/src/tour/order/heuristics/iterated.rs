@@ -16,7 +16,7 @@ use super::cost::OrderCost;
 use super::local_search::{LocalSearch, OrderTask};
 use crate::math::random::SplitMix;
 use crate::run::stop::StopSignal;
-use crate::tour::order::FlownOrder;
+use crate::tour::order::SolvedOrder;
 use crate::tour::order::incumbents::Incumbents;
 use std::ops::RangeInclusive;
 
@@ -83,7 +83,7 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
 
     /// The best orders so far with their costs, best first. The one begun at is among them until
     /// better ones displace it.
-    pub(in crate::tour::order) fn best(&self) -> &[FlownOrder] {
+    pub(in crate::tour::order) fn best(&self) -> &[SolvedOrder] {
         self.best.orders()
     }
 
@@ -128,7 +128,7 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         }
         let duration_s = self.search.path.length();
         let order = self.search.path.order().to_vec();
-        self.best.offer(FlownOrder { order, duration_s });
+        self.best.offer(SolvedOrder { order, duration_s });
         duration_s
     }
 }

@@ -9,7 +9,7 @@
 
 use super::cost::OrderCost;
 use super::neighbours::Neighbours;
-use super::path::{Move, Path};
+use super::path::{Move, OrderPath};
 use crate::run::stop::StopSignal;
 use std::collections::VecDeque;
 
@@ -33,16 +33,16 @@ pub(in crate::tour::order) struct OrderTask<'a, C> {
 
 /// A path on its way to a local minimum.
 pub(super) struct LocalSearch<'a, C> {
-    pub(super) path: Path<'a, C>,
+    pub(super) path: OrderPath<'a, C>,
     neighbours: Neighbours,
     admits: Option<Admits<'a>>,
     waiting: VecDeque<usize>,
     is_waiting: Vec<bool>,
-    least_gain: f64,
+    min_gain: f64,
 }
 
 /// The best move so far and what it adds, s.
-struct Choice {
+struct BestMove {
     step: Option<Move>,
     change: f64,
 }
@@ -50,13 +50,13 @@ struct Choice {
 impl<'a, C: OrderCost> LocalSearch<'a, C> {
     /// Begins at an order that the rules, where there are any, allow.
     pub(super) fn new(task: &OrderTask<'a, C>, order: &[usize]) -> Self {
-        let path = Path::new(task.cost, task.from, order);
+        let path = OrderPath::new(task.cost, task.from, order);
         Self {
             neighbours: Neighbours::new(path.legs(), path.places()),
             admits: task.admits,
             waiting: path.places().iter().copied().collect(),
             is_waiting: vec![true; task.cost.targets() + 2],
-            least_gain: MIN_GAIN * path.length(),
+            min_gain: MIN_GAIN * path.length(),
             path,
         }
     }
@@ -101,8 +101,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
             first,
             middle: first + length - 1,
             last: first + length + other - 1,
-            turn_first: false,
-            turn_second: false,
+            reverse_first: false,
+            reverse_second: false,
         };
         let change = self.path.change(step);
         self.make(step);
@@ -135,9 +135,9 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
 
     /// The move at a place that helps most.
     fn best_move_at(&mut self, place: usize) -> Option<(Move, f64)> {
-        let mut choice = Choice {
+        let mut choice = BestMove {
             step: None,
-            change: -self.least_gain,
+            change: -self.min_gain,
         };
         self.reversals(place, &mut choice);
         self.shifts(place, &mut choice);
@@ -145,7 +145,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         choice.step.map(|step| (step, choice.change))
     }
 
-    fn consider(&mut self, step: Move, choice: &mut Choice) {
+    fn consider(&mut self, step: Move, choice: &mut BestMove) {
         let change = self.path.change(step);
         let admits = self.admits;
         if change < choice.change
@@ -158,7 +158,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
 
     /// Replaces the joint after or before a place by one to a near place, and turns round what lies
     /// between.
-    fn reversals(&mut self, place: usize, choice: &mut Choice) {
+    fn reversals(&mut self, place: usize, choice: &mut BestMove) {
         let here = self.path.position(place);
         let end = self.path.places().len() - 1;
         for after in [true, false] {
@@ -186,7 +186,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
     }
 
     /// Moves a short segment that begins or ends at a place to a near place.
-    fn shifts(&mut self, place: usize, choice: &mut Choice) {
+    fn shifts(&mut self, place: usize, choice: &mut BestMove) {
         let here = self.path.position(place);
         let end = self.path.places().len() - 1;
         for length in 1..=MAX_SEGMENT {
@@ -208,7 +208,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    fn shifts_of(&mut self, first: usize, last: usize, place: usize, choice: &mut Choice) {
+    fn shifts_of(&mut self, first: usize, last: usize, place: usize, choice: &mut BestMove) {
         let end = self.path.places().len() - 1;
         let removed = self.path.joint(first - 1) + self.path.joint(last)
             - self
@@ -237,8 +237,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
                             first: gap,
                             middle: first - 1,
                             last,
-                            turn_first: false,
-                            turn_second: turn,
+                            reverse_first: false,
+                            reverse_second: turn,
                         },
                         choice,
                     );
@@ -248,8 +248,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
                             first,
                             middle: last,
                             last: gap - 1,
-                            turn_first: turn,
-                            turn_second: false,
+                            reverse_first: turn,
+                            reverse_second: false,
                         },
                         choice,
                     );
@@ -258,13 +258,13 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// Goes on from a place to a near one and exchanges two segments of any length without turning
+    /// Goes on from a place to a near one and exchanges two segments of any length without reversal_change
     /// them (Kanellakis and Papadimitriou 1980).
     ///
     /// With the joints after the positions `i`, `j` and `k` removed, the places there are followed
     /// by the ones that followed those at `j`, `k` and `i`. That is one path again when the three
     /// ascend, cyclically.
-    fn exchanges(&mut self, place: usize, choice: &mut Choice) {
+    fn exchanges(&mut self, place: usize, choice: &mut BestMove) {
         let i = self.path.position(place);
         let end = self.path.places().len() - 1;
         if i == end {
@@ -298,8 +298,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
                         first: a + 1,
                         middle: b,
                         last: c,
-                        turn_first: false,
-                        turn_second: false,
+                        reverse_first: false,
+                        reverse_second: false,
                     };
                     self.consider(step, choice);
                 }

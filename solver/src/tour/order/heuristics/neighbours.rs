@@ -1,6 +1,6 @@
 //! The places nearest to each place.
 
-use super::cost::Legs;
+use super::cost::ReducedLegs;
 
 /// So many of them: seven are a quarter faster and as good on symmetric legs, and worse on others.
 const NEIGHBOURS: usize = 10;
@@ -14,7 +14,7 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// Sorts the places of a path, of which there are at least three.
-    pub(super) fn new(legs: &Legs, places: &[usize]) -> Self {
+    pub(super) fn new(legs: &ReducedLegs, places: &[usize]) -> Self {
         let count = places.iter().max().map_or(0, |greatest| greatest + 1);
         let width = NEIGHBOURS.min(places.len() - 1);
         let mut nearest = vec![0; count * width];

@@ -8,7 +8,7 @@ use super::cost::length;
 use super::{candidates, complete, iterated, nearest_neighbours};
 use crate::run::stop::StopSignal;
 use crate::tour::order::PairTable;
-use crate::tour::order::completion::Remainder;
+use crate::tour::order::completion::CompletionBound;
 use crate::tour::order::tests::RandomModel;
 
 #[test]
@@ -30,7 +30,7 @@ fn improving_keeps_the_targets_and_shortens_the_order() {
 fn a_completion_keeps_the_prefix_and_visits_the_rest() {
     for targets in [6, 24] {
         let table = PairTable::new(&RandomModel::new(targets, true, 9));
-        let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+        let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
         let prefix = [3, 1];
         let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
         let mut order = complete(&table, &completion, &prefix, &remaining, &StopSignal::new());
@@ -43,7 +43,7 @@ fn a_completion_keeps_the_prefix_and_visits_the_rest() {
 #[test]
 fn few_targets_start_from_the_shortest_order_of_the_table() {
     let table = PairTable::new(&RandomModel::new(5, true, 3));
-    let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+    let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
     let orders = candidates(&table, &completion, &StopSignal::new());
     let least = completion.bound(&table, table.start(), &[0, 1, 2, 3, 4]);
     assert!((length(&table, table.start(), &orders[0]) - least).abs() < 1e-9);
@@ -53,7 +53,7 @@ fn few_targets_start_from_the_shortest_order_of_the_table() {
 #[test]
 fn many_targets_have_several_candidates() {
     let table = PairTable::new(&RandomModel::new(24, true, 3));
-    let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+    let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
     let orders = candidates(&table, &completion, &StopSignal::new());
     assert_eq!(orders.len(), 5);
     let of = |order: &[usize]| length(&table, table.start(), order);

@@ -4,7 +4,7 @@ use super::LagrangianLegs;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::EXACT_TARGETS;
+use crate::tour::order::completion::MAX_EXACT_TARGETS;
 use crate::tour::order::completion::subsets::{Admitted, least_sum, mask, members};
 
 /// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum of
@@ -199,7 +199,7 @@ impl LagrangianPaths {
         let mut rest = vec![f32::INFINITY; others.len().pow(3)].into_boxed_slice();
         for &i in &others {
             for &j in others.iter().filter(|&&j| j != i) {
-                let mut after = [f64::INFINITY; EXACT_TARGETS];
+                let mut after = [f64::INFINITY; MAX_EXACT_TARGETS];
                 for k in members(next) {
                     after[k] = self.after([i, j, k], set & !(1 << k));
                 }

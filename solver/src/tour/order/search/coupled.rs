@@ -5,14 +5,14 @@
 //! of longer paths would pay. Many targets need them from the beginning: they are the bound that is
 //! told, and they tell which orders are worth flying.
 
-use super::Search;
+use super::OrderSearch;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::{EXACT_TARGETS, SpanningTrees};
+use crate::tour::order::completion::{MAX_EXACT_TARGETS, SpanningTrees};
 use crate::tour::order::heuristics::SearchEffort;
 use crate::tour::order::lagrangian::LagrangianPaths;
-use crate::tour::order::triple_bounds::{Effort, TripleBoundSubsets, TripleBounds};
+use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{PairTable, SearchEnd, TourModel};
 
 /// Steps of an ascent at most.
@@ -28,19 +28,19 @@ const FIVES_OF_MANY: usize = 8;
 const ORDERS_PER_ROUND: u64 = 4;
 /// Kicks per target of a search for an order, and how many of its best orders are flown.
 const KICKS: usize = 60;
-const FLOWN: usize = 2;
+const ORDERS_EVALUATED: usize = 2;
 
 /// Bounds from several places in a row.
-pub(super) enum Couplings {
+pub(super) enum CoupledBounds {
     /// With the rest of an order relaxed to a tree.
     Trees(Box<TripleBounds>),
     /// With a shortest path in its place.
     Paths(Box<TripleBoundSubsets>),
     /// With that and with legs that pay each other for the states they meet in.
-    Priced(Box<TripleBoundSubsets>, Box<LagrangianPaths>),
+    Lagrangian(Box<TripleBoundSubsets>, Box<LagrangianPaths>),
 }
 
-impl Couplings {
+impl CoupledBounds {
     /// What a first ascent finds for a few targets; nothing where no target couples its legs.
     pub(super) fn of_few(
         model: &dyn TourModel,
@@ -51,7 +51,7 @@ impl Couplings {
     ) -> Option<Self> {
         let mut triple_bounds = TripleBounds::new(model, table, &SpanningTrees::new(table))?;
         let targets = table.targets();
-        let effort = Effort {
+        let effort = AscentEffort {
             triples: TRIPLES_OF_FEW * targets,
             fives: FIVES_OF_FEW * targets,
             steps: STEPS,
@@ -66,7 +66,7 @@ impl Couplings {
         match self {
             Self::Trees(triple_bounds) => triple_bounds.bound(from, remaining),
             Self::Paths(subsets) => subsets.bound(from, remaining),
-            Self::Priced(subsets, lagrangian) => {
+            Self::Lagrangian(subsets, lagrangian) => {
                 let charged = subsets.bound(from, remaining);
                 charged.max(lagrangian.bound(from, remaining))
             }
@@ -77,29 +77,29 @@ impl Couplings {
     pub(super) fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
         match self {
             Self::Trees(_) | Self::Paths(_) => 0.0,
-            Self::Priced(_, lagrangian) => lagrangian.whole(prefix, remaining),
+            Self::Lagrangian(_, lagrangian) => lagrangian.whole(prefix, remaining),
         }
     }
 }
 
-impl Search<'_> {
+impl OrderSearch<'_> {
     /// Bounds and improves orders of many targets in turn, before the tree is opened.
-    pub(super) fn work_on_couplings(&mut self) -> Option<SearchEnd> {
-        if self.tree.table().targets() <= EXACT_TARGETS {
+    pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
+        if self.tree.table().targets() <= MAX_EXACT_TARGETS {
             return None;
         }
         let table = self.tree.table();
         let targets = table.targets();
         let mut triple_bounds = TripleBounds::new(self.model, table, &SpanningTrees::new(table))?;
         for round in 0..ROUNDS {
-            let effort = Effort {
+            let effort = AscentEffort {
                 triples: TRIPLES_OF_MANY * targets,
                 fives: FIVES_OF_MANY * targets,
                 steps: STEPS,
             };
             triple_bounds.raise(self.model, &effort, self.pool, self.stop);
             self.tree.bound_root(triple_bounds.root_bound());
-            self.account.report(&self.tree);
+            self.reporter.report(&self.tree);
             for order in 0..ORDERS_PER_ROUND {
                 self.improve_orders(&mut triple_bounds, round * ORDERS_PER_ROUND + order);
                 if self.stop.is_set() {
@@ -110,7 +110,8 @@ impl Search<'_> {
                 break;
             }
         }
-        self.tree.couple(Couplings::Trees(Box::new(triple_bounds)));
+        self.tree
+            .couple(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
     }
 
@@ -119,22 +120,22 @@ impl Search<'_> {
     fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, seed: u64) {
         let effort = SearchEffort {
             kicks_per_target: KICKS,
-            alternatives: FLOWN - 1,
+            alternatives: ORDERS_EVALUATED - 1,
             seed,
         };
         let orders = self.tree.short_orders(triple_bounds, &effort, self.stop);
         triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
-        self.fly_new(&orders);
-        self.account.hand_over(&self.tree);
-        self.account.report(&self.tree);
+        self.evaluate_new(&orders);
+        self.reporter.announce(&self.tree);
+        self.reporter.report(&self.tree);
     }
 
     /// Tightens the bounds of a search over few targets that is not about to end.
     pub(super) fn tighten(&mut self) {
-        if self.tree.table().targets() > EXACT_TARGETS {
+        if self.tree.table().targets() > MAX_EXACT_TARGETS {
             return;
         }
-        let couplings = Couplings::of_few(
+        let couplings = CoupledBounds::of_few(
             self.model,
             self.tree.table(),
             self.tree.rules(),

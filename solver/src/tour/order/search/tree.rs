@@ -1,17 +1,17 @@
 //! The search tree: what is open, what is flown, what was given up and why.
 
-use super::coupled::Couplings;
+use super::coupled::CoupledBounds;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::Remainder;
+use crate::tour::order::completion::CompletionBound;
 use crate::tour::order::frontier::Frontier;
 use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::incumbents::Incumbents;
-use crate::tour::order::node::Node;
+use crate::tour::order::node::SearchNode;
 use crate::tour::order::triple_bounds::TripleBounds;
 use crate::tour::order::{
-    FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
+    PairTable, SearchSettings, SearchStatistics, SolvedOrder, TourEvaluation, TourModel,
 };
 use std::collections::BTreeMap;
 
@@ -19,19 +19,19 @@ use std::collections::BTreeMap;
 const CONTRADICTION_RELATIVE: f64 = 1e-6;
 
 /// All orders, each in exactly one place.
-pub(super) struct Tree {
+pub(super) struct SearchTree {
     table: PairTable,
     /// Whether orders are as good backwards.
     symmetric: bool,
     /// The orders that are searched: with symmetry half of those that are admitted.
     rules: OrderRules,
-    completion: Remainder,
+    completion: CompletionBound,
     /// Bounds from several places in a row, once they have been asked for.
-    couplings: Option<Couplings>,
+    couplings: Option<CoupledBounds>,
     /// No order lasts less, s, by what is known before the root is opened.
     root_s: f64,
     /// Whether the root has been opened.
-    planted: bool,
+    root_is_open: bool,
     frontier: Frontier,
     incumbents: Incumbents,
     /// Orders that have been flown: the duration, s, if they resolved.
@@ -45,7 +45,7 @@ pub(super) struct Tree {
     statistics: SearchStatistics,
 }
 
-impl Tree {
+impl SearchTree {
     /// A tree in which nothing is open yet.
     pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings, stop: &StopSignal) -> Self {
         let table = PairTable::new(model);
@@ -56,11 +56,11 @@ impl Tree {
         }
         Self {
             symmetric,
-            completion: Remainder::new(&table, &rules, stop),
+            completion: CompletionBound::new(&table, &rules, stop),
             rules,
             couplings: None,
             root_s: 0.0,
-            planted: false,
+            root_is_open: false,
             frontier: Frontier::new(table.targets(), settings.frontier_bytes),
             incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
             tried: BTreeMap::new(),
@@ -82,7 +82,7 @@ impl Tree {
         let duration = match answer {
             TourEvaluation::Stopped => return,
             TourEvaluation::Unresolved => None,
-            TourEvaluation::LegSolution(duration_s) => Some(duration_s),
+            TourEvaluation::Solved(duration_s) => Some(duration_s),
         };
         self.statistics.tours += 1;
         match duration {
@@ -109,12 +109,12 @@ impl Tree {
     }
 
     /// Gives up the bounds from several places in a row, for better ones to be made of them.
-    pub(super) fn decouple(&mut self) -> Option<Couplings> {
+    pub(super) fn decouple(&mut self) -> Option<CoupledBounds> {
         self.couplings.take()
     }
 
     /// Takes in better bounds, of what is open already too.
-    pub(super) fn couple(&mut self, couplings: Couplings) {
+    pub(super) fn couple(&mut self, couplings: CoupledBounds) {
         self.couplings = Some(couplings);
         for mut node in self.frontier.take_if(|_| true) {
             let remaining = node.remaining(self.table.targets());
@@ -151,7 +151,7 @@ impl Tree {
 
     /// Takes in a bound of the time until the last fixed target is left, s, with what is known of the
     /// rest and of whole orders that begin so.
-    fn raise(&self, node: &mut Node, head: f64, remaining: &[usize]) {
+    fn raise(&self, node: &mut SearchNode, head: f64, remaining: &[usize]) {
         node.raise_head(
             head,
             self.rest(self.table.last_place(&node.prefix), remaining),
@@ -168,14 +168,14 @@ impl Tree {
     }
 
     /// Opens the root.
-    pub(super) fn plant(&mut self) {
-        self.planted = true;
-        self.admit(Node::root(self.root_bound()));
+    pub(super) fn open_root(&mut self) {
+        self.root_is_open = true;
+        self.admit(SearchNode::root(self.root_bound()));
         self.tidy();
     }
 
     /// Whether all targets are fixed.
-    pub(super) fn is_leaf(&self, node: &Node) -> bool {
+    pub(super) fn is_leaf(&self, node: &SearchNode) -> bool {
         node.prefix.len() == self.table.targets()
     }
 
@@ -185,7 +185,7 @@ impl Tree {
         size: u64,
         pool: &SolverPool,
         stop: &StopSignal,
-    ) -> Vec<Node> {
+    ) -> Vec<SearchNode> {
         let mut round = Vec::new();
         // Expanding takes its time when there are many targets.
         while (round.len() as u64) < size && !stop.is_set() {
@@ -202,7 +202,7 @@ impl Tree {
     }
 
     /// The completion of an open node that is shortest in the table, unless it was tried already.
-    pub(super) fn probe(&self, node: &Node, stop: &StopSignal) -> Option<Vec<usize>> {
+    pub(super) fn probe(&self, node: &SearchNode, stop: &StopSignal) -> Option<Vec<usize>> {
         if self.is_leaf(node) {
             return None;
         }
@@ -218,7 +218,7 @@ impl Tree {
     }
 
     /// Opens the children of a node.
-    fn expand(&mut self, parent: &Node, pool: &SolverPool) {
+    fn expand(&mut self, parent: &SearchNode, pool: &SolverPool) {
         let remaining = parent.remaining(self.table.targets());
         let children = pool.map(&remaining, |&next| {
             let prefix = [&*parent.prefix, &[next]].concat();
@@ -232,7 +232,7 @@ impl Tree {
     }
 
     /// The node with one more target, bounded by the pair table.
-    fn child(&self, parent: &Node, next: usize, remaining: &[usize]) -> Node {
+    fn child(&self, parent: &SearchNode, next: usize, remaining: &[usize]) -> SearchNode {
         let mut left: Vec<usize> = remaining.iter().copied().filter(|&t| t != next).collect();
         let mut child = parent.clone();
         self.append(&mut child, next);
@@ -248,14 +248,14 @@ impl Tree {
     }
 
     /// Fixes one more target by the pair table.
-    fn append(&self, node: &mut Node, target: usize) {
+    fn append(&self, node: &mut SearchNode, target: usize) {
         let last = self.table.last_place(&node.prefix);
         node.head += self.table.bound(last, target);
         node.prefix.push(target);
     }
 
     /// Opens a node unless it is decided already.
-    fn admit(&mut self, node: Node) {
+    fn admit(&mut self, node: SearchNode) {
         if self.is_leaf(&node) {
             match self.tried.get(&self.either_way(&node.prefix)) {
                 Some(Some(duration_s)) => return self.check(&node, *duration_s),
@@ -272,7 +272,7 @@ impl Tree {
     }
 
     /// Takes in the evaluation of a prefix, `None` when it did not resolve.
-    pub(super) fn bounded(&mut self, mut node: Node, head: Option<f64>) {
+    pub(super) fn bounded(&mut self, mut node: SearchNode, head: Option<f64>) {
         self.statistics.nodes_explored += 1;
         self.statistics.prefixes += 1;
         node.evaluated = true;
@@ -291,7 +291,7 @@ impl Tree {
     }
 
     /// Takes in the duration of a leaf.
-    pub(super) fn flown(&mut self, node: &Node, duration_s: f64) {
+    pub(super) fn leaf_solved(&mut self, node: &SearchNode, duration_s: f64) {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
         self.check(node, duration_s);
@@ -301,7 +301,7 @@ impl Tree {
     }
 
     /// Takes in that a leaf did not resolve.
-    pub(super) fn unresolved(&mut self, node: &Node) {
+    pub(super) fn unresolved(&mut self, node: &SearchNode) {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
         self.statistics.tours_unresolved += 1;
@@ -311,7 +311,7 @@ impl Tree {
     }
 
     /// Opens a node again whose evaluation was interrupted.
-    pub(super) fn put_back(&mut self, node: Node) {
+    pub(super) fn put_back(&mut self, node: SearchNode) {
         self.frontier.insert(node);
     }
 
@@ -340,7 +340,7 @@ impl Tree {
 
     fn offer(&mut self, order: &[usize], duration_s: f64) {
         let mut take_in = |order| {
-            self.improved |= self.incumbents.offer(FlownOrder { order, duration_s });
+            self.improved |= self.incumbents.offer(SolvedOrder { order, duration_s });
         };
         take_in(order.to_vec());
         if self.symmetric {
@@ -360,7 +360,7 @@ impl Tree {
     }
 
     /// Notes when an order is flown faster than its bound allows, beyond what a solver resolves.
-    fn check(&mut self, node: &Node, duration_s: f64) {
+    fn check(&mut self, node: &SearchNode, duration_s: f64) {
         if duration_s < node.bound * (1.0 - CONTRADICTION_RELATIVE) {
             self.statistics.bounds_contradicted += 1;
         }
@@ -376,7 +376,7 @@ impl Tree {
 
     /// Whether nothing is open.
     pub(super) fn is_exhausted(&self) -> bool {
-        self.planted && self.frontier.is_empty()
+        self.root_is_open && self.frontier.is_empty()
     }
 
     /// Whether the list of the best is proven up to the gap: nothing is open, and nothing that was
@@ -388,7 +388,7 @@ impl Tree {
 
     /// Lower bound of every order that has not been flown, s.
     pub(super) fn open_bound(&self) -> f64 {
-        if self.planted {
+        if self.root_is_open {
             self.frontier.bound().min(self.ruled_out_s).min(self.lost_s)
         } else {
             self.root_bound()
@@ -406,12 +406,12 @@ impl Tree {
     }
 
     /// The best orders flown so far, best first.
-    pub(super) fn orders(&self) -> &[FlownOrder] {
+    pub(super) fn orders(&self) -> &[SolvedOrder] {
         self.incumbents.orders()
     }
 
     /// The orders flown, best first.
-    pub(super) fn into_orders(self) -> Vec<FlownOrder> {
+    pub(super) fn into_orders(self) -> Vec<SolvedOrder> {
         self.incumbents.into_orders()
     }
 }

@@ -5,7 +5,7 @@ use crate::model::order_rules::OrderRules;
 use crate::run::progress::{Progress, Silent, Stage};
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::order::{
-    Evaluation, FlownOrder, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings,
+    Evaluation, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings, SolvedOrder,
     TourEvaluation, TourModel, exhaustive, search,
 };
 use std::sync::Mutex;
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Remembers everything, and stops the search after a number of calls.
 struct Recorder {
     told: Mutex<Vec<Progress>>,
-    improved: Mutex<Vec<FlownOrder>>,
+    improved: Mutex<Vec<SolvedOrder>>,
     stop: StopSignal,
     stop_after: usize,
 }
@@ -312,7 +312,7 @@ fn every_better_order_is_handed_over_once_before_it_is_told() {
         let durations: Vec<f64> = improved.iter().map(|order| order.duration_s).collect();
         assert!(durations.windows(2).all(|pair| pair[1] < pair[0]));
         for order in &improved {
-            let flown = TourEvaluation::LegSolution(order.duration_s);
+            let flown = TourEvaluation::Solved(order.duration_s);
             assert_eq!(model.tour(&order.order), flown, "seed {seed}");
         }
         let told = recorder.told();

@@ -5,13 +5,13 @@ use crate::model::order_rules::OrderRules;
 use crate::run::progress::Silent;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{
-    Evaluation, FlownOrder, Place, SearchEnd, SearchResult, SearchSettings, TourEvaluation,
+    Evaluation, Place, SearchEnd, SearchResult, SearchSettings, SolvedOrder, TourEvaluation,
     TourModel, exhaustive, search,
 };
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-fn orders_of(result: &SearchResult) -> Vec<FlownOrder> {
+fn orders_of(result: &SearchResult) -> Vec<SolvedOrder> {
     result
         .best
         .iter()
@@ -20,13 +20,13 @@ fn orders_of(result: &SearchResult) -> Vec<FlownOrder> {
         .collect()
 }
 
-fn assert_same_orders(found: &[FlownOrder], expected: &[FlownOrder], case: &str) {
-    let orders = |list: &[FlownOrder]| list.iter().map(|o| o.order.clone()).collect::<Vec<_>>();
+fn assert_same_orders(found: &[SolvedOrder], expected: &[SolvedOrder], case: &str) {
+    let orders = |list: &[SolvedOrder]| list.iter().map(|o| o.order.clone()).collect::<Vec<_>>();
     assert_eq!(orders(found), orders(expected), "{case}");
     assert_same_durations(found, expected, case);
 }
 
-fn assert_same_durations(found: &[FlownOrder], expected: &[FlownOrder], case: &str) {
+fn assert_same_durations(found: &[SolvedOrder], expected: &[SolvedOrder], case: &str) {
     assert_eq!(found.len(), expected.len(), "{case}");
     for (a, b) in found.iter().zip(expected) {
         assert!(

@@ -5,7 +5,7 @@ use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 use crate::tour::order::lagrangian::{LagrangianLegs, LagrangianPaths};
 use crate::tour::order::{
-    Evaluation, PairTable, Place, Price, TourEvaluation, TourModel, exhaustive,
+    Evaluation, PairTable, PassageCostate, Place, TourEvaluation, TourModel, exhaustive,
 };
 
 /// Legs that would begin and end in states of their own, in `[-1, 1]`, and pay for what they miss them
@@ -123,10 +123,10 @@ impl TourModel for MeetingModel {
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         assert!(self.rules.admits(order));
-        TourEvaluation::LegSolution(self.along(&self.path(order, true)))
+        TourEvaluation::Solved(self.along(&self.path(order, true)))
     }
 
-    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         let path = self.path(order, true);
         let price = |p: &[usize]| {
             let (end, begin) = (self.leg(p[0], p[1])[1], self.leg(p[1], p[2])[2]);

@@ -211,6 +211,6 @@ impl TourModel for RandomModel {
         if (self.fails)(order) {
             return TourEvaluation::Unresolved;
         }
-        TourEvaluation::LegSolution(self.cost(order, self.has_end, 1.0))
+        TourEvaluation::Solved(self.cost(order, self.has_end, 1.0))
     }
 }

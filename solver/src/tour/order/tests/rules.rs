@@ -4,7 +4,7 @@ use super::models::SplitMix;
 use super::{RandomModel, alternatives, pool, run};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::{Remainder, SpanningTrees, SubsetTable};
+use crate::tour::order::completion::{CompletionBound, SpanningTrees, SubsetTable};
 use crate::tour::order::exhaustive::permutations;
 use crate::tour::order::heuristics::{candidates, complete};
 use crate::tour::order::{PairTable, SearchEnd, SearchSettings, exhaustive};
@@ -134,7 +134,7 @@ fn orders_flown_early_keep_the_rules_whatever_their_number() {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
-        let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+        let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
         let orders = candidates(&table, &completion, &stop);
         assert!(!orders.is_empty());
         for order in &orders {

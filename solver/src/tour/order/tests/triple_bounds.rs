@@ -4,11 +4,11 @@ use super::anytime::StopsInside;
 use super::{RandomModel, pool};
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::SpanningTrees;
-use crate::tour::order::triple_bounds::{Effort, TripleBoundSubsets, TripleBounds};
+use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{Evaluation, PairTable, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-const EFFORT: Effort = Effort {
+const EFFORT: AscentEffort = AscentEffort {
     triples: 1000,
     fives: 1000,
     steps: 200,
@@ -133,7 +133,7 @@ fn triples_raise_the_bound_of_held_and_karp_and_fives_raise_that() {
         let mut bound = trees.bound(&table, table.start(), &all);
         assert!(triple_bounds.root_bound() >= bound - 1e-9, "seed {seed}");
         for fives in [0, EFFORT.fives] {
-            let effort = Effort { fives, ..EFFORT };
+            let effort = AscentEffort { fives, ..EFFORT };
             triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());
             assert!(triple_bounds.root_bound() > bound * 1.005, "seed {seed}");
             bound = triple_bounds.root_bound();
@@ -186,7 +186,7 @@ fn no_more_is_asked_than_allowed_and_nothing_twice() {
     let stop = StopSignal::new();
     let model = counting(&stop, usize::MAX);
     let (_, _, mut triple_bounds) = prepared(&model);
-    let mut passages = 0;
+    let mut paths = 0;
     let mut bound = triple_bounds.root_bound();
     for (triples, fives) in [
         (0, 0),
@@ -196,22 +196,22 @@ fn no_more_is_asked_than_allowed_and_nothing_twice() {
         (10_000, 0),
         (10_000, 0),
     ] {
-        let effort = Effort {
+        let effort = AscentEffort {
             triples,
             fives,
             ..EFFORT
         };
         let raised = triple_bounds.raise(&model, &effort, &pool(2), &stop);
         assert!(raised.triples <= triples && raised.fives <= fives);
-        passages += raised.triples + raised.fives;
+        paths += raised.triples + raised.fives;
         // One direction for what begins at the start or ends at the end, two for all others.
         let asked = model.evaluations.load(Ordering::Relaxed);
-        assert!((passages..=2 * passages).contains(&asked));
+        assert!((paths..=2 * paths).contains(&asked));
         assert!(triple_bounds.root_bound() >= bound);
         bound = triple_bounds.root_bound();
     }
     // There are 12 targets, each with 11 others, start and end around it.
-    assert!(passages <= 12 * (13 * 12 / 2 - 1) + 11);
+    assert!(paths <= 12 * (13 * 12 / 2 - 1) + 11);
 }
 
 #[test]
@@ -228,9 +228,9 @@ fn estimates_lie_between_the_pairs_and_the_flight() {
         path.extend(&order);
         path.push(table.end());
         let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
-        let excess = |triple: &[usize]| triple_bounds.excess(triple[0], triple[1], triple[2]);
+        let excess = |triple: &[usize]| triple_bounds.coupling_gap(triple[0], triple[1], triple[2]);
         let estimate = pairs + path.windows(3).map(excess).sum::<f64>();
-        let TourEvaluation::LegSolution(duration) = model.tour(&order) else {
+        let TourEvaluation::Solved(duration) = model.tour(&order) else {
             panic!("the model resolves");
         };
         assert!(pairs <= estimate && estimate <= duration + 1e-9);

@@ -1,8 +1,8 @@
-//! Raising the bound: subgradient ascent over the multipliers, and asking for the passages that matter.
+//! Raising the bound: subgradient ascent over the multipliers, and asking for the paths that matter.
 
 use super::TripleBounds;
-use super::choice::{Choice, Part};
-use super::coupling_gaps::Passage;
+use super::choice::{NeighbourChoice, Part};
+use super::coupling_gaps::ShortPath;
 use super::multipliers::Multipliers;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
@@ -25,7 +25,7 @@ const PATIENCE: usize = 6;
 /// Share of its direction that a step keeps for the next: the choices jump to and fro.
 const MOMENTUM: f64 = 0.85;
 /// Weight of prices, which raise all multipliers of a target, beside that of single multipliers.
-const PRICE_WEIGHT: f64 = 0.5;
+const POTENTIAL_WEIGHT: f64 = 0.5;
 /// So many steps go by between asking the model, and so many questions per target are asked at
 /// once: those that were chosen most often.
 const STEPS_PER_BATCH: usize = 30;
@@ -33,7 +33,7 @@ const BATCH_PER_TARGET: usize = 4;
 
 /// How much work to spend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effort {
+pub struct AscentEffort {
     /// Triples to ask for at most, each in both directions.
     pub triples: usize,
     /// Five places in a row, and triples in them, to ask for at most once triples alone no longer
@@ -46,14 +46,14 @@ pub struct Effort {
 
 /// How much work was spent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Raised {
+pub struct AscentWork {
     /// Triples asked for.
     pub triples: usize,
     /// Fives asked for, and triples in them.
     pub fives: usize,
     /// Steps taken.
     pub steps: usize,
-    /// Whether all passages that matter are known and the ascent has settled.
+    /// Whether all paths that matter are known and the ascent has settled.
     pub settled: bool,
 }
 
@@ -66,7 +66,7 @@ enum Width {
 
 /// How an ascent went.
 #[derive(Debug, Clone, Copy, Default)]
-struct Climb {
+struct AscentOutcome {
     asked: usize,
     steps: usize,
     settled: bool,
@@ -81,7 +81,7 @@ struct Ascent<'a> {
     weights: Vec<f64>,
     /// Direction of the next step in the multipliers and in the prices.
     heading: Multipliers,
-    price_heading: Vec<f64>,
+    potential_heading: Vec<f64>,
     step: f64,
     /// Steps since the bound last rose.
     stale: usize,
@@ -89,15 +89,15 @@ struct Ascent<'a> {
     best: Multipliers,
     /// The best bound since the model was last asked, s.
     level_s: f64,
-    /// How often open passages were chosen since the model was last asked.
-    wanted: BTreeMap<Passage, usize>,
+    /// How often open paths were chosen since the model was last asked.
+    wanted: BTreeMap<ShortPath, usize>,
 }
 
 /// The two relaxed choices for some multipliers.
-struct Choices {
+struct RelaxedChoices {
     bound: f64,
     /// What each target chooses.
-    targets: Vec<Choice>,
+    targets: Vec<NeighbourChoice>,
     /// The tree with its outer edges.
     edges: Vec<[usize; 2]>,
 }
@@ -108,19 +108,19 @@ impl TripleBounds {
     pub fn raise(
         &mut self,
         model: &dyn TourModel,
-        effort: &Effort,
+        effort: &AscentEffort,
         pool: &SolverPool,
         stop: &StopSignal,
-    ) -> Raised {
-        let ask = |triple_bounds: &mut Self, passages: &[Passage]| {
+    ) -> AscentWork {
+        let ask = |triple_bounds: &mut Self, paths: &[ShortPath]| {
             let table = triple_bounds.legs.table();
             triple_bounds
                 .coupling_gaps
-                .ask(passages, table, model, pool, stop);
+                .ask(paths, table, model, pool, stop);
         };
         let triples = self.climb(Width::Triples, effort.triples, effort.steps, ask, stop);
         if effort.fives == 0 || stop.is_set() {
-            return Raised {
+            return AscentWork {
                 triples: triples.asked,
                 fives: 0,
                 steps: triples.steps,
@@ -128,7 +128,7 @@ impl TripleBounds {
             };
         }
         let fives = self.climb(Width::Fives, effort.fives, effort.steps, ask, stop);
-        Raised {
+        AscentWork {
             triples: triples.asked,
             fives: fives.asked,
             steps: triples.steps + fives.steps,
@@ -136,18 +136,18 @@ impl TripleBounds {
         }
     }
 
-    /// One ascent, that asks for passages of this width.
+    /// One ascent, that asks for paths of this width.
     fn climb(
         &mut self,
         width: Width,
         limit: usize,
         steps: usize,
-        ask: impl Fn(&mut Self, &[Passage]),
+        ask: impl Fn(&mut Self, &[ShortPath]),
         stop: &StopSignal,
-    ) -> Climb {
+    ) -> AscentOutcome {
         let all: Vec<usize> = (0..self.targets()).collect();
         let mean_leg = self.root_s / (all.len() + 1) as f64;
-        let mut climb = Climb::default();
+        let mut climb = AscentOutcome::default();
         let mut ascent = Ascent::new(self, width, &all, FIRST_STEP * mean_leg);
         while climb.steps < steps && !stop.is_set() {
             climb.steps += 1;
@@ -182,7 +182,7 @@ impl<'a> Ascent<'a> {
             part: Part::new(triple_bounds.legs.table().start(), triple_bounds.end(), all),
             weights: vec![0.0; targets * targets],
             heading: Multipliers::zero(targets),
-            price_heading: vec![0.0; targets],
+            potential_heading: vec![0.0; targets],
             step,
             stale: 0,
             level_s: f64::NEG_INFINITY,
@@ -195,7 +195,7 @@ impl<'a> Ascent<'a> {
     }
 
     /// Both choices for the multipliers as they are.
-    fn choose(&mut self) -> Choices {
+    fn choose(&mut self) -> RelaxedChoices {
         self.triple_bounds.rank();
         let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
@@ -206,14 +206,14 @@ impl<'a> Ascent<'a> {
                 self.weights[b * targets + a] = weight;
             }
         }
-        let mut choices = Choices {
+        let mut choices = RelaxedChoices {
             bound: 0.0,
             targets: Vec::with_capacity(targets),
             edges: Vec::with_capacity(targets + 1),
         };
         for &via in self.part.targets {
             let choice = triple_bounds.choice(&self.part, via);
-            choices.bound += triple_bounds.legs.charge(via) + choice.cost;
+            choices.bound += triple_bounds.legs.entry_offset(via) + choice.cost;
             choices.targets.push(choice);
         }
         for outer in [self.part.entry, triple_bounds.end()] {
@@ -231,7 +231,7 @@ impl<'a> Ascent<'a> {
 
     /// Keeps the best multipliers, shortens the step when they no longer get better, and notes what it
     /// would help to know.
-    fn judge(&mut self, choices: &Choices) {
+    fn judge(&mut self, choices: &RelaxedChoices) {
         self.stale += 1;
         if choices.bound > self.best_s {
             self.best_s = choices.bound;
@@ -245,17 +245,17 @@ impl<'a> Ascent<'a> {
             self.stale = 0;
         }
         for (via, choice) in choices.targets.iter().enumerate() {
-            if let Some(passage) = self.open_passage(via, choice) {
-                *self.wanted.entry(passage).or_default() += 1;
+            if let Some(path) = self.open_path(via, choice) {
+                *self.wanted.entry(path).or_default() += 1;
             }
         }
     }
 
     /// What would tell more about what a target chose.
-    fn open_passage(&self, via: usize, choice: &Choice) -> Option<Passage> {
+    fn open_path(&self, via: usize, choice: &NeighbourChoice) -> Option<ShortPath> {
         let coupling_gaps = &self.triple_bounds.coupling_gaps;
         let [a, b] = choice.ends;
-        let triple = Passage::new(&[a, via, b]);
+        let triple = ShortPath::new(&[a, via, b]);
         if coupling_gaps.is_open(&triple) {
             return Some(triple);
         }
@@ -263,24 +263,24 @@ impl<'a> Ascent<'a> {
             return None;
         }
         let [first, last] = choice.path_beyond()?;
-        let five = Passage::new(&[first, a, via, b, last]);
+        let five = ShortPath::new(&[first, a, via, b, last]);
         coupling_gaps.is_open(&five).then_some(five)
     }
 
-    /// Takes the passages that were chosen most often.
-    fn most_wanted(&mut self, limit: usize) -> Vec<Passage> {
-        let mut wanted: Vec<(Passage, usize)> =
+    /// Takes the paths that were chosen most often.
+    fn most_wanted(&mut self, limit: usize) -> Vec<ShortPath> {
+        let mut wanted: Vec<(ShortPath, usize)> =
             std::mem::take(&mut self.wanted).into_iter().collect();
-        // Stable: equals stay in the order of the passages.
+        // Stable: equals stay in the order of the paths.
         wanted.sort_by_key(|&(_, times)| Reverse(times));
         wanted.truncate(limit.min(BATCH_PER_TARGET * self.part.targets.len()));
-        wanted.into_iter().map(|(passage, _)| passage).collect()
+        wanted.into_iter().map(|(path, _)| path).collect()
     }
 
     /// Takes a step: a share is raised where a target chooses a neighbour that the tree does not,
     /// and lowered where it is the other way round; this is a subgradient of the bound. So is, in
     /// the prices, the number of edges that the tree has too many at a target.
-    fn advance(&mut self, choices: &Choices) {
+    fn advance(&mut self, choices: &RelaxedChoices) {
         let targets = self.part.targets.len();
         self.heading.fade(MOMENTUM);
         for (via, choice) in choices.targets.iter().enumerate() {
@@ -290,23 +290,23 @@ impl<'a> Ascent<'a> {
             for [of, place] in choice.beyond {
                 self.heading.add_outer(of, place, 1.0);
             }
-            self.price_heading[via] = MOMENTUM * self.price_heading[via] + 2.0;
+            self.potential_heading[via] = MOMENTUM * self.potential_heading[via] + 2.0;
         }
         for &[a, b] in &choices.edges {
             for (of, place) in [(a, b), (b, a)] {
                 if of < targets {
                     self.heading.add_near(of, place, -1.0);
                     self.heading.add_outer(of, place, -1.0);
-                    self.price_heading[of] -= 1.0;
+                    self.potential_heading[of] -= 1.0;
                 }
             }
         }
         let multipliers = &mut self.triple_bounds.multipliers;
         let near = multipliers.near.chunks_exact_mut(targets + 2);
         let headings = self.heading.near.chunks_exact(targets + 2);
-        for ((near, headings), price) in near.zip(headings).zip(&self.price_heading) {
+        for ((near, headings), price) in near.zip(headings).zip(&self.potential_heading) {
             for (share, heading) in near.iter_mut().zip(headings) {
-                *share += self.step * (heading + PRICE_WEIGHT * price);
+                *share += self.step * (heading + POTENTIAL_WEIGHT * price);
             }
         }
         if self.width == Width::Fives {

@@ -16,7 +16,7 @@ pub(super) struct Part<'a> {
 
 /// The neighbours of a target, what lies beyond them, and what they cost it, s.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Choice {
+pub(super) struct NeighbourChoice {
     /// The two neighbours.
     pub(super) ends: [usize; 2],
     /// The outer multipliers that the target pays: of which target, and of its edge to which place.
@@ -24,7 +24,7 @@ pub(super) struct Choice {
     pub(super) cost: f64,
 }
 
-impl Choice {
+impl NeighbourChoice {
     /// The places beyond both neighbours, when both neighbours are targets.
     pub(super) fn path_beyond(&self) -> Option<[usize; 2]> {
         let [first, last] = self.beyond;
@@ -79,8 +79,8 @@ impl TripleBounds {
     /// Exact, though most pairs are never looked at: they come in the order of their multipliers with
     /// the least outer multipliers that they could come with, so once these alone reach the best cost
     /// all later pairs do. What passing costs is not negative.
-    pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> Choice {
-        let mut best = Choice {
+    pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> NeighbourChoice {
+        let mut best = NeighbourChoice {
             ends: [via; 2],
             beyond: [[via; 2]; 2],
             cost: f64::INFINITY,
@@ -116,7 +116,13 @@ impl TripleBounds {
     }
 
     /// Betters a choice by one of these neighbours and the cheapest places beyond them.
-    fn choose_beyond(&self, part: &Part<'_>, via: usize, ends: [usize; 2], best: &mut Choice) {
+    fn choose_beyond(
+        &self,
+        part: &Part<'_>,
+        via: usize,
+        ends: [usize; 2],
+        best: &mut NeighbourChoice,
+    ) {
         let [one, other] = ends;
         let coupling_gaps = &self.coupling_gaps;
         let passing = self
@@ -141,7 +147,7 @@ impl TripleBounds {
                     cost += self.legs.passing_five(coupling_gaps, part.entry, path) - passing;
                 }
                 if cost < best.cost {
-                    *best = Choice {
+                    *best = NeighbourChoice {
                         ends,
                         beyond: [first, last],
                         cost,
@@ -184,7 +190,7 @@ mod tests {
     use crate::tour::order::PairTable;
     use crate::tour::order::completion::{LegCosts, SpanningTrees};
     use crate::tour::order::tests::RandomModel;
-    use crate::tour::order::triple_bounds::Effort;
+    use crate::tour::order::triple_bounds::AscentEffort;
     use std::num::NonZeroUsize;
 
     /// The cheapest choice by trying all.
@@ -233,7 +239,7 @@ mod tests {
             let trees = SpanningTrees::new(&table);
             let mut triple_bounds =
                 TripleBounds::new(&model, &table, &trees).expect("legs are coupled");
-            let effort = Effort {
+            let effort = AscentEffort {
                 triples: 300,
                 fives: 300,
                 steps: 70,

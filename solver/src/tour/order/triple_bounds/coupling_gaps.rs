@@ -9,9 +9,9 @@ use std::collections::HashMap;
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Passage(Vec<usize>);
+pub(super) struct ShortPath(Vec<usize>);
 
-impl Passage {
+impl ShortPath {
     pub(super) fn new(places: &[usize]) -> Self {
         let mut places = places.to_vec();
         if places.last() < places.first() {
@@ -27,7 +27,7 @@ pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
     couples: Vec<bool>,
-    /// Row `via * places + from`, there once something is known of it: excess of every `to`, s, not
+    /// Row `via * places + from`, there once something is known of it: coupling_gap of every `to`, s, not
     /// a number where nothing is known.
     triples: Vec<Option<Box<[f64]>>>,
     /// Excess of five places over their four pair bounds, s.
@@ -63,32 +63,32 @@ impl CouplingGaps {
         let halves = || self.triple(a, b, c) + self.triple(c, d, e);
         self.fives
             .get(&path)
-            .map_or(0.0, |excess| (excess - halves()).max(0.0))
+            .map_or(0.0, |coupling_gap| (coupling_gap - halves()).max(0.0))
     }
 
     /// Whether asking the model could tell more.
-    pub(super) fn is_open(&self, passage: &Passage) -> bool {
-        let middle = passage.0[passage.0.len() / 2];
+    pub(super) fn is_open(&self, path: &ShortPath) -> bool {
+        let middle = path.0[path.0.len() / 2];
         let unknown = |path: Vec<usize>| match path[..] {
             [a, b, c] => self.known_triple(a, b, c).is_nan(),
             [a, b, c, d, e] => !self.fives.contains_key(&[a, b, c, d, e]),
             _ => false,
         };
-        self.couples[middle] && self.directions(passage).into_iter().flatten().any(unknown)
+        self.couples[middle] && self.directions(path).into_iter().flatten().any(unknown)
     }
 
-    /// Asks the model, about both directions of a passage by the same worker, who may know the one
+    /// Asks the model, about both directions of a path by the same worker, who may know the one
     /// when he knows the other. What is interrupted stays unknown.
     pub(super) fn ask(
         &mut self,
-        passages: &[Passage],
+        paths: &[ShortPath],
         table: &PairTable,
         model: &dyn TourModel,
         pool: &SolverPool,
         stop: &StopSignal,
     ) {
-        let answers = pool.map(passages, |passage| {
-            self.directions(passage).map(|path| {
+        let answers = pool.map(paths, |path| {
+            self.directions(path).map(|path| {
                 let path = path?;
                 if stop.is_set() {
                     return None;
@@ -105,21 +105,21 @@ impl CouplingGaps {
                 }
             })
         });
-        for (path, excess) in answers.into_iter().flatten().flatten() {
+        for (path, coupling_gap) in answers.into_iter().flatten().flatten() {
             match path[..] {
-                [a, b, c] => self.set_triple(a, b, c, excess),
-                [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], excess),
+                [a, b, c] => self.set_triple(a, b, c, coupling_gap),
+                [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], coupling_gap),
                 _ => {}
             }
         }
     }
 
-    /// The directions in which a passage can be flown and of which there is something to know.
-    fn directions(&self, passage: &Passage) -> [Option<Vec<usize>>; 2] {
+    /// The directions in which a path can be flown and of which there is something to know.
+    fn directions(&self, path: &ShortPath) -> [Option<Vec<usize>>; 2] {
         let (start, end) = (self.targets, self.targets + 1);
-        let mut back = passage.0.clone();
+        let mut back = path.0.clone();
         back.reverse();
-        [passage.0.clone(), back].map(|path| {
+        [path.0.clone(), back].map(|path| {
             let (from, to) = (path[0], path[path.len() - 1]);
             let possible = from != end && to != start && (to != end || self.has_end);
             possible.then_some(path)
@@ -140,9 +140,9 @@ impl CouplingGaps {
             .map_or(f64::NAN, |row| row[to])
     }
 
-    fn set_triple(&mut self, from: usize, via: usize, to: usize, excess: f64) {
+    fn set_triple(&mut self, from: usize, via: usize, to: usize, coupling_gap: f64) {
         let places = self.targets + 2;
         let row = &mut self.triples[via * places + from];
-        row.get_or_insert_with(|| vec![f64::NAN; places].into())[to] = excess;
+        row.get_or_insert_with(|| vec![f64::NAN; places].into())[to] = coupling_gap;
     }
 }

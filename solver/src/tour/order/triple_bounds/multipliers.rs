@@ -23,7 +23,7 @@ impl Multipliers {
     }
 
     /// What of every edge at a target makes up for its price, s.
-    pub(super) fn of_prices(prices: &[f64]) -> Self {
+    pub(super) fn of_potentials(prices: &[f64]) -> Self {
         let mut multipliers = Self::zero(prices.len());
         for (row, price) in multipliers
             .near

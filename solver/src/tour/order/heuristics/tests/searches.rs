@@ -1,12 +1,12 @@
 //! What searches find, and what they obey.
 
-use super::models::{Bends, Legs, RandomCost};
+use super::models::{Couplings, Legs, RandomCost};
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::SpanningTrees;
 use crate::tour::order::heuristics::cost::{OrderCost, length};
 use crate::tour::order::heuristics::iterated::IteratedSearch;
 use crate::tour::order::heuristics::local_search::OrderTask;
-use crate::tour::order::{FlownOrder, PairTable};
+use crate::tour::order::{PairTable, SolvedOrder};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn all(targets: usize) -> Vec<usize> {
@@ -20,7 +20,7 @@ fn after<C>(cost: &C, from: usize) -> OrderTask<'_, C> {
 }
 
 /// The best orders from the start after so many kicks, beginning at `0, 1, ..`.
-fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -> Vec<FlownOrder> {
+fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -> Vec<SolvedOrder> {
     let task = after(cost, cost.targets());
     let mut search = IteratedSearch::new(&task, &all(cost.targets()), alternatives, seed);
     search.run(kicks, &StopSignal::new());
@@ -30,16 +30,16 @@ fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -
 #[test]
 fn few_targets_are_solved() {
     let kinds = [
-        (Legs::Points, Bends::None),
-        (Legs::Dwells, Bends::BothWays),
-        (Legs::Directed, Bends::None),
-        (Legs::Directed, Bends::Directed),
+        (Legs::Points, Couplings::None),
+        (Legs::Dwells, Couplings::BothWays),
+        (Legs::Directed, Couplings::None),
+        (Legs::Directed, Couplings::Directed),
     ];
     let mut solved = 0;
     for seed in 0..100 {
-        let (legs, bends) = kinds[seed % 4];
+        let (legs, couplings) = kinds[seed % 4];
         let targets = 1 + seed % 9;
-        let cost = RandomCost::new(targets, legs, bends, seed as u64);
+        let cost = RandomCost::new(targets, legs, couplings, seed as u64);
         let best = found(&cost, 200, 0, 1)[0].duration_s;
         let least = cost.least();
         assert!(best > least - 1e-9, "seed {seed}: {best} below {least}");
@@ -51,7 +51,7 @@ fn few_targets_are_solved() {
 #[test]
 fn fifty_targets_come_near_the_bound() {
     for seed in 0..3 {
-        let table = PairTable::new(&RandomCost::new(50, Legs::Dwells, Bends::None, seed));
+        let table = PairTable::new(&RandomCost::new(50, Legs::Dwells, Couplings::None, seed));
         let bound = SpanningTrees::new(&table).bound(&table, table.start(), &all(50));
         let best = found(&table, 3000, 0, seed)[0].duration_s;
         assert!(bound < best + 1e-9 && best < 1.01 * bound, "{bound} {best}");
@@ -61,7 +61,7 @@ fn fifty_targets_come_near_the_bound() {
 #[test]
 fn targets_are_kept_and_orders_never_get_worse() {
     for targets in [0, 1, 2, 3, 4, 40] {
-        let cost = RandomCost::new(targets, Legs::Directed, Bends::Directed, 3);
+        let cost = RandomCost::new(targets, Legs::Directed, Couplings::Directed, 3);
         let begun = length(&cost, targets, &all(targets));
         for kicks in [0, 1, 50] {
             let best = &found(&cost, kicks, 0, 9)[0];
@@ -76,7 +76,7 @@ fn targets_are_kept_and_orders_never_get_worse() {
 
 #[test]
 fn some_targets_after_one_of_the_others_are_searched_too() {
-    let cost = RandomCost::new(30, Legs::Points, Bends::BothWays, 8);
+    let cost = RandomCost::new(30, Legs::Points, Couplings::BothWays, 8);
     let some: Vec<usize> = (0..30).filter(|t| t % 3 != 0).collect();
     let mut search = IteratedSearch::new(&after(&cost, 6), &some, 0, 0);
     search.run(300, &StopSignal::new());
@@ -90,14 +90,14 @@ fn some_targets_after_one_of_the_others_are_searched_too() {
 
 #[test]
 fn the_seed_decides() {
-    let cost = RandomCost::new(40, Legs::Directed, Bends::BothWays, 5);
+    let cost = RandomCost::new(40, Legs::Directed, Couplings::BothWays, 5);
     assert_eq!(found(&cost, 200, 5, 1), found(&cost, 200, 5, 1));
     assert_ne!(found(&cost, 200, 5, 1), found(&cost, 200, 5, 2));
 }
 
 #[test]
 fn alternatives_are_distinct_and_sorted() {
-    let cost = RandomCost::new(40, Legs::Points, Bends::BothWays, 5);
+    let cost = RandomCost::new(40, Legs::Points, Couplings::BothWays, 5);
     let best = found(&cost, 2000, 30, 1);
     assert_eq!(best.len(), 31);
     for (place, known) in best.iter().enumerate() {
@@ -113,7 +113,7 @@ fn alternatives_are_distinct_and_sorted() {
 
 #[test]
 fn rules_are_obeyed() {
-    let cost = RandomCost::new(30, Legs::Points, Bends::BothWays, 2);
+    let cost = RandomCost::new(30, Legs::Points, Couplings::BothWays, 2);
     // The first comes third, and 20 to 29 in ascending order.
     let admits =
         |order: &[usize]| order[2] == 0 && order.iter().filter(|&&target| target >= 20).is_sorted();
@@ -139,7 +139,7 @@ fn rules_are_obeyed() {
 
 #[test]
 fn a_stop_is_seen_at_once() {
-    let cost = RandomCost::new(40, Legs::Points, Bends::None, 2);
+    let cost = RandomCost::new(40, Legs::Points, Couplings::None, 2);
     let stop = StopSignal::new();
     let seen = AtomicUsize::new(0);
     // The rules are asked before every move.

@@ -1,24 +1,24 @@
 //! Learning the prices that legs pay each other, in a search over few targets that has turned out to be
 //! hard.
 
-use super::Search;
-use super::coupled::Couplings;
-use crate::tour::order::lagrangian::{LagrangianLegs, LagrangianPaths, PRICED_TARGETS};
+use super::OrderSearch;
+use super::coupled::CoupledBounds;
+use crate::tour::order::lagrangian::{LagrangianLegs, LagrangianPaths, MAX_LAGRANGIAN_TARGETS};
 
 /// Rounds at most, and orders flown in each.
 const ROUNDS: usize = 24;
 const ORDERS: usize = 4;
 /// The learning ends when in so many rounds the bound has not gained this share of itself.
-const PATIENT_ROUNDS: usize = 4;
-const WORTHWHILE: f64 = 2e-4;
+const MAX_STALE_ROUNDS: usize = 4;
+const MIN_RELATIVE_GAIN: f64 = 2e-4;
 
-impl Search<'_> {
+impl OrderSearch<'_> {
     /// Prices the legs, and flies the orders that are shortest by the prices. Nothing comes of it
     /// when the search is stopped meanwhile, or the model knows no prices.
-    pub(super) fn price(&mut self) {
+    pub(super) fn raise_lagrangian_bound(&mut self) {
         let targets = self.tree.table().targets();
         let couple = (0..targets).any(|via| self.model.couples(via));
-        if targets > PRICED_TARGETS || !couple {
+        if targets > MAX_LAGRANGIAN_TARGETS || !couple {
             return;
         }
         let rules = self.tree.rules().clone();
@@ -42,18 +42,18 @@ impl Search<'_> {
                 break;
             }
             let orders = paths.orders(ORDERS);
-            self.fly_new(&orders);
+            self.evaluate_new(&orders);
             self.tree.tidy();
-            self.account.hand_over(&self.tree);
-            self.account.report(&self.tree);
+            self.reporter.announce(&self.tree);
+            self.reporter.report(&self.tree);
             if !legs.learn(&orders, self.model, self.pool, self.stop) {
                 return;
             }
         }
         if (is_best || paths.fill(&best, self.pool, self.stop))
-            && let Some(Couplings::Paths(charged)) = self.tree.decouple()
+            && let Some(CoupledBounds::Paths(charged)) = self.tree.decouple()
         {
-            let lagrangian = Couplings::Priced(charged, Box::new(paths));
+            let lagrangian = CoupledBounds::Lagrangian(charged, Box::new(paths));
             self.tree.couple(lagrangian);
         }
     }
@@ -63,7 +63,7 @@ impl Search<'_> {
         let rounds = bounds.len() - 1;
         let last = bounds[rounds];
         let proved = self.tree.best_s().is_some_and(|best_s| last >= best_s);
-        let earlier = rounds.checked_sub(PATIENT_ROUNDS);
-        proved || earlier.is_some_and(|round| last <= bounds[round] * (1.0 + WORTHWHILE))
+        let earlier = rounds.checked_sub(MAX_STALE_ROUNDS);
+        proved || earlier.is_some_and(|round| last <= bounds[round] * (1.0 + MIN_RELATIVE_GAIN))
     }
 }

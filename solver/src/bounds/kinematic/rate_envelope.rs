@@ -13,12 +13,12 @@ const HALVINGS: usize = 60;
 
 /// Limits with the rates at the two ends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rise {
+pub(super) struct RateEnvelope {
     pub(super) limits: SlewLimits,
     pub(super) ends: EndRates,
 }
 
-impl Rise {
+impl RateEnvelope {
     /// `m_i(t; T)`.
     fn available(&self, axis: usize, at: f64, duration: f64) -> f64 {
         let acceleration = self.limits.accelerations_rad_s2[axis];

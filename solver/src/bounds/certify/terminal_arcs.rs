@@ -1,4 +1,4 @@
-//! The outer arcs of a word, known from its interior.
+//! The outer arcs of a sequence, known from its interior.
 //!
 //! With half durations `a`, `b` of the outer arcs and the interior `P`,
 //!
@@ -15,27 +15,27 @@
 
 use super::interval::{Interval, twice_asin_of_root};
 use super::rates::Rates;
-use super::turn::{Turn, Vector, dot, dot4, product, rotate, times_vector};
-use super::word::{Moving, Word};
+use super::sequence::{ArcSequence, Moving};
+use super::turn::{QuatInterval, VectorInterval, dot, dot4, product, rotate, times_vector};
 use std::f64::consts::PI;
 
 /// Angle from half a turn, rad, within which an outer half duration is tried as none.
 const LEFT_OUT: f64 = 1e-3;
 
-/// A target as a word sees it.
+/// A target as a sequence sees it.
 #[derive(Debug)]
-pub(super) struct View {
+pub(super) struct TargetView {
     /// `q`, `-c_0 q`, `-q c_f`, `c_0 q c_f`: their scalar products with `P` make up the equation.
-    images: [Turn; 4],
+    images: [QuatInterval; 4],
     /// `c_0` and `c_f`.
-    pub(super) ends: [Vector; 2],
+    pub(super) ends: [VectorInterval; 2],
     /// `c_0 . R c_f`, which `c_0 . P c_f` must equal.
     target: Interval,
 }
 
-/// Outer half durations that may close a word.
+/// Outer half durations that may close a sequence.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Closing {
+pub(super) struct EnclosedTerminalArcs {
     /// `S` and `U`, each modulo a full turn and both together modulo half a turn.
     sum: Interval,
     difference: Interval,
@@ -50,9 +50,9 @@ pub(super) struct Allowed {
     pub(super) both: f64,
 }
 
-impl View {
-    pub(super) fn new(rates: &Rates, q: &Turn, word: &Word) -> Self {
-        let ends = [word.first, word.last].map(|octant| rates.corner(octant));
+impl TargetView {
+    pub(super) fn new(rates: &Rates, q: &QuatInterval, sequence: &ArcSequence) -> Self {
+        let ends = [sequence.first, sequence.last].map(|octant| rates.corner(octant));
         let [x, y, z] = ends[0];
         let begun = product(&[-x, -y, -z, Interval::ZERO], q);
         let ended = times_vector(q, &ends[1].map(|c| -c));
@@ -65,21 +65,25 @@ impl View {
     }
 
     /// Whether `c_0 . P c_f` cannot have the target's value within a cell about `P`.
-    pub(super) fn misses(&self, interior: &Moving, half: Interval, bend: Interval) -> bool {
+    pub(super) fn misses(&self, interior: &Moving, half: Interval, curvature: Interval) -> bool {
         // P c_f P* and its derivative, twice the vector part of P' c_f P*.
         let [x, y, z, w] = times_vector(&interior.turn, &self.ends[1]);
         let back = [x, y, z, -w];
-        let along = |q: &Turn| {
+        let along = |q: &QuatInterval| {
             let [x, y, z, _] = product(q, &back);
             dot(&self.ends[0], &[x, y, z])
         };
         let value = along(&interior.turn) - self.target;
         let slope = along(&interior.slope).twice();
-        value.abs().low > (slope.abs() * half + bend).high
+        value.abs().low > (slope.abs() * half + curvature).high
     }
 
     /// What closes an interior that is known within a turn of `eta`: `None` when nothing can.
-    pub(super) fn close(&self, interior: &Turn, eta: Interval) -> Option<Closing> {
+    pub(super) fn terminal_arcs(
+        &self,
+        interior: &QuatInterval,
+        eta: Interval,
+    ) -> Option<EnclosedTerminalArcs> {
         let [plain, begun, ended, both] = self.images.map(|image| dot4(&image, interior));
         let one = [(plain - both).half(), (begun + ended).half()];
         let two = [(plain + both).half(), (begun - ended).half()];
@@ -102,12 +106,12 @@ impl View {
                 high: (angle.high + spread).next_up(),
             }
         });
-        Some(Closing { sum, difference })
+        Some(EnclosedTerminalArcs { sum, difference })
     }
 }
 
-impl Closing {
-    /// Whether no outer arcs that are allowed can close the word.
+impl EnclosedTerminalArcs {
+    /// Whether no outer arcs that are allowed can close the sequence.
     pub(super) fn impossible(&self, allowed: Allowed) -> bool {
         let first = (self.sum + self.difference).half();
         let last = (self.sum - self.difference).half();
@@ -126,7 +130,7 @@ impl Closing {
         })
     }
 
-    /// Outer durations that close the word nearly: numbers without proof.
+    /// Outer durations that close the sequence nearly: numbers without proof.
     pub(super) fn candidate(&self) -> [f64; 2] {
         let (sum, difference) = (self.sum.middle(), self.difference.middle());
         [sum + difference, sum - difference].map(|twice| {

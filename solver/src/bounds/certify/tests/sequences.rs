@@ -1,10 +1,10 @@
-//! Words: their interiors are products of arcs, and what closes them is found.
+//! Sequences: their interiors are products of arcs, and what closes them is found.
 
-use super::super::closing::{Allowed, View};
 use super::super::interval::Interval;
 use super::super::rates::{Octant, Rates, flipped};
-use super::super::turn::{Turn, product};
-use super::super::word::Word;
+use super::super::sequence::ArcSequence;
+use super::super::terminal_arcs::{Allowed, TargetView};
+use super::super::turn::{QuatInterval, product};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -25,8 +25,8 @@ fn arc(rates: &Rates, octant: Octant, duration: f64) -> Attitude {
     Attitude::from_rotation_vector(Vector3::from(corner) * duration)
 }
 
-/// Arcs of one duration before each of which one of two axes changes its sign, one after the other;
-/// and the octant of the last arc of the word.
+/// FixedArcs of one duration before each of which one of two axes changes its sign, one after the other;
+/// and the octant of the last arc of the sequence.
 fn interior(
     rates: &Rates,
     (first, axes, arcs): (Octant, [usize; 2], usize),
@@ -41,7 +41,7 @@ fn interior(
     (all, flipped(octant, axes[arcs % 2]))
 }
 
-fn exactly(turn: &Attitude) -> Turn {
+fn exactly(turn: &Attitude) -> QuatInterval {
     turn.xyzw().map(Interval::exactly)
 }
 
@@ -61,10 +61,10 @@ proptest! {
         duration in 0.05..2.0_f64,
     ) {
         let (rates, (first, axes, arcs)) = (rates(given), kind);
-        let word = Word::alternating(first, axes, arcs);
+        let sequence = ArcSequence::alternating(first, axes, arcs);
         let (expected, last) = interior(&rates, kind, duration);
-        prop_assert_eq!(word.last, last);
-        let moving = word.at(&rates, duration);
+        prop_assert_eq!(sequence.last, last);
+        let moving = sequence.at(&rates, duration);
         let [before, after] = [-STEP, STEP]
             .map(|step| interior(&rates, kind, duration + step).0.xyzw());
         for (i, component) in expected.xyzw().into_iter().enumerate() {
@@ -86,25 +86,25 @@ proptest! {
         halves in prop::array::uniform2(0.02..1.4_f64),
     ) {
         let (rates, (first, axes, arcs)) = (rates(given), kind);
-        let word = Word::alternating(first, axes, arcs);
+        let sequence = ArcSequence::alternating(first, axes, arcs);
         let (middle, last) = interior(&rates, kind, duration);
         let [begin, end] = [(first, halves[0]), (last, halves[1])]
             .map(|(octant, half)| exactly(&arc(&rates, octant, 2.0 * half)));
         let middle = exactly(&middle);
         let target = product(&product(&begin, &middle), &end);
-        let view = View::new(&rates, &target, &word);
-        prop_assert!(!view.misses(&word.at(&rates, duration), Interval::ZERO, Interval::exactly(1e-12)));
-        let closing = view.close(&middle, Interval::exactly(1e-9));
-        let Some(closing) = closing else {
-            panic!("nothing closes the word");
+        let view = TargetView::new(&rates, &target, &sequence);
+        prop_assert!(!view.misses(&sequence.at(&rates, duration), Interval::ZERO, Interval::exactly(1e-12)));
+        let terminal = view.terminal_arcs(&middle, Interval::exactly(1e-9));
+        let Some(terminal) = terminal else {
+            panic!("nothing closes the sequence");
         };
         let (longer, both) = (halves[0].max(halves[1]), halves[0] + halves[1]);
         let allowed = |each: f64, both: f64| Allowed { each, both };
-        prop_assert!(!closing.impossible(allowed(longer + NEAR, both + NEAR)));
+        prop_assert!(!terminal.impossible(allowed(longer + NEAR, both + NEAR)));
         // Other durations that close it are longer by half turns.
-        prop_assert!(closing.impossible(allowed(longer + NEAR, both - NEAR)), "{closing:?}");
-        prop_assert!(closing.impossible(allowed(longer - NEAR, both + NEAR)), "{closing:?}");
-        for (found, half) in closing.candidate().into_iter().zip(halves) {
+        prop_assert!(terminal.impossible(allowed(longer + NEAR, both - NEAR)), "{terminal:?}");
+        prop_assert!(terminal.impossible(allowed(longer - NEAR, both + NEAR)), "{terminal:?}");
+        for (found, half) in terminal.candidate().into_iter().zip(halves) {
             prop_assert!((found - 2.0 * half).abs() < NEAR, "{found} for {half}");
         }
     }

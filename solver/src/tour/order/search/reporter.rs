@@ -1,12 +1,12 @@
 //! What the search tells, while it runs and at its end.
 
-use super::tree::Tree;
+use super::tree::SearchTree;
 use crate::run::progress::{Progress, Stage};
 use crate::tour::order::incumbents::tie_class;
 use crate::tour::order::{Incumbent, SearchEnd, SearchObserver, SearchResult};
 
 /// Incumbent and bound as last told: the one never rises, the other never falls.
-pub(super) struct Account<'a> {
+pub(super) struct SearchReporter<'a> {
     observer: &'a dyn SearchObserver,
     incumbent_s: Option<f64>,
     bound_s: f64,
@@ -14,7 +14,7 @@ pub(super) struct Account<'a> {
     handed_over_s: f64,
 }
 
-impl<'a> Account<'a> {
+impl<'a> SearchReporter<'a> {
     /// Nothing told yet.
     pub(super) fn new(observer: &'a dyn SearchObserver) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl<'a> Account<'a> {
     }
 
     /// Hands over the best order when it is better than the last one and more is to come.
-    pub(super) fn hand_over(&mut self, tree: &Tree) {
+    pub(super) fn announce(&mut self, tree: &SearchTree) {
         let Some((best, alternatives)) = tree.orders().split_first() else {
             return;
         };
@@ -49,7 +49,7 @@ impl<'a> Account<'a> {
     }
 
     /// Tells the state of the tree.
-    pub(super) fn report(&mut self, tree: &Tree) {
+    pub(super) fn report(&mut self, tree: &SearchTree) {
         self.take_in(tree);
         self.observer.progress(Progress {
             stage: Stage::Search,
@@ -61,7 +61,7 @@ impl<'a> Account<'a> {
     }
 
     /// Takes incumbent and bound from the tree.
-    fn take_in(&mut self, tree: &Tree) {
+    fn take_in(&mut self, tree: &SearchTree) {
         // Among equals the incumbent is the first lexicographically, which may be longer by
         // rounding; the shorter one was flown all the same.
         self.incumbent_s = match (self.incumbent_s, tree.best_s()) {
@@ -76,7 +76,7 @@ impl<'a> Account<'a> {
     }
 
     /// The result of a search that has ended and been reported.
-    pub(super) fn finish(self, tree: Tree, end: SearchEnd) -> SearchResult {
+    pub(super) fn finish(self, tree: SearchTree, end: SearchEnd) -> SearchResult {
         let complete = end == SearchEnd::Exhausted && tree.is_complete();
         let statistics = *tree.statistics();
         let mut orders = tree.into_orders().into_iter();

@@ -14,8 +14,8 @@ fn turn(vector: [f64; 3]) -> Attitude {
     Attitude::from_rotation_vector(vector.into())
 }
 
-fn claimed(turn: &Attitude, least_s: f64) -> ClaimedTurn {
-    ClaimedTurn {
+fn claimed(turn: &Attitude, least_s: f64) -> CertifiedTurn {
+    CertifiedTurn {
         turn: *turn,
         least_s,
     }
@@ -42,10 +42,10 @@ proptest! {
         let answer = table.query(&target, 1e-6);
         let rates = rates.into();
         let room = 1.0 - 2e-6;
-        prop_assert_eq!(check_turn(&rates, &claimed(&target, answer.lower_s * room)), Ok(()));
+        prop_assert_eq!(verify_turn(&rates, &claimed(&target, answer.lower_s * room)), Ok(()));
         // Two lists of extremals have the same minimum.
         let more = answer.upper_s * (1.0 + 1e-5);
-        match check_turn(&rates, &claimed(&target, more)) {
+        match verify_turn(&rates, &claimed(&target, more)) {
             Err(Rejection::Faster { time_s, .. }) => {
                 prop_assert!(time_s < more);
                 prop_assert!(time_s >= answer.lower_s * (1.0 - 1e-6));
@@ -61,7 +61,7 @@ proptest! {
         for target in [about, about + Vector3::from(vector) * 10.0_f64.powf(off)] {
             let target = Attitude::from_rotation_vector(target);
             let least_s = table.lower_bound(&target, 1e-4) * (1.0 - 2e-6);
-            prop_assert_eq!(check_turn(&rates.into(), &claimed(&target, least_s)), Ok(()));
+            prop_assert_eq!(verify_turn(&rates.into(), &claimed(&target, least_s)), Ok(()));
         }
     }
 
@@ -86,7 +86,7 @@ proptest! {
         let bound = SlewBound::new(limits, ends).expect("ordinary limits");
         let good = bound.certificate(&turns, 1e-4);
         prop_assert_eq!(good.duration_s.to_bits(), bound.lower_bound_s(&turns, 1e-4).to_bits());
-        prop_assert_eq!(check(&good), Ok(()));
+        prop_assert_eq!(verify(&good), Ok(()));
 
         let mut bad = good.clone();
         match damage {
@@ -96,7 +96,7 @@ proptest! {
             3 => bad.box_rad_s *= 1.001,
             _ => bad.turns[0].turn = Attitude::identity(),
         }
-        let rejection = check(&bad).expect_err("the claim is damaged");
+        let rejection = verify(&bad).expect_err("the claim is damaged");
         match damage {
             0 => prop_assert!(matches!(rejection, Rejection::Link { .. }), "{}", rejection),
             1 | 4 => prop_assert!(matches!(rejection, Rejection::Faster { turn: 0, .. }), "{}", rejection),
@@ -113,7 +113,7 @@ fn what_cannot_be_read_is_malformed() {
     };
     let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
     let good = bound.certificate(&[turn([0.3, 0.4, -0.5])], 1e-4);
-    assert_eq!(check(&good), Ok(()));
+    assert_eq!(verify(&good), Ok(()));
     let damages: [fn(&mut Certificate); 5] = [
         |bad| bad.limits.rates_rad_s.x = 0.0,
         |bad| bad.ends.end_rad_s.y = f64::NAN,
@@ -125,7 +125,7 @@ fn what_cannot_be_read_is_malformed() {
         let mut bad = good.clone();
         damage(&mut bad);
         assert!(
-            matches!(check(&bad), Err(Rejection::Malformed { .. })),
+            matches!(verify(&bad), Err(Rejection::Malformed { .. })),
             "{bad:?}"
         );
     }
@@ -135,11 +135,11 @@ fn what_cannot_be_read_is_malformed() {
 fn no_turn_takes_no_time() {
     let rates = Vector3::from(PAPER);
     assert_eq!(
-        check_turn(&rates, &claimed(&Attitude::identity(), 0.0)),
+        verify_turn(&rates, &claimed(&Attitude::identity(), 0.0)),
         Ok(())
     );
     assert!(matches!(
-        check_turn(&rates, &claimed(&Attitude::identity(), 1.0)),
+        verify_turn(&rates, &claimed(&Attitude::identity(), 1.0)),
         Err(Rejection::Faster { .. })
     ));
 }

@@ -1,10 +1,12 @@
-//! From the best orders of a search to plans: flown once more for their torques, and verified.
+//! From the orders that a search finds to plans: torques assembled, verified by the checker, and
+//! compared with the certified bounds.
 
 use super::Run;
 use super::assemble::assemble;
-use super::tables::LegTable;
+use super::guesses::constructed;
+use super::history::{History, search_work};
+use super::tables::SolvedTable;
 use super::tours::Tours;
-use super::work::{History, search_work};
 use crate::checker;
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
@@ -15,31 +17,31 @@ use crate::run::contradiction::{Contradiction, slack};
 use crate::run::progress::{Progress, Stage};
 use crate::tour::legs::LegKind;
 use crate::tour::order::{
-    FlownOrder, Incumbent, Place, SearchObserver, SearchResult, SearchStatistics,
+    Incumbent, Place, SearchObserver, SearchResult, SearchStatistics, SolvedOrder,
 };
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// What the order of additions does to a duration.
+/// Relative rounding error of a sum of durations that depends on the order of its terms.
 const ROUNDING_OF_SUMS: f64 = 1e-13;
-/// Certified bounds are rounded down to six digits at least.
+/// Relative rounding of certified bounds, which keep at least six digits.
 const ROUNDING: f64 = 1e-6;
 
-/// Makes plans of orders, while a search goes on and at its end.
+/// Makes plans of orders, during a search and at its end.
 pub(super) struct PlanBuilder<'a> {
     tours: &'a Tours<'a>,
-    /// No tour takes less, s, proved.
+    /// Certified lower bound on all tours, s.
     certified: Option<f64>,
     run: Run<'a>,
     begin: Instant,
-    /// The order whose flight was verified last, with that flight: a search that is stopped has its
-    /// plan at once.
+    /// The order whose flight was verified last, with that flight: a stopped search need not assemble
+    /// it again.
     last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
-    /// A tour that was flown without a program, for want of a better one.
-    constructed: Option<(FlownOrder, VerifiedFlight)>,
-    /// The legs of the final order from rest to rest.
-    rest: Option<LegTable>,
+    /// A tour constructed without solving a program, used if the search finds none.
+    constructed: Option<(SolvedOrder, VerifiedFlight)>,
+    /// The rest-to-rest legs of the final order.
+    rest: Option<SolvedTable>,
     history: History,
 }
 
@@ -52,7 +54,7 @@ struct VerifiedFlight {
 }
 
 impl<'a> PlanBuilder<'a> {
-    /// Plans of tours.
+    /// A builder for the plans of a solve that began at this instant.
     pub(super) fn new(tours: &'a Tours<'a>, run: Run<'a>, begin: Instant) -> Self {
         Self {
             tours,
@@ -66,39 +68,40 @@ impl<'a> PlanBuilder<'a> {
         }
     }
 
-    /// Takes in a proved bound on all tours, s.
-    pub(super) fn prove(&mut self, certified: Option<f64>) {
+    /// Sets the certified lower bound on all tours, s.
+    pub(super) fn set_certified_bound(&mut self, certified: Option<f64>) {
         self.certified = certified;
     }
 
-    /// That bound, when there is one and no flight has contradicted any.
-    pub(super) fn proved(&self) -> Option<f64> {
+    /// The certified lower bound on all tours, s, unless a flight has contradicted a certified bound.
+    pub(super) fn certified_bound(&self) -> Option<f64> {
         self.certified
             .filter(|_| self.tours.legs.bounds_are_trusted())
     }
 
-    /// Constructs a flight of an order, leg by leg, and tells of it; nothing where a leg cannot be
-    /// constructed.
+    /// Constructs a flight of an order, leg by leg, and reports it. Does nothing when a leg cannot be
+    /// constructed or the flight fails its verification.
     pub(super) fn construct(&mut self, order: Vec<usize>) {
         let route = self.tours.places.route(&order, true);
-        let flown = self.tours.constructed(&route);
-        let Some(flight) = flown.and_then(|flown| self.checked(&route, &flown).ok()) else {
+        let segments = constructed(self.tours.places, &route);
+        let Some(flight) = segments.and_then(|segments| self.verify_flight(&route, &segments).ok())
+        else {
             return;
         };
-        let best = FlownOrder {
+        let best = SolvedOrder {
             duration_s: flight.flight.total_time_s,
             order,
         };
-        self.remember(&best.order, &flight);
+        self.keep_flight(&best.order, &flight);
         self.announce(&best);
-        self.forget();
+        self.drop_flight();
         self.constructed = Some((best, flight));
     }
 
-    /// The plan of the constructed flight, for a search that has ended with none.
-    pub(super) fn constructed(&self, statistics: SearchStatistics) -> Option<Outcome> {
+    /// The plan of the constructed flight, for a search that ends without an order.
+    pub(super) fn constructed_outcome(&self, statistics: SearchStatistics) -> Option<Outcome> {
         let (best, flight) = self.constructed.as_ref()?;
-        self.remember(&best.order, flight);
+        self.keep_flight(&best.order, flight);
         let only = Incumbent {
             best,
             alternatives: &[],
@@ -109,8 +112,8 @@ impl<'a> PlanBuilder<'a> {
         Some(outcome(self.plan(&only, Optimality::Feasible, kind)))
     }
 
-    /// Tells of a first tour, before anything is known of others.
-    pub(super) fn announce(&self, first: &FlownOrder) {
+    /// Reports a first tour, before there is a bound on others.
+    pub(super) fn announce(&self, first: &SolvedOrder) {
         self.improved(&Incumbent {
             best: first,
             alternatives: &[],
@@ -119,32 +122,38 @@ impl<'a> PlanBuilder<'a> {
         });
     }
 
-    /// Solves the legs of the final order from rest to rest, to be compared with in its plan; not
-    /// when the solve is to stop.
-    pub(super) fn compare_with_rest(&mut self, order: &FlownOrder) {
+    /// Solves the rest-to-rest legs of the final order, with which its plan compares the tour's legs;
+    /// skipped when the solve is to stop.
+    pub(super) fn compare_with_rest(&mut self, order: &SolvedOrder) {
         if self.tours.stop.is_set() {
             return;
         }
         let route = self.tours.places.route(&order.order, true);
         let pairs: Vec<_> = route.windows(2).map(|leg| (leg[0], leg[1])).collect();
-        self.rest = Some(self.tours.legs.late_table(LegKind::RestToRest, &pairs));
+        self.rest = Some(
+            self.tours
+                .legs
+                .table_without_progress(LegKind::RestToRest, &pairs),
+        );
     }
 
-    /// The plan of the best order of a search that has ended.
-    pub(super) fn outcome(&self, best: &FlownOrder, found: &SearchResult) -> Outcome {
+    /// The plan of the best order at the end of a search.
+    pub(super) fn outcome(&self, best: &SolvedOrder, found: &SearchResult) -> Outcome {
         self.run.observer.progress(Progress {
             stage: Stage::Verify,
             done: 0,
             total: None,
             incumbent_s: Some(best.duration_s),
-            lower_bound_s: Some(self.raised(found.lower_bound_s)),
+            lower_bound_s: Some(self.best_bound(found.lower_bound_s)),
         });
         let gap = self.tours.places.scenario.options().relative_gap;
-        let asked_for = best.duration_s * (1.0 - gap);
-        // The flight may contradict a bound.
+        let needed_s = best.duration_s * (1.0 - gap);
+        // Verification may find that the flight contradicts a bound. Its failure is reported below.
         let _ = self.verified(&best.order);
         let trusted = self.tours.legs.bounds_are_trusted();
-        let certified = self.proved().is_some_and(|bound| bound >= asked_for);
+        let certified = self
+            .certified_bound()
+            .is_some_and(|bound| bound >= needed_s);
         let optimality = if trusted && (certified || found.best_is_proven(gap)) {
             Optimality::Optimal
         } else {
@@ -159,8 +168,8 @@ impl<'a> PlanBuilder<'a> {
         outcome(self.plan(&last, optimality, LowerBoundKind::NlpRelaxation))
     }
 
-    /// The plan of an order that was given and not searched for, with the sum of its legs as bound.
-    pub(super) fn given(&self, order: &FlownOrder, lower_bound_s: f64) -> Outcome {
+    /// The plan of a prescribed order, with the sum of its legs' bounds as the lower bound.
+    pub(super) fn fixed_order_outcome(&self, order: &SolvedOrder, lower_bound_s: f64) -> Outcome {
         let only = Incumbent {
             best: order,
             alternatives: &[],
@@ -170,43 +179,44 @@ impl<'a> PlanBuilder<'a> {
         outcome(self.plan(&only, Optimality::Feasible, LowerBoundKind::PairTable))
     }
 
-    /// The flight of an order, verified.
+    /// The verified flight of an order.
     fn verified(&self, order: &[usize]) -> Result<VerifiedFlight, Problem> {
-        if let Some((known, flight)) = self.last().as_ref()
+        if let Some((known, flight)) = self.last_flight().as_ref()
             && known == order
         {
             return Ok(flight.clone());
         }
         let route = self.tours.places.route(order, true);
-        // Every segment is remembered from its evaluation: nothing is solved here.
-        let flight = self.checked(&route, &self.tours.fly_route(&route))?;
-        self.remember(order, &flight);
+        // The segments are cached since their evaluation: nothing is solved here.
+        let flight = self.verify_flight(&route, &self.tours.solve_route(&route))?;
+        self.keep_flight(order, &flight);
         Ok(flight)
     }
 
-    fn last(&self) -> MutexGuard<'_, Option<(Vec<usize>, VerifiedFlight)>> {
+    fn last_flight(&self) -> MutexGuard<'_, Option<(Vec<usize>, VerifiedFlight)>> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn remember(&self, order: &[usize], flight: &VerifiedFlight) {
-        *self.last() = Some((order.to_vec(), flight.clone()));
+    fn keep_flight(&self, order: &[usize], flight: &VerifiedFlight) {
+        *self.last_flight() = Some((order.to_vec(), flight.clone()));
     }
 
-    fn forget(&self) {
-        *self.last() = None;
+    fn drop_flight(&self) {
+        *self.last_flight() = None;
     }
 
-    /// The flight of solved segments, when the checker agrees with it.
-    fn checked(
+    /// Assembles the flight of solved segments and verifies it.
+    fn verify_flight(
         &self,
         route: &[Place],
-        flown: &[Arc<LegSolution>],
+        segments: &[Arc<LegSolution>],
     ) -> Result<VerifiedFlight, Problem> {
-        let (flight, legs) = assemble(self.tours, route, flown);
+        let (flight, legs) = assemble(self.tours, route, segments);
         let report = checker::verify(self.tours.places.scenario, &flight);
         if !report.verification.passed {
             let message = report.verification.failures.join("; ");
-            let hint = "report the scenario: a plan that does not fly is a defect of the solver";
+            let hint =
+                "report the scenario: a plan that fails verification is a defect of the solver";
             return Err(Problem::new("", Code::VerificationFailed, message, hint));
         }
         let verified = VerifiedFlight {
@@ -214,7 +224,7 @@ impl<'a> PlanBuilder<'a> {
             legs,
             report,
         };
-        self.compare_with_bounds(route, &verified);
+        self.check_bounds(route, &verified);
         Ok(verified)
     }
 
@@ -235,11 +245,11 @@ impl<'a> PlanBuilder<'a> {
         let (bound, lower_bound_kind) = if self.tours.legs.bounds_are_trusted() {
             self.bound(order.lower_bound_s, kind, total)
         } else {
-            // Certified bounds have been part of the search's own.
+            // The search's bound rests on the contradicted bounds too.
             (0.0, kind)
         };
         let route = self.tours.places.route(&order.best.order, true);
-        self.compare(&mut legs, &route);
+        self.annotate_legs(&mut legs, &route);
         let name = |i: &usize| scenario.targets()[*i].id.clone();
         let history = self.history.with(total, bound);
         Ok(Plan {
@@ -252,7 +262,7 @@ impl<'a> PlanBuilder<'a> {
                 0.0
             },
             lower_bound_kind,
-            certified_lower_bound_s: self.proved(),
+            certified_lower_bound_s: self.certified_bound(),
             alternatives: order
                 .alternatives
                 .iter()
@@ -271,9 +281,9 @@ impl<'a> PlanBuilder<'a> {
                 ..self.statistics(&order.statistics)
             },
             warnings: self
-                .distrust()
+                .contradiction_warning()
                 .into_iter()
-                .chain(doubts(order, optimality))
+                .chain(search_warnings(order, optimality))
                 .chain(report.keep_out)
                 .collect(),
         })
@@ -281,7 +291,7 @@ impl<'a> PlanBuilder<'a> {
 }
 
 impl PlanBuilder<'_> {
-    /// The work so far, without its history.
+    /// The work so far; the history is left empty.
     fn statistics(&self, search: &SearchStatistics) -> Statistics {
         let [legs_solved, legs_from_cache, legs] = self.tours.legs.work();
         let segments = self.tours.solves.load(Ordering::Relaxed);
@@ -298,30 +308,31 @@ impl PlanBuilder<'_> {
         }
     }
 
-    /// Puts beside the legs of a route what is proved of them, and the legs from rest to rest.
-    fn compare(&self, legs: &mut [Leg], route: &[Place]) {
+    /// Adds to the legs of a route their certified bounds and their rest-to-rest durations.
+    fn annotate_legs(&self, legs: &mut [Leg], route: &[Place]) {
         for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
             let rest = self.rest.as_ref();
-            let proved = self.tours.proved(pair[0], pair[1]);
+            let proved = self.tours.certified_bound(pair[0], pair[1]);
             leg.certified_lower_bound_s = proved.filter(|_| self.tours.legs.bounds_are_trusted());
             leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
         }
     }
 
-    /// A doubt about bounds that a flight has contradicted.
-    fn distrust(&self) -> Option<Problem> {
+    /// The warning that a flight has contradicted a certified bound.
+    fn contradiction_warning(&self) -> Option<Problem> {
         let trusted = self.tours.legs.bounds_are_trusted();
         (!trusted).then(|| {
-            let message = "a flight was faster than a certified bound, so that no bound is given";
+            let message = "a flight was faster than a certified bound; the plan gives no bound";
             let hint = "report the scenario: a bound that does not hold is a defect of the solver";
             Problem::new("", Code::BoundContradicted, message, hint)
         })
     }
 
-    /// Compares a flight with the certified bounds of its legs and of all tours.
-    fn compare_with_bounds(&self, route: &[Place], flown: &VerifiedFlight) {
+    /// Compares a flight with the certified bounds on its legs and on all tours, and reports
+    /// contradictions.
+    fn check_bounds(&self, route: &[Place], verified: &VerifiedFlight) {
         let (tours, places) = (self.tours, &self.tours.places);
-        let total = flown.flight.total_time_s;
+        let total = verified.flight.total_time_s;
         let contradicted = |leg, bound_s, flown_s| {
             tours.legs.contradicted(&Contradiction::Tour {
                 route: route.iter().map(|place| places.name(*place)).collect(),
@@ -331,8 +342,8 @@ impl PlanBuilder<'_> {
             });
         };
         let mut all_slack = 0.0;
-        for (leg, pair) in flown.legs.iter().zip(route.windows(2)) {
-            let Some(bound_s) = tours.proved(pair[0], pair[1]) else {
+        for (leg, pair) in verified.legs.iter().zip(route.windows(2)) {
+            let Some(bound_s) = tours.certified_bound(pair[0], pair[1]) else {
                 continue;
             };
             let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place).attitude);
@@ -350,18 +361,18 @@ impl PlanBuilder<'_> {
         }
     }
 
-    /// A bound, s, or the certified one where that is larger.
-    fn raised(&self, bound: f64) -> f64 {
-        self.proved()
+    /// The larger of a bound and the certified one, s.
+    fn best_bound(&self, bound: f64) -> f64 {
+        self.certified_bound()
             .map_or(bound, |certified| certified.max(bound))
     }
 
-    /// The bound of a plan of this duration, s, and its kind. A certified bound that equals another
-    /// one up to rounding, or proves alone that the plan is within the gap asked for, is worth more.
+    /// The bound of a plan of this duration, s, and its kind. A certified bound is preferred when it
+    /// equals the other one up to rounding, or proves alone that the plan is within the requested gap.
     fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
         let gap = self.tours.places.scenario.options().relative_gap;
         let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
-        match self.proved() {
+        match self.certified_bound() {
             Some(certified) if certified >= enough => {
                 (certified.min(total), LowerBoundKind::Certified)
             }
@@ -374,16 +385,17 @@ impl PlanBuilder<'_> {
 impl SearchObserver for PlanBuilder<'_> {
     fn progress(&self, progress: Progress) {
         self.run.observer.progress(Progress {
-            lower_bound_s: progress.lower_bound_s.map(|bound| self.raised(bound)),
+            lower_bound_s: progress.lower_bound_s.map(|bound| self.best_bound(bound)),
             ..progress
         });
     }
 
     fn improved(&self, incumbent: &Incumbent<'_>) {
-        // One that does not fly is kept back; the end of the search tells if it stays the best.
+        // A plan that fails verification is not reported here; if it stays the best, the search ends
+        // with that failure.
         let kind = LowerBoundKind::NlpRelaxation;
         if let Ok(plan) = self.plan(incumbent, Optimality::Feasible, kind) {
-            self.history.note(&plan.statistics.history);
+            self.history.replace(&plan.statistics.history);
             self.run.observer.incumbent(&plan);
         }
     }
@@ -396,19 +408,22 @@ fn outcome(plan: Result<Plan, Problem>) -> Outcome {
     }
 }
 
-/// What the search itself casts doubt on.
-fn doubts(order: &Incumbent<'_>, optimality: Optimality) -> impl Iterator<Item = Problem> + use<> {
+/// Warnings that follow from the counts of a search.
+fn search_warnings(
+    order: &Incumbent<'_>,
+    optimality: Optimality,
+) -> impl Iterator<Item = Problem> + use<> {
     let contradicted = order.statistics.bounds_contradicted;
     let contradicted = (contradicted > 0).then(|| {
         let message =
-            format!("{contradicted} orders were flown faster than a lower bound had allowed");
+            format!("the tours of {contradicted} orders are shorter than their lower bounds");
         let hint = "take the bound as an estimate: a relaxed problem ended in a local minimum";
         Problem::new("", Code::BoundContradicted, message, hint)
     });
     let unresolved = order.statistics.tours_unresolved;
     let unresolved = (unresolved > 0 && optimality == Optimality::Feasible).then(|| {
         let message = format!(
-            "for {unresolved} orders no program ended in a solution, so that they are not ruled out"
+            "the programs of {unresolved} orders found no solution; these orders are not ruled out"
         );
         Problem::new("/targets", Code::SlewNotSolved, message, super::SLEW_HINT)
     });

@@ -1,4 +1,4 @@
-//! The outer arcs that close a word: closed forms and what is known of them over a cell.
+//! The outer arcs that close a sequence: closed forms and what is known of them over a cell.
 //!
 //! With `A = t_0 / 2`, `B = t_f / 2` and the interior `P`,
 //!
@@ -9,7 +9,7 @@
 //! where `C1 (cos u, sin u)` and `C2 (cos v, sin v)` are linear in `P`. The target is reached when
 //! the sum is one in size, both cosines of the same sign.
 
-use super::words::{FIRST, Octant, corner};
+use super::sequences::{FIRST, OctantBits, corner};
 use crate::math::quaternion::{Quat, dot4, product};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-13;
 /// (Errors of the interior itself are within the margin that cells are widened by.)
 const COMPONENT: f64 = 2e-15;
 
-/// The target as words see it that begin and end in given octants.
+/// The target as sequences see it that begin and end in given octants.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Probe<'a> {
     image: &'a Image,
@@ -64,7 +64,7 @@ pub(super) fn image_of(q: &Quat, image: usize) -> Quat {
 
 impl Probes {
     pub(super) fn new(q: &Quat, c: &[f64; 3]) -> Self {
-        let pure = |octant: Octant| {
+        let pure = |octant: OctantBits| {
             let [x, y, z] = corner(c, octant);
             [x, y, z, 0.0]
         };
@@ -83,7 +83,7 @@ impl Probes {
         }))
     }
 
-    pub(super) fn of(&self, image: usize, first: usize, last: Octant) -> Probe<'_> {
+    pub(super) fn of(&self, image: usize, first: usize, last: OctantBits) -> Probe<'_> {
         let image = &self.0[image];
         let (last, sign) = if last < 4 {
             (last, 1.0)
@@ -102,7 +102,7 @@ impl Probes {
 
 /// Half durations of the outer arcs, modulo half a turn, and how well they are known.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Closing {
+pub(super) struct TerminalArcs {
     u: f64,
     v: f64,
     du: f64,
@@ -117,7 +117,7 @@ pub(super) struct Closing {
 impl Probe<'_> {
     /// What closes an interior that is known within a turn of `2 half_eta`, rad: `None` when
     /// nothing can.
-    pub(super) fn close(&self, interior: &Quat, half_eta: f64) -> Option<Closing> {
+    pub(super) fn terminal_arcs(&self, interior: &Quat, half_eta: f64) -> Option<TerminalArcs> {
         // <q, P>, <c_0* q, P>, <q c_f*, P> and <c_0* q c_f*, P>, halved.
         let [first, last] = self.signs;
         let [after, both] = &self.image.ends[self.last];
@@ -136,7 +136,7 @@ impl Probe<'_> {
             return None;
         }
         let (u, v) = (y1.atan2(x1), y2.atan2(x2));
-        Some(Closing {
+        Some(TerminalArcs {
             u,
             v,
             du: widest(excess, c1),
@@ -159,7 +159,7 @@ fn widest(excess: f64, size: f64) -> f64 {
     (2.0 * s * (1.0 + (FRAC_PI_2 - 1.0) * s * s) + COMPONENT / size).min(PI)
 }
 
-impl Closing {
+impl TerminalArcs {
     /// Least `A + B` over the cell; `None` when an outer arc must exceed `2 cap`.
     pub(super) fn least(&self, cap: f64) -> Option<f64> {
         let spread = 0.5 * (self.du + self.dv);

@@ -1,18 +1,18 @@
-//! How a solve went, as its plans tell it.
+//! How a solve went, as its plans report it.
 
 use crate::model::plan::{Milestone, SearchWork};
 use crate::tour::order::SearchStatistics;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The plans found so far.
+/// Time, duration and bound of every plan found so far.
 pub(super) struct History {
     begin: Instant,
     milestones: Mutex<Vec<Milestone>>,
 }
 
 impl History {
-    /// Nothing found yet in a solve that began then.
+    /// The empty history of a solve that began at this instant.
     pub(super) fn since(begin: Instant) -> Self {
         Self {
             begin,
@@ -32,14 +32,14 @@ impl History {
         milestones
     }
 
-    /// Goes on from the history that a plan has told.
-    pub(super) fn note(&self, told: &[Milestone]) {
+    /// Replaces the history by that of a reported plan.
+    pub(super) fn replace(&self, milestones: &[Milestone]) {
         let known = self.milestones.lock();
-        *known.unwrap_or_else(PoisonError::into_inner) = told.to_vec();
+        *known.unwrap_or_else(PoisonError::into_inner) = milestones.to_vec();
     }
 }
 
-/// What became of the nodes of a search.
+/// The counts of a search as a plan reports them.
 pub(super) fn search_work(search: &SearchStatistics) -> SearchWork {
     SearchWork {
         prefixes: search.prefixes,

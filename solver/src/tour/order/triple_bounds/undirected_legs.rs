@@ -1,38 +1,38 @@
-//! Legs and pairs of legs with the directions forgotten.
+//! UndirectedLegs and pairs of legs with the directions forgotten.
 
 use super::coupling_gaps::CouplingGaps;
 use crate::tour::order::PairTable;
 
-/// Legs with the entry triple_bounds of [`crate::tour::order::completion::SpanningTrees`] taken off, s.
+/// UndirectedLegs with the entry entry_offsets of [`crate::tour::order::completion::SpanningTrees`] taken off, s.
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug)]
-pub(super) struct Legs {
+pub(super) struct UndirectedLegs {
     table: PairTable,
-    triple_bounds: Vec<f64>,
-    /// The lesser of the two charged legs between two places; from the start and to the end there
+    entry_offsets: Vec<f64>,
+    /// The lesser of the two reduced legs between two places; from the start and to the end there
     /// is only one.
     edges: Vec<f64>,
-    /// By how much a charged leg exceeds its edge.
+    /// By how much a reduced leg exceeds its edge.
     slack: Vec<f64>,
 }
 
-impl Legs {
-    pub(super) fn new(table: &PairTable, triple_bounds: &[f64]) -> Self {
+impl UndirectedLegs {
+    pub(super) fn new(table: &PairTable, entry_offsets: &[f64]) -> Self {
         let (targets, places) = (table.targets(), table.targets() + 2);
         let mut legs = Self {
             table: table.clone(),
-            triple_bounds: triple_bounds.to_vec(),
+            entry_offsets: entry_offsets.to_vec(),
             edges: vec![0.0; places * places],
             slack: vec![0.0; places * places],
         };
         for a in 0..targets {
             for b in (0..targets).filter(|&b| b != a) {
-                let (forth, back) = (legs.charged(a, b), legs.charged(b, a));
+                let (forth, back) = (legs.reduced(a, b), legs.reduced(b, a));
                 legs.edges[a * places + b] = forth.min(back);
                 legs.slack[a * places + b] = forth - forth.min(back);
             }
-            let (first, last) = (legs.charged(table.start(), a), table.bound(a, table.end()));
+            let (first, last) = (legs.reduced(table.start(), a), table.bound(a, table.end()));
             for (place, edge) in [(table.start(), first), (table.end(), last)] {
                 legs.edges[a * places + place] = edge;
                 legs.edges[place * places + a] = edge;
@@ -47,18 +47,18 @@ impl Legs {
     }
 
     /// What is taken off every leg into a target, s.
-    pub(super) fn charge(&self, target: usize) -> f64 {
-        self.triple_bounds[target]
+    pub(super) fn entry_offset(&self, target: usize) -> f64 {
+        self.entry_offsets[target]
     }
 
-    /// A leg into a target without its charge, s.
-    pub(super) fn charged(&self, from: usize, to: usize) -> f64 {
-        self.table.bound(from, to) - self.triple_bounds[to]
+    /// A leg into a target without its entry_offset, s.
+    pub(super) fn reduced(&self, from: usize, to: usize) -> f64 {
+        self.table.bound(from, to) - self.entry_offsets[to]
     }
 
     /// The lesser of the two directions, s.
     pub(super) fn edge(&self, a: usize, b: usize) -> f64 {
-        self.edges[a * (self.triple_bounds.len() + 2) + b]
+        self.edges[a * (self.entry_offsets.len() + 2) + b]
     }
 
     /// What passing a target between two places costs beyond half of either edge, s, on a path that
@@ -99,7 +99,7 @@ impl Legs {
         if to == entry || from == self.table.end() {
             return f64::INFINITY;
         }
-        let places = self.triple_bounds.len() + 2;
+        let places = self.entry_offsets.len() + 2;
         let first = if from == entry {
             0.0
         } else {

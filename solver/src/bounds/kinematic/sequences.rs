@@ -1,6 +1,6 @@
-//! The extremals as words: a first arc, an interior that depends on one parameter, a last arc.
+//! The extremals as sequences: a first arc, an interior that depends on one parameter, a last arc.
 //!
-//! Every word starts in the octant `(+, +, +)` or `(-, -, -)`; the other six follow by conjugation
+//! Every sequence starts in the octant `(+, +, +)` or `(-, -, -)`; the other six follow by conjugation
 //! with half turns about the body axes, which the search applies to the target instead.
 
 use super::levels::{Levels, RANGE_SLACK, others};
@@ -9,18 +9,18 @@ use crate::math::quaternion::{Quat, conjugate, product};
 use std::f64::consts::TAU;
 
 /// Signs of the rates: bit `i` is set where `w_i` is negative.
-pub(super) type Octant = usize;
+pub(super) type OctantBits = usize;
 
-/// The octants in which words start, by the index of their sense.
-pub(super) const FIRST: [Octant; 2] = [0b000, 0b111];
+/// The octants in which sequences start, by the index of their sense.
+pub(super) const FIRST: [OctantBits; 2] = [0b000, 0b111];
 
 /// The rate vector of an octant.
-pub(super) fn corner(c: &[f64; 3], octant: Octant) -> [f64; 3] {
+pub(super) fn corner(c: &[f64; 3], octant: OctantBits) -> [f64; 3] {
     [0, 1, 2].map(|i| if octant >> i & 1 == 1 { -c[i] } else { c[i] })
 }
 
 /// The product of the signs of an octant: the folded costate moves against it.
-pub(super) fn sense(octant: Octant) -> i32 {
+pub(super) fn sense(octant: OctantBits) -> i32 {
     if octant.count_ones().is_multiple_of(2) {
         1
     } else {
@@ -30,20 +30,20 @@ pub(super) fn sense(octant: Octant) -> i32 {
 
 /// An arc of an interior.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct InteriorArc {
     /// Rate vector: a corner, or on a dwell a face diagonal.
     pub(super) rate: [f64; 3],
     /// Its duration; the parameter's value where there is none.
     pub(super) duration: Option<f64>,
 }
 
-/// A word whose parameter is the duration of one arc: the interior is `P = cos(x / 2) U +
+/// A sequence whose parameter is the duration of one arc: the interior is `P = cos(x / 2) U +
 /// sin(x / 2) W`, `x = speed p`, and the equation for `x` a sinusoid.
 #[derive(Debug, Clone)]
-pub(super) struct SingleWord {
+pub(super) struct ClosedFormSequence {
     /// Index into [`FIRST`].
     pub(super) first: usize,
-    pub(super) last: Octant,
+    pub(super) last: OctantBits,
     /// Sum of the fixed durations.
     pub(super) fixed: f64,
     pub(super) speed: f64,
@@ -57,21 +57,21 @@ pub(super) struct SingleWord {
     pub(super) phase: f64,
     pub(super) even: Quat,
     pub(super) odd: Quat,
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Vec<InteriorArc>,
 }
 
-impl SingleWord {
+impl ClosedFormSequence {
     /// From its interior, which has one arc without a duration.
     pub(super) fn new(
         c: &[f64; 3],
         first: usize,
-        steps: Vec<Step>,
-        last: Octant,
+        steps: Vec<InteriorArc>,
+        last: OctantBits,
         range: (f64, f64),
         capped: bool,
     ) -> Option<Self> {
         let at = steps.iter().position(|step| step.duration.is_none())?;
-        let turn = |step: &Step| {
+        let turn = |step: &InteriorArc| {
             let speed = dot(&step.rate, &step.rate).sqrt();
             about(
                 &step.rate.map(|r| r / speed),
@@ -104,9 +104,9 @@ impl SingleWord {
     }
 }
 
-/// The words of a gap: the flips of two axes take turns, all interior arcs last equally long.
+/// The sequences of a gap: the flips of two axes take turns, all interior arcs last equally long.
 #[derive(Debug, Clone)]
-pub(super) struct Family {
+pub(super) struct SequenceFamily {
     /// The axis whose rate keeps its sign near that axis; `None` for the far side and a single wall.
     pub(super) vertex: Option<usize>,
     /// The axes that flip, first and second, for each of [`FIRST`].
@@ -115,7 +115,7 @@ pub(super) struct Family {
     pub(super) range: (f64, f64),
 }
 
-impl Family {
+impl SequenceFamily {
     /// All families of a set of levels.
     pub(super) fn all(levels: &Levels) -> Vec<Self> {
         let c = &levels.c;
@@ -155,7 +155,7 @@ impl Family {
     }
 
     /// The octant after so many flips.
-    pub(super) fn octant(&self, first: usize, flips: usize) -> Octant {
+    pub(super) fn octant(&self, first: usize, flips: usize) -> OctantBits {
         let [one, two] = self.flips[first];
         let mut octant = FIRST[first];
         if flips.div_ceil(2) % 2 == 1 {
@@ -167,19 +167,19 @@ impl Family {
         octant
     }
 
-    /// The interior of the word with so many flips.
-    pub(super) fn steps(&self, c: &[f64; 3], first: usize, flips: usize) -> Vec<Step> {
+    /// The interior of the sequence with so many flips.
+    pub(super) fn steps(&self, c: &[f64; 3], first: usize, flips: usize) -> Vec<InteriorArc> {
         (1..flips)
-            .map(|arc| Step {
+            .map(|arc| InteriorArc {
                 rate: corner(c, self.octant(first, arc)),
                 duration: None,
             })
             .collect()
     }
 
-    /// The word with two flips, whose parameter is the duration of one arc.
-    pub(super) fn two_flips(&self, c: &[f64; 3], first: usize) -> Option<SingleWord> {
+    /// The sequence with two flips, whose parameter is the duration of one arc.
+    pub(super) fn two_flips(&self, c: &[f64; 3], first: usize) -> Option<ClosedFormSequence> {
         let steps = self.steps(c, first, 2);
-        SingleWord::new(c, first, steps, self.octant(first, 2), self.range, true)
+        ClosedFormSequence::new(c, first, steps, self.octant(first, 2), self.range, true)
     }
 }

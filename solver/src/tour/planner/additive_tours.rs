@@ -1,29 +1,29 @@
-//! Tours whose slews take times of their own, whatever comes before and after them.
+//! Tours whose duration is the sum of leg durations that do not depend on each other.
 
 use super::places::Places;
 use crate::model::order_rules::OrderRules;
 use crate::tour::order::{Evaluation, Place, TourEvaluation, TourModel};
 
-/// Tours over slews of given durations, s, with settle and dwell.
-pub(super) struct SummedTours<'a, F> {
+/// Tours over legs of given durations, s, with settle and dwell times.
+pub(super) struct AdditiveTours<'a, F> {
     places: &'a Places<'a>,
-    slew: F,
+    leg_s: F,
 }
 
-impl<'a, F: Fn(Place, Place) -> f64 + Sync> SummedTours<'a, F> {
-    /// Tours over slews that take so long, s, from one place to another.
-    pub(super) fn new(places: &'a Places<'a>, slew: F) -> Self {
-        Self { places, slew }
+impl<'a, F: Fn(Place, Place) -> f64 + Sync> AdditiveTours<'a, F> {
+    /// Tours over the places of a scenario; `leg_s` gives the duration of a leg, s.
+    pub(super) fn new(places: &'a Places<'a>, leg_s: F) -> Self {
+        Self { places, leg_s }
     }
 
-    /// Time from leaving the first place of a route to leaving its last, s.
+    /// Time from leaving the first place of a route to leaving its last one, s.
     pub(super) fn along(&self, route: &[Place]) -> f64 {
         let legs = route.windows(2);
         legs.map(|leg| self.pair_bound(leg[0], leg[1])).sum()
     }
 }
 
-impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for SummedTours<'_, F> {
+impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for AdditiveTours<'_, F> {
     fn target_count(&self) -> usize {
         self.places.scenario.targets().len()
     }
@@ -37,7 +37,7 @@ impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for SummedTours<'_, F> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        (self.slew)(from, to) + self.places.service_time(to)
+        (self.leg_s)(from, to) + self.places.service_time(to)
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
@@ -53,6 +53,6 @@ impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for SummedTours<'_, F> {
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
-        TourEvaluation::LegSolution(self.along(&self.places.route(order, true)))
+        TourEvaluation::Solved(self.along(&self.places.route(order, true)))
     }
 }

@@ -1,14 +1,14 @@
-//! Words: a first arc, an interior with one unknown, a last arc.
+//! Sequences: a first arc, an interior with one unknown, a last arc.
 
 use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped};
-use super::turn::{IDENTITY, Turn, product, scaled, sum, times_vector};
+use super::turn::{IDENTITY, QuatInterval, product, scaled, sum, times_vector};
 
 /// A turn and its derivative in a parameter, both as quaternions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moving {
-    pub(super) turn: Turn,
-    pub(super) slope: Turn,
+    pub(super) turn: QuatInterval,
+    pub(super) slope: QuatInterval,
 }
 
 impl Moving {
@@ -30,56 +30,56 @@ impl Moving {
 
 /// What is between the first and the last arc.
 #[derive(Debug, Clone)]
-pub(super) enum Interior {
+pub(super) enum InteriorArcs {
     /// Nothing: two arcs, no unknown.
     Nothing,
-    /// Arcs of one unknown duration; before each, and before the last arc of the word, the rate of
+    /// FixedArcs of one unknown duration; before each, and before the last arc of the sequence, the rate of
     /// one of two axes changes its sign, in turn.
     Alternating { axes: [usize; 2], arcs: usize },
     /// Fixed arcs about a dwell of unknown duration at a rate of the given length, whose turn by an
     /// angle `x` is `cos(x / 2) even + sin(x / 2) odd`.
     Dwelling {
-        even: Turn,
-        odd: Turn,
+        even: QuatInterval,
+        odd: QuatInterval,
         speed: Interval,
     },
 }
 
-/// A word without its outer durations.
+/// A sequence without its outer durations.
 #[derive(Debug, Clone)]
-pub(super) struct Word {
+pub(super) struct ArcSequence {
     pub(super) first: Octant,
     pub(super) last: Octant,
     /// Sum of the durations that are not unknown.
     pub(super) fixed: Interval,
-    pub(super) interior: Interior,
+    pub(super) interior: InteriorArcs,
 }
 
-impl Word {
-    /// The word whose axes change sign in turn, with so many arcs between the outer ones.
+impl ArcSequence {
+    /// The sequence whose axes change sign in turn, with so many arcs between the outer ones.
     pub(super) fn alternating(first: Octant, axes: [usize; 2], arcs: usize) -> Self {
         let last = (0..=arcs).fold(first, |octant, flip| flipped(octant, axes[flip % 2]));
         Self {
             first,
             last,
             fixed: Interval::ZERO,
-            interior: Interior::Alternating { axes, arcs },
+            interior: InteriorArcs::Alternating { axes, arcs },
         }
     }
 
     /// How often the unknown duration occurs.
     pub(super) fn repeats(&self) -> f64 {
         match self.interior {
-            Interior::Nothing => 0.0,
-            Interior::Alternating { arcs, .. } => arcs as f64,
-            Interior::Dwelling { .. } => 1.0,
+            InteriorArcs::Nothing => 0.0,
+            InteriorArcs::Alternating { arcs, .. } => arcs as f64,
+            InteriorArcs::Dwelling { .. } => 1.0,
         }
     }
 
     /// A bound on the sum of the speeds of all arcs of unknown duration.
     pub(super) fn speed(&self) -> f64 {
         match &self.interior {
-            Interior::Dwelling { speed, .. } => speed.high,
+            InteriorArcs::Dwelling { speed, .. } => speed.high,
             _ => self.repeats(),
         }
     }
@@ -87,12 +87,12 @@ impl Word {
     /// The interior for a value of the unknown.
     pub(super) fn at(&self, rates: &Rates, unknown: f64) -> Moving {
         match &self.interior {
-            Interior::Nothing => Moving::NONE,
-            Interior::Alternating { axes, arcs } => {
+            InteriorArcs::Nothing => Moving::NONE,
+            InteriorArcs::Alternating { axes, arcs } => {
                 let (sin, cos) = Interval::exactly(0.5 * unknown).sin_cos();
                 self.chain(rates, *axes, *arcs, sin, cos)
             }
-            Interior::Dwelling { even, odd, speed } => {
+            InteriorArcs::Dwelling { even, odd, speed } => {
                 let (sin, cos) = (Interval::exactly(0.5 * unknown) * *speed).sin_cos();
                 let half = speed.half();
                 Moving {

@@ -1,8 +1,11 @@
 //! Solutions of one program from one guess after the other.
 
 use super::motion::SlewMotion;
+use super::program_choice::Plain;
+use super::search_result::Found;
 use super::solving::{Solved, Task};
-use super::{Found, Plain, Slew, propagated, starts};
+use super::validated::Slew;
+use super::{propagated, starts};
 use crate::nlp::Interruption;
 
 /// Shares of effort in the objectives of a continuation to the fastest motion.

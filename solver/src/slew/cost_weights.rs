@@ -7,7 +7,7 @@
 //!
 //! with `E` the integral of the wheels' power or of what the supply gives for it.
 
-use super::Measure;
+use super::spec::Measure;
 
 /// Weights and prescriptions.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -34,9 +34,12 @@ mod cost;
 mod costate;
 
 use super::flow::Sample;
+use super::interruption::interruption;
+use super::outcome::SlewOutcome;
 use super::program::Program;
 use super::solving::Solved;
-use super::{Slew, SlewOutcome, WheelAllocation, interruption};
+use super::spec::WheelAllocation;
+use super::validated::Slew;
 use crate::nlp::{Chain, Layout};
 use crate::run::stop::StopSignal;
 use controls::Controls;

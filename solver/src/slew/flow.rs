@@ -1,75 +1,16 @@
-//! What happens on an interval, exactly: the turn, the momenta, the locked wheels that follow a
-//! law of their own, and the limits in between.
-//!
-//! A wheel under a speed law is no control. Relative to the body its speed is a known function of
-//! time, `W(t) = speed + (W(0) - speed) exp(-rate t)`, so it is a locked wheel whose momentum
-//! drifts. The program has a clock for it among its states.
+//! The motion between nodes, integrated from the torques: turns, momenta and excesses over limits.
 
 use super::motion::SlewMotion;
+use super::vehicle::Vehicle;
 use crate::leg::kinematics::exact_flow;
 use crate::leg::multiphase::excess_inside;
 use crate::math::quaternion::{Quat, rotate_back};
 use crate::model::attitude::Attitude;
-use crate::model::drive::{Drive, SpeedLaw};
-use crate::model::dynamics::Dynamics;
 use nalgebra::{DVector, Vector3};
 
 /// Parts of an interval at whose ends the limits are looked at. Between them a parabola finds the peak;
 /// where torque is a ramp, eighths miss one near a node by 2e-5 of a rate limit.
 const SAMPLES: usize = 32;
-
-/// A wheel that follows a law.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Follower {
-    /// `a I`, kg m².
-    spin: Vector3<f64>,
-    law: SpeedLaw,
-    /// Speed at the start, rad/s.
-    start: f64,
-}
-
-/// All wheels that follow laws.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Followers(Vec<Follower>);
-
-impl Followers {
-    /// Adds a wheel of axis times inertia `spin` that starts at a speed, rad/s.
-    pub(super) fn add(&mut self, spin: Vector3<f64>, law: SpeedLaw, start: f64) {
-        self.0.push(Follower { spin, law, start });
-    }
-
-    /// Change of the locked momentum since the start, N m s, and its first two derivatives by time.
-    pub(super) fn drift(&self, time: f64) -> [Vector3<f64>; 3] {
-        let mut drift = [Vector3::zeros(); 3];
-        for Follower { spin, law, start } in &self.0 {
-            let excess = spin * (start - law.speed);
-            let left = (-law.rate * time).exp();
-            drift[0] += excess * (-law.rate * time).exp_m1();
-            drift[1] -= excess * (law.rate * left);
-            drift[2] += excess * (law.rate * law.rate * left);
-        }
-        drift
-    }
-
-    /// Whether any wheel's speed changes.
-    pub(super) fn move_at_all(&self) -> bool {
-        self.0
-            .iter()
-            .any(|f| f.law.rate > 0.0 && (f.start - f.law.speed).abs() > 0.0)
-    }
-}
-
-/// A spacecraft with everything that turns on it.
-#[derive(Debug, Clone)]
-pub(super) struct Vehicle {
-    pub(super) dynamics: Dynamics,
-    /// Drives of the commanded wheels.
-    pub(super) drives: Vec<Drive>,
-    pub(super) followers: Followers,
-    /// What the commanded wheels' momenta keep in the null space of their axes, N m s, where the
-    /// pseudo-inverse shares torques out; none where torques are free of each other.
-    pub(super) kept: Option<DVector<f64>>,
-}
 
 /// The motion at a moment.
 #[derive(Debug, Clone)]

@@ -1,11 +1,16 @@
 //! The shortest time in which the optimum of the smooth proxy is billed no more than a given energy
 //! (the energy thesis's EEERT): a root of the bill as a function of the time.
 
+use super::attempts::direct;
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
+use super::program_choice::Plain;
 use super::propagated;
+use super::search_result::Found;
 use super::shape::Lengths;
-use super::{Found, Measure, Plain, Slew, direct, starts};
+use super::spec::Measure;
+use super::starts;
+use super::validated::Slew;
 use crate::nlp::Interruption;
 
 /// Relative error of the bill that ends the search.

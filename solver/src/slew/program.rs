@@ -10,16 +10,17 @@
 mod allocation;
 mod chain;
 mod listing;
+mod variables;
 
 use super::cost_weights::CostWeights;
-use super::flow::{Followers, Vehicle};
 use super::jet::Jet;
 use super::shape::{Course, Lengths, Shape};
 use super::terms::{BEGIN, DrivenWheel, END, LENGTH, SPEED, TURN, TURN_END, WheelState};
+use super::vehicle::{Followers, Vehicle};
 use crate::leg::transcription::{Drift, Row, Scales, Transcription};
 use crate::math::quaternion::Quat;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{Chain, Iterate, Layout, Link};
+use crate::nlp::Link;
 use allocation::Kept;
 use nalgebra::DMatrix;
 
@@ -37,6 +38,17 @@ pub(super) struct Units {
     pub(super) cost: f64,
     /// Of energies, J.
     pub(super) energy: f64,
+}
+
+/// What tells the program of one slew from that of another.
+pub(super) struct ProgramSetup<'a> {
+    /// Where the slew begins and ends.
+    pub(super) waypoints: &'a [Waypoint; 2],
+    pub(super) intervals: usize,
+    pub(super) shape: Shape,
+    pub(super) cost_weights: CostWeights,
+    pub(super) scales: Scales,
+    pub(super) units: Units,
 }
 
 /// The program.
@@ -91,15 +103,16 @@ struct Local {
 }
 
 impl Program {
-    /// A slew between two waypoints.
-    pub(super) fn new(
-        vehicle: &Vehicle,
-        scales: Scales,
-        waypoints: &[Waypoint; 2],
-        intervals: usize,
-        shape: Shape,
-        (cost_weights, units): (CostWeights, Units),
-    ) -> Self {
+    /// The program of a slew of a vehicle.
+    pub(super) fn new(vehicle: &Vehicle, setup: ProgramSetup<'_>) -> Self {
+        let ProgramSetup {
+            waypoints,
+            intervals,
+            shape,
+            cost_weights,
+            scales,
+            units,
+        } = setup;
         let (dynamics, drives) = (&vehicle.dynamics, &vehicle.drives);
         let base = Transcription::new(dynamics, scales, waypoints, &[intervals]);
         let actuators = &dynamics.actuators;
@@ -183,50 +196,6 @@ impl Program {
             0.5 * self.penalty.weight * self.stray(link).powi(2)
         } else {
             0.0
-        }
-    }
-
-    /// What the motion of an iterate takes, J, braking never counted against it.
-    pub(super) fn energy_of(&self, iterate: &Iterate) -> f64 {
-        let layout = Layout::of(self);
-        let energy = |link: &Link<'_>| -> f64 {
-            let wheels = self.wheels.iter().enumerate();
-            let energies = wheels.map(|(i, w)| w.energy(&self.wheel_state(i, link)).value);
-            energies.map(|energy| energy.max(0.0)).sum()
-        };
-        (0..self.base.intervals())
-            .map(|node| energy(&iterate.link(&layout, node)))
-            .sum()
-    }
-
-    /// Fills the slacks and the account of an iterate with what its motion takes.
-    pub(super) fn fill_energies(&self, iterate: &mut Iterate) {
-        if !self.cost_weights.uses_energy() {
-            return;
-        }
-        let layout = Layout::of(self);
-        let mut spent = 0.0;
-        for node in 0..self.base.intervals() {
-            let link = iterate.link(&layout, node);
-            let energies: Vec<f64> = (0..self.shape.wheels)
-                .map(|i| self.wheels[i].energy(&self.wheel_state(i, &link)).value)
-                .collect();
-            let length = self.length(&link) * self.scales.time;
-            if self.shape.slacks {
-                let at = layout.control(node).start + self.shape.slack_at();
-                for (i, energy) in energies.iter().enumerate() {
-                    iterate.controls[at + i] = energy.max(0.0) / self.units.energy;
-                }
-                let prices = energies.iter().zip(&self.efficiency);
-                spent += self.quiescent_power * length;
-                spent += prices.map(|(e, share)| e.max(0.0) / share).sum::<f64>();
-            } else {
-                spent += energies.iter().sum::<f64>();
-            }
-            if self.shape.account {
-                let at = layout.point(node + 1).start + 1 + self.shape.account_at();
-                iterate.points[at] = spent / self.units.energy;
-            }
         }
     }
 

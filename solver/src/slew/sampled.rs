@@ -5,12 +5,17 @@
 //! many samples, one more is allowed. In its fixed time a slew for time alone takes the least
 //! effort.
 
+use super::attempts::direct;
 use super::choices::MAX_INTERVALS;
+use super::continuous;
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
+use super::program_choice::Plain;
 use super::propagated::{self, effort};
+use super::search_result::Found;
 use super::shape::{Course, Lengths};
-use super::{Found, Hold, Objective, Plain, Slew, direct, in_continuous_time};
+use super::spec::{Hold, Objective};
+use super::validated::Slew;
 use crate::nlp::Interruption;
 
 /// Samples allowed beyond those of the continuous minimum.
@@ -21,11 +26,12 @@ const ROUNDING: f64 = 1e-6;
 /// Solves a sampled slew.
 pub(super) fn solve(
     slew: &Slew,
-    (period, hold): (f64, Hold),
+    period: f64,
+    hold: Hold,
     neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> Found {
-    let mut continuous = in_continuous_time(slew, neighbour, stop);
+    let mut continuous = continuous::solve(slew, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
         return continuous;
     }

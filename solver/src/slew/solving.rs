@@ -1,10 +1,10 @@
 //! From a guess to a motion that flies: solve, correct the turns, keep reserves, solve again.
 
 use super::cost_weights::CostWeights;
-use super::flow::Vehicle;
 use super::motion::SlewMotion;
-use super::program::{LengthPenalty, Program, Units};
+use super::program::{LengthPenalty, Program, ProgramSetup, Units};
 use super::shape::{Lengths, Shape};
+use super::vehicle::Vehicle;
 use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
 use crate::leg::transcription::{Reserves, Scales};
 use crate::model::waypoint::Waypoint;
@@ -179,7 +179,7 @@ impl Task<'_> {
                 motion: guess.clone(),
                 cost: f64::INFINITY,
                 iterations: 0,
-                iterate: guess.iterate(&program),
+                iterate: program.iterate_at(guess),
                 program,
             },
             vehicle: self.vehicle,
@@ -199,15 +199,16 @@ impl Task<'_> {
             cost: scales.time,
             energy: 1.0,
         };
-        let mut program = Program::new(
-            self.vehicle,
+        let setup = ProgramSetup {
+            waypoints: &self.ends,
+            intervals: guess.lengths.len(),
+            shape: self.shape.clone(),
+            cost_weights: self.cost_weights,
             scales,
-            &self.ends,
-            guess.lengths.len(),
-            self.shape.clone(),
-            (self.cost_weights, units),
-        );
-        let energy = program.energy_of(&guess.iterate(&program));
+            units,
+        };
+        let mut program = Program::new(self.vehicle, setup);
+        let energy = program.energy_of(&program.iterate_at(guess));
         let wheels = dynamics.wheel_count() as f64;
         if energy > 0.0 {
             program.units.energy = energy / wheels;
@@ -350,7 +351,7 @@ impl Run<'_> {
             .solve(&solved.program, &mut solved.iterate, stop);
         solved.status = report.status;
         solved.iterations += report.iterations;
-        solved.motion = SlewMotion::of_iterate(&solved.iterate, &solved.program);
+        solved.motion = solved.program.motion_of(&solved.iterate);
         solved.cost = cost(&solved.program, &solved.iterate);
         solved.converged()
     }

@@ -1,8 +1,8 @@
 //! Guesses for a slew: the fastest motion, and slews about the eigenaxis perturbed_eigenaxis to either side.
 
-use super::Slew;
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
+use super::validated::Slew;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{self, LegProblem, Resolution};

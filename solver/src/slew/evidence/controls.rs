@@ -23,8 +23,8 @@
 use super::cost::Running;
 use super::costate::Costate;
 use crate::math::cone;
-use crate::slew::WheelAllocation;
 use crate::slew::flow::Sample;
+use crate::slew::spec::WheelAllocation;
 use nalgebra::{Matrix3, Vector3};
 
 /// Torques tried for a lower Hamiltonian: of a wheel within its range, or on the way to a corner.

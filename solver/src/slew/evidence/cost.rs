@@ -2,9 +2,10 @@
 
 use crate::model::drive::Drive;
 use crate::model::dynamics::Dynamics;
-use crate::slew::Measure;
 use crate::slew::cost_weights::CostWeights;
-use crate::slew::flow::{Sample, Vehicle};
+use crate::slew::flow::Sample;
+use crate::slew::spec::Measure;
+use crate::slew::vehicle::Vehicle;
 
 /// Share of a limit from which on it counts as active.
 pub(super) const NEAR: f64 = 0.999;

@@ -8,7 +8,7 @@ use crate::model::spec::{SpacecraftSpec, StateSpec};
 use crate::nlp::{Chain, Iterate, Layout, Link, LinkModel, LinkMultipliers, models_of};
 use crate::slew::cost_weights::CostWeights;
 use crate::slew::motion::SlewMotion;
-use crate::slew::program::{LengthPenalty, Program, Units};
+use crate::slew::program::{LengthPenalty, Program, ProgramSetup, Units};
 use crate::slew::shape::{Course, Lengths, Shape};
 use crate::slew::{Measure, Slew, SlewSpec, WheelAllocation};
 use nalgebra::{DVector, Vector3};
@@ -120,20 +120,21 @@ impl Fixture {
             energy: 2.0,
         };
         let motion = motion();
-        let mut program = Program::new(
-            vehicle,
-            scales,
-            slew.ends(),
-            2,
+        let setup = ProgramSetup {
+            waypoints: slew.ends(),
+            intervals: 2,
             shape,
-            (cost_weights, units),
-        );
+            cost_weights,
+            scales,
+            units,
+        };
+        let mut program = Program::new(vehicle, setup);
         program.penalty = LengthPenalty {
             weight: 0.3,
             lengths: vec![0.6; 2],
         };
         program.torque_reserve = vec![0.01, 0.02, 0.03];
-        let iterate = motion.iterate(&program);
+        let iterate = program.iterate_at(&motion);
         let weights = |n: usize, seed: f64| (0..n).map(|i| (seed + i as f64).sin()).collect();
         Self {
             gap: weights(program.state_dim(), 1.0),

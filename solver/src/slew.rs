@@ -2,7 +2,7 @@
 //!
 //! A [`Slew`] leads from a state to a state. Its [`Objective`] is the time (the paper's
 //! problem), time with effort (OLRAC), the energy of the motors at a given time, or the time at a
-//! given energy (the energy thesis). Its [`Command`] says which torques can be commanded: constant
+//! given energy (the energy thesis). Its [`TorqueCommand`] says which torques can be commanded: constant
 //! on intervals of any length, on equal ones, on the samples of a clock held constant or linearly
 //! (BIROS), or continuous. [`solve`] minimises, and flies what it has found with the integrator of
 //! the [checker](crate::checker), which shares nothing with the optimiser.
@@ -27,9 +27,9 @@
 //! which counts what braking would return; the *bill* is that of `max(P, 0)`, over the motor's
 //! efficiency and with what its electronics take (the thesis's equation 1.16). Within an interval
 //! the program lets one wheel's power of both signs cancel, so that its own bill is low by what
-//! shrinks with the square of the interval; every [`SlewOutcome`] has both integrals of the flown
+//! shrinks with the square of the interval; every [`SlewOutcome`] has both integrals of the propagated
 //! motion, to rounding. The bill has many local minima, some per cent apart: it is minimised from the
-//! optimum of the proxy and from the usual guesses, and the flown bills are compared.
+//! optimum of the proxy and from the usual guesses, and the propagated uses_bill are compared.
 
 mod attempts;
 mod choices;
@@ -37,6 +37,7 @@ mod continuous;
 mod cost_weights;
 pub mod evidence;
 mod flow;
+mod found_solution;
 mod interruption;
 mod jet;
 mod min_time_at_energy;
@@ -44,9 +45,8 @@ mod motion;
 mod outcome;
 mod program;
 mod program_choice;
-mod propagated;
+mod propagation;
 mod sampled;
-mod search_result;
 mod shape;
 mod solving;
 mod spec;
@@ -59,10 +59,12 @@ mod validated;
 mod vehicle;
 
 pub use outcome::SlewOutcome;
-pub use propagated::{Energies, Piece, PropagatedSlew};
-pub use spec::{Command, FinalWheels, Hold, Measure, Objective, SlewSpec, WheelAllocation};
+pub use propagation::{MotorEnergies, PropagatedSlew, TorquePiece};
+pub use spec::{
+    EnergyMeasure, FinalWheels, Objective, SampleHold, SlewSpec, TorqueCommand, WheelAllocation,
+};
 pub use sweep::Sweep;
-pub use validated::{Slew, Validated};
+pub use validated::{Slew, ValidatedSlew};
 
 use crate::run::stop::StopSignal;
 use interruption::interruption;
@@ -103,7 +105,7 @@ pub fn trade_curve(
 fn solve_from(slew: &Slew, neighbour: Option<&SlewMotion>, stop: &StopSignal) -> SlewOutcome {
     let stop = &|| interruption(stop);
     let found = match slew.command() {
-        Command::Sampled { period_s, hold } => {
+        TorqueCommand::Sampled { period_s, hold } => {
             sampled::solve(slew, period_s, hold, neighbour, stop)
         }
         _ => continuous::solve(slew, neighbour, stop),

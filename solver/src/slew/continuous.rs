@@ -1,13 +1,13 @@
 //! Slews without a clock.
 
-use super::attempts::direct;
+use super::attempts::solve_program;
 use super::cost_weights::CostWeights;
+use super::found_solution::FoundSolution;
 use super::motion::SlewMotion;
-use super::program_choice::Plain;
-use super::search_result::Found;
-use super::spec::{Measure, Objective};
+use super::program_choice::ProgramChoice;
+use super::spec::{EnergyMeasure, Objective};
 use super::validated::Slew;
-use super::{min_time_at_energy, propagated};
+use super::{min_time_at_energy, propagation};
 use crate::nlp::Interruption;
 
 /// Rounds in which a budget is corrected, and the share of it that may be left.
@@ -19,14 +19,14 @@ pub(super) fn solve(
     slew: &Slew,
     neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    let plain = Plain::of(slew);
+) -> FoundSolution {
+    let choice = ProgramChoice::of(slew);
     let Objective::MinimumTimeAtEnergy { energy_j, measure } = slew.objective() else {
-        return direct(slew, &plain, neighbour, stop);
+        return solve_program(slew, &choice, neighbour, stop);
     };
-    let fastest = plain.with(slew, CostWeights::TIME);
-    let fastest = direct(slew, &fastest, None, stop);
-    let bill = propagated::fly(slew, &fastest.solved.motion)
+    let fastest = choice.with(slew, CostWeights::TIME);
+    let fastest = solve_program(slew, &fastest, None, stop);
+    let bill = propagation::propagate(slew, &fastest.solved.motion)
         .energies
         .bill_j;
     if fastest.solved.converged() && bill <= energy_j {
@@ -34,8 +34,8 @@ pub(super) fn solve(
         return fastest;
     }
     let found = match measure {
-        Measure::Proxy => min_time_at_energy::solve(slew, energy_j, neighbour, stop),
-        Measure::Bill => billed(slew, energy_j, neighbour, stop),
+        EnergyMeasure::Proxy => min_time_at_energy::solve(slew, energy_j, neighbour, stop),
+        EnergyMeasure::Bill => billed(slew, energy_j, neighbour, stop),
     };
     found.after(&fastest)
 }
@@ -47,21 +47,23 @@ fn billed(
     energy: f64,
     neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    let mut plain = Plain::of(slew);
-    let mut found = direct(slew, &plain, neighbour, stop);
+) -> FoundSolution {
+    let mut choice = ProgramChoice::of(slew);
+    let mut found = solve_program(slew, &choice, neighbour, stop);
     for _ in 0..BUDGET_ROUNDS {
-        let bill = propagated::fly(slew, &found.solved.motion).energies.bill_j;
-        let Some(budget) = plain.cost_weights.budget else {
+        let bill = propagation::propagate(slew, &found.solved.motion)
+            .energies
+            .bill_j;
+        let Some(budget) = choice.cost_weights.budget else {
             break;
         };
-        let kept = bill <= energy && bill >= energy * (1.0 - BUDGET_ACCURACY);
-        if kept || !found.solved.converged() || stop().is_some() {
+        let met = bill <= energy && bill >= energy * (1.0 - BUDGET_ACCURACY);
+        if met || !found.solved.converged() || stop().is_some() {
             break;
         }
-        plain.cost_weights.budget = Some(budget * energy / bill * (1.0 - 0.5 * BUDGET_ACCURACY));
+        choice.cost_weights.budget = Some(budget * energy / bill * (1.0 - 0.5 * BUDGET_ACCURACY));
         let guess = found.solved.motion.clone();
-        let next = direct(slew, &plain, Some(&guess), stop);
+        let next = solve_program(slew, &choice, Some(&guess), stop);
         found = next.after(&found);
     }
     found

@@ -14,7 +14,7 @@ const SAMPLES: usize = 32;
 
 /// The motion at a moment.
 #[derive(Debug, Clone)]
-pub(super) struct Sample {
+pub(super) struct MotionSample {
     /// Body rate, rad/s.
     pub(super) rate: Vector3<f64>,
     /// Total momentum in body axes, N m s.
@@ -40,7 +40,7 @@ impl Vehicle {
     /// Body rate, rad/s, with `momentum` that in body axes, N m s.
     fn rate(&self, momentum: &Vector3<f64>, wheels: &DVector<f64>, time: f64) -> Vector3<f64> {
         let dynamics = &self.dynamics;
-        let held = dynamics.locked_momentum + self.followers.drift(time)[0];
+        let held = dynamics.locked_momentum + self.speed_law_wheels.drift(time)[0];
         dynamics.inertia_inverse * (momentum - held - &dynamics.axes * wheels)
     }
 
@@ -77,7 +77,7 @@ impl Vehicle {
         k: usize,
         begin: f64,
         parts: usize,
-    ) -> Vec<Sample> {
+    ) -> Vec<MotionSample> {
         let at = |i: usize| i as f64 / parts as f64;
         let mut attitude = motion.attitudes[k];
         let mut samples = Vec::with_capacity(parts + 1);
@@ -93,10 +93,10 @@ impl Vehicle {
             let rate = self.rate(&stored, &momenta, begin + motion.lengths[k] * s);
             let actuators = self.dynamics.actuators.iter().zip(momenta.iter());
             let speeds = actuators.map(|(wheel, h)| h / wheel.inertia - wheel.axis.dot(&rate));
-            samples.push(Sample {
+            samples.push(MotionSample {
                 speeds: speeds.collect(),
                 torques: &motion.begin[k] * (1.0 - s) + &motion.end[k] * s,
-                drift_rate: self.followers.drift(begin + motion.lengths[k] * s)[1],
+                drift_rate: self.speed_law_wheels.drift(begin + motion.lengths[k] * s)[1],
                 stored,
                 rate,
                 momenta,
@@ -127,7 +127,7 @@ impl Vehicle {
     }
 
     /// The greatest share of its limit that any motor torque has.
-    fn motor_usage(&self, at: &Sample) -> f64 {
+    fn motor_usage(&self, at: &MotionSample) -> f64 {
         let motors = self.drives.iter().zip(at.torques.iter()).zip(&at.speeds);
         let torques = motors.map(|((drive, torque), speed)| drive.motor_torque(*torque, *speed));
         self.dynamics

@@ -60,7 +60,7 @@ impl SlewMotion {
 
     /// About the same motion in another time: rates shrink as the time grows. Between the nodes of
     /// the result torque is constant.
-    pub(super) fn lasting(&self, duration: f64, dynamics: &Dynamics) -> Self {
+    pub(super) fn stretched_to(&self, duration: f64, dynamics: &Dynamics) -> Self {
         let factor = duration / self.duration();
         let slower = self.attitudes.iter().zip(&self.momenta).map(|(q, h)| {
             let rate = dynamics.rate(q, h) / factor;
@@ -74,7 +74,7 @@ impl SlewMotion {
     }
 
     /// The same attitudes and rates with these null-space momenta, N m s.
-    pub(super) fn keeping(&self, null: &DVector<f64>, dynamics: &Dynamics) -> Self {
+    pub(super) fn with_null_space(&self, null: &DVector<f64>, dynamics: &Dynamics) -> Self {
         let states = self.attitudes.iter().zip(&self.momenta);
         let wheels = states.map(|(q, h)| dynamics.wheels_at(q, &dynamics.rate(q, h), null));
         Self::of_profile(&Profile {

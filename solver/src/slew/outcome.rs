@@ -1,8 +1,8 @@
 //! What a slew's solve answers with.
 
-use super::propagated::{self, PropagatedSlew};
-use super::search_result::Found;
-use super::solving::Solved;
+use super::found_solution::FoundSolution;
+use super::propagation::{self, PropagatedSlew};
+use super::solving::ProgramSolution;
 use super::spec::Objective;
 use super::validated::Slew;
 use crate::nlp::NlpStatus;
@@ -24,7 +24,7 @@ pub struct SlewOutcome {
     /// Integral of the squared torques, (N m)² s.
     pub effort: f64,
     /// The flight as the independent integration found it.
-    pub flown: PropagatedSlew,
+    pub propagated: PropagatedSlew,
     /// Guesses tried.
     pub starts: usize,
     /// Interior-point iterations, all programs together.
@@ -32,38 +32,38 @@ pub struct SlewOutcome {
     /// Of a sampled slew the minimum in continuous time, s.
     pub continuous_time_s: Option<f64>,
     /// The program's solution, from which a neighbour can begin.
-    pub(super) solution: Solved,
+    pub(super) solution: ProgramSolution,
 }
 
 impl SlewOutcome {
     /// Propagates a solution and sums up.
-    pub(super) fn of(slew: &Slew, found: Found) -> Self {
+    pub(super) fn of(slew: &Slew, found: FoundSolution) -> Self {
         let motion = &found.solved.motion;
-        let mut flown = propagated::fly(slew, motion);
-        flown.failures.extend(found.refusal);
+        let mut propagated = propagation::propagate(slew, motion);
+        propagated.failures.extend(found.refusal);
         if let Objective::MinimumTimeAtEnergy { energy_j, .. } = slew.objective() {
-            let bill = flown.energies.bill_j;
+            let bill = propagated.energies.bill_j;
             if bill.is_nan() || bill > energy_j * (1.0 + BUDGET_TOLERANCE) {
                 let sentence =
                     format!("the bill is {bill:.6} J, more than the {energy_j} J allowed");
-                flown.failures.push(sentence);
+                propagated.failures.push(sentence);
             }
         }
-        let effort = propagated::effort(motion);
+        let effort = propagation::effort(motion);
         let time_s = motion.duration();
         let objective = match slew.objective() {
             Objective::MinimumTime | Objective::MinimumTimeAtEnergy { .. } => time_s,
             Objective::TimeAndEffort { weight } => time_s + weight * effort,
-            Objective::Energy { measure, .. } => flown.energies.by(measure),
+            Objective::Energy { measure, .. } => propagated.energies.by(measure),
         };
         let converged = found.solved.status == NlpStatus::Converged;
         Self {
             status: found.solved.status.to_string(),
-            solved: converged && flown.failures.is_empty(),
+            solved: converged && propagated.failures.is_empty(),
             objective,
             time_s,
             effort,
-            flown,
+            propagated,
             starts: found.starts,
             iterations: found.iterations,
             continuous_time_s: found.continuous_time,

@@ -2,42 +2,44 @@
 
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
-use super::propagated;
-use super::shape::{Course, Lengths, Shape};
-use super::spec::{Command, Measure};
+use super::propagation;
+use super::shape::{IntervalLengths, ProgramShape, TorqueCourse};
+use super::spec::{EnergyMeasure, TorqueCommand};
 use super::validated::Slew;
 
 /// A program that one solve answers.
-pub(super) struct Plain {
+pub(super) struct ProgramChoice {
     pub(super) cost_weights: CostWeights,
-    pub(super) shape: Shape,
+    pub(super) shape: ProgramShape,
     pub(super) intervals: usize,
     /// The duration of the guesses, s, where it is known.
-    pub(super) lasting: Option<f64>,
+    pub(super) guess_duration: Option<f64>,
 }
 
-impl Plain {
+impl ProgramChoice {
     /// The program of a slew in continuous time.
     pub(super) fn of(slew: &Slew) -> Self {
         let cost_weights = slew.cost_weights();
         let (course, own, intervals) = match slew.command() {
-            Command::Free { intervals } => {
+            TorqueCommand::Free { intervals } => {
                 let needed = slew.intervals_of_fastest();
-                (Course::Steps, true, intervals.max(needed))
+                (TorqueCourse::Steps, true, intervals.max(needed))
             }
-            Command::Uniform { intervals } => (Course::Steps, false, intervals),
-            Command::Smooth { intervals } => (Course::Ramps, false, intervals),
+            TorqueCommand::Uniform { intervals } => (TorqueCourse::Steps, false, intervals),
+            TorqueCommand::Smooth { intervals } => (TorqueCourse::Ramps, false, intervals),
             // In continuous time, as free as can be.
-            Command::Sampled { .. } => (Course::Steps, true, slew.usual_intervals()),
+            TorqueCommand::Sampled { .. } => (TorqueCourse::Steps, true, slew.usual_intervals()),
         };
         let lengths = match (own, cost_weights.duration) {
-            (true, _) => Lengths::Own,
-            (false, None) => Lengths::Shared,
-            (false, Some(duration)) => Lengths::Given(vec![duration / intervals as f64; intervals]),
+            (true, _) => IntervalLengths::Free,
+            (false, None) => IntervalLengths::SharedControls,
+            (false, Some(duration)) => {
+                IntervalLengths::Given(vec![duration / intervals as f64; intervals])
+            }
         };
         Self {
             shape: slew.shape(course, lengths, &cost_weights),
-            lasting: cost_weights.duration,
+            guess_duration: cost_weights.duration,
             cost_weights,
             intervals,
         }
@@ -45,9 +47,9 @@ impl Plain {
 
     /// The same program with the smooth proxy instead of the bill, which has many local minima.
     pub(super) fn proxy(&self, slew: &Slew) -> Option<Self> {
-        let billed = self.cost_weights.bills() && self.cost_weights.budget.is_none();
+        let billed = self.cost_weights.uses_bill() && self.cost_weights.budget.is_none();
         let cost_weights = CostWeights {
-            measure: Measure::Proxy,
+            measure: EnergyMeasure::Proxy,
             ..self.cost_weights
         };
         billed.then(|| self.with(slew, cost_weights))
@@ -56,7 +58,7 @@ impl Plain {
     /// The same program where effort counts too, this share of what time counts for on a motion.
     pub(super) fn with_effort(&self, slew: &Slew, share: f64, motion: &SlewMotion) -> Self {
         let cost_weights = CostWeights {
-            effort: share * motion.duration() / propagated::effort(motion),
+            effort: share * motion.duration() / propagation::effort(motion),
             ..self.cost_weights
         };
         self.with(slew, cost_weights)
@@ -68,20 +70,20 @@ impl Plain {
             shape: slew.shape(self.shape.course, self.shape.lengths.clone(), &cost_weights),
             cost_weights,
             intervals: self.intervals,
-            lasting: self.lasting,
+            guess_duration: self.guess_duration,
         }
     }
 
     /// A guess on the nodes of the program.
-    pub(super) fn meshed(&self, guess: &SlewMotion, slew: &Slew) -> SlewMotion {
+    pub(super) fn guess_on_nodes(&self, guess: &SlewMotion, slew: &Slew) -> SlewMotion {
         let dynamics = &slew.vehicle().dynamics;
-        let lasting = self.lasting.unwrap_or_else(|| guess.duration());
-        let guess = guess.lasting(lasting, dynamics);
+        let guess_duration = self.guess_duration.unwrap_or_else(|| guess.duration());
+        let guess = guess.stretched_to(guess_duration, dynamics);
         match &self.shape.lengths {
-            Lengths::Given(lengths) => guess.on_mesh(lengths),
+            IntervalLengths::Given(lengths) => guess.on_mesh(lengths),
             // What only time counts for switches, and the guess knows when; what is smooth does not.
-            Lengths::Own
-                if self.cost_weights.hurries() && self.intervals >= guess.lengths.len() =>
+            IntervalLengths::Free
+                if self.cost_weights.is_time_only() && self.intervals >= guess.lengths.len() =>
             {
                 guess.on_finer_mesh(self.intervals)
             }

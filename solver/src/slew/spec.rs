@@ -5,7 +5,7 @@ use crate::model::spec::{AttitudeEquivalence, SpacecraftSpec, StateSpec};
 
 /// How energy is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
+pub enum EnergyMeasure {
     /// The integral of the power, which is smooth but counts what a braking wheel returns.
     Proxy,
     /// What the supply gives: nothing is fed back.
@@ -27,22 +27,22 @@ pub enum Objective {
         /// The time, s.
         duration_s: f64,
         /// How energy is counted.
-        measure: Measure,
+        measure: EnergyMeasure,
     },
-    /// The duration with no more than a given bill. With [`Measure::Bill`] over all motions; with
-    /// [`Measure::Proxy`] over the motions that minimise the proxy in their time, as the energy
+    /// The duration with no more than a given bill. With [`EnergyMeasure::Bill`] over all motions; with
+    /// [`EnergyMeasure::Proxy`] over the motions that minimise the proxy in their time, as the energy
     /// thesis has it.
     MinimumTimeAtEnergy {
         /// The bill, J.
         energy_j: f64,
         /// What the motions minimise.
-        measure: Measure,
+        measure: EnergyMeasure,
     },
 }
 
 /// How torque runs between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hold {
+pub enum SampleHold {
     /// It is constant.
     Constant,
     /// It is linear, and continuous across samples.
@@ -51,7 +51,7 @@ pub enum Hold {
 
 /// Which torques can be commanded.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Command {
+pub enum TorqueCommand {
     /// Constant on intervals of any length.
     Free {
         /// Their number.
@@ -67,7 +67,7 @@ pub enum Command {
         /// The period, s.
         period_s: f64,
         /// How torque is held.
-        hold: Hold,
+        hold: SampleHold,
     },
     /// Continuous, linear on intervals of equal length.
     Smooth {
@@ -129,7 +129,7 @@ pub struct SlewSpec {
     /// What is minimised.
     pub objective: Objective,
     /// What can be commanded.
-    pub command: Command,
+    pub command: TorqueCommand,
     /// How torque is shared out among the wheels.
     pub allocation: WheelAllocation,
     /// Meaning of equal attitudes.
@@ -149,7 +149,7 @@ impl Default for SlewSpec {
             end: StateSpec::default(),
             final_wheels: FinalWheels::default(),
             objective: Objective::MinimumTime,
-            command: Command::Free { intervals: 24 },
+            command: TorqueCommand::Free { intervals: 24 },
             allocation: WheelAllocation::default(),
             attitude_equivalence: AttitudeEquivalence::default(),
             torque_authority: 1.0,

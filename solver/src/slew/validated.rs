@@ -3,9 +3,9 @@
 use super::choices;
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
-use super::shape::{Course, Lengths, Shape};
-use super::spec::{Command, FinalWheels, Objective, SlewSpec, WheelAllocation};
-use super::vehicle::{Followers, Vehicle};
+use super::shape::{IntervalLengths, ProgramShape, TorqueCourse};
+use super::spec::{FinalWheels, Objective, SlewSpec, TorqueCommand, WheelAllocation};
+use super::vehicle::{SpeedLawWheels, Vehicle};
 use crate::leg::solve::arrival::Arrival;
 use crate::model::attitude::Attitude;
 use crate::model::drive::Drive;
@@ -27,12 +27,12 @@ pub struct Slew {
     start_momenta: DVector<f64>,
     arrival: Arrival,
     objective: Objective,
-    command: Command,
+    command: TorqueCommand,
 }
 
 /// A valid slew with what the caller should know about it.
 #[derive(Debug, Clone)]
-pub struct Validated {
+pub struct ValidatedSlew {
     /// The slew.
     pub slew: Slew,
     /// Doubts that do not stand in the way.
@@ -46,7 +46,7 @@ impl Slew {
     /// # Errors
     ///
     /// All problems at once.
-    pub fn try_new(spec: &SlewSpec) -> Result<Validated, Vec<Problem>> {
+    pub fn try_new(spec: &SlewSpec) -> Result<ValidatedSlew, Vec<Problem>> {
         let mut problems = Vec::new();
         let scenario = Scenario::try_new(&scenario_spec(spec));
         let wheels = spec.spacecraft.wheels.len();
@@ -61,7 +61,7 @@ impl Slew {
         let (Ok(scenario), Ok(drives), true) = (scenario, drives, problems.is_empty()) else {
             return Err(problems);
         };
-        Ok(Validated {
+        Ok(ValidatedSlew {
             slew: Self::assemble(spec, scenario.scenario, drives),
             warnings: scenario.warnings,
         })
@@ -70,11 +70,11 @@ impl Slew {
     fn assemble(spec: &SlewSpec, scenario: Scenario, drives: Vec<Drive>) -> Self {
         let dynamics = Dynamics::of(&scenario);
         let start = scenario.start();
-        let mut followers = Followers::default();
+        let mut speed_law_wheels = SpeedLawWheels::default();
         let wheels = scenario.spacecraft().wheels().iter();
         for ((wheel, drive), speed) in wheels.zip(&drives).zip(&start.wheel_speed) {
             if let Some(law) = drive.speed_law {
-                followers.add(wheel.axis * wheel.inertia, law, *speed);
+                speed_law_wheels.add(wheel.axis * wheel.inertia, law, *speed);
             }
         }
         let start_momenta = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
@@ -92,13 +92,13 @@ impl Slew {
         let rate = scenario.end().map_or(start.rate, |end| end.rate);
         let speeds = scenario.end().and_then(|end| end.wheel_speed.clone());
         let null = dynamics.null_component(&start_momenta);
-        let kept = (spec.allocation == WheelAllocation::PseudoInverse).then(|| null.clone());
+        let pinned_null = (spec.allocation == WheelAllocation::PseudoInverse).then(|| null.clone());
         let wheels = match (spec.final_wheels, speeds) {
             (FinalWheels::Given, Some(speeds)) => {
                 WheelCondition::Fixed(dynamics.wheels_of_speeds(&rate, &speeds))
             }
             (FinalWheels::NullSpaceOfStart, _) => WheelCondition::NullSpace(null),
-            _ if kept.is_some() => WheelCondition::NullSpace(null),
+            _ if pinned_null.is_some() => WheelCondition::NullSpace(null),
             _ => WheelCondition::Free,
         };
         let end = Waypoint {
@@ -112,8 +112,8 @@ impl Slew {
             vehicle: Vehicle {
                 drives: commanded.collect(),
                 dynamics,
-                followers,
-                kept,
+                speed_law_wheels,
+                pinned_null,
             },
             ends: [begin, end],
             start_momenta,
@@ -133,14 +133,14 @@ impl Slew {
 
     /// What can be commanded.
     #[must_use]
-    pub fn command(&self) -> Command {
+    pub fn command(&self) -> TorqueCommand {
         self.command
     }
 
     /// How torque is shared out among the wheels.
     #[must_use]
     pub fn allocation(&self) -> WheelAllocation {
-        match self.vehicle.kept {
+        match self.vehicle.pinned_null {
             Some(_) => WheelAllocation::PseudoInverse,
             None => WheelAllocation::Free,
         }
@@ -210,15 +210,20 @@ impl Slew {
     }
 
     /// The variables of a program for it.
-    pub(super) fn shape(&self, course: Course, lengths: Lengths, of: &CostWeights) -> Shape {
-        Shape {
+    pub(super) fn shape(
+        &self,
+        course: TorqueCourse,
+        lengths: IntervalLengths,
+        of: &CostWeights,
+    ) -> ProgramShape {
+        ProgramShape {
             wheels: self.vehicle.dynamics.wheel_count(),
             course,
-            clock: self.vehicle.followers.move_at_all()
-                || of.duration.is_some() && lengths == Lengths::Own,
+            clock: self.vehicle.speed_law_wheels.any_drift()
+                || of.duration.is_some() && lengths == IntervalLengths::Free,
             lengths,
-            account: of.budget.is_some(),
-            slacks: of.bills(),
+            energy_account: of.budget.is_some(),
+            slacks: of.uses_bill(),
         }
     }
 

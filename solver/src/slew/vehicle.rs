@@ -11,7 +11,7 @@ use nalgebra::{DVector, Vector3};
 
 /// A wheel that follows a law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Follower {
+struct SpeedLawWheel {
     /// `a I`, kg m².
     spin: Vector3<f64>,
     law: SpeedLaw,
@@ -21,18 +21,18 @@ struct Follower {
 
 /// All wheels that follow laws.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Followers(Vec<Follower>);
+pub(super) struct SpeedLawWheels(Vec<SpeedLawWheel>);
 
-impl Followers {
+impl SpeedLawWheels {
     /// Adds a wheel of axis times inertia `spin` that starts at a speed, rad/s.
     pub(super) fn add(&mut self, spin: Vector3<f64>, law: SpeedLaw, start: f64) {
-        self.0.push(Follower { spin, law, start });
+        self.0.push(SpeedLawWheel { spin, law, start });
     }
 
     /// Change of the locked momentum since the start, N m s, and its first two derivatives by time.
     pub(super) fn drift(&self, time: f64) -> [Vector3<f64>; 3] {
         let mut drift = [Vector3::zeros(); 3];
-        for Follower { spin, law, start } in &self.0 {
+        for SpeedLawWheel { spin, law, start } in &self.0 {
             let excess = spin * (start - law.speed);
             let left = (-law.rate * time).exp();
             drift[0] += excess * (-law.rate * time).exp_m1();
@@ -43,7 +43,7 @@ impl Followers {
     }
 
     /// Whether any wheel's speed changes.
-    pub(super) fn move_at_all(&self) -> bool {
+    pub(super) fn any_drift(&self) -> bool {
         self.0
             .iter()
             .any(|f| f.law.rate > 0.0 && (f.start - f.law.speed).abs() > 0.0)
@@ -56,8 +56,8 @@ pub(super) struct Vehicle {
     pub(super) dynamics: Dynamics,
     /// Drives of the commanded wheels.
     pub(super) drives: Vec<Drive>,
-    pub(super) followers: Followers,
+    pub(super) speed_law_wheels: SpeedLawWheels,
     /// What the commanded wheels' momenta keep in the null space of their axes, N m s, where the
     /// pseudo-inverse shares torques out; none where torques are free of each other.
-    pub(super) kept: Option<DVector<f64>>,
+    pub(super) pinned_null: Option<DVector<f64>>,
 }

@@ -4,7 +4,7 @@ use super::Program;
 use crate::model::attitude::Attitude;
 use crate::nlp::{Chain, Iterate, Layout, Link};
 use crate::slew::motion::SlewMotion;
-use crate::slew::shape::{Course, Lengths};
+use crate::slew::shape::{IntervalLengths, TorqueCourse};
 use nalgebra::DVector;
 
 impl Program {
@@ -20,32 +20,32 @@ impl Program {
             let points = &mut iterate.points;
             points.extend_from_slice(&attitude.xyzw());
             points.extend(momenta.iter().map(|h| h / scales.momentum));
-            if shape.course == Course::Ramps {
+            if shape.course == TorqueCourse::Ramps {
                 points.extend(motion.node_torque(node).iter().map(|u| u / torque));
             }
-            if shape.lengths == Lengths::Shared {
+            if shape.lengths == IntervalLengths::SharedControls {
                 points.push(mean / scales.time);
             }
             if shape.clock {
                 let passed: f64 = motion.lengths[..node].iter().sum();
                 points.push(passed / scales.time);
             }
-            if shape.account {
+            if shape.energy_account {
                 points.push(0.0);
             }
         }
         for k in 0..intervals {
             let controls = &mut iterate.controls;
             match shape.course {
-                Course::Steps => {
+                TorqueCourse::Steps => {
                     let change = &motion.momenta[k + 1] - &motion.momenta[k];
                     controls.extend(change.iter().map(|m| m / scales.momentum));
                 }
-                Course::Ramps => {
+                TorqueCourse::Ramps => {
                     controls.extend(motion.node_torque(k + 1).iter().map(|u| u / torque));
                 }
             }
-            if shape.lengths == Lengths::Own {
+            if shape.lengths == IntervalLengths::Free {
                 controls.push(motion.lengths[k] / scales.time);
             }
             if shape.slacks {
@@ -84,7 +84,7 @@ impl Program {
             let length = self.length(&link) * scales.time;
             let control = DVector::from_column_slice(&link.control[..wheels]);
             let (begin, end) = match shape.course {
-                Course::Steps => {
+                TorqueCourse::Steps => {
                     let constant = if length > 0.0 {
                         control * (scales.momentum / length)
                     } else {
@@ -92,7 +92,7 @@ impl Program {
                     };
                     (constant.clone(), constant)
                 }
-                Course::Ramps => {
+                TorqueCourse::Ramps => {
                     let at = 1 + shape.torque_at();
                     let begin = DVector::from_column_slice(&point[at..at + wheels]);
                     (begin * torque, control * torque)
@@ -118,7 +118,7 @@ impl Program {
             .sum()
     }
 
-    /// Fills the slacks and the account of an iterate with what its motion takes.
+    /// Fills the slacks and the energy_account of an iterate with what its motion takes.
     fn fill_energies(&self, iterate: &mut Iterate) {
         if !self.cost_weights.uses_energy() {
             return;
@@ -142,8 +142,8 @@ impl Program {
             } else {
                 spent += energies.iter().sum::<f64>();
             }
-            if self.shape.account {
-                let at = layout.point(node + 1).start + 1 + self.shape.account_at();
+            if self.shape.energy_account {
+                let at = layout.point(node + 1).start + 1 + self.shape.energy_account_at();
                 iterate.points[at] = spent / self.units.energy;
             }
         }

@@ -1,10 +1,10 @@
 //! A solution and what it took to find it.
 
-use super::solving::Solved;
+use super::solving::ProgramSolution;
 
 /// A solution with the way to it.
-pub(super) struct Found {
-    pub(super) solved: Solved,
+pub(super) struct FoundSolution {
+    pub(super) solved: ProgramSolution,
     pub(super) starts: usize,
     pub(super) iterations: usize,
     pub(super) continuous_time: Option<f64>,
@@ -12,7 +12,7 @@ pub(super) struct Found {
     pub(super) refusal: Option<String>,
 }
 
-impl Found {
+impl FoundSolution {
     /// The same, which took another solution first.
     pub(super) fn after(self, before: &Self) -> Self {
         Self {

@@ -152,7 +152,7 @@ fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
         };
         let slew = Slew::try_new(&slew).expect("valid").slew;
         let outcome = slew::solve(&slew, &StopSignal::new());
-        assert!(outcome.solved, "{:?}", outcome.flown.failures);
+        assert!(outcome.solved, "{:?}", outcome.propagated.failures);
         outcome.time_s
     });
     assert!(agree(forth, slew_forth, 1e-3), "{forth} {slew_forth}");

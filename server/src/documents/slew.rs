@@ -13,7 +13,8 @@ use super::{drives, scenario, spacecraft};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::spec::{AttitudeEquivalence, SpacecraftSpec};
 use slewplan_solver::slew::{
-    Command, FinalWheels, Hold, Measure, Objective, Slew, SlewSpec, Sweep, WheelAllocation,
+    EnergyMeasure, FinalWheels, Objective, SampleHold, Slew, SlewSpec, Sweep, TorqueCommand,
+    WheelAllocation,
 };
 
 /// Most points of a sweep.
@@ -126,7 +127,7 @@ fn decode(cursor: &Cursor<'_>) -> Option<Read> {
         command: fields
             .optional("command")
             .and_then(|it| command(&it))
-            .unwrap_or(Command::Free {
+            .unwrap_or(TorqueCommand::Free {
                 intervals: DEFAULT_INTERVALS,
             }),
         allocation: allocation(&fields),
@@ -265,15 +266,18 @@ fn first_energy(sweep: &Sweep) -> Option<f64> {
     }
 }
 
-fn measure(fields: &Fields<'_>) -> Measure {
-    let choices = [("bill", Measure::Bill), ("proxy", Measure::Proxy)];
+fn measure(fields: &Fields<'_>) -> EnergyMeasure {
+    let choices = [
+        ("bill", EnergyMeasure::Bill),
+        ("proxy", EnergyMeasure::Proxy),
+    ];
     let asked = fields.optional("measure");
     asked
         .and_then(|it| it.choice(&choices))
-        .unwrap_or(Measure::Bill)
+        .unwrap_or(EnergyMeasure::Bill)
 }
 
-fn command(cursor: &Cursor<'_>) -> Option<Command> {
+fn command(cursor: &Cursor<'_>) -> Option<TorqueCommand> {
     const KINDS: [(&str, &[&str]); 4] = [
         ("free", &["kind", "intervals"]),
         ("uniform", &["kind", "intervals"]),
@@ -288,11 +292,14 @@ fn command(cursor: &Cursor<'_>) -> Option<Command> {
     let kind = cursor.kind(&numbered)?;
     let fields = cursor.object(KINDS[kind].1)?;
     if kind == 3 {
-        let holds = [("constant", Hold::Constant), ("linear", Hold::Linear)];
+        let holds = [
+            ("constant", SampleHold::Constant),
+            ("linear", SampleHold::Linear),
+        ];
         let hold = fields.optional("hold").and_then(|it| it.choice(&holds));
-        return Some(Command::Sampled {
+        return Some(TorqueCommand::Sampled {
             period_s: fields.required("period_s")?.number()?,
-            hold: hold.unwrap_or(Hold::Constant),
+            hold: hold.unwrap_or(SampleHold::Constant),
         });
     }
     let asked = fields.optional("intervals");
@@ -301,9 +308,9 @@ fn command(cursor: &Cursor<'_>) -> Option<Command> {
             .map(|count| usize::try_from(count).unwrap_or(usize::MAX))
     })?;
     Some(match kind {
-        0 => Command::Free { intervals },
-        1 => Command::Uniform { intervals },
-        _ => Command::Smooth { intervals },
+        0 => TorqueCommand::Free { intervals },
+        1 => TorqueCommand::Uniform { intervals },
+        _ => TorqueCommand::Smooth { intervals },
     })
 }
 

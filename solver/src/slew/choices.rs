@@ -1,6 +1,8 @@
 //! Whether objective, command and conditions of a slew are valid and go with its wheels.
 
-use super::spec::{Command, FinalWheels, Hold, Measure, Objective, SlewSpec, WheelAllocation};
+use super::spec::{
+    EnergyMeasure, FinalWheels, Objective, SampleHold, SlewSpec, TorqueCommand, WheelAllocation,
+};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::nlp::{MAX_CONTROLS, MAX_STATES};
@@ -45,14 +47,14 @@ fn check_objective(objective: &Objective, findings: &mut Findings) -> bool {
     }
 }
 
-fn check_command(command: &Command, findings: &mut Findings) -> bool {
+fn check_command(command: &TorqueCommand, findings: &mut Findings) -> bool {
     match *command {
-        Command::Sampled { period_s, .. } => {
+        TorqueCommand::Sampled { period_s, .. } => {
             findings.positive("/command/period_s", period_s).is_some()
         }
-        Command::Free { intervals }
-        | Command::Uniform { intervals }
-        | Command::Smooth { intervals } => {
+        TorqueCommand::Free { intervals }
+        | TorqueCommand::Uniform { intervals }
+        | TorqueCommand::Smooth { intervals } => {
             let valid = (2..=MAX_INTERVALS).contains(&intervals);
             if !valid {
                 findings.refuse(
@@ -70,11 +72,11 @@ fn check_command(command: &Command, findings: &mut Findings) -> bool {
 /// A prescribed duration must be a multiple of the period, and not of too many of them.
 pub(super) fn check_multiple(
     objective: &Objective,
-    command: &Command,
+    command: &TorqueCommand,
     pointer: &str,
     findings: &mut Findings,
 ) -> bool {
-    let (Objective::Energy { duration_s, .. }, Command::Sampled { period_s, .. }) =
+    let (Objective::Energy { duration_s, .. }, TorqueCommand::Sampled { period_s, .. }) =
         (objective, command)
     else {
         return true;
@@ -130,18 +132,18 @@ fn check_size(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let billed = matches!(
         spec.objective,
         Objective::Energy {
-            measure: Measure::Bill,
+            measure: EnergyMeasure::Bill,
             ..
         } | Objective::MinimumTimeAtEnergy {
-            measure: Measure::Bill,
+            measure: EnergyMeasure::Bill,
             ..
         }
     );
     let ramps = matches!(
         spec.command,
-        Command::Smooth { .. }
-            | Command::Sampled {
-                hold: Hold::Linear,
+        TorqueCommand::Smooth { .. }
+            | TorqueCommand::Sampled {
+                hold: SampleHold::Linear,
                 ..
             }
     );

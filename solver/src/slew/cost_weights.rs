@@ -7,7 +7,7 @@
 //!
 //! with `E` the integral of the wheels' power or of what the supply gives for it.
 
-use super::Measure;
+use super::spec::EnergyMeasure;
 
 /// Weights and prescriptions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) struct CostWeights {
     /// `c`, s/J when the others are seconds.
     pub(super) energy: f64,
     /// How energy is counted.
-    pub(super) measure: Measure,
+    pub(super) measure: EnergyMeasure,
     /// The duration, s.
     pub(super) duration: Option<f64>,
     /// The most energy, J.
@@ -32,13 +32,13 @@ impl CostWeights {
         time: 1.0,
         effort: 0.0,
         energy: 0.0,
-        measure: Measure::Proxy,
+        measure: EnergyMeasure::Proxy,
         duration: None,
         budget: None,
     };
 
     /// Least energy in a time, s.
-    pub(super) fn energy_in(duration: f64, measure: Measure) -> Self {
+    pub(super) fn energy_in(duration: f64, measure: EnergyMeasure) -> Self {
         Self {
             time: 0.0,
             energy: 1.0,
@@ -49,15 +49,15 @@ impl CostWeights {
     }
 
     /// What of the motor's energy counts as the objective's: the bill is at the supply.
-    pub(super) fn share(&self, efficiency: f64) -> f64 {
+    pub(super) fn supply_factor(&self, efficiency: f64) -> f64 {
         match self.measure {
-            Measure::Proxy => 1.0,
-            Measure::Bill => efficiency.recip(),
+            EnergyMeasure::Proxy => 1.0,
+            EnergyMeasure::Bill => efficiency.recip(),
         }
     }
 
     /// Whether only time counts.
-    pub(super) fn hurries(&self) -> bool {
+    pub(super) fn is_time_only(&self) -> bool {
         self.effort == 0.0 && !self.uses_energy()
     }
 
@@ -67,7 +67,7 @@ impl CostWeights {
     }
 
     /// Whether only what the supply gives counts, never what a braking wheel would return.
-    pub(super) fn bills(&self) -> bool {
-        self.uses_energy() && self.measure == Measure::Bill
+    pub(super) fn uses_bill(&self) -> bool {
+        self.uses_energy() && self.measure == EnergyMeasure::Bill
     }
 }

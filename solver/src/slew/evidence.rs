@@ -33,14 +33,17 @@ mod controls;
 mod cost;
 mod costate;
 
-use super::flow::Sample;
+use super::flow::MotionSample;
+use super::interruption::interruption;
+use super::outcome::SlewOutcome;
 use super::program::Program;
-use super::solving::Solved;
-use super::{Slew, SlewOutcome, WheelAllocation, interruption};
+use super::solving::ProgramSolution;
+use super::spec::WheelAllocation;
+use super::validated::Slew;
 use crate::nlp::{Chain, Layout};
 use crate::run::stop::StopSignal;
 use controls::Controls;
-use cost::Running;
+use cost::RunningCost;
 use costate::{Costate, PARTS};
 use nalgebra::Vector3;
 
@@ -110,40 +113,40 @@ pub fn of(slew: &Slew, outcome: &SlewOutcome, stop: &StopSignal) -> Option<Evide
     if stop.is_set() || !polished.converged() {
         return None;
     }
-    let plain = Running::new(slew.vehicle(), &polished.program.cost_weights, 0.0);
-    let witness = Witness {
+    let torques_alone = RunningCost::new(slew.vehicle(), &polished.program.cost_weights, 0.0);
+    let witness = OptimalityTest {
         slew,
-        controls: Controls::new(slew.allocation(), &plain),
+        controls: Controls::new(slew.allocation(), &torques_alone),
         solved: &polished,
         layout: Layout::of(&polished.program),
     };
     Some(witness.evidence())
 }
 
-struct Witness<'a> {
+struct OptimalityTest<'a> {
     slew: &'a Slew,
     controls: Controls,
-    solved: &'a Solved,
+    solved: &'a ProgramSolution,
     layout: Layout,
 }
 
 /// An interval with its samples, twice as many as steps: a step of the fourth order asks for its
 /// middle too.
-struct Stretch<'a> {
-    samples: Vec<Sample>,
+struct IntervalCostates<'a> {
+    samples: Vec<MotionSample>,
     costates: Vec<Costate>,
-    running: Running<'a>,
+    running: RunningCost<'a>,
 }
 
-impl Stretch<'_> {
+impl IntervalCostates<'_> {
     /// The moments that are looked at.
-    fn moments(&self) -> impl Iterator<Item = (&Costate, &Sample)> {
+    fn moments(&self) -> impl Iterator<Item = (&Costate, &MotionSample)> {
         self.costates.iter().zip(self.samples.iter().step_by(2))
     }
 }
 
 /// What an interval adds to the whole.
-struct Tested {
+struct TestedInterval {
     evidence: IntervalEvidence,
     /// Average, least and greatest value of the Hamiltonian alone.
     alone: [f64; 3],
@@ -156,25 +159,26 @@ struct Tested {
     limited: [f64; 2],
 }
 
-impl Witness<'_> {
+impl OptimalityTest<'_> {
     fn program(&self) -> &Program {
         &self.solved.program
     }
 
     fn evidence(&self) -> Evidence {
         let total = self.solved.motion.duration();
-        let tested: Vec<Tested> = (0..self.program().intervals())
+        let tested: Vec<TestedInterval> = (0..self.program().intervals())
             .filter(|k| self.solved.motion.lengths[*k] > SHORTEST * total)
             .map(|k| self.test(k))
             .collect();
         let time: f64 = tested.iter().map(|t| t.evidence.duration_s).sum();
-        let sum = |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).sum::<f64>();
-        let mean = |of: &dyn Fn(&Tested) -> f64| sum(&|t| of(t) * t.evidence.duration_s) / time;
+        let sum = |of: &dyn Fn(&TestedInterval) -> f64| tested.iter().map(of).sum::<f64>();
+        let mean =
+            |of: &dyn Fn(&TestedInterval) -> f64| sum(&|t| of(t) * t.evidence.duration_s) / time;
         let hamiltonian = mean(&|t| t.evidence.hamiltonian[0]);
         let alone = mean(&|t| t.alone[0]);
         let scale = sum(&|t| t.motion) / time;
         let spread =
-            |of: &dyn Fn(&Tested) -> f64| tested.iter().map(of).fold(0.0, f64::max) / scale;
+            |of: &dyn Fn(&TestedInterval) -> f64| tested.iter().map(of).fold(0.0, f64::max) / scale;
         let (limited, right) = (sum(&|t| t.limited[0]), sum(&|t| t.limited[1]));
         Evidence {
             controls: self.slew.allocation(),
@@ -193,66 +197,67 @@ impl Witness<'_> {
 
     /// What energy costs on an interval, unit of the objective per J: in the objective itself, or
     /// taken from a budget.
-    fn energy_price(&self, k: usize) -> f64 {
+    fn energy_multiplier(&self, k: usize) -> f64 {
         let program = self.program();
         let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
-        let spent = if program.shape.account {
-            lambda[program.shape.account_at()] * program.units.cost / program.units.energy
+        let spent = if program.shape.energy_account {
+            lambda[program.shape.energy_account_at()] * program.units.cost / program.units.energy
         } else {
             0.0
         };
         program.cost_weights.energy + spent
     }
 
-    fn stretch(&self, k: usize) -> Stretch<'_> {
+    fn interval_costates(&self, k: usize) -> IntervalCostates<'_> {
         let vehicle = self.slew.vehicle();
         let motion = &self.solved.motion;
-        let price = self.energy_price(k);
-        let running = Running::new(vehicle, &self.program().cost_weights, price);
+        let price = self.energy_multiplier(k);
+        let running = RunningCost::new(vehicle, &self.program().cost_weights, price);
         let begin: f64 = motion.lengths[..k].iter().sum();
         let samples = vehicle.samples(motion, k, begin, 2 * PARTS);
-        Stretch {
+        IntervalCostates {
             costates: self.costates(k, &samples, &running),
             samples,
             running,
         }
     }
 
-    fn test(&self, k: usize) -> Tested {
+    fn test(&self, k: usize) -> TestedInterval {
         let length = self.solved.motion.lengths[k];
-        let stretch = self.stretch(k);
-        let (running, controls) = (&stretch.running, &self.controls);
-        let integral = |of: &dyn Fn(&Costate, &Sample) -> f64| {
-            let values: Vec<f64> = stretch.moments().map(|(p, at)| of(p, at)).collect();
+        let interval = self.interval_costates(k);
+        let (running, controls) = (&interval.running, &self.controls);
+        let integral = |of: &dyn Fn(&Costate, &MotionSample) -> f64| {
+            let values: Vec<f64> = interval.moments().map(|(p, at)| of(p, at)).collect();
             trapezoid(&values) * length
         };
         let moving =
-            |p: &Costate, at: &Sample| p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques);
-        let hamiltonian = |p: &Costate, at: &Sample| running.value(at) + moving(p, at);
-        let alone: Vec<f64> = stretch
+            |p: &Costate, at: &MotionSample| p.attitude.dot(&at.rate) + p.momenta.dot(&at.torques);
+        let hamiltonian = |p: &Costate, at: &MotionSample| running.value(at) + moving(p, at);
+        let alone: Vec<f64> = interval
             .moments()
             .map(|(p, at)| hamiltonian(p, at))
             .collect();
-        let times = stretch.costates.iter().map(|p| p.time);
+        let times = interval.costates.iter().map(|p| p.time);
         let constant: Vec<f64> = alone.iter().zip(times).map(|(h, p)| h + p).collect();
-        let ends = [0, PARTS].map(|i| (&stretch.costates[i], &stretch.samples[2 * i]));
+        let ends = [0, PARTS].map(|i| (&interval.costates[i], &interval.samples[2 * i]));
         let mut limited = [0.0; 2];
-        for (p, at) in stretch.moments() {
+        for (p, at) in interval.moments() {
             for (sum, size) in limited.iter_mut().zip(controls.limited(p, at, running)) {
                 *sum += size * length;
             }
         }
-        Tested {
+        TestedInterval {
             evidence: IntervalEvidence {
                 start_s: self.solved.motion.lengths[..k].iter().sum(),
                 duration_s: length,
                 attitude_costate: ends.map(|(p, _)| p.attitude),
-                momentum_costate: ends.map(|(p, _)| controls.pulled(p.momenta.iter().copied())),
+                momentum_costate: ends
+                    .map(|(p, _)| controls.onto_controls(p.momenta.iter().copied())),
                 time_costate: ends.map(|(p, _)| p.time),
                 switching: ends.map(|(p, at)| controls.switching(p, at, running)),
-                hamiltonian: course(&constant),
+                hamiltonian: mean_min_max(&constant),
             },
-            alone: course(&alone),
+            alone: mean_min_max(&alone),
             motion: integral(&|p, at| moving(p, at).abs()),
             gap: integral(&|p, at| controls.gap(p, at, running)),
             limited,
@@ -262,13 +267,13 @@ impl Witness<'_> {
     /// Greatest jump of the costates between two intervals that no limit explains.
     fn costate_defect(&self, scale: f64) -> f64 {
         let (mut worst, mut size, mut late) = (0.0_f64, 0.0_f64, 0.0_f64);
-        let momenta = |p: &Costate| self.controls.pulled(p.momenta.iter().copied());
+        let momenta = |p: &Costate| self.controls.onto_controls(p.momenta.iter().copied());
         for k in 1..self.program().intervals() {
-            let stretch = self.stretch(k);
-            let (before, after) = (self.end_costate(k - 1), &stretch.costates[0]);
+            let interval = self.interval_costates(k);
+            let (before, after) = (self.end_costate(k - 1), &interval.costates[0]);
             let pairs: Vec<_> = momenta(&before).into_iter().zip(momenta(after)).collect();
             size = pairs.iter().map(|(own, _)| own.abs()).fold(size, f64::max);
-            if !stretch.running.held(&stretch.samples[0]).contains(&true) {
+            if !interval.running.held(&interval.samples[0]).contains(&true) {
                 let jumps = pairs.iter().map(|(from, to)| (to - from).abs());
                 worst = jumps.fold(worst, f64::max);
                 late = late.max((after.time - before.time).abs());
@@ -302,7 +307,7 @@ fn trapezoid(values: &[f64]) -> f64 {
 }
 
 /// Mean, least and greatest of values at equal distances.
-fn course(values: &[f64]) -> [f64; 3] {
+fn mean_min_max(values: &[f64]) -> [f64; 3] {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     [trapezoid(values), least, greatest]

@@ -1,11 +1,16 @@
 //! The shortest time in which the optimum of the smooth proxy is billed no more than a given energy
 //! (the energy thesis's EEERT): a root of the bill as a function of the time.
 
+use super::attempts::solve_program;
 use super::cost_weights::CostWeights;
+use super::found_solution::FoundSolution;
 use super::motion::SlewMotion;
-use super::propagated;
-use super::shape::Lengths;
-use super::{Found, Measure, Plain, Slew, direct, starts};
+use super::program_choice::ProgramChoice;
+use super::propagation;
+use super::shape::IntervalLengths;
+use super::spec::EnergyMeasure;
+use super::starts;
+use super::validated::Slew;
 use crate::nlp::Interruption;
 
 /// Relative error of the bill that ends the search.
@@ -15,11 +20,11 @@ const MAX_TRIALS: usize = 40;
 const GROWTH: f64 = 1.25;
 
 /// A duration with the optimum in it.
-struct Trial {
+struct DurationTrial {
     duration: f64,
     /// Logarithm of the bill over the allowed energy.
     excess: f64,
-    found: Found,
+    found: FoundSolution,
 }
 
 /// Solves for the time.
@@ -28,7 +33,7 @@ pub(super) fn solve(
     energy: f64,
     neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
+) -> FoundSolution {
     let guess = neighbour.cloned().or_else(|| {
         let guesses = starts::of(slew, CostWeights::TIME, stop);
         guesses.into_iter().next()
@@ -39,25 +44,27 @@ pub(super) fn solve(
         let found = in_time(slew, duration, guess, stop);
         starts += found.starts;
         iterations += found.iterations;
-        let bill = propagated::fly(slew, &found.solved.motion).energies.bill_j;
+        let bill = propagation::propagate(slew, &found.solved.motion)
+            .energies
+            .bill_j;
         let excess = if found.solved.converged() {
             (bill / energy).ln()
         } else {
             f64::INFINITY
         };
-        Trial {
+        DurationTrial {
             duration,
             excess,
             found,
         }
     };
     let mut high = attempt(shortest * GROWTH, None);
-    let mut low: Option<Trial> = None;
+    let mut low: Option<DurationTrial> = None;
     for _ in 0..MAX_TRIALS {
         if stop().is_some() || high.excess.abs() <= ACCURACY {
             break;
         }
-        let known = |trial: &Trial| {
+        let known = |trial: &DurationTrial| {
             Some(trial.found.solved.motion.clone()).filter(|_| trial.excess.is_finite())
         };
         match &mut low {
@@ -85,7 +92,7 @@ pub(super) fn solve(
             }
         }
     }
-    Found {
+    FoundSolution {
         starts,
         iterations,
         ..high.found
@@ -93,7 +100,7 @@ pub(super) fn solve(
 }
 
 /// A duration at which the bill should be right: the bill is about a power of the time.
-fn between(low: &Trial, high: &Trial) -> f64 {
+fn between(low: &DurationTrial, high: &DurationTrial) -> f64 {
     let share = if low.excess.is_finite() {
         (low.excess / (low.excess - high.excess)).clamp(0.1, 0.98)
     } else {
@@ -109,14 +116,14 @@ fn in_time(
     duration: f64,
     guess: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    let mut plain = Plain::of(slew);
-    plain.cost_weights = CostWeights::energy_in(duration, Measure::Proxy);
-    plain.lasting = Some(duration);
-    let lengths = match plain.shape.lengths {
-        Lengths::Own => Lengths::Own,
-        _ => Lengths::Given(vec![duration / plain.intervals as f64; plain.intervals]),
+) -> FoundSolution {
+    let mut choice = ProgramChoice::of(slew);
+    choice.cost_weights = CostWeights::energy_in(duration, EnergyMeasure::Proxy);
+    choice.guess_duration = Some(duration);
+    let lengths = match choice.shape.lengths {
+        IntervalLengths::Free => IntervalLengths::Free,
+        _ => IntervalLengths::Given(vec![duration / choice.intervals as f64; choice.intervals]),
     };
-    plain.shape = slew.shape(plain.shape.course, lengths, &plain.cost_weights);
-    direct(slew, &plain, guess, stop)
+    choice.shape = slew.shape(choice.shape.course, lengths, &choice.cost_weights);
+    solve_program(slew, &choice, guess, stop)
 }

@@ -5,12 +5,17 @@
 //! many samples, one more is allowed. In its fixed time a slew for time alone takes the least
 //! effort.
 
+use super::attempts::solve_program;
 use super::choices::MAX_INTERVALS;
+use super::continuous;
 use super::cost_weights::CostWeights;
+use super::found_solution::FoundSolution;
 use super::motion::SlewMotion;
-use super::propagated::{self, effort};
-use super::shape::{Course, Lengths};
-use super::{Found, Hold, Objective, Plain, Slew, direct, in_continuous_time};
+use super::program_choice::ProgramChoice;
+use super::propagation::{self, effort};
+use super::shape::{IntervalLengths, TorqueCourse};
+use super::spec::{Objective, SampleHold};
+use super::validated::Slew;
 use crate::nlp::Interruption;
 
 /// Samples allowed beyond those of the continuous minimum.
@@ -21,15 +26,16 @@ const ROUNDING: f64 = 1e-6;
 /// Solves a sampled slew.
 pub(super) fn solve(
     slew: &Slew,
-    (period, hold): (f64, Hold),
+    period: f64,
+    hold: SampleHold,
     neighbour: Option<&SlewMotion>,
     stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    let mut continuous = in_continuous_time(slew, neighbour, stop);
+) -> FoundSolution {
+    let mut continuous = continuous::solve(slew, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
         return continuous;
     }
-    let clock = Clock {
+    let clock = SampleClock {
         slew,
         period,
         hold,
@@ -44,7 +50,7 @@ pub(super) fn solve(
         ));
         return continuous;
     }
-    let mut best: Option<Found> = None;
+    let mut best: Option<FoundSolution> = None;
     let mut last = None;
     for samples in clock.candidates(least) {
         let found = clock.hold(samples, &continuous.solved.motion);
@@ -81,14 +87,14 @@ fn whole(number: f64) -> usize {
 }
 
 /// A slew on a clock.
-struct Clock<'a> {
+struct SampleClock<'a> {
     slew: &'a Slew,
     period: f64,
-    hold: Hold,
+    hold: SampleHold,
     stop: &'a dyn Fn() -> Option<Interruption>,
 }
 
-impl Clock<'_> {
+impl SampleClock<'_> {
     /// Numbers of samples to try, given the least that the continuous minimum admits.
     fn candidates(&self, least: usize) -> Vec<usize> {
         match self.slew.objective() {
@@ -124,21 +130,21 @@ impl Clock<'_> {
     }
 
     /// The optimum in so many samples: held linearly, and from there held constant.
-    fn hold(&self, samples: usize, guess: &SlewMotion) -> Found {
+    fn hold(&self, samples: usize, guess: &SlewMotion) -> FoundSolution {
         let duration = samples as f64 * self.period;
         let cost_weights = self.cost_weights(duration);
-        let solve = |course: Course, guess: &SlewMotion| {
-            let lengths = Lengths::Given(vec![self.period; samples]);
-            let plain = Plain {
+        let solve = |course: TorqueCourse, guess: &SlewMotion| {
+            let lengths = IntervalLengths::Given(vec![self.period; samples]);
+            let choice = ProgramChoice {
                 shape: self.slew.shape(course, lengths, &cost_weights),
-                lasting: Some(duration),
+                guess_duration: Some(duration),
                 intervals: samples,
                 cost_weights,
             };
-            direct(self.slew, &plain, Some(guess), self.stop)
+            solve_program(self.slew, &choice, Some(guess), self.stop)
         };
-        let linear = solve(Course::Ramps, guess);
-        if self.hold == Hold::Linear {
+        let linear = solve(TorqueCourse::Ramps, guess);
+        if self.hold == SampleHold::Linear {
             return linear;
         }
         // Torque that may jump needs less time than one that may not: no motion of the second kind
@@ -148,22 +154,22 @@ impl Clock<'_> {
         } else {
             guess
         };
-        solve(Course::Steps, guess).after(&linear)
+        solve(TorqueCourse::Steps, guess).after(&linear)
     }
 
     /// Whether a solution answers the slew.
-    fn is_answer(&self, found: &Found) -> bool {
+    fn is_answer(&self, found: &FoundSolution) -> bool {
         found.solved.converged()
             && match self.slew.objective() {
                 Objective::MinimumTimeAtEnergy { energy_j, .. } => {
-                    let flown = propagated::fly(self.slew, &found.solved.motion);
-                    flown.energies.bill_j <= energy_j
+                    let propagated = propagation::propagate(self.slew, &found.solved.motion);
+                    propagated.energies.bill_j <= energy_j
                 }
                 _ => true,
             }
     }
 
-    fn value(&self, found: &Found) -> f64 {
+    fn value(&self, found: &FoundSolution) -> f64 {
         let motion = &found.solved.motion;
         match self.slew.objective() {
             Objective::TimeAndEffort { weight } => motion.duration() + weight * effort(motion),

@@ -6,7 +6,7 @@
 //! | torques `u` at the node | torque is linear on intervals |
 //! | length of the intervals | all intervals have the same unknown length |
 //! | clock | the duration is prescribed and lengths are unknown, or a speed law moves a wheel |
-//! | account | the energy is prescribed |
+//! | energy_account | the energy is prescribed |
 //!
 //! | part of the controls | when |
 //! |---|---|
@@ -16,7 +16,7 @@
 
 /// How torque runs over an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Course {
+pub(super) enum TorqueCourse {
     /// Constant.
     Steps,
     /// Linear, and continuous from one interval to the next.
@@ -25,45 +25,45 @@ pub(super) enum Course {
 
 /// What is known of the lengths of intervals.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Lengths {
+pub(super) enum IntervalLengths {
     /// Each is an unknown of its own.
-    Own,
+    Free,
     /// All are the same unknown.
-    Shared,
+    SharedControls,
     /// They are given, s.
     Given(Vec<f64>),
 }
 
 /// The variables of an interval and its first node.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct ProgramShape {
     pub(super) wheels: usize,
-    pub(super) course: Course,
-    pub(super) lengths: Lengths,
+    pub(super) course: TorqueCourse,
+    pub(super) lengths: IntervalLengths,
     pub(super) clock: bool,
-    pub(super) account: bool,
+    pub(super) energy_account: bool,
     pub(super) slacks: bool,
 }
 
-impl Shape {
+impl ProgramShape {
     fn ramps(&self) -> usize {
         match self.course {
-            Course::Steps => 0,
-            Course::Ramps => self.wheels,
+            TorqueCourse::Steps => 0,
+            TorqueCourse::Ramps => self.wheels,
         }
     }
 
     fn shared(&self) -> usize {
-        usize::from(self.lengths == Lengths::Shared)
+        usize::from(self.lengths == IntervalLengths::SharedControls)
     }
 
     fn own(&self) -> usize {
-        usize::from(self.lengths == Lengths::Own)
+        usize::from(self.lengths == IntervalLengths::Free)
     }
 
     /// Dimension of a state's tangent space; a point has one number more.
     pub(super) fn states(&self) -> usize {
-        self.account_at() + usize::from(self.account)
+        self.energy_account_at() + usize::from(self.energy_account)
     }
 
     /// Number of controls.
@@ -86,8 +86,8 @@ impl Shape {
         self.shared_at() + self.shared()
     }
 
-    /// The account in a state.
-    pub(super) fn account_at(&self) -> usize {
+    /// The energy_account in a state.
+    pub(super) fn energy_account_at(&self) -> usize {
         self.clock_at() + usize::from(self.clock)
     }
 
@@ -99,9 +99,9 @@ impl Shape {
     /// The variable that is an interval's length, counted over states and controls.
     pub(super) fn length_variable(&self) -> Option<usize> {
         match self.lengths {
-            Lengths::Own => Some(self.states() + self.wheels),
-            Lengths::Shared => Some(self.shared_at()),
-            Lengths::Given(_) => None,
+            IntervalLengths::Free => Some(self.states() + self.wheels),
+            IntervalLengths::SharedControls => Some(self.shared_at()),
+            IntervalLengths::Given(_) => None,
         }
     }
 }

@@ -1,10 +1,10 @@
 //! From a guess to a motion that flies: solve, correct the turns, keep reserves, solve again.
 
 use super::cost_weights::CostWeights;
-use super::flow::Vehicle;
 use super::motion::SlewMotion;
-use super::program::{LengthPenalty, Program, Units};
-use super::shape::{Lengths, Shape};
+use super::program::{LengthPenalty, Program, ProgramSetup, ProgramUnits};
+use super::shape::{IntervalLengths, ProgramShape};
+use super::vehicle::Vehicle;
 use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
 use crate::leg::transcription::{Reserves, Scales};
 use crate::model::waypoint::Waypoint;
@@ -13,15 +13,15 @@ use crate::nlp::{
 };
 
 /// A program to solve on the way to another.
-struct Phase {
+struct SolvePhase {
     settings: Settings,
     length_penalty: f64,
 }
 
 /// Where interval lengths are unknown: which limits are active and roughly where the switches are,
 /// then where exactly, as for the legs of a tour.
-const WITH_LENGTHS: [Phase; 2] = [
-    Phase {
+const WITH_LENGTHS: [SolvePhase; 2] = [
+    SolvePhase {
         settings: Settings {
             tolerance: 1e-2,
             feasibility: 1e-3,
@@ -29,7 +29,7 @@ const WITH_LENGTHS: [Phase; 2] = [
         },
         length_penalty: 0.1,
     },
-    Phase {
+    SolvePhase {
         settings: Settings {
             initial_barrier: 1e-3,
             max_iterations: 400,
@@ -39,7 +39,7 @@ const WITH_LENGTHS: [Phase; 2] = [
     },
 ];
 /// The same with momentum, from the fastest motion: the first phase would lead far away from it.
-const NEARBY: [Phase; 1] = [Phase {
+const NEARBY: [SolvePhase; 1] = [SolvePhase {
     settings: Settings {
         initial_barrier: 3e-5,
         initial_slack: 3e-5,
@@ -48,7 +48,7 @@ const NEARBY: [Phase; 1] = [Phase {
     },
     length_penalty: 0.02,
 }];
-const WITHOUT_LENGTHS: [Phase; 1] = [Phase {
+const WITHOUT_LENGTHS: [SolvePhase; 1] = [SolvePhase {
     settings: Settings {
         max_iterations: 400,
         ..Settings::COLD
@@ -56,7 +56,7 @@ const WITHOUT_LENGTHS: [Phase; 1] = [Phase {
     length_penalty: 0.0,
 }];
 /// From a solution to one whose multipliers are evidence.
-const POLISHING: Phase = Phase {
+const POLISHING: SolvePhase = SolvePhase {
     settings: Settings {
         tolerance: 1e-8,
         initial_barrier: 1e-5,
@@ -89,16 +89,16 @@ const COST_OF_GUESS: f64 = 5.0;
 
 /// One program to solve.
 #[derive(Clone)]
-pub(super) struct Task<'a> {
+pub(super) struct ProgramTask<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) ends: [Waypoint; 2],
-    pub(super) shape: Shape,
+    pub(super) shape: ProgramShape,
     pub(super) cost_weights: CostWeights,
 }
 
 /// What came of it.
 #[derive(Debug, Clone)]
-pub(super) struct Solved {
+pub(super) struct ProgramSolution {
     pub(super) status: NlpStatus,
     pub(super) motion: SlewMotion,
     /// `a T + b integral u'u + c E` as the program counts it.
@@ -109,7 +109,7 @@ pub(super) struct Solved {
     pub(super) iterate: Iterate,
 }
 
-impl Solved {
+impl ProgramSolution {
     /// Whether it ended in a local minimum.
     pub(super) fn converged(&self) -> bool {
         self.status == NlpStatus::Converged
@@ -123,7 +123,7 @@ impl Solved {
     ) -> Self {
         let mut best = self.clone();
         for _ in 0..POLISH_ROUNDS {
-            let mut run = Run {
+            let mut run = SolveLoop {
                 engine: InteriorPoint::new(&best.program, POLISHING.settings),
                 solved: best.clone(),
                 vehicle,
@@ -145,14 +145,14 @@ impl Solved {
     }
 }
 
-impl Task<'_> {
+impl ProgramTask<'_> {
     /// Solves from a guess with as many intervals as the program is to have.
     pub(super) fn solve(
         &self,
         guess: &SlewMotion,
         stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Solved {
-        let own = self.shape.lengths == Lengths::Own;
+    ) -> ProgramSolution {
+        let own = self.shape.lengths == IntervalLengths::Free;
         if !own {
             return self.solve_in(&WITHOUT_LENGTHS, guess, stop);
         }
@@ -167,19 +167,19 @@ impl Task<'_> {
 
     fn solve_in(
         &self,
-        phases: &[Phase],
+        phases: &[SolvePhase],
         guess: &SlewMotion,
         stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Solved {
+    ) -> ProgramSolution {
         let program = self.program(guess);
-        let mut run = Run {
+        let mut run = SolveLoop {
             engine: InteriorPoint::new(&program, Settings::COLD),
-            solved: Solved {
+            solved: ProgramSolution {
                 status: NlpStatus::IterationLimit,
                 motion: guess.clone(),
                 cost: f64::INFINITY,
                 iterations: 0,
-                iterate: guess.iterate(&program),
+                iterate: program.iterate_at(guess),
                 program,
             },
             vehicle: self.vehicle,
@@ -195,19 +195,20 @@ impl Task<'_> {
             .signed_turn_to(&self.ends[1].attitude)
             .norm();
         let scales = Scales::for_legs(dynamics, angle, guess.duration());
-        let units = Units {
+        let units = ProgramUnits {
             cost: scales.time,
             energy: 1.0,
         };
-        let mut program = Program::new(
-            self.vehicle,
+        let setup = ProgramSetup {
+            waypoints: &self.ends,
+            intervals: guess.lengths.len(),
+            shape: self.shape.clone(),
+            cost_weights: self.cost_weights,
             scales,
-            &self.ends,
-            guess.lengths.len(),
-            self.shape.clone(),
-            (self.cost_weights, units),
-        );
-        let energy = program.energy_of(&guess.iterate(&program));
+            units,
+        };
+        let mut program = Program::new(self.vehicle, setup);
+        let energy = program.energy_of(&program.iterate_at(guess));
         let wheels = dynamics.wheel_count() as f64;
         if energy > 0.0 {
             program.units.energy = energy / wheels;
@@ -230,16 +231,16 @@ impl Task<'_> {
 }
 
 /// A task on the way to its solution.
-struct Run<'a> {
+struct SolveLoop<'a> {
     vehicle: &'a Vehicle,
     engine: InteriorPoint,
-    solved: Solved,
+    solved: ProgramSolution,
 }
 
-impl Run<'_> {
-    fn pass(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) {
+impl SolveLoop<'_> {
+    fn pass(&mut self, phases: &[SolvePhase], stop: &dyn Fn() -> Option<Interruption>) {
         for phase in phases {
-            let penalty = if self.solved.program.cost_weights.bills() {
+            let penalty = if self.solved.program.cost_weights.uses_bill() {
                 BILLED_PENALTY
             } else {
                 phase.length_penalty
@@ -284,7 +285,7 @@ impl Run<'_> {
 
     /// Makes turns exact where the iterate is; the angle, rad, by which it missed.
     fn correct(&mut self) -> f64 {
-        let Solved {
+        let ProgramSolution {
             program,
             iterate,
             motion,
@@ -350,7 +351,7 @@ impl Run<'_> {
             .solve(&solved.program, &mut solved.iterate, stop);
         solved.status = report.status;
         solved.iterations += report.iterations;
-        solved.motion = SlewMotion::of_iterate(&solved.iterate, &solved.program);
+        solved.motion = solved.program.motion_of(&solved.iterate);
         solved.cost = cost(&solved.program, &solved.iterate);
         solved.converged()
     }

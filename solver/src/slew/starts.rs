@@ -1,8 +1,8 @@
 //! Guesses for a slew: the fastest motion, and slews about the eigenaxis perturbed_eigenaxis to either side.
 
-use super::Slew;
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
+use super::validated::Slew;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{self, LegProblem, Resolution};
@@ -32,12 +32,12 @@ pub(super) fn of(
     let fastest = solve::solve(&problem, None, stop).flown;
     let converged = fastest.duration().is_some();
     let fastest = SlewMotion::of_profile(&fastest.profile);
-    let mut guesses = vec![match &vehicle.kept {
-        Some(null) => fastest.keeping(null, dynamics),
+    let mut guesses = vec![match &vehicle.pinned_null {
+        Some(null) => fastest.with_null_space(null, dynamics),
         None => fastest,
     }];
     // Where the pseudo-inverse shares torques out, the fastest motion is another problem's.
-    if !converged || !cost_weights.hurries() || vehicle.kept.is_some() {
+    if !converged || !cost_weights.is_time_only() || vehicle.pinned_null.is_some() {
         let perturbed_eigenaxis = [Perturbation::Far, Perturbation::Near]
             .map(|side| SlewMotion::of_profile(&problem.perturbed_eigenaxis(side)));
         guesses.extend(perturbed_eigenaxis);

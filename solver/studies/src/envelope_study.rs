@@ -236,7 +236,7 @@ impl EnvelopeStudy {
 
     fn path_of(&self, outcome: &SlewOutcome) -> EnvelopePath {
         // Torques on intervals of free length are constant.
-        let pieces = outcome.flown.pieces.iter().map(|piece| Control {
+        let pieces = outcome.propagated.pieces.iter().map(|piece| Control {
             start_s: piece.start_s,
             duration_s: piece.duration_s,
             wheel_torque_nm: piece.torque_begin_nm.clone(),
@@ -244,7 +244,7 @@ impl EnvelopeStudy {
         EnvelopePath::of_flight(
             self.baselines.envelopes(),
             &self.spacecraft,
-            &outcome.flown.states,
+            &outcome.propagated.states,
             &pieces.collect::<Vec<_>>(),
         )
     }

@@ -23,7 +23,7 @@ fn reading(rest: &str) -> Result<SlewRequest, Vec<(String, Code)>> {
 fn what_is_left_out_has_its_usual_value() {
     let request = reading("").unwrap();
     assert_eq!(request.slew.objective(), Objective::MinimumTime);
-    let free = Command::Free {
+    let free = TorqueCommand::Free {
         intervals: DEFAULT_INTERVALS,
     };
     assert_eq!(request.slew.command(), free);

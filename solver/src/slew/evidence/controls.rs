@@ -20,11 +20,11 @@
 //! minus that limit's. A wheel that a limit of speed holds can do no other: its torque is no choice,
 //! and the multiplier of its row has either sign.
 
-use super::cost::Running;
+use super::cost::RunningCost;
 use super::costate::Costate;
 use crate::math::cone;
-use crate::slew::WheelAllocation;
-use crate::slew::flow::Sample;
+use crate::slew::flow::MotionSample;
+use crate::slew::spec::WheelAllocation;
 use nalgebra::{Matrix3, Vector3};
 
 /// Torques tried for a lower Hamiltonian: of a wheel within its range, or on the way to a corner.
@@ -41,11 +41,11 @@ pub(super) enum Controls {
     /// The torque of every wheel.
     Wheels,
     /// The torque on all wheels together.
-    Shared(Shared),
+    SharedControls(SharedControls),
 }
 
 /// What the pseudo-inverse makes of three controls.
-pub(super) struct Shared {
+pub(super) struct SharedControls {
     /// Rows `b_i` of the pseudo-inverse.
     rows: Vec<Vector3<f64>>,
     /// Three wheels whose torques determine the controls, with the matrix that does.
@@ -53,33 +53,38 @@ pub(super) struct Shared {
 }
 
 impl Controls {
-    pub(super) fn new(allocation: WheelAllocation, running: &Running<'_>) -> Self {
+    pub(super) fn new(allocation: WheelAllocation, running: &RunningCost<'_>) -> Self {
         match allocation {
             WheelAllocation::Free => Self::Wheels,
             WheelAllocation::PseudoInverse => {
                 let inverse = &running.dynamics().axes_inverse;
                 let rows = inverse.row_iter();
                 let rows = rows.map(|row| Vector3::new(row[0], row[1], row[2]));
-                Self::Shared(Shared::new(rows.collect()))
+                Self::SharedControls(SharedControls::new(rows.collect()))
             }
         }
     }
 
     /// What costs of the wheels, one number each, are for the controls.
-    pub(super) fn pulled(&self, wheels: impl Iterator<Item = f64>) -> Vec<f64> {
+    pub(super) fn onto_controls(&self, wheels: impl Iterator<Item = f64>) -> Vec<f64> {
         match self {
             Self::Wheels => wheels.collect(),
-            Self::Shared(shared) => shared.pulled(wheels).as_slice().to_vec(),
+            Self::SharedControls(shared) => shared.onto_controls(wheels).as_slice().to_vec(),
         }
     }
 
     /// The derivatives of the Hamiltonian by the controls.
-    pub(super) fn switching(&self, p: &Costate, at: &Sample, running: &Running<'_>) -> Vec<f64> {
-        self.pulled(by_torques(p, at, running))
+    pub(super) fn switching(
+        &self,
+        p: &Costate,
+        at: &MotionSample,
+        running: &RunningCost<'_>,
+    ) -> Vec<f64> {
+        self.onto_controls(by_torques(p, at, running))
     }
 
     /// By how much other torques could lower the Hamiltonian, wheels at a speed limit left as they are.
-    pub(super) fn gap(&self, p: &Costate, at: &Sample, running: &Running<'_>) -> f64 {
+    pub(super) fn gap(&self, p: &Costate, at: &MotionSample, running: &RunningCost<'_>) -> f64 {
         let held = running.held(at);
         let cost = |wheel: usize, torque: f64| {
             running.of_wheel(wheel, torque, at) + p.momenta[wheel] * torque
@@ -95,7 +100,7 @@ impl Controls {
                 })
                 .sum()
             }
-            Self::Shared(shared) => {
+            Self::SharedControls(shared) => {
                 let range = |wheel: usize| match (held[wheel], at.torques[wheel]) {
                     (true, torque) => [torque; 2],
                     (false, _) => running.range(wheel, at),
@@ -109,7 +114,12 @@ impl Controls {
 
     /// The size of the switching function as far as it belongs to torques at limits, and of that what
     /// has the sign asked for.
-    pub(super) fn limited(&self, p: &Costate, at: &Sample, running: &Running<'_>) -> [f64; 2] {
+    pub(super) fn limited(
+        &self,
+        p: &Costate,
+        at: &MotionSample,
+        running: &RunningCost<'_>,
+    ) -> [f64; 2] {
         let held = running.held(at);
         let sides = (0..held.len()).map(|wheel| running.side(wheel, at).filter(|_| !held[wheel]));
         let pulls = by_torques(p, at, running);
@@ -121,16 +131,20 @@ impl Controls {
                     let agrees = side.is_some_and(|side| side * pull <= 0.0);
                     [all + size, right + if agrees { size } else { 0.0 }]
                 }),
-            Self::Shared(shared) => {
+            Self::SharedControls(shared) => {
                 let sides: Vec<_> = sides.collect();
-                shared.limited(&shared.pulled(pulls), &sides, &held)
+                shared.limited(&shared.onto_controls(pulls), &sides, &held)
             }
         }
     }
 }
 
 /// `r + dl/du` of every wheel.
-fn by_torques(p: &Costate, at: &Sample, running: &Running<'_>) -> impl Iterator<Item = f64> {
+fn by_torques(
+    p: &Costate,
+    at: &MotionSample,
+    running: &RunningCost<'_>,
+) -> impl Iterator<Item = f64> {
     (0..at.speeds.len()).map(|wheel| p.momenta[wheel] + running.by_torque(wheel, at))
 }
 
@@ -138,7 +152,7 @@ fn share(trial: usize) -> f64 {
     trial as f64 / TRIALS as f64
 }
 
-impl Shared {
+impl SharedControls {
     fn new(rows: Vec<Vector3<f64>>) -> Self {
         let mut triples = Vec::new();
         for (i, a) in rows.iter().enumerate() {
@@ -156,7 +170,7 @@ impl Shared {
         Self { rows, triples }
     }
 
-    fn pulled(&self, wheels: impl Iterator<Item = f64>) -> Vector3<f64> {
+    fn onto_controls(&self, wheels: impl Iterator<Item = f64>) -> Vector3<f64> {
         self.rows.iter().zip(wheels).map(|(row, x)| row * x).sum()
     }
 
@@ -249,11 +263,11 @@ mod tests {
     use super::*;
 
     /// The rows of the published pyramid's pseudo-inverse.
-    fn pyramid() -> Shared {
+    fn pyramid() -> SharedControls {
         let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
         let rows = [[s, 0.0, c], [0.0, s, c], [-s, 0.0, c], [0.0, -s, c]];
         // A A^T = 4/3.
-        Shared::new(rows.map(|axis| Vector3::from(axis) * 0.75).to_vec())
+        SharedControls::new(rows.map(|axis| Vector3::from(axis) * 0.75).to_vec())
     }
 
     #[test]

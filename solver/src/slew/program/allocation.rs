@@ -7,12 +7,12 @@
 
 use super::Program;
 use crate::nlp::Chain;
-use crate::slew::shape::Course;
+use crate::slew::shape::TorqueCourse;
 use nalgebra::{DMatrix, DVector};
 
 /// What the wheels keep in the null space of their axes.
 #[derive(Debug, Clone)]
-pub(super) struct Kept {
+pub(super) struct PinnedNullSpace {
     /// Orthonormal columns that span the null space.
     pub(super) null_space: DMatrix<f64>,
     /// Components of the momenta along them, scaled.
@@ -41,12 +41,12 @@ impl Program {
     pub(super) fn allocation_rows(&self, node: usize) -> impl Iterator<Item = AllocationRow> + '_ {
         let (first, last) = (node == 0, node == self.base.intervals());
         let (at, ramps) = match self.shape.course {
-            Course::Steps => (3, false),
-            Course::Ramps => (self.shape.torque_at(), true),
+            TorqueCourse::Steps => (3, false),
+            TorqueCourse::Ramps => (self.shape.torque_at(), true),
         };
         // The momenta have conditions of their own at both ends.
         let asked = !last && (ramps || !first);
-        let kept = self.kept.iter().filter(move |_| asked);
+        let kept = self.pinned_null_space.iter().filter(move |_| asked);
         kept.flat_map(move |kept| {
             let columns = kept.null_space.column_iter().zip(kept.momenta.iter());
             columns.map(move |(column, held)| AllocationRow {

@@ -1,6 +1,6 @@
-//! The program as a chain of stages: values, and derivatives pulled back to its variables.
+//! The program as a chain of stages: values, and derivatives onto_controls back to its variables.
 
-use super::{Local, Place, Program};
+use super::{Program, SparseDerivatives, TermTarget};
 use crate::nlp::{Chain, Link, LinkModel, LinkMultipliers, LinkValues};
 use nalgebra::DVector;
 
@@ -51,9 +51,9 @@ impl Program {
     }
 
     /// The variables of the attitude link as functions of those of the program.
-    fn base_locals(&self, link: &Link<'_>) -> Vec<Local> {
+    fn base_locals(&self, link: &Link<'_>) -> Vec<SparseDerivatives> {
         let (wheels, unit) = (self.shape.wheels, self.scales.momentum.recip());
-        let itself = |at: usize| Local {
+        let itself = |at: usize| SparseDerivatives {
             gradient: vec![(at, 1.0)],
             hessian: Vec::new(),
         };
@@ -69,15 +69,15 @@ impl Program {
             locals.push(self.local(i, &impulse, link));
         }
         let length = self.shape.length_variable();
-        locals.push(length.map_or_else(Local::default, itself));
-        if self.followers.move_at_all() {
+        locals.push(length.map_or_else(SparseDerivatives::default, itself));
+        if self.speed_law_wheels.any_drift() {
             self.add_drifts(link, &mut locals);
         }
         locals
     }
 
     /// Adds how the drift moves the variables of the attitude link with the clock and the length.
-    fn add_drifts(&self, link: &Link<'_>, locals: &mut [Local]) {
+    fn add_drifts(&self, link: &Link<'_>, locals: &mut [SparseDerivatives]) {
         let wheels = self.shape.wheels;
         let [[_, from, from_bend], [_, to, to_bend]] = self.drifts(link);
         let clock = self.shape.clock_at();
@@ -145,7 +145,12 @@ impl Program {
     }
 
     /// Adds a term to the derivatives of a link, weighed by the multipliers.
-    fn add_term(&self, term: &super::Term<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
+    fn add_term(
+        &self,
+        term: &super::WheelTerm<'_>,
+        duals: &LinkMultipliers<'_>,
+        out: &mut LinkModel,
+    ) {
         let local = self.local(term.wheel, &term.jet, term.link);
         let (row, weight) = place_in(term.place, duals, out);
         for (at, c) in &local.gradient {
@@ -182,8 +187,9 @@ impl Program {
         let total = self.clocked_duration().filter(|_| last);
         let end = total.map(|total| (at, total / self.scales.time));
         let clock = begin.or(end);
-        let account = (self.shape.account && first).then(|| (self.shape.account_at(), 0.0));
-        clock.into_iter().chain(account)
+        let energy_account =
+            (self.shape.energy_account && first).then(|| (self.shape.energy_account_at(), 0.0));
+        clock.into_iter().chain(energy_account)
     }
 
     /// The duration, s, where it is a condition: lengths that are given sum up to it anyway.
@@ -210,18 +216,18 @@ impl Program {
 
 /// The gradient of a place and the multiplier of its second derivatives.
 fn place_in<'a>(
-    place: Place,
+    place: TermTarget,
     duals: &LinkMultipliers<'_>,
     out: &'a mut LinkModel,
 ) -> (&'a mut [f64], f64) {
     let vars = out.vars;
     match place {
-        Place::Cost => (&mut out.gradient, 1.0),
-        Place::Gap(row) => (
+        TermTarget::Cost => (&mut out.gradient, 1.0),
+        TermTarget::Gap(row) => (
             &mut out.link_jacobian[row * vars..(row + 1) * vars],
             duals.gap[row],
         ),
-        Place::Inequality(row) => (
+        TermTarget::Inequality(row) => (
             &mut out.inequality_jacobian[row * vars..(row + 1) * vars],
             -duals.inequality[row],
         ),
@@ -295,9 +301,9 @@ impl Chain for Program {
             None => link.point[1 + at],
         };
         let mut add = |place, value: f64| match place {
-            Place::Cost => out.cost += value,
-            Place::Gap(row) => out.gap[row] += value,
-            Place::Inequality(row) => out.inequality[row] += value,
+            TermTarget::Cost => out.cost += value,
+            TermTarget::Gap(row) => out.gap[row] += value,
+            TermTarget::Inequality(row) => out.inequality[row] += value,
         };
         self.terms(link, |term| add(term.place, term.jet.value));
         self.linear_terms(link.node, |place, at, c| {

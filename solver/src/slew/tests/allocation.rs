@@ -3,11 +3,13 @@
 use super::craft::{OLRAC_AXIS, olrac, pyramid, pyramid_end, solved, turn};
 use crate::model::problem::Code;
 use crate::model::spec::StateSpec;
-use crate::slew::{Command, FinalWheels, Hold, Objective, Slew, SlewSpec, WheelAllocation};
+use crate::slew::{
+    FinalWheels, Objective, SampleHold, Slew, SlewSpec, TorqueCommand, WheelAllocation,
+};
 use nalgebra::DVector;
 
 /// The pyramid's slew from and to null-space momentum, in each way of sharing torque out.
-fn slew(allocation: WheelAllocation, command: Command) -> SlewSpec {
+fn slew(allocation: WheelAllocation, command: TorqueCommand) -> SlewSpec {
     SlewSpec {
         spacecraft: pyramid(),
         start: StateSpec {
@@ -26,7 +28,7 @@ fn slew(allocation: WheelAllocation, command: Command) -> SlewSpec {
 fn greatest_stray(spec: &SlewSpec) -> f64 {
     let valid = Slew::try_new(spec).expect("a valid slew");
     let dynamics = &valid.slew.vehicle().dynamics;
-    let pieces = solved(spec).flown.pieces;
+    let pieces = solved(spec).propagated.pieces;
     let torques = pieces
         .iter()
         .flat_map(|piece| [&piece.torque_begin_nm, &piece.torque_end_nm]);
@@ -41,16 +43,16 @@ fn greatest_stray(spec: &SlewSpec) -> f64 {
 #[test]
 fn torques_are_those_of_the_pseudo_inverse_whatever_the_command() {
     let intervals = 24;
-    let sampled = |hold| Command::Sampled {
+    let sampled = |hold| TorqueCommand::Sampled {
         period_s: 2.0,
         hold,
     };
     for command in [
-        Command::Free { intervals },
-        Command::Uniform { intervals },
-        Command::Smooth { intervals },
-        sampled(Hold::Constant),
-        sampled(Hold::Linear),
+        TorqueCommand::Free { intervals },
+        TorqueCommand::Uniform { intervals },
+        TorqueCommand::Smooth { intervals },
+        sampled(SampleHold::Constant),
+        sampled(SampleHold::Linear),
     ] {
         let shared = greatest_stray(&slew(WheelAllocation::PseudoInverse, command));
         assert!(shared < 1e-9, "{command:?}: {shared} N m");
@@ -64,7 +66,7 @@ fn the_published_slew_takes_between_the_eigenaxis_and_the_free_optimum() {
     let time = |allocation| {
         let spec = SlewSpec {
             start: StateSpec::default(),
-            ..slew(allocation, Command::Free { intervals: 40 })
+            ..slew(allocation, TorqueCommand::Free { intervals: 40 })
         };
         solved(&spec).time_s
     };
@@ -83,7 +85,7 @@ fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
             spacecraft: olrac(5),
             end: turn(OLRAC_AXIS, 1.25),
             objective: Objective::TimeAndEffort { weight: 1e3 },
-            command: Command::Uniform { intervals: 24 },
+            command: TorqueCommand::Uniform { intervals: 24 },
             allocation,
             ..SlewSpec::default()
         })
@@ -97,7 +99,7 @@ fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
 fn speeds_at_the_end_cannot_be_given() {
     let mut given = slew(
         WheelAllocation::PseudoInverse,
-        Command::Free { intervals: 24 },
+        TorqueCommand::Free { intervals: 24 },
     );
     given.final_wheels = FinalWheels::Given;
     given.end.wheel_speed_rad_s = Some(vec![0.0; 4]);

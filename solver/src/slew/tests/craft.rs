@@ -41,24 +41,24 @@ pub(super) fn solved(spec: &SlewSpec) -> SlewOutcome {
         spec.objective,
         spec.command,
         outcome.status,
-        outcome.flown.failures,
+        outcome.propagated.failures,
         outcome.time_s,
         outcome.effort,
-        outcome.flown.energies.proxy_j,
-        outcome.flown.energies.bill_j,
+        outcome.propagated.energies.proxy_j,
+        outcome.propagated.energies.bill_j,
         outcome.continuous_time_s,
-        outcome.flown.attitude_error_rad,
-        outcome.flown.rate_error_rad_s,
-        outcome.flown.torque_excess,
-        outcome.flown.wheel_speed_excess,
-        outcome.flown.rate_excess,
+        outcome.propagated.attitude_error_rad,
+        outcome.propagated.rate_error_rad_s,
+        outcome.propagated.torque_excess,
+        outcome.propagated.wheel_speed_excess,
+        outcome.propagated.rate_excess,
         outcome.starts,
         outcome.iterations,
     );
     assert!(
         outcome.solved,
         "{} {:?}",
-        outcome.status, outcome.flown.failures
+        outcome.status, outcome.propagated.failures
     );
     outcome
 }

@@ -1,9 +1,9 @@
 //! OLRAC: time with weighted effort.
 
 use super::craft::{OLRAC_AXIS, olrac, solved, turn};
-use crate::slew::{Command, Objective, SlewOutcome, SlewSpec};
+use crate::slew::{Objective, SlewOutcome, SlewSpec, TorqueCommand};
 
-fn olrac_slew(wheels: usize, angle: f64, weight: f64, command: Command) -> SlewOutcome {
+fn olrac_slew(wheels: usize, angle: f64, weight: f64, command: TorqueCommand) -> SlewOutcome {
     solved(&SlewSpec {
         spacecraft: olrac(wheels),
         end: turn(OLRAC_AXIS, angle),
@@ -25,7 +25,7 @@ const WEIGHTS: [f64; 3] = [0.01, 0.1, 10.0];
 fn time_and_effort_is_no_worse_than_published() {
     for (wheels, published) in TABLE {
         for (weight, published) in WEIGHTS.into_iter().zip(published) {
-            let outcome = olrac_slew(wheels, 1.25, weight, Command::Free { intervals: 40 });
+            let outcome = olrac_slew(wheels, 1.25, weight, TorqueCommand::Free { intervals: 40 });
             assert!(
                 outcome.objective <= published * 1.0005,
                 "{wheels} wheels, weight {weight}: {} against {published}",
@@ -38,7 +38,7 @@ fn time_and_effort_is_no_worse_than_published() {
 /// How far the torques are from straight lines in time: root mean square of what is left over that
 /// of the torques, all wheels together, and the greatest distance over the widest range of a wheel.
 fn bend(outcome: &SlewOutcome) -> [f64; 2] {
-    let pieces = &outcome.flown.pieces;
+    let pieces = &outcome.propagated.pieces;
     let times: Vec<f64> = pieces
         .iter()
         .map(|p| p.start_s + 0.5 * p.duration_s)
@@ -89,8 +89,8 @@ fn linear_law(angle: f64, weight: f64) -> f64 {
 #[test]
 fn much_weight_on_effort_makes_torques_linear_in_time() {
     for command in [
-        Command::Free { intervals: 40 },
-        Command::Smooth { intervals: 24 },
+        TorqueCommand::Free { intervals: 40 },
+        TorqueCommand::Smooth { intervals: 24 },
     ] {
         let outcome = olrac_slew(3, 1.25, 10.0, command);
         let [mean, most] = bend(&outcome);
@@ -108,7 +108,7 @@ fn much_weight_on_effort_makes_torques_linear_in_time() {
 #[test]
 fn the_angle_of_the_text_takes_longer_than_the_published_times() {
     for (wheels, time) in [(3, 37.30), (4, 31.42)] {
-        let outcome = olrac_slew(wheels, 2.5, 0.01, Command::Free { intervals: 40 });
+        let outcome = olrac_slew(wheels, 2.5, 0.01, TorqueCommand::Free { intervals: 40 });
         assert!(
             (outcome.time_s / time - 1.0).abs() < 3e-3,
             "{}",

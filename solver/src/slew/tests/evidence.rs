@@ -6,7 +6,7 @@ use super::craft::{
 use crate::run::stop::StopSignal;
 use crate::slew::evidence::{self, Evidence};
 use crate::slew::{
-    Command, FinalWheels, Measure, Objective, Slew, SlewSpec, WheelAllocation, solve,
+    EnergyMeasure, FinalWheels, Objective, Slew, SlewSpec, TorqueCommand, WheelAllocation, solve,
 };
 
 fn evidence_for(spec: &SlewSpec) -> Evidence {
@@ -16,7 +16,7 @@ fn evidence_for(spec: &SlewSpec) -> Evidence {
     assert!(
         outcome.solved,
         "{} {:?}",
-        outcome.status, outcome.flown.failures
+        outcome.status, outcome.propagated.failures
     );
     let evidence = evidence::of(&slew, &outcome, &stop).expect("a polished solution");
     println!(
@@ -39,7 +39,7 @@ fn evidence_for(spec: &SlewSpec) -> Evidence {
 
 fn fastest(intervals: usize) -> [SlewSpec; 3] {
     let (spacecraft, _, start) = biros(false);
-    let command = Command::Free { intervals };
+    let command = TorqueCommand::Free { intervals };
     [
         SlewSpec {
             spacecraft,
@@ -86,9 +86,9 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
         final_wheels: FinalWheels::Given,
         objective: Objective::Energy {
             duration_s,
-            measure: Measure::Proxy,
+            measure: EnergyMeasure::Proxy,
         },
-        command: Command::Uniform { intervals: 80 },
+        command: TorqueCommand::Uniform { intervals: 80 },
         ..SlewSpec::default()
     };
     let evidence = evidence_for(&at(910.0));
@@ -106,7 +106,7 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
 }
 
 /// The pyramid's published slew, by the pseudo-inverse.
-fn shared_out(command: Command) -> SlewSpec {
+fn shared_out(command: TorqueCommand) -> SlewSpec {
     SlewSpec {
         spacecraft: pyramid(),
         end: pyramid_end(),
@@ -119,7 +119,7 @@ fn shared_out(command: Command) -> SlewSpec {
 
 #[test]
 fn torques_of_the_pseudo_inverse_are_chosen_together() {
-    let evidence = evidence_for(&shared_out(Command::Free { intervals: 60 }));
+    let evidence = evidence_for(&shared_out(TorqueCommand::Free { intervals: 60 }));
     assert!(evidence.hamiltonian.abs() <= 1e-5);
     assert!((evidence.scale - 1.0).abs() <= 1e-5);
     assert!(evidence.pointwise_spread <= 1e-5);
@@ -138,7 +138,7 @@ fn effort_by_the_pseudo_inverse_makes_the_switching_function_vanish() {
         spacecraft: olrac(5),
         end: turn(OLRAC_AXIS, 1.25),
         objective: Objective::TimeAndEffort { weight: 1e3 },
-        command: Command::Uniform { intervals: 40 },
+        command: TorqueCommand::Uniform { intervals: 40 },
         allocation: WheelAllocation::PseudoInverse,
         ..SlewSpec::default()
     });

@@ -1,7 +1,8 @@
 //! The flight of a solution, as an independent integration finds it, and what it takes.
 
 use super::motion::SlewMotion;
-use super::spec::{Measure, Slew};
+use super::spec::EnergyMeasure;
+use super::validated::Slew;
 use crate::checker::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
     RATE_TOLERANCE, Ramp, propagate_ramps,
@@ -23,7 +24,7 @@ const GAUSS: [(f64, f64); 3] = [
 
 /// Commanded torques from a time on, linear from begin to end.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Piece {
+pub struct TorquePiece {
     /// Begin, s.
     pub start_s: f64,
     /// Length, s.
@@ -36,7 +37,7 @@ pub struct Piece {
 
 /// Energies of all motors together, J.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Energies {
+pub struct MotorEnergies {
     /// Integral of the power, braking counted against it.
     pub proxy_j: f64,
     /// What the supply gives: the integral of the power where it is positive over the efficiency,
@@ -44,13 +45,13 @@ pub struct Energies {
     pub bill_j: f64,
 }
 
-impl Energies {
+impl MotorEnergies {
     /// The energy in one of the two measures, J.
     #[must_use]
-    pub fn by(&self, measure: Measure) -> f64 {
+    pub fn by(&self, measure: EnergyMeasure) -> f64 {
         match measure {
-            Measure::Proxy => self.proxy_j,
-            Measure::Bill => self.bill_j,
+            EnergyMeasure::Proxy => self.proxy_j,
+            EnergyMeasure::Bill => self.bill_j,
         }
     }
 }
@@ -59,11 +60,11 @@ impl Energies {
 #[derive(Debug, Clone)]
 pub struct PropagatedSlew {
     /// The commands; they tile the time from zero to the end.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<TorquePiece>,
     /// States at the begin of every piece that takes time, and at the end.
     pub states: Vec<State>,
     /// The motors' energies.
-    pub energies: Energies,
+    pub energies: MotorEnergies,
     /// Angle between the attitude at the end and the wanted one, rad.
     pub attitude_error_rad: f64,
     /// Norm of the error of the body rate at the end, rad/s.
@@ -90,11 +91,11 @@ pub(super) fn effort(motion: &SlewMotion) -> f64 {
 }
 
 /// Flies a motion.
-pub(super) fn fly(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
+pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     let scenario = slew.scenario();
     let ramps = ramps(slew, motion);
     let drives = slew.all_drives();
-    let mut energies = Energies::default();
+    let mut energies = MotorEnergies::default();
     let flight = propagate_ramps(scenario, drives, &ramps, |moment| {
         for actuator in &slew.vehicle().dynamics.actuators {
             let spent = spent(&drives[actuator.index], actuator.index, moment);
@@ -102,7 +103,7 @@ pub(super) fn fly(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
             energies.bill_j += spent.bill_j;
         }
     });
-    let mut flown = PropagatedSlew {
+    let mut propagated = PropagatedSlew {
         pieces: ramps.iter().map(piece).collect(),
         states: Vec::new(),
         energies,
@@ -117,23 +118,25 @@ pub(super) fn fly(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     let flight = match flight {
         Ok(flight) => flight,
         Err(sentence) => {
-            flown.failures.push(sentence);
-            return flown;
+            propagated.failures.push(sentence);
+            return propagated;
         }
     };
     if let (Some(end), Some(wanted)) = (flight.states.last(), scenario.end()) {
-        flown.attitude_error_rad = slew.missed_by(&end.attitude);
-        flown.rate_error_rad_s = (end.body_rate_rad_s - wanted.rate).norm();
-        flown.wheel_speed_error_rad_s = speed_error(slew, end);
+        propagated.attitude_error_rad = slew.missed_by(&end.attitude);
+        propagated.rate_error_rad_s = (end.body_rate_rad_s - wanted.rate).norm();
+        propagated.wheel_speed_error_rad_s = speed_error(slew, end);
     }
-    flown.torque_excess = excess(flight.torque_usage);
-    flown.wheel_speed_excess = excess(flight.wheel_usage.unwrap_or(0.0));
-    flown.rate_excess = excess(flight.rate_usage.unwrap_or(0.0));
-    flown.failures = flight.failures;
-    flown.failures.extend(faults(&flown, flight.momentum_drift));
-    flown.states = flight.states;
-    flown.failures.extend(speed_fault(slew, &flown));
-    flown
+    propagated.torque_excess = excess(flight.torque_usage);
+    propagated.wheel_speed_excess = excess(flight.wheel_usage.unwrap_or(0.0));
+    propagated.rate_excess = excess(flight.rate_usage.unwrap_or(0.0));
+    propagated.failures = flight.failures;
+    propagated
+        .failures
+        .extend(faults(&propagated, flight.momentum_drift));
+    propagated.states = flight.states;
+    propagated.failures.extend(speed_fault(slew, &propagated));
+    propagated
 }
 
 /// The excess over 1, or 0; finite even for limits that are almost nothing, and the greatest where
@@ -147,22 +150,22 @@ fn excess(usage: f64) -> f64 {
 }
 
 /// Sentences about the end and the torques; speeds and rates have their own.
-fn faults(flown: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
+fn faults(propagated: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
     let too_large = [
         (
-            flown.attitude_error_rad,
+            propagated.attitude_error_rad,
             ATTITUDE_TOLERANCE,
             "the end is missed by",
             "rad",
         ),
         (
-            flown.rate_error_rad_s,
+            propagated.rate_error_rad_s,
             RATE_TOLERANCE,
             "the rate at the end is off by",
             "rad/s",
         ),
         (
-            flown.torque_excess,
+            propagated.torque_excess,
             LIMIT_TOLERANCE,
             "a motor torque exceeds its limit by a share of",
             "",
@@ -184,18 +187,18 @@ fn faults(flown: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
 
 /// A sentence when the wheels miss their prescribed speeds, measured by the least limit or, where
 /// nothing is limited, by the fastest wheel.
-fn speed_fault(slew: &Slew, flown: &PropagatedSlew) -> Option<String> {
+fn speed_fault(slew: &Slew, propagated: &PropagatedSlew) -> Option<String> {
     let actuators = slew.vehicle().dynamics.actuators.iter();
     let least = actuators
         .map(|wheel| wheel.max_speed)
         .fold(f64::INFINITY, f64::min);
-    let speeds = flown
+    let speeds = propagated
         .states
         .iter()
         .flat_map(|state| &state.wheel_speed_rad_s);
     let fastest = speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs()));
     let unit = if least.is_finite() { least } else { fastest };
-    let error = flown.wheel_speed_error_rad_s;
+    let error = propagated.wheel_speed_error_rad_s;
     (error > END_SPEED_TOLERANCE * unit)
         .then(|| format!("a wheel misses its final speed by {error:.3e} rad/s"))
 }
@@ -216,8 +219,8 @@ fn speed_error(slew: &Slew, end: &State) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn piece(ramp: &Ramp) -> Piece {
-    Piece {
+fn piece(ramp: &Ramp) -> TorquePiece {
+    TorquePiece {
         start_s: ramp.start_s,
         duration_s: ramp.duration_s,
         torque_begin_nm: ramp.begin_nm.clone(),
@@ -250,15 +253,15 @@ fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
 
 /// What one wheel takes in a short while: exact where the power is a polynomial of degree five, cut
 /// where it changes its sign.
-fn spent(drive: &Drive, wheel: usize, moment: &Moment<'_>) -> Energies {
+fn spent(drive: &Drive, wheel: usize, moment: &Moment<'_>) -> MotorEnergies {
     let Some(motor) = drive.motor else {
-        return Energies::default();
+        return MotorEnergies::default();
     };
     let power = |s: f64| {
         let speed = moment.speed(wheel, s);
         motor.power(drive.motor_torque(moment.torque(wheel, s), speed), speed)
     };
-    let mut energies = Energies {
+    let mut energies = MotorEnergies {
         proxy_j: 0.0,
         bill_j: motor.quiescent_power * moment.length_s,
     };

@@ -1,0 +1,70 @@
+//! Slews without a clock.
+
+use super::attempts::solve_program;
+use super::cost_weights::CostWeights;
+use super::found_solution::FoundSolution;
+use super::motion::SlewMotion;
+use super::program_choice::ProgramChoice;
+use super::spec::{EnergyMeasure, Objective};
+use super::validated::Slew;
+use super::{min_time_at_energy, propagation};
+use crate::nlp::Interruption;
+
+/// Rounds in which a budget is corrected, and the share of it that may be left.
+const BUDGET_ROUNDS: usize = 8;
+const BUDGET_ACCURACY: f64 = 1e-5;
+
+/// Solves without a clock.
+pub(super) fn solve(
+    slew: &Slew,
+    neighbour: Option<&SlewMotion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> FoundSolution {
+    let choice = ProgramChoice::of(slew);
+    let Objective::MinimumTimeAtEnergy { energy_j, measure } = slew.objective() else {
+        return solve_program(slew, &choice, neighbour, stop);
+    };
+    let fastest = choice.with(slew, CostWeights::TIME);
+    let fastest = solve_program(slew, &fastest, None, stop);
+    let bill = propagation::propagate(slew, &fastest.solved.motion)
+        .energies
+        .bill_j;
+    if fastest.solved.converged() && bill <= energy_j {
+        // The energy does not bind: multipliers of a program that keeps within it would vanish.
+        return fastest;
+    }
+    let found = match measure {
+        EnergyMeasure::Proxy => min_time_at_energy::solve(slew, energy_j, neighbour, stop),
+        EnergyMeasure::Bill => billed(slew, energy_j, neighbour, stop),
+    };
+    found.after(&fastest)
+}
+
+/// Solves for the time with a bill: the program's own bill is a little low, so that its budget is
+/// lowered until the flight's keeps within the energy.
+fn billed(
+    slew: &Slew,
+    energy: f64,
+    neighbour: Option<&SlewMotion>,
+    stop: &dyn Fn() -> Option<Interruption>,
+) -> FoundSolution {
+    let mut choice = ProgramChoice::of(slew);
+    let mut found = solve_program(slew, &choice, neighbour, stop);
+    for _ in 0..BUDGET_ROUNDS {
+        let bill = propagation::propagate(slew, &found.solved.motion)
+            .energies
+            .bill_j;
+        let Some(budget) = choice.cost_weights.budget else {
+            break;
+        };
+        let met = bill <= energy && bill >= energy * (1.0 - BUDGET_ACCURACY);
+        if met || !found.solved.converged() || stop().is_some() {
+            break;
+        }
+        choice.cost_weights.budget = Some(budget * energy / bill * (1.0 - 0.5 * BUDGET_ACCURACY));
+        let guess = found.solved.motion.clone();
+        let next = solve_program(slew, &choice, Some(&guess), stop);
+        found = next.after(&found);
+    }
+    found
+}

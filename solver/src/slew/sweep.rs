@@ -1,0 +1,80 @@
+//! What is swept along a trade curve.
+
+use super::choices;
+use super::spec::Objective;
+use super::validated::Slew;
+use crate::model::findings::Findings;
+use crate::model::problem::{Code, Problem};
+
+/// Values of one quantity of the objective, in the order in which they are solved.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sweep {
+    /// Durations, s, of [`Objective::Energy`].
+    Durations(Vec<f64>),
+    /// Weights of [`Objective::TimeAndEffort`].
+    Weights(Vec<f64>),
+    /// Energies, J, of [`Objective::MinimumTimeAtEnergy`].
+    Energies(Vec<f64>),
+}
+
+impl Sweep {
+    /// The name of the field in the document, and the values.
+    fn field_and_values(&self) -> (&'static str, &[f64]) {
+        match self {
+            Self::Durations(values) => ("durations_s", values),
+            Self::Weights(values) => ("weights", values),
+            Self::Energies(values) => ("energies_j", values),
+        }
+    }
+
+    /// The objective with a value in place of its own; `None` where it has nothing like it.
+    fn objective_at(&self, objective: Objective, value: f64) -> Option<Objective> {
+        match (self, objective) {
+            (Self::Durations(_), Objective::Energy { measure, .. }) => Some(Objective::Energy {
+                duration_s: value,
+                measure,
+            }),
+            (Self::Weights(_), Objective::TimeAndEffort { .. }) => {
+                Some(Objective::TimeAndEffort { weight: value })
+            }
+            (Self::Energies(_), Objective::MinimumTimeAtEnergy { measure, .. }) => {
+                Some(Objective::MinimumTimeAtEnergy {
+                    energy_j: value,
+                    measure,
+                })
+            }
+            _ => None,
+        }
+    }
+
+    /// The same slew at every value.
+    ///
+    /// # Errors
+    ///
+    /// Problems with the values, all of them at once.
+    pub(super) fn points(&self, slew: &Slew) -> Result<Vec<Slew>, Vec<Problem>> {
+        let mut findings = Findings::default();
+        let (field, values) = self.field_and_values();
+        let points: Vec<_> = values
+            .iter()
+            .enumerate()
+            .map(|(i, value)| {
+                let pointer = format!("/sweep/{field}/{i}");
+                let value = findings.positive(&pointer, *value)?;
+                let Some(objective) = self.objective_at(slew.objective(), value) else {
+                    findings.refuse(
+                        "/sweep",
+                        Code::ConflictingFields,
+                        format!("the objective has no {field} to sweep"),
+                        "sweep durations of energy, weights of effort, or energies of time",
+                    );
+                    return None;
+                };
+                choices::check_multiple(&objective, &slew.command(), &pointer, &mut findings)
+                    .then(|| slew.with_objective(objective))
+            })
+            .collect();
+        let points = points.into_iter().collect();
+        findings.conclude(points).map(|(points, _)| points)
+    }
+}

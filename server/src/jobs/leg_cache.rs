@@ -139,7 +139,7 @@ pub(crate) fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
     NewLeg {
         identity: identity.to_owned(),
         spacecraft: leg.spacecraft.clone(),
-        kind: leg.kind.as_str(),
+        kind: leg.kind.into(),
         turn_xyzw: leg.turn_xyzw,
         momentum: leg.body_momentum_nms,
         reversible: leg.reversible,
@@ -156,7 +156,6 @@ pub(crate) fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
 }
 
 fn kind(text: &str) -> Option<LegKind> {
-    [LegKind::RestToRest, LegKind::LowerBound]
-        .into_iter()
-        .find(|kind| kind.as_str() == text)
+    let kind = text.parse().ok()?;
+    matches!(kind, LegKind::RestToRest | LegKind::LowerBound).then_some(kind)
 }

@@ -213,7 +213,7 @@ impl Bench {
             });
             match recorded {
                 Ok(true) => {
-                    tracing::info!(state = ended.state.as_str(), interrupted, "solve ended");
+                    tracing::info!(state = ended.state.into_str(), interrupted, "solve ended");
                     return;
                 }
                 Ok(false) => {

@@ -30,7 +30,8 @@ impl Settings {
 }
 
 /// How a solve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case", const_into_str)]
 pub(crate) enum NlpStatus {
     /// A local minimum within the tolerance.
     Converged,
@@ -67,7 +68,8 @@ pub(crate) struct Breakdown {
 }
 
 /// What can break down at a stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case", const_into_str)]
 pub(crate) enum Quantity {
     /// The cost is not finite.
     Cost,
@@ -88,19 +90,6 @@ pub(crate) enum Quantity {
 }
 
 impl NlpStatus {
-    /// The stable text of the status.
-    pub(crate) const fn as_str(self) -> &'static str {
-        match self {
-            Self::Converged => "converged",
-            Self::Constructed => "constructed",
-            Self::InfeasibleSuspected => "infeasible_suspected",
-            Self::IterationLimit => "iteration_limit",
-            Self::TimeLimit => "time_limit",
-            Self::Cancelled => "cancelled",
-            Self::NumericalError(_) => "numerical_error",
-        }
-    }
-
     /// Whether the solve was ended from outside.
     pub(crate) const fn is_interrupted(self) -> bool {
         matches!(self, Self::TimeLimit | Self::Cancelled)
@@ -119,27 +108,12 @@ impl From<Interruption> for NlpStatus {
 /// The stable text, with where the numbers broke down.
 impl fmt::Display for NlpStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())?;
+        f.write_str(self.into_str())?;
         match self {
             Self::NumericalError(Breakdown { stage, quantity }) => {
-                write!(f, " ({} of stage {stage})", quantity.as_str())
+                write!(f, " ({} of stage {stage})", quantity.into_str())
             }
             _ => Ok(()),
-        }
-    }
-}
-
-impl Quantity {
-    const fn as_str(self) -> &'static str {
-        match self {
-            Self::Cost => "cost",
-            Self::Gap => "gap",
-            Self::Equality => "equality",
-            Self::Inequality => "inequality",
-            Self::Derivative => "derivative",
-            Self::Curvature => "curvature",
-            Self::Step => "step",
-            Self::Flight => "flight",
         }
     }
 }

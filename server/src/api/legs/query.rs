@@ -102,7 +102,7 @@ fn answers(
         .iter()
         .find_map(|(_, spacecraft)| spacecraft.clone());
     LegAnswersDocument {
-        kind: query.kind.as_str(),
+        kind: query.kind.into(),
         spacecraft_key,
         legs: answered.into_iter().map(|(leg, _)| leg).collect(),
     }

@@ -24,7 +24,7 @@ pub(in crate::api) async fn handler(
     let counts = app.store().counts().await?;
     head(&mut text, "slewplan_jobs", "gauge", "Jobs in every state.");
     for count in counts {
-        let labels = format!("state=\"{}\"", count.state.as_str());
+        let labels = format!("state=\"{}\"", count.state.into_str());
         sample(&mut text, "slewplan_jobs", &labels, count.jobs);
     }
     let legs = app.store().leg_count().await?;

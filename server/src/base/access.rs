@@ -61,7 +61,7 @@ impl Scopes {
 
 impl Display for Scopes {
     fn fmt(&self, form: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<&str> = self.0.iter().map(|scope| scope.into_str()).collect();
+        let names: Vec<&str> = self.0.iter().map(Scope::into_str).collect();
         form.write_str(&names.join(" "))
     }
 }

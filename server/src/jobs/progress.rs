@@ -72,7 +72,7 @@ impl Observer for Watch<'_> {
     }
 
     fn contradicted(&self, contradiction: &Contradiction) {
-        contradictions::tell(contradiction);
+        contradictions::record(contradiction);
     }
 }
 

@@ -132,7 +132,7 @@ impl Bench {
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
         tracing::info!(targets = job.targets, "solve begins");
-        self.jobs.job_tally().begun(job);
+        self.jobs.metrics().begun(job);
         let begin = Instant::now();
         self.jobs.changed();
         let stop = StopSignal::new();
@@ -176,7 +176,7 @@ impl Bench {
                 .spawn(segments::forget(self.jobs.store().clone()));
         }
         let solved_s = begin.elapsed().as_secs_f64();
-        self.jobs.job_tally().ended(&ended, solved_s);
+        self.jobs.metrics().ended(&ended, solved_s);
     }
 
     /// Obeys requests that came between the lease and the moment when the signal was in place.

@@ -5,7 +5,7 @@ use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
 use super::super::{App, computing, stored};
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents::leg_query::{
     self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
 };
@@ -122,7 +122,7 @@ fn certified(
     let run = Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     };
@@ -149,7 +149,7 @@ fn answer(
     let run = Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &witness,
         segments: &NoStore,
     };

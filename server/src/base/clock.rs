@@ -4,6 +4,7 @@ use jiff::Timestamp;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Now, microseconds since 1970-01-01 UTC.
+#[expect(clippy::disallowed_methods, reason = "the one clock of records")]
 pub(crate) fn now_us() -> i64 {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)

@@ -97,7 +97,7 @@ impl Bench {
                 Ok(None) => {}
                 Err(error) => {
                     tracing::error!(%error, "no job can be claimed");
-                    std::thread::sleep(RETRY);
+                    retry_later();
                 }
             }
         }
@@ -226,7 +226,7 @@ impl Bench {
                 }
                 Err(error) => {
                     tracing::error!(%error, "the end of the job cannot be recorded yet");
-                    std::thread::sleep(RETRY);
+                    retry_later();
                 }
             }
         }
@@ -259,4 +259,10 @@ async fn beat(jobs: Jobs, lease: JobRow, stop: StopSignal) {
             Err(error) => tracing::warn!(job_id = lease.id, %error, "lease not prolonged"),
         }
     }
+}
+
+/// Waits on the worker's own thread, which nothing else runs on.
+#[expect(clippy::disallowed_methods, reason = "blocks the worker's thread only")]
+fn retry_later() {
+    std::thread::sleep(RETRY);
 }

@@ -224,7 +224,11 @@ fn check(spec: &StudySpec, findings: &mut Findings) {
     within("/required_rate_rad_s", of.required_rate_rad_s, findings);
     for control in Control::ALL {
         let radius = of.radii.of(control);
-        within(&format!("/radii/{control}/momentum"), radius.momentum, findings);
+        within(
+            &format!("/radii/{control}/momentum"),
+            radius.momentum,
+            findings,
+        );
         within(&format!("/radii/{control}/torque"), radius.torque, findings);
     }
     for (name, law) in [("wheel", of.laws.wheel), ("gyroscope", of.laws.gyroscope)] {

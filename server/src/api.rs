@@ -29,7 +29,7 @@ use crate::base::lifecycle::Shutdown;
 use crate::jobs::Jobs;
 use crate::store::Store;
 use computing::Turns;
-use metrics::Metrics;
+use metrics::RequestMetrics;
 use slewplan_solver::run::pool::SolverPool;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
@@ -60,8 +60,8 @@ struct Parts {
     streams: Arc<Semaphore>,
     /// Whether work can be taken, as found lately.
     readiness: operations::health::Readiness,
-    /// What is known about requests.
-    metrics: Metrics,
+    /// Counts and durations of requests.
+    metrics: RequestMetrics,
 }
 
 /// What a request may ask for at most.
@@ -109,7 +109,7 @@ impl App {
             flying: computing::flying(),
             streams: Arc::new(Semaphore::new(limits.streams)),
             readiness: operations::health::Readiness::default(),
-            metrics: Metrics::default(),
+            metrics: RequestMetrics::default(),
         }))
     }
 

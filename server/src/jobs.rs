@@ -3,19 +3,19 @@
 pub(crate) mod leg_cache;
 pub(crate) mod leg_import;
 mod memory;
+mod metrics;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;
 pub(crate) mod slews;
 mod solve;
-mod tally;
 mod worker;
 
-pub(crate) use tally::JobTally;
+pub(crate) use metrics::JobMetrics;
 pub(crate) use worker::Worker;
 
 use crate::base::clock::now_us;
-use crate::jobs::leg_cache::{LegCache, Tally};
+use crate::jobs::leg_cache::LegCache;
 use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -37,8 +37,7 @@ struct Shared {
     queue: QueueLimits,
     /// Memory of one job, bytes.
     memory: u64,
-    tally: Arc<Tally>,
-    job_tally: JobTally,
+    metrics: Arc<JobMetrics>,
 }
 
 #[derive(Debug)]
@@ -57,8 +56,7 @@ impl Jobs {
             active: Mutex::new(None),
             queue,
             memory,
-            tally: Arc::default(),
-            job_tally: JobTally::default(),
+            metrics: Arc::default(),
         }))
     }
 
@@ -69,17 +67,12 @@ impl Jobs {
 
     /// The remembered legs, for one solve on threads outside of the runtime.
     pub(crate) fn legs(&self, runtime: Handle) -> LegCache {
-        LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.tally))
+        LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.metrics))
     }
 
-    /// How often legs were found.
-    pub(crate) fn tally(&self) -> &Tally {
-        &self.0.tally
-    }
-
-    /// What is known about the jobs of this process.
-    pub(crate) fn job_tally(&self) -> &JobTally {
-        &self.0.job_tally
+    /// Metrics of the jobs of this process.
+    pub(crate) fn metrics(&self) -> &JobMetrics {
+        &self.0.metrics
     }
 
     /// Told of every change of any job.

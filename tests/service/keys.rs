@@ -1,7 +1,7 @@
 //! Who may use the service, and what of it.
 
 use crate::client::{Answer, Request};
-use crate::running::{Service, small};
+use crate::running::{Service, pause, small};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -230,7 +230,7 @@ fn the_first_key_closes_a_service_that_runs() {
     let begin = Instant::now();
     while service.get("/v1/plans").status != 401 {
         assert!(begin.elapsed() < Duration::from_secs(30), "still open");
-        std::thread::sleep(Duration::from_millis(20));
+        pause();
     }
     service
         .send(&request("GET", "/v1/plans", &secret))

@@ -1,9 +1,8 @@
 //! Jobs from submission to deletion.
 
 use crate::client::Request;
-use crate::running::{Service, large, small};
+use crate::running::{Service, large, pause, small};
 use serde_json::{Value, json};
-use std::time::Duration;
 
 #[test]
 fn a_job_ends_with_a_verified_plan() {
@@ -254,7 +253,7 @@ fn who_waits_for_a_job_that_is_cancelled_is_told_that_it_has_ended() {
             if let Some(id) = queued["plans"][0]["id"].as_str() {
                 break id.to_owned();
             }
-            std::thread::sleep(Duration::from_millis(10));
+            pause();
         };
         let cancel = Request::new("POST", &format!("/v1/plans/{id}/cancel"));
         service.send(&cancel).expect(200);

@@ -8,6 +8,12 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
+/// Time between two looks at what another process does.
+#[expect(clippy::disallowed_methods, reason = "polls another process")]
+pub(crate) fn pause() {
+    std::thread::sleep(Duration::from_millis(10));
+}
+
 /// A running service; it ends with the value.
 pub(crate) struct Service {
     child: Child,
@@ -96,7 +102,7 @@ impl Service {
                 return job;
             }
             assert!(begin.elapsed() < Duration::from_mins(2), "still {job}");
-            std::thread::sleep(Duration::from_millis(10));
+            pause();
         }
     }
 

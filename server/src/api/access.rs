@@ -135,7 +135,7 @@ async fn examine(app: &App, route: &str, request: &Parts) -> Result<Caller, ApiE
         return Err(ApiError::new(ErrorCode::NotFound, "there is nothing here"));
     };
     if !key.scopes()?.contain(scope) {
-        let detail = format!("the key has not the scope {}", scope.as_str());
+        let detail = format!("the key has not the scope {}", scope.into_str());
         return Err(ApiError::new(ErrorCode::ScopeMissing, detail));
     }
     // As it stands in the path: an identifier has nothing that must be escaped.

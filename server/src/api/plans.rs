@@ -47,6 +47,6 @@ fn standing(job: &JobRow) -> Result<Response, ApiError> {
 
 /// A request to end that came too late.
 fn has_ended(state: JobState) -> ApiError {
-    let detail = format!("the job has ended {}", state.as_str());
+    let detail = format!("the job has ended {}", state.into_str());
     ApiError::new(ErrorCode::JobHasEnded, detail)
 }

@@ -8,7 +8,7 @@ pub(super) mod flight;
 use super::access::Caller;
 use super::error::ApiError;
 use super::{App, admission, stored};
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents::document::Node;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
@@ -30,7 +30,7 @@ fn quiet_run<'a>(pool: &'a SolverPool, stop: &'a StopSignal) -> Run<'a> {
     Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     }

@@ -13,7 +13,20 @@ const SECRET_BYTES: usize = 32;
 const ID_BYTES: usize = 6;
 
 /// What a key opens.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    clap::ValueEnum,
+    strum::EnumString,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "lowercase", const_into_str)]
+#[strum(parse_err_ty = String, parse_err_fn = unknown_scope)]
 pub(crate) enum Scope {
     /// Read the client's own jobs and spacecraft
     Read,
@@ -23,17 +36,8 @@ pub(crate) enum Scope {
     Operate,
 }
 
-impl Scope {
-    const ALL: [Self; 3] = [Self::Read, Self::Write, Self::Operate];
-
-    /// The stable text of the scope.
-    pub(crate) const fn as_str(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Write => "write",
-            Self::Operate => "operate",
-        }
-    }
+fn unknown_scope(text: &str) -> String {
+    format!("{text:?} is no scope")
 }
 
 /// What a key opens, all of it.
@@ -57,7 +61,7 @@ impl Scopes {
 
 impl Display for Scopes {
     fn fmt(&self, form: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<&str> = self.0.iter().map(|scope| scope.as_str()).collect();
+        let names: Vec<&str> = self.0.iter().map(Scope::into_str).collect();
         form.write_str(&names.join(" "))
     }
 }
@@ -66,15 +70,8 @@ impl FromStr for Scopes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let scope = |name: &str| {
-            let found = Scope::ALL.into_iter().find(|scope| scope.as_str() == name);
-            found.ok_or_else(|| format!("{name:?} is no scope"))
-        };
-        Ok(Self(
-            text.split_whitespace()
-                .map(scope)
-                .collect::<Result<_, _>>()?,
-        ))
+        let scopes = text.split_whitespace().map(str::parse);
+        Ok(Self(scopes.collect::<Result<_, _>>()?))
     }
 }
 

@@ -15,6 +15,10 @@ const MAX_BALLAST: usize = 2048;
 /// For `fault:panic`, `fault:pool` and `fault:drop`, on the worker's thread, on a thread of the
 /// pool, and while a value is dropped. `fault:abort` ends the process; `fault:memory` takes more and
 /// more of it until it is stopped.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "grows slowly, on a thread of the worker"
+)]
 pub(crate) fn strike(name: Option<&str>, pool: &SolverPool, stop: &StopSignal) {
     match name {
         Some("fault:panic") => panic!("a fault on purpose"),

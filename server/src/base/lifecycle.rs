@@ -29,6 +29,10 @@ impl Shutdown {
                     _ = interrupt.recv() => 130,
                 };
                 if !first {
+                    #[expect(
+                        clippy::disallowed_methods,
+                        reason = "the second signal ends at once"
+                    )]
                     std::process::exit(code);
                 }
                 tracing::info!("the service ends");

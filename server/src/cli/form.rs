@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use slewplan_solver::model::plan::Flight;
 use slewplan_solver::model::scenario::Scenario;
+use strum::VariantArray as _;
 
 /// Most samples of a file: a week at three per second.
 const MAX_SAMPLES: usize = 2_000_000;
@@ -24,7 +25,7 @@ impl ValueEnum for Form {
 
 impl ValueEnum for Format {
     fn value_variants<'a>() -> &'a [Self] {
-        &Self::ALL
+        Self::VARIANTS
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {

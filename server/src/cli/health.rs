@@ -127,6 +127,7 @@ mod tests {
     use std::thread;
 
     /// Asks something that answers every request with these bytes and then hangs up, or is silent.
+    #[expect(clippy::disallowed_methods, reason = "a test may panic")]
     fn ask_one_that_says(answer: Option<&'static str>, patience: Duration) -> io::Result<Vec<u8>> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let address = listener.local_addr().unwrap();

@@ -71,7 +71,7 @@ impl Observer for Bar {
             Some(total) => bar.set_length(total),
             None => bar.unset_length(),
         }
-        bar.set_prefix(progress.stage.as_str());
+        bar.set_prefix(<&str>::from(progress.stage));
         bar.set_position(progress.done);
         bar.set_message(figures(&progress));
     }
@@ -130,7 +130,7 @@ impl JsonLines {
 
     fn line(&self, progress: &Progress, now: Instant) -> Line {
         Line {
-            stage: progress.stage.as_str(),
+            stage: progress.stage.into(),
             done: progress.done,
             total: progress.total,
             incumbent_s: progress.incumbent_s.filter(|value| value.is_finite()),

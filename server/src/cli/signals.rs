@@ -43,6 +43,7 @@ pub(crate) fn listen(stop: &StopSignal) -> io::Result<Received> {
                         stop.request();
                     }
                     1 => stop.cancel(),
+                    #[expect(clippy::disallowed_methods, reason = "the third ends at once")]
                     _ => std::process::exit(128 + signal),
                 }
             }

@@ -161,7 +161,7 @@ fn read_base(fields: &Fields<'_>) -> ScenarioSpec {
 
 fn kind_and_mode(fields: &Fields<'_>) -> (LegKind, bool) {
     let kinds = [LegKind::RestToRest, LegKind::LowerBound, LegKind::Certified]
-        .map(|kind| (kind.as_str(), kind));
+        .map(|kind| (kind.into(), kind));
     let kind = fields.optional("kind").and_then(|text| text.choice(&kinds));
     let modes = [("cached_only", false), ("compute", true)];
     let compute = fields.optional("mode").and_then(|text| text.choice(&modes));

@@ -131,7 +131,7 @@ impl<'a> LegTableDocument<'a> {
         let lines = |motions: &'a Vec<KeyedLeg>| motions.iter().map(line).collect();
         Ok(Self {
             version: &table.version,
-            kind: table.kind.as_str(),
+            kind: table.kind.into(),
             scenario_key: &table.scenario_key,
             shard: ShardDocument {
                 index: table.shard.index + 1,
@@ -150,7 +150,7 @@ impl<'a> From<&'a LegRow> for LegDocument<'a> {
         Self {
             from: &row.from,
             to: &row.to,
-            kind: row.kind.as_str(),
+            kind: row.kind.into(),
             duration_s: row.duration_s.map(Number),
             certified_lower_bound_s: row.certified_lower_bound_s.map(Number),
             solve_time_s: Number(row.solve_time_s),

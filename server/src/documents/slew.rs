@@ -164,7 +164,7 @@ fn final_wheels(fields: &Fields<'_>) -> FinalWheels {
 }
 
 fn allocation(fields: &Fields<'_>) -> WheelAllocation {
-    let choices = WheelAllocation::ALL.map(|allocation| (allocation.as_str(), allocation));
+    let choices = WheelAllocation::ALL.map(|allocation| (allocation.into(), allocation));
     let asked = fields.optional("allocation");
     asked.and_then(|it| it.choice(&choices)).unwrap_or_default()
 }

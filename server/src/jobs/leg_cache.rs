@@ -3,33 +3,14 @@
 pub(crate) mod upkeep;
 
 use crate::base::clock::now_us;
+use crate::jobs::metrics::JobMetrics;
 use crate::store::{NewLeg, Store};
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::runtime::Handle;
 
 /// Legs that are written together.
 const BATCH: usize = 64;
-
-/// How often legs were found.
-#[derive(Debug, Default)]
-pub(crate) struct Tally {
-    hits: AtomicU64,
-    misses: AtomicU64,
-}
-
-impl Tally {
-    /// Legs that were found.
-    pub(crate) fn hits(&self) -> u64 {
-        self.hits.load(Ordering::Relaxed)
-    }
-
-    /// Legs that were not.
-    pub(crate) fn misses(&self) -> u64 {
-        self.misses.load(Ordering::Relaxed)
-    }
-}
 
 /// The legs of a database for one solve. What is new is written in batches, when somebody asks for
 /// that, and when the value is dropped, which must not happen on a thread of the runtime.
@@ -37,7 +18,7 @@ impl Tally {
 pub(crate) struct LegCache {
     store: Store,
     runtime: Handle,
-    tally: Arc<Tally>,
+    metrics: Arc<JobMetrics>,
     unwritten: Unwritten,
 }
 
@@ -68,7 +49,7 @@ impl Unwritten {
 
 impl LegCache {
     /// The legs of a store, reached from threads outside of the runtime.
-    pub(crate) fn new(store: Store, runtime: Handle, tally: Arc<Tally>) -> Self {
+    pub(crate) fn new(store: Store, runtime: Handle, metrics: Arc<JobMetrics>) -> Self {
         Self {
             unwritten: Unwritten {
                 store: store.clone(),
@@ -76,7 +57,7 @@ impl LegCache {
             },
             store,
             runtime,
-            tally,
+            metrics,
         }
     }
 
@@ -93,12 +74,7 @@ impl LegStore for LegCache {
             tracing::warn!(%error, "a leg cannot be looked up and is solved again");
             None
         });
-        let tally = if leg.is_some() {
-            &self.tally.hits
-        } else {
-            &self.tally.misses
-        };
-        tally.fetch_add(1, Ordering::Relaxed);
+        self.metrics.looked_up(leg.is_some());
         leg
     }
 

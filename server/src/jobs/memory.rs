@@ -70,6 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::disallowed_methods, reason = "polls what another thread does")]
     fn a_solve_that_grows_is_stopped_and_one_that_does_not_is_left_alone() {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)

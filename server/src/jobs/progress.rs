@@ -72,7 +72,7 @@ impl Observer for Watch<'_> {
     }
 
     fn contradicted(&self, contradiction: &Contradiction) {
-        contradictions::tell(contradiction);
+        contradictions::record(contradiction);
     }
 }
 
@@ -123,7 +123,7 @@ fn row(progress: &Progress) -> ProgressRow {
     let count = |value| i64::try_from(value).unwrap_or(i64::MAX);
     let seconds = |value: Option<f64>| value.filter(|value| value.is_finite());
     ProgressRow {
-        stage: progress.stage.as_str(),
+        stage: progress.stage.into(),
         done: count(progress.done),
         total: progress.total.map(count),
         incumbent_s: seconds(progress.incumbent_s),

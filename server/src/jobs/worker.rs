@@ -97,7 +97,7 @@ impl Bench {
                 Ok(None) => {}
                 Err(error) => {
                     tracing::error!(%error, "no job can be claimed");
-                    std::thread::sleep(RETRY);
+                    retry_later();
                 }
             }
         }
@@ -132,7 +132,7 @@ impl Bench {
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
         tracing::info!(targets = job.targets, "solve begins");
-        self.jobs.job_tally().begun(job);
+        self.jobs.metrics().begun(job);
         let begin = Instant::now();
         self.jobs.changed();
         let stop = StopSignal::new();
@@ -176,7 +176,7 @@ impl Bench {
                 .spawn(segments::forget(self.jobs.store().clone()));
         }
         let solved_s = begin.elapsed().as_secs_f64();
-        self.jobs.job_tally().ended(&ended, solved_s);
+        self.jobs.metrics().ended(&ended, solved_s);
     }
 
     /// Obeys requests that came between the lease and the moment when the signal was in place.
@@ -213,7 +213,7 @@ impl Bench {
             });
             match recorded {
                 Ok(true) => {
-                    tracing::info!(state = ended.state.as_str(), interrupted, "solve ended");
+                    tracing::info!(state = ended.state.into_str(), interrupted, "solve ended");
                     return;
                 }
                 Ok(false) => {
@@ -226,7 +226,7 @@ impl Bench {
                 }
                 Err(error) => {
                     tracing::error!(%error, "the end of the job cannot be recorded yet");
-                    std::thread::sleep(RETRY);
+                    retry_later();
                 }
             }
         }
@@ -259,4 +259,10 @@ async fn beat(jobs: Jobs, lease: JobRow, stop: StopSignal) {
             Err(error) => tracing::warn!(job_id = lease.id, %error, "lease not prolonged"),
         }
     }
+}
+
+/// Waits on the worker's own thread, which nothing else runs on.
+#[expect(clippy::disallowed_methods, reason = "blocks the worker's thread only")]
+fn retry_later() {
+    std::thread::sleep(RETRY);
 }

@@ -35,7 +35,7 @@ pub(crate) const TOLERANCE: f64 = 1e-5;
 pub(crate) const PERIOD_S: f64 = 0.1;
 
 /// What a plan can be written as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantArray)]
 pub(crate) enum Format {
     /// A table of everything, one row per sample.
     Csv,
@@ -54,17 +54,6 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// All formats.
-    pub(crate) const ALL: [Self; 7] = [
-        Self::Csv,
-        Self::AemKvn,
-        Self::AemXml,
-        Self::Basilisk,
-        Self::OpenMct,
-        Self::Stk,
-        Self::WheelRpm,
-    ];
-
     /// The stable name.
     pub(crate) const fn name(self) -> &'static str {
         match self {

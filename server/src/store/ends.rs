@@ -38,9 +38,9 @@ impl EndCode {
     pub(crate) const OWN: [Self; 2] = [Self::Internal, Self::ProcessDied];
 
     /// The stable text of the code.
-    pub(crate) const fn as_str(self) -> &'static str {
+    pub(crate) fn as_str(self) -> &'static str {
         match self {
-            Self::Problem(code) => code.as_str(),
+            Self::Problem(code) => code.into(),
             Self::Internal => "internal_error",
             Self::ProcessDied => "process_died",
         }
@@ -56,7 +56,7 @@ impl EndCode {
     }
 
     /// What to do about it, as a sentence.
-    pub(crate) const fn remedy(self) -> &'static str {
+    pub(crate) fn remedy(self) -> &'static str {
         match self {
             Self::Problem(code) => code.remedy(),
             Self::Internal => "Report it with the scenario.",

@@ -4,6 +4,7 @@ use super::rows::job_columns;
 use super::writing::Writing;
 use super::{Counts, JobRow, JobState, Store, StoreError, events, results};
 use sqlx::{FromRow, Row, SqliteConnection};
+use strum::VariantArray as _;
 
 /// A job to be queued.
 #[derive(Debug)]
@@ -192,7 +193,7 @@ impl Store {
              ORDER BY sequence DESC LIMIT ?5"
         ))
         .bind(listing.before)
-        .bind(listing.state.map(JobState::as_str))
+        .bind(listing.state.map(|state| state.into_str()))
         .bind(&listing.name)
         .bind(&listing.client)
         .bind(listing.limit)
@@ -212,8 +213,8 @@ impl Store {
             sqlx::query_as("SELECT state, count(*) FROM jobs GROUP BY state")
                 .fetch_all(&self.readers)
                 .await?;
-        let of = |state: JobState| rows.iter().find(|(text, _)| text == state.as_str());
-        Ok(JobState::ALL
+        let of = |state: JobState| rows.iter().find(|(text, _)| text == state.into_str());
+        Ok(JobState::VARIANTS
             .iter()
             .map(|&state| Counts {
                 state,

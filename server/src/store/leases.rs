@@ -167,7 +167,7 @@ impl Store {
              WHERE sequence = ?7 AND fence = ?8 AND state = 'running' RETURNING ",
             job_columns!()
         ))
-        .bind(ended.state.as_str())
+        .bind(ended.state.into_str())
         .bind(ended.code.map(EndCode::as_str))
         .bind(&ended.detail)
         .bind(ended.incumbent_s)

@@ -6,6 +6,7 @@ use super::{Store, StoreError};
 use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 use sqlx::{FromRow, Row, SqliteConnection};
+use std::str::FromStr;
 
 /// Legs of other versions of the solver are not found, replaced when they are solved again, and
 /// forgotten when the service starts.
@@ -70,11 +71,9 @@ impl LegRow {
 
     /// The leg with what its row does not hold.
     fn stored(self, spacecraft: String, motion: Motion) -> Result<StoredLeg, StoreError> {
-        let kinds = [LegKind::RestToRest, LegKind::LowerBound];
-        let kind = kinds.into_iter().find(|kind| kind.as_str() == self.kind);
         Ok(StoredLeg {
             spacecraft,
-            kind: kind.ok_or_else(|| StoreError::Inconsistent {
+            kind: LegKind::from_str(&self.kind).map_err(|_| StoreError::Inconsistent {
                 table: "legs",
                 what: format!("there is no kind {}", self.kind),
             })?,
@@ -241,7 +240,7 @@ async fn put_leg(
     .bind(key(identity))
     .bind(identity)
     .bind(spacecraft)
-    .bind(leg.kind.as_str());
+    .bind(<&str>::from(leg.kind));
     for number in leg.turn_xyzw.into_iter().chain(leg.body_momentum_nms) {
         query = query.bind(number);
     }

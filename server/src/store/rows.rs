@@ -3,46 +3,46 @@
 use super::StoreError;
 use sqlx::FromRow;
 use sqlx::sqlite::SqliteRow;
-use std::str::FromStr;
 
-macro_rules! states {
-    ($($(#[$doc:meta])+ $name:ident = $text:literal,)+) => {
-        /// Where a job stands.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, utoipa::ToSchema)]
-        #[serde(rename_all = "lowercase")]
-        pub(crate) enum JobState {
-            $($(#[$doc])+ $name,)+
-        }
-
-        impl JobState {
-            /// All states.
-            pub(crate) const ALL: &'static [JobState] = &[$(JobState::$name,)+];
-
-            /// The stable text of the state.
-            pub(crate) const fn as_str(self) -> &'static str {
-                match self { $(Self::$name => $text,)+ }
-            }
-        }
-    };
+/// The state of a job.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    serde::Serialize,
+    utoipa::ToSchema,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase", const_into_str)]
+#[strum(parse_err_ty = String, parse_err_fn = unknown_state)]
+pub(crate) enum JobState {
+    /// Waits for its turn.
+    Queued,
+    /// Is being solved.
+    Running,
+    /// Ended with an optimal plan.
+    Succeeded,
+    /// Ended early with the best plan so far.
+    Stopped,
+    /// No plan can exist.
+    Infeasible,
+    /// No plan was found.
+    Failed,
+    /// Abandoned on request.
+    Cancelled,
+    /// Given up: its process died at every attempt.
+    Dead,
 }
 
-states! {
-    /// Waits for its turn.
-    Queued = "queued",
-    /// Is being solved.
-    Running = "running",
-    /// Ended with an optimal plan.
-    Succeeded = "succeeded",
-    /// Ended early with the best plan so far.
-    Stopped = "stopped",
-    /// No plan can exist.
-    Infeasible = "infeasible",
-    /// No plan was found.
-    Failed = "failed",
-    /// Abandoned on request.
-    Cancelled = "cancelled",
-    /// Given up: its process died at every attempt.
-    Dead = "dead",
+fn unknown_state(text: &str) -> String {
+    format!("{text:?} is not a state of a job")
 }
 
 impl JobState {
@@ -57,17 +57,6 @@ impl JobState {
             table: "jobs",
             what,
         })
-    }
-}
-
-impl FromStr for JobState {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let found = Self::ALL.iter().find(|state| state.as_str() == text);
-        found
-            .copied()
-            .ok_or_else(|| format!("{text:?} is not a state of a job"))
     }
 }
 

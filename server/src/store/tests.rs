@@ -84,7 +84,7 @@ async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
 
 /// An event that tells the state, and why it ended.
 fn state_of(job: &JobRow, _: i64) -> Result<String, StoreError> {
-    let (state, detail, code) = (job.state()?.as_str(), &job.detail, &job.code);
+    let (state, detail, code) = (job.state()?.into_str(), &job.detail, &job.code);
     let event = serde_json::json!({ "state": state, "detail": detail, "code": code });
     Ok(event.to_string())
 }

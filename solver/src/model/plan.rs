@@ -28,7 +28,8 @@ pub enum Optimality {
 }
 
 /// What a lower bound rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum LowerBoundKind {
     /// Relaxed multi-phase NLPs, assumed to be solved globally.
     NlpRelaxation,
@@ -36,18 +37,6 @@ pub enum LowerBoundKind {
     PairTable,
     /// Proved bounds of the rate-limited kinematics.
     Certified,
-}
-
-impl LowerBoundKind {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::NlpRelaxation => "nlp_relaxation",
-            Self::PairTable => "pair_table",
-            Self::Certified => "certified",
-        }
-    }
 }
 
 /// A complete answer.

@@ -38,7 +38,8 @@ pub(crate) struct Breakdown {
 }
 
 /// What can break down at a stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case", const_into_str)]
 pub(crate) enum Quantity {
     /// The cost is not finite.
     Cost,
@@ -60,7 +61,7 @@ pub(crate) enum Quantity {
 
 impl NlpStatus {
     /// The stable text of the status.
-    pub(crate) const fn as_str(self) -> &'static str {
+    pub(crate) const fn into_str(self) -> &'static str {
         match self {
             Self::Converged => "converged",
             Self::Constructed => "constructed",
@@ -81,27 +82,12 @@ impl NlpStatus {
 /// The stable text, with where the numbers broke down.
 impl fmt::Display for NlpStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())?;
+        f.write_str(self.into_str())?;
         match self {
             Self::NumericalError(Breakdown { stage, quantity }) => {
-                write!(f, " ({} of stage {stage})", quantity.as_str())
+                write!(f, " ({} of stage {stage})", quantity.into_str())
             }
             _ => Ok(()),
-        }
-    }
-}
-
-impl Quantity {
-    const fn as_str(self) -> &'static str {
-        match self {
-            Self::Cost => "cost",
-            Self::Gap => "gap",
-            Self::Equality => "equality",
-            Self::Inequality => "inequality",
-            Self::Derivative => "derivative",
-            Self::Curvature => "curvature",
-            Self::Step => "step",
-            Self::Flight => "flight",
         }
     }
 }

@@ -4,7 +4,8 @@ use crate::model::plan::Plan;
 use crate::run::contradiction::Contradiction;
 
 /// What a solve is busy with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Stage {
     /// Solving the table of leg times.
     Legs,
@@ -12,18 +13,6 @@ pub enum Stage {
     Search,
     /// Re-integrating the plan.
     Verify,
-}
-
-impl Stage {
-    /// The stable text of the stage.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Legs => "legs",
-            Self::Search => "search",
-            Self::Verify => "verify",
-        }
-    }
 }
 
 /// A snapshot of a running solve.

@@ -89,7 +89,8 @@ pub enum FinalWheels {
 }
 
 /// How torque on the body is shared out among the wheels.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum WheelAllocation {
     /// Any way within the limits: the wheels' torques are free of each other.
     #[default]
@@ -102,15 +103,6 @@ pub enum WheelAllocation {
 impl WheelAllocation {
     /// Both of them.
     pub const ALL: [Self; 2] = [Self::Free, Self::PseudoInverse];
-
-    /// The stable text of the allocation.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Free => "free",
-            Self::PseudoInverse => "pseudo_inverse",
-        }
-    }
 }
 
 /// A slew as a caller describes it.

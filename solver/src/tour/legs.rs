@@ -12,7 +12,8 @@
 use crate::model::motion::Motion;
 
 /// Which boundary conditions a tabulated leg has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum LegKind {
     /// All rates zero at both ends; with more than three wheels the null-space momentum of the
     /// scenario's start is held at both ends.
@@ -21,18 +22,6 @@ pub enum LegKind {
     LowerBound,
     /// All rates zero at both ends: no slew is solved, and the answer is a proved bound on its time.
     Certified,
-}
-
-impl LegKind {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::RestToRest => "rest_to_rest",
-            Self::LowerBound => "lower_bound",
-            Self::Certified => "certified",
-        }
-    }
 }
 
 /// A solved leg.

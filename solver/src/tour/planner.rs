@@ -222,7 +222,7 @@ pub fn leg_table(
                 duration_s: leg.flown.duration(),
                 certified_lower_bound_s: leg.certified,
                 solve_time_s: leg.solve_time,
-                status: leg.flown.status.as_str().into(),
+                status: leg.flown.status.into_str().into(),
             })
         };
         pairs.iter().filter_map(row).collect()

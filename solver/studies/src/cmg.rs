@@ -65,7 +65,8 @@ pub struct CmgCluster {
 }
 
 /// What null motion can do about a singular state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Passability {
     /// On the outer surface: there is no more momentum in that direction.
     External,
@@ -73,18 +74,6 @@ pub enum Passability {
     Elliptic,
     /// Internal, and null motion leads out of it.
     Hyperbolic,
-}
-
-impl Passability {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::External => "external",
-            Self::Elliptic => "elliptic",
-            Self::Hyperbolic => "hyperbolic",
-        }
-    }
 }
 
 /// A state in which no torque along one direction can be made.

@@ -23,7 +23,8 @@ use slewplan_solver::model::spacecraft::Spacecraft;
 use slewplan_solver::wheels::array::{Envelopes, Polytope, SpacecraftEnvelopes};
 
 /// How much of its wheels a slew about the eigenaxis may use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Limit {
     /// The sphere inside the pseudo-inverse envelope: the same in every direction, by the simplest
     /// allocation.
@@ -44,17 +45,6 @@ impl Limit {
         Self::FullSphere,
         Self::Full,
     ];
-
-    /// The stable text of the limit.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::PseudoInverseSphere => "pseudo_inverse_sphere",
-            Self::PseudoInverse => "pseudo_inverse",
-            Self::FullSphere => "full_sphere",
-            Self::Full => "full",
-        }
-    }
 
     /// How far along a demand of one unit of motion a multiple of it may go.
     fn multiple(self, envelopes: &Envelopes, demand: &Vector3<f64>) -> f64 {

@@ -154,7 +154,7 @@ fn described(plan: &Plan) -> String {
         plan.total_time_s,
         plan.lower_bound_s,
         plan.relative_gap,
-        plan.lower_bound_kind.as_str(),
+        plan.lower_bound_kind,
         plan.statistics.nodes_explored,
         plan.statistics.nlp_solves
     )

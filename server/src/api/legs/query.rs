@@ -5,7 +5,7 @@ use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
 use super::super::{App, computing, stored};
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents::leg_query::{
     self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
 };
@@ -102,7 +102,7 @@ fn answers(
         .iter()
         .find_map(|(_, spacecraft)| spacecraft.clone());
     LegAnswersDocument {
-        kind: query.kind.as_str(),
+        kind: query.kind.into(),
         spacecraft_key,
         legs: answered.into_iter().map(|(leg, _)| leg).collect(),
     }
@@ -122,7 +122,7 @@ fn certified(
     let run = Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     };
@@ -149,7 +149,7 @@ fn answer(
     let run = Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &witness,
         segments: &NoStore,
     };

@@ -11,6 +11,7 @@ use axum::response::Response;
 use slewplan_solver::model::problem::Code;
 use std::fmt::Write;
 use std::sync::LazyLock;
+use strum::VariantArray as _;
 
 /// A text of this build with its tag.
 struct Page {
@@ -104,7 +105,7 @@ fn index() -> String {
         "</table><h2 id=\"inputs\">Problems of inputs</h2>\
          <table><tr><th>Code<th>Meaning<th>What to do",
     );
-    for code in Code::ALL {
+    for code in Code::VARIANTS {
         let (meaning, remedy) = (code.meaning(), code.remedy());
         let _ = write!(
             page,

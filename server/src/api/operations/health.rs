@@ -3,7 +3,7 @@
 use super::super::error::{ApiError, ErrorCode, ErrorDocument};
 use super::super::{App, describe};
 use crate::base::clock::now_us;
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents;
 use axum::Json;
 use axum::extract::State;
@@ -104,7 +104,7 @@ fn solves(pool: &SolverPool) -> bool {
     let run = Run {
         pool,
         stop: &stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     };

@@ -153,7 +153,7 @@ pub(in crate::api) async fn handler(
     }
     let Some(result) = result else {
         return Err(if state.is_final() {
-            let detail = format!("the job ended {}", state.as_str());
+            let detail = format!("the job ended {}", state.into_str());
             ApiError::new(ErrorCode::NoResult, detail)
         } else {
             let detail = "no plan has been found so far; follow the events";
@@ -172,7 +172,7 @@ pub(in crate::api) async fn handler(
             exported(&app, (&id, &tag), &result, (format, options)).await?
         }
     };
-    let state = HeaderValue::from_static(state.as_str());
+    let state = HeaderValue::from_static(state.into_str());
     response.headers_mut().insert(JOB_STATE, state);
     Ok(response)
 }

@@ -84,7 +84,7 @@ fn decode(fields: &Fields<'_>) -> Option<LegTable> {
 
 fn kind(cursor: &Cursor<'_>) -> Option<LegKind> {
     let kinds = [LegKind::RestToRest, LegKind::LowerBound, LegKind::Certified];
-    cursor.choice(&kinds.map(|kind| (kind.as_str(), kind)))
+    cursor.choice(&kinds.map(|kind| (kind.into(), kind)))
 }
 
 fn key(cursor: &Cursor<'_>) -> Option<String> {

@@ -116,7 +116,7 @@ fn radii(cursor: &Cursor<'_>) -> Option<Radii> {
             ];
             let fields = cursor.object(known)?;
             let radius = |control: Control| {
-                let given = fields.optional(control.as_str());
+                let given = fields.optional(control.into());
                 let given = given.and_then(|it| radius(&it));
                 given.unwrap_or(Radii::PUBLISHED.of(control))
             };

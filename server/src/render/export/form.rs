@@ -1,6 +1,7 @@
 //! The forms that a plan can be written in: its own, or that of another tool.
 
 use super::Format;
+use strum::VariantArray as _;
 
 /// The form of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,8 +17,8 @@ impl Form {
     pub(crate) const ALL: [Self; 8] = {
         let mut all = [Self::Json; 8];
         let mut index = 0;
-        while index < Format::ALL.len() {
-            all[index + 1] = Self::Export(Format::ALL[index]);
+        while index < Format::VARIANTS.len() {
+            all[index + 1] = Self::Export(Format::VARIANTS[index]);
             index += 1;
         }
         all

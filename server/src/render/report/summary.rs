@@ -98,7 +98,7 @@ fn bound(plan: &Plan) -> String {
             "{:.3} s, gap {:.4} % ({}: {meaning})",
             plan.lower_bound_s,
             plan.relative_gap * 100.0,
-            plan.lower_bound_kind.as_str()
+            plan.lower_bound_kind
         ),
     ) + &proved
 }

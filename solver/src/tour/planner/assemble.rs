@@ -69,7 +69,7 @@ impl Assembly<'_> {
             certified_lower_bound_s: None,
             eigenaxis_duration_s: self.eigenaxis_duration(from, to),
             rest_to_rest_duration_s: None,
-            solver_status: solution.status.as_str().into(),
+            solver_status: solution.status.into_str().into(),
         });
     }
 

@@ -384,7 +384,7 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
         reversible: leg.reversible,
         duration_s: profile.duration(),
         certified_lower_bound_s: solved.certified,
-        status: solved.flown.status.as_str().into(),
+        status: solved.flown.status.into_str().into(),
         solve_time_s: solved.solve_time,
         motion: profile.into(),
     }

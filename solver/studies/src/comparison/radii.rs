@@ -5,15 +5,20 @@ use crate::cmg::CmgCluster;
 use slewplan_solver::model::findings::Findings;
 
 /// How a pyramid of devices is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Control {
     /// Wheels, slews about the eigenaxis, shared out by the pseudo-inverse.
+    #[strum(serialize = "rw_eigenaxis")]
     Eigenaxis,
     /// Wheels, time-optimal slews within what the pseudo-inverse shares out.
+    #[strum(serialize = "rw_pseudo_optimal")]
     PseudoOptimal,
     /// Wheels, time-optimal slews.
+    #[strum(serialize = "rw_optimal")]
     Optimal,
     /// Control moment gyroscopes, within the sphere inside their internal singularities.
+    #[strum(serialize = "cmg")]
     Gyroscopes,
 }
 
@@ -25,17 +30,6 @@ impl Control {
         Self::Optimal,
         Self::Gyroscopes,
     ];
-
-    /// The stable text of the control.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Eigenaxis => "rw_eigenaxis",
-            Self::PseudoOptimal => "rw_pseudo_optimal",
-            Self::Optimal => "rw_optimal",
-            Self::Gyroscopes => "cmg",
-        }
-    }
 }
 
 /// Body momentum and torque as multiples of a device's.
@@ -117,7 +111,7 @@ impl Radii {
     pub(super) fn check(&self, pointer: &str, findings: &mut Findings) {
         for control in Control::ALL {
             let radius = self.of(control);
-            let at = format!("{pointer}/{}", control.as_str());
+            let at = format!("{pointer}/{control}");
             findings.positive(&format!("{at}/momentum"), radius.momentum);
             findings.positive(&format!("{at}/torque"), radius.torque);
         }

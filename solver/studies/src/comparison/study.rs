@@ -223,9 +223,13 @@ fn check(spec: &StudySpec, findings: &mut Findings) {
     }
     within("/required_rate_rad_s", of.required_rate_rad_s, findings);
     for control in Control::ALL {
-        let (at, radius) = (control.as_str(), of.radii.of(control));
-        within(&format!("/radii/{at}/momentum"), radius.momentum, findings);
-        within(&format!("/radii/{at}/torque"), radius.torque, findings);
+        let radius = of.radii.of(control);
+        within(
+            &format!("/radii/{control}/momentum"),
+            radius.momentum,
+            findings,
+        );
+        within(&format!("/radii/{control}/torque"), radius.torque, findings);
     }
     for (name, law) in [("wheel", of.laws.wheel), ("gyroscope", of.laws.gyroscope)] {
         within(&format!("/laws/{name}/factor"), law.factor, findings);

@@ -225,7 +225,7 @@ impl ComparisonAnswerDocument {
             let Radius { momentum, torque } = of.radii.of(control);
             let computed = study.computed_radii.of(control);
             RadiusDocument {
-                control: control.as_str(),
+                control: control.into(),
                 momentum: Number(momentum),
                 torque: Number(torque),
                 computed_momentum: Number(computed.momentum),
@@ -288,7 +288,7 @@ impl From<&SingularSurface> for SurfaceDocument {
             state.as_ref().map(|state| SingularStateDocument {
                 direction: <[f64; 3]>::from(state.direction).map(Number),
                 momentum: <[f64; 3]>::from(state.momentum).map(Number),
-                kind: state.passability.as_str(),
+                kind: state.passability.into(),
             })
         });
         Self {
@@ -350,7 +350,7 @@ impl From<&SizeComparison> for SizeDocument {
 impl From<(&Agility, &Durations)> for ControlDocument {
     fn from((agility, slews): (&Agility, &Durations)) -> Self {
         Self {
-            control: agility.control.as_str(),
+            control: agility.control.into(),
             body_momentum_nms: Number(agility.momentum_nms),
             body_torque_nm: Number(agility.torque_nm),
             rate_rad_s: Number(agility.rate_rad_s),
@@ -363,7 +363,7 @@ impl From<(&Agility, &Durations)> for ControlDocument {
 impl From<&Advantage> for AdvantageDocument {
     fn from(advantage: &Advantage) -> Self {
         Self {
-            control: advantage.control.as_str(),
+            control: advantage.control.into(),
             angle_rad: advantage.angle_rad.map(Number),
             with_cut_off_rad: advantage.with_cut_off_rad.map(Number),
         }
@@ -373,7 +373,7 @@ impl From<&Advantage> for AdvantageDocument {
 impl AdvantageCurvesDocument {
     fn new(study: &Study) -> Self {
         let published = PUBLISHED_ANGLES.iter().map(|angle| PublishedDocument {
-            control: angle.control.as_str(),
+            control: angle.control.into(),
             momentum_nms: Number(angle.momentum_nms),
             angle_rad: Number(angle.angle_deg.to_radians()),
         });
@@ -393,7 +393,7 @@ impl From<&AdvantageCurve> for CurveDocument {
     fn from(curve: &AdvantageCurve) -> Self {
         let angles = curve.angles_rad.iter();
         Self {
-            control: curve.control.as_str(),
+            control: curve.control.into(),
             angles_rad: angles.map(|angle| angle.map(Number)).collect(),
         }
     }

@@ -238,7 +238,7 @@ impl From<&(EigenaxisSlew, EnvelopePath)> for EigenaxisDocument {
     fn from((slew, path): &(EigenaxisSlew, EnvelopePath)) -> Self {
         let course = &slew.course;
         Self {
-            limit: slew.limit.as_str(),
+            limit: slew.limit.into(),
             duration_s: Number(course.duration()),
             rate_rad_s: Number(course.rate()),
             acceleration_rad_s2: Number(course.acceleration()),
@@ -254,7 +254,7 @@ impl<'a> From<&'a TimeOptimalSlew> for TimeOptimalDocument<'a> {
     fn from(slew: &'a TimeOptimalSlew) -> Self {
         let found = slew.found.as_ref();
         Self {
-            allocation: slew.allocation.as_str(),
+            allocation: slew.allocation.into(),
             solved: found.is_some(),
             status: &slew.status,
             duration_s: found.map(|(duration, _)| Number(*duration)),

@@ -1,6 +1,6 @@
-//! The multi-phase problem: fly through waypoints in a fixed order in minimum time.
+//! The multi-phase problem: the minimum-time motion through waypoints in a fixed order.
 //!
-//! A leg is the case of two waypoints, a tour that of many. Rate components and wheel momenta that
+//! Two waypoints make a leg, many a tour. Rate components and wheel momenta that
 //! a waypoint leaves free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
@@ -17,23 +17,23 @@ use crate::model::waypoint::Waypoint;
 use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
 use between_nodes::excess_between_nodes;
 pub(crate) use between_nodes::{excess_inside, keeps_limits_inside};
-pub(crate) use extended::fly_on;
+pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
-pub(crate) use rolling::fly_rolling;
+pub(crate) use rolling::solve_rolling;
 
-/// A program to solve on the way to another.
-struct Phase {
+/// One pass of the engine over the program; each begins where the one before it ended.
+struct Pass {
     settings: Settings,
-    /// Weights of the penalty that draws the controls to those at the phase's beginning.
+    /// Weights of the penalty that draws the controls to those at the beginning of the pass.
     penalty: ControlPenalty,
 }
 
-/// Which limits are active and roughly where the switches are, then where exactly. A strong penalty
-/// on lengths halves the iterations but costs up to 0.15 % of the duration; a weaker one, drawn to
-/// the lengths of the first phase, costs 0.02 % at most (measured on 171 legs).
-const FROM_A_GUESS: [Phase; 2] = [
+/// First the active limits and the approximate switches, then the accurate solution. A strong penalty
+/// on lengths saves iterations but lengthens the motion; the second pass has a weaker one, drawn to the
+/// lengths of the first.
+const FROM_A_GUESS: [Pass; 2] = [
     ROUGHLY,
-    Phase {
+    Pass {
         settings: Settings {
             initial_barrier: 1e-3,
             ..Settings::COLD
@@ -41,12 +41,12 @@ const FROM_A_GUESS: [Phase; 2] = [
         penalty: ControlPenalty::of_lengths(0.02),
     },
 ];
-/// The same with momentum under a rate limit: there are more intervals than switches, so a torque
-/// may move from one to its neighbour at no cost. Penalties that settle it save a third of the
-/// iterations for less than 1e-5 of the duration (measured on 40 slews with rate limits).
-const ALONG_LIMITS: [Phase; 2] = [
+/// The same with momentum under a rate limit. There are more intervals than switches, so torque can move
+/// from one interval to its neighbour at no cost; penalties on lengths and momentum changes make the
+/// solution unique.
+const ALONG_LIMITS: [Pass; 2] = [
     ROUGHLY,
-    Phase {
+    Pass {
         settings: Settings {
             initial_barrier: 1e-3,
             tolerance: 5e-6,
@@ -58,7 +58,7 @@ const ALONG_LIMITS: [Phase; 2] = [
         },
     },
 ];
-const ROUGHLY: Phase = Phase {
+const ROUGHLY: Pass = Pass {
     settings: Settings {
         tolerance: 1e-2,
         feasibility: 1e-3,
@@ -66,8 +66,8 @@ const ROUGHLY: Phase = Phase {
     },
     penalty: ControlPenalty::of_lengths(0.1),
 };
-/// From the primal solution of almost the same program.
-const POLISHING: [Phase; 1] = [Phase {
+/// From the primal solution of a program with a slightly stronger penalty.
+const POLISHING: [Pass; 1] = [Pass {
     settings: Settings {
         tolerance: 1e-9,
         initial_barrier: 1e-4,
@@ -80,28 +80,28 @@ const POLISHING: [Phase; 1] = [Phase {
 const POLISH_ROUNDS: usize = 6;
 const POLISHED: f64 = 1e-8;
 
-/// Rounds of correcting the turns and raising the reserves at limits.
+/// Limit of the rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 12;
-/// Rounds that keep a reserve only where a limit was exceeded, and the relative excess from which on
-/// they do; smaller ones are taken off everywhere, which costs half of them in duration.
+/// Rounds that raise reserves only where a limit was exceeded, and the relative excess above which they
+/// do. Smaller excesses become reserves everywhere, which costs half of them in duration.
 const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
-/// Reserve per excess: a little more than is missing, since the motion moves when it is tightened.
+/// Reserve per excess: above one, since the motion changes when limits are tightened.
 const RESERVE_FACTOR: f64 = 1.1;
-/// Relative excess up to which the multipliers are near those of the tightened program, and the
-/// barrier parameter to go on with.
+/// Relative excess up to which the multipliers are near those of the tightened program, and the barrier
+/// parameter of a warm start from them.
 pub(crate) const NEAR_EXCESS: f64 = 1e-2;
 pub(crate) const NEAR_BARRIER: f64 = 1e-5;
-/// Angle, rad, by which a flight may miss its end as the optimiser sees it; the checker's tolerance
-/// is hundreds of times this.
+/// Angle, rad, by which the exact turns of a solution may miss its end; the checker's tolerance is
+/// hundreds of times this.
 const MISS_TOLERANCE: f64 = 3e-9;
-/// A miss, rad, that asks for better derivatives too.
+/// A miss, rad, above which the turn map's derivatives are too inaccurate as well.
 const LARGE_MISS: f64 = 1e-3;
-/// Relative excess over a limit between nodes that is not worth another round; the checker's
-/// tolerance is ten times this.
+/// Relative excess over a limit between nodes that is accepted; the checker's tolerance is ten times
+/// this.
 const LIMIT_TOLERANCE: f64 = 1e-7;
 
-/// A solved flight.
+/// The solution of a leg, or of several legs as one motion.
 #[derive(Debug, Clone)]
 pub(crate) struct LegSolution {
     /// How the NLP ended.
@@ -112,15 +112,15 @@ pub(crate) struct LegSolution {
     pub(crate) intervals: Vec<usize>,
     /// Interior-point iterations.
     pub(crate) iterations: usize,
-    /// Largest violation of any condition at the end, scaled.
+    /// Largest violation of any condition by the last iterate, scaled.
     pub(crate) infeasibility: f64,
-    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: what the legs
-    /// before it save per momentum with which it is passed, and what the legs after it lose.
+    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: the time that the
+    /// legs before it save per momentum there, and that the legs after it lose.
     pub(crate) costates: Vec<DVector<f64>>,
 }
 
 impl LegSolution {
-    /// A flight of which not even a guess is known.
+    /// No solution, for want of a guess.
     pub(crate) fn nowhere() -> Self {
         Self {
             status: NlpStatus::IterationLimit,
@@ -132,29 +132,30 @@ impl LegSolution {
         }
     }
 
-    /// The flight backwards, which is one where momenta and torques admit it.
+    /// The solution reversed in time, which solves the reversed leg where momenta and torques admit it.
     pub(crate) fn reversed(&self) -> Self {
         Self {
             profile: self.profile.reversed(),
             intervals: self.intervals.iter().rev().copied().collect(),
-            // What was saved is lost, but the momenta have changed their sign too.
+            // Reversal changes the sign of costates and of momenta.
             costates: self.costates.iter().rev().cloned().collect(),
             ..*self
         }
     }
 
-    /// Duration, s, where there is a motion that flies.
+    /// Duration, s, where there is a motion that meets all conditions.
     pub(crate) fn duration(&self) -> Option<f64> {
-        let flies = matches!(self.status, NlpStatus::Converged | NlpStatus::Constructed);
-        flies.then(|| self.profile.duration())
+        let valid = matches!(self.status, NlpStatus::Converged | NlpStatus::Constructed);
+        valid.then(|| self.profile.duration())
     }
 
-    /// Duration, s, when the NLP converged: none is faster, if that was solved globally.
+    /// Duration, s, when the NLP converged: a local minimum.
     pub(crate) fn least_duration(&self) -> Option<f64> {
         (self.status == NlpStatus::Converged).then(|| self.profile.duration())
     }
 
-    /// Whether it beats another flight: converged ones beat all others, ties go to the other.
+    /// Whether it is better than another solution: those with a duration are better than those without,
+    /// and equal durations are no improvement.
     pub(crate) fn improves(&self, other: &LegSolution) -> bool {
         match (self.duration(), other.duration()) {
             (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
@@ -167,19 +168,19 @@ impl LegSolution {
 /// Relative difference below which two durations are the same.
 const SAME_DURATION: f64 = 1e-9;
 
-/// Flies through waypoints from a guess whose nodes are split into legs by `intervals`.
-pub(crate) fn fly(
+/// Solves for the motion through waypoints, from a guess whose nodes are split into legs by `intervals`.
+pub(crate) fn solve_through(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> LegSolution {
-    Flight::new(dynamics, waypoints, intervals, guess).solve(from_a_guess(dynamics), stop)
+    MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(from_a_guess(dynamics), stop)
 }
 
-/// The phases that lead from a guess to a solution.
-fn from_a_guess(dynamics: &Dynamics) -> &'static [Phase] {
+/// The passes that lead from a guess to a solution.
+fn from_a_guess(dynamics: &Dynamics) -> &'static [Pass] {
     if dynamics.straying() > 0.0 {
         &ALONG_LIMITS
     } else {
@@ -195,31 +196,32 @@ pub(crate) fn polish(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
-    mut flown: LegSolution,
+    mut solution: LegSolution,
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> LegSolution {
     for _ in 0..POLISH_ROUNDS {
-        let Some(before) = flown.least_duration() else {
+        let Some(before) = solution.least_duration() else {
             break;
         };
+        let guess = &solution.profile;
         let next =
-            Flight::new(dynamics, waypoints, intervals, &flown.profile).solve(&POLISHING, stop);
+            MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(&POLISHING, stop);
         let Some(after) = next.duration() else {
             break;
         };
         if after > before {
             break;
         }
-        flown = next;
+        solution = next;
         if before - after <= POLISHED * before {
             break;
         }
     }
-    flown
+    solution
 }
 
-/// A flight on the way to its solution.
-struct Flight<'a> {
+/// A motion through waypoints on the way to its solution.
+struct MultiphaseSolve<'a> {
     dynamics: &'a Dynamics,
     scales: Scales,
     chain: Transcription,
@@ -227,10 +229,10 @@ struct Flight<'a> {
     iterate: Iterate,
     /// Interval that ends at each waypoint between two legs.
     arrivals: Vec<usize>,
-    flown: LegSolution,
+    solution: LegSolution,
 }
 
-impl<'a> Flight<'a> {
+impl<'a> MultiphaseSolve<'a> {
     fn new(
         dynamics: &'a Dynamics,
         waypoints: &[Waypoint],
@@ -248,7 +250,7 @@ impl<'a> Flight<'a> {
             chain,
             iterate: scaled(guess, &scales),
             arrivals: arrivals(intervals),
-            flown: LegSolution {
+            solution: LegSolution {
                 status: NlpStatus::IterationLimit,
                 profile: guess.clone(),
                 intervals: intervals.to_vec(),
@@ -259,18 +261,19 @@ impl<'a> Flight<'a> {
         }
     }
 
-    /// Solves one phase after the other, and the last one until its solution can be flown.
-    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
-        if !self.passes(phases, stop) {
-            return self.flown;
+    /// Runs the passes, and then corrects turns and reserves until the exact motion arrives and keeps its
+    /// limits between nodes too.
+    fn run(mut self, passes: &[Pass], stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
+        if !self.run_passes(passes, stop) {
+            return self.solution;
         }
-        let mut reserves = Reserves::none(self.dynamics, self.flown.profile.intervals());
+        let mut reserves = Reserves::none(self.dynamics, self.solution.profile.intervals());
         for round in 0..MAX_ROUNDS {
             let missed = self.chain.correct(&self.iterate);
-            let excesses = excess_between_nodes(self.dynamics, &self.flown.profile);
+            let excesses = excess_between_nodes(self.dynamics, &self.solution.profile);
             let excess = excesses.iter().copied().fold(0.0, f64::max);
             if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
-                return self.flown;
+                return self.solution;
             }
             if missed > LARGE_MISS {
                 self.chain.refine(&self.iterate);
@@ -284,15 +287,15 @@ impl<'a> Flight<'a> {
                 self.tighten(&reserves, excess);
             }
             if !self.converges(stop) {
-                return self.flown;
+                return self.solution;
             }
         }
-        // Converged at the nodes, and yet not to be flown: more rounds would be needed.
-        self.flown.status = NlpStatus::IterationLimit;
-        self.flown
+        // Converged at the nodes, but the exact motion still misses its end or exceeds a limit.
+        self.solution.status = NlpStatus::IterationLimit;
+        self.solution
     }
 
-    /// Keeps reserves that answer an excess from now on.
+    /// Sets reserves raised for an excess, and the start of the next solve.
     fn tighten(&mut self, reserves: &Reserves, excess: f64) {
         self.chain.keep(reserves);
         let settings = &mut self.engine.settings;
@@ -300,23 +303,23 @@ impl<'a> Flight<'a> {
             settings.initial_barrier = NEAR_BARRIER;
             self.iterate.recentre(NEAR_BARRIER);
         } else {
-            // Slacks belong to the old limits: begin again from the primal point alone.
+            // Slacks and multipliers belong to the old limits: a cold start from the primal point.
             settings.initial_barrier = Settings::COLD.initial_barrier;
-            self.iterate = scaled(&self.flown.profile, &self.scales);
+            self.iterate = scaled(&self.solution.profile, &self.scales);
         }
     }
 
-    /// Solves one phase after the other; whether all converge.
-    fn passes(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> bool {
-        phases.iter().all(|phase| {
-            self.chain.draw_controls_to(&self.iterate, phase.penalty);
-            self.engine.settings = phase.settings;
+    /// Runs one pass after the other; whether all converge.
+    fn run_passes(&mut self, passes: &[Pass], stop: &dyn Fn() -> Option<Interruption>) -> bool {
+        passes.iter().all(|pass| {
+            self.chain.draw_controls_to(&self.iterate, pass.penalty);
+            self.engine.settings = pass.settings;
             self.converges(stop)
         })
     }
 
-    /// Multipliers of the links that end between two legs: were each of the two to have its own copy
-    /// of the state, these would be what makes the copies equal.
+    /// Multipliers of the links that end between two legs. They are the multipliers of the condition that
+    /// two copies of the state there, one for each leg, are equal.
     fn costates(&self) -> Vec<DVector<f64>> {
         let states = 3 + self.dynamics.wheel_count();
         let unit = self.scales.time / self.scales.momentum;
@@ -327,14 +330,14 @@ impl<'a> Flight<'a> {
         self.arrivals.iter().map(of_momenta).collect()
     }
 
-    /// Runs the engine from where the flight is; whether it converges.
+    /// Runs the engine from the current iterate; whether it converges.
     fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
-        self.flown = LegSolution {
+        self.solution = LegSolution {
             status: report.status,
             profile: physical(&self.iterate, &self.scales, self.dynamics.wheel_count()),
-            intervals: std::mem::take(&mut self.flown.intervals),
-            iterations: self.flown.iterations + report.iterations,
+            intervals: std::mem::take(&mut self.solution.intervals),
+            iterations: self.solution.iterations + report.iterations,
             infeasibility: report.infeasibility,
             costates: self.costates(),
         };
@@ -352,8 +355,8 @@ fn arrivals(intervals: &[usize]) -> Vec<usize> {
     ends.collect()
 }
 
-/// The middle one of the legs' turns, rad, or of what takes as long as the changes that their ends
-/// ask for; legs on which nothing happens do not count.
+/// The median of the legs' turns, rad, where the changes between a leg's ends count as the turn that
+/// takes as long; legs without turn or change do not count.
 fn typical_angle(dynamics: &Dynamics, waypoints: &[Waypoint]) -> f64 {
     let mut angles: Vec<f64> = waypoints
         .windows(2)

@@ -34,8 +34,7 @@ const MOMENT: [f64; TERMS] = [0.0, 1.0, 1.0 / 2.0, 3.0 / 20.0, 1.0 / 30.0];
 /// `1 / (2^i i!)`: in the rate in the middle.
 const MIDDLE: [f64; TERMS] = [1.0, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 48.0, 1.0 / 384.0];
 
-/// Derivatives of three numbers by the inputs, a row each: what is done to a row is done to all
-/// inputs at once.
+/// Derivatives of three numbers by the inputs, a row for each number.
 type Rows = [[f64; INPUTS]; 3];
 const NO_ROWS: Rows = [[0.0; INPUTS]; 3];
 

@@ -353,14 +353,14 @@ fn solve(
         .lower_bound;
     let problem = leg.problem(&places.extremals);
     let mut solved = solve::solve(&problem, certified, &|| interruption(stop));
-    if solved.flown.duration().is_some() && !flies(places, leg, &solved.flown.profile) {
-        solved.flown.status = NlpStatus::NumericalError(Breakdown {
-            stage: solved.flown.profile.intervals(),
+    if solved.solution.duration().is_some() && !flies(places, leg, &solved.solution.profile) {
+        solved.solution.status = NlpStatus::NumericalError(Breakdown {
+            stage: solved.solution.profile.intervals(),
             quantity: Quantity::Flight,
         });
     }
     SolvedLeg {
-        flown: solved.flown,
+        flown: solved.solution,
         certified,
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),

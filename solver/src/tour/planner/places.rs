@@ -105,7 +105,7 @@ impl<'a> Places<'a> {
                     attitude: start.attitude,
                     rate: fixed(&start.rate),
                     wheels: wheels(&start.rate, &start.wheel_speed),
-                    price: None,
+                    costates: None,
                 }
             }
             Place::Target(i) => {
@@ -114,7 +114,7 @@ impl<'a> Places<'a> {
                     attitude: target.attitude,
                     rate: target.rate,
                     wheels: WheelCondition::Free,
-                    price: None,
+                    costates: None,
                 }
             }
             Place::End => {
@@ -127,7 +127,7 @@ impl<'a> Places<'a> {
                     attitude: end.attitude,
                     rate: fixed(&end.rate),
                     wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
-                    price: None,
+                    costates: None,
                 }
             }
         }
@@ -139,7 +139,7 @@ impl<'a> Places<'a> {
             attitude: self.waypoint(place).attitude,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
-            price: None,
+            costates: None,
         }
     }
 

@@ -14,7 +14,7 @@ use super::places::Places;
 use super::segments::Segments;
 use super::starts::Start;
 use super::tables::{CertifiedTable, LegTable};
-use crate::leg::multiphase::{LegSolution, fly, fly_on, fly_rolling, polish};
+use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::order_rules::OrderRules;
 use crate::model::waypoint::Waypoint;
@@ -297,12 +297,12 @@ impl<'a> Tours<'a> {
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
         let waypoints = self.program(route, &guess, &intervals);
-        let fly = match start {
-            Start::Shorter => fly_on,
-            Start::Eigenaxes => fly_rolling,
-            Start::Extremals | Start::AtRest => fly,
+        let solve = match start {
+            Start::Shorter => solve_extended,
+            Start::Eigenaxes => solve_rolling,
+            Start::Extremals | Start::AtRest => solve_through,
         };
-        let flown = fly(dynamics, &waypoints, &intervals, &guess, &|| {
+        let flown = solve(dynamics, &waypoints, &intervals, &guess, &|| {
             interruption(self.stop)
         });
         let failed = flown.duration().is_none() && !flown.status.is_interrupted();

@@ -27,10 +27,10 @@
 //!
 //! The method is the primal-dual barrier method with a filter line search of Waechter and Biegler
 //! (Math. Program. 106, 2006), with exact second derivatives and second-order corrections.
-//! Differences: where a convex system is so flat that its step had to be shortened a lot, the next one
-//! is regularised, which shortens steps in flat directions; node equalities enter the sweep as a
-//! proximal penalty whose centre is iterated to the exact multiplier, which keeps the factorisation a
-//! plain Cholesky; restoration takes least-squares steps on the same structure.
+//! Differences: where a convex system is so flat that its step had to be shortened a lot, the next
+//! one is regularised, which shortens steps in flat directions; node equalities enter the sweep as
+//! a proximal penalty whose centre is iterated to the exact multiplier, which keeps the
+//! factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
 //!
 //! | role | type |
 //! |---|---|

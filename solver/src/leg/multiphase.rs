@@ -28,9 +28,9 @@ struct Pass {
     penalty: ControlPenalty,
 }
 
-/// First the active limits and the approximate switches, then the accurate solution. A strong penalty
-/// on lengths saves iterations but lengthens the motion; the second pass has a weaker one, drawn to the
-/// lengths of the first.
+/// First the active limits and the approximate switches, then the accurate solution. A strong
+/// penalty on lengths saves iterations but lengthens the motion; the second pass has a weaker one,
+/// drawn to the lengths of the first.
 const FROM_A_GUESS: [Pass; 2] = [
     ROUGHLY,
     Pass {
@@ -41,9 +41,9 @@ const FROM_A_GUESS: [Pass; 2] = [
         penalty: ControlPenalty::of_lengths(0.02),
     },
 ];
-/// The same with momentum under a rate limit. There are more intervals than switches, so torque can move
-/// from one interval to its neighbour at no cost; penalties on lengths and momentum changes make the
-/// solution unique.
+/// The same with momentum under a rate limit. There are more intervals than switches, so torque can
+/// move from one interval to its neighbour at no cost; penalties on lengths and momentum changes
+/// make the solution unique.
 const ALONG_LIMITS: [Pass; 2] = [
     ROUGHLY,
     Pass {
@@ -82,14 +82,14 @@ const POLISHED: f64 = 1e-8;
 
 /// Limit of the rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 12;
-/// Rounds that raise reserves only where a limit was exceeded, and the relative excess above which they
-/// do. Smaller excesses become reserves everywhere, which costs half of them in duration.
+/// Rounds that raise reserves only where a limit was exceeded, and the relative excess above which
+/// they do. Smaller excesses become reserves everywhere, which costs half of them in duration.
 const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
 /// Reserve per excess: above one, since the motion changes when limits are tightened.
 const RESERVE_FACTOR: f64 = 1.1;
-/// Relative excess up to which the multipliers are near those of the tightened program, and the barrier
-/// parameter of a warm start from them.
+/// Relative excess up to which the multipliers are near those of the tightened program, and the
+/// barrier parameter of a warm start from them.
 pub(crate) const NEAR_EXCESS: f64 = 1e-2;
 pub(crate) const NEAR_BARRIER: f64 = 1e-5;
 /// Angle, rad, by which the exact turns of a solution may miss its end; the checker's tolerance is
@@ -97,8 +97,8 @@ pub(crate) const NEAR_BARRIER: f64 = 1e-5;
 const MISS_TOLERANCE: f64 = 3e-9;
 /// A miss, rad, above which the turn map's derivatives are too inaccurate as well.
 const LARGE_MISS: f64 = 1e-3;
-/// Relative excess over a limit between nodes that is accepted; the checker's tolerance is ten times
-/// this.
+/// Relative excess over a limit between nodes that is accepted; the checker's tolerance is ten
+/// times this.
 const LIMIT_TOLERANCE: f64 = 1e-7;
 
 /// The solution of a leg, or of several legs as one motion.
@@ -114,8 +114,8 @@ pub(crate) struct LegSolution {
     pub(crate) iterations: usize,
     /// Largest violation of any condition by the last iterate, scaled.
     pub(crate) infeasibility: f64,
-    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: the time that the
-    /// legs before it save per momentum there, and that the legs after it lose.
+    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: the time
+    /// that the legs before it save per momentum there, and that the legs after it lose.
     pub(crate) costates: Vec<DVector<f64>>,
 }
 
@@ -132,7 +132,8 @@ impl LegSolution {
         }
     }
 
-    /// The solution reversed in time, which solves the reversed leg where momenta and torques admit it.
+    /// The solution reversed in time, which solves the reversed leg where momenta and torques admit
+    /// it.
     pub(crate) fn reversed(&self) -> Self {
         Self {
             profile: self.profile.reversed(),
@@ -154,8 +155,8 @@ impl LegSolution {
         (self.status == NlpStatus::Converged).then(|| self.profile.duration())
     }
 
-    /// Whether it is better than another solution: those with a duration are better than those without,
-    /// and equal durations are no improvement.
+    /// Whether it is better than another solution: those with a duration are better than those
+    /// without, and equal durations are no improvement.
     pub(crate) fn improves(&self, other: &LegSolution) -> bool {
         match (self.duration(), other.duration()) {
             (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
@@ -168,7 +169,8 @@ impl LegSolution {
 /// Relative difference below which two durations are the same.
 const SAME_DURATION: f64 = 1e-9;
 
-/// Solves for the motion through waypoints, from a guess whose nodes are split into legs by `intervals`.
+/// Solves for the motion through waypoints, from a guess whose nodes are split into legs by
+/// `intervals`.
 pub(crate) fn solve_through(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
@@ -261,8 +263,8 @@ impl<'a> MultiphaseSolve<'a> {
         }
     }
 
-    /// Runs the passes, and then corrects turns and reserves until the exact motion arrives and keeps its
-    /// limits between nodes too.
+    /// Runs the passes, and then corrects turns and reserves until the exact motion arrives and
+    /// keeps its limits between nodes too.
     fn run(mut self, passes: &[Pass], stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
         if !self.run_passes(passes, stop) {
             return self.solution;
@@ -318,8 +320,8 @@ impl<'a> MultiphaseSolve<'a> {
         })
     }
 
-    /// Multipliers of the links that end between two legs. They are the multipliers of the condition that
-    /// two copies of the state there, one for each leg, are equal.
+    /// Multipliers of the links that end between two legs. They are the multipliers of the
+    /// condition that two copies of the state there, one for each leg, are equal.
     fn costates(&self) -> Vec<DVector<f64>> {
         let states = 3 + self.dynamics.wheel_count();
         let unit = self.scales.time / self.scales.momentum;
@@ -355,8 +357,8 @@ fn arrivals(intervals: &[usize]) -> Vec<usize> {
     ends.collect()
 }
 
-/// The median of the legs' turns, rad, where the changes between a leg's ends count as the turn that
-/// takes as long; legs without turn or change do not count.
+/// The median of the legs' turns, rad, where the changes between a leg's ends count as the turn
+/// that takes as long; legs without turn or change do not count.
 fn typical_angle(dynamics: &Dynamics, waypoints: &[Waypoint]) -> f64 {
     let mut angles: Vec<f64> = waypoints
         .windows(2)

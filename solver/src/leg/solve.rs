@@ -26,7 +26,8 @@ use starts::Starts;
 use steered::steered;
 use zero_length::zero_length;
 
-/// Relative excess over the duration of the eigenaxis slew above which that slew replaces a solution.
+/// Relative excess over the duration of the eigenaxis slew above which that slew replaces a
+/// solution.
 const EIGENAXIS_TOLERANCE: f64 = 1e-6;
 /// Relative difference below which wheel momenta are the same.
 const SAME_MOMENTUM: f64 = 1e-9;
@@ -107,8 +108,8 @@ impl LegProblem<'_> {
         self.resolution.intervals_of(self.dynamics, turn)
     }
 
-    /// A solution constructed without a program: slowly about the eigenaxis. `None` where the wheels
-    /// cannot hold the momentum along the way.
+    /// A solution constructed without a program: slowly about the eigenaxis. `None` where the
+    /// wheels cannot hold the momentum along the way.
     pub(crate) fn constructed(&self) -> Option<LegSolution> {
         steered(self)
     }
@@ -201,8 +202,8 @@ impl LegProblem<'_> {
         slew.guess(self.dynamics, intervals, side)
     }
 
-    /// Least duration of a guess, s: long enough to change the rates and momenta of one end into those
-    /// of the other, and above zero in any case.
+    /// Least duration of a guess, s: long enough to change the rates and momenta of one end into
+    /// those of the other, and above zero in any case.
     fn least_duration(&self) -> f64 {
         let change = self.from.change_time(self.to, self.dynamics);
         change.max(self.dynamics.least_duration())

@@ -1,8 +1,8 @@
 //! From continuous motions through waypoints to a chain-structured nonlinear program.
 //!
-//! A motion passes waypoints `0 .. L`; each leg between two of them has intervals of constant torque
-//! whose lengths are unknowns, so that nodes lie on the switches and the torques can be commanded
-//! exactly. Variables of interval `k` (scaled, see [`Scales`]):
+//! A motion passes waypoints `0 .. L`; each leg between two of them has intervals of constant
+//! torque whose lengths are unknowns, so that nodes lie on the switches and the torques can be
+//! commanded exactly. Variables of interval `k` (scaled, see [`Scales`]):
 //!
 //! | symbol | meaning |
 //! |---|---|
@@ -13,12 +13,13 @@
 //!
 //! With `m` instead of torque all links and limits but the attitude's are linear:
 //! `h_{k+1} = h_k + m_k`, `min_torque tau <= m <= max_torque tau` (which implies `tau >= 0`), and
-//! an interval may shrink to nothing without any variable losing its meaning. Speed and rate
-//! limits hold at nodes; between nodes `h` is linear, so without total momentum they hold there
-//! too. With it rate limits hold in the middle of intervals as well ([`middle`]), and excesses found
-//! between nodes tighten all limits ([`Reserves`]).
+//! an interval may shrink to nothing without any variable losing its meaning. Speed and rate limits
+//! hold at nodes; between nodes `h` is linear, so without total momentum they hold there too. With
+//! it rate limits hold in the middle of intervals as well ([`middle`]), and excesses found between
+//! nodes tighten all limits ([`Reserves`]).
 //!
-//! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of [`crate::leg::kinematics`].
+//! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of
+//! [`crate::leg::kinematics`].
 
 mod attitude_link;
 mod demands;
@@ -86,9 +87,9 @@ pub(crate) struct Transcription {
     rate_gain: Vec<Vector3<f64>>,
     /// Greatest and least `m` per unit of `tau`.
     momentum_per_time: Vec<(f64, f64)>,
-    /// Scaled controls to which a penalty draws those of the intervals, and its weights. Where torque
-    /// does not change from one interval to the next the cost does not depend on the node between
-    /// them; the penalty makes the solution unique.
+    /// Scaled controls to which a penalty draws those of the intervals, and its weights. Where
+    /// torque does not change from one interval to the next the cost does not depend on the node
+    /// between them; the penalty makes the solution unique.
     reference_controls: Vec<f64>,
     penalty: ControlPenalty,
     /// Limits that hold at every node whose state is not fixed.
@@ -164,12 +165,12 @@ impl Transcription {
         self.penalty = penalty;
     }
 
-    /// Makes the turn map exact at an iterate: a fixed turn `e_k = p_k* p_exact` follows the map's turn
-    /// `p_k` on every interval. Returns the sum of the angles, rad, by which the corrections change: how
-    /// far the iterate misses its end.
+    /// Makes the turn map exact at an iterate: a fixed turn `e_k = p_k* p_exact` follows the map's
+    /// turn `p_k` on every interval. Returns the sum of the angles, rad, by which the corrections
+    /// change: how far the iterate misses its end.
     ///
-    /// The solution of a corrected program ends where it should. Its derivatives are still those of the
-    /// map, which moves the optimum by a share of the square of the map's error.
+    /// The solution of a corrected program ends where it should. Its derivatives are still those of
+    /// the map, which moves the optimum by a share of the square of the map's error.
     pub(crate) fn correct(&mut self, iterate: &Iterate) -> f64 {
         let (points, controls) = (self.point_len(), self.control_dim());
         let inverse = self.dynamics.inertia_inverse;
@@ -202,8 +203,8 @@ impl Transcription {
         self.turn_map = self.turn_map.finer(self.dynamics.inertia_inverse);
     }
 
-    /// Switches to a finer map of the turn and corrects it: for iterates at which the derivatives of
-    /// the map in use are too inaccurate.
+    /// Switches to a finer map of the turn and corrects it: for iterates at which the derivatives
+    /// of the map in use are too inaccurate.
     pub(crate) fn refine(&mut self, iterate: &Iterate) {
         self.use_finer_map();
         self.correct(iterate);
@@ -299,8 +300,8 @@ impl Transcription {
         count
     }
 
-    /// Writes the derivatives of the conditions on a state by so many of its directions; returns how
-    /// many inequalities.
+    /// Writes the derivatives of the conditions on a state by so many of its directions; returns
+    /// how many inequalities.
     pub(crate) fn write_state_derivatives(
         &self,
         link: &Link<'_>,

@@ -1,10 +1,10 @@
-//! What can be wrong with an input, said so that a caller can act on it.
+//! Problems of an input, with what the caller can do about them.
 
 use std::fmt;
 
-/// Most problems of one input that are kept: more help nobody, and each takes memory.
+/// Limit of the reported problems of one input, for memory.
 pub const MAX_KEPT: usize = 1000;
-/// Most names that a hint lists, and most characters of each.
+/// Limits of the names that a hint lists, and of the characters of each.
 const NAMES_IN_A_HINT: usize = 10;
 const CHARACTERS_OF_A_NAME: usize = 40;
 
@@ -48,14 +48,14 @@ impl Problem {
         )
     }
 
-    /// The same of a document that is a part of another, at this pointer there.
+    /// The problem in a document that contains this one at a pointer.
     #[must_use]
     pub fn under(mut self, place: &str) -> Self {
         self.pointer.insert_str(0, place);
         self
     }
 
-    /// All problems of such a document.
+    /// All problems in a document that contains theirs at a pointer.
     #[must_use]
     pub fn all_under(place: &str, problems: Vec<Self>) -> Vec<Self> {
         let moved = |problem: Self| problem.under(place);
@@ -68,7 +68,7 @@ impl Problem {
 pub struct Faults {
     /// Why it is refused.
     pub problems: Vec<Problem>,
-    /// What is doubtful, but would not stand in the way.
+    /// Warnings, which alone would not refuse it.
     pub warnings: Vec<Problem>,
 }
 
@@ -87,7 +87,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The first of many names in quotation marks for a hint, which stays short whatever they are.
+/// The first of many names, in quotation marks and shortened, for a hint of limited length.
 pub(crate) fn quoted<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let more = names.len().saturating_sub(NAMES_IN_A_HINT);
     let quote = |name: &str| match name.char_indices().nth(CHARACTERS_OF_A_NAME) {
@@ -120,7 +120,7 @@ macro_rules! codes {
                 match self { $(Code::$name => $text,)+ }
             }
 
-            /// What it says about an input, as a sentence.
+            /// The meaning of the code, as a sentence.
             #[must_use]
             pub fn meaning(self) -> &'static str {
                 match self { $(Code::$name => concat!($($doc),+).trim(),)+ }
@@ -243,43 +243,45 @@ codes! {
     MomentumExceedsEnvelope = "momentum_exceeds_envelope",
         "Unload momentum first, raise momentum_authority, enable more wheels, or leave a rate \
          component free.";
-    /// A slew for which no flyable solution was found.
+    /// A leg for which no solution was found that meets all conditions.
     SlewNotSolved = "slew_not_solved",
         "Check that the wheels can hold the stored momentum along the way, or relax the conditions \
          at the ends.";
     /// The solve was stopped, by its time limit or on request, before there was a first plan.
     StoppedWithoutPlan = "stopped_without_plan",
         "Allow more time, or plan fewer targets at once.";
-    /// The solve needed more memory than a job of the service may take before there was a first plan.
+    /// The solve needed more memory than a job of the service may take before there was a first
+    /// plan.
     MemoryLimit = "memory_limit",
         "Plan fewer targets at once, or raise --job-memory of the service.";
     /// The finished plan failed its independent verification.
     VerificationFailed = "verification_failed",
-        "Report it with the scenario: the plan is not one to fly.";
-    /// An order was flown faster than a lower bound had allowed, so that some relaxed problem ended
-    /// in a local minimum and the bounds are doubtful (warning).
+        "Report it with the scenario, and do not use the plan.";
+    /// A tour is faster than a lower bound allows, so some relaxed problem ended in a local minimum
+    /// and the bounds are doubtful (warning).
     BoundContradicted = "bound_contradicted",
         "Take the bound as doubtful; the plan itself is verified.";
     /// A boresight enters a keep-out cone (warning).
     KeepOutViolated = "keep_out_violated",
         "Look at time and depth, and move targets or demand another order if the plan cannot be \
-         flown so.";
+         used so.";
     /// A file of another version of the program.
     VersionMismatch = "version_mismatch",
         "Make the file again with this version.";
     /// A part of another table of legs than the parts before it.
     ShardMismatch = "shard_mismatch",
         "Join only files of slewplan legs that differ in --shard alone.";
-    /// A part of a table of legs that is there twice.
+    /// A part of a table of legs that is given twice.
     ShardRepeated = "shard_repeated",
         "Name every part once.";
-    /// A part of a table of legs that is not there.
+    /// A part of a table of legs that is missing.
     ShardMissing = "shard_missing",
         "Solve the part that the message names.";
     /// A table of legs, or a part of one, that lacks legs.
     TableIncomplete = "table_incomplete",
         "Solve the part again and let it end.";
-    /// A leg that does not fly as its problem demands, or is slower than the slew about the eigenaxis.
+    /// A leg that does not meet its conditions when it is propagated, or is slower than the
+    /// eigenaxis slew.
     LegRefused = "leg_refused",
         "Solve it again with slewplan legs.";
 }

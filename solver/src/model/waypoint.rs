@@ -25,8 +25,9 @@ pub(crate) struct Waypoint {
     pub(crate) rate: [RateCondition; 3],
     /// Condition of the wheels.
     pub(crate) wheels: WheelCondition,
-    /// Cost of the wheel momenta here, s per N m s of each enabled wheel, `None` for no cost. Costates of
-    /// a longer motion make legs that are solved alone add up to it (Lagrangian bounds).
+    /// Cost of the wheel momenta here, s per N m s of each enabled wheel, `None` for no cost.
+    /// Costates of a longer motion make legs that are solved alone add up to it (Lagrangian
+    /// bounds).
     pub(crate) costates: Option<DVector<f64>>,
 }
 

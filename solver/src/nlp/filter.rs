@@ -6,15 +6,16 @@ use super::merit::Merit;
 const GAMMA_THETA: f64 = 1e-5;
 /// Fraction of the infeasibility by which the barrier cost must improve on a filter entry.
 const GAMMA_PHI: f64 = 1e-5;
-/// Largest infeasibility that is ever admitted, as a multiple of that at the filter's reset, and the
-/// least such bound (absolute).
+/// Largest infeasibility that is ever admitted, as a multiple of that at the filter's reset, and
+/// the least such bound (absolute).
 const MAX_THETA_FACTOR: f64 = 1e4;
 const MIN_MAX_THETA: f64 = 1e-2;
 /// Sufficient decrease (Armijo) of the barrier cost.
 const ETA: f64 = 1e-4;
 
-/// Relative differences of barrier costs and absolute infeasibilities below these are rounding. The last
-/// steps change little but the multipliers; judged by rounding they would be shortened to nothing.
+/// Relative differences of barrier costs and absolute infeasibilities below these are rounding. The
+/// last steps change little but the multipliers; judged by rounding they would be shortened to
+/// nothing.
 const PHI_NOISE: f64 = 1e-11;
 const THETA_NOISE: f64 = 1e-12;
 

@@ -28,7 +28,8 @@ use stage::{Matrix, Stage, dot, padded, solve_lower, solve_upper};
 /// Proximal weight of node equalities. Smaller converges in fewer sweeps, larger loses fewer
 /// digits in the sums `M + C^T C / rho`.
 const RHO: f64 = 1e-6;
-/// Limit of the vector sweeps for one step; each shrinks the equality residual by orders of magnitude.
+/// Limit of the vector sweeps for one step; each shrinks the equality residual by orders of
+/// magnitude.
 const MAX_SWEEPS: usize = 6;
 /// Equality residual at which the sweeps end (absolute, scaled variables).
 const SWEEP_TOLERANCE: f64 = 1e-13;

@@ -32,7 +32,8 @@ const SUFFICIENT: f64 = 1e-4;
 const MAX_BACKTRACKS: usize = 12;
 /// The penalty is this much larger than the largest multiplier.
 const ABOVE_MULTIPLIERS: f64 = 1.5;
-/// Curvature added after a step that was shortened a lot or refused: the least, its growth and decay.
+/// Curvature added after a step that was shortened a lot or refused: the least, its growth and
+/// decay.
 const DAMPING_FIRST: f64 = 1e-4;
 const DAMPING_GROWTH: f64 = 4.0;
 const DAMPING_DECAY: f64 = 0.25;
@@ -148,7 +149,8 @@ impl<'a, C: Chain> SequentialQuadratic<'a, C> {
         }
     }
 
-    /// Goes along a step as far as the penalty function allows; returns how far, `None` for not at all.
+    /// Goes along a step as far as the penalty function allows; returns how far, `None` for not at
+    /// all.
     fn advance(
         &mut self,
         iterate: &mut Iterate,

@@ -4,8 +4,8 @@ use super::LIMIT_TOLERANCE;
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 
-/// Equal parts of an interval at whose ends the limits are evaluated: the body may turn by a radian on
-/// a long interval, and the stored momentum turns with it in body axes.
+/// Equal parts of an interval at whose ends the limits are evaluated: the body may turn by a radian
+/// on a long interval, and the stored momentum turns with it in body axes.
 const SAMPLES: usize = 16;
 
 /// Whether no limit is exceeded between the nodes of a motion.

@@ -1,9 +1,9 @@
 //! A solved motion extended to one more waypoint.
 //!
-//! The optimal motion changes little when a leg is added: the last legs before the former end adapt,
-//! and less the farther they are from it. So a tail of a few legs is solved first, with the motion
-//! before it fixed, and then the whole from there. That takes less work than a solve from scratch, and
-//! keeps to the minimum of the former motion, the best of several starts.
+//! The optimal motion changes little when a leg is added: the last legs before the former end
+//! adapt, and less the farther they are from it. So a tail of a few legs is solved first, with the
+//! motion before it fixed, and then the whole from there. That takes less work than a solve from
+//! scratch, and keeps to the minimum of the former motion, the best of several starts.
 
 use super::rolling::solve_from_windows;
 use super::{LegSolution, MultiphaseSolve, from_a_guess, solve_through};
@@ -16,8 +16,8 @@ use crate::nlp::Interruption;
 /// better.
 const TAIL: usize = 3;
 
-/// Solves for the motion through waypoints from a `motion` that is a solution up to the last waypoint but
-/// one, with a guess of the last leg appended.
+/// Solves for the motion through waypoints from a `motion` that is a solution up to the last
+/// waypoint but one, with a guess of the last leg appended.
 pub(crate) fn solve_extended(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],

@@ -1,10 +1,10 @@
 //! Long motions, a few legs at a time.
 //!
 //! All legs of a program share one step length, and some switch of some leg limits it, so a longer
-//! motion takes more iterations. Yet the optimum on a leg depends little on legs far from it. A window of
-//! a few legs with a free end rolls along the motion; each window begins in the state in which the one
-//! before it passed its last legs but a few. The whole then starts from a motion that is feasible and
-//! nearly optimal, and the iterations per leg hardly grow with the number of legs.
+//! motion takes more iterations. Yet the optimum on a leg depends little on legs far from it. A
+//! window of a few legs with a free end rolls along the motion; each window begins in the state in
+//! which the one before it passed its last legs but a few. The whole then starts from a motion that
+//! is feasible and nearly optimal, and the iterations per leg hardly grow with the number of legs.
 
 use super::{LegSolution, MultiphaseSolve, Pass, from_a_guess, solve_through};
 use crate::leg::profile::Profile;
@@ -29,7 +29,8 @@ const FROM_WINDOWS: [Pass; 1] = [Pass {
     penalty: ControlPenalty::of_lengths(0.02),
 }];
 
-/// Solves for the motion through waypoints from a guess like [`solve_through`], window by window first.
+/// Solves for the motion through waypoints from a guess like [`solve_through`], window by window
+/// first.
 pub(crate) fn solve_rolling(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],

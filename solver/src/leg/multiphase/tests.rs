@@ -24,8 +24,8 @@ const PROGRAMS: usize = 60;
 const INTERVALS: usize = 8;
 /// That of polishing.
 const LENGTH_PENALTY: f64 = 1e-3;
-/// Largest displacements of the variables (of order one) from the first engine's solution to the second
-/// engine's start, tried in this order.
+/// Largest displacements of the variables (of order one) from the first engine's solution to the
+/// second engine's start, tried in this order.
 const DISPLACEMENTS: [f64; 3] = [2e-3, 5e-4, 1e-4];
 
 /// A leg at rest at both ends.
@@ -260,8 +260,8 @@ fn the_inner_loop_of_a_leg_allocates_nothing() {
     }
 }
 
-/// Strong duality: with the costates of the whole motion as costs of the states between them, legs that
-/// are solved alone add up to its duration, where each is convex in those states.
+/// Strong duality: with the costates of the whole motion as costs of the states between them, legs
+/// that are solved alone add up to its duration, where each is convex in those states.
 #[test]
 fn legs_with_the_costates_of_a_motion_add_up_to_it() {
     let spec = crate::model::scenario::reference::experiment_a();

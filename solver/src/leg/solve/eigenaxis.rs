@@ -1,8 +1,8 @@
 //! The eigenaxis slew: the usual baseline, and a starting guess.
 //!
 //! Bang-coast-bang about a fixed axis with the wheels allocated by the pseudo-inverse and their
-//! null-space momentum constant. Without total momentum its limits are constant in time; with it they
-//! vary, and the slew is slowed down until all of them hold everywhere.
+//! null-space momentum constant. Without total momentum its limits are constant in time; with it
+//! they vary, and the slew is slowed down until all of them hold everywhere.
 
 use crate::leg::profile::Profile;
 use crate::math::bang_coast_bang::BangCoastBang;
@@ -164,8 +164,8 @@ impl EigenaxisSlew {
         profile
     }
 
-    /// A direction perpendicular to the axis that does not depend on the body frame: across the wheel
-    /// axis that is least along the eigenaxis, the first of equal ones.
+    /// A direction perpendicular to the axis that does not depend on the body frame: across the
+    /// wheel axis that is least along the eigenaxis, the first of equal ones.
     fn across(&self, dynamics: &Dynamics) -> Vector3<f64> {
         let (mut across, mut least) = (Vector3::zeros(), f64::INFINITY);
         for wheel in &dynamics.actuators {
@@ -215,8 +215,8 @@ impl EigenaxisSlew {
     }
 }
 
-/// Times of the nodes of a course, s: each ramp has [`RAMP_INTERVALS`] where equal intervals would be
-/// longer.
+/// Times of the nodes of a course, s: each ramp has [`RAMP_INTERVALS`] where equal intervals would
+/// be longer.
 fn node_times(course: &BangCoastBang, intervals: usize) -> Vec<f64> {
     let even = |begin: f64, end: f64, count: usize| {
         (0..count).map(move |i| begin + (end - begin) * i as f64 / count as f64)

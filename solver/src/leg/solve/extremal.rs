@@ -1,11 +1,11 @@
 //! The first starting guess: the shortest turn within a box of rates, ramped.
 //!
 //! Without inertia the fastest motion to an attitude consists of arcs at constant rates, and
-//! [`RateBox::query`] finds it exactly. It has the shape of a near-optimal leg, off-axis excursions and
-//! the better way round included, which a local solver does not find from the eigenaxis slew (a
-//! symmetric stationary point). Where a rate jumps the wheels need time: the guess takes the mean rate
-//! over the last ramp, so it begins and ends at rest and lasts one ramp longer. Its rate is linear
-//! between the beginnings and ends of the ramps, where its nodes are.
+//! [`RateBox::query`] finds it exactly. It has the shape of a near-optimal leg, off-axis excursions
+//! and the better way round included, which a local solver does not find from the eigenaxis slew (a
+//! symmetric stationary point). Where a rate jumps the wheels need time: the guess takes the mean
+//! rate over the last ramp, so it begins and ends at rest and lasts one ramp longer. Its rate is
+//! linear between the beginnings and ends of the ramps, where its nodes are.
 
 use super::LegProblem;
 use crate::bounds::kinematic::{RateArc, RateBox};
@@ -20,8 +20,8 @@ use std::sync::OnceLock;
 const TOLERANCE: f64 = 1e-4;
 /// Nodes nearer to each other than this share of the duration are one.
 const SAME_TIME: f64 = 1e-3;
-/// Relative difference above which one length is longer than another; below it rounding decides, and the
-/// first is chosen.
+/// Relative difference above which one length is longer than another; below it rounding decides,
+/// and the first is chosen.
 const LONGER: f64 = 1e-6;
 /// Turn between an attitude and its target, rad, above which their quaternion signs differ.
 const OTHER_SIGN: f64 = 1.0;
@@ -145,8 +145,8 @@ impl Ramped {
         times
     }
 
-    /// Times at which ramps begin or end, s, from zero to the duration; the shortest pairs of intervals
-    /// are joined until at most `most` are left.
+    /// Times at which ramps begin or end, s, from zero to the duration; the shortest pairs of
+    /// intervals are joined until at most `most` are left.
     fn ramp_ends(&self, most: usize) -> Vec<f64> {
         let mut time = 0.0;
         let mut ends = vec![0.0, self.ramp];

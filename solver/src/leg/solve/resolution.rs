@@ -34,8 +34,8 @@ impl Resolution {
     }
 
     /// Intervals of a leg that turns by an angle, rad. Torque is constant on an interval while the
-    /// stored momentum turns in body axes, so a rate on its limit strays from it: more intervals where
-    /// that counts.
+    /// stored momentum turns in body axes, so a rate on its limit strays from it: more intervals
+    /// where that counts.
     pub(crate) fn intervals_of(&self, dynamics: &Dynamics, turn: f64) -> usize {
         let stray = if self.polished {
             0.5 * MAX_STRAY
@@ -56,15 +56,15 @@ pub(super) fn parts_of(turn: f64, longest: f64, most: usize) -> usize {
     (0..most).find(enough).unwrap_or(most)
 }
 
-/// Intervals of a leg with three wheels and without momentum: more of them shorten legs by less than
-/// 1e-4 of the duration.
+/// Intervals of a leg with three wheels and without momentum: more of them shorten legs by less
+/// than 1e-4 of the duration.
 const MIN_INTERVALS: usize = 12;
 /// Further intervals for every further wheel, which switches at times of its own, and for stored
 /// momentum, which turns in body axes while the torque of an interval does not.
 const PER_SPARE_WHEEL: usize = 4;
 const WITH_MOMENTUM: usize = 6;
-/// How far a rate on its limit may stray from it on an interval, relative. The program keeps it as a
-/// reserve, of which at most a third is lost.
+/// How far a rate on its limit may stray from it on an interval, relative. The program keeps it as
+/// a reserve, of which at most a third is lost.
 const MAX_STRAY: f64 = 1.1e-2;
 /// Angle of the fastest motion relative to that about the eigenaxis, approximately.
 pub(super) const DETOUR: f64 = 1.3;

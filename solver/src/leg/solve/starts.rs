@@ -9,14 +9,15 @@ use crate::leg::profile::Profile;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::Interruption;
 
-/// Guesses that are tried: the second one only where a lower bound does not settle the first. The best
-/// of two and of the long way round exceeds the best of twenty by 0.72 % at most.
+/// Guesses that are tried: the second one only where a lower bound does not settle the first. The
+/// best of two and of the long way round exceeds the best of twenty by 0.72 % at most.
 const MAX_GUESSES: usize = 2;
-/// The long way round is tried where its eigenaxis slew takes at most this multiple of the short way's
-/// time. Stored momentum favours one side: some legs are faster the long way round although that
-/// eigenaxis slew takes longer.
+/// The long way round is tried where its eigenaxis slew takes at most this multiple of the short
+/// way's time. Stored momentum favours one side: some legs are faster the long way round although
+/// that eigenaxis slew takes longer.
 const MAX_LONG_WAY_RATIO: f64 = 1.5;
-/// Ratio of the intervals that a solution needs to those that it has above which it is solved again.
+/// Ratio of the intervals that a solution needs to those that it has above which it is solved
+/// again.
 const MIN_REFINEMENT: f64 = 1.1;
 
 /// Relative gap to a lower bound at which no other guess is tried: well below the distance between
@@ -140,8 +141,8 @@ fn finer<'a>(leg: &LegProblem<'a>, solution: &LegSolution) -> Option<LegProblem<
     })
 }
 
-/// The end with the quaternion sign to which the body turns by more than half a turn, where either sign
-/// counts and momentum may make that way the faster one.
+/// The end with the quaternion sign to which the body turns by more than half a turn, where either
+/// sign counts and momentum may make that way the faster one.
 fn long_way_round(leg: &LegProblem<'_>) -> Option<Waypoint> {
     if leg.arrival != Arrival::Rotation || !leg.dynamics.has_momentum() {
         return None;

@@ -1,13 +1,13 @@
-//! A leg constructed without a program, which exists wherever the wheels can hold the stored momentum:
-//! slowly about the eigenaxis.
+//! A leg constructed without a program, which exists wherever the wheels can hold the stored
+//! momentum: slowly about the eigenaxis.
 //!
 //! Inside the sphere of momenta that the wheels hold in every direction a body can rest at every
-//! attitude, and so it can turn, if slowly enough. The motion: brake to rest, move the wheels far from
-//! their limits ([`centred`]), turn about the eigenaxis at a pace that leaves room under every limit,
-//! move the wheels to the momenta of the end, and speed up to its rates. Torque has to be constant on
-//! every interval, so a nominal motion is followed two intervals at a time: for given momenta at both
-//! ends, those in the middle are chosen such that the attitude at the second end is met exactly, three
-//! equations with three unknowns.
+//! attitude, and so it can turn, if slowly enough. The motion: brake to rest, move the wheels far
+//! from their limits ([`centred`]), turn about the eigenaxis at a pace that leaves room under every
+//! limit, move the wheels to the momenta of the end, and speed up to its rates. Torque has to be
+//! constant on every interval, so a nominal motion is followed two intervals at a time: for given
+//! momenta at both ends, those in the middle are chosen such that the attitude at the second end is
+//! met exactly, three equations with three unknowns.
 
 use super::LegProblem;
 use super::centred::centred;
@@ -23,8 +23,8 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::nlp::NlpStatus;
 use nalgebra::{DVector, Matrix3, Vector3};
 
-/// The first pace that is tried, as a share of what zero momentum allows; the ratio of each pace to the
-/// one before it; and the number of paces.
+/// The first pace that is tried, as a share of what zero momentum allows; the ratio of each pace to
+/// the one before it; and the number of paces.
 const FASTEST: f64 = 0.95;
 const SLOWER: f64 = 0.8;
 const PACES: i32 = 40;
@@ -56,7 +56,8 @@ struct Nominal {
     lengths: Vec<f64>,
 }
 
-/// The constructed solution; `None` where no pace is slow enough, or the state at an end exceeds limits.
+/// The constructed solution; `None` where no pace is slow enough, or the state at an end exceeds
+/// limits.
 pub(super) fn steered(leg: &LegProblem<'_>) -> Option<LegSolution> {
     (0..PACES).find_map(|step| {
         let pace = FASTEST * SLOWER.powi(step);
@@ -72,8 +73,8 @@ pub(super) fn steered(leg: &LegProblem<'_>) -> Option<LegSolution> {
     })
 }
 
-/// Whether speed, rate and torque limits hold at the inner nodes and between nodes; the states at the
-/// ends are given.
+/// Whether speed, rate and torque limits hold at the inner nodes and between nodes; the states at
+/// the ends are given.
 fn keeps_limits(dynamics: &Dynamics, profile: &Profile) -> bool {
     let nodes = profile.attitudes.iter().zip(&profile.wheels);
     let inner = nodes.skip(1).take(profile.intervals().saturating_sub(1));
@@ -163,8 +164,8 @@ impl Nominal {
         self.lengths.reverse();
     }
 
-    /// Nodes from a single one to rest, forward or backward in time, the rate falling evenly about a
-    /// fixed axis at constant null-space momentum.
+    /// Nodes from a single one to rest, forward or backward in time, the rate falling evenly about
+    /// a fixed axis at constant null-space momentum.
     fn ramp(&self, dynamics: &Dynamics, pace: f64, direction: f64) -> Self {
         let (attitude, wheels) = self.last();
         let mut nodes = Self::at(attitude, wheels);
@@ -299,7 +300,8 @@ fn propagated(dynamics: &Dynamics, profile: &Profile, k: usize, from: &Attitude)
     from.then_in_body(&turn)
 }
 
-/// Times of the nodes after the first, s: an even number, evenly spaced on each ramp and on the coast.
+/// Times of the nodes after the first, s: an even number, evenly spaced on each ramp and on the
+/// coast.
 fn node_times(dynamics: &Dynamics, course: &BangCoastBang, angle: f64) -> Vec<f64> {
     let turns = 2 * parts_of(angle, 2.0 * longest_turn(dynamics), MAX_PAIRS);
     let coast = turns.max(MIN_COAST);

@@ -98,8 +98,8 @@ fn a_long_turn_about_one_axis_is_bang_coast_bang() {
     assert!((eigenaxis.course.duration() / bang_coast_bang - 1.0).abs() < 1e-9);
 }
 
-/// Rate limits near zero about two axes leave the program a tiny interior: its solution is 2.5e-6 slower
-/// than the turn about the third axis, which keeps all limits.
+/// Rate limits near zero about two axes leave the program a tiny interior: its solution is 2.5e-6
+/// slower than the turn about the third axis, which keeps all limits.
 #[test]
 fn no_leg_takes_longer_than_the_eigenaxis_slew() {
     for (angle, rate) in [(0.05, None), (1.0, Some(0.005)), (3.0, None)] {

@@ -178,8 +178,8 @@ impl Transcription {
         turn
     }
 
-    /// Derivatives of the gap by wheel momenta, their changes and the length: `a = -tau b`, `c = -tau e` with the
-    /// wheels' rates `b = offset + gain h` and `e = b + gain m`.
+    /// Derivatives of the gap by wheel momenta, their changes and the length: `a = -tau b`,
+    /// `c = -tau e` with the wheels' rates `b = offset + gain h` and `e = b + gain m`.
     fn write_wheel_slopes(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
         let (wheels, vars) = (self.wheels(), out.vars);
         let [by_begin, by_end, _] = terms.slopes;
@@ -268,9 +268,9 @@ impl LinkTerms<'_> {
     }
 }
 
-/// The chart `2 vec(q)` of the hemisphere around the identity. Beyond it the vector part shrinks again
-/// towards `-1`, which would look like no error at all: there the chart is NaN, so that the line
-/// search stays inside the hemisphere.
+/// The chart `2 vec(q)` of the hemisphere around the identity. Beyond it the vector part shrinks
+/// again towards `-1`, which would look like no error at all: there the chart is NaN, so that the
+/// line search stays inside the hemisphere.
 pub(super) fn chart(q: &Quat) -> Vector3<f64> {
     if q[3] > 0.0 {
         imaginary(q) * 2.0

@@ -6,8 +6,8 @@ use crate::model::scenario::RateCondition;
 use nalgebra::{DVector, Vector3};
 
 impl Waypoint {
-    /// Time, s, that the wheels need for the change of rates and of null-space momentum between this
-    /// waypoint and the next one; zero where both admit the same values.
+    /// Time, s, that the wheels need for the change of rates and of null-space momentum between
+    /// this waypoint and the next one; zero where both admit the same values.
     pub(crate) fn change_time(&self, next: &Self, dynamics: &Dynamics) -> f64 {
         let change = Vector3::from_fn(|axis, _| between(self.rate[axis], next.rate[axis]));
         let size = change.norm();

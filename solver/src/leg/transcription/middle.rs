@@ -1,11 +1,12 @@
 //! Rate limits in the middle of intervals.
 //!
 //! Between nodes the wheel momenta are linear, but stored momentum turns in body axes and bends the
-//! rates. Imposed at nodes alone a rate limit would be exceeded between them by `|H| theta^2 / (8 J)`
-//! where the body turns by `theta`, and the program would exploit that: by long intervals, and by rates
-//! about one axis that alternate from interval to interval. With the middle limited too, the mean of a
-//! rate over an interval keeps its limit to that order. The rows are multiplied by the length of the
-//! interval, `tau limit -+ W >= 0`, so that they stay regular where it vanishes.
+//! rates. Imposed at nodes alone a rate limit would be exceeded between them by
+//! `|H| theta^2 / (8 J)` where the body turns by `theta`, and the program would exploit that: by
+//! long intervals, and by rates about one axis that alternate from interval to interval. With the
+//! middle limited too, the mean of a rate over an interval keeps its limit to that order. The rows
+//! are multiplied by the length of the interval, `tau limit -+ W >= 0`, so that they stay regular
+//! where it vanishes.
 
 use super::Transcription;
 use super::attitude_link::LinkTerms;
@@ -112,15 +113,15 @@ impl Transcription {
         rows.map(move |row| row.limit * (1.0 - reserves[row.share]) * tau + row.side.of(&rate).0)
     }
 
-    /// The covector that weighs the rate in the middle in the Lagrangian: the rows' slopes times minus
-    /// their multipliers.
+    /// The covector that weighs the rate in the middle in the Lagrangian: the rows' slopes times
+    /// minus their multipliers.
     pub(super) fn middle_pull(&self, rate: &Vector3<f64>, z: &[f64]) -> Vector3<f64> {
         let rows = self.middle_rows.iter().zip(z);
         rows.map(|(row, z)| row.side.of(rate).1 * -z).sum()
     }
 
-    /// Writes the derivatives of the rows with these multipliers, and adds their curvature beside that
-    /// of the rate itself.
+    /// Writes the derivatives of the rows with these multipliers, and adds their curvature beside
+    /// that of the rate itself.
     pub(super) fn write_middle_rows(
         &self,
         terms: &LinkTerms<'_>,

@@ -7,8 +7,8 @@ use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::Vector3;
 
-/// Smallest unit of a rate limit's row, in units of a typical rate. In the unit of a limit near zero the
-/// row would be steeper than all others by orders of magnitude.
+/// Smallest unit of a rate limit's row, in units of a typical rate. In the unit of a limit near
+/// zero the row would be steeper than all others by orders of magnitude.
 const MIN_RATE_UNIT: f64 = 1e-2;
 
 /// The rows of one node.

@@ -1,9 +1,9 @@
 //! Constraints on a state: rows that are affine in body rate and wheel momenta.
 //!
-//! A row is posed as `c + y . w + g . h`, `w` in rad/s, `h` scaled. The rate depends on the attitude
-//! through the momentum `eta = R(q)^T H`, `w = Ji (eta - h_locked - hs A h)`, so the row is kept as
-//! `c' + p . eta + g' . h` with `p = Ji^T y`: without momentum its derivatives are constants. With an
-//! attitude step `d`, to second order,
+//! A row is posed as `c + y . w + g . h`, `w` in rad/s, `h` scaled. The rate depends on the
+//! attitude through the momentum `eta = R(q)^T H`, `w = Ji (eta - h_locked - hs A h)`, so the row
+//! is kept as `c' + p . eta + g' . h` with `p = Ji^T y`: without momentum its derivatives are
+//! constants. With an attitude step `d`, to second order,
 //!
 //! ```text
 //!   eta(d) = eta + eta x d + 1/2 d x (d x eta)
@@ -127,8 +127,9 @@ impl Transcription {
         (1.0 - reserve).powi(2) - squares / self.dynamics.max_rate_norm.powi(2)
     }
 
-    /// Writes the norm limit's derivative and adds its curvature times `-z`, except the curvature of the
-    /// rates, which is returned as a covector on the momentum. `states` is the number of directions.
+    /// Writes the norm limit's derivative and adds its curvature times `-z`, except the curvature
+    /// of the rates, which is returned as a covector on the momentum. `states` is the number of
+    /// directions.
     pub(super) fn write_norm_row(
         &self,
         state: &StateView<'_>,

@@ -49,8 +49,8 @@ impl Dynamics {
         2.0 * (MIN_TURN / self.axis_acceleration(&Vector3::x())).sqrt()
     }
 
-    /// The turn, rad, of a bang-bang motion in a time, s. It scales legs that change rates or momenta
-    /// without a turn.
+    /// The turn, rad, of a bang-bang motion in a time, s. It scales legs that change rates or
+    /// momenta without a turn.
     pub(crate) fn turn_within(&self, duration: f64) -> f64 {
         0.25 * self.axis_acceleration(&Vector3::x()) * duration.powi(2)
     }

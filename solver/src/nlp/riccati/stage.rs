@@ -1,8 +1,8 @@
 //! One stage of the Riccati recursion, in blocks of fixed size.
 //!
-//! With `[L_vv; L_xv]` the factor of the controls' columns of `M + [A B]^T P+ [A B]`, the cost to go
-//! is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`. The
-//! controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
+//! With `[L_vv; L_xv]` the factor of the controls' columns of `M + [A B]^T P+ [A B]`, the cost to
+//! go is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`.
+//! The controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
 
 use crate::nlp::chain::LinkModel;
 

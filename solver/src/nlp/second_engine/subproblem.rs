@@ -8,12 +8,12 @@
 //!   subject to  E d + c = 0,   J d + g >= 0
 //! ```
 //!
-//! The equations are eliminated ([`NullSpace`]): `d = d_0 + Z y`. The general solver needs a positive
-//! Hessian `Z^T W Z`, but at a minimum that of the Lagrangian is positive only along the inequalities
-//! that bind. Therefore `weight (J_b d + g_b)^2 / 2` is added for the rows `b` that bind, with the
-//! least weight that makes it positive: where they keep binding the term vanishes with its derivative,
-//! and the step is that of the exact Hessian. Where no weight does, negative eigenvalues are replaced by
-//! their absolute values.
+//! The equations are eliminated ([`NullSpace`]): `d = d_0 + Z y`. The general solver needs a
+//! positive Hessian `Z^T W Z`, but at a minimum that of the Lagrangian is positive only along the
+//! inequalities that bind. Therefore `weight (J_b d + g_b)^2 / 2` is added for the rows `b` that
+//! bind, with the least weight that makes it positive: where they keep binding the term vanishes
+//! with its derivative, and the step is that of the exact Hessian. Where no weight does, negative
+//! eigenvalues are replaced by their absolute values.
 
 use super::null_space::NullSpace;
 use crate::math::convex::{ConvexProgram, Ending};
@@ -30,8 +30,8 @@ const INFEASIBLE_DAMPING: f64 = 1.0;
 /// curvature of all unknowns then.
 const ELASTIC: f64 = 1e3;
 const ELASTIC_CURVATURE: f64 = 1.0;
-/// Share of the violation that the linearised conditions must predict to vanish when they contradict each
-/// other.
+/// Share of the violation that the linearised conditions must predict to vanish when they
+/// contradict each other.
 const PREDICTED_DECREASE: f64 = 1e-3;
 
 /// All conditions and derivatives at a point.

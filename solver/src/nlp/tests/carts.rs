@@ -6,8 +6,8 @@ use super::TIGHT;
 use crate::nlp::NlpReport;
 use crate::nlp::{Chain, InteriorPoint, Iterate, Link, LinkModel, LinkMultipliers, LinkValues};
 
-/// Least length of a free interval: an interval of no length has no determined acceleration, and the
-/// journey with one interval less is then another stationary point.
+/// Least length of a free interval: an interval of no length has no determined acceleration, and
+/// the journey with one interval less is then another stationary point.
 const SHORTEST: f64 = 0.01;
 
 /// The quantity that a [`Metered`] journey minimises, the other one being given.

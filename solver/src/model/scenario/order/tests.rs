@@ -32,7 +32,7 @@ fn expect_fault(demands: &[(usize, Option<usize>, &[&str])], pointer: &str, word
 }
 
 #[test]
-fn demands_arrive_as_rules_on_indices() {
+fn positions_and_precedences_become_rules_on_indices() {
     let mut spec = experiment_a();
     demand(&mut spec, 0, Some(3), &[]);
     demand(&mut spec, 4, None, &["a", "f"]);
@@ -54,7 +54,7 @@ fn demands_arrive_as_rules_on_indices() {
 }
 
 #[test]
-fn each_position_is_one_of_the_places_and_given_once() {
+fn each_position_is_within_the_targets_and_given_once() {
     for place in [0, 7, usize::MAX] {
         expect_fault(
             &[(2, Some(place), &[])],
@@ -100,7 +100,7 @@ fn every_circle_is_named_once() {
 }
 
 #[test]
-fn demands_that_only_together_admit_no_order_are_refused() {
+fn valid_rules_that_together_admit_no_order_are_refused() {
     // Two targets between two places that are next to each other.
     let between = [
         (0, Some(2), &[][..]),

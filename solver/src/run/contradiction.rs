@@ -21,7 +21,7 @@ pub enum Contradiction {
         /// The bound, s.
         bound_s: f64,
         /// The duration of the solution, s.
-        flown_s: f64,
+        duration_s: f64,
     },
     /// A tour takes less than the certified bound of all tours, or a leg of it less than its own.
     Tour {
@@ -32,7 +32,7 @@ pub enum Contradiction {
         /// The bound, s.
         bound_s: f64,
         /// The duration of the solution, s.
-        flown_s: f64,
+        duration_s: f64,
     },
     /// A stored leg does not meet its conditions when it is propagated.
     StoredLeg {
@@ -49,16 +49,16 @@ impl fmt::Display for Contradiction {
             Self::Leg {
                 identity,
                 bound_s,
-                flown_s,
+                duration_s,
             } => write!(
                 f,
-                "a leg with a certified bound of {bound_s} s takes {flown_s} s: {identity}"
+                "a leg with a certified bound of {bound_s} s takes {duration_s} s: {identity}"
             ),
             Self::Tour {
                 route,
                 leg,
                 bound_s,
-                flown_s,
+                duration_s,
             } => {
                 let what = leg.as_ref().map_or_else(
                     || "the tour".to_owned(),
@@ -67,7 +67,7 @@ impl fmt::Display for Contradiction {
                 let route = route.join(", ");
                 write!(
                     f,
-                    "{what} {route} has a certified bound of {bound_s} s and takes {flown_s} s"
+                    "{what} {route} has a certified bound of {bound_s} s and takes {duration_s} s"
                 )
             }
             Self::StoredLeg { identity, faults } => write!(
@@ -102,7 +102,7 @@ mod tests {
         let leg = Contradiction::Leg {
             identity: "leg-1;7".into(),
             bound_s: 2.5,
-            flown_s: 2.25,
+            duration_s: 2.25,
         };
         let text = leg.to_string();
         assert!(
@@ -115,7 +115,7 @@ mod tests {
             route: vec!["start".into(), "b".into(), "a".into()],
             leg: Some(["start".into(), "b".into()]),
             bound_s: 2.5,
-            flown_s: 2.25,
+            duration_s: 2.25,
         };
         let text = tour.to_string();
         assert!(

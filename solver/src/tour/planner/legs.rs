@@ -269,7 +269,7 @@ impl<'a> LegSolver<'a> {
             self.contradicted(&Contradiction::Leg {
                 identity: leg.identity.clone(),
                 bound_s,
-                flown_s,
+                duration_s: flown_s,
             });
             solved.certified = None;
         }

@@ -87,7 +87,7 @@ fn a_bound_above_the_flight_is_told_and_given_to_nobody() {
             route,
             leg,
             bound_s,
-            flown_s,
+            duration_s: flown_s,
         },
     ] = &told[..]
     else {

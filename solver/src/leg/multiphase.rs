@@ -1,16 +1,18 @@
 //! The multi-phase problem: the minimum-time motion through waypoints in a fixed order.
 //!
-//! Two waypoints make a leg, many a tour. Rate components and wheel momenta that
-//! a waypoint leaves free are continuous across it, which couples neighbouring legs.
+//! Two waypoints make a leg, many a tour. Rate components and wheel momenta that a waypoint leaves
+//! free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
 mod extended;
+mod passes;
 mod rolling;
+mod solution;
 #[cfg(test)]
 mod tests;
 
 use crate::leg::profile::Profile;
-use crate::leg::transcription::{ControlPenalty, MIN_TURN, Reserves, Scales, Transcription};
+use crate::leg::transcription::{MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
@@ -19,64 +21,11 @@ use between_nodes::excess_between_nodes;
 pub(crate) use between_nodes::{excess_inside, keeps_limits_inside};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
+use passes::{POLISHING, Pass, from_a_guess};
 pub(crate) use rolling::solve_rolling;
+pub(crate) use solution::LegSolution;
 
-/// One pass of the engine over the program; each begins where the one before it ended.
-struct Pass {
-    settings: Settings,
-    /// Weights of the penalty that draws the controls to those at the beginning of the pass.
-    penalty: ControlPenalty,
-}
-
-/// First the active limits and the approximate switches, then the accurate solution. A strong
-/// penalty on lengths saves iterations but lengthens the motion; the second pass has a weaker one,
-/// drawn to the lengths of the first.
-const FROM_A_GUESS: [Pass; 2] = [
-    ROUGHLY,
-    Pass {
-        settings: Settings {
-            initial_barrier: 1e-3,
-            ..Settings::COLD
-        },
-        penalty: ControlPenalty::of_lengths(0.02),
-    },
-];
-/// The same with momentum under a rate limit. There are more intervals than switches, so torque can
-/// move from one interval to its neighbour at no cost; penalties on lengths and momentum changes
-/// make the solution unique.
-const ALONG_LIMITS: [Pass; 2] = [
-    ROUGHLY,
-    Pass {
-        settings: Settings {
-            initial_barrier: 1e-3,
-            tolerance: 5e-6,
-            ..Settings::COLD
-        },
-        penalty: ControlPenalty {
-            length: 0.05,
-            change: 0.01,
-        },
-    },
-];
-const ROUGHLY: Pass = Pass {
-    settings: Settings {
-        tolerance: 1e-2,
-        feasibility: 1e-3,
-        ..Settings::COLD
-    },
-    penalty: ControlPenalty::of_lengths(0.1),
-};
-/// From the primal solution of a program with a slightly stronger penalty.
-const POLISHING: [Pass; 1] = [Pass {
-    settings: Settings {
-        tolerance: 1e-9,
-        initial_barrier: 1e-4,
-        initial_slack: 1e-4,
-        ..Settings::COLD
-    },
-    penalty: ControlPenalty::of_lengths(1e-3),
-}];
-/// Most rounds of the proximal point method, and the relative gain that ends it.
+/// Limit of the rounds of the proximal point method, and the relative gain that ends it.
 const POLISH_ROUNDS: usize = 6;
 const POLISHED: f64 = 1e-8;
 
@@ -84,90 +33,22 @@ const POLISHED: f64 = 1e-8;
 const MAX_ROUNDS: usize = 12;
 /// Rounds that raise reserves only where a limit was exceeded, and the relative excess above which
 /// they do. Smaller excesses become reserves everywhere, which costs half of them in duration.
-const LOCAL_ROUNDS: usize = 6;
+pub(crate) const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
 /// Reserve per excess: above one, since the motion changes when limits are tightened.
-const RESERVE_FACTOR: f64 = 1.1;
+pub(crate) const RESERVE_FACTOR: f64 = 1.1;
 /// Relative excess up to which the multipliers are near those of the tightened program, and the
 /// barrier parameter of a warm start from them.
 pub(crate) const NEAR_EXCESS: f64 = 1e-2;
 pub(crate) const NEAR_BARRIER: f64 = 1e-5;
 /// Angle, rad, by which the exact turns of a solution may miss its end; the checker's tolerance is
 /// hundreds of times this.
-const MISS_TOLERANCE: f64 = 3e-9;
+pub(crate) const MISS_TOLERANCE: f64 = 3e-9;
 /// A miss, rad, above which the turn map's derivatives are too inaccurate as well.
-const LARGE_MISS: f64 = 1e-3;
+pub(crate) const LARGE_MISS: f64 = 1e-3;
 /// Relative excess over a limit between nodes that is accepted; the checker's tolerance is ten
 /// times this.
-const LIMIT_TOLERANCE: f64 = 1e-7;
-
-/// The solution of a leg, or of several legs as one motion.
-#[derive(Debug, Clone)]
-pub(crate) struct LegSolution {
-    /// How the NLP ended.
-    pub(crate) status: NlpStatus,
-    /// The motion; of use only when converged.
-    pub(crate) profile: Profile,
-    /// Intervals of each of its legs.
-    pub(crate) intervals: Vec<usize>,
-    /// Interior-point iterations.
-    pub(crate) iterations: usize,
-    /// Largest violation of any condition by the last iterate, scaled.
-    pub(crate) infeasibility: f64,
-    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: the time
-    /// that the legs before it save per momentum there, and that the legs after it lose.
-    pub(crate) costates: Vec<DVector<f64>>,
-}
-
-impl LegSolution {
-    /// No solution, for want of a guess.
-    pub(crate) fn nowhere() -> Self {
-        Self {
-            status: NlpStatus::IterationLimit,
-            profile: Profile::empty(),
-            intervals: Vec::new(),
-            iterations: 0,
-            infeasibility: f64::MAX,
-            costates: Vec::new(),
-        }
-    }
-
-    /// The solution reversed in time, which solves the reversed leg where momenta and torques admit
-    /// it.
-    pub(crate) fn reversed(&self) -> Self {
-        Self {
-            profile: self.profile.reversed(),
-            intervals: self.intervals.iter().rev().copied().collect(),
-            // Reversal changes the sign of costates and of momenta.
-            costates: self.costates.iter().rev().cloned().collect(),
-            ..*self
-        }
-    }
-
-    /// Duration, s, where there is a motion that meets all conditions.
-    pub(crate) fn duration(&self) -> Option<f64> {
-        let valid = matches!(self.status, NlpStatus::Converged | NlpStatus::Constructed);
-        valid.then(|| self.profile.duration())
-    }
-
-    /// Duration, s, when the NLP converged: a local minimum.
-    pub(crate) fn least_duration(&self) -> Option<f64> {
-        (self.status == NlpStatus::Converged).then(|| self.profile.duration())
-    }
-
-    /// Whether it is better than another solution: those with a duration are better than those
-    /// without, and equal durations are no improvement.
-    pub(crate) fn improves(&self, other: &LegSolution) -> bool {
-        match (self.duration(), other.duration()) {
-            (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
-            (Some(_), None) => true,
-            (None, _) => false,
-        }
-    }
-}
-
-/// Relative difference below which two durations are the same.
-const SAME_DURATION: f64 = 1e-9;
+pub(crate) const LIMIT_TOLERANCE: f64 = 1e-7;
 
 /// Solves for the motion through waypoints, from a guess whose nodes are split into legs by
 /// `intervals`.
@@ -179,15 +60,6 @@ pub(crate) fn solve_through(
     stop: &dyn Fn() -> Option<Interruption>,
 ) -> LegSolution {
     MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(from_a_guess(dynamics), stop)
-}
-
-/// The passes that lead from a guess to a solution.
-fn from_a_guess(dynamics: &Dynamics) -> &'static [Pass] {
-    if dynamics.straying() > 0.0 {
-        &ALONG_LIMITS
-    } else {
-        &FROM_A_GUESS
-    }
 }
 
 /// Frees a solution of the penalty on uneven interval lengths and solves it more exactly.

@@ -20,7 +20,7 @@ use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 #[derive(Debug, Clone, Copy)]
 pub struct Attitude(UnitQuaternion<f64>);
 
-/// Equal components: unlike nalgebra's, this comparison tells `q` from `-q`.
+/// Equality of components: unlike in nalgebra, `q` and `-q` are different.
 impl PartialEq for Attitude {
     fn eq(&self, other: &Self) -> bool {
         self.0.coords == other.0.coords

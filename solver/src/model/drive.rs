@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_braking_motor_is_neither_paid_nor_billed() {
+    fn a_braking_motor_takes_no_power_from_the_supply() {
         let motor = Motor {
             resistance: 0.343,
             torque_constant: 0.0705,

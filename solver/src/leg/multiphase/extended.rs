@@ -5,8 +5,9 @@
 //! motion before it fixed, and then the whole from there. That takes less work than a solve from
 //! scratch, and keeps to the minimum of the former motion, the best of several starts.
 
+use super::passes::from_a_guess;
 use super::rolling::solve_from_windows;
-use super::{LegSolution, MultiphaseSolve, from_a_guess, solve_through};
+use super::{LegSolution, MultiphaseSolve, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;

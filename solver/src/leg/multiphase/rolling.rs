@@ -6,7 +6,8 @@
 //! which the one before it passed its last legs but a few. The whole then starts from a motion that
 //! is feasible and nearly optimal, and the iterations per leg hardly grow with the number of legs.
 
-use super::{LegSolution, MultiphaseSolve, Pass, from_a_guess, solve_through};
+use super::passes::{Pass, from_a_guess};
+use super::{LegSolution, MultiphaseSolve, solve_through};
 use crate::leg::profile::Profile;
 use crate::leg::transcription::ControlPenalty;
 use crate::model::dynamics::Dynamics;

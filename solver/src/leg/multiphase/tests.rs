@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::leg::solve::eigenaxis::{EigenaxisSlew, Perturbation};
+use crate::leg::transcription::ControlPenalty;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 use crate::model::waypoint::WheelCondition;
@@ -13,7 +14,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-/// Agreement of the costs asked for, relative.
+/// Required relative agreement of the costs.
 const AGREEMENT: f64 = 1e-6;
 /// Accuracy of the optimality conditions of the second engine, scaled variables; the cost is off
 /// by about its square.

@@ -7,7 +7,7 @@ use crate::model::spec::{
     AttitudeEquivalence, AttitudeSpec, BoresightSpec, KeepOutSpec, StateSpec,
 };
 
-/// What to change in a valid description, the code expected of it, and where.
+/// A change of a valid description, and the code and pointer that are expected.
 type Fault = (fn(&mut ScenarioSpec), Code, &'static str);
 
 fn valid() -> ScenarioSpec {
@@ -437,7 +437,7 @@ fn a_locked_wheel_keeps_its_speed_and_ignores_the_authority() {
     spec.start.wheel_speed_rad_s = Some(vec![0.0, 0.0, 0.0, 700.0]);
     end(&mut spec).wheel_speed_rad_s = Some(vec![0.0, 0.0, 0.0, 700.0]);
     assert!(Scenario::try_new(&spec).is_ok());
-    // The same momentum, but moved from the locked wheel to its parallel neighbour.
+    // The same momentum, moved from the locked wheel to a parallel one.
     end(&mut spec).wheel_speed_rad_s = Some(vec![0.0, 0.0, 100.0, 600.0]);
     let problems = Scenario::try_new(&spec).unwrap_err();
     let found: Vec<_> = problems

@@ -1,7 +1,7 @@
 use super::*;
 use crate::model::scenario::reference::experiment_a;
 
-/// What to change in a valid description, the code expected of it, and where.
+/// A change of a valid description, and the code and pointer that are expected.
 type Fault = (fn(&mut SpacecraftSpec), Code, &'static str);
 
 fn valid() -> SpacecraftSpec {

@@ -24,10 +24,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             certificate.duration_s
         );
         // The second proof, in intervals and from another list of the extremals.
-        certify::check(&certificate).map_err(|rejection| format!("{rejection:?}"))?;
+        certify::verify(&certificate).map_err(|rejection| format!("{rejection:?}"))?;
         // A bound that is too large by a thousandth is not confirmed.
         certificate.duration_s *= 1.001;
-        assert!(certify::check(&certificate).is_err());
+        assert!(certify::verify(&certificate).is_err());
     }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! What is given and what is answered: spacecraft, scenario, dynamics, plan, and what can be wrong with them.
+//! Inputs and answers: spacecraft, scenario, dynamics, plan, and the problems that an input can
+//! have.
 
 pub mod attitude;
 pub mod drive;

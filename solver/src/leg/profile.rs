@@ -1,12 +1,12 @@
-//! A motion as the optimiser sees it: states at nodes and the time between them.
+//! The discretised motion of the optimiser: states at nodes and the time between them.
 
 use crate::model::attitude::Attitude;
 use crate::model::motion::Motion;
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// A piecewise motion with constant torque between nodes; also used as a starting guess, and then
-/// neither flyable nor within limits.
+/// A motion with constant torque between nodes. As a starting guess it need neither satisfy the
+/// dynamics nor keep the limits.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Profile {
     /// Attitude at every node, continuous in sign.
@@ -61,7 +61,7 @@ impl Profile {
         }
     }
 
-    /// No motion at all, in no time.
+    /// No motion: the same state at every node, and intervals of no length.
     pub(crate) fn zero_length(attitude: Attitude, wheels: DVector<f64>, intervals: usize) -> Self {
         Self {
             attitudes: vec![attitude; intervals + 1],
@@ -81,7 +81,7 @@ impl Profile {
             .splice(node..node, std::iter::repeat_n(0.0, intervals));
     }
 
-    /// The motion flown backwards: wheel momenta change sign, torques do not.
+    /// The motion reversed in time: wheel momenta change sign, torques do not.
     pub(crate) fn reversed(&self) -> Self {
         Self {
             attitudes: self.attitudes.iter().rev().copied().collect(),

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! The state is `(q, h)`: three plus `K` numbers, of which `h` is a plain integral of the torque.
-//! Speed limits become limits on `h_i / I_i - a_i . w`. Shares of the limits that the plan may not
-//! use are taken off here, so nothing downstream knows of them.
+//! Speed limits become limits on `h_i / I_i - a_i . w`. Torque and speed limits are multiplied here
+//! by the shares that a plan may use ([`Authority`]), and nowhere else.
 
 use crate::model::attitude::Attitude;
 use crate::model::scenario::Start;
@@ -81,18 +81,18 @@ pub(crate) struct Dynamics {
     pub(crate) max_rate_norm: f64,
 }
 
-/// Total momentum below this fraction of what the wheels turn over counts as zero, so that
-/// rounding in the caller's numbers does not cost the simpler dynamics.
+/// Total momentum below this fraction of the sum of its terms counts as zero, so that rounding in
+/// the caller's numbers does not prevent the simpler dynamics.
 const NEGLIGIBLE_MOMENTUM: f64 = 1e-13;
 
-/// What a quantity of directions in the body is along each of three axes, given as columns.
+/// A function of directions in the body, evaluated along each of three axes, given as columns.
 pub(crate) fn along(axes: &Matrix3<f64>, quantity: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
     Vector3::from_fn(|i, _| quantity(&axes.column(i).into_owned()))
 }
 
 impl Dynamics {
-    /// The dynamics of a spacecraft with the momentum of a state; `authority` is what a plan may use
-    /// of its limits.
+    /// The dynamics of a spacecraft with the momentum of a state, within the shares of its limits
+    /// that a plan may use.
     pub(crate) fn of(spacecraft: &Spacecraft, start: &Start, authority: Authority) -> Self {
         let actuators: Vec<Actuator> = spacecraft
             .enabled_wheels()
@@ -148,7 +148,7 @@ impl Dynamics {
         self.momentum != Vector3::zeros()
     }
 
-    /// The middle of the eigenvalues of `J^-1`, 1/(kg m²): what a sphere nearest to the body has.
+    /// The middle between the extreme eigenvalues of `J^-1`, 1/(kg m²).
     pub(crate) fn mean_inverse_inertia(&self) -> f64 {
         let values = self.locked_inertia_inverse.symmetric_eigenvalues();
         0.5 * (values.min() + values.max())
@@ -157,7 +157,7 @@ impl Dynamics {
     /// Greatest component of the body rate along a direction in body axes, rad/s times its length,
     /// that wheel speeds within their limits allow at any attitude, to either side:
     /// `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`, so
-    /// `d . w` is largest with every wheel at the limit of the sign that suits it.
+    /// `d . w` is largest with every wheel at the limit of the sign that increases it.
     pub(crate) fn reachable_rate(&self, direction: &Vector3<f64>) -> f64 {
         self.reachable_relative_rate(direction, 0.0)
     }
@@ -170,7 +170,7 @@ impl Dynamics {
         let turned = (lever - direction * share).norm() * self.momentum.norm();
         self.actuators.iter().fold(held + turned, |sum, wheel| {
             let share = lever.dot(&wheel.axis).abs() * wheel.inertia;
-            // A wheel without a limit that does not turn an axis leaves it alone.
+            // Zero times an infinite speed limit would be NaN.
             sum + if share > 0.0 {
                 share * wheel.max_speed
             } else {
@@ -179,10 +179,11 @@ impl Dynamics {
         })
     }
 
-    /// Greatest component along a direction in body axes of `(J_eff^-1 - share) (w x R^T H)`, rad/s²
-    /// times its length: the acceleration that momentum makes, relative to axes that turn with a
-    /// share of it. By the rules of triple products it is at most `|H| |(J_eff^-1 d - share d) x w|`,
-    /// convex in `w`, so at most its largest value at a corner of the box of rates.
+    /// Greatest component along a direction in body axes of `(J_eff^-1 - share) (w x R^T H)`,
+    /// rad/s² times its length: the acceleration by the stored momentum, relative to axes that turn
+    /// with a share of it. By the rules of triple products it is at most
+    /// `|H| |(J_eff^-1 d - share d) x w|`, convex in `w`, so at most its largest value at a corner
+    /// of the box of rates.
     pub(crate) fn gyroscopic_acceleration(&self, direction: &Vector3<f64>, share: f64) -> f64 {
         let lever = self.inertia_inverse.tr_mul(direction) - direction * share;
         if !self.has_momentum() || lever == Vector3::zeros() {
@@ -228,8 +229,8 @@ impl Dynamics {
     }
 
     /// Greatest component of the acceleration along a direction in body axes, rad/s² times its
-    /// length, that wheel torques within their limits make without momentum, to either side:
-    /// `J_eff w' = -A u`, so every torque is at the limit that suits it.
+    /// length, by wheel torques within their limits without momentum, to either side:
+    /// `J_eff w' = -A u`, so every torque is at the limit of the sign that increases it.
     pub(crate) fn reachable_acceleration(&self, direction: &Vector3<f64>) -> f64 {
         let lever = self.inertia_inverse.tr_mul(direction);
         let (back, forth) = self
@@ -243,8 +244,8 @@ impl Dynamics {
         f64::max(back, forth)
     }
 
-    /// Orthonormal axes, as columns, along which rates are limited most independently: the body
-    /// axes when their rates have limits, else those of [`Self::wheel_axes`].
+    /// Orthonormal axes, as columns, for boxes of rates: the body axes when their rates have
+    /// limits, else those of [`Self::wheel_axes`].
     pub(crate) fn natural_axes(&self) -> Matrix3<f64> {
         if self.max_rate.iter().any(|limit| limit.is_finite()) {
             Matrix3::identity()
@@ -254,7 +255,7 @@ impl Dynamics {
     }
 
     /// Orthonormal axes, as columns, nearest to the axes of the three wheels that span the largest
-    /// volume: they turn with the spacecraft and not with its description.
+    /// volume. They do not depend on the choice of body axes.
     pub(crate) fn wheel_axes(&self) -> Matrix3<f64> {
         let (mut widest, mut largest) = (Matrix3::identity(), 0.0);
         for (i, first) in self.actuators.iter().enumerate() {
@@ -263,7 +264,7 @@ impl Dynamics {
                     let axes = [first, second, third].map(|wheel| wheel.axis.normalize());
                     let triple = Matrix3::from_columns(&axes);
                     let volume = triple.determinant().abs();
-                    // The first of equal ones, however they were rounded.
+                    // The first of triples whose volumes are equal up to rounding.
                     if volume > largest + 1e-6 {
                         (widest, largest) = (triple, volume);
                     }
@@ -288,7 +289,7 @@ impl Dynamics {
         self.inertia_inverse * body
     }
 
-    /// What the wheels must hold in sum, N m s, at an attitude and body rate.
+    /// Sum of the wheel momenta, N m s, at an attitude and body rate.
     pub(crate) fn demanded(&self, attitude: &Attitude, rate: &Vector3<f64>) -> Vector3<f64> {
         attitude.to_body(self.momentum) - self.locked_momentum - self.inertia * rate
     }
@@ -335,8 +336,8 @@ impl Dynamics {
             .chain(std::iter::once(rate.norm() / self.max_rate_norm))
     }
 
-    /// Greatest share of its limit that any wheel speed or body rate has; infinite never, 0 when
-    /// nothing is limited.
+    /// Greatest share of its limit that any wheel speed or body rate has; 0 when nothing is
+    /// limited, never infinite.
     pub(crate) fn speed_usage(&self, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
         self.limit_shares(rate, wheels)
             .fold(0.0, |worst, share| worst.max(share.abs()))

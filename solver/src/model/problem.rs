@@ -1,11 +1,11 @@
-//! What can be wrong with an input, said so that a caller can act on it.
+//! Problems of an input, with what the caller can do about them.
 
 use std::fmt;
 use strum::EnumMessage as _;
 
-/// Most problems of one input that are kept: more help nobody, and each takes memory.
+/// Limit of the reported problems of one input, for memory.
 pub const MAX_KEPT: usize = 1000;
-/// Most names that a hint lists, and most characters of each.
+/// Limits of the names that a hint lists, and of the characters of each.
 const NAMES_IN_A_HINT: usize = 10;
 const CHARACTERS_OF_A_NAME: usize = 40;
 
@@ -49,14 +49,14 @@ impl Problem {
         )
     }
 
-    /// The same of a document that is a part of another, at this pointer there.
+    /// The problem in a document that contains this one at a pointer.
     #[must_use]
     pub fn under(mut self, place: &str) -> Self {
         self.pointer.insert_str(0, place);
         self
     }
 
-    /// All problems of such a document.
+    /// All problems in a document that contains theirs at a pointer.
     #[must_use]
     pub fn all_under(place: &str, problems: Vec<Self>) -> Vec<Self> {
         let moved = |problem: Self| problem.under(place);
@@ -69,7 +69,7 @@ impl Problem {
 pub struct Faults {
     /// Why it is refused.
     pub problems: Vec<Problem>,
-    /// What is doubtful, but would not stand in the way.
+    /// Warnings, which alone would not refuse it.
     pub warnings: Vec<Problem>,
 }
 
@@ -88,7 +88,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The first of many names in quotation marks for a hint, which stays short whatever they are.
+/// The first of many names, in quotation marks and shortened, for a hint of limited length.
 pub(crate) fn quoted<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let more = names.len().saturating_sub(NAMES_IN_A_HINT);
     let quote = |name: &str| match name.char_indices().nth(CHARACTERS_OF_A_NAME) {
@@ -251,7 +251,7 @@ pub enum Code {
         leave a rate component free."
     )]
     MomentumExceedsEnvelope,
-    /// A slew for which no flyable solution was found.
+    /// A leg for which no solution was found that meets all conditions.
     #[strum(
         message = "Check that the wheels can hold the stored momentum along the way, or relax \
         the conditions at the ends."
@@ -264,7 +264,7 @@ pub enum Code {
     #[strum(message = "Plan fewer targets at once, or raise --job-memory of the service.")]
     MemoryLimit,
     /// The finished plan failed its independent verification.
-    #[strum(message = "Report it with the scenario: the plan is not one to fly.")]
+    #[strum(message = "Report it with the scenario, and do not use the plan.")]
     VerificationFailed,
     /// An order takes less time than a lower bound allowed: the bounds are doubtful (warning).
     #[strum(message = "Take the bound as doubtful; the plan itself is verified.")]
@@ -281,16 +281,17 @@ pub enum Code {
     /// A part of another table of legs than the parts before it.
     #[strum(message = "Join only files of slewplan legs that differ in --shard alone.")]
     ShardMismatch,
-    /// A part of a table of legs that is there twice.
+    /// A part of a table of legs that is given twice.
     #[strum(message = "Name every part once.")]
     ShardRepeated,
-    /// A part of a table of legs that is not there.
+    /// A part of a table of legs that is missing.
     #[strum(message = "Solve the part that the message names.")]
     ShardMissing,
     /// A table of legs, or a part of one, that lacks legs.
     #[strum(message = "Solve the part again and let it end.")]
     TableIncomplete,
-    /// A leg that does not fly as its problem demands, or is slower than the slew about the eigenaxis.
+    /// A leg that does not meet its conditions when it is propagated, or is slower than the
+    /// eigenaxis slew.
     #[strum(message = "Solve it again with slewplan legs.")]
     LegRefused,
 }

@@ -1,6 +1,6 @@
-//! What a caller may write: plain, unvalidated descriptions with units in the field names.
+//! Descriptions as a caller writes them: plain, unvalidated, with units in the field names.
 //!
-//! Every value here may be nonsense. [`crate::model::scenario::Scenario::try_new`] turns a
+//! Every value may be invalid. [`crate::model::scenario::Scenario::try_new`] turns a
 //! [`ScenarioSpec`] into a scenario that is valid by construction, or lists all that is wrong.
 //! Optional fields are `None` when the caller left them out or wrote `null`.
 
@@ -21,7 +21,7 @@ pub struct ScenarioSpec {
     pub start: StateSpec,
     /// State at the end of the tour; `None` finishes at the last target.
     pub end: Option<StateSpec>,
-    /// The targets, in any order but for their own demands.
+    /// The targets; their sequence here does not matter.
     pub targets: Vec<TargetSpec>,
     /// Cones in which a boresight must not point.
     pub keep_out: Vec<KeepOutSpec>,
@@ -60,7 +60,7 @@ pub struct WheelSpec {
     pub min_torque_nm: Option<f64>,
     /// Limit of the speed relative to the body, rad/s; `None` is unlimited.
     pub max_speed_rad_s: Option<f64>,
-    /// A disabled wheel is locked at its start speed.
+    /// Whether the wheel may be commanded; a disabled wheel is locked at its start speed.
     pub enabled: bool,
 }
 
@@ -144,7 +144,7 @@ pub struct KeepOutSpec {
     pub half_angle_deg: f64,
 }
 
-/// Whether q and -q are the same place to be.
+/// Whether q and -q are the same attitude.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum AttitudeEquivalence {
     /// Attitudes are rotations: q and -q are the same.
@@ -154,14 +154,14 @@ pub enum AttitudeEquivalence {
     Quaternion,
 }
 
-/// How closely durations come to the minimum over all torque histories.
+/// Distance of durations from the minimum over all torque histories.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Accuracy {
     /// Within 0.05 % of the converged minimum.
     #[default]
     Standard,
-    /// Twice the intervals, no penalty on their lengths: durations repeat to 1e-6 relative
-    /// whatever the units and axes in which a problem is stated. Several times slower.
+    /// Twice the intervals, no penalty on their lengths: durations agree to 1e-6 relative between
+    /// different units and axes of the same problem. Several times slower.
     Tight,
 }
 
@@ -178,7 +178,7 @@ pub struct OptionsSpec {
     pub node_limit: Option<u64>,
     /// Gap at which the search may stop.
     pub relative_gap: f64,
-    /// How many further orders to prove and list.
+    /// Number of further orders to prove and list.
     pub alternatives: usize,
     /// Share of every torque limit that the plan may use.
     pub torque_authority: f64,

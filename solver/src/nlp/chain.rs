@@ -1,5 +1,5 @@
-//! The contract between a problem and the engine: what a chain tells about itself, and the storage it
-//! writes its values and derivatives into.
+//! The contract between a problem and the engine: the functions of a chain, and the storage for
+//! its values and derivatives.
 
 /// A chain-structured nonlinear program; see the [module](super) for the formulas.
 pub(crate) trait Chain {

@@ -134,8 +134,8 @@ impl InteriorPoint {
         self.filter.reset(theta);
     }
 
-    /// Sets slacks to their inequalities, or to the smallest initial slack where these are below it,
-    /// and their multipliers to `mu / s`.
+    /// Sets slacks to their inequalities, or to the smallest initial slack where these are below
+    /// it, and their multipliers to `mu / s`.
     fn open_slacks(&self, iterate: &mut Iterate) {
         for (node, values) in self.trial.values().iter().enumerate() {
             let range = self.problem.layout.inequality(node);

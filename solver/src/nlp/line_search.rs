@@ -43,8 +43,8 @@ struct Reference {
 }
 
 impl<C: Chain> LineSearch<'_, C> {
-    /// Goes along the step until the filter accepts a trial; false when it accepts none. Breaks when
-    /// the caller stops the solve.
+    /// Goes along the step until the filter accepts a trial; false when it accepts none. Breaks
+    /// when the caller stops the solve.
     pub(super) fn run(mut self) -> ControlFlow<NlpStatus, bool> {
         let longest = self.longest_step();
         let here = Reference {

@@ -120,7 +120,7 @@ impl Newton {
         std::mem::swap(&mut self.step, &mut self.uncorrected);
     }
 
-    /// Tells the regularisation what share of the longest possible step was taken.
+    /// Adapts the regularisation to the share of the longest possible step that was taken.
     pub(super) fn was_taken(&mut self, share: f64) {
         self.regularisation.stepped(share);
     }

@@ -17,7 +17,7 @@
 //!
 //! Blocks have a handful of rows, where loops of unknown length cost several times their
 //! arithmetic. The sweeps are therefore compiled for fixed sizes, and a chain uses the smallest
-//! that holds its states and controls; the rows to spare are the identity's.
+//! size that holds its states and controls; surplus rows are those of the identity.
 
 mod stage;
 
@@ -28,7 +28,8 @@ use stage::{Matrix, Stage, dot, padded, solve_lower, solve_upper};
 /// Proximal weight of node equalities. Smaller converges in fewer sweeps, larger loses fewer
 /// digits in the sums `M + C^T C / rho`.
 const RHO: f64 = 1e-6;
-/// Most vector sweeps for one step; each shrinks the equality residual by orders of magnitude.
+/// Limit of the vector sweeps for one step; each shrinks the equality residual by orders of
+/// magnitude.
 const MAX_SWEEPS: usize = 6;
 /// Equality residual at which the sweeps end (absolute, scaled variables).
 const SWEEP_TOLERANCE: f64 = 1e-13;

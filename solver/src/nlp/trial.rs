@@ -74,7 +74,8 @@ impl Trial {
         Some(problem.merit_of(&self.values, &self.point.slack))
     }
 
-    /// What an inequality's value exceeds its slack by, and its index, of all inequalities of a node.
+    /// What an inequality's value exceeds its slack by, and its index, of all inequalities of a
+    /// node.
     pub(super) fn slack_errors(
         &self,
         layout: &Layout,

@@ -29,7 +29,7 @@ pub(super) fn of(
         extremals: &KinematicExtremals::of(dynamics),
         resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
-    let fastest = solve::solve(&problem, None, stop).flown;
+    let fastest = solve::solve(&problem, None, stop).solution;
     let converged = fastest.duration().is_some();
     let fastest = SlewMotion::of_profile(&fastest.profile);
     let mut guesses = vec![match &vehicle.pinned_null {

@@ -83,7 +83,7 @@ impl Slew {
             attitude: start.attitude,
             rate: fixed(&start.rate),
             wheels: WheelCondition::Fixed(start_momenta.clone()),
-            price: None,
+            costates: None,
         };
         let arrival = match spec.attitude_equivalence {
             AttitudeEquivalence::Rotation => Arrival::Rotation,
@@ -106,7 +106,7 @@ impl Slew {
             attitude: arrival.signed(&target, &start.attitude),
             rate: fixed(&rate),
             wheels,
-            price: None,
+            costates: None,
         };
         let commanded = dynamics.actuators.iter().map(|wheel| drives[wheel.index]);
         Self {

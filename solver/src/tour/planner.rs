@@ -219,10 +219,10 @@ pub fn leg_table(
                 from: places.name(*from),
                 to: places.name(*to),
                 kind,
-                duration_s: leg.flown.duration(),
+                duration_s: leg.solution.duration(),
                 certified_lower_bound_s: leg.certified,
                 solve_time_s: leg.solve_time,
-                status: leg.flown.status.into_str().into(),
+                status: leg.solution.status.into_str().into(),
             })
         };
         pairs.iter().filter_map(row).collect()
@@ -316,16 +316,16 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
         .flat_map(|from| all.iter().map(move |to| (*from, *to)))
         .filter_map(|(from, to)| {
             let leg = &tours.free_legs()?.get(from, to)?.leg;
-            leg.flown.duration().is_none().then(|| {
+            leg.solution.duration().is_none().then(|| {
                 let reason = outside_on_turn(tours, from, to).map(|place| format!("; {place}"));
                 let message = format!(
                     "the slew from {} to {} ended with status {} after {} iterations, its \
                      conditions violated by {:.1e} (scaled){}",
                     tours.places.name(from),
                     tours.places.name(to),
-                    leg.flown.status,
-                    leg.flown.iterations,
-                    leg.flown.infeasibility,
+                    leg.solution.status,
+                    leg.solution.iterations,
+                    leg.solution.infeasibility,
                     reason.unwrap_or_default(),
                 );
                 Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)

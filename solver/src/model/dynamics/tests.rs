@@ -1,4 +1,4 @@
-//! What the wheels can do, by enumeration.
+//! Dynamics against enumeration, and the definition of zero momentum.
 
 use super::*;
 use crate::math::random::SplitMix;
@@ -58,9 +58,9 @@ fn body_axes_are_natural_where_their_rates_are_limited() {
 }
 
 #[test]
-fn momentum_that_is_rounding_is_none() {
+fn momentum_below_rounding_counts_as_zero() {
     let mut spec = experiment_a();
-    // Four wheels of a pyramid turn along their null space: three tenths do not sum to nothing.
+    // Four wheels of a pyramid spin along their null space; their momenta cancel up to rounding.
     spec.spacecraft.wheels = [
         [1.0, 0.0, 1.0],
         [0.0, 1.0, 1.0],
@@ -98,7 +98,7 @@ fn a_body_that_turns_against_its_wheels_has_no_momentum() {
 }
 
 #[test]
-fn without_momentum_or_lever_nothing_is_gyroscopic() {
+fn the_gyroscopic_acceleration_vanishes_without_momentum_or_lever() {
     let mut random = SplitMix::new(35);
     let axis = direction(&mut random);
     let mut dynamics = spacecraft(&mut random, true).dynamics();
@@ -111,7 +111,7 @@ fn without_momentum_or_lever_nothing_is_gyroscopic() {
 }
 
 #[test]
-fn what_the_wheels_hold_at_a_rate_is_a_rate_again() {
+fn wheel_momenta_of_a_rate_give_the_rate_again() {
     let mut random = SplitMix::new(34);
     for case in 0..40 {
         let dynamics = spacecraft(&mut random, true).dynamics();
@@ -125,7 +125,7 @@ fn what_the_wheels_hold_at_a_rate_is_a_rate_again() {
 }
 
 #[test]
-fn a_lower_limit_is_strayed_from_by_a_larger_share() {
+fn rates_stray_from_a_lower_limit_by_a_larger_share() {
     let mut random = SplitMix::new(33);
     for norm in [false, true] {
         let mut dynamics = spacecraft(&mut random, true).dynamics();

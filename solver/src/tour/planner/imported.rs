@@ -87,8 +87,8 @@ impl<'a> LegCheck<'a> {
     ) -> Result<StoredLeg, Vec<String>> {
         let leg = self.legs.get(identity);
         let leg = leg.ok_or_else(|| vec!["the scenario has no such leg".to_owned()])?;
-        let flown = solution(leg, motion)?;
-        let profile = &flown.profile;
+        let solution = solved(leg, motion)?;
+        let profile = &solution.profile;
         let mut faults = self.faults(leg, profile);
         if faults.is_empty() {
             faults = flight_faults(&self.places, leg, profile);
@@ -100,7 +100,7 @@ impl<'a> LegCheck<'a> {
             return Err(faults);
         }
         let solved = SolvedLeg {
-            flown,
+            solution,
             certified: certify(&self.places, leg).lower_bound,
             solves: 0,
             solve_time: solve_time_s,
@@ -143,7 +143,7 @@ impl<'a> LegCheck<'a> {
 }
 
 /// The motion of an imported leg, when its numbers fit together.
-fn solution(leg: &CanonicalLeg, motion: Motion) -> Result<LegSolution, Vec<String>> {
+fn solved(leg: &CanonicalLeg, motion: Motion) -> Result<LegSolution, Vec<String>> {
     let wheels = leg.dynamics.wheel_count();
     let momenta = &motion.wheel_momenta_nms;
     let mut faults = Vec::new();
@@ -165,14 +165,14 @@ fn solution(leg: &CanonicalLeg, motion: Motion) -> Result<LegSolution, Vec<Strin
     if intervals > MAX_INTERVALS {
         faults.push(format!("it has more than {MAX_INTERVALS} intervals"));
     }
-    let flown = leg_from_store(motion);
-    if flown.is_none() {
+    let solution = leg_from_store(motion);
+    if solution.is_none() {
         let nodes = intervals + 1;
         faults.push(format!(
             "it has not {nodes} unit quaternions and momenta with {intervals} times between them"
         ));
     }
-    flown.filter(|_| faults.is_empty()).ok_or(faults)
+    solution.filter(|_| faults.is_empty()).ok_or(faults)
 }
 
 /// Rates at an end of a leg that are not what its conditions ask for.

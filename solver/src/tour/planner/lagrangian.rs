@@ -5,7 +5,7 @@
 
 use super::interruption;
 use super::tours::Tours;
-use crate::leg::multiphase::fly;
+use crate::leg::multiphase::solve_through;
 use crate::leg::profile::Profile;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::nlp::NlpStatus;
@@ -57,11 +57,11 @@ impl Tours<'_> {
         let motions = [(free.profile, free.intervals), perturbed_eigenaxis].into_iter();
         for (motion, intervals) in motions.filter(|(motion, _)| motion.duration() > 0.0) {
             let mut waypoints = self.program(&leg, &motion, &intervals);
-            waypoints[0].price = begin.as_ref().map(|costate| -costate);
-            waypoints[1].price.clone_from(&end);
+            waypoints[0].costates = begin.as_ref().map(|costate| -costate);
+            waypoints[1].costates.clone_from(&end);
             self.legs.count_solve();
             let dynamics = &self.places.dynamics;
-            let solution = fly(dynamics, &waypoints, &intervals, &motion, &|| {
+            let solution = solve_through(dynamics, &waypoints, &intervals, &motion, &|| {
                 interruption(self.stop)
             });
             if solution.status.is_interrupted() {
@@ -73,7 +73,7 @@ impl Tours<'_> {
                 let terms = waypoints
                     .iter()
                     .zip(ends)
-                    .filter_map(|(waypoint, wheels)| Some(waypoint.price.as_ref()?.dot(wheels?)));
+                    .filter_map(|(waypoint, wheels)| Some(waypoint.costates.as_ref()?.dot(wheels?)));
                 return Evaluation::Value(profile.duration() + terms.sum::<f64>() + service);
             }
         }

@@ -253,7 +253,7 @@ impl<'a> LegSolver<'a> {
     /// A leg from the store, if its motion passes verification.
     fn from_store(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
-        let faults = flight_faults(self.places, leg, &stored.flown.profile);
+        let faults = flight_faults(self.places, leg, &stored.solution.profile);
         if !faults.is_empty() {
             let identity = leg.identity.clone();
             self.run
@@ -267,15 +267,15 @@ impl<'a> LegSolver<'a> {
 
     /// Drops the certified bound of a leg whose duration is below it, and reports the contradiction.
     fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
-        let Some((bound_s, flown_s)) = solved.certified.zip(solved.flown.duration()) else {
+        let Some((bound_s, solved_s)) = solved.certified.zip(solved.solution.duration()) else {
             return;
         };
         let turn = leg.arrival.turn(&leg.from.attitude, &leg.to.attitude);
-        if bound_s - slack(bound_s, turn) > flown_s {
+        if bound_s - slack(bound_s, turn) > solved_s {
             self.contradicted(&Contradiction::Leg {
                 identity: leg.identity.clone(),
                 bound_s,
-                flown_s,
+                duration_s: solved_s,
             });
             solved.certified = None;
         }
@@ -286,7 +286,7 @@ impl<'a> LegSolver<'a> {
         let bound = lock(&self.certified).get(&leg.identity).copied();
         let mut fresh = solve(self.places, leg, bound, self.stop);
         self.compare_with_bound(leg, &mut fresh);
-        if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
+        if fresh.solution.status == NlpStatus::Converged && !self.stop.is_set() {
             // Stored at once, so that a killed process loses little work. A stopped solve may have
             // skipped starts, and its leg is not stored.
             self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
@@ -296,7 +296,7 @@ impl<'a> LegSolver<'a> {
 
     /// Keeps a leg for this solve unless its solve was interrupted.
     fn keep(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
-        if solved.flown.status.is_interrupted() {
+        if solved.solution.status.is_interrupted() {
             return;
         }
         if from_store {
@@ -359,14 +359,14 @@ fn solve(
         .lower_bound;
     let problem = leg.problem(&places.extremals);
     let mut solved = solve::solve(&problem, certified, &|| interruption(stop));
-    if solved.flown.duration().is_some() && !is_feasible(places, leg, &solved.flown.profile) {
-        solved.flown.status = NlpStatus::NumericalError(Breakdown {
-            stage: solved.flown.profile.intervals(),
+    if solved.solution.duration().is_some() && !is_feasible(places, leg, &solved.solution.profile) {
+        solved.solution.status = NlpStatus::NumericalError(Breakdown {
+            stage: solved.solution.profile.intervals(),
             quantity: Quantity::Flight,
         });
     }
     SolvedLeg {
-        flown: solved.flown,
+        solution: solved.solution,
         certified,
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
@@ -375,7 +375,7 @@ fn solve(
 
 /// A solved leg to be stored.
 pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
-    let profile = &solved.flown.profile;
+    let profile = &solved.solution.profile;
     StoredLeg {
         spacecraft: leg.spacecraft.clone(),
         kind,
@@ -384,7 +384,7 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
         reversible: leg.reversible,
         duration_s: profile.duration(),
         certified_lower_bound_s: solved.certified,
-        status: solved.flown.status.into_str().into(),
+        status: solved.solution.status.into_str().into(),
         solve_time_s: solved.solve_time,
         motion: profile.into(),
     }
@@ -392,9 +392,9 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
 fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
-    let flown = leg_from_store(stored.motion)?;
+    let solution = leg_from_store(stored.motion)?;
     Some(SolvedLeg {
-        flown,
+        solution,
         certified: stored.certified_lower_bound_s,
         solves: 0,
         solve_time: stored.solve_time_s,

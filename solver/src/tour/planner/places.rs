@@ -120,7 +120,7 @@ impl<'a> Places<'a> {
                     attitude: start.attitude,
                     rate: fixed(&start.rate),
                     wheels: wheels(&start.rate, &start.wheel_speed),
-                    price: None,
+                    costates: None,
                 }
             }
             Place::Target(i) => {
@@ -129,7 +129,7 @@ impl<'a> Places<'a> {
                     attitude: target.attitude,
                     rate: target.rate,
                     wheels: WheelCondition::Free,
-                    price: None,
+                    costates: None,
                 }
             }
             Place::End => {
@@ -142,7 +142,7 @@ impl<'a> Places<'a> {
                     attitude: end.attitude,
                     rate: fixed(&end.rate),
                     wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
-                    price: None,
+                    costates: None,
                 }
             }
         }
@@ -154,7 +154,7 @@ impl<'a> Places<'a> {
             attitude: self.waypoint(place).attitude,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
-            price: None,
+            costates: None,
         }
     }
 

@@ -338,7 +338,7 @@ impl PlanBuilder<'_> {
                 route: route.iter().map(|place| places.name(*place)).collect(),
                 leg,
                 bound_s,
-                flown_s,
+                duration_s: flown_s,
             });
         };
         let mut all_slack = 0.0;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct SolvedLeg {
     /// The motion, from the identity attitude, and how it ended.
-    pub(super) flown: LegSolution,
+    pub(super) solution: LegSolution,
     /// Certified lower bound on any slew with its conditions, s.
     pub(super) certified: Option<f64>,
     /// Number of NLPs solved for it.
@@ -40,7 +40,7 @@ pub(super) struct TabulatedLeg {
 impl TabulatedLeg {
     /// The solution with a motion that begins at the given attitude.
     pub(super) fn from_attitude(&self, begin: &Attitude) -> LegSolution {
-        let solution = &self.leg.flown;
+        let solution = &self.leg.solution;
         let mut profile = if self.mirrored {
             solution.profile.reversed()
         } else {
@@ -75,7 +75,7 @@ impl SolvedTable {
     /// Minimum time of the leg between two places, s, where it is solved.
     pub(super) fn duration(&self, from: Place, to: Place) -> Option<f64> {
         self.get(from, to)
-            .and_then(|leg| leg.leg.flown.least_duration())
+            .and_then(|leg| leg.leg.solution.least_duration())
     }
 }
 

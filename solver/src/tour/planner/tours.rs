@@ -14,7 +14,7 @@ use super::places::Places;
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
 use super::solved_segments::SolvedSegments;
 use super::tables::{CertifiedTable, SolvedTable};
-use crate::leg::multiphase::{LegSolution, fly, fly_on, fly_rolling, polish};
+use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::order_rules::OrderRules;
 use crate::model::waypoint::Waypoint;
@@ -297,9 +297,9 @@ impl<'a> Tours<'a> {
         let dynamics = &self.places.dynamics;
         let waypoints = self.program(route, &guess, &intervals);
         let solve = match kind {
-            InitialGuess::Shorter => fly_on,
-            InitialGuess::Eigenaxes => fly_rolling,
-            InitialGuess::Extremals | InitialGuess::AtRest => fly,
+            InitialGuess::Shorter => solve_extended,
+            InitialGuess::Eigenaxes => solve_rolling,
+            InitialGuess::Extremals | InitialGuess::AtRest => solve_through,
         };
         let solution = solve(dynamics, &waypoints, &intervals, &guess, &|| {
             interruption(self.stop)

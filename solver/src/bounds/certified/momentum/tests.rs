@@ -131,7 +131,7 @@ fn conditions_at_an_end_admit_no_rate_beyond_their_bound() {
             attitude: Attitude::identity(),
             rate: ends.map(|(condition, _)| condition),
             wheels: WheelCondition::Free,
-            price: None,
+            costates: None,
         };
         let most = crate::bounds::certified::most(&waypoint);
         for (axis, (condition, rate)) in ends.iter().enumerate() {

@@ -40,7 +40,7 @@ fn a_bound_above_the_duration_of_a_solved_leg_is_reported_and_dropped() {
             };
             lock(&legs.certified).insert(leg.identity.clone(), known);
             let solved = legs.solve(LegKind::RestToRest, &leg);
-            assert!(solved.flown.duration().is_some());
+            assert!(solved.solution.duration().is_some());
             assert_eq!(solved.certified.is_none(), is_false);
             assert_eq!(legs.bounds_are_trusted(), !is_false);
         });

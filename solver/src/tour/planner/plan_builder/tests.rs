@@ -79,14 +79,14 @@ fn a_certified_bound_above_the_duration_is_reported_and_not_in_the_plan() {
             route,
             leg,
             bound_s,
-            flown_s,
+            duration_s,
         },
     ] = &reported[..]
     else {
         panic!("{reported:?}");
     };
     assert_eq!((route.len(), leg), (4, &None));
-    assert!(bound_s > flown_s);
+    assert!(bound_s > duration_s);
     assert_eq!(plan.optimality, Optimality::Feasible);
     assert_eq!(plan.certified_lower_bound_s, None);
     assert_eq!(plan.lower_bound_kind, LowerBoundKind::NlpRelaxation);
@@ -139,7 +139,7 @@ fn leg_from(store: &FaultyStore, listener: &Listener, target: usize) -> (f64, Op
         let pair = (Place::Start, Place::Target(target));
         let table = legs.table(LegKind::RestToRest, &[pair]);
         let leg = &table.get(pair.0, pair.1).expect("a leg").leg;
-        (leg.flown.duration().expect("converged"), leg.certified)
+        (leg.solution.duration().expect("converged"), leg.certified)
     })
 }
 

@@ -3,7 +3,7 @@
 use super::number::Number;
 use super::plan::{ControlDocument, QuaternionDocument};
 use crate::base::clock::rfc3339;
-use crate::store::{LegRow, LegTrajectory};
+use crate::store::{CachedLegRow, LegTrajectory};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -80,8 +80,8 @@ pub(crate) struct StoredLegListDocument {
     pub(crate) next_cursor: Option<String>,
 }
 
-impl From<&LegRow> for StoredLegDocument {
-    fn from(row: &LegRow) -> Self {
+impl From<&CachedLegRow> for StoredLegDocument {
+    fn from(row: &CachedLegRow) -> Self {
         Self {
             key: row.key.clone(),
             spacecraft_key: row.spacecraft.clone(),
@@ -101,7 +101,7 @@ impl From<&LegRow> for StoredLegDocument {
 
 impl FlownLegDocument {
     /// A leg with its motion.
-    pub(crate) fn new(row: &LegRow, trajectory: &LegTrajectory) -> Self {
+    pub(crate) fn new(row: &CachedLegRow, trajectory: &LegTrajectory) -> Self {
         let begins = begins(&trajectory.lengths_s);
         let nodes = trajectory
             .attitudes_xyzw

@@ -6,14 +6,15 @@ use super::{Store, StoreError};
 use serde::{Deserialize, Serialize};
 use sqlx::{FromRow, Row, SqliteConnection};
 
-/// Legs of other versions of the solver are not found, replaced when they are solved again, and
-/// forgotten when the service starts.
+/// Legs of other versions of the solver are never found. They are replaced when they are solved
+/// again, and deleted when the service starts.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Far above the rounding of the product of two unit quaternions; as an angle less than 1e-6 rad.
+/// Tolerance on the scalar product of two unit quaternions: far above its rounding error, and less
+/// than 1e-6 rad as an angle.
 const ROUNDING: f64 = 1e-14;
 
-/// A leg to be remembered.
+/// A leg to be stored.
 #[derive(Debug, Clone)]
 pub(crate) struct NewLeg {
     /// Canonical text of its problem.
@@ -22,15 +23,15 @@ pub(crate) struct NewLeg {
     pub(crate) spacecraft: String,
     /// The kind of table for which it was solved.
     pub(crate) kind: &'static str,
-    /// The turn from begin to end, scalar-last quaternion.
+    /// The rotation from begin to end, scalar-last quaternion.
     pub(crate) turn_xyzw: [f64; 4],
     /// Total momentum in body axes at the begin, N m s.
     pub(crate) momentum: [f64; 3],
-    /// Whether it can be flown backwards.
+    /// Whether the reversed motion is a solution too.
     pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
-    /// No slew with its conditions takes less, s, proved.
+    /// Proved lower bound on the duration of every slew with its conditions, s.
     pub(crate) certified_lower_bound_s: Option<f64>,
     /// Wall-clock time of the solve, s.
     pub(crate) solve_time_s: f64,
@@ -51,9 +52,9 @@ pub(crate) struct LegTrajectory {
     pub(crate) lengths_s: Vec<f64>,
 }
 
-/// A remembered leg without its motion.
+/// A stored leg without its motion.
 #[derive(Debug, Clone, FromRow)]
-pub(crate) struct LegRow {
+pub(crate) struct CachedLegRow {
     /// Order in which legs were stored.
     pub(crate) sequence: i64,
     /// SHA-256 of the identity, hex.
@@ -85,7 +86,7 @@ pub(crate) struct LegRow {
     pub(crate) created_us: i64,
 }
 
-impl LegRow {
+impl CachedLegRow {
     /// The turn from begin to end, scalar-last quaternion.
     pub(crate) fn turn_xyzw(&self) -> [f64; 4] {
         [self.turn_x, self.turn_y, self.turn_z, self.turn_w]
@@ -110,26 +111,27 @@ macro_rules! leg_columns {
 pub(crate) struct LegFilter {
     /// Only legs of this spacecraft.
     pub(crate) spacecraft: Option<String>,
-    /// Only legs whose turn is close to this one, or, when they can be flown backwards, to its
-    /// inverse: scalar-last quaternion and tolerance, rad.
+    /// Only legs whose rotation is close to this one, or, if reversible, to its inverse:
+    /// scalar-last quaternion and tolerance, rad.
     pub(crate) turn: Option<([f64; 4], f64)>,
     /// Only legs stored after this one.
     pub(crate) after: Option<i64>,
-    /// At most so many.
+    /// Maximum number of rows.
     pub(crate) limit: i64,
 }
 
-/// The key of a canonical text.
+/// The key of a leg or a spacecraft: SHA-256 of its canonical text, hex.
 pub(crate) fn key(identity: &str) -> String {
     crate::base::digest::hex(identity.as_bytes())
 }
 
 impl Store {
-    /// A leg that this version of the solver would solve the same.
+    /// The stored leg of an identity, if this version of the solver solved it: its row, the
+    /// canonical text of its spacecraft and its motion.
     pub(crate) async fn known_leg(
         &self,
         identity: &str,
-    ) -> Result<Option<(LegRow, String, LegTrajectory)>, StoreError> {
+    ) -> Result<Option<(CachedLegRow, String, LegTrajectory)>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT document, trajectory, ",
             leg_columns!(),
@@ -145,7 +147,7 @@ impl Store {
         row.map(|row| {
             let trajectory = read_trajectory(row.try_get("trajectory")?)?;
             Ok((
-                LegRow::from_row(&row)?,
+                CachedLegRow::from_row(&row)?,
                 row.try_get("document")?,
                 trajectory,
             ))
@@ -153,7 +155,7 @@ impl Store {
         .transpose()
     }
 
-    /// Remembers legs, all of them or none; how many of them this version had not solved before.
+    /// Stores legs, all of them or none. Returns how many this version had not stored before.
     pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
         let mut new = 0;
@@ -168,7 +170,7 @@ impl Store {
     pub(crate) async fn leg(
         &self,
         key: &str,
-    ) -> Result<Option<(LegRow, LegTrajectory)>, StoreError> {
+    ) -> Result<Option<(CachedLegRow, LegTrajectory)>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT trajectory, ",
             leg_columns!(),
@@ -179,7 +181,7 @@ impl Store {
         .await?;
         row.map(|row| {
             Ok((
-                LegRow::from_row(&row)?,
+                CachedLegRow::from_row(&row)?,
                 read_trajectory(row.try_get("trajectory")?)?,
             ))
         })
@@ -187,7 +189,7 @@ impl Store {
     }
 
     /// Legs in the order in which they were stored.
-    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<LegRow>, StoreError> {
+    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<CachedLegRow>, StoreError> {
         let ([x, y, z, w], tolerance) = filter.turn.unwrap_or_default();
         Ok(sqlx::query_as(concat!(
             "SELECT ",
@@ -213,7 +215,7 @@ impl Store {
         .await?)
     }
 
-    /// Number of remembered legs.
+    /// Number of stored legs.
     pub(crate) async fn leg_count(&self) -> Result<i64, StoreError> {
         Ok(sqlx::query_scalar("SELECT count(*) FROM legs")
             .fetch_one(&self.readers)

@@ -2,7 +2,7 @@
 
 use super::super::App;
 use super::super::describe::{ParameterErrors, ServerErrors};
-use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::extract::{self, Parameters};
 use crate::documents::stored_legs::{StoredLegDocument, StoredLegListDocument};
 use crate::store::LegFilter;
@@ -22,7 +22,7 @@ const DEFAULT_TOLERANCE_DEG: f64 = 1e-3;
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
+pub(in crate::api) struct LegListQuery {
     /// Only legs of the spacecraft with this key.
     #[param(pattern = "^[0-9a-f]{64}$")]
     spacecraft_key: Option<String>,
@@ -56,17 +56,17 @@ pub(in crate::api) struct Query {
 /// List cached legs in the order in which they were stored
 #[utoipa::path(
     get, path = "/v1/legs", tag = "legs", operation_id = "list_legs",
-    params(Query),
+    params(LegListQuery),
     responses(
         (status = 200, description = "A page of legs", body = StoredLegListDocument),
         (status = 422, description = "The attitude has no direction",
-            body = ErrorDocument<'static>, content_type = "application/problem+json"),
+            body = ProblemDetails<'static>, content_type = "application/problem+json"),
         ParameterErrors, ServerErrors,
     ),
 )]
 pub(in crate::api) async fn handler(
     State(app): State<App>,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<LegListQuery>,
 ) -> Result<Json<StoredLegListDocument>, ApiError> {
     let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
     if !(1..=MAX_LIMIT).contains(&limit) {

@@ -142,7 +142,7 @@ fn answer(
     stop: &StopSignal,
     cache: &dyn LegStore,
 ) -> (LegAnswerDocument, Option<String>) {
-    let witness = Witness {
+    let store = ObservedStore {
         cache,
         seen: Mutex::default(),
     };
@@ -150,11 +150,11 @@ fn answer(
         pool,
         stop,
         observer: &ContradictionObserver,
-        legs: &witness,
+        legs: &store,
         segments: &NoStore,
     };
     let (rows, _) = planner::leg_table(&pair.scenario, kind, BETWEEN_TARGETS, run);
-    let seen = witness
+    let seen = store
         .seen
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
@@ -189,7 +189,7 @@ fn document(
 }
 
 /// Notes which leg the solver asked for.
-struct Witness<'a> {
+struct ObservedStore<'a> {
     cache: &'a dyn LegStore,
     seen: Mutex<Option<Seen>>,
 }
@@ -200,7 +200,7 @@ struct Seen {
     found: bool,
 }
 
-impl Witness<'_> {
+impl ObservedStore<'_> {
     fn note(&self, identity: &str, leg: &StoredLeg, found: bool) {
         let seen = Seen {
             key: leg_key(identity),
@@ -211,7 +211,7 @@ impl Witness<'_> {
     }
 }
 
-impl LegStore for Witness<'_> {
+impl LegStore for ObservedStore<'_> {
     fn get(&self, identity: &str) -> Option<StoredLeg> {
         let leg = self.cache.get(identity)?;
         self.note(identity, &leg, true);

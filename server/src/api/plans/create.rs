@@ -1,4 +1,4 @@
-//! `POST /v1/plans`: a scenario becomes a job.
+//! `POST /v1/plans`: submits a scenario as a job.
 
 use super::super::App;
 use super::super::access::Caller;
@@ -31,8 +31,8 @@ const MAX_KEY: usize = 255;
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
-    /// Only say what is wrong or doubtful; nothing is queued.
+pub(in crate::api) struct SubmissionQuery {
+    /// Validate the scenario only; nothing is queued.
     #[serde(default)]
     validate_only: bool,
 }
@@ -45,7 +45,7 @@ pub(in crate::api) struct Query {
 #[utoipa::path(
     post, path = "/v1/plans", tag = "plans", operation_id = "create_plan",
     params(
-        Query,
+        SubmissionQuery,
         ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
             pattern = "^[!-~]+$",
             description = "The same request under the same key makes one job"),
@@ -59,8 +59,7 @@ pub(in crate::api) struct Query {
             value = json!(super::super::describe::experiment_a()))),
     )),
     responses(
-        (status = 200, description = "The finished plan, the job that ended without one, or what \
-            validation says", body = inline(Finished)),
+        (status = 200, description = "The finished plan, the job that ended without one, or the findings of the validation", body = inline(Finished)),
         (status = 202, description = "The job, queued or already running",
             body = JobDocument,
             headers(("Location" = String, description = "Address of the job")),
@@ -86,7 +85,7 @@ pub(in crate::api) struct Query {
 pub(in crate::api) async fn handler(
     State(app): State<App>,
     caller: Caller,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<SubmissionQuery>,
     headers: HeaderMap,
     body: JsonBody,
 ) -> Result<Response, ApiError> {
@@ -198,7 +197,7 @@ async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Respon
     Ok(match result.filter(|result| result.is_final) {
         Some(result) => located(super::result::json(&result), &job),
         // Without a plan nothing more may come: a job that was cancelled, for one.
-        None => located(super::standing(&job)?, &job),
+        None => located(super::ended_or_accepted(&job)?, &job),
     })
 }
 

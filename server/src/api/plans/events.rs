@@ -37,12 +37,11 @@ const AGAIN: Duration = Duration::from_secs(2);
     params(
         ("id" = String, Path, format = "uuid", description = "Identifier of the job"),
         ("Last-Event-ID" = Option<String>, Header,
-            description = "The last event that is known"),
+            description = "Identifier of the last event received"),
     ),
     responses(
-        (status = 200, description = "The events", body = Frame, content_type = "text/event-stream"),
-        (status = 204, description = "The job has ended, and there is no event after the last that \
-            is known"),
+        (status = 200, description = "The events", body = EventFrame, content_type = "text/event-stream"),
+        (status = 204, description = "The job has ended, and there is no event after the last one received"),
         NotFound, ServerErrors,
     ),
 )]
@@ -51,7 +50,7 @@ pub(in crate::api) async fn handler(
     Named(id): Named,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
-    // An id that is none of ours is taken for none: the caller then sees everything.
+    // An invalid id counts as none: the caller then receives all events.
     let known = headers
         .get("last-event-id")
         .and_then(|id| id.to_str().ok()?.trim().parse::<u32>().ok())
@@ -73,7 +72,7 @@ pub(in crate::api) async fn handler(
         closed: false,
         _place: place,
     };
-    // Nobody follows a job that is gone since.
+    // The job may have been deleted in the meantime.
     let state = tail.fetch().await?;
     let state = state.ok_or_else(|| ApiError::not_found("plan", &tail.id))?;
     if state.is_final() && tail.read.is_empty() {
@@ -86,8 +85,8 @@ pub(in crate::api) async fn handler(
 /// One server-sent event.
 #[derive(serde::Serialize, utoipa::ToSchema)]
 #[schema(as = EventFrame)]
-struct Frame {
-    /// Counts from 1 within the job; `closing` has none.
+struct EventFrame {
+    /// Counts from 1 within the job; absent for `closing`.
     id: Option<String>,
     /// `state` when the state has changed, `progress` otherwise, or `closing`.
     event: String,
@@ -95,7 +94,7 @@ struct Frame {
     data: String,
 }
 
-/// Reads the events of a job as they come.
+/// The stream of the events of a job.
 struct Tail {
     app: App,
     id: String,
@@ -104,7 +103,7 @@ struct Tail {
     shutdown: Shutdown,
     known: i64,
     read: VecDeque<EventRow>,
-    /// When the stream ends if the job does not.
+    /// When the stream ends unless the job ends before.
     until: Instant,
     closed: bool,
     _place: OwnedSemaphorePermit,
@@ -132,7 +131,8 @@ impl Tail {
             if state.is_final() {
                 return None;
             }
-            // A running job is about to be given back: that is worth telling.
+            // During a shutdown the stream goes on until a running job is back in the queue, to
+            // report that.
             let given_back = self.shutdown.has_begun() && state == JobState::Queued;
             if given_back || self.until <= Instant::now() {
                 self.closed = true;
@@ -143,7 +143,7 @@ impl Tail {
         }
     }
 
-    /// Waits for a reason to look again.
+    /// Waits for a change of a job, the shutdown or the end of the stream.
     async fn wait(&mut self) {
         let ending = self.shutdown.has_begun();
         if ending {
@@ -156,9 +156,9 @@ impl Tail {
         }
     }
 
-    /// Reads what is new, and where the job stood before that; `None` when it is gone.
+    /// Reads new events, and the state of the job before them; `None` when the job is gone.
     async fn fetch(&mut self) -> Result<Option<JobState>, StoreError> {
-        // The state first: the last event is there before anybody can see the last state.
+        // The state is read first: the last event is stored together with the final state.
         let Some(job) = self.app.store().job(&self.id).await? else {
             return Ok(None);
         };

@@ -1,9 +1,8 @@
 //! The accept loop: HTTP/1.1 connections with limits on their number and their idle times.
 //!
-//! A client that is silent, or that sends its request byte by byte, or that does not read its
-//! answer, holds one connection for a bounded time. When all connections are taken, the one that
-//! has kept the service waiting for a request longest makes room: it takes more than open sockets
-//! to keep others out.
+//! A client that is silent, sends its request byte by byte or does not read its answer holds a
+//! connection for a bounded time. When all connections are taken, the one that has waited longest
+//! for a request is closed, so that idle connections cannot block others.
 
 mod body;
 mod connection_limit;

@@ -1,4 +1,4 @@
-//! `slewplan keys`: who may use the service.
+//! `slewplan keys`: makes, lists and revokes keys of the service.
 
 use super::{Exit, Failure, output, runtime};
 use crate::base::access::{FreshKey, Scope, Scopes};

@@ -70,7 +70,7 @@ pub(crate) struct CachedLegRow {
     momentum_x: f64,
     momentum_y: f64,
     momentum_z: f64,
-    /// Whether it can be flown backwards.
+    /// Whether the reversed motion is a solution too.
     pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,

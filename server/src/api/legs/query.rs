@@ -21,16 +21,16 @@ use slewplan_solver::tour::planner::{self, LegRow, Run, Shard};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 
-/// Most legs of one query: the full matrix of 32 attitudes.
+/// Maximum number of legs of one query: the full matrix of 32 attitudes.
 pub(in crate::api) const MAX_PAIRS: usize = 1000;
 /// With a start and two targets, the fourth of six pairs leads from the first target to the second.
 const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 
-/// Ask for leg times
+/// Query leg times
 ///
-/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with what
-/// is known; `compute` solves what is not, for at most a minute. Legs of the kind `certified`
-/// are only computed, without solving any slew, and not stored.
+/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with the
+/// cached legs; `compute` also solves the missing ones, for at most a minute. Legs of the kind
+/// `certified` are only computed, without solving any slew, and not stored.
 #[utoipa::path(
     post, path = "/v1/legs/query", tag = "legs", operation_id = "query_legs",
     request_body(content = LegQueryBody, examples(
@@ -79,7 +79,7 @@ fn work(
     let pool = Arc::clone(if compute { &app.0.pool } else { &app.0.lookups });
     move |stop| {
         let answers = answers(&query, &pool, stop, &cache);
-        // Written before the answer names their keys.
+        // Stores new legs before the answer names their keys.
         drop(cache);
         answers
     }
@@ -108,7 +108,8 @@ fn answers(
     }
 }
 
-/// The answers for certified legs, in one go: they share what is prepared for the spacecraft.
+/// The answers for certified legs, computed together because they share the preparation of the
+/// spacecraft.
 fn certified(
     query: &LegQuery,
     pool: &SolverPool,
@@ -188,7 +189,7 @@ fn document(
     }
 }
 
-/// Notes which leg the solver asked for.
+/// A leg store that records the leg that the solver read or wrote.
 struct ObservedStore<'a> {
     cache: &'a dyn LegStore,
     seen: Mutex<Option<Seen>>,

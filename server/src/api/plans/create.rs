@@ -126,8 +126,8 @@ pub(in crate::api) async fn handler(
     Ok(response)
 }
 
-/// Refuses cheaply while the queue is full; whoever gets past this may still come too late. A key may
-/// stand for a job that is there already.
+/// Refuses a submission early while the queue is full; the store checks again. Not for requests
+/// with an idempotency key, which may belong to an existing job.
 async fn check_room(app: &App) -> Result<(), ApiError> {
     if app.store().waiting().await? < app.jobs().queue_limits().all {
         return Ok(());
@@ -137,11 +137,11 @@ async fn check_room(app: &App) -> Result<(), ApiError> {
 
 fn queue_full(app: &App) -> ApiError {
     let limit = app.jobs().queue_limits().all;
-    let detail = format!("{limit} jobs wait already (queue_limit)");
+    let detail = format!("{limit} jobs are queued already (queue_limit)");
     ApiError::new(ErrorCode::QueueFull, detail)
 }
 
-/// What a finished request answers.
+/// The answer of a finished request.
 #[derive(serde::Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "only describes the answer")]
@@ -164,7 +164,7 @@ fn validation(valid: &Validated) -> Result<Response, ApiError> {
 
 async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), ApiError> {
     if app.shutdown().has_begun() {
-        let detail = "the service is about to end";
+        let detail = "the service is shutting down";
         return Err(ApiError::new(ErrorCode::NotReady, detail));
     }
     match app.jobs().submit(submission).await? {
@@ -180,13 +180,14 @@ async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), Ap
         Submitted::QueueFull => Err(queue_full(app)),
         Submitted::QuotaExceeded => {
             let limit = app.jobs().queue_limits().client;
-            let detail = format!("{limit} jobs of this client wait already (client_queue_limit)");
+            let detail =
+                format!("{limit} jobs of this client are queued already (client_queue_limit)");
             Err(ApiError::new(ErrorCode::QuotaExceeded, detail))
         }
     }
 }
 
-/// The plan when it is ready in time, the job otherwise.
+/// The plan if it is ready in time, else the job.
 async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
     let Some(patience) = wait else {
         return Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job));
@@ -196,7 +197,7 @@ async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Respon
     let result = found.and_then(|(_, plan)| plan);
     Ok(match result.filter(|result| result.is_final) {
         Some(result) => located(super::result::json(&result), &job),
-        // Without a plan nothing more may come: a job that was cancelled, for one.
+        // A final job without a plan, such as a cancelled one, gets none later.
         None => located(super::ended_or_accepted(&job)?, &job),
     })
 }
@@ -221,7 +222,7 @@ fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, ApiError> {
     Ok(Some(key.to_owned()))
 }
 
-/// The wait of `Prefer: wait=N`. Preferences that are not understood are ignored, as RFC 7240 says.
+/// The wait of `Prefer: wait=N`. Unknown preferences are ignored (RFC 7240).
 fn wait(headers: &HeaderMap) -> Option<Duration> {
     let preferences = headers
         .get_all("prefer")

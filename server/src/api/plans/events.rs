@@ -1,4 +1,4 @@
-//! `GET /v1/plans/{id}/events`: what happens to a job, as it happens.
+//! `GET /v1/plans/{id}/events`: the events of a job as server-sent events.
 
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
@@ -18,20 +18,20 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, watch};
 use tokio::time::Instant;
 
-/// Longest life of a stream.
-const LIFE: Duration = Duration::from_hours(1);
-/// Longest wait, when the service ends, for the job to be given back.
-const FAREWELL: Duration = Duration::from_secs(2);
-/// Time after which a client shall connect again.
-const AGAIN: Duration = Duration::from_secs(2);
+/// Maximum duration of a stream.
+const MAX_DURATION: Duration = Duration::from_hours(1);
+/// Longest wait at a shutdown until the running job is back in the queue.
+const SHUTDOWN_WAIT: Duration = Duration::from_secs(2);
+/// Time after which clients reconnect.
+const RECONNECT: Duration = Duration::from_secs(2);
 
 /// Follow a job
 ///
-/// Server-sent events with ids that count from 1. Every event carries state, incumbent and bound.
-/// A stream ends after the last event of a job; one that broke is resumed with `Last-Event-ID`.
-/// Where nothing is left to tell of a job that has ended, the answer is 204, which keeps an
-/// `EventSource` from coming again. When the service ends, and after an hour, a stream ends with
-/// `closing`, which has no id: connect again.
+/// Server-sent events with ids that count from 1. Every event has state, incumbent and bound. A
+/// stream ends after the last event of a job; a broken one is resumed with `Last-Event-ID`. If the
+/// job has ended and there are no further events, the answer is 204, which keeps an `EventSource`
+/// from reconnecting. When the service ends, and after an hour, a stream ends with `closing`, which
+/// has no id: connect again.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/events", tag = "plans", operation_id = "follow_plan",
     params(
@@ -68,7 +68,7 @@ pub(in crate::api) async fn handler(
         shutdown: app.shutdown().clone(),
         app,
         read: VecDeque::new(),
-        until: Instant::now() + LIFE,
+        until: Instant::now() + MAX_DURATION,
         closed: false,
         _place: place,
     };
@@ -136,7 +136,7 @@ impl Tail {
             let given_back = self.shutdown.has_begun() && state == JobState::Queued;
             if given_back || self.until <= Instant::now() {
                 self.closed = true;
-                let event = Event::default().event("closing").retry(AGAIN).data("");
+                let event = Event::default().event("closing").retry(RECONNECT).data("");
                 return Some((Ok(event), self));
             }
             self.wait().await;
@@ -147,7 +147,7 @@ impl Tail {
     async fn wait(&mut self) {
         let ending = self.shutdown.has_begun();
         if ending {
-            self.until = self.until.min(Instant::now() + FAREWELL);
+            self.until = self.until.min(Instant::now() + SHUTDOWN_WAIT);
         }
         tokio::select! {
             _ = self.changes.changed() => {}

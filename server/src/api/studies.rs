@@ -1,4 +1,4 @@
-//! What the choice of an option leads to, and what wheels can do together.
+//! Studies: effects of options, and envelopes of wheels.
 
 pub(super) mod authority;
 pub(super) mod comparison;
@@ -15,7 +15,7 @@ use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::NoStore;
 use slewplan_solver::tour::planner::Run;
 
-/// The study with the spacecraft of its scenario written out, if it is not too large.
+/// Checks the size of a study's scenario and writes out its stored spacecraft.
 async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Node, ApiError> {
     if let Some(scenario) = node.member_mut("scenario") {
         admission::check_size(app, scenario)?;
@@ -25,7 +25,7 @@ async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Nod
     Ok(node)
 }
 
-/// Planning for a study, which tells nobody how far it is and keeps no legs.
+/// The resources of planning for a study: no progress reports, no leg cache.
 fn quiet_run<'a>(pool: &'a SolverPool, stop: &'a StopSignal) -> Run<'a> {
     Run {
         pool,

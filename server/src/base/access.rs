@@ -1,18 +1,18 @@
-//! Keys of clients: what they look like and what they open.
+//! API keys of clients: their form and their scopes.
 //!
-//! A key is 256 random bits, so that a plain SHA-256 of it can be stored and compared: there is
-//! nothing to guess that a slow hash would protect.
+//! A key has 256 random bits, so that its plain SHA-256 can be stored: a slow hash protects secrets
+//! that can be guessed, which these cannot.
 
 use crate::base::digest::{self, hexadecimal};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// What every key begins with, for those who search for leaked ones.
+/// Prefix of every key, by which scanners find leaked ones.
 const PREFIX: &str = "slewplan_";
 const SECRET_BYTES: usize = 32;
 const ID_BYTES: usize = 6;
 
-/// What a key opens.
+/// A permission that a key grants.
 #[derive(
     Debug,
     Clone,
@@ -40,12 +40,12 @@ fn unknown_scope(text: &str) -> String {
     format!("{text:?} is no scope")
 }
 
-/// What a key opens, all of it.
+/// The permissions that a key grants.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Scopes(Vec<Scope>);
 
 impl Scopes {
-    /// Each of them once.
+    /// A set of scopes, sorted and without duplicates.
     pub(crate) fn new(scopes: &[Scope]) -> Self {
         let mut scopes = scopes.to_vec();
         scopes.sort_unstable();
@@ -75,11 +75,11 @@ impl FromStr for Scopes {
     }
 }
 
-/// A key that nobody has yet. Its secret is in memory only, to be shown once.
+/// A new key. Its secret is held in memory only, to be shown once.
 pub(crate) struct FreshKey {
-    /// Names the key.
+    /// Public identifier of the key.
     pub(crate) id: String,
-    /// The key itself.
+    /// The secret key.
     pub(crate) secret: String,
 }
 
@@ -88,7 +88,7 @@ impl FreshKey {
     ///
     /// # Errors
     ///
-    /// When the operating system has none.
+    /// When the operating system provides no randomness.
     pub(crate) fn new() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; SECRET_BYTES];
         getrandom::fill(&mut bytes)?;
@@ -100,14 +100,14 @@ impl FreshKey {
         })
     }
 
-    /// What is stored of the key.
+    /// The digest that is stored of the key.
     pub(crate) fn digest(&self) -> String {
         digest_of(&self.secret)
     }
 }
 
-/// What is stored of a key that somebody has sent. It is looked up by this: how long that takes
-/// depends on a hash that nobody can steer, not on the key.
+/// The digest by which a received key is looked up. The time of the look-up depends on the digest,
+/// which a client cannot choose, and not on the key.
 pub(crate) fn digest_of(key: &str) -> String {
     digest::hex(key.as_bytes())
 }
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_are_long_and_never_the_same() {
+    fn keys_have_256_random_bits() {
         let keys = [(); 2].map(|()| FreshKey::new().expect("randomness"));
         assert_ne!(keys[0].secret, keys[1].secret);
         assert_ne!(keys[0].id, keys[1].id);
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn scopes_are_read_as_they_were_written() {
+    fn scopes_are_parsed_from_their_text() {
         let scopes = Scopes::new(&[Scope::Write, Scope::Read, Scope::Write]);
         assert_eq!(scopes.to_string(), "read write");
         assert_eq!("read write".parse(), Ok(scopes));

@@ -1,4 +1,4 @@
-//! Wall-clock time for records: whole microseconds since 1970, and their text.
+//! Wall-clock time of records: whole microseconds since 1970, and its text.
 
 use jiff::Timestamp;
 use std::time::{SystemTime, UNIX_EPOCH};

@@ -1,4 +1,4 @@
-//! `slewplan import`: legs that were solved elsewhere enter a database.
+//! `slewplan import`: imports legs that were solved elsewhere into a database.
 
 use super::failure::Failure;
 use super::solve::{Threads, start_pool};
@@ -10,9 +10,9 @@ use crate::service::ServiceError;
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
-/// What `import` takes.
+/// Arguments of `import`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct ImportArguments {
     /// A file of legs --trajectories, whole or a shard, - for standard input
     file: PathBuf,
     /// The database of the service, which may be running
@@ -27,8 +27,8 @@ pub(super) struct Arguments {
     threads: Threads,
 }
 
-/// Flies every leg, keeps those that fly, and prints what became of them.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Checks every leg, stores those that pass, and prints the counts and the refused legs.
+pub(super) fn run(arguments: &ImportArguments) -> Result<Exit, Failure> {
     let read = leg_import::read(&input::document(&arguments.file)?);
     let import = read.map_err(|problems| Failure::Invalid {
         name: input::name(&arguments.file),

@@ -3,7 +3,7 @@
 use super::number::Number;
 use super::plan::{ControlDocument, QuaternionDocument};
 use crate::base::clock::rfc3339;
-use crate::store::LegRow;
+use crate::store::CachedLegRow;
 use serde::Serialize;
 use slewplan_solver::model::motion::Motion;
 use utoipa::ToSchema;
@@ -81,8 +81,8 @@ pub(crate) struct StoredLegListDocument {
     pub(crate) next_cursor: Option<String>,
 }
 
-impl From<&LegRow> for StoredLegDocument {
-    fn from(row: &LegRow) -> Self {
+impl From<&CachedLegRow> for StoredLegDocument {
+    fn from(row: &CachedLegRow) -> Self {
         Self {
             key: row.key.clone(),
             spacecraft_key: row.spacecraft.clone(),
@@ -102,7 +102,7 @@ impl From<&LegRow> for StoredLegDocument {
 
 impl FlownLegDocument {
     /// A leg with its motion.
-    pub(crate) fn new(row: &LegRow, motion: &Motion) -> Self {
+    pub(crate) fn new(row: &CachedLegRow, motion: &Motion) -> Self {
         let begins = begins(&motion.lengths_s);
         let nodes = motion.attitudes_xyzw.iter().zip(&motion.wheel_momenta_nms);
         let momenta = motion.wheel_momenta_nms.windows(2);

@@ -1,4 +1,4 @@
-//! Legs remembered in the database, as the solver's threads see them.
+//! The leg cache: the solver's view of the legs in the database.
 
 pub(crate) mod upkeep;
 
@@ -9,11 +9,11 @@ use slewplan_solver::tour::legs::{LegStore, StoredLeg};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::runtime::Handle;
 
-/// Legs that are written together.
+/// Number of legs per transaction.
 const BATCH: usize = 64;
 
-/// The legs of a database for one solve. What is new is written in batches, when somebody asks for
-/// that, and when the value is dropped, which must not happen on a thread of the runtime.
+/// The legs of a database for one solve. New legs are written in batches, on request, and when the
+/// value is dropped, which must not happen on a thread of the runtime.
 #[derive(Debug)]
 pub(crate) struct LegCache {
     store: Store,
@@ -40,9 +40,9 @@ impl Unwritten {
         if legs.is_empty() {
             return;
         }
-        // A leg that is forgotten is solved again: no reason to fail.
+        // Not an error of the job: a lost leg is solved again.
         if let Err(error) = self.store.put_legs(&legs, now_us()).await {
-            tracing::warn!(%error, legs = legs.len(), "solved legs are forgotten");
+            tracing::warn!(%error, legs = legs.len(), "solved legs cannot be stored");
         }
     }
 }
@@ -61,7 +61,7 @@ impl LegCache {
         }
     }
 
-    /// What is not in the database yet.
+    /// The legs that are not in the database yet.
     pub(crate) fn unwritten(&self) -> Unwritten {
         self.unwritten.clone()
     }

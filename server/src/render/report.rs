@@ -1,4 +1,4 @@
-//! Answers as text for people.
+//! Answers as plain text.
 
 use slewplan_solver::model::plan::{Margins, Outcome, Verification};
 use slewplan_solver::model::problem::Problem;
@@ -42,7 +42,7 @@ pub(crate) fn verification(
     figures::verification(found) + &figures::margins(margins) + &figures::warnings(warnings)
 }
 
-/// The text of a plan's claims and what became of them.
+/// The text of the check of a plan's proved bounds.
 pub(crate) fn certification(claims: &PlanCertificate, checked: &CheckedCertificate) -> String {
     certification::claims(claims, checked)
 }

@@ -8,14 +8,15 @@ use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 use sqlx::{FromRow, Row, SqliteConnection};
 use std::str::FromStr;
 
-/// Legs of other versions of the solver are not found, replaced when they are solved again, and
-/// forgotten when the service starts.
+/// Legs of other versions of the solver are never found. They are replaced when they are solved
+/// again, and deleted when the service starts.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Far above the rounding of the product of two unit quaternions; as an angle less than 1e-6 rad.
+/// Tolerance on the scalar product of two unit quaternions: far above its rounding error, and less
+/// than 1e-6 rad as an angle.
 const ROUNDING: f64 = 1e-14;
 
-/// A leg to be remembered.
+/// A leg to be stored.
 #[derive(Debug, Clone)]
 pub(crate) struct NewLeg {
     /// Canonical text of its problem.
@@ -24,9 +25,9 @@ pub(crate) struct NewLeg {
     pub(crate) leg: StoredLeg,
 }
 
-/// A remembered leg without its motion.
+/// A stored leg without its motion.
 #[derive(Debug, Clone, FromRow)]
-pub(crate) struct LegRow {
+pub(crate) struct CachedLegRow {
     /// Order in which legs were stored.
     pub(crate) sequence: i64,
     /// SHA-256 of the identity, hex.
@@ -42,7 +43,7 @@ pub(crate) struct LegRow {
     momentum_x: f64,
     momentum_y: f64,
     momentum_z: f64,
-    /// Whether it can be flown backwards.
+    /// Whether the reversed motion is a solution too.
     pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
@@ -58,7 +59,7 @@ pub(crate) struct LegRow {
     pub(crate) created_us: i64,
 }
 
-impl LegRow {
+impl CachedLegRow {
     /// The turn from begin to end, scalar-last quaternion.
     pub(crate) fn turn_xyzw(&self) -> [f64; 4] {
         [self.turn_x, self.turn_y, self.turn_z, self.turn_w]
@@ -102,22 +103,22 @@ macro_rules! leg_columns {
 pub(crate) struct LegFilter {
     /// Only legs of this spacecraft.
     pub(crate) spacecraft: Option<String>,
-    /// Only legs whose turn is close to this one, or, when they can be flown backwards, to its
-    /// inverse: scalar-last quaternion and tolerance, rad.
+    /// Only legs whose rotation is close to this one, or, if reversible, to its inverse:
+    /// scalar-last quaternion and tolerance, rad.
     pub(crate) turn: Option<([f64; 4], f64)>,
     /// Only legs stored after this one.
     pub(crate) after: Option<i64>,
-    /// At most so many.
+    /// Maximum number of rows.
     pub(crate) limit: i64,
 }
 
-/// The key of a canonical text.
+/// The key of a leg or a spacecraft: SHA-256 of its canonical text, hex.
 pub(crate) fn key(identity: &str) -> String {
     crate::base::digest::hex(identity.as_bytes())
 }
 
 impl Store {
-    /// A leg that this version of the solver would solve the same.
+    /// The stored leg of an identity, if this version of the solver solved it.
     pub(crate) async fn known_leg(&self, identity: &str) -> Result<Option<StoredLeg>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT document, trajectory, ",
@@ -134,12 +135,12 @@ impl Store {
         row.map(|row| {
             let motion = read_motion(row.try_get("trajectory")?)?;
             let spacecraft = row.try_get("document")?;
-            LegRow::from_row(&row)?.stored(spacecraft, motion)
+            CachedLegRow::from_row(&row)?.stored(spacecraft, motion)
         })
         .transpose()
     }
 
-    /// Remembers legs, all of them or none; how many of them this version had not solved before.
+    /// Stores legs, all of them or none. Returns how many this version had not stored before.
     pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
         let mut new = 0;
@@ -151,7 +152,10 @@ impl Store {
     }
 
     /// A leg by its key, with its motion.
-    pub(crate) async fn leg(&self, key: &str) -> Result<Option<(LegRow, Motion)>, StoreError> {
+    pub(crate) async fn leg(
+        &self,
+        key: &str,
+    ) -> Result<Option<(CachedLegRow, Motion)>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT trajectory, ",
             leg_columns!(),
@@ -162,7 +166,7 @@ impl Store {
         .await?;
         row.map(|row| {
             Ok((
-                LegRow::from_row(&row)?,
+                CachedLegRow::from_row(&row)?,
                 read_motion(row.try_get("trajectory")?)?,
             ))
         })
@@ -170,7 +174,7 @@ impl Store {
     }
 
     /// Legs in the order in which they were stored.
-    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<LegRow>, StoreError> {
+    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<CachedLegRow>, StoreError> {
         let ([x, y, z, w], tolerance) = filter.turn.unwrap_or_default();
         Ok(sqlx::query_as(concat!(
             "SELECT ",
@@ -196,7 +200,7 @@ impl Store {
         .await?)
     }
 
-    /// Number of remembered legs.
+    /// Number of stored legs.
     pub(crate) async fn leg_count(&self) -> Result<i64, StoreError> {
         Ok(sqlx::query_scalar("SELECT count(*) FROM legs")
             .fetch_one(&self.readers)

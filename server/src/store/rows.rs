@@ -1,4 +1,4 @@
-//! What the tables hold, as types.
+//! Rows of the tables as types.
 
 use super::StoreError;
 use sqlx::FromRow;
@@ -51,7 +51,7 @@ impl JobState {
         !matches!(self, Self::Queued | Self::Running)
     }
 
-    /// The state that a row holds.
+    /// The state in the text of a row.
     pub(super) fn stored(text: &str) -> Result<Self, StoreError> {
         text.parse().map_err(|what| StoreError::Inconsistent {
             table: "jobs",
@@ -73,7 +73,7 @@ pub(crate) struct JobRow {
     pub(crate) name: Option<String>,
     /// Number of targets.
     pub(crate) targets: i64,
-    /// What the solve is busy with.
+    /// Stage of the solve.
     pub(crate) stage: Option<String>,
     /// Steps of the stage that are done.
     pub(crate) done: Option<i64>,
@@ -83,17 +83,17 @@ pub(crate) struct JobRow {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
-    /// Why it ended without a plan.
+    /// Why the job ended without a plan.
     pub(crate) detail: Option<String>,
-    /// The same as a stable code.
+    /// The same reason as a stable code.
     pub(crate) code: Option<String>,
-    /// How often it has been begun.
+    /// Number of attempts so far.
     pub(crate) attempt: i64,
-    /// Number of its newest lease.
+    /// Number of its newest lease (fence).
     pub(crate) fence: i64,
-    /// When a stop was asked for.
+    /// When a stop was requested.
     pub(crate) stop_requested_us: Option<i64>,
-    /// When it was abandoned.
+    /// When its cancellation was requested.
     pub(crate) cancel_requested_us: Option<i64>,
     /// When it was submitted.
     pub(crate) submitted_us: i64,
@@ -114,7 +114,7 @@ macro_rules! job_columns {
 pub(super) use job_columns;
 
 impl JobRow {
-    /// Where the job stands.
+    /// The state of the job.
     pub(crate) fn state(&self) -> Result<JobState, StoreError> {
         JobState::stored(&self.state_text)
     }
@@ -127,7 +127,7 @@ impl JobRow {
 /// Progress of a running job.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProgressRow {
-    /// What the solve is busy with.
+    /// Stage of the solve.
     pub(crate) stage: &'static str,
     /// Steps of the stage that are done.
     pub(crate) done: i64,

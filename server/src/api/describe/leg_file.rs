@@ -50,7 +50,7 @@ struct ShardBody {
 
 /// The time of a leg.
 #[derive(Serialize, ToSchema)]
-#[schema(as = LegRow)]
+#[schema(as = CachedLegRow)]
 #[serde(deny_unknown_fields)]
 struct LegRowBody {
     from: String,

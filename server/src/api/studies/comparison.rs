@@ -1,4 +1,4 @@
-//! `POST /v1/studies/comparison`: wheels against gyroscopes.
+//! `POST /v1/studies/comparison`: reaction wheels and control moment gyroscopes compared.
 
 use super::super::describe::{self, BodyErrors, ComparisonBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
@@ -12,10 +12,10 @@ use slewplan_studies::comparison::{Study, StudySpec};
 
 /// Compare reaction wheels with control moment gyroscopes
 ///
-/// Pyramids of four devices of the same momentum turn the same spacecraft: who is faster, and from
-/// which angle on. With every table that the answer rests on: envelopes, singular surfaces, devices
-/// and the laws fitted to them, momentum and torque over mass. Whatever is left out of the request
-/// is as in the published study; `{}` repeats it.
+/// Pyramids of four devices of the same momentum turn the same spacecraft: the answer says which is
+/// faster, and from which angle on. It has every table that this rests on: envelopes, singular
+/// surfaces, devices and the laws fitted to them, momentum and torque over mass. Values left out of
+/// the request are those of the published study, so that `{}` repeats it.
 #[utoipa::path(
     post, path = "/v1/studies/comparison", tag = "studies", operation_id = "study_comparison",
     request_body(content = ComparisonBody, example = json!(describe::comparison_study())),

@@ -1,4 +1,4 @@
-//! `POST /v1/studies/flight`: a plan flown once in closed loop.
+//! `POST /v1/studies/flight`: a plan simulated once in closed loop.
 
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, FlightBody, ServerErrors};
@@ -14,11 +14,11 @@ use slewplan_solver::run::stop::StopSignal;
 use slewplan_studies::flight::{FlightStudy, fly};
 use std::sync::Arc;
 
-/// Fly a plan once in closed loop
+/// Simulate a plan once in closed loop
 ///
-/// The plan that is given, or else one that is made for it, with inertia, alignment, friction, sensors
-/// and disturbances off by what the seed and the number of the flight draw. The answer has errors,
-/// commanded torques and limits that were met over time. A plan has a minute to be found.
+/// Simulates the given plan, or one made for the scenario within a minute. Errors of inertia,
+/// alignment, friction, sensors and disturbances are drawn from the seed and the number of the
+/// flight. The answer has errors, commanded torques and active limits over time.
 #[utoipa::path(
     post, path = "/v1/studies/flight", tag = "studies", operation_id = "study_flight",
     request_body(content = FlightBody, example = json!(describe::flight_study())),

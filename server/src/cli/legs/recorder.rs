@@ -1,4 +1,4 @@
-//! Notes the motions of the legs of a run.
+//! Records the motions of the legs of a run.
 
 use crate::documents::legs::KeyedLeg;
 use crate::store::leg_key;
@@ -6,15 +6,15 @@ use slewplan_solver::tour::legs::{LegStore, StoredLeg};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// A store of legs that notes what comes out of it and what goes into it.
+/// A leg store that records the legs read from and written to another.
 pub(super) struct Recorder<'a> {
     legs: &'a dyn LegStore,
-    /// By their keys, in the order in which a file has them.
+    /// By their keys, which is the order of a file.
     seen: Mutex<BTreeMap<String, KeyedLeg>>,
 }
 
 impl<'a> Recorder<'a> {
-    /// Notes what another store sees.
+    /// Records the legs of another store.
     pub(super) fn new(legs: &'a dyn LegStore) -> Self {
         Self {
             legs,
@@ -22,7 +22,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// What it has seen.
+    /// The recorded legs.
     pub(super) fn into_motions(self) -> Vec<KeyedLeg> {
         let seen = self.seen.into_inner();
         let seen = seen.unwrap_or_else(PoisonError::into_inner);

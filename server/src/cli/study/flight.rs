@@ -1,6 +1,6 @@
-//! `slewplan study flight`: a plan flown once in closed loop.
+//! `slewplan study flight`: simulates a plan once in closed loop.
 
-use super::given::Given;
+use super::given::StudyFiles;
 use super::planning::Planning;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
@@ -8,17 +8,17 @@ use crate::cli::output;
 use crate::documents::study::flight::{self, FlightAnswerDocument};
 use slewplan_studies::flight::{Outcome, fly};
 
-/// What `study flight` takes.
+/// Arguments of `study flight`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct FlightStudyArguments {
     #[command(flatten)]
-    given: Given,
+    given: StudyFiles,
     #[command(flatten)]
     planning: Planning,
 }
 
-/// Plans, flies and writes the answer.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Plans, simulates and writes the answer.
+pub(super) fn run(arguments: &FlightStudyArguments) -> Result<Exit, Failure> {
     let given = &arguments.given;
     let (destination, study) = given.open(flight::read)?;
     let (flown, received) = arguments.planning.conduct(|run| fly(&study, run))?;

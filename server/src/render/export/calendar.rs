@@ -1,4 +1,4 @@
-//! The scenario's epoch and times after it as text.
+//! The scenario's epoch, and times after it, as text.
 //!
 //! Days have 86,400 s here. Where a plan runs through a leap second of UTC, label its epoch in TAI.
 
@@ -8,17 +8,17 @@ use slewplan_solver::model::scenario::Scenario;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Stands for the epoch of scenarios without one.
+/// The epoch of scenarios without one.
 pub(super) const NO_EPOCH: &str = "2000-01-01T12:00:00";
 
 /// A moment in the time system of a scenario, in the years -9999 to 9999.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Moment(DateTime);
+pub(super) struct CalendarTime(DateTime);
 
 /// The epoch of a scenario, [`NO_EPOCH`] when it has none.
-pub(super) fn epoch(scenario: &Scenario) -> Result<Moment, ExportError> {
+pub(super) fn epoch(scenario: &Scenario) -> Result<CalendarTime, ExportError> {
     let text = scenario.epoch().unwrap_or(NO_EPOCH);
-    Moment::parse(text).ok_or_else(|| ExportError::Label {
+    CalendarTime::parse(text).ok_or_else(|| ExportError::Label {
         pointer: "/epoch",
         what: format!("{text:?} is not of the form 2026-01-31T12:00:00.5 or with Z at its end"),
     })
@@ -30,7 +30,7 @@ pub(super) fn time_system(scenario: &Scenario) -> &str {
 }
 
 /// The epoch for formats that know UTC only.
-pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<Moment, ExportError> {
+pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<CalendarTime, ExportError> {
     match time_system(scenario) {
         "UTC" => epoch(scenario),
         other => Err(ExportError::Label {
@@ -42,7 +42,7 @@ pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<Moment, Exp
     }
 }
 
-impl Moment {
+impl CalendarTime {
     /// Reads `YYYY-MM-DDThh:mm:ss`, with a fraction or `Z` or both or none.
     fn parse(text: &str) -> Option<Self> {
         let text = text.strip_suffix(['Z', 'z']).unwrap_or(text);
@@ -116,7 +116,7 @@ mod tests {
             ("1969-12-31T23:59:59", 1e-9, "1969-12-31T23:59:59.000000001"),
         ];
         for (epoch, after, text) in cases {
-            let moment = Moment::parse(epoch).unwrap();
+            let moment = CalendarTime::parse(epoch).unwrap();
             assert_eq!(moment.plus(after).unwrap().iso(), text);
         }
         for wrong in [
@@ -130,13 +130,13 @@ mod tests {
             "12026-01-01T00:00:00",
             "tomorrow",
         ] {
-            assert_eq!(Moment::parse(wrong), None, "{wrong}");
+            assert_eq!(CalendarTime::parse(wrong), None, "{wrong}");
         }
     }
 
     #[test]
     fn stk_and_unix_have_their_own_forms() {
-        let moment = Moment::parse("2026-03-05T06:07:08.5").unwrap();
+        let moment = CalendarTime::parse("2026-03-05T06:07:08.5").unwrap();
         assert_eq!(moment.gregorian(), "5 Mar 2026 06:07:08.500000000");
         // date -u -d 2026-03-05T06:07:08 +%s
         assert_eq!(moment.unix_ms(), 1_772_690_828_500);

@@ -1,4 +1,4 @@
-//! The forms that a plan can be written in: its own, or that of another tool.
+//! The forms of a written plan: its own JSON, or the format of another tool.
 
 use super::Format;
 use strum::VariantArray as _;
@@ -13,7 +13,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// All forms, the ones liked better among equals first.
+    /// All forms, in the order of preference among equals.
     pub(crate) const ALL: [Self; 8] = {
         let mut all = [Self::Json; 8];
         let mut index = 0;
@@ -32,7 +32,7 @@ impl Form {
         }
     }
 
-    /// What it is, in a line.
+    /// The description, in a line.
     pub(crate) const fn summary(self) -> &'static str {
         match self {
             Self::Json => "The whole plan",

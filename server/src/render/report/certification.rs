@@ -1,10 +1,10 @@
-//! What became of the claims of a plan, as text.
+//! The check of a plan's proved bounds, as text.
 
 use super::table::aligned;
 use crate::documents::certification::{name, reason};
 use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate, Verdict};
 
-/// Head of the numbers, which stand to the right below it.
+/// Headers of the numbers, which are aligned to the right below them.
 const BOUND: &str = "claimed bound [s]";
 
 /// One row for every leg and one for all tours, under the verdict on the whole.

@@ -1,4 +1,4 @@
-//! Blocks of figures that several reports share.
+//! Blocks of text that several reports share.
 
 use slewplan_solver::checker::NOT_COMPUTED;
 use slewplan_solver::model::plan::{Margins, Verification};
@@ -10,7 +10,7 @@ pub(super) fn line(label: &str, text: impl Display) -> String {
     format!("{label:<14}{text}\n")
 }
 
-/// The verification in one line, and what failed.
+/// The verification in a few lines, with the tests that failed.
 pub(super) fn verification(found: &Verification) -> String {
     let verdict = if found.passed { "passed" } else { "NOT PASSED" };
     let mut text = line(
@@ -30,7 +30,7 @@ pub(super) fn verification(found: &Verification) -> String {
             error(found.max_rate_excess)
         ),
     );
-    text += &line("", format_args!("flown again by {}", found.integrator));
+    text += &line("", format_args!("propagated again by {}", found.integrator));
     for failure in &found.failures {
         text += &line("", format_args!("failed: {failure}"));
     }
@@ -45,17 +45,17 @@ fn error(value: f64) -> String {
     }
 }
 
-/// What is left of every limit.
+/// The margins to every limit.
 pub(super) fn margins(margins: &Margins) -> String {
     let share = |value: Option<f64>| match value {
-        None => "unlimited".to_owned(),
+        None => "no limit".to_owned(),
         Some(value) if value <= -NOT_COMPUTED => "not computed".to_owned(),
         Some(value) => format!("{:.1} %", value * 100.0),
     };
     let mut text = line(
         "margins",
         format_args!(
-            "torque {}, wheel speed {}, body rate {} of the limit left",
+            "left of the limit: torque {}, wheel speed {}, body rate {}",
             share(Some(margins.torque)),
             share(margins.wheel_speed),
             share(margins.body_rate)
@@ -85,7 +85,7 @@ pub(super) fn margins(margins: &Margins) -> String {
     text
 }
 
-/// Warnings, or nothing.
+/// Warnings, or an empty text.
 pub(super) fn warnings(warnings: &[Problem]) -> String {
     if warnings.is_empty() {
         return String::new();
@@ -99,13 +99,13 @@ pub(super) fn warnings(warnings: &[Problem]) -> String {
 pub(super) fn reasons(problems: &[Problem]) -> String {
     let mut text = String::new();
     for problem in problems {
-        // Writing into a text cannot fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(text, "{problem}");
     }
     text
 }
 
-/// A number of things in English.
+/// A number with a noun in singular or plural.
 pub(super) fn count(number: usize, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
@@ -115,13 +115,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_not_computed_is_said_in_words() {
+    fn values_not_computed_are_said_in_words() {
         assert_eq!(error(NOT_COMPUTED), "not computed");
         assert_eq!(error(2.5e-9), "2.5e-9");
         let broken = Margins {
             torque: -NOT_COMPUTED,
             ..Margins::default()
         };
-        assert!(margins(&broken).contains("torque not computed, wheel speed unlimited"));
+        assert!(margins(&broken).contains("torque not computed, wheel speed no limit"));
     }
 }

@@ -70,10 +70,9 @@ impl Tours<'_> {
             if solution.status == NlpStatus::Converged {
                 let profile = &solution.profile;
                 let ends = [profile.wheels.first(), profile.wheels.last()];
-                let terms = waypoints
-                    .iter()
-                    .zip(ends)
-                    .filter_map(|(waypoint, wheels)| Some(waypoint.costates.as_ref()?.dot(wheels?)));
+                let terms = waypoints.iter().zip(ends).filter_map(|(waypoint, wheels)| {
+                    Some(waypoint.costates.as_ref()?.dot(wheels?))
+                });
                 return Evaluation::Value(profile.duration() + terms.sum::<f64>() + service);
             }
         }

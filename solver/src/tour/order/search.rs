@@ -222,11 +222,11 @@ impl OrderSearch<'_> {
     fn merge(&mut self, node: SearchNode, answer: TaskResult) {
         match answer {
             TaskResult::Prefix(Evaluation::Value(bound_s)) => {
-                self.tree.prefix_evaluated(node, Some(bound_s))
+                self.tree.prefix_evaluated(node, Some(bound_s));
             }
             TaskResult::Prefix(Evaluation::Unresolved) => self.tree.prefix_evaluated(node, None),
             TaskResult::Tour(TourEvaluation::Solved(duration_s)) => {
-                self.tree.leaf_solved(&node, duration_s)
+                self.tree.leaf_solved(&node, duration_s);
             }
             TaskResult::Tour(TourEvaluation::Unresolved) => self.tree.leaf_unresolved(&node),
             TaskResult::Prefix(Evaluation::Stopped) | TaskResult::Tour(TourEvaluation::Stopped) => {

@@ -56,7 +56,7 @@ impl Tours<'_> {
         let perturbed_eigenaxis = (self.perturbed_eigenaxis(leg), self.intervals(&leg));
         let motions = [(free.profile, free.intervals), perturbed_eigenaxis].into_iter();
         for (motion, intervals) in motions.filter(|(motion, _)| motion.duration() > 0.0) {
-            let mut waypoints = self.program(&leg, &motion, &intervals);
+            let mut waypoints = self.signed_waypoints(&leg, &motion, &intervals);
             waypoints[0].price = begin.as_ref().map(|costate| -costate);
             waypoints[1].price.clone_from(&end);
             self.legs.count_solve();

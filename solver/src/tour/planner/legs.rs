@@ -124,7 +124,7 @@ impl<'a> LegSolver<'a> {
     /// missing from the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
         self.fill(kind, pairs, |done, total| {
-            self.report_progress(done, Some(total))
+            self.report_progress(done, Some(total));
         })
     }
 
@@ -163,7 +163,7 @@ impl<'a> LegSolver<'a> {
         let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
-            let stored = self.from_store(&canonical);
+            let stored = self.load(&canonical);
             let from_store = stored.is_some();
             let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
             self.keep(&canonical, &leg, from_store);
@@ -173,7 +173,7 @@ impl<'a> LegSolver<'a> {
             leg,
             mirrored: canonical.mirrored,
         };
-        placed.from_attitude(&self.places.waypoint(from).attitude)
+        placed.beginning_at(&self.places.waypoint(from).attitude)
     }
 
     /// A table of [`Self::certified_legs`].
@@ -241,7 +241,7 @@ impl<'a> LegSolver<'a> {
             if self.is_abandoned() {
                 return;
             }
-            if let Some(stored) = self.from_store(leg) {
+            if let Some(stored) = self.load(leg) {
                 self.keep(leg, &Arc::new(stored), true);
             } else if !self.stop.is_set() {
                 self.keep(leg, &Arc::new(self.solve(kind, leg)), false);
@@ -251,7 +251,7 @@ impl<'a> LegSolver<'a> {
     }
 
     /// A leg from the store, if its motion passes verification.
-    fn from_store(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
+    fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
         let faults = flight_faults(self.places, leg, &stored.flown.profile);
         if !faults.is_empty() {

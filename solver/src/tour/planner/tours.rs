@@ -204,7 +204,7 @@ impl<'a> Tours<'a> {
         let known = self.free_legs().and_then(|free| free.get(from, to));
         known.map_or_else(
             || self.legs.leg(LegKind::LowerBound, from, to),
-            |leg| leg.from_attitude(&self.places.waypoint(from).attitude),
+            |leg| leg.beginning_at(&self.places.waypoint(from).attitude),
         )
     }
 
@@ -281,7 +281,7 @@ impl<'a> Tours<'a> {
         if self.places.resolution.polished {
             let dynamics = &self.places.dynamics;
             let intervals = best.intervals.clone();
-            let waypoints = self.program(route, &best.profile, &intervals);
+            let waypoints = self.signed_waypoints(route, &best.profile, &intervals);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
                 interruption(self.stop)
             });
@@ -295,7 +295,7 @@ impl<'a> Tours<'a> {
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
-        let waypoints = self.program(route, &guess, &intervals);
+        let waypoints = self.signed_waypoints(route, &guess, &intervals);
         let solve = match kind {
             InitialGuess::Shorter => fly_on,
             InitialGuess::Eigenaxes => fly_rolling,
@@ -331,7 +331,7 @@ impl<'a> Tours<'a> {
 
     /// The waypoints of a route. Their quaternions have the signs with which a motion, which has these
     /// numbers of intervals on its legs, passes them.
-    pub(super) fn program(
+    pub(super) fn signed_waypoints(
         &self,
         route: &[Place],
         motion: &Profile,

@@ -41,8 +41,8 @@ enum Given {
     Legs,
 }
 
-/// Measures the tours through the targets in the order in which they are listed, on one thread; the items
-/// counted are the phases.
+/// Measures the tours through the targets in the order in which they are listed, on one thread; the
+/// items counted are the phases.
 fn measure(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
     let effort = match given {
         Given::ColdStart => BoundFrom::Certificates,
@@ -78,9 +78,9 @@ fn measure(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
 /// Number of phases of [`walk`].
 const WALK: usize = 100;
 
-/// A random walk cut into tours of so many phases. At its targets only the z rate vanishes, and each
-/// target is turned by 40 to 80 degrees about a random axis from the one before. So no tour falls into
-/// segments, no two legs are equal, and tours of every length have the same legs.
+/// A random walk cut into tours of so many phases. At its targets only the z rate vanishes, and
+/// each target is turned by 40 to 80 degrees about a random axis from the one before. So no tour
+/// falls into segments, no two legs are equal, and tours of every length have the same legs.
 fn walk(phases: usize) -> Vec<Scenario> {
     let mut generator = Generator::new(0);
     let mut attitude = Attitude::identity();
@@ -134,7 +134,8 @@ fn experiment_a_with_known_legs(bencher: Bencher) {
     measure(bencher, &best_of_a(), Given::Legs);
 }
 
-/// A hundred phases in tours of so many phases: the time per phase should not depend on their number.
+/// A hundred phases in tours of so many phases: the time per phase should not depend on their
+/// number.
 #[divan::bench(args = [10, 20, 50, 100], sample_count = 5, sample_size = 1)]
 fn phases(bencher: Bencher, in_a_tour: usize) {
     measure(bencher, &walk(in_a_tour), Given::ColdStart);

@@ -1,34 +1,34 @@
 //! Certified bounds: proved lower bounds on the durations of a spacecraft's slews.
 //!
-//! [`crate::bounds::kinematic`] bounds slews whose rates and accelerations stay in boxes. This module
-//! computes, for a spacecraft, boxes that contain all reachable rates and accelerations and, for a leg,
-//! limits of the rates at its ends.
+//! [`crate::bounds::kinematic`] bounds slews whose rates and accelerations stay in boxes. This
+//! module computes, for a spacecraft, boxes that contain all reachable rates and accelerations and,
+//! for a leg, limits of the rates at its ends.
 //!
 //! # The boxes
 //!
-//! Without momentum `J w = -h_locked - sum a_i I_i W_i` and `J_eff w' = -A u` at every attitude: rates
-//! and accelerations are linear images of boxes of wheel speeds and torques. The largest component
-//! along any direction is a linear program over a box, whose solution has every wheel at one of its
-//! limits ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), for any inertia and any
-//! axes. Limits of the rate's components and norm reduce the rates further. So for every orthonormal
-//! frame fixed in the body there are boxes in its axes that no motion leaves. In these axes a turn has
-//! the components of its rotation vector in the frame. Body axes and the axes nearest to those of the
-//! wheels are tried; each gives a proved bound, and the larger one is used.
+//! Without momentum `J w = -h_locked - sum a_i I_i W_i` and `J_eff w' = -A u` at every attitude:
+//! rates and accelerations are linear images of boxes of wheel speeds and torques. The largest
+//! component along any direction is a linear program over a box, whose solution has every wheel at
+//! one of its limits ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), for any
+//! inertia and any axes. Limits of the rate's components and norm reduce the rates further. So for
+//! every orthonormal frame fixed in the body there are boxes in its axes that no motion leaves. In
+//! these axes a turn has the components of its rotation vector in the frame. Body axes and the axes
+//! nearest to those of the wheels are tried; each gives a proved bound, and the larger one is used.
 //!
 //! # The ends
 //!
-//! A rate component that is stopped or prescribed is known at the end of a leg; one within a range is
-//! limited by its larger end (both are rounded up, [`SHARES`]); a free one is not limited. Nothing else
-//! is used, so **the bound holds for the leg as part of any tour with the same conditions at its two
-//! ends**, and the bounds of the legs of a tour can be summed. In a tour through targets with free
-//! components only the first and last legs begin or end at rest, so the ramps of these components count
-//! in these legs only.
+//! A rate component that is stopped or prescribed is known at the end of a leg; one within a range
+//! is limited by its larger end (both are rounded up, [`SHARES`]); a free one is not limited.
+//! Nothing else is used, so **the bound holds for the leg as part of any tour with the same
+//! conditions at its two ends**, and the bounds of the legs of a tour can be summed. In a tour
+//! through targets with free components only the first and last legs begin or end at rest, so the
+//! ramps of these components count in these legs only.
 //!
 //! # Limitations
 //!
-//! Without limits of speed there is no box of rates and no bound. Stored momentum has boxes of its own
-//! ([`momentum`]). A turn whose quaternion has to arrive with a given sign is bounded as a rotation, which
-//! may be the shorter way round.
+//! Without limits of speed there is no box of rates and no bound. Stored momentum has boxes of its
+//! own ([`momentum`]). A turn whose quaternion has to arrive with a given sign is bounded as a
+//! rotation, which may be the shorter way round.
 
 mod momentum;
 
@@ -50,15 +50,15 @@ const TOLERANCE: f64 = 1e-4;
 /// Difference of two frames' axes below which they are treated as one.
 const SAME_AXES: f64 = 1e-6;
 
-/// End rates that are neither stopped nor free are rounded up to these shares of the spacecraft's largest
-/// rates, so that few combinations of end rates occur.
+/// End rates that are neither stopped nor free are rounded up to these shares of the spacecraft's
+/// largest rates, so that few combinations of end rates occur.
 const SHARES: [f64; 2] = [0.25, 0.5];
-/// Largest number of combinations of end rates whose boxes are cached, some 1 MB each; others are prepared
-/// again for every leg.
+/// Largest number of combinations of end rates whose boxes are cached, some 1 MB each; others are
+/// prepared again for every leg.
 const MAX_KINDS: usize = 64;
 
-/// Lower bounds on the slews of one spacecraft. The boxes for a combination of end rates are prepared when
-/// they are first needed, and shared between threads.
+/// Lower bounds on the slews of one spacecraft. The boxes for a combination of end rates are
+/// prepared when they are first needed, and shared between threads.
 #[derive(Debug)]
 pub(crate) struct CertifiedBounds {
     frames: Vec<BodyFrame>,
@@ -102,9 +102,9 @@ impl CertifiedBounds {
         }
     }
 
-    /// Lower bound, s, on the duration of any slew between two waypoints, whatever comes before and after
-    /// it; `None` when nothing is proved. Wheel conditions are not used. The momentum, N m s, is the
-    /// total one in the frame of the two attitudes.
+    /// Lower bound, s, on the duration of any slew between two waypoints, whatever comes before and
+    /// after it; `None` when nothing is proved. Wheel conditions are not used. The momentum, N m s,
+    /// is the total one in the frame of the two attitudes.
     pub(crate) fn leg(
         &self,
         from: &Waypoint,
@@ -123,8 +123,8 @@ impl CertifiedBounds {
             .reduce(f64::max)
     }
 
-    /// The certificate of the bound [`Self::leg`] and the axes in which it is expressed; `None` where
-    /// nothing is proved, and with momentum, for which there is no verification.
+    /// The certificate of the bound [`Self::leg`] and the axes in which it is expressed; `None`
+    /// where nothing is proved, and with momentum, for which there is no verification.
     pub(crate) fn certificate(
         &self,
         from: &Waypoint,
@@ -137,7 +137,8 @@ impl CertifiedBounds {
             .max_by(|(_, a), (_, b)| a.duration_s.total_cmp(&b.duration_s))
     }
 
-    /// The axes of the frames that have a bound, each with its bound and with the turn in these axes.
+    /// The axes of the frames that have a bound, each with its bound and with the turn in these
+    /// axes.
     fn seen<'s>(
         &'s self,
         turn: &'s Attitude,

@@ -1,10 +1,11 @@
 //! Verification in interval arithmetic of the bounds of [`crate::bounds::kinematic`].
 //!
-//! [`verify`] proves the bound of a [`Certificate`] again, with outward rounding and without the code of
-//! the fast search: with its own list of extremals, its own enumeration, its own integral. It confirms
-//! the bound or says why not: there is a faster motion, or no proof was found. A certificate comes from
-//! [`SlewBound::certificate`](crate::bounds::kinematic::ramps::SlewBound::certificate); to verify a bound
-//! from elsewhere, replace the `duration_s` of one.
+//! [`verify`] proves the bound of a [`Certificate`] again, with outward rounding and without the
+//! code of the fast search: with its own list of extremals, its own enumeration, its own integral.
+//! It confirms the bound or says why not: there is a faster motion, or no proof was found. A
+//! certificate comes from
+//! [`SlewBound::certificate`](crate::bounds::kinematic::ramps::SlewBound::certificate); to verify a
+//! bound from elsewhere, replace the `duration_s` of one.
 //!
 //! ```
 //! use nalgebra::Vector3;
@@ -27,32 +28,34 @@
 //!
 //! # What is proved
 //!
-//! 1. **Turns** ([`verify_turn`]). A motion of least time exists and is one of the extremals that the
-//!    docs of [`crate::bounds::kinematic`] derive from Pontryagin's principle. These facts are taken from
-//!    there: the folded costate runs on a circle and is reflected where a component vanishes, so that
-//!    arcs between flips have the same duration; it can rest on saddles only; all dwells can be moved to
-//!    the first visit of the saddle. With corners of length one, an arc longer than `pi` is no part
-//!    of a shortest motion, because the opposite corner makes its turn faster. That leaves
+//! 1. **Turns** ([`verify_turn`]). A motion of least time exists and is one of the extremals that
+//!    the docs of [`crate::bounds::kinematic`] derive from Pontryagin's principle. These facts are
+//!    taken from there: the folded costate runs on a circle and is reflected where a component
+//!    vanishes, so that arcs between flips have the same duration; it can rest on saddles only; all
+//!    dwells can be moved to the first visit of the saddle. With corners of length one, an arc
+//!    longer than `pi` is no part of a shortest motion, because the opposite corner makes its turn
+//!    faster. That leaves
 //!    * two arcs;
-//!    * arcs of one unknown duration `D <= pi` whose flips alternate between two axes, terminal arcs no
-//!      longer than `D` (where one axis alone flips, arcs last longer than `pi`: the part of the
-//!      circle beyond the wall is less than half of it);
+//!    * arcs of one unknown duration `D <= pi` whose flips alternate between two axes, terminal
+//!      arcs no longer than `D` (where one axis alone flips, arcs last longer than `pi`: the part
+//!      of the circle beyond the wall is less than half of it);
 //!    * a dwell with arcs before and after it whose durations follow from the costate (`dwelling`).
 //!
 //!    All orders of axes and all octants are enumerated, whether they are extremals or not: each
-//!    sequence is a motion within the box, so superfluous ones do no harm. For each, the range of the
-//!    unknown is bisected until every part is refuted: `c_0 . P c_f` differs from the target's value, or
-//!    the terminal arcs that close the sequence (`terminal_arcs`) are negative, too long, or make the
-//!    sequence as long as the bound. Sequences of many flips are refuted together (`near_axis`).
+//!    sequence is a motion within the box, so superfluous ones do no harm. For each, the range of
+//!    the unknown is bisected until every part is refuted: `c_0 . P c_f` differs from the target's
+//!    value, or the terminal arcs that close the sequence (`terminal_arcs`) are negative, too long,
+//!    or make the sequence as long as the bound. Sequences of many flips are refuted together
+//!    (`near_axis`).
 //! 2. **The link** to the duration: `s(T)` is bounded from above (`link`).
 //!
-//! On a part of half-width `b` about its middle, the interior is enclosed by Taylor's theorem, with the
-//! derivative at the middle in intervals and, for a product of turns, a second derivative of at most the
-//! square of the sum of its speeds `v`: `|f - f_m| <= |f_m'| b + v^2 b^2 / 2`, and the turn from the
-//! middle is at most `|velocity| b + v^2 b^2 / 2`.
+//! On a part of half-width `b` about its middle, the interior is enclosed by Taylor's theorem, with
+//! the derivative at the middle in intervals and, for a product of turns, a second derivative of at
+//! most the square of the sum of its speeds `v`: `|f - f_m| <= |f_m'| b + v^2 b^2 / 2`, and the
+//! turn from the middle is at most `|velocity| b + v^2 b^2 / 2`.
 //!
-//! Nearly equal rates are separated by raising them, by 4e-7 at most, which makes the proved statement
-//! stronger; certificates leave a margin of 2e-6.
+//! Nearly equal rates are separated by raising them, by 4e-7 at most, which makes the proved
+//! statement stronger; certificates leave a margin of 2e-6.
 
 mod dwelling;
 mod interval;
@@ -158,7 +161,8 @@ pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
     Ok(())
 }
 
-/// Verifies that no motion with `|w_i| <= box_i`, rad/s, makes a turn in less than its certified time.
+/// Verifies that no motion with `|w_i| <= box_i`, rad/s, makes a turn in less than its certified
+/// time.
 ///
 /// # Errors
 ///

@@ -2,11 +2,11 @@
 //!
 //! # Problem
 //!
-//! A tour leaves the start, visits each of n targets once and, where an end is prescribed, goes on to
-//! it. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left free at
-//! a target couple the legs before and after it, so `T` is not a sum over pairs. Wanted are the order
-//! of least duration among those that [`OrderRules`] admit, the next best `k` orders, and a lower bound
-//! on all orders that were not evaluated.
+//! A tour leaves the start, visits each of n targets once and, where an end is prescribed, goes on
+//! to it. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left
+//! free at a target couple the legs before and after it, so `T` is not a sum over pairs. Wanted are
+//! the order of least duration among those that [`OrderRules`] admit, the next best `k` orders, and
+//! a lower bound on all orders that were not evaluated.
 //!
 //! # Bounds
 //!
@@ -21,13 +21,13 @@
 //!   relaxation of it when there are many targets).
 //!
 //! Hence `head(p) + rest(l, R)` is a lower bound on every completion of `p`. So is the parent's
-//! bound, because the parent's completions include those of `p`; a node takes the greater of the two,
-//! and bounds never fall on the way down the tree. Where [`OrderRules`] restrict the orders, only
-//! prefixes of admitted orders are opened. Which targets may come next depends on the set of visited
-//! targets and not on their order, so the dynamic program takes the rules into account and remains
-//! exact. The spanning tree ignores the rules; the minimum over more paths is still a lower bound. A node
-//! enters the frontier with the bound that needs no evaluation (the parent's head plus one pair bound);
-//! its own evaluation is made only when it is taken out.
+//! bound, because the parent's completions include those of `p`; a node takes the greater of the
+//! two, and bounds never fall on the way down the tree. Where [`OrderRules`] restrict the orders,
+//! only prefixes of admitted orders are opened. Which targets may come next depends on the set of
+//! visited targets and not on their order, so the dynamic program takes the rules into account and
+//! remains exact. The spanning tree ignores the rules; the minimum over more paths is still a lower
+//! bound. A node enters the frontier with the bound that needs no evaluation (the parent's head
+//! plus one pair bound); its own evaluation is made only when it is taken out.
 //!
 //! Where legs couple, a longer search computes tighter bounds on what comes after a prefix
 //! ([`triple_bounds`]) and then bounds on all orders with a prefix ([`lagrangian`]).
@@ -36,15 +36,16 @@
 //!
 //! Where every order takes as long as its reverse, it is enough to search the orders that visit one
 //! chosen target in the first half: they contain one of every order and its reverse. The dynamic
-//! program is restricted in the same way, and both orders of each pair are listed. The chosen target is
-//! the one nearest to the start: good orders visit it early or late, and the late ones are excluded at
-//! the root.
+//! program is restricted in the same way, and both orders of each pair are listed. The chosen
+//! target is the one nearest to the start: good orders visit it early or late, and the late ones
+//! are excluded at the root.
 //!
 //! # Validity of the bound
 //!
 //! At every moment each order belongs to exactly one of these sets: evaluated, below a node of the
-//! frontier, under evaluation, or given up (pruned, unresolved, or dropped for memory). The reported
-//! bound is the minimum over the durations of the evaluated orders and the bounds of all others.
+//! frontier, under evaluation, or given up (pruned, unresolved, or dropped for memory). The
+//! reported bound is the minimum over the durations of the evaluated orders and the bounds of all
+//! others.
 //!
 //! # Determinism
 //!
@@ -107,8 +108,8 @@ pub enum TourEvaluation {
     Stopped,
 }
 
-/// Costate at the passage of a target: derivative of the tour's duration with respect to each component
-/// of the state in which the target is passed, s per unit of the component.
+/// Costate at the passage of a target: derivative of the tour's duration with respect to each
+/// component of the state in which the target is passed, s per unit of the component.
 pub type PassageCostate = Vec<f64>;
 
 /// All that the search knows of legs and tours.
@@ -131,14 +132,14 @@ pub trait TourModel: Sync {
     }
 
     /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
-    /// dwelling at `to` are included. Called once for every pair. A value that is not finite means that
-    /// no bound is known and is read as 0.
+    /// dwelling at `to` are included. Called once for every pair. A value that is not finite means
+    /// that no bound is known and is read as 0.
     fn pair_bound(&self, from: Place, to: Place) -> f64;
 
     /// Lower bound, s, of the time from the start to leaving the last target of a prefix, in any
-    /// tour that begins with it: the last target has its own conditions only. Expensive. The
-    /// prefix has at least two targets and lacks at least two: for one target the pair bound is used,
-    /// and with one target left the whole order is evaluated.
+    /// tour that begins with it: the last target has its own conditions only. Expensive. The prefix
+    /// has at least two targets and lacks at least two: for one target the pair bound is used, and
+    /// with one target left the whole order is evaluated.
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
 
     /// Lower bound, s, of the time from leaving the first place of a path to leaving its last, in
@@ -147,25 +148,26 @@ pub trait TourModel: Sync {
     /// start only comes first and a prescribed end only last.
     fn path_bound(&self, path: &[Place]) -> Evaluation;
 
-    /// Whether the legs before and after a target couple. Where they do not, the bound of a path is the
-    /// sum of those of its parts and is not asked for.
+    /// Whether the legs before and after a target couple. Where they do not, the bound of a path is
+    /// the sum of those of its parts and is not asked for.
     fn couples(&self, via: usize) -> bool;
 
     /// Solves the tour of a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
 
-    /// Costates of the tour of a whole order at each of its targets that a leg leaves: by how much the
-    /// state there shortens the legs before it, to first order, and lengthens those after it. `None`
-    /// where the order does not resolve or the model has no states. In a symmetric model the reverse
-    /// order has the same costates.
+    /// Costates of the tour of a whole order at each of its targets that a leg leaves: by how much
+    /// the state there shortens the legs before it, to first order, and lengthens those after it.
+    /// `None` where the order does not resolve or the model has no states. In a symmetric model the
+    /// reverse order has the same costates.
     fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         let _ = order;
         None
     }
 
-    /// Lower bound, s, over all tours with this leg, of the time from leaving one place to leaving the
-    /// other, minus the first costate times the state in which the first place is left, plus the second
-    /// costate times the state in which the other is reached. A missing costate is zero. Expensive.
+    /// Lower bound, s, over all tours with this leg, of the time from leaving one place to leaving
+    /// the other, minus the first costate times the state in which the first place is left, plus
+    /// the second costate times the state in which the other is reached. A missing costate is zero.
+    /// Expensive.
     fn lagrangian_leg(&self, leg: [Place; 2], costates: [Option<&[f64]>; 2]) -> Evaluation {
         let _ = costates;
         Evaluation::Value(self.pair_bound(leg[0], leg[1]))
@@ -262,8 +264,8 @@ pub struct SearchStatistics {
     pub pruned_by_incumbent: u64,
     /// Nodes dropped because memory was full.
     pub dropped: u64,
-    /// Orders whose duration is below one of their bounds: the model's bounds are then not admissible,
-    /// for instance because a relaxed problem was solved to a local minimum only.
+    /// Orders whose duration is below one of their bounds: the model's bounds are then not
+    /// admissible, for instance because a relaxed problem was solved to a local minimum only.
     pub bounds_contradicted: u64,
 }
 
@@ -285,8 +287,8 @@ pub struct SearchResult {
 }
 
 impl SearchResult {
-    /// Whether the best order is proven within a relative gap. This can hold while the alternatives are
-    /// not proven, that is while the search is not complete.
+    /// Whether the best order is proven within a relative gap. This can hold while the alternatives
+    /// are not proven, that is while the search is not complete.
     #[must_use]
     pub fn best_is_proven(&self, relative_gap: f64) -> bool {
         self.best.as_ref().is_some_and(|best| {

@@ -1,26 +1,27 @@
 //! Bounds with stored momentum.
 //!
-//! `J w = R^T H - h_locked - sum a_i I_i W_i`: the momentum alone turns the body at the rate `J^-1 R^T H`.
-//! With a spherical inertia, `J^-1 = k`, this is the constant rate `k H` in space. So the rate relative to
-//! axes that turn with this *drift*,
+//! `J w = R^T H - h_locked - sum a_i I_i W_i`: the momentum alone turns the body at the rate
+//! `J^-1 R^T H`. With a spherical inertia, `J^-1 = k`, this is the constant rate `k H` in space. So
+//! the rate relative to axes that turn with this *drift*,
 //!
 //! ```text
 //!   v = w - k R^T H = J^-1 (- h_locked - sum a_i I_i W_i) + (J^-1 - k) R^T H,
 //! ```
 //!
-//! has a box that the momentum widens only through the difference of the inertia from a sphere: along a
-//! direction `d` by `|(J^-1 - k) d| |H|`, as `R^T H` may have any direction. As `(R^T H)' = -w x R^T H`
-//! and `J_eff w' = -w x R^T H - A u`,
+//! has a box that the momentum widens only through the difference of the inertia from a sphere:
+//! along a direction `d` by `|(J^-1 - k) d| |H|`, as `R^T H` may have any direction. As
+//! `(R^T H)' = -w x R^T H` and `J_eff w' = -w x R^T H - A u`,
 //!
 //! ```text
 //!   v' = -J_eff^-1 A u - (J_eff^-1 - k) (w x R^T H),
 //! ```
 //!
-//! whose second term along `d` is at most `|H| max_w |(J_eff^-1 d - k d) x w|`; this is convex in `w`, so
-//! its maximum is at a corner of the box of rates. Limits on `w` hold for `v` up to `k |H|`. Rest at an end
-//! means `v = -k R^T H`, which is known there. Slews with a drift are bounded in
-//! [`crate::bounds::kinematic`]. Any `k` is valid. The middle of the eigenvalues of `J^-1` makes the box
-//! narrow; zero, with the box of all rates, is better where rates have limits of their own.
+//! whose second term along `d` is at most `|H| max_w |(J_eff^-1 d - k d) x w|`; this is convex in
+//! `w`, so its maximum is at a corner of the box of rates. Limits on `w` hold for `v` up to
+//! `k |H|`. Rest at an end means `v = -k R^T H`, which is known there. Slews with a drift are
+//! bounded in [`crate::bounds::kinematic`]. Any `k` is valid. The middle of the eigenvalues of
+//! `J^-1` makes the box narrow; zero, with the box of all rates, is better where rates have limits
+//! of their own.
 
 use super::{BodyFrame, allowed_rate};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
@@ -61,8 +62,8 @@ impl MomentumBounds {
         }
     }
 
-    /// Lower bound, s, on the duration of a slew that makes a turn, with the momentum, N m s, and limits of
-    /// the rates at its two ends, all in body axes there.
+    /// Lower bound, s, on the duration of a slew that makes a turn, with the momentum, N m s, and
+    /// limits of the rates at its two ends, all in body axes there.
     pub(super) fn leg(
         &self,
         turn: &Attitude,

@@ -9,10 +9,10 @@
 //! ```
 //!
 //! with the upper sign for the one of `k, l` that follows `j` in cyclic order if the product of the
-//! signs is positive, and for the other one if it is negative. At the first zero of these an axis flips;
-//! from there the folded costate returns on the same path and reaches the saddle again after the same
-//! time, where `w_j` may have either sign. (A component whose rate exceeds that of `j` never reaches zero;
-//! component `j` itself touches zero only after a whole turn.)
+//! signs is positive, and for the other one if it is negative. At the first zero of these an axis
+//! flips; from there the folded costate returns on the same path and reaches the saddle again after
+//! the same time, where `w_j` may have either sign. (A component whose rate exceeds that of `j`
+//! never reaches zero; component `j` itself touches zero only after a whole turn.)
 
 use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped, octants};
@@ -37,8 +37,8 @@ struct Saddle<'a> {
     sequences: Vec<ArcSequence>,
 }
 
-/// All sequences with a dwell whose fixed arcs last less than the horizon: `None` if there are more than
-/// the limit.
+/// All sequences with a dwell whose fixed arcs last less than the horizon: `None` if there are more
+/// than the limit.
 pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<ArcSequence>> {
     let mut sequences = Vec::new();
     for axis in 0..3 {
@@ -62,10 +62,10 @@ pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec
 }
 
 impl Saddle<'_> {
-    /// The axis that flips first after the costate leaves the saddle in an octant, and the time until then;
-    /// `backwards`, the last flip before it reaches the saddle. Several if intervals cannot decide which
-    /// comes first; none if it is more than half a turn away, as longer arcs are no part of a shortest
-    /// motion.
+    /// The axis that flips first after the costate leaves the saddle in an octant, and the time
+    /// until then; `backwards`, the last flip before it reaches the saddle. Several if intervals
+    /// cannot decide which comes first; none if it is more than half a turn away, as longer arcs
+    /// are no part of a shortest motion.
     fn walls(&self, octant: Octant, backwards: bool) -> Vec<(usize, Interval)> {
         let c = &self.rates.c;
         let (j, k, l) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -91,7 +91,8 @@ impl Saddle<'_> {
         found
     }
 
-    /// Sequences whose dwell follows either the first arc, in an octant, or the `fixed` arc after it.
+    /// Sequences whose dwell follows either the first arc, in an octant, or the `fixed` arc after
+    /// it.
     fn begin(&mut self, first: Octant, fixed: Option<(Octant, Interval)>) -> Option<()> {
         let arrives = fixed.map_or(first, |(octant, _)| octant);
         let before: FixedArcs = fixed.into_iter().collect();

@@ -1,16 +1,16 @@
 //! Intervals of real numbers with outward rounding.
 //!
-//! Sums, products, quotients and square roots are correctly rounded (IEEE 754), so the two neighbours of
-//! a result enclose the exact one. Sine, cosine and the arc functions are not specified: the common
-//! mathematical libraries state errors of one or two units in the last place (glibc: 1 ulp for `sin` and
-//! `cos`, 1 to 2 for `atan2`); [`LIBRARY`] allows nine units of a number near one and more than four of an
-//! arc near `pi`.
+//! Sums, products, quotients and square roots are correctly rounded (IEEE 754), so the two
+//! neighbours of a result enclose the exact one. Sine, cosine and the arc functions are not
+//! specified: the common mathematical libraries state errors of one or two units in the last place
+//! (glibc: 1 ulp for `sin` and `cos`, 1 to 2 for `atan2`); [`LIBRARY`] allows nine units of a
+//! number near one and more than four of an arc near `pi`.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Absolute error allowed for sines, cosines and arcs: 9 ulp of a number just above one (2.2e-16 each), and
-/// 4.5 ulp of an arc between 2 and `pi` (4.4e-16 each).
+/// Absolute error allowed for sines, cosines and arcs: 9 ulp of a number just above one (2.2e-16
+/// each), and 4.5 ulp of an arc between 2 and `pi` (4.4e-16 each).
 const LIBRARY: f64 = 2e-15;
 
 /// All numbers from `low` to `high`.
@@ -104,12 +104,12 @@ impl Interval {
         (Self::around(sin, radius), Self::around(cos, radius))
     }
 
-    /// The angle of the vector `(x, y)`, around `atan2` of the middles; the whole circle, a radius of `pi`,
-    /// when the vector may be zero. The result is not reduced to a range.
+    /// The angle of the vector `(x, y)`, around `atan2` of the middles; the whole circle, a radius
+    /// of `pi`, when the vector may be zero. The result is not reduced to a range.
     pub(super) fn angle(y: Self, x: Self) -> Self {
         let angle = f64::atan2(y.middle(), x.middle());
-        // The sine of the angle between the middle and any point of the box, seen from the origin, is at
-        // most the ratio of the box's radius to the distance of its middle.
+        // The sine of the angle between the middle and any point of the box, seen from the origin,
+        // is at most the ratio of the box's radius to the distance of its middle.
         let radius = Self::exactly(x.radius())
             .length(Self::exactly(y.radius()))
             .high;

@@ -1,9 +1,9 @@
 //! The link from the least times of turns to the duration: an upper bound on the integral `s(T)` of
 //! `kinematic::ramps`.
 //!
-//! `s(T) = int_0^T max_i m_i(t) / p_i dt` with `m_i = min(r_i, b_i + a_i t, e_i + a_i (T - t))`. The least
-//! times of the turns within the box `p` add up to at most `s(T)` for every motion of duration `T`. So `T`
-//! is a lower bound on the duration if `s(T)` is at most their sum.
+//! `s(T) = int_0^T max_i m_i(t) / p_i dt` with `m_i = min(r_i, b_i + a_i t, e_i + a_i (T - t))`.
+//! The least times of the turns within the box `p` add up to at most `s(T)` for every motion of
+//! duration `T`. So `T` is a lower bound on the duration if `s(T)` is at most their sum.
 
 use super::interval::Interval;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 
 /// Width of a piece, relative to the duration, below which it is bounded without further splitting.
 const NARROW: f64 = 1e-14;
-/// Width of a piece, relative to the duration, below which it is not split for a tighter bound alone.
+/// Width of a piece, relative to the duration, below which it is not split for a tighter bound
+/// alone.
 const FINE: f64 = 1e-6;
 
 /// The integral `s(T)` to be bounded.
@@ -74,8 +75,8 @@ impl LinkIntegrand<'_> {
         for axis in 0..3 {
             let (begin, end) = (self.bounds(axis, from), self.bounds(axis, to));
             let share = |x: f64| (Interval::exactly(x) / Interval::exactly(self.rates[axis])).high;
-            // Any of the linear bounds is valid over the whole piece. The one that is least at both ends
-            // is the tightest; if there is none, the piece contains a kink.
+            // Any of the linear bounds is valid over the whole piece. The one that is least at both
+            // ends is the tightest; if there is none, the piece contains a kink.
             let least = |at: &[Interval; 3]| at.iter().map(|x| x.high).fold(f64::MAX, f64::min);
             let both =
                 (0..3).find(|&i| begin[i].high <= least(&begin) && end[i].high <= least(&end));
@@ -90,8 +91,8 @@ impl LinkIntegrand<'_> {
                 None => return None,
             };
         }
-        // The maximum of linear functions is convex and lies below its chord. Where the largest axis
-        // changes within the piece, the chord is not tight.
+        // The maximum of linear functions is convex and lies below its chord. Where the largest
+        // axis changes within the piece, the chord is not tight.
         let most = |end: usize| shares.iter().map(|s| s[end]).fold(0.0, f64::max);
         let crosses = !shares.iter().any(|s| s[0] >= most(0) && s[1] >= most(1));
         if crosses && !narrow && to - from > FINE * self.duration {

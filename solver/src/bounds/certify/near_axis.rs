@@ -1,25 +1,25 @@
 //! Sequences with many flips near a body axis, refuted all together.
 //!
-//! In a sequence whose axes `j`, `k` flip alternately, with arcs of duration `D`, the costate (length one) has
-//! `M_j = 0` at one flip and `M_k = 0` a time `D` later. As `m_k' = +-(m_i c_j - m_j c_i)` for the
-//! sizes `m`, with `s` a bound on `hypot(m_j, m_k)` throughout, `|m_k'| <= max(c_j, s c_i)`. So `m_k`
-//! is at most this times the time until it vanishes, and likewise `m_j` since it vanished; the sum of
-//! squares is largest at an end:
+//! In a sequence whose axes `j`, `k` flip alternately, with arcs of duration `D`, the costate
+//! (length one) has `M_j = 0` at one flip and `M_k = 0` a time `D` later. As
+//! `m_k' = +-(m_i c_j - m_j c_i)` for the sizes `m`, with `s` a bound on `hypot(m_j, m_k)`
+//! throughout, `|m_k'| <= max(c_j, s c_i)`. So `m_k` is at most this times the time until it
+//! vanishes, and likewise `m_j` since it vanished; the sum of squares is largest at an end:
 //!
 //! ```text
 //!   sin e <= D max(c_j, c_k, s c_i)     for the angle e of M from the axis +-e_i,
 //! ```
 //!
-//! first with `s = 1`, then with the bound itself. As `A = R M` is fixed in space, the swing of `R` away
-//! from the axis is at most `2 e`, and its twist about the axis changes at the rate
+//! first with `s = 1`, then with the bound itself. As `A = R M` is fixed in space, the swing of `R`
+//! away from the axis is at most `2 e`, and its twist about the axis changes at the rate
 //!
 //! ```text
 //!   w_i + [w_k (q_0 v_j + v_i v_k) + w_j (v_i v_j - q_0 v_k)] / (q_0^2 + v_i^2),   q = (v, q_0),
 //! ```
 //!
-//! whose second term, the *drift*, is at most `tan(swing / 2) hypot(w_j, w_k)` (Cauchy and Schwarz). The
-//! bounds fall with `D`, so they also hold for all sequences of more flips and, in the limit, for the turn
-//! about the axis alone.
+//! whose second term, the *drift*, is at most `tan(swing / 2) hypot(w_j, w_k)` (Cauchy and
+//! Schwarz). The bounds fall with `D`, so they also hold for all sequences of more flips and, in
+//! the limit, for the turn about the axis alone.
 
 use super::interval::Interval;
 use super::rates::Rates;
@@ -45,8 +45,8 @@ impl NearAxis {
         }
     }
 
-    /// Whether sequences whose interior arcs are no longer than `longest`, with a rate of the given sign
-    /// about the axis, are proved to take at least `time`.
+    /// Whether sequences whose interior arcs are no longer than `longest`, with a rate of the given
+    /// sign about the axis, are proved to take at least `time`.
     pub(super) fn proved(&self, rates: &Rates, longest: f64, negative: bool, time: f64) -> bool {
         let c = &rates.c;
         let (i, j, k) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -59,7 +59,8 @@ impl NearAxis {
             return false;
         }
         let sine = Interval::exactly(sine);
-        // The tangent bounds the angle e from above, and it is the tangent of half the largest swing.
+        // The tangent bounds the angle e from above, and it is the tangent of half the largest
+        // swing.
         let tangent = sine / (Interval::ONE - sine.squared()).sqrt();
         if self.swing > tangent.twice().high {
             return true;
@@ -81,7 +82,8 @@ impl NearAxis {
     }
 }
 
-/// The least angle in `[0, 2 pi)` that equals an angle of the interval modulo a full turn, rounded down.
+/// The least angle in `[0, 2 pi)` that equals an angle of the interval modulo a full turn, rounded
+/// down.
 fn least_turn(angle: Interval) -> f64 {
     let full = Interval::PI.twice();
     let turns = (angle.low / full.low).floor();

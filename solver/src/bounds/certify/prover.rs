@@ -95,9 +95,9 @@ impl Prover {
 }
 
 impl Proof<'_> {
-    /// Refutes all sequences in which the two axes other than the given one flip alternately. (One axis
-    /// alone flips on levels with a single wall; the costate then travels more than half of its circle
-    /// between flips, and such arcs are no part of a shortest motion.)
+    /// Refutes all sequences in which the two axes other than the given one flip alternately. (One
+    /// axis alone flips on levels with a single wall; the costate then travels more than half of
+    /// its circle between flips, and such arcs are no part of a shortest motion.)
     fn refute_alternating(&mut self, axis: usize) -> Result<(), Rejection> {
         let near = NearAxis::new(&self.q, axis);
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -129,8 +129,8 @@ impl Proof<'_> {
         longest: f64,
     ) -> Result<(), Rejection> {
         let view = TargetView::new(self.rates, &self.q, sequence);
-        // A dwell lasts no longer than the time left by the fixed arcs, and no longer than half a turn at
-        // its speed.
+        // A dwell lasts no longer than the time left by the fixed arcs, and no longer than half a
+        // turn at its speed.
         let repeats = sequence.repeats();
         let mut longest = longest;
         if let InteriorArcs::Dwelling { speed, .. } = &sequence.interior {
@@ -153,7 +153,8 @@ impl Proof<'_> {
         Ok(())
     }
 
-    /// Whether a sequence with its unknown in a range is proved not to make the turn in less than the time.
+    /// Whether a sequence with its unknown in a range is proved not to make the turn in less than
+    /// the time.
     fn excluded(
         &mut self,
         sequence: &ArcSequence,
@@ -195,8 +196,8 @@ impl Proof<'_> {
         if terminal.impossible(Allowed { each, both }) {
             return Ok(true);
         }
-        // The sequence at the middle and a turn about the eigenaxis of its miss make up a motion to the
-        // target.
+        // The sequence at the middle and a turn about the eigenaxis of its miss make up a motion to
+        // the target.
         let [first, last] = terminal.candidate().map(Interval::exactly);
         let before = product(&about(&view.ends[0], first), &interior.turn);
         let end = product(&before, &about(&view.ends[1], last));

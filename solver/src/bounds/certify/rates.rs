@@ -4,8 +4,9 @@ use super::interval::Interval;
 use super::turn::{QuatInterval, VectorInterval, angle_of};
 use nalgebra::Vector3;
 
-/// Relative difference by which each rate exceeds the next smaller one; closer rates are raised. Then no two
-/// saddles of the costate are on one level. Times only fall, by less than the margin of certificates.
+/// Relative difference by which each rate exceeds the next smaller one; closer rates are raised.
+/// Then no two saddles of the costate are on one level. Times only fall, by less than the margin of
+/// certificates.
 const APART: f64 = 2e-7;
 
 /// Signs of the rates on an arc.
@@ -64,7 +65,8 @@ impl Rates {
         self.c.iter().fold(1.0, |least, c| f64::min(least, c.low))
     }
 
-    /// Upper bound on the time of a turn about its own axis: `max |x_i| / c_i` for the rotation vector `x`.
+    /// Upper bound on the time of a turn about its own axis: `max |x_i| / c_i` for the rotation
+    /// vector `x`.
     pub(super) fn eigenaxis(&self, q: &QuatInterval) -> f64 {
         let angle = angle_of(q);
         let length = q[0].length(q[1]).length(q[2]);

@@ -33,11 +33,11 @@ impl Moving {
 pub(super) enum InteriorArcs {
     /// No interior arc and no unknown.
     Nothing,
-    /// Arcs of one unknown duration. Before each, and before the last arc of the sequence, one of two axes
-    /// flips, alternately.
+    /// Arcs of one unknown duration. Before each, and before the last arc of the sequence, one of
+    /// two axes flips, alternately.
     Alternating { axes: [usize; 2], arcs: usize },
-    /// Fixed arcs before and after a dwell of unknown duration at a rate of the given norm; with a dwell by
-    /// the angle `x` the whole interior is `cos(x / 2) even + sin(x / 2) odd`.
+    /// Fixed arcs before and after a dwell of unknown duration at a rate of the given norm; with a
+    /// dwell by the angle `x` the whole interior is `cos(x / 2) even + sin(x / 2) odd`.
     Dwelling {
         even: QuatInterval,
         odd: QuatInterval,

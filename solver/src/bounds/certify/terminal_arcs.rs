@@ -7,11 +7,11 @@
 //!   S = a + b,  U = a - b
 //! ```
 //!
-//! whose absolute value has to be one. The lengths `C_1` and `C_2` of `(x_1, y_1)` and `(x_2, y_2)` add up
-//! to one at most (it is the largest value of a scalar product of unit quaternions). Where the
-//! interior is known within a turn of `eta` the sum must reach `cos(eta / 2) >= 1 - eta^2 / 8`, so
-//! `C_1 (1 - cos(S - s)) + C_2 (1 - cos(U - u)) <= eta^2 / 8 - (1 - C_1 - C_2)` with the angles `s`,
-//! `u` of the two vectors, both shifted by half a turn for the other sign of `q`.
+//! whose absolute value has to be one. The lengths `C_1` and `C_2` of `(x_1, y_1)` and `(x_2, y_2)`
+//! add up to one at most (it is the largest value of a scalar product of unit quaternions). Where
+//! the interior is known within a turn of `eta` the sum must reach `cos(eta / 2) >= 1 - eta^2 / 8`,
+//! so `C_1 (1 - cos(S - s)) + C_2 (1 - cos(U - u)) <= eta^2 / 8 - (1 - C_1 - C_2)` with the angles
+//! `s`, `u` of the two vectors, both shifted by half a turn for the other sign of `q`.
 
 use super::interval::{Interval, twice_asin_of_root};
 use super::rates::Rates;
@@ -78,8 +78,8 @@ impl TargetView {
         value.abs().low > (slope.abs() * half + curvature).high
     }
 
-    /// The terminal arcs for an interior that is known within a turn of `eta`; `None` when no terminal arcs
-    /// reach the target.
+    /// The terminal arcs for an interior that is known within a turn of `eta`; `None` when no
+    /// terminal arcs reach the target.
     pub(super) fn terminal_arcs(
         &self,
         interior: &QuatInterval,

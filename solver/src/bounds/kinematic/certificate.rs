@@ -4,9 +4,9 @@ use super::limits::{EndRates, SlewLimits};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
-/// Relative reduction of least times in a certificate. It leaves the verification in interval arithmetic
-/// a margin for its own rounding, and for rates that it raises so that no two are nearly equal (see
-/// [`crate::bounds::certify`]).
+/// Relative reduction of least times in a certificate. It leaves the verification in interval
+/// arithmetic a margin for its own rounding, and for rates that it raises so that no two are nearly
+/// equal (see [`crate::bounds::certify`]).
 pub(super) const PROOF_MARGIN: f64 = 2e-6;
 
 /// A turn with a lower bound on its time within a box of rates.
@@ -18,11 +18,12 @@ pub struct CertifiedTurn {
     pub least_s: f64,
 }
 
-/// A lower bound on the duration of a slew, or of a tour through several attitudes, with its premises.
+/// A lower bound on the duration of a slew, or of a tour through several attitudes, with its
+/// premises.
 ///
-/// Every motion with rates and accelerations within `limits` and end rates within `ends` that makes the
-/// turns one after the other lasts at least `duration_s`: the turns within the box `box_rad_s` take at
-/// least their `least_s`, and [`super::ramps`] links these times to the duration.
+/// Every motion with rates and accelerations within `limits` and end rates within `ends` that makes
+/// the turns one after the other lasts at least `duration_s`: the turns within the box `box_rad_s`
+/// take at least their `least_s`, and [`super::ramps`] links these times to the duration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// Limits that every motion of the spacecraft satisfies.

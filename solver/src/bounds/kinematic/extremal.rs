@@ -12,8 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 const NEWTON_STEPS: usize = 6;
 /// A miss that is not corrected, rad.
 const REACHED: f64 = 1e-12;
-/// Damping of the Newton steps, for sequences whose arcs do not span all directions: the misses left by a
-/// search, 1e-7 rad, then change no duration by more than 1e-3.
+/// Damping of the Newton steps, for sequences whose arcs do not span all directions: the misses
+/// left by a search, 1e-7 rad, then change no duration by more than 1e-3.
 const DAMPING: f64 = 1e-9;
 /// Arcs shorter than this are omitted, rad.
 const NO_ARC: f64 = 1e-13;
@@ -21,8 +21,8 @@ const NO_ARC: f64 = 1e-13;
 /// Arcs at constant rate, normalised: rate vector and duration.
 pub(super) type TimedArcs = Vec<([f64; 3], f64)>;
 
-/// The arcs of the best motion that a search found. A last arc about the eigenaxis corrects the miss that
-/// Newton's method leaves, so that the target is always reached.
+/// The arcs of the best motion that a search found. A last arc about the eigenaxis corrects the
+/// miss that Newton's method leaves, so that the target is always reached.
 pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
     let c = &table.levels.c;
     let mut arcs = match best {
@@ -94,8 +94,8 @@ struct CandidateSequence {
 }
 
 impl CandidateSequence {
-    /// Its arcs after Newton steps from the given durations: those of the iterate that is fastest when the
-    /// remaining miss is corrected about the eigenaxis.
+    /// Its arcs after Newton steps from the given durations: those of the iterate that is fastest
+    /// when the remaining miss is corrected about the eigenaxis.
     fn polished(
         &self,
         c: &[f64; 3],
@@ -145,7 +145,8 @@ impl CandidateSequence {
             .collect()
     }
 
-    /// Derivative of the final attitude, as a rotation vector in final body axes, by the three durations.
+    /// Derivative of the final attitude, as a rotation vector in final body axes, by the three
+    /// durations.
     fn slopes(&self, arcs: &[([f64; 3], f64)]) -> Matrix3<f64> {
         let mut slopes = Matrix3::zeros();
         let mut rest: Quat = [0.0, 0.0, 0.0, 1.0];

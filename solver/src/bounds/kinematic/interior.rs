@@ -1,5 +1,5 @@
-//! The interior of a sequence with several arcs of one duration, and the parts of a cell in which its
-//! equation can hold.
+//! The interior of a sequence with several arcs of one duration, and the parts of a cell in which
+//! its equation can hold.
 
 use super::sequences::{SequenceFamily, corner};
 use super::turns::rotate;
@@ -69,8 +69,8 @@ impl InteriorTurn {
     }
 }
 
-/// The parts of `[-half, half]` in which a function can be zero up to the margin. The function has the
-/// given value and slope at 0 and a second derivative of at most `curvature`.
+/// The parts of `[-half, half]` in which a function can be zero up to the margin. The function has
+/// the given value and slope at 0 and a second derivative of at most `curvature`.
 pub(super) fn where_zero(
     value: f64,
     slope: f64,

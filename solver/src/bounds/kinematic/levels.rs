@@ -8,8 +8,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Widening of the lengths of gaps, rad: `acos` loses half the digits at a saddle, and a range that is
-/// too wide only adds feasible motions.
+/// Widening of the lengths of gaps, rad: `acos` loses half the digits at a saddle, and a range that
+/// is too wide only adds feasible motions.
 pub(super) const RANGE_SLACK: f64 = 1e-7;
 /// Relative difference below which two rates are made equal.
 pub(super) const EQUAL: f64 = 1e-7;
@@ -68,8 +68,8 @@ impl Levels {
         levels
     }
 
-    /// Whether two rates are equal, so that their saddles are on one circle. Different rates differ by a
-    /// share of at least [`EQUAL`].
+    /// Whether two rates are equal, so that their saddles are on one circle. Different rates differ
+    /// by a share of at least [`EQUAL`].
     pub(super) fn same_rate(&self, i: usize, j: usize) -> bool {
         (self.c[i] - self.c[j]).abs() < 0.5 * EQUAL * self.c[j]
     }

@@ -1,4 +1,5 @@
-//! Limits of the slews of a spacecraft: of rates and accelerations on the way and of rates at the ends.
+//! Limits of the slews of a spacecraft: of rates and accelerations on the way and of rates at the
+//! ends.
 
 use nalgebra::Vector3;
 

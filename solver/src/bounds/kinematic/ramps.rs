@@ -10,8 +10,8 @@
 //!
 //! **Any box.** For rates `p_i > 0` let `s(T) = int_0^T max_i m_i / p_i dt`. Along the motion take
 //! `s` as the time instead, `ds / dt = max_i m_i / p_i`: then `dR / ds = R S(w / s')` with
-//! `|w_i / s'| <= p_i`, a motion within the box `p` that lasts `s(T)`. So `V_p(R) <= s(T)`, and as `s`
-//! does not decrease with `T` (neither the integrand nor the range does),
+//! `|w_i / s'| <= p_i`, a motion within the box `p` that lasts `s(T)`. So `V_p(R) <= s(T)`, and as
+//! `s` does not decrease with `T` (neither the integrand nor the range does),
 //!
 //! ```text
 //!   T >= s^-1(V_p(R))    for every box p: the best of them counts.
@@ -20,9 +20,9 @@
 //! Special cases, with `p = r`:
 //!
 //! * both ends at rest, `r_i = a_i tau` for all axes: `s = T - tau` for `T >= 2 tau`, else
-//!   `T^2 / (4 tau)`. Hence `T >= V + tau` if `V >= tau`, else `T >= 2 sqrt(tau V)` (**short slews**).
-//!   With unequal `tau_i`, `m_i / r_i` is largest for the least of them: the same with that one, and
-//!   other boxes do better;
+//!   `T^2 / (4 tau)`. Hence `T >= V + tau` if `V >= tau`, else `T >= 2 sqrt(tau V)` (**short
+//!   slews**). With unequal `tau_i`, `m_i / r_i` is largest for the least of them: the same with
+//!   that one, and other boxes do better;
 //! * one end at rest, one free: `m_i / r_i = min(1, t / tau)`, so `T >= V + tau / 2` if
 //!   `V >= tau / 2`, else `sqrt(2 tau V)`;
 //! * some components free at both ends: `m_i = r_i` for these, `s = T`, `T >= V`; boxes that are
@@ -30,12 +30,12 @@
 //! * known end rates: `b_i = |w_i(0)|`, `e_i = |w_i(T)|`.
 //!
 //! **Tours.** For a motion through several rotations the argument holds on each leg, and `s` is
-//! additive: the sum of `V_p` over the legs is at most `s(T)` of the whole motion, with the end conditions
-//! of the tour. Where all components stop at every target, the legs are independent and their bounds are
-//! summed instead.
+//! additive: the sum of `V_p` over the legs is at most `s(T)` of the whole motion, with the end
+//! conditions of the tour. Where all components stop at every target, the legs are independent and
+//! their bounds are summed instead.
 //!
-//! The boxes tried are those of the mean rates `1 / T int m_i dt` for some durations `T`, from `r` (long
-//! slews) to the shape of `a` (short slews at rest). Any choice is valid.
+//! The boxes tried are those of the mean rates `1 / T int m_i dt` for some durations `T`, from `r`
+//! (long slews) to the shape of `a` (short slews at rest). Any choice is valid.
 
 use super::RateBox;
 use super::certificate::{Certificate, CertifiedTurn, PROOF_MARGIN};
@@ -55,13 +55,15 @@ pub(super) const DEFLATION: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct SlewBound {
     pub(super) envelope: RateEnvelope,
-    /// Rate limits of the boxes with their extremals; the first box is that of the limits themselves.
+    /// Rate limits of the boxes with their extremals; the first box is that of the limits
+    /// themselves.
     pub(super) boxes: Vec<(Vector3<f64>, RateBox)>,
 }
 
 impl SlewBound {
-    /// Bounds for slews within these limits and with these end rates. `None` when limits are not positive
-    /// and finite, an end rate is negative or not a number, or [`RateBox::new`] refuses the rates.
+    /// Bounds for slews within these limits and with these end rates. `None` when limits are not
+    /// positive and finite, an end rate is negative or not a number, or [`RateBox::new`] refuses
+    /// the rates.
     #[must_use]
     pub fn new(limits: SlewLimits, ends: EndRates) -> Option<Self> {
         let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
@@ -93,13 +95,13 @@ impl SlewBound {
         Some(bound)
     }
 
-    /// Lower bound, s, on the duration of a slew that makes these turns one after the other, each in the
-    /// body axes where the one before ended; one turn for a leg. The end rates apply to the two ends of
-    /// the whole motion; between the turns all rates are free.
+    /// Lower bound, s, on the duration of a slew that makes these turns one after the other, each
+    /// in the body axes where the one before ended; one turn for a leg. The end rates apply to the
+    /// two ends of the whole motion; between the turns all rates are free.
     ///
-    /// The least times of the turns are computed to the relative tolerance and reduced by 2e-6, so that
-    /// [`crate::bounds::certify`] can verify them. The result is valid for any tolerance. It is rounded
-    /// down to seven digits, so that it does not depend on the mathematical library.
+    /// The least times of the turns are computed to the relative tolerance and reduced by 2e-6, so
+    /// that [`crate::bounds::certify`] can verify them. The result is valid for any tolerance. It
+    /// is rounded down to seven digits, so that it does not depend on the mathematical library.
     #[must_use]
     pub fn lower_bound_s(&self, turns: &[Attitude], tolerance: f64) -> f64 {
         self.best(turns, tolerance).1

@@ -4,8 +4,8 @@
 use super::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
-/// Smallest width of a box, as a share of the rate limit and relative to its widest axis: more extreme
-/// boxes have many extremals and gain nothing.
+/// Smallest width of a box, as a share of the rate limit and relative to its widest axis: more
+/// extreme boxes have many extremals and gain nothing.
 const MIN_SHARE: f64 = 0.1;
 /// Bisections of a duration, enough to reach rounding.
 const BISECTIONS: usize = 60;
@@ -51,8 +51,8 @@ impl RateEnvelope {
         times
     }
 
-    /// Means of `m_i` over a duration, each raised to at least [`MIN_SHARE`] of the largest share of its
-    /// limit.
+    /// Means of `m_i` over a duration, each raised to at least [`MIN_SHARE`] of the largest share
+    /// of its limit.
     pub(super) fn mean_rates(&self, duration: f64) -> Vector3<f64> {
         let kinks = self.kinks(duration);
         let shares = Vector3::from_fn(|i, _| {
@@ -105,8 +105,8 @@ impl RateEnvelope {
         self.longest_short_of(rates, least, 0.0, 0.0)
     }
 
-    /// The longest duration `T >= from` with `s(T) + slope (T - from) < least`, to rounding and from
-    /// below; `from` itself if there is none.
+    /// The longest duration `T >= from` with `s(T) + slope (T - from) < least`, to rounding and
+    /// from below; `from` itself if there is none.
     pub(super) fn longest_short_of(
         &self,
         rates: &Vector3<f64>,

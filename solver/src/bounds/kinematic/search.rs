@@ -19,13 +19,13 @@ const MAX_TURN_FOR_TERMINAL: f64 = 0.25;
 const MAX_FLIPS: usize = 4096;
 /// Rounding allowance for angles modulo a full turn, rad.
 const WRAP: f64 = 1e-9;
-/// Rounding of a cosine near one: a candidate that misses by less counts as reaching the target. If it
-/// does not, its time is too low, which keeps the lower value valid: it is the minimum of all bounds and
-/// of this time.
+/// Rounding of a cosine near one: a candidate that misses by less counts as reaching the target. If
+/// it does not, its time is too low, which keeps the lower value valid: it is the minimum of all
+/// bounds and of this time.
 const ROUNDED_AWAY: f64 = 1e-15;
-/// Number of cells after which a query ends with a weaker bound. Ordinary queries take hundreds. Where
-/// one axis is a thousand times faster than another, sequences have thousands of flips, and an unlimited
-/// query would take minutes.
+/// Number of cells after which a query ends with a weaker bound. Ordinary queries take hundreds.
+/// Where one axis is a thousand times faster than another, sequences have thousands of flips, and
+/// an unlimited query would take minutes.
 const MAX_CELLS: usize = 100_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
@@ -142,7 +142,8 @@ impl<'a> SequenceSearch<'a> {
         angle.max(small_angle_bound(&self.q, &self.table.levels.c))
     }
 
-    /// Sequences of one and two arcs; the first flips of the three vertex families cover all of them.
+    /// Sequences of one and two arcs; the first flips of the three vertex families cover all of
+    /// them.
     fn two_arcs(&mut self) {
         let c = self.table.levels.c;
         for (family, image) in (0..3).flat_map(|family| (0..4).map(move |image| (family, image))) {
@@ -169,7 +170,8 @@ impl<'a> SequenceSearch<'a> {
         }
     }
 
-    /// Tries the centre of a cell as a candidate and bounds the cell; returns whether it must be split.
+    /// Tries the centre of a cell as a candidate and bounds the cell; returns whether it must be
+    /// split.
     fn bound_cell(
         &mut self,
         terminal: &TerminalArcs,
@@ -339,8 +341,9 @@ impl<'a> SequenceSearch<'a> {
         }
     }
 
-    /// Lower bounds on the times of sequences near an axis whose arcs are no longer than `longest`, for a
-    /// positive and for a negative rate about the axis; infinite if the target's swing is too large.
+    /// Lower bounds on the times of sequences near an axis whose arcs are no longer than `longest`,
+    /// for a positive and for a negative rate about the axis; infinite if the target's swing is too
+    /// large.
     fn by_twist(&self, axis: usize, longest: f64) -> [f64; 2] {
         let levels = &self.table.levels;
         let cone = levels.cone(axis, longest);
@@ -429,8 +432,8 @@ impl<'a> SequenceSearch<'a> {
         }
     }
 
-    /// Pushes parts of a cell, given relative to its middle, onto the stack; a part that is hardly narrower
-    /// than the cell is halved. Returns the new height of the stack.
+    /// Pushes parts of a cell, given relative to its middle, onto the stack; a part that is hardly
+    /// narrower than the cell is halved. Returns the new height of the stack.
     fn push_parts(
         &mut self,
         mut open: usize,

@@ -1,7 +1,8 @@
-//! The extremals as arc sequences: a first arc, an interior that depends on one parameter, a last arc.
+//! The extremals as arc sequences: a first arc, an interior that depends on one parameter, a last
+//! arc.
 //!
-//! Every sequence starts in the octant `(+, +, +)` or `(-, -, -)`. The other six follow by conjugation
-//! with half turns about the body axes, which the search applies to the target instead.
+//! Every sequence starts in the octant `(+, +, +)` or `(-, -, -)`. The other six follow by
+//! conjugation with half turns about the body axes, which the search applies to the target instead.
 
 use super::levels::{Levels, RANGE_SLACK, others};
 use super::turns::{about, chain, cross, dot, rotate};
@@ -104,11 +105,12 @@ impl ClosedFormSequence {
     }
 }
 
-/// The regular sequences of a gap: two axes flip alternately, and all interior arcs have one duration.
+/// The regular sequences of a gap: two axes flip alternately, and all interior arcs have one
+/// duration.
 #[derive(Debug, Clone)]
 pub(super) struct SequenceFamily {
-    /// The axis that never flips, near which the costate stays; `None` for the far side and for a single
-    /// wall.
+    /// The axis that never flips, near which the costate stays; `None` for the far side and for a
+    /// single wall.
     pub(super) vertex: Option<usize>,
     /// The axes that flip, first and second, for each of [`FIRST`].
     pub(super) flips: [[usize; 2]; 2],

@@ -1,9 +1,9 @@
 //! The sequences with a dwell: extremals on the level of a saddle.
 //!
 //! The costate may rest on the saddle `M_j = 0`, where `M` and the rate are parallel to the face
-//! diagonal; on leaving, `w_j` has either sign. At a later visit it passes or is reflected. All dwells of
-//! an extremal are turns about the same axis in space and may be moved to the first visit. Between visits
-//! the level determines the durations of the arcs.
+//! diagonal; on leaving, `w_j` has either sign. At a later visit it passes or is reflected. All
+//! dwells of an extremal are turns about the same axis in space and may be moved to the first
+//! visit. Between visits the level determines the durations of the arcs.
 
 use super::levels::Levels;
 use super::sequences::{ClosedFormSequence, FIRST, InteriorArc, OctantBits, corner, sense};
@@ -49,8 +49,8 @@ struct PartialSequence {
     fixed: f64,
 }
 
-/// All dwelling sequences whose fixed arcs last less than the horizon; `None` if there are more than the
-/// limit.
+/// All dwelling sequences whose fixed arcs last less than the horizon; `None` if there are more
+/// than the limit.
 pub(super) fn sequences(
     levels: &Levels,
     horizon: f64,
@@ -134,8 +134,8 @@ impl Circle<'_> {
         }
     }
 
-    /// Continues from an event in an octant: adds the sequence that ends with this arc, and follows the arc
-    /// to the next event.
+    /// Continues from an event in an octant: adds the sequence that ends with this arc, and follows
+    /// the arc to the next event.
     fn leave(
         &mut self,
         at: PartialSequence,
@@ -185,8 +185,8 @@ impl Circle<'_> {
         Some(())
     }
 
-    /// Whether some of the last arcs, at most those since the dwell, can be replaced by a faster turn: then
-    /// no shortest motion contains them.
+    /// Whether some of the last arcs, at most those since the dwell, can be replaced by a faster
+    /// turn: then no shortest motion contains them.
     fn replaceable(&self, steps: &[InteriorArc], dwell: Option<usize>) -> bool {
         let begin = dwell.map_or(0, |at| at + 1);
         let mut turn: Quat = [0.0, 0.0, 0.0, 1.0];

@@ -1,4 +1,5 @@
-//! The terminal arcs with which a sequence reaches its target: closed forms, and bounds over a cell.
+//! The terminal arcs with which a sequence reaches its target: closed forms, and bounds over a
+//! cell.
 //!
 //! With `A = t_0 / 2`, `B = t_f / 2` and the interior `P`,
 //!
@@ -6,18 +7,18 @@
 //!   <q, exp(t_0 c_0) P exp(t_f c_f)> = C1 cos(A + B - u) + C2 cos(A - B - v),   C1 + C2 <= 1
 //! ```
 //!
-//! where `C1 (cos u, sin u)` and `C2 (cos v, sin v)` are linear in `P`. The target is reached when the
-//! absolute value of the sum is one, with both cosines of the same sign.
+//! where `C1 (cos u, sin u)` and `C2 (cos v, sin v)` are linear in `P`. The target is reached when
+//! the absolute value of the sum is one, with both cosines of the same sign.
 
 use super::sequences::{FIRST, OctantBits, corner};
 use crate::math::quaternion::{Quat, dot4, product};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Allowance for rounding in `C1 + C2`. Each is the length of a pair of scalar products of four terms of
-/// at most one, of quaternions that are unit to 1e-14; the sum is accurate to 5e-14.
+/// Allowance for rounding in `C1 + C2`. Each is the length of a pair of scalar products of four
+/// terms of at most one, of quaternions that are unit to 1e-14; the sum is accurate to 5e-14.
 const ROUNDING: f64 = 1e-13;
-/// Rounding of the scalar products in `C1 (cos u, sin u)`: an error of this size over `C1` in `u`. (Errors
-/// of the interior itself are within the margin by which cells are widened.)
+/// Rounding of the scalar products in `C1 (cos u, sin u)`: an error of this size over `C1` in `u`.
+/// (Errors of the interior itself are within the margin by which cells are widened.)
 const COMPONENT: f64 = 2e-15;
 
 /// The target for sequences that begin and end in given octants.
@@ -32,8 +33,8 @@ pub(super) struct Probe<'a> {
     pub(super) target: f64,
 }
 
-/// An image of half the target's quaternion `q` under a half turn, with its products with the corners.
-/// Opposite octants differ in signs only.
+/// An image of half the target's quaternion `q` under a half turn, with its products with the
+/// corners. Opposite octants differ in signs only.
 #[derive(Debug)]
 struct Image {
     /// `q / 2` and `c_0 q / 2`.
@@ -115,8 +116,8 @@ pub(super) struct TerminalArcs {
 }
 
 impl Probe<'_> {
-    /// The terminal arcs for an interior that is known within a turn of `2 half_eta`, rad; `None` when no
-    /// terminal arcs reach the target.
+    /// The terminal arcs for an interior that is known within a turn of `2 half_eta`, rad; `None`
+    /// when no terminal arcs reach the target.
     pub(super) fn terminal_arcs(&self, interior: &Quat, half_eta: f64) -> Option<TerminalArcs> {
         // <q, P>, <c_0* q, P>, <q c_f*, P> and <c_0* q c_f*, P>, halved.
         let [first, last] = self.signs;
@@ -149,8 +150,9 @@ impl Probe<'_> {
     }
 }
 
-/// An upper bound on `acos(1 - excess / size)`, which is `2 asin(s)` with `s^2 = excess / (2 size)`, from
-/// `asin s <= s + (pi / 2 - 1) s^3` (all terms of the series are positive), with an allowance for rounding.
+/// An upper bound on `acos(1 - excess / size)`, which is `2 asin(s)` with
+/// `s^2 = excess / (2 size)`, from `asin s <= s + (pi / 2 - 1) s^3` (all terms of the series are
+/// positive), with an allowance for rounding.
 fn widest(excess: f64, size: f64) -> f64 {
     if excess >= 2.0 * size {
         return PI;
@@ -180,8 +182,8 @@ impl TerminalArcs {
         Some(by_parts.max(least_first + least_last))
     }
 
-    /// Half durations of the terminal arcs to try, with the cosine of half the miss: those at the cell's
-    /// centre, and zero in place of nearly half a turn.
+    /// Half durations of the terminal arcs to try, with the cosine of half the miss: those at the
+    /// cell's centre, and zero in place of nearly half a turn.
     pub(super) fn candidates(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let choices = |x: f64| [Some(x), (x > 3.0).then_some(0.0)].into_iter().flatten();
         choices(self.first).flat_map(move |first| {

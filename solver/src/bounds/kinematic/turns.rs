@@ -52,8 +52,8 @@ pub(super) fn eigenaxis_time(q: &Quat, c: &[f64; 3]) -> f64 {
     (0..3).fold(0.0, |time, i| f64::max(time, x[i].abs() / c[i]))
 }
 
-/// Three turns about body axes `(axis, angle)` whose product is a turn, and their time: the best of the
-/// orders `i j i`. When one rate is small this upper bound is far below that of the eigenaxis.
+/// Three turns about body axes `(axis, angle)` whose product is a turn, and their time: the best of
+/// the orders `i j i`. When one rate is small this upper bound is far below that of the eigenaxis.
 pub(super) fn best_axis_sequence(q: &Quat, c: &[f64; 3]) -> (f64, [(usize, f64); 3]) {
     let mut best = (f64::INFINITY, [(0, 0.0); 3]);
     for i in 0..3 {
@@ -66,7 +66,8 @@ pub(super) fn best_axis_sequence(q: &Quat, c: &[f64; 3]) -> (f64, [(usize, f64);
         for (j, k, sense) in [(one, other, 1.0), (other, one, -1.0)] {
             let difference = 2.0 * (sense * q[k]).atan2(q[j]);
             let (first, last) = (0.5 * (sum + difference), 0.5 * (sum - difference));
-            // Adding half a turn to the first and subtracting it from the last reverses the middle one.
+            // Adding half a turn to the first and subtracting it from the last reverses the middle
+            // one.
             for (shift, turned) in [(0.0, middle), (PI, -middle)] {
                 let outer = [wrapped(first + shift), wrapped(last - shift)];
                 let time = (outer[0].abs() + outer[1].abs()) / c[i] + middle / c[j];

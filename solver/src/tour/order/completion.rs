@@ -11,8 +11,9 @@ use super::PairTable;
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 
-/// Number of targets up to which the bound is the exact shortest path. The table has `n 2^n` entries:
-/// 160 MiB and a quarter of a second for twenty targets, and half of both for each target less.
+/// Number of targets up to which the bound is the exact shortest path. The table has `n 2^n`
+/// entries: 160 MiB and a quarter of a second for twenty targets, and half of both for each target
+/// less.
 pub const MAX_EXACT_TARGETS: usize = 20;
 
 /// Costs of legs between places numbered as in [`PairTable`], s.

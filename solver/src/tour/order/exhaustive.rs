@@ -4,8 +4,9 @@ use super::incumbents::Incumbents;
 use super::{SolvedOrder, TourEvaluation, TourModel};
 use crate::run::pool::SolverPool;
 
-/// Evaluates all orders that the rules admit, up to n!, and lists the best one and so many alternatives,
-/// best first. Orders that do not resolve are left out. For a handful of targets only.
+/// Evaluates all orders that the rules admit, up to n!, and lists the best one and so many
+/// alternatives, best first. Orders that do not resolve are left out. For a handful of targets
+/// only.
 #[must_use]
 pub fn exhaustive(
     model: &dyn TourModel,

@@ -33,8 +33,8 @@ pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize
     searched(&table, &all, 0, stop).into_iter().next()
 }
 
-/// A few different orders that are short in the pair table, shortest first except for the reverse of the
-/// shortest one, which comes second.
+/// A few different orders that are short in the pair table, shortest first except for the reverse
+/// of the shortest one, which comes second.
 pub(super) fn candidates(
     table: &PairTable,
     completion: &CompletionBound,
@@ -46,8 +46,8 @@ pub(super) fn candidates(
         CompletionBound::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
         CompletionBound::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
     };
-    // Tours are nearly symmetric in time, while the table of legs with free ends is not: the reverse of
-    // the table's shortest order is often the shorter tour.
+    // Tours are nearly symmetric in time, while the table of legs with free ends is not: the
+    // reverse of the table's shortest order is often the shorter tour.
     let reverse: Vec<usize> = orders[0].iter().rev().copied().collect();
     if table.rules().admits(&reverse) {
         orders.insert(1, reverse);
@@ -72,8 +72,8 @@ pub(super) struct SearchEffort {
     pub(super) seed: u64,
 }
 
-/// Orders found from a given one that are short in the pair bounds with the known coupling gaps, best
-/// first.
+/// Orders found from a given one that are short in the pair bounds with the known coupling gaps,
+/// best first.
 pub(super) fn shorter_orders(
     costs: &TripleBounds,
     rules: &OrderRules,
@@ -149,8 +149,8 @@ fn iterated(
     best.map(|best| best.order.clone()).collect()
 }
 
-/// The nearest-neighbour order after a prefix: the next target is the nearest one, the smallest index
-/// among equals, of those after which an admitted order remains possible.
+/// The nearest-neighbour order after a prefix: the next target is the nearest one, the smallest
+/// index among equals, of those after which an admitted order remains possible.
 fn nearest_neighbours(table: &PairTable, prefix: &[usize], targets: &[usize]) -> Vec<usize> {
     let mut path = prefix.to_vec();
     let mut left = targets.to_vec();

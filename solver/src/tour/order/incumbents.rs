@@ -3,12 +3,12 @@
 use super::SolvedOrder;
 use std::cmp::Ordering;
 
-/// Relative difference below which two durations are a tie: far below the accuracy of an evaluation,
-/// far above rounding.
+/// Relative difference below which two durations are a tie: far below the accuracy of an
+/// evaluation, far above rounding.
 const TIE_RELATIVE: f64 = 1e-9;
 
-/// Maps durations to classes of relative width [`TIE_RELATIVE`]. Unlike a comparison with a tolerance,
-/// equality of classes is transitive, which sorting requires.
+/// Maps durations to classes of relative width [`TIE_RELATIVE`]. Unlike a comparison with a
+/// tolerance, equality of classes is transitive, which sorting requires.
 pub(super) fn tie_class(duration_s: f64) -> f64 {
     (duration_s.max(0.0).ln() / TIE_RELATIVE).round()
 }
@@ -75,8 +75,8 @@ impl Incumbents {
         self.compare_with_worst(bound) == Ordering::Greater
     }
 
-    /// Compares a bound with the duration below which an order enters the list; any order enters a list
-    /// that is not full.
+    /// Compares a bound with the duration below which an order enters the list; any order enters a
+    /// list that is not full.
     fn compare_with_worst(&self, bound: f64) -> Ordering {
         if self.orders.len() < self.capacity {
             return Ordering::Less;

@@ -2,34 +2,34 @@
 //!
 //! # Costates decouple legs
 //!
-//! Legs couple because a leg begins in the state in which the leg before it ends. Give every leg its own
-//! copies `a, b` of the states at its ends, and demand for each target `j` between the places `i` and `k`
-//! that the copies agree, `b(i, j) = a(j, k)`. With a multiplier `p(i, j, k)` for this constraint the
-//! legs of a tour `.. h, i, j, k ..` are independent,
+//! Legs couple because a leg begins in the state in which the leg before it ends. Give every leg
+//! its own copies `a, b` of the states at its ends, and demand for each target `j` between the
+//! places `i` and `k` that the copies agree, `b(i, j) = a(j, k)`. With a multiplier `p(i, j, k)`
+//! for this constraint the legs of a tour `.. h, i, j, k ..` are independent,
 //!
 //! `T >= sum over its legs of c(h, i, j, k)`,
 //!
 //! `c(h, i, j, k) = min over a, b of t(a -> b) - p(h, i, j) . a + p(i, j, k) . b`,
 //!
-//! for any multipliers (Lagrangian duality): where the copies agree the terms cancel. The bound of a tour
-//! is sharp when its multipliers are the costates of its solution and the leg durations are convex in the
-//! states at their ends, which is nearly the case: on the best tours of random schedules the bound is
-//! within 0.1 %, where the bounds of five places in a row leave 2 to 3 %.
+//! for any multipliers (Lagrangian duality): where the copies agree the terms cancel. The bound of
+//! a tour is sharp when its multipliers are the costates of its solution and the leg durations are
+//! convex in the states at their ends, which is nearly the case: on the best tours of random
+//! schedules the bound is within 0.1 %, where the bounds of five places in a row leave 2 to 3 %.
 //!
-//! A multiplier may depend on the three places `i, j, k`, since both legs know them. One value that is
-//! shared by many tours is not the best one for each of them.
+//! A multiplier may depend on the three places `i, j, k`, since both legs know them. One value that
+//! is shared by many tours is not the best one for each of them.
 //!
 //! # All tours at once
 //!
-//! The least sum over all orders is a shortest path through states `(h, i, j, R)`, where `R` is the set of
-//! remaining targets ([`LagrangianPaths`]): exact for any multipliers.
+//! The least sum over all orders is a shortest path through states `(h, i, j, R)`, where `R` is the
+//! set of remaining targets ([`LagrangianPaths`]): exact for any multipliers.
 //!
 //! # Dual ascent
 //!
-//! Initially all multipliers are zero, and a leg costs its duration with free ends. Then, in rounds, the
-//! tours of the orders with the smallest bounds are solved, and each multiplier along them is set to the
-//! mean of the costates of all solutions so far. This is an ascent of the Lagrangian dual with steps
-//! `1/m`. Legs are solved again only where a multiplier has changed.
+//! Initially all multipliers are zero, and a leg costs its duration with free ends. Then, in
+//! rounds, the tours of the orders with the smallest bounds are solved, and each multiplier along
+//! them is set to the mean of the costates of all solutions so far. This is an ascent of the
+//! Lagrangian dual with steps `1/m`. Legs are solved again only where a multiplier has changed.
 
 mod paths;
 
@@ -42,7 +42,8 @@ use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of targets up to which Lagrangian bounds are computed. The table of paths has some
-/// `n^3 2^n / 8` entries of four bytes: 160 MB for sixteen targets, and half of it for each target less.
+/// `n^3 2^n / 8` entries of four bytes: 160 MB for sixteen targets, and half of it for each target
+/// less.
 pub const MAX_LAGRANGIAN_TARGETS: usize = 16;
 // With start, end and the number for no neighbour, a row fits the rows of the table of subsets.
 const _: () = assert!(MAX_LAGRANGIAN_TARGETS + 3 <= MAX_EXACT_TARGETS);
@@ -63,8 +64,8 @@ struct MeanCostate {
 pub struct LagrangianLegs {
     table: PairTable,
     has_end: bool,
-    /// Whether every leg costs the same in reverse, between the same neighbours and with start and end
-    /// exchanged.
+    /// Whether every leg costs the same in reverse, between the same neighbours and with start and
+    /// end exchanged.
     symmetric: bool,
     costates: BTreeMap<[usize; 3], MeanCostate>,
     /// For the first three of four places, a row of costs by the last one.
@@ -114,8 +115,8 @@ impl LagrangianLegs {
             .fold(0, |index, place| index * numbers + place)
     }
 
-    /// Cost of the legs whose neighbours are known once the last target is reached, s: the leg to it and,
-    /// with a prescribed end, the leg to the end.
+    /// Cost of the legs whose neighbours are known once the last target is reached, s: the leg to
+    /// it and, with a prescribed end, the leg to the end.
     fn ending(&self, [before, from, last]: [usize; 3]) -> f64 {
         if self.has_end {
             let end = self.table.end();
@@ -125,9 +126,9 @@ impl LagrangianLegs {
         }
     }
 
-    /// Updates the multipliers along some orders by the costates of their tours, and solves the legs that
-    /// change. Returns `false`, with nothing changed, when the solve is stopped meanwhile or no tour has
-    /// costates.
+    /// Updates the multipliers along some orders by the costates of their tours, and solves the
+    /// legs that change. Returns `false`, with nothing changed, when the solve is stopped meanwhile
+    /// or no tour has costates.
     pub fn update_costates(
         &mut self,
         orders: &[Vec<usize>],
@@ -178,8 +179,8 @@ impl LagrangianLegs {
         true
     }
 
-    /// Cost of a leg for given multipliers, s; `None` when the solve is stopped. The cost of a leg that
-    /// does not resolve is minus infinity, which is always a valid bound.
+    /// Cost of a leg for given multipliers, s; `None` when the solve is stopped. The cost of a leg
+    /// that does not resolve is minus infinity, which is always a valid bound.
     fn solve(
         &self,
         [before, from, to, after]: [usize; 4],

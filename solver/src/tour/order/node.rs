@@ -27,8 +27,8 @@ impl SearchNode {
         }
     }
 
-    /// Raises the head to a bound of the time until the last fixed target is left, s, and the bound with
-    /// it; `rest` bounds the time after that, s.
+    /// Raises the head to a bound of the time until the last fixed target is left, s, and the bound
+    /// with it; `rest` bounds the time after that, s.
     pub(super) fn raise_head(&mut self, head: f64, rest: f64) {
         self.head = self.head.max(head);
         self.bound = self.bound.max(self.head + rest);

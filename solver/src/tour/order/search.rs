@@ -15,19 +15,20 @@ use crate::run::stop::{StopReason, StopSignal};
 use reporter::SearchReporter;
 use tree::SearchTree;
 
-/// Smallest number of nodes evaluated per round. A round has as many nodes as this, [`MAX_NODES`] and
-/// [`EXPLORED_PER_NODE`] allow. The later nodes of a round are evaluated without the results of the
-/// earlier ones, and some of that work is wasted; the share of the nodes explored before limits the
-/// waste. None of the three depends on the number of threads, so that the nodes explored do not either.
+/// Smallest number of nodes evaluated per round. A round has as many nodes as this, [`MAX_NODES`]
+/// and [`EXPLORED_PER_NODE`] allow. The later nodes of a round are evaluated without the results of
+/// the earlier ones, and some of that work is wasted; the share of the nodes explored before limits
+/// the waste. None of the three depends on the number of threads, so that the nodes explored do not
+/// either.
 const MIN_NODES: u64 = 4;
 /// Largest number of nodes evaluated per round.
 const MAX_NODES: u64 = 32;
 /// Nodes explored before a round for each of its nodes.
 const EXPLORED_PER_NODE: u64 = 8;
 
-/// Nodes between two probes. A probe completes the most promising prefix by the pair table and evaluates
-/// the order at once: best-first search alone reaches whole orders late, and a stopped search should have
-/// a good one. An order costs as much as a few prefixes.
+/// Nodes between two probes. A probe completes the most promising prefix by the pair table and
+/// evaluates the order at once: best-first search alone reaches whole orders late, and a stopped
+/// search should have a good one. An order costs as much as a few prefixes.
 const PROBE_NODES: u64 = 24;
 
 /// Number of explored nodes at which a search over few targets computes the triple bounds.
@@ -242,7 +243,8 @@ impl OrderSearch<'_> {
         }
     }
 
-    /// The end with the signal's reason. Where a model stops without the signal, the reason is a request.
+    /// The end with the signal's reason. Where a model stops without the signal, the reason is a
+    /// request.
     fn stopped(&self) -> SearchEnd {
         SearchEnd::Stopped(self.stop.reason().unwrap_or(StopReason::Requested))
     }

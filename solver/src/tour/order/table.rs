@@ -3,11 +3,11 @@
 use super::{Place, TourModel};
 use crate::model::order_rules::OrderRules;
 
-/// Lower bounds of all legs, s, between places that are numbered: targets `0..n`, then the start, then
-/// the end.
+/// Lower bounds of all legs, s, between places that are numbered: targets `0..n`, then the start,
+/// then the end.
 ///
-/// Without a prescribed end, the table has an end that every place reaches in zero time, so that both
-/// cases are treated alike.
+/// Without a prescribed end, the table has an end that every place reaches in zero time, so that
+/// both cases are treated alike.
 #[derive(Debug, Clone)]
 pub struct PairTable {
     targets: usize,

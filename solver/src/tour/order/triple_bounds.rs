@@ -1,52 +1,54 @@
-//! Triple bounds: lower bounds on tours from triples and fives of places in a row, whose legs take longer
-//! together than the sum of their pair bounds.
+//! Triple bounds: lower bounds on tours from triples and fives of places in a row, whose legs take
+//! longer together than the sum of their pair bounds.
 //!
 //! # Triples bound tours
 //!
-//! Let `t_0 .. t_n` be the durations of the legs of a tour, `t_0` out of the start and `t_n` into the
-//! end, and let target `j` lie between the legs `a` and `b`. With pair bounds `d` and the model's bound
-//! of the path `(pred j, j, succ j)`, `t_a + t_b >= d_a + d_b + X_j` with the *coupling gap* `X_j >= 0`,
-//! which is 0 when the triple is unknown. In the sum over all targets every leg counts twice except the
-//! first and the last one. Adding these and halving gives
+//! Let `t_0 .. t_n` be the durations of the legs of a tour, `t_0` out of the start and `t_n` into
+//! the end, and let target `j` lie between the legs `a` and `b`. With pair bounds `d` and the
+//! model's bound of the path `(pred j, j, succ j)`, `t_a + t_b >= d_a + d_b + X_j` with the
+//! *coupling gap* `X_j >= 0`, which is 0 when the triple is unknown. In the sum over all targets
+//! every leg counts twice except the first and the last one. Adding these and halving gives
 //!
 //! `T = 1/2 (t_0 + sum over j of (t_a + t_b) + t_n) >= sum of d over the legs + 1/2 sum over j of X_j`.
 //!
 //! # Fives are tighter
 //!
-//! If each target delays its own two legs by `X_j`, this bound loses half of the delay. Let target `j`
-//! have the two places `h, i` before it and `k, l` after it, and let `Z_j >= 0` be the excess of the
-//! model's bound of the path `(h, i, j, k, l)` over `X_i + X_k` and the four pair bounds; it is 0 when it
-//! is unknown or when `i` or `k` is no target. Then
+//! If each target delays its own two legs by `X_j`, this bound loses half of the delay. Let target
+//! `j` have the two places `h, i` before it and `k, l` after it, and let `Z_j >= 0` be the excess
+//! of the model's bound of the path `(h, i, j, k, l)` over `X_i + X_k` and the four pair bounds; it
+//! is 0 when it is unknown or when `i` or `k` is no target. Then
 //!
 //! `T >= sum of d over the legs + 1/2 sum over j of X_j + 1/4 sum over j of Z_j`.
 //!
-//! For in the sum above, a quarter of the two legs around `i` and a quarter of the two around `k` may be
-//! replaced by a quarter of the path, which has the same four legs and exceeds them by `Z_j`. Half of
-//! the legs around each target is available, and only its two neighbours use it, a quarter each.
+//! For in the sum above, a quarter of the two legs around `i` and a quarter of the two around `k`
+//! may be replaced by a quarter of the path, which has the same four legs and exceeds them by
+//! `Z_j`. Half of the legs around each target is available, and only its two neighbours use it, a
+//! quarter each.
 //!
-//! Both bounds hold for the part of a tour after a prefix, with the last place of the prefix in place of
-//! the start.
+//! Both bounds hold for the part of a tour after a prefix, with the last place of the prefix in
+//! place of the start.
 //!
 //! # The relaxation
 //!
-//! Entry offsets are subtracted and legs made undirected as in [`SpanningTrees`]: an edge `e` is the
-//! lesser of its two reduced legs. A tour costs at least its entry offsets, its edges and the cost of
-//! passing each of its targets: `1/2 (X_j + slacks of its two legs) + 1/4 Z_j`, in the direction in which
-//! this is less. The slack of a leg is its excess over its edge. (A leg between targets is passed at both
-//! of its ends, and half of its slack counts at each; a leg from the start or into the end is its own
-//! edge.)
+//! Entry offsets are subtracted and legs made undirected as in [`SpanningTrees`]: an edge `e` is
+//! the lesser of its two reduced legs. A tour costs at least its entry offsets, its edges and the
+//! cost of passing each of its targets: `1/2 (X_j + slacks of its two legs) + 1/4 Z_j`, in the
+//! direction in which this is less. The slack of a leg is its excess over its edge. (A leg between
+//! targets is passed at both of its ends, and half of its slack counts at each; a leg from the
+//! start or into the end is its own edge.)
 //!
-//! Now let an inner multiplier `r_j(i)`, of either sign, be subtracted from the edge between target `j` and
-//! place `i` and added to the cost of `j` if `i` is its neighbour: the cost of every tour is unchanged. To
-//! distinguish the places beyond a neighbour there are outer multipliers `s_i(h)`: subtracted from the
-//! edge from target `i` to place `h`, and added to the cost of the other neighbour of `i` if that is a
-//! target, else to that of `i` itself; to exactly one target in either case.
+//! Now let an inner multiplier `r_j(i)`, of either sign, be subtracted from the edge between target
+//! `j` and place `i` and added to the cost of `j` if `i` is its neighbour: the cost of every tour
+//! is unchanged. To distinguish the places beyond a neighbour there are outer multipliers `s_i(h)`:
+//! subtracted from the edge from target `i` to place `h`, and added to the cost of the other
+//! neighbour of `i` if that is a target, else to that of `i` itself; to exactly one target in
+//! either case.
 //!
-//! Then let every target choose its cheapest two neighbours and places beyond them independently, and
-//! let the edges, less the multipliers, be chosen as a minimum spanning tree with two outer edges. The
-//! tour is feasible for both choices, so the sum of their minima is a lower bound for any multipliers
-//! (Lagrangian decomposition, Guignard and Kim 1987). Multipliers `r_j(i) = -p_j` for all `i` are node
-//! potentials: the ascent begins there, at the bound of Held and Karp.
+//! Then let every target choose its cheapest two neighbours and places beyond them independently,
+//! and let the edges, less the multipliers, be chosen as a minimum spanning tree with two outer
+//! edges. The tour is feasible for both choices, so the sum of their minima is a lower bound for
+//! any multipliers (Lagrangian decomposition, Guignard and Kim 1987). Multipliers `r_j(i) = -p_j`
+//! for all `i` are node potentials: the ascent begins there, at the bound of Held and Karp.
 
 mod ascent;
 mod choice;
@@ -87,8 +89,8 @@ pub struct TripleBounds {
 }
 
 impl TripleBounds {
-    /// The bounds with initial multipliers and no triple known; `None` where no target couples its legs,
-    /// so that triples add nothing.
+    /// The bounds with initial multipliers and no triple known; `None` where no target couples its
+    /// legs, so that triples add nothing.
     #[must_use]
     pub fn new(model: &dyn TourModel, table: &PairTable, trees: &SpanningTrees) -> Option<Self> {
         let targets = table.targets();
@@ -151,8 +153,9 @@ impl TripleBounds {
         self.coupling_gaps.ask(&unknown, table, model, pool, stop);
     }
 
-    /// Known coupling gap of a target between two places, s. An estimate of an order's duration adds the
-    /// whole gap, where a bound adds half: the legs before and after a leg may delay it independently.
+    /// Known coupling gap of a target between two places, s. An estimate of an order's duration
+    /// adds the whole gap, where a bound adds half: the legs before and after a leg may delay it
+    /// independently.
     pub(super) fn coupling_gap(&self, from: usize, via: usize, to: usize) -> f64 {
         self.coupling_gaps.triple(from, via, to)
     }
@@ -174,7 +177,8 @@ impl TripleBounds {
         self.root_s = self.root_s.max(self.bound(self.legs.table().start(), &all));
     }
 
-    /// Sum over the targets of a part of their entry offsets and the costs of their cheapest choices, s.
+    /// Sum over the targets of a part of their entry offsets and the costs of their cheapest
+    /// choices, s.
     fn passing(&self, part: &Part<'_>) -> f64 {
         let cost = |&via: &usize| self.legs.entry_offset(via) + self.choice(part, via).cost;
         part.targets.iter().map(cost).sum()

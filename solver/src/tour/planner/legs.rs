@@ -1,7 +1,7 @@
 //! Solves legs between places, one by one and in tables.
 //!
-//! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a table,
-//! between the tables of one solve and, through the store, between solves.
+//! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a
+//! table, between the tables of one solve and, through the store, between solves.
 
 use super::canonical::CanonicalLeg;
 use super::from_store::{attitudes_of, leg_from_store, momenta_of};
@@ -30,8 +30,8 @@ pub(super) struct LegSolver<'a> {
     stop: &'a StopSignal,
     known: ByIdentity<Arc<SolvedLeg>>,
     certified: ByIdentity<CertifiedLeg>,
-    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report of
-    /// progress.
+    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report
+    /// of progress.
     reported: Mutex<(Option<f64>, Option<f64>)>,
     /// Number of legs solved.
     solved: AtomicU64,
@@ -77,8 +77,8 @@ impl<'a> LegSolver<'a> {
         self.report_progress(0, None);
     }
 
-    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all later
-    /// progress of the legs.
+    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all
+    /// later progress of the legs.
     pub(super) fn report_bounds(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
         {
             let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
@@ -120,8 +120,8 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
-    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal are
-    /// missing from the table.
+    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal
+    /// are missing from the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
         self.fill(kind, pairs, |done, total| {
             self.report_progress(done, Some(total));
@@ -220,8 +220,8 @@ impl<'a> LegSolver<'a> {
         })
     }
 
-    /// Whether the solve is cancelled or out of time, so that not even stored legs are of use. After a
-    /// request for the best plan so far they still are.
+    /// Whether the solve is cancelled or out of time, so that not even stored legs are of use.
+    /// After a request for the best plan so far they still are.
     fn is_abandoned(&self) -> bool {
         let reason = self.stop.reason();
         reason.is_some_and(|reason| reason != StopReason::Requested)
@@ -265,7 +265,8 @@ impl<'a> LegSolver<'a> {
         Some(stored)
     }
 
-    /// Drops the certified bound of a leg whose duration is below it, and reports the contradiction.
+    /// Drops the certified bound of a leg whose duration is below it, and reports the
+    /// contradiction.
     fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
         let Some((bound_s, flown_s)) = solved.certified.zip(solved.flown.duration()) else {
             return;

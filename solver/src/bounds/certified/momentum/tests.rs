@@ -12,8 +12,8 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 /// Tolerance for rounding of a box, relative.
 const ROUNDING: f64 = 1e-12;
 
-/// Rate, its derivative and the momentum of a random state and torques within the limits, all in body
-/// axes; `None` if the rate exceeds its limits. Speeds and torques are mostly at their limits.
+/// Rate, its derivative and the momentum of a random state and torques within the limits, all in
+/// body axes; `None` if the rate exceeds its limits. Speeds and torques are mostly at their limits.
 fn motion(dynamics: &Dynamics, random: &mut SplitMix) -> Option<[Vector3<f64>; 3]> {
     let extreme = |random: &mut SplitMix, low: f64, high: f64| match random.below(3) {
         0 => low,

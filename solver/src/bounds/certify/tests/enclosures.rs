@@ -20,7 +20,8 @@ struct Exact {
 }
 
 impl Exact {
-    /// Two-sum: the rounding error of a sum is a double (Knuth, The Art of Computer Programming 2, 4.2.2).
+    /// Two-sum: the rounding error of a sum is a double (Knuth, The Art of Computer Programming 2,
+    /// 4.2.2).
     fn sum(a: f64, b: f64) -> Self {
         let nearest = a + b;
         let of_b = nearest - a;

@@ -1,4 +1,5 @@
-//! Arc sequences: their interiors are products of arcs, and the terminal arcs that close them are found.
+//! Arc sequences: their interiors are products of arcs, and the terminal arcs that close them are
+//! found.
 
 use super::super::interval::Interval;
 use super::super::rates::{Octant, Rates, flipped};

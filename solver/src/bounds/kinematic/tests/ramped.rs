@@ -98,8 +98,8 @@ fn share_of(limits: &SlewLimits, generator: &mut Generator) -> Vector3<f64> {
         .component_mul(&Vector3::from(generator.vector(-1.0, 1.0)))
 }
 
-/// Duration, end rates and final attitude of a random ramped motion: rates change linearly between values
-/// within the limits, slowly enough for the limits of the accelerations.
+/// Duration, end rates and final attitude of a random ramped motion: rates change linearly between
+/// values within the limits, slowly enough for the limits of the accelerations.
 fn ramped_motion(generator: &mut Generator, limits: &SlewLimits) -> (f64, EndRates, Attitude) {
     let mut rate = share_of(limits, generator);
     if generator.below(3) == 0 {

@@ -9,8 +9,8 @@ pub(in crate::tour::order) struct Edge {
     pub(in crate::tour::order) weight: f64,
 }
 
-/// The edges of a minimum spanning tree of a complete graph. The tree begins with position 0; every edge
-/// comes after the one that joins its first end to the tree.
+/// The edges of a minimum spanning tree of a complete graph. The tree begins with position 0; every
+/// edge comes after the one that joins its first end to the tree.
 pub(in crate::tour::order) fn least_tree(
     count: usize,
     weight: impl Fn(usize, usize) -> f64,

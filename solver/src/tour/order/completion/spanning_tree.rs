@@ -3,14 +3,15 @@
 //! A path from `l` through the set `R` to the end is an edge out of `l`, a path through `R` and an
 //! edge into the end. Three steps lead to a bound on its length:
 //!
-//! 1. *Entry offsets.* Every target of `R` is entered exactly once, so an offset `v_j` may be subtracted
-//!    from every leg into `j` and added to the bound once. The offsets make the reduced legs as nearly
-//!    symmetric as possible; a dwell at `j`, which is part of every leg into `j`, drops out entirely.
-//! 2. *Trees.* Legs are made undirected: an edge of `R` weighs the lesser of its two reduced legs. The
-//!    path through `R` is a spanning tree of `R`, and the minimum spanning tree is no heavier.
-//! 3. *Potentials.* Every target of `R` lies on exactly two legs, so a potential `p_j` may be added to
-//!    every leg at `j` and `2 p_j` subtracted from the bound. Any potentials are valid; good ones, found
-//!    once for all targets by subgradient ascent, bring the tree near to a path.
+//! 1. *Entry offsets.* Every target of `R` is entered exactly once, so an offset `v_j` may be
+//!    subtracted from every leg into `j` and added to the bound once. The offsets make the reduced
+//!    legs as nearly symmetric as possible; a dwell at `j`, which is part of every leg into `j`,
+//!    drops out entirely.
+//! 2. *Trees.* Legs are made undirected: an edge of `R` weighs the lesser of its two reduced legs.
+//!    The path through `R` is a spanning tree of `R`, and the minimum spanning tree is no heavier.
+//! 3. *Potentials.* Every target of `R` lies on exactly two legs, so a potential `p_j` may be added
+//!    to every leg at `j` and `2 p_j` subtracted from the bound. Any potentials are valid; good
+//!    ones, found once for all targets by subgradient ascent, bring the tree near to a path.
 
 use super::least_tree::{cheapest, least_tree};
 use crate::tour::order::PairTable;

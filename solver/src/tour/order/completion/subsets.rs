@@ -15,8 +15,8 @@ const SETS_PER_POLL: usize = 1 << 12;
 #[derive(Debug)]
 pub struct SubsetTable {
     targets: usize,
-    /// Entry `from * 2^targets + set`, sets as bit masks; unused where the set holds `from`. With this
-    /// layout the table is filled sequentially in memory.
+    /// Entry `from * 2^targets + set`, sets as bit masks; unused where the set holds `from`. With
+    /// this layout the table is filled sequentially in memory.
     rest: Vec<f64>,
     admitted: Admitted,
 }
@@ -43,7 +43,8 @@ impl Admitted {
         }
     }
 
-    /// The targets of a set that may come next when exactly the targets outside it have been visited.
+    /// The targets of a set that may come next when exactly the targets outside it have been
+    /// visited.
     pub(in crate::tour::order) fn next(&self, set: usize) -> usize {
         let place = self.at.len() - set.count_ones() as usize;
         let here = self.at.get(place).map_or(0, |targets| targets & set);
@@ -58,8 +59,8 @@ impl SubsetTable {
     pub fn new(costs: &impl LegCosts, rules: &OrderRules, stop: &StopSignal) -> Option<Self> {
         let targets = costs.targets();
         let admitted = Admitted::of(rules, targets);
-        // In parts, so that the stop signal is polled: allocating a large table takes as long as filling
-        // it.
+        // In parts, so that the stop signal is polled: allocating a large table takes as long as
+        // filling it.
         let mut rest = Vec::with_capacity(targets << targets);
         for _ in 0..targets {
             if stop.is_set() {
@@ -126,16 +127,16 @@ impl SubsetTable {
         }
     }
 
-    /// Length of the shortest path through the remaining targets, of which there is at least one, and to
-    /// the end, s, when the leg into the first of them has the cost `first`.
+    /// Length of the shortest path through the remaining targets, of which there is at least one,
+    /// and to the end, s, when the leg into the first of them has the cost `first`.
     #[must_use]
     pub fn entered(&self, remaining: &[usize], first: impl Fn(usize) -> f64) -> Option<f64> {
         let set = mask(remaining.iter().copied());
         self.next(set, first).map(|(_, rest)| rest)
     }
 
-    /// The order of the remaining targets, of which there is at least one, on a shortest path from a
-    /// place.
+    /// The order of the remaining targets, of which there is at least one, on a shortest path from
+    /// a place.
     #[must_use]
     pub fn shortest_order(
         &self,
@@ -164,8 +165,8 @@ fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; MAX_EXACT_TARGETS]
     row
 }
 
-/// The least sum of two entries at the same position. Four lanes at a time halve the time for the whole
-/// table.
+/// The least sum of two entries at the same position. Four lanes at a time halve the time for the
+/// whole table.
 pub(in crate::tour::order) fn least_sum(
     a: &[f64; MAX_EXACT_TARGETS],
     b: &[f64; MAX_EXACT_TARGETS],

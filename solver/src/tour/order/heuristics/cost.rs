@@ -57,8 +57,8 @@ impl OrderCost for PairTable {
     }
 }
 
-/// Cost of the path from a place through some targets and to the end, s. A coupling at the first place is
-/// not part of it.
+/// Cost of the path from a place through some targets and to the end, s. A coupling at the first
+/// place is not part of it.
 pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f64 {
     let mut sum = 0.0;
     let mut before = None;
@@ -75,9 +75,9 @@ pub(super) fn length<C: OrderCost>(cost: &C, from: usize, order: &[usize]) -> f6
 /// The reduced legs among some targets, from the place before them and to the end: made as nearly
 /// symmetric as possible by entry offsets.
 ///
-/// Every target is entered exactly once, so an offset subtracted from all legs into it changes the cost
-/// of all orders by the same amount. The offsets are those of the spanning tree relaxation: the dwell at
-/// a target, which is part of every leg into it, drops out entirely.
+/// Every target is entered exactly once, so an offset subtracted from all legs into it changes the
+/// cost of all orders by the same amount. The offsets are those of the spanning tree relaxation:
+/// the dwell at a target, which is part of every leg into it, drops out entirely.
 #[derive(Debug)]
 pub(super) struct ReducedLegs {
     places: usize,

@@ -1,14 +1,15 @@
 //! Iterated local search (Lourenço, Martin and Stützle 2003): small random changes, each followed
 //! by local search, from one good order to the next.
 //!
-//! A *kick* is a double bridge of three short segments. No move of the local search undoes it, and only
-//! the places at its joints are searched again, so that a kick takes tens of microseconds at 200
-//! targets. An order slightly worse than the best is accepted, with a tolerance that falls to zero
-//! towards the end of a run.
+//! A *kick* is a double bridge of three short segments. No move of the local search undoes it, and
+//! only the places at its joints are searched again, so that a kick takes tens of microseconds at
+//! 200 targets. An order slightly worse than the best is accepted, with a tolerance that falls to
+//! zero towards the end of a run.
 //!
-//! Accuracy on ten tables of attitudes distributed over the sphere, as excess over the spanning tree bound
-//! (mean and maximum) after 100 kicks per target: 0.24 and 0.63 % at 50 targets, 0.20 and 0.38 % at 100,
-//! 0.31 and 0.53 % at 200 (0.4 s on one core). Local search alone ends 2.1 to 2.5 % above the bound.
+//! Accuracy on ten tables of attitudes distributed over the sphere, as excess over the spanning
+//! tree bound (mean and maximum) after 100 kicks per target: 0.24 and 0.63 % at 50 targets, 0.20
+//! and 0.38 % at 100, 0.31 and 0.53 % at 200 (0.4 s on one core). Local search alone ends 2.1 to
+//! 2.5 % above the bound.
 
 use super::cost::OrderCost;
 use super::local_search::{LocalSearch, OrderTask};
@@ -20,9 +21,9 @@ use std::ops::RangeInclusive;
 
 /// Longest segment of a kick.
 const MAX_SEGMENT: usize = 30;
-/// Tolerance at the first kick, relative to a mean leg: an order is accepted if it is longer than the
-/// best by at most the tolerance, which falls linearly to zero (threshold accepting, Dueck and Scheuer
-/// 1990).
+/// Tolerance at the first kick, relative to a mean leg: an order is accepted if it is longer than
+/// the best by at most the tolerance, which falls linearly to zero (threshold accepting, Dueck and
+/// Scheuer 1990).
 const TOLERANCE: f64 = 1.0;
 
 /// A running search.
@@ -39,7 +40,8 @@ pub(in crate::tour::order) struct IteratedSearch<'a, C> {
 }
 
 impl<'a, C: OrderCost> IteratedSearch<'a, C> {
-    /// A search that begins at an order that the rules allow and lists so many orders besides the best.
+    /// A search that begins at an order that the rules allow and lists so many orders besides the
+    /// best.
     pub(in crate::tour::order) fn new(
         task: &OrderTask<'a, C>,
         order: &[usize],
@@ -58,8 +60,8 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         begun
     }
 
-    /// Descends to a local minimum, then kicks so many times or until stopped; returns the number of kicks
-    /// made. One long run finds better orders than several short ones.
+    /// Descends to a local minimum, then kicks so many times or until stopped; returns the number
+    /// of kicks made. One long run finds better orders than several short ones.
     pub(in crate::tour::order) fn run(&mut self, kicks: usize, stop: &StopSignal) -> usize {
         let change = self.search.descend(stop, |_| ());
         self.kept_s = self.offer(self.kept_s + change);

@@ -1,11 +1,11 @@
 //! 2-opt, Or-opt and exchanges of segments (Croes 1958, Or 1976, Kanellakis and Papadimitriou 1980)
 //! with lists of neighbours and don't-look bits (Bentley 1992).
 //!
-//! A move removes some joints between places and adds as many others. If it shortens the order, then some
-//! place gains a joint that costs less than the one it loses. So every improving move is found from one of
-//! its places although only the neighbours nearer than the removed joint are tried. A place without an
-//! improving move is not searched again until one of its joints changes: until then it is not in the
-//! queue `waiting`.
+//! A move removes some joints between places and adds as many others. If it shortens the order,
+//! then some place gains a joint that costs less than the one it loses. So every improving move is
+//! found from one of its places although only the neighbours nearer than the removed joint are
+//! tried. A place without an improving move is not searched again until one of its joints changes:
+//! until then it is not in the queue `waiting`.
 
 use super::cost::OrderCost;
 use super::neighbours::Neighbours;
@@ -13,7 +13,8 @@ use super::path::{Move, OrderPath};
 use crate::run::stop::StopSignal;
 use std::collections::VecDeque;
 
-/// Smallest gain of a move, relative to the length of the order; it excludes cycles due to rounding.
+/// Smallest gain of a move, relative to the length of the order; it excludes cycles due to
+/// rounding.
 const MIN_GAIN: f64 = 1e-9;
 /// Longest segment that Or-opt moves; three is the value of Or (1976).
 const MAX_SEGMENT: usize = 3;
@@ -61,8 +62,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// Makes improving moves until there is none or the search is stopped. Calls `moved` for each and
-    /// returns the sum of their changes of the cost, s.
+    /// Makes improving moves until there is none or the search is stopped. Calls `moved` for each
+    /// and returns the sum of their changes of the cost, s.
     pub(super) fn descend(&mut self, stop: &StopSignal, mut moved: impl FnMut(Move)) -> f64 {
         let mut sum = 0.0;
         while let Some(place) = self.waiting.pop_front() {
@@ -79,8 +80,9 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         sum
     }
 
-    /// Replaces three adjacent segments `a b c` of these lengths, the first of which begins at a position,
-    /// by `c b a`. Returns the change of the cost, s; `None`, with nothing changed, if the rules refuse it.
+    /// Replaces three adjacent segments `a b c` of these lengths, the first of which begins at a
+    /// position, by `c b a`. Returns the change of the cost, s; `None`, with nothing changed, if
+    /// the rules refuse it.
     ///
     /// Four joints change: the double bridge (Martin, Otto and Felten 1991).
     pub(super) fn bridge(&mut self, first: usize, lengths: [usize; 3]) -> Option<f64> {
@@ -94,8 +96,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         None
     }
 
-    /// Exchanges two adjacent segments of these lengths, the first of which begins at a position, and
-    /// returns the change of the cost, s.
+    /// Exchanges two adjacent segments of these lengths, the first of which begins at a position,
+    /// and returns the change of the cost, s.
     fn swap(&mut self, first: usize, length: usize, other: usize) -> f64 {
         let step = Move::Exchange {
             first,
@@ -156,8 +158,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// 2-opt: replaces the joint after or before a place by one to a near place, and reverses the places
-    /// between.
+    /// 2-opt: replaces the joint after or before a place by one to a near place, and reverses the
+    /// places between.
     fn reversals(&mut self, place: usize, choice: &mut BestMove) {
         let here = self.path.position(place);
         let end = self.path.places().len() - 1;
@@ -224,7 +226,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
             if (first..=last).contains(&there) {
                 continue;
             }
-            // Into the gap before or after the near place, so that the two places become neighbours.
+            // Into the gap before or after the near place, so that the two places become
+            // neighbours.
             for before in [true, false] {
                 if there == if before { 0 } else { end } {
                     continue;

@@ -49,7 +49,8 @@ pub(super) struct OrderPath<'a, C> {
     directed: bool,
     /// For each position the excess cost of all legs up to it in reverse, s; empty unless directed.
     leg_skews: Vec<f64>,
-    /// For each position the excess cost of all couplings up to it in reverse, s; empty unless directed.
+    /// For each position the excess cost of all couplings up to it in reverse, s; empty unless
+    /// directed.
     coupling_skews: Vec<f64>,
 }
 
@@ -170,8 +171,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Cost of the joints when these segments replace the places at a range of positions, s. The legs and
-    /// couplings inside the segments are not part of it.
+    /// Cost of the joints when these segments replace the places at a range of positions, s. The
+    /// legs and couplings inside the segments are not part of it.
     fn joint_costs<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> f64 {
         let mut walk = Walk {
             before: self.place(range.0.wrapping_sub(2)),
@@ -259,8 +260,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Sums the skews from a position on. Legs and couplings at the outer places are never reversed and
-    /// have none.
+    /// Sums the skews from a position on. Legs and couplings at the outer places are never reversed
+    /// and have none.
     fn sum_skews(&mut self, first: usize) {
         let last_target = self.places.len() - 2;
         for position in first.max(2) - 1..=last_target {

@@ -1,5 +1,5 @@
-//! The orders of smallest Lagrangian bound: dynamic programming over subsets, with the last three places
-//! in the state.
+//! The orders of smallest Lagrangian bound: dynamic programming over subsets, with the last three
+//! places in the state.
 
 use super::LagrangianLegs;
 use crate::model::order_rules::OrderRules;
@@ -8,15 +8,15 @@ use crate::run::stop::StopSignal;
 use crate::tour::order::completion::MAX_EXACT_TARGETS;
 use crate::tour::order::completion::subsets::{Admitted, least_sum, mask, members};
 
-/// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum of
-/// all Lagrangian legs from `i` on, when `h, i, j` were visited last and the targets `R` remain. The
-/// table holds for the costates with which it was filled.
+/// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum
+/// of all Lagrangian legs from `i` on, when `h, i, j` were visited last and the targets `R` remain.
+/// The table holds for the costates with which it was filled.
 #[derive(Debug)]
 pub struct LagrangianPaths {
     legs: LagrangianLegs,
     admitted: Admitted,
-    /// For every nonempty set `R`, an entry for every triple `h, i, j` of targets outside it, rounded
-    /// down to single precision so that every entry is a lower bound.
+    /// For every nonempty set `R`, an entry for every triple `h, i, j` of targets outside it,
+    /// rounded down to single precision so that every entry is a lower bound.
     rest: Vec<Box<[f32]>>,
     root_s: f64,
 }
@@ -43,8 +43,8 @@ impl LagrangianPaths {
         }
     }
 
-    /// Fills the table: some `n^4 2^n / 16` steps. Returns `false` when the solve is stopped meanwhile;
-    /// the table must not be used then.
+    /// Fills the table: some `n^4 2^n / 16` steps. Returns `false` when the solve is stopped
+    /// meanwhile; the table must not be used then.
     #[must_use]
     pub fn fill(&mut self, legs: &LagrangianLegs, pool: &SolverPool, stop: &StopSignal) -> bool {
         self.legs.clone_from(legs);
@@ -70,8 +70,8 @@ impl LagrangianPaths {
         self.root_s
     }
 
-    /// Lower bound, s, of the path from a place, left in any state, through the remaining targets and to
-    /// the end.
+    /// Lower bound, s, of the path from a place, left in any state, through the remaining targets
+    /// and to the end.
     #[must_use]
     pub fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
         self.entered(from, mask(remaining.iter().copied()))
@@ -83,8 +83,8 @@ impl LagrangianPaths {
         self.beginning(prefix, mask(remaining.iter().copied()))
     }
 
-    /// For each first target the order of smallest bound, best first. In a symmetric model only one of an
-    /// order and its reverse is listed.
+    /// For each first target the order of smallest bound, best first. In a symmetric model only one
+    /// of an order and its reverse is listed.
     #[must_use]
     pub fn orders(&self, count: usize) -> Vec<Vec<usize>> {
         let all = (1 << self.legs.table.targets()) - 1;
@@ -161,7 +161,8 @@ impl LagrangianPaths {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The least sum of the legs from a place, left in any state, to a target and through some others.
+    /// The least sum of the legs from a place, left in any state, to a target and through some
+    /// others.
     fn second(&self, from: usize, first: usize, left: usize) -> f64 {
         let no_neighbour = self.legs.no_neighbour();
         members(self.admitted.next(left))

@@ -1,9 +1,9 @@
-//! Bounds for legs that couple, from several places in a row, and orders that are short in what is known
-//! of the couplings.
+//! Bounds for legs that couple, from several places in a row, and orders that are short in what is
+//! known of the couplings.
 //!
-//! A search over few targets begins with pair bounds alone, since most of them end before tighter bounds
-//! would save work. A search over many targets computes the triple bounds first: they are the bound that
-//! it reports, and they guide the choice of orders to evaluate.
+//! A search over few targets begins with pair bounds alone, since most of them end before tighter
+//! bounds would save work. A search over many targets computes the triple bounds first: they are
+//! the bound that it reports, and they guide the choice of orders to evaluate.
 
 use super::OrderSearch;
 use crate::model::order_rules::OrderRules;
@@ -17,7 +17,8 @@ use crate::tour::order::{PairTable, SearchEnd, TourModel};
 
 /// Largest number of steps of an ascent.
 const MAX_STEPS: usize = 400;
-/// Triples solved per target in a search over few targets. With [`FIVES_OF_FEW`] some seconds of work.
+/// Triples solved per target in a search over few targets. With [`FIVES_OF_FEW`] some seconds of
+/// work.
 const TRIPLES_OF_FEW: usize = 30;
 /// Paths of five places solved per target in a search over few targets.
 const FIVES_OF_FEW: usize = 20;
@@ -45,7 +46,8 @@ pub(super) enum CoupledBounds {
 }
 
 impl CoupledBounds {
-    /// The triple bounds of a few targets after one ascent; `None` where no target couples its legs.
+    /// The triple bounds of a few targets after one ascent; `None` where no target couples its
+    /// legs.
     pub(super) fn of_few(
         model: &dyn TourModel,
         table: &PairTable,
@@ -87,7 +89,8 @@ impl CoupledBounds {
 }
 
 impl OrderSearch<'_> {
-    /// For many targets, raises the triple bounds and improves orders in turn, before the root is opened.
+    /// For many targets, raises the triple bounds and improves orders in turn, before the root is
+    /// opened.
     pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
         if self.tree.table().targets() <= MAX_EXACT_TARGETS {
             return None;

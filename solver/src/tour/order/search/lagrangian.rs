@@ -14,8 +14,8 @@ const MAX_STALE_ROUNDS: usize = 4;
 const MIN_RELATIVE_GAIN: f64 = 2e-4;
 
 impl OrderSearch<'_> {
-    /// Raises the Lagrangian bounds and evaluates the orders of smallest Lagrangian bound. The bounds are
-    /// not used when the search is stopped meanwhile or the model has no costates.
+    /// Raises the Lagrangian bounds and evaluates the orders of smallest Lagrangian bound. The
+    /// bounds are not used when the search is stopped meanwhile or the model has no costates.
     pub(super) fn raise_lagrangian_bound(&mut self) {
         let targets = self.tree.table().targets();
         let couple = (0..targets).any(|via| self.model.couples(via));

@@ -5,7 +5,8 @@ use crate::run::progress::{Progress, Stage};
 use crate::tour::order::incumbents::tie_class;
 use crate::tour::order::{Incumbent, SearchEnd, SearchObserver, SearchResult};
 
-/// Reports incumbents and bounds; a reported incumbent never rises, and a reported bound never falls.
+/// Reports incumbents and bounds; a reported incumbent never rises, and a reported bound never
+/// falls.
 pub(super) struct SearchReporter<'a> {
     observer: &'a dyn SearchObserver,
     incumbent_s: Option<f64>,
@@ -30,7 +31,8 @@ impl<'a> SearchReporter<'a> {
         self.announced_s = self.announced_s.min(duration_s);
     }
 
-    /// Announces the best order if it is better than the one announced before and the search goes on.
+    /// Announces the best order if it is better than the one announced before and the search goes
+    /// on.
     pub(super) fn announce(&mut self, tree: &SearchTree) {
         let Some((best, alternatives)) = tree.orders().split_first() else {
             return;
@@ -62,8 +64,8 @@ impl<'a> SearchReporter<'a> {
 
     /// Takes incumbent and bound from the tree.
     fn update(&mut self, tree: &SearchTree) {
-        // Among ties the tree's best is the lexicographically first order, which may be longer than the
-        // one reported before by rounding.
+        // Among ties the tree's best is the lexicographically first order, which may be longer than
+        // the one reported before by rounding.
         self.incumbent_s = match (self.incumbent_s, tree.best_s()) {
             (Some(reported), Some(now)) => Some(reported.min(now)),
             (reported, now) => reported.or(now),

@@ -36,7 +36,8 @@ pub(super) struct SearchTree {
     incumbents: Incumbents,
     /// Evaluated orders with their duration, s; `None` for those that did not resolve.
     tried: BTreeMap<Vec<usize>, Option<f64>>,
-    /// Smallest bound of the nodes that were ruled out, s: they cannot be among the best, up to the gap.
+    /// Smallest bound of the nodes that were ruled out, s: they cannot be among the best, up to the
+    /// gap.
     ruled_out_s: f64,
     /// Smallest bound of the unresolved leaves and dropped nodes, s.
     lost_s: f64,
@@ -124,7 +125,8 @@ impl SearchTree {
         }
     }
 
-    /// Orders that are short by some costs, best first; the search begins at the best evaluated order.
+    /// Orders that are short by some costs, best first; the search begins at the best evaluated
+    /// order.
     pub(super) fn short_orders(
         &self,
         costs: &TripleBounds,
@@ -149,8 +151,8 @@ impl SearchTree {
         couplings.map_or(pairs, |known| pairs.max(known.bound(from, remaining)))
     }
 
-    /// Raises the bounds of a node by a bound of the time until the last fixed target is left, s, and by
-    /// the current bounds on the rest and on all orders with the node's prefix.
+    /// Raises the bounds of a node by a bound of the time until the last fixed target is left, s,
+    /// and by the current bounds on the rest and on all orders with the node's prefix.
     fn raise(&self, node: &mut SearchNode, head: f64, remaining: &[usize]) {
         node.raise_head(
             head,
@@ -201,7 +203,8 @@ impl SearchTree {
         round
     }
 
-    /// The completion of an open node that is shortest in the table, unless it was evaluated already.
+    /// The completion of an open node that is shortest in the table, unless it was evaluated
+    /// already.
     pub(super) fn probe(&self, node: &SearchNode, stop: &StopSignal) -> Option<Vec<usize>> {
         if self.is_leaf(node) {
             return None;

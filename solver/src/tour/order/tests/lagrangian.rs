@@ -9,13 +9,14 @@ use crate::tour::order::{
 };
 
 /// Every leg has a preferred state at its begin and one at its end, in `[-1, 1]`, and costs time in
-/// proportion to the deviations from them. The model is convex, so a single tour has no duality gap.
+/// proportion to the deviations from them. The model is convex, so a single tour has no duality
+/// gap.
 struct MeetingModel {
     targets: usize,
     has_end: bool,
     symmetric: bool,
-    /// For every leg: its duration in the preferred states, s, and the preferred states at its end and
-    /// its begin.
+    /// For every leg: its duration in the preferred states, s, and the preferred states at its end
+    /// and its begin.
     legs: Vec<[f64; 3]>,
     /// Time per unit of deviation from a preferred state, s.
     stiffness: f64,
@@ -75,8 +76,8 @@ impl MeetingModel {
         path
     }
 
-    /// Duration along a path: the legs and the deviations at their meetings. Any state between the two
-    /// preferred ones has the same cost.
+    /// Duration along a path: the legs and the deviations at their meetings. Any state between the
+    /// two preferred ones has the same cost.
     fn along(&self, path: &[usize]) -> f64 {
         let legs = path.windows(2).map(|leg| self.leg(leg[0], leg[1])[0]);
         let meetings = path.windows(3).map(|p| {
@@ -137,7 +138,8 @@ impl TourModel for MeetingModel {
         Some(path.windows(3).map(costate).collect())
     }
 
-    /// The minimum over the states at both ends; it is at a preferred state or at an end of the range.
+    /// The minimum over the states at both ends; it is at a preferred state or at an end of the
+    /// range.
     fn lagrangian_leg(&self, leg: [Place; 2], costates: [Option<&[f64]>; 2]) -> Evaluation {
         let [time, end, begin] = self.leg(self.number(leg[0]), self.number(leg[1]));
         let [left, reached] = costates.map(|costate| costate.map_or(0.0, |costate| costate[0]));
@@ -178,8 +180,8 @@ fn models(targets: usize, seed: u64) -> [MeetingModel; 3] {
     ]
 }
 
-/// For any costates, no bound exceeds the duration it bounds, and the first order listed is the one of
-/// smallest bound.
+/// For any costates, no bound exceeds the duration it bounds, and the first order listed is the one
+/// of smallest bound.
 #[test]
 fn lagrangian_bounds_are_admissible_for_any_costates() {
     let (pool, stop) = (pool(2), StopSignal::new());

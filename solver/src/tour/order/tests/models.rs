@@ -83,7 +83,8 @@ impl RandomModel {
         model
     }
 
-    /// Orders whose costs differ by millionths to thousandths, with bounds that contain all penalties.
+    /// Orders whose costs differ by millionths to thousandths, with bounds that contain all
+    /// penalties.
     pub(in crate::tour::order) fn with_near_ties(targets: usize, has_end: bool, seed: u64) -> Self {
         let mut model = Self::new(targets, has_end, seed);
         let spread = [1e-6, 1e-5, 1e-4, 1e-3][(seed % 4) as usize];

@@ -20,7 +20,8 @@ fn any_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
     OrderRules::new(positions, after)
 }
 
-/// Random rules that at least one order satisfies: some of the positions and precedences that hold in it.
+/// Random rules that at least one order satisfies: some of the positions and precedences that hold
+/// in it.
 fn feasible_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
     let mut order: Vec<usize> = (0..targets).collect();
     for place in (1..targets).rev() {

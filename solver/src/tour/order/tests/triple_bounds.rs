@@ -44,8 +44,8 @@ fn prepared(model: &dyn TourModel) -> (PairTable, SpanningTrees, TripleBounds) {
     (table, trees, triple_bounds)
 }
 
-/// The sum of pair bounds and weighted penalties along a path that the triple bounds relax, s, when all
-/// gaps are known: a penalty counts half, or three quarters with two places on either side.
+/// The sum of pair bounds and weighted penalties along a path that the triple bounds relax, s, when
+/// all gaps are known: a penalty counts half, or three quarters with two places on either side.
 fn relaxed(model: &RandomModel, path: &[Place]) -> f64 {
     let pair = |leg: &[Place]| model.pair_bound(leg[0], leg[1]);
     let penalties = path
@@ -68,8 +68,8 @@ fn relaxed(model: &RandomModel, path: &[Place]) -> f64 {
     path.windows(2).map(pair).chain(penalties).sum()
 }
 
-/// Minimum of that sum over all paths that begin with these places and go through the remaining targets
-/// to the end, s.
+/// Minimum of that sum over all paths that begin with these places and go through the remaining
+/// targets to the end, s.
 fn cheapest(model: &RandomModel, begun: &[Place], remaining: &[usize]) -> f64 {
     if remaining.is_empty() {
         let end = model.has_end().then_some(Place::End);

@@ -1,5 +1,5 @@
-//! Subgradient ascent over the multipliers; between its steps the model is asked for the coupling gaps
-//! of the paths that are chosen most often.
+//! Subgradient ascent over the multipliers; between its steps the model is asked for the coupling
+//! gaps of the paths that are chosen most often.
 
 use super::TripleBounds;
 use super::choice::{NeighbourChoice, Part};
@@ -13,8 +13,8 @@ use crate::tour::order::completion::least_tree::{cheapest, least_tree};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-// With these constants the bound is within 0.2 % of its limit after 400 steps, or four steps per target
-// if that is more, on 50 to 200 points on a sphere, uniform and clustered.
+// With these constants the bound is within 0.2 % of its limit after 400 steps, or four steps per
+// target if that is more, on 50 to 200 points on a sphere, uniform and clustered.
 
 /// First step, relative to the mean leg.
 const FIRST_STEP: f64 = 0.03;
@@ -38,11 +38,11 @@ const BATCH_PER_TARGET: usize = 4;
 pub struct AscentEffort {
     /// Largest number of triples to ask for, each in both directions.
     pub triples: usize,
-    /// Largest number of paths of five places, and of triples in them, to ask for in the second ascent.
-    /// With 0 there is no second ascent, and the outer multipliers stay as they are.
+    /// Largest number of paths of five places, and of triples in them, to ask for in the second
+    /// ascent. With 0 there is no second ascent, and the outer multipliers stay as they are.
     pub fives: usize,
-    /// Largest number of steps of each of the two ascents: some 400, or four per target. With far fewer
-    /// the second ascent gains nothing, because the bound falls before it rises.
+    /// Largest number of steps of each of the two ascents: some 400, or four per target. With far
+    /// fewer the second ascent gains nothing, because the bound falls before it rises.
     pub steps: usize,
 }
 
@@ -106,8 +106,8 @@ struct RelaxedChoices {
 }
 
 impl TripleBounds {
-    /// Raises the bound within the limits of an effort or until the solve is stopped. The bound never
-    /// falls. A further call continues from the best multipliers.
+    /// Raises the bound within the limits of an effort or until the solve is stopped. The bound
+    /// never falls. A further call continues from the best multipliers.
     pub fn raise(
         &mut self,
         model: &dyn TourModel,
@@ -281,8 +281,8 @@ impl<'a> Ascent<'a> {
     }
 
     /// Takes a step along a subgradient of the bound: a multiplier rises where a target chooses a
-    /// neighbour that the tree does not, and falls in the opposite case. The subgradient in a potential
-    /// is two minus the degree of the target in the tree.
+    /// neighbour that the tree does not, and falls in the opposite case. The subgradient in a
+    /// potential is two minus the degree of the target in the tree.
     fn advance(&mut self, choices: &RelaxedChoices) {
         let targets = self.part.targets.len();
         self.heading.scale(MOMENTUM);

@@ -73,12 +73,13 @@ impl TripleBounds {
         }
     }
 
-    /// The cheapest neighbours of a target of a part, and places beyond them: the minimum of the sum of
-    /// their multipliers and of the cost of passing the target between them.
+    /// The cheapest neighbours of a target of a part, and places beyond them: the minimum of the
+    /// sum of their multipliers and of the cost of passing the target between them.
     ///
-    /// The minimum is exact although most pairs are not evaluated. Pairs are enumerated in the order of
-    /// a lower bound: their inner multipliers plus the least outer ones (the cost of passing is not
-    /// negative). Once this bound reaches the best cost, no later pair can be cheaper.
+    /// The minimum is exact although most pairs are not evaluated. Pairs are enumerated in the
+    /// order of a lower bound: their inner multipliers plus the least outer ones (the cost of
+    /// passing is not negative). Once this bound reaches the best cost, no later pair can be
+    /// cheaper.
     pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> NeighbourChoice {
         let mut best = NeighbourChoice {
             ends: [via; 2],
@@ -88,8 +89,8 @@ impl TripleBounds {
         let inner = |&place: &usize| part.admitted[place] && place != part.entry;
         let mut places = self.near.row(via).filter(inner);
         let cost = |place| self.near.cost(via, place);
-        // The entry is treated apart: nothing lies beyond it on the part, whether it is a target or not,
-        // so its rank does not apply.
+        // The entry is treated apart: nothing lies beyond it on the part, whether it is a target or
+        // not, so its rank does not apply.
         let entry = self.multipliers.near(via, part.entry) + self.far.least(via);
         for other in places.clone() {
             if entry + cost(other) >= best.cost {
@@ -115,7 +116,8 @@ impl TripleBounds {
         best
     }
 
-    /// Replaces a choice by one with these neighbours, if it is cheaper with the best places beyond them.
+    /// Replaces a choice by one with these neighbours, if it is cheaper with the best places beyond
+    /// them.
     fn choose_beyond(
         &self,
         part: &Part<'_>,
@@ -157,8 +159,8 @@ impl TripleBounds {
         }
     }
 
-    /// The outer multipliers that may apply on the side of one neighbour, cheapest first. Next to an end
-    /// of the part it is the target's own multiplier for its other neighbour.
+    /// The outer multipliers that may apply on the side of one neighbour, cheapest first. Next to
+    /// an end of the part it is the target's own multiplier for its other neighbour.
     fn beyond(
         &self,
         part: &Part<'_>,

@@ -1,5 +1,5 @@
-//! Coupling gaps: by how much the bound of a path exceeds the sum of the bounds of its parts, as far as
-//! the model has solved them.
+//! Coupling gaps: by how much the bound of a path exceeds the sum of the bounds of its parts, as
+//! far as the model has solved them.
 
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
@@ -28,8 +28,8 @@ pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
     couples: Vec<bool>,
-    /// Row `via * places + from`, allocated when its first entry is set: the gap for every `to`, s, or NaN
-    /// where it is unknown.
+    /// Row `via * places + from`, allocated when its first entry is set: the gap for every `to`, s,
+    /// or NaN where it is unknown.
     triples: Vec<Option<Box<[f64]>>>,
     /// Excess of five places over their four pair bounds, s.
     fives: HashMap<[usize; 5], f64>,
@@ -48,8 +48,8 @@ impl CouplingGaps {
         }
     }
 
-    /// Lower bound, s, of the time of two consecutive legs beyond their pair bounds; 0 where it is not
-    /// known.
+    /// Lower bound, s, of the time of two consecutive legs beyond their pair bounds; 0 where it is
+    /// not known.
     pub(super) fn triple(&self, from: usize, via: usize, to: usize) -> f64 {
         // An unknown gap is not a number, for which the maximum gives 0.
         self.known_triple(from, via, to).max(0.0)
@@ -78,8 +78,8 @@ impl CouplingGaps {
         self.couples[middle] && self.directions(path).into_iter().flatten().any(unknown)
     }
 
-    /// Asks the model for the gaps of paths. One worker asks for both directions of a path, since a model
-    /// may derive one from the other. Interrupted evaluations leave the gap unknown.
+    /// Asks the model for the gaps of paths. One worker asks for both directions of a path, since a
+    /// model may derive one from the other. Interrupted evaluations leave the gap unknown.
     pub(super) fn ask(
         &mut self,
         paths: &[ShortPath],
@@ -115,8 +115,8 @@ impl CouplingGaps {
         }
     }
 
-    /// The directions of a path that a tour can contain: not into the start, not out of the end, and into
-    /// the end only if one is prescribed.
+    /// The directions of a path that a tour can contain: not into the start, not out of the end,
+    /// and into the end only if one is prescribed.
     fn directions(&self, path: &ShortPath) -> [Option<Vec<usize>>; 2] {
         let (start, end) = (self.targets, self.targets + 1);
         let mut back = path.0.clone();

@@ -1,7 +1,7 @@
 //! Inner and outer multipliers of the decomposition.
 
-/// Inner and outer multipliers, s, or a direction in them: one row for each target, with a value for
-/// each place.
+/// Inner and outer multipliers, s, or a direction in them: one row for each target, with a value
+/// for each place.
 #[derive(Debug, Clone)]
 pub(super) struct Multipliers {
     places: usize,
@@ -43,8 +43,8 @@ impl Multipliers {
         self.outer[target * self.places + place]
     }
 
-    /// Sum of the target's two multipliers for a place, which is subtracted from the edge between them,
-    /// s.
+    /// Sum of the target's two multipliers for a place, which is subtracted from the edge between
+    /// them, s.
     pub(super) fn taken(&self, target: usize, place: usize) -> f64 {
         self.near(target, place) + self.outer(target, place)
     }

@@ -6,8 +6,8 @@ use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::{LegCosts, SubsetTable};
 
-/// The bound of [`TripleBounds`] with the edges chosen as a path: tighter than a tree, with a table of
-/// `n 2^n` entries. It holds for the multipliers with which the table was filled.
+/// The bound of [`TripleBounds`] with the edges chosen as a path: tighter than a tree, with a table
+/// of `n 2^n` entries. It holds for the multipliers with which the table was filled.
 #[derive(Debug)]
 pub struct TripleBoundSubsets {
     triple_bounds: TripleBounds,

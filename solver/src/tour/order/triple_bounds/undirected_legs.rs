@@ -3,16 +3,16 @@
 use super::coupling_gaps::CouplingGaps;
 use crate::tour::order::PairTable;
 
-/// Legs reduced by the entry offsets of [`crate::tour::order::completion::SpanningTrees`], as undirected
-/// edges with their slacks, s.
+/// Legs reduced by the entry offsets of [`crate::tour::order::completion::SpanningTrees`], as
+/// undirected edges with their slacks, s.
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug)]
 pub(super) struct UndirectedLegs {
     table: PairTable,
     entry_offsets: Vec<f64>,
-    /// The lesser of the two reduced legs between two places; from the start and to the end there is
-    /// only one leg.
+    /// The lesser of the two reduced legs between two places; from the start and to the end there
+    /// is only one leg.
     edges: Vec<f64>,
     /// By how much each reduced leg exceeds its edge.
     slack: Vec<f64>,
@@ -62,9 +62,10 @@ impl UndirectedLegs {
         self.edges[a * (self.entry_offsets.len() + 2) + b]
     }
 
-    /// Cost of passing a target between two places beyond the two edges, s: half the slacks of the legs
-    /// and half the coupling gap. The path comes from `entry`: a leg out of it is its own edge, and no
-    /// leg leads into it. The lesser of the possible directions, and infinite when none is possible.
+    /// Cost of passing a target between two places beyond the two edges, s: half the slacks of the
+    /// legs and half the coupling gap. The path comes from `entry`: a leg out of it is its own
+    /// edge, and no leg leads into it. The lesser of the possible directions, and infinite when
+    /// none is possible.
     pub(super) fn passing(
         &self,
         coupling_gaps: &CouplingGaps,
@@ -76,8 +77,8 @@ impl UndirectedLegs {
         forth.min(self.directed(coupling_gaps, entry, [b, via, a]))
     }
 
-    /// The same for a target with two places before and after it, plus a quarter of the coupling gap of
-    /// all five places.
+    /// The same for a target with two places before and after it, plus a quarter of the coupling
+    /// gap of all five places.
     pub(super) fn passing_five(
         &self,
         coupling_gaps: &CouplingGaps,

@@ -43,7 +43,7 @@ fn table(bencher: Bencher) {
 /// One query of the table: the branch and bound over extremals.
 #[divan::bench(sample_count = 171, sample_size = 1)]
 fn query(bencher: Bencher) {
-    let (table, turns) = (RateBox::new(rates()).expect("usual rates"), turns());
+    let (table, turns) = (RateBox::new(rates()).expect("ordinary rates"), turns());
     let mut next = turns.iter().cycle();
     bencher
         .with_inputs(|| next.next().copied())

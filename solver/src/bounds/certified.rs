@@ -112,7 +112,7 @@ impl CertifiedBounds {
         momentum: &Vector3<f64>,
     ) -> Option<f64> {
         let turn = from.attitude.turn_to(&to.attitude);
-        let ends = [most(from), most(to)];
+        let ends = [rate_limits(from), rate_limits(to)];
         if let Some(bounds) = &self.momentum {
             let held = [from, to].map(|end| end.attitude.to_body(*momentum));
             return bounds.leg(&turn, &held, &ends, TOLERANCE);
@@ -131,7 +131,7 @@ impl CertifiedBounds {
         to: &Waypoint,
     ) -> Option<(Matrix3<f64>, Certificate)> {
         let turn = from.attitude.turn_to(&to.attitude);
-        let prepared = self.prepared_for([most(from), most(to)])?;
+        let prepared = self.prepared_for([rate_limits(from), rate_limits(to)])?;
         self.seen(&turn, &prepared)
             .map(|(axes, bound, turn)| (axes, bound.certificate(&[turn], TOLERANCE)))
             .max_by(|(_, a), (_, b)| a.duration_s.total_cmp(&b.duration_s))
@@ -193,20 +193,20 @@ impl BodyFrame {
     /// Bounds on slews with end rates within these limits, body axes.
     fn bound(&self, ends: &[Vector3<f64>; 2]) -> Option<SlewBound> {
         let ends = EndRates {
-            begin_rad_s: self.seen(&ends[0]),
-            end_rad_s: self.seen(&ends[1]),
+            begin_rad_s: self.limits_in_axes(&ends[0]),
+            end_rad_s: self.limits_in_axes(&ends[1]),
         };
         SlewBound::new(self.limits, ends)
     }
 
     /// Limits of the components along the frame's axes, from limits along the body axes.
-    fn seen(&self, most: &Vector3<f64>) -> Vector3<f64> {
-        along(&self.axes, |axis| component(axis, most))
+    fn limits_in_axes(&self, limits: &Vector3<f64>) -> Vector3<f64> {
+        along(&self.axes, |axis| component(axis, limits))
     }
 }
 
 /// Limits of the rate components at a waypoint, rad/s; infinite where they are free.
-fn most(waypoint: &Waypoint) -> Vector3<f64> {
+fn rate_limits(waypoint: &Waypoint) -> Vector3<f64> {
     Vector3::from(waypoint.rate.map(|condition| match condition {
         RateCondition::Fixed(rate) => rate.abs(),
         RateCondition::Within(low, high) => f64::max(low.abs(), high.abs()),
@@ -229,14 +229,14 @@ fn allowed_rate(dynamics: &Dynamics, direction: &Vector3<f64>) -> f64 {
 }
 
 /// Largest component along a direction of vectors whose components have these largest sizes.
-fn component(direction: &Vector3<f64>, most: &Vector3<f64>) -> f64 {
-    let parts = direction.iter().zip(most);
+fn component(direction: &Vector3<f64>, limits: &Vector3<f64>) -> f64 {
+    let parts = direction.iter().zip(limits);
     // A component orthogonal to the direction does not contribute, even if it is infinite.
-    parts.fold(0.0, |sum, (share, most)| {
+    parts.fold(0.0, |sum, (share, limit)| {
         sum + if *share == 0.0 {
             0.0
         } else {
-            share.abs() * most
+            share.abs() * limit
         }
     })
 }

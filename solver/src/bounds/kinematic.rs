@@ -177,7 +177,7 @@ impl RateBox {
         Some(Self {
             promising: closed_forms.partition_point(|sequence| sequence.fixed == 0.0),
             speed,
-            stretch: (0..3).fold(1.0, |most, i| f64::max(most, c[i] * speed / rates[i])),
+            stretch: (0..3).fold(1.0, |largest, i| f64::max(largest, c[i] * speed / rates[i])),
             slowest: c[0].min(c[1]).min(c[2]),
             families,
             closed_forms,

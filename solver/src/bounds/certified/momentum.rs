@@ -80,10 +80,10 @@ impl MomentumBounds {
                     bound,
                 } = drifting;
                 let drifts = held.map(|held| frame.axes.tr_mul(&held) * *share);
-                let most = [0, 1].map(|end| frame.seen(&ends[end]) + drifts[end].abs());
+                let limits = [0, 1].map(|end| frame.limits_in_axes(&ends[end]) + drifts[end].abs());
                 let ends = EndRates {
-                    begin_rad_s: most[0],
-                    end_rad_s: most[1],
+                    begin_rad_s: limits[0],
+                    end_rad_s: limits[1],
                 };
                 let turn = turn.seen_from(&frame.axes)?;
                 Some(bound.drifting_lower_bound_s(&turn, &drifts[0], ends, tolerance))

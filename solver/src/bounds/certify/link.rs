@@ -93,12 +93,14 @@ impl LinkIntegrand<'_> {
         }
         // The maximum of linear functions is convex and lies below its chord. Where the largest
         // axis changes within the piece, the chord is not tight.
-        let most = |end: usize| shares.iter().map(|s| s[end]).fold(0.0, f64::max);
-        let crosses = !shares.iter().any(|s| s[0] >= most(0) && s[1] >= most(1));
+        let largest = |end: usize| shares.iter().map(|s| s[end]).fold(0.0, f64::max);
+        let crosses = !shares
+            .iter()
+            .any(|s| s[0] >= largest(0) && s[1] >= largest(1));
         if crosses && !narrow && to - from > FINE * self.duration {
             return None;
         }
-        let mean = (Interval::exactly(most(0)) + Interval::exactly(most(1))).half();
+        let mean = (Interval::exactly(largest(0)) + Interval::exactly(largest(1))).half();
         Some(mean * width)
     }
 }

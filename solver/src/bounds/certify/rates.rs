@@ -73,9 +73,9 @@ impl Rates {
         if length.low <= 0.0 {
             return (angle / Interval::exactly(self.least())).high;
         }
-        (0..3).fold(0.0, |most, i| {
+        (0..3).fold(0.0, |largest, i| {
             let share = q[i].abs() / length;
-            f64::max(most, (share * angle / self.c[i]).high)
+            f64::max(largest, (share * angle / self.c[i]).high)
         })
     }
 }

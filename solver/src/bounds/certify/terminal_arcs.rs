@@ -142,11 +142,11 @@ impl EnclosedTerminalArcs {
     }
 }
 
-/// Numbers of half turns whose addition may bring an angle into `[0, most]`.
-fn shifts(angle: Interval, most: f64) -> impl Iterator<Item = f64> {
+/// Numbers of half turns whose addition may bring an angle into `[0, max]`.
+fn shifts(angle: Interval, max: f64) -> impl Iterator<Item = f64> {
     let slack = 1e-9;
     let from = (-angle.high / Interval::PI.low - slack).ceil();
-    let to = ((most - angle.low) / Interval::PI.low + slack).floor();
+    let to = ((max - angle.low) / Interval::PI.low + slack).floor();
     std::iter::successors(Some(from), |k| Some(k + 1.0)).take_while(move |k| *k <= to)
 }
 
@@ -156,8 +156,7 @@ mod tests {
 
     #[test]
     fn half_turns_at_the_ends_of_the_range_are_among_the_shifts() {
-        let all =
-            |angle: f64, most: f64| shifts(Interval::exactly(angle), most).collect::<Vec<_>>();
+        let all = |angle: f64, max: f64| shifts(Interval::exactly(angle), max).collect::<Vec<_>>();
         assert_eq!(all(0.0, 1.0), [0.0]);
         assert_eq!(all(0.0, PI), [0.0, 1.0]);
         assert_eq!(all(-PI, 1.0), [1.0]);

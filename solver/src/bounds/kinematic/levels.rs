@@ -124,14 +124,14 @@ impl Levels {
         self.cones[i][entry.min(self.cones[i].len() - 1)]
     }
 
-    /// The level on which the gap about axis `i` has the length `gap`, rounded up; at most `most`.
-    fn level_of(&self, i: usize, gap: f64, most: f64) -> f64 {
-        if self.gap(i, most) <= gap {
-            return most;
+    /// The level on which the gap about axis `i` has the length `gap`, rounded up; at most `highest`.
+    fn level_of(&self, i: usize, gap: f64, highest: f64) -> f64 {
+        if self.gap(i, highest) <= gap {
+            return highest;
         }
         // Bisection from the minimum, where the gap vanishes. Its error only widens the cone.
         let longer = |above: f64| self.gap(i, self.c[i] + above) >= gap;
-        let mut high = most - self.c[i];
+        let mut high = highest - self.c[i];
         while longer(0.5 * high) && high > f64::EPSILON {
             high *= 0.5;
         }

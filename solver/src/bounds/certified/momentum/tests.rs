@@ -40,15 +40,15 @@ fn motion(dynamics: &Dynamics, random: &mut SplitMix) -> Option<[Vector3<f64>; 3
     let allowed = rate
         .iter()
         .zip(&dynamics.max_rate)
-        .all(|(w, most)| w.abs() <= *most)
+        .all(|(w, limit)| w.abs() <= *limit)
         && rate.norm() <= dynamics.max_rate_norm;
     let change = dynamics.inertia_inverse * (-rate.cross(&held) - torque);
     allowed.then_some([rate, change, held])
 }
 
 /// Largest ratio of a vector's component to the box's limit.
-fn share(vector: &Vector3<f64>, most: &Vector3<f64>) -> f64 {
-    vector.component_div(most).amax()
+fn share(vector: &Vector3<f64>, limits: &Vector3<f64>) -> f64 {
+    vector.component_div(limits).amax()
 }
 
 #[test]
@@ -133,15 +133,15 @@ fn the_limit_of_an_end_rate_is_valid_and_tight() {
             wheels: WheelCondition::Free,
             price: None,
         };
-        let most = crate::bounds::certified::most(&waypoint);
+        let limits = crate::bounds::certified::rate_limits(&waypoint);
         for (axis, (condition, rate)) in ends.iter().enumerate() {
-            assert!(rate.abs() <= most[axis], "{condition:?} admits {rate}");
+            assert!(rate.abs() <= limits[axis], "{condition:?} admits {rate}");
             let tight = match condition {
                 RateCondition::Within(low, high) => low.abs().max(high.abs()),
                 RateCondition::Fixed(rate) => rate.abs(),
                 RateCondition::Free => f64::INFINITY,
             };
-            assert!(most[axis] <= tight, "{condition:?}: {}", most[axis]);
+            assert!(limits[axis] <= tight, "{condition:?}: {}", limits[axis]);
         }
     }
 }

@@ -190,10 +190,10 @@ proptest! {
             end_rad_s: Vector3::from_fn(|i, _| end(ends[3 + i]) * rates[i]),
         };
         let p = rates.component_mul(&Vector3::from(narrowed));
-        let integrand = |t: f64| (0..3).fold(0.0, |most, i| {
+        let integrand = |t: f64| (0..3).fold(0.0, |largest, i| {
             let a = limits.accelerations_rad_s2[i];
             let m = rates[i].min(bounds.begin_rad_s[i] + a * t).min(bounds.end_rad_s[i] + a * (duration - t));
-            f64::max(most, m / p[i])
+            f64::max(largest, m / p[i])
         });
         let steps = 20_000;
         let step = duration / f64::from(steps);

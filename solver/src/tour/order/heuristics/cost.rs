@@ -130,7 +130,7 @@ impl ReducedLegs {
         let scale = self
             .costs
             .iter()
-            .fold(0.0_f64, |most, leg| most.max(leg.abs()));
+            .fold(0.0_f64, |largest, leg| largest.max(leg.abs()));
         self.symmetric =
             pairs().all(|(a, b)| (self.leg(a, b) - self.leg(b, a)).abs() <= ROUNDING * scale);
         if self.symmetric {

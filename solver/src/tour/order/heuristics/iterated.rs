@@ -49,15 +49,15 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         seed: u64,
     ) -> Self {
         let search = LocalSearch::new(task, order);
-        let mut begun = Self {
+        let mut iterated = Self {
             kept: search.path.places().to_vec(),
             kept_s: search.path.length(),
             search,
             best: Incumbents::new(alternatives, 0.0),
             random: SplitMix::new(seed),
         };
-        begun.kept_s = begun.offer(begun.kept_s);
-        begun
+        iterated.kept_s = iterated.offer(iterated.kept_s);
+        iterated
     }
 
     /// Descends to a local minimum, then kicks so many times or until stopped; returns the number

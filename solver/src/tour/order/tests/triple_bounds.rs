@@ -70,14 +70,14 @@ fn relaxed(model: &RandomModel, path: &[Place]) -> f64 {
 
 /// Minimum of that sum over all paths that begin with these places and go through the remaining
 /// targets to the end, s.
-fn cheapest(model: &RandomModel, begun: &[Place], remaining: &[usize]) -> f64 {
+fn cheapest(model: &RandomModel, begin: &[Place], remaining: &[usize]) -> f64 {
     if remaining.is_empty() {
         let end = model.has_end().then_some(Place::End);
-        return relaxed(model, &begun.iter().copied().chain(end).collect::<Vec<_>>());
+        return relaxed(model, &begin.iter().copied().chain(end).collect::<Vec<_>>());
     }
     let onward = |&to: &usize| {
         let rest: Vec<usize> = remaining.iter().copied().filter(|&t| t != to).collect();
-        cheapest(model, &[begun, &[Place::Target(to)]].concat(), &rest)
+        cheapest(model, &[begin, &[Place::Target(to)]].concat(), &rest)
     };
     remaining.iter().map(onward).fold(f64::INFINITY, f64::min)
 }
@@ -229,8 +229,8 @@ fn estimates_lie_between_the_pair_bounds_and_the_duration() {
         path.extend(&order);
         path.push(table.end());
         let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
-        let excess = |triple: &[usize]| triple_bounds.coupling_gap(triple[0], triple[1], triple[2]);
-        let estimate = pairs + path.windows(3).map(excess).sum::<f64>();
+        let gap = |triple: &[usize]| triple_bounds.coupling_gap(triple[0], triple[1], triple[2]);
+        let estimate = pairs + path.windows(3).map(gap).sum::<f64>();
         let TourEvaluation::Solved(duration) = model.tour(&order) else {
             panic!("the model resolves");
         };

@@ -208,8 +208,8 @@ mod tests {
         };
         let mut least = f64::INFINITY;
         for (one, other) in others().flat_map(|a| others().map(move |b| (a, b))) {
-            let lone = part.targets.len() == 1;
-            if one >= other || (part.is_outer(one) && part.is_outer(other) && !lone) {
+            let single_target = part.targets.len() == 1;
+            if one >= other || (part.is_outer(one) && part.is_outer(other) && !single_target) {
                 continue;
             }
             let near = multipliers.near(via, one) + multipliers.near(via, other);

@@ -62,10 +62,10 @@ fn fifty_targets_end_within_one_percent_of_the_spanning_tree_bound() {
 fn the_best_order_has_the_same_targets_and_is_never_longer() {
     for targets in [0, 1, 2, 3, 4, 40] {
         let cost = RandomCost::new(targets, Legs::Directed, Couplings::Directed, 3);
-        let begun = length(&cost, targets, &all(targets));
+        let initial = length(&cost, targets, &all(targets));
         for kicks in [0, 1, 50] {
             let best = &found(&cost, kicks, 0, 9)[0];
-            assert!(best.duration_s <= begun);
+            assert!(best.duration_s <= initial);
             assert!((best.duration_s - length(&cost, targets, &best.order)).abs() < 1e-9);
             let mut order = best.order.clone();
             order.sort_unstable();
@@ -117,20 +117,20 @@ fn listed_orders_satisfy_the_rules() {
     // Target 0 comes third, and the targets 20 to 29 are in ascending order.
     let admits =
         |order: &[usize]| order[2] == 0 && order.iter().filter(|&&target| target >= 20).is_sorted();
-    let mut begun = all(30);
-    begun[..3].rotate_left(1);
-    assert!(admits(&begun));
+    let mut initial = all(30);
+    initial[..3].rotate_left(1);
+    assert!(admits(&initial));
     let task = OrderTask {
         cost: &cost,
         from: 30,
         admits: Some(&admits),
     };
-    let mut search = IteratedSearch::new(&task, &begun, 10, 3);
+    let mut search = IteratedSearch::new(&task, &initial, 10, 3);
     search.run(500, &StopSignal::new());
     assert!(search.best().iter().all(|best| admits(&best.order)));
     let free = found(&cost, 500, 0, 3)[0].duration_s;
     let ruled = search.best()[0].duration_s;
-    let at_first = length(&cost, 30, &begun);
+    let at_first = length(&cost, 30, &initial);
     assert!(
         free <= ruled && ruled < 0.8 * at_first,
         "{free} {ruled} {at_first}"

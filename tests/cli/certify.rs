@@ -94,7 +94,7 @@ fn a_bound_that_is_too_large_is_rejected_with_the_reason() {
         (
             leg,
             solved.number(leg) * 1.001,
-            "is the bound that is known",
+            "the solver's own bound for such slews",
         ),
         (leg, duration * 1.001, "the plan itself takes"),
         (tour, solved.number(tour) * 1.001, "bounds of 42 of 42 legs"),

@@ -97,8 +97,8 @@ pub struct Shard {
     pub of: usize,
 }
 
-/// Number of targets up to which the certified bounds of all legs are computed before the first tour;
-/// with more targets they take longer than the first tour and come after it.
+/// Number of targets up to which the certified bounds of all legs are computed before the first
+/// tour; with more targets they take longer than the first tour and come after it.
 const MAX_TARGETS_BOUNDED_FIRST: usize = 40;
 
 /// Solves a scenario: order, torques, lower bound and verification.
@@ -176,8 +176,8 @@ fn search_settings(scenario: &Scenario) -> SearchSettings {
 /// Solves the tour of every order of the targets and lists the orders, shortest tour first: the
 /// reference for the search of [`solve`].
 ///
-/// For a handful of targets only. Orders whose tour does not converge, or that are not reached before
-/// the stop signal, are left out.
+/// For a handful of targets only. Orders whose tour does not converge, or that are not reached
+/// before the stop signal, are left out.
 #[must_use]
 pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<SolvedOrder> {
     let stop = limited(scenario, run.stop);
@@ -264,8 +264,8 @@ fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Optio
     legs.map(|(pair, leg)| Some(row((pair, leg?)))).collect()
 }
 
-/// Problems of a valid scenario that are found without solving it: for example a required rest whose
-/// momentum the wheels cannot hold.
+/// Problems of a valid scenario that are found without solving it: for example a required rest
+/// whose momentum the wheels cannot hold.
 #[must_use]
 pub fn feasibility_problems(scenario: &Scenario) -> Vec<Problem> {
     momentum_problems(scenario)
@@ -344,8 +344,8 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
     problems
 }
 
-/// The point of the eigenaxis turn between two places at which the momentum lies outside the envelope
-/// of the wheels, if there is one.
+/// The point of the eigenaxis turn between two places at which the momentum lies outside the
+/// envelope of the wheels, if there is one.
 fn outside_on_turn(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
     let places = &tours.places;
     let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);

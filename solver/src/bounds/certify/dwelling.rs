@@ -1,4 +1,4 @@
-//! The sequences that dwell, from the motion of the costate itself.
+//! The sequences with a dwell, from the motion of the costate.
 //!
 //! On the level of the saddle `M_j = 0` let the costate leave it in an octant with signs `s`. With
 //! `n` the corner of the octant (length one), `M(t) = h n + cos t (M - h n) + sin t M x n`, and the
@@ -9,36 +9,36 @@
 //! ```
 //!
 //! with the upper sign for the one of `k, l` that follows `j` in cyclic order if the product of the
-//! signs is positive, and for the other one if it is negative. The first zero of all is where an axis
-//! flips; from there the folded costate goes back the way that it came, so it is at the saddle again
-//! after as long a time, where `w_j` may have either sign. (A component whose rate exceeds that of
-//! `j` never reaches zero; component `j` itself touches zero only after a whole turn.)
+//! signs is positive, and for the other one if it is negative. At the first zero of these an axis
+//! flips; from there the folded costate returns on the same path and reaches the saddle again after
+//! the same time, where `w_j` may have either sign. (A component whose rate exceeds that of `j`
+//! never reaches zero; component `j` itself touches zero only after a whole turn.)
 
 use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped, octants};
 use super::sequence::{ArcSequence, InteriorArcs};
 use super::turn::{IDENTITY, QuatInterval, VectorInterval, about, product};
 
-/// A stretch of fixed arcs is no part of a shortest motion if its turn can be made in a time that is
-/// shorter at all; the share keeps clear of ties.
+/// Relative saving from which a turn that replaces some fixed arcs shows that they are no part of a
+/// shortest motion. Any saving would do; the margin avoids ties.
 const SHORTER: f64 = 1e-6;
 
-/// FixedArcs of known duration, in order.
+/// Arcs of known duration, in order.
 type FixedArcs = Vec<(Octant, Interval)>;
 
-/// Collects the sequences of one saddle.
+/// The enumeration of the sequences of one saddle.
 struct Saddle<'a> {
     rates: &'a Rates,
     /// The axis whose rate is zero during the dwell.
     axis: usize,
-    /// Times beyond this are of no interest.
+    /// Sequences whose fixed arcs last longer than this are left out.
     horizon: f64,
     limit: usize,
     sequences: Vec<ArcSequence>,
 }
 
-/// All sequences with a dwell whose fixed arcs last less than the horizon: `None` if there are more than
-/// the limit.
+/// All sequences with a dwell whose fixed arcs last less than the horizon: `None` if there are more
+/// than the limit.
 pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<ArcSequence>> {
     let mut sequences = Vec::new();
     for axis in 0..3 {
@@ -49,8 +49,7 @@ pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec
             limit,
             sequences,
         };
-        // The octant in which the costate comes to the saddle: directly in the first arc, or from
-        // a flip.
+        // The octant in which the costate reaches the saddle: in the first arc, or after a flip.
         for octant in octants() {
             saddle.begin(octant, None)?;
             for (wall, time) in saddle.walls(octant, true) {
@@ -63,9 +62,10 @@ pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec
 }
 
 impl Saddle<'_> {
-    /// Where the costate flips first when it leaves the saddle in an octant, or where it came from:
-    /// the axis and the time. More than one if intervals do not tell which is first; none if that is
-    /// more than half a turn away, as longer arcs are no part of a shortest motion.
+    /// The axis that flips first after the costate leaves the saddle in an octant, and the time
+    /// until then; `backwards`, the last flip before it reaches the saddle. Several if intervals
+    /// cannot decide which comes first; none if it is more than half a turn away, as longer arcs
+    /// are no part of a shortest motion.
     fn walls(&self, octant: Octant, backwards: bool) -> Vec<(usize, Interval)> {
         let c = &self.rates.c;
         let (j, k, l) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -91,7 +91,8 @@ impl Saddle<'_> {
         found
     }
 
-    /// Sequences whose dwell follows an arc in an octant, fixed if there is a duration, else the first.
+    /// Sequences whose dwell follows either the first arc, in an octant, or the `fixed` arc after
+    /// it.
     fn begin(&mut self, first: Octant, fixed: Option<(Octant, Interval)>) -> Option<()> {
         let arrives = fixed.map_or(first, |(octant, _)| octant);
         let before: FixedArcs = fixed.into_iter().collect();
@@ -102,7 +103,7 @@ impl Saddle<'_> {
         Some(())
     }
 
-    /// Sequences that leave a visit in an octant.
+    /// Sequences that continue from a visit of the saddle in an octant.
     fn follow(
         &mut self,
         first: Octant,
@@ -170,7 +171,7 @@ impl Saddle<'_> {
         })
     }
 
-    /// Whether a shorter turn replaces some of the last arcs.
+    /// Whether some of the last arcs can be replaced by a faster turn.
     fn replaceable(&self, arcs: &FixedArcs) -> bool {
         (0..arcs.len()).any(|from| {
             let lasts = arcs[from..]

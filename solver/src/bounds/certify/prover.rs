@@ -1,4 +1,4 @@
-//! The proof that no sequence makes a turn in less than a time.
+//! The proof that no arc sequence makes a turn in less than a time.
 
 use super::Rejection;
 use super::dwelling;
@@ -11,23 +11,24 @@ use super::turn::{QuatInterval, about, angle_of, conjugate, product};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
-/// Most dwelling sequences that are gone through.
+/// Largest number of dwelling sequences.
 const MAX_SEQUENCES: usize = 200_000;
-/// Most flips that are followed near an axis.
+/// Largest number of flips near an axis.
 const MAX_FLIPS: usize = 20_000;
-/// Most cells of one proof.
+/// Largest number of cells of one proof.
 const MAX_CELLS: usize = 20_000_000;
-/// Cells narrower than this are given up.
+/// Width of a cell below which the proof is given up.
 const NARROW: f64 = 1e-13;
-/// A motion counts as faster only by more than this share, which covers the last few operations.
+/// Relative difference from which a motion counts as faster; it covers the rounding of the last few
+/// operations.
 const FASTER: f64 = 1e-12;
 
-/// A box of rates with the sequences that dwell.
+/// A box of rates with its dwelling sequences.
 #[derive(Debug)]
 pub(super) struct Prover {
     rates: Rates,
     dwelling: Vec<ArcSequence>,
-    /// Fixed arcs of the sequences that were collected last up to this time (normalised).
+    /// Normalised time up to which the fixed arcs of the collected sequences last.
     horizon: f64,
 }
 
@@ -35,7 +36,7 @@ pub(super) struct Prover {
 struct Proof<'a> {
     rates: &'a Rates,
     q: QuatInterval,
-    /// What is to be shown, normalised, rounded up.
+    /// The least time to be proved, normalised and rounded up.
     time: f64,
     cells: usize,
 }
@@ -50,7 +51,7 @@ impl Prover {
         })
     }
 
-    /// Proves that a turn takes a time, s, at least.
+    /// Proves that a turn takes at least a time, s.
     pub(super) fn prove(&mut self, turn: &Attitude, least_s: f64) -> Result<(), Rejection> {
         if least_s <= 0.0 {
             return Ok(());
@@ -65,8 +66,8 @@ impl Prover {
             time,
             cells: 0,
         };
-        // The turn about its own axis is a motion.
-        proof.refuted_by(self.rates.eigenaxis(&q))?;
+        // The turn about its own axis is a possible counterexample.
+        proof.reject_if_faster(self.rates.eigenaxis(&q))?;
         if time > self.horizon {
             self.dwelling = dwelling::sequences(&self.rates, time, MAX_SEQUENCES)
                 .ok_or(Rejection::not_proved("too many extremals dwell"))?;
@@ -74,7 +75,7 @@ impl Prover {
         }
         for sequence in &self.dwelling {
             if sequence.fixed.low < time {
-                proof.sequence(sequence, 0.0, f64::INFINITY)?;
+                proof.refute(sequence, 0.0, f64::INFINITY)?;
             }
         }
         for (first, axis) in octants().flat_map(|first| (0..3).map(move |axis| (first, axis))) {
@@ -84,20 +85,20 @@ impl Prover {
                 fixed: Interval::ZERO,
                 interior: InteriorArcs::Nothing,
             };
-            proof.sequence(&sequence, 0.0, 0.0)?;
+            proof.refute(&sequence, 0.0, 0.0)?;
         }
         for axis in 0..3 {
-            proof.alternating(axis)?;
+            proof.refute_alternating(axis)?;
         }
         Ok(())
     }
 }
 
 impl Proof<'_> {
-    /// All sequences whose flips take turns between the two axes other than the given one. (One axis
-    /// alone flips on levels that leave one wall; the costate then travels more than half of its
-    /// circle between flips, and such arcs are no part of a shortest motion.)
-    fn alternating(&mut self, axis: usize) -> Result<(), Rejection> {
+    /// Refutes all sequences in which the two axes other than the given one flip alternately. (One
+    /// axis alone flips on levels with a single wall; the costate then travels more than half of
+    /// its circle between flips, and such arcs are no part of a shortest motion.)
+    fn refute_alternating(&mut self, axis: usize) -> Result<(), Rejection> {
         let near = NearAxis::new(&self.q, axis);
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         let angle = angle_of(&self.q).low;
@@ -108,28 +109,28 @@ impl Proof<'_> {
             if open == [false; 2] {
                 return Ok(());
             }
-            // Outer arcs are no longer than the others, and no rate is longer than one.
+            // Terminal arcs are no longer than the others, and the norm of the rate is at most one.
             let shortest = (angle / (arcs + 2) as f64).next_down().next_down();
             for first in octants().filter(|first| open[usize::from(first[axis])]) {
                 for axes in [[j, k], [k, j]] {
                     let sequence = ArcSequence::alternating(first, axes, arcs);
-                    self.sequence(&sequence, shortest, longest)?;
+                    self.refute(&sequence, shortest, longest)?;
                 }
             }
         }
         Err(Rejection::not_proved("extremals with very many flips"))
     }
 
-    /// One sequence, with its unknown in a range, by halving.
-    fn sequence(
+    /// Refutes one sequence for all values of its unknown in a range, by bisection.
+    fn refute(
         &mut self,
         sequence: &ArcSequence,
         shortest: f64,
         longest: f64,
     ) -> Result<(), Rejection> {
         let view = TargetView::new(self.rates, &self.q, sequence);
-        // What the unknown is at most when nothing else takes time; a dwell is no longer than half
-        // a turn at its speed.
+        // A dwell lasts no longer than the time left by the fixed arcs, and no longer than half a
+        // turn at its speed.
         let repeats = sequence.repeats();
         let mut longest = longest;
         if let InteriorArcs::Dwelling { speed, .. } = &sequence.interior {
@@ -144,7 +145,7 @@ impl Proof<'_> {
             let middle = 0.5 * (low + high);
             if high - low < NARROW || repeats == 0.0 || middle <= low || middle >= high {
                 return Err(Rejection::not_proved(
-                    "an extremal may be as fast as the claim, to rounding",
+                    "an extremal may be as fast as the bound, to rounding",
                 ));
             }
             open.extend([(low, middle), (middle, high)]);
@@ -152,7 +153,8 @@ impl Proof<'_> {
         Ok(())
     }
 
-    /// Whether a sequence with its unknown in a range cannot make the turn in less than the time.
+    /// Whether a sequence with its unknown in a range is proved not to make the turn in less than
+    /// the time.
     fn excluded(
         &mut self,
         sequence: &ArcSequence,
@@ -194,19 +196,20 @@ impl Proof<'_> {
         if terminal.impossible(Allowed { each, both }) {
             return Ok(true);
         }
-        // The sequence of the middle is a motion, but for the turn that it misses the target by.
+        // The sequence at the middle and a turn about the eigenaxis of its miss make up a motion to
+        // the target.
         let [first, last] = terminal.candidate().map(Interval::exactly);
         let before = product(&about(&view.ends[0], first), &interior.turn);
         let end = product(&before, &about(&view.ends[1], last));
         let missing = self.rates.eigenaxis(&product(&conjugate(&end), &self.q));
         let inside = sequence.fixed + repeats * Interval::exactly(middle);
-        self.refuted_by((inside + first + last).high + missing)?;
+        self.reject_if_faster((inside + first + last).high + missing)?;
         Ok(false)
     }
 
-    /// Rejects the claim if a motion of this (normalised) time makes the turn.
-    fn refuted_by(&self, time: f64) -> Result<(), Rejection> {
-        // The true rates may be a little smaller.
+    /// Rejects the bound if a motion of this normalised time makes the turn and is faster.
+    fn reject_if_faster(&self, time: f64) -> Result<(), Rejection> {
+        // The true rates may be smaller than the raised ones.
         let time = time * self.rates.stretch;
         if time < self.time * (1.0 - FASTER) {
             return Err(Rejection::Faster {

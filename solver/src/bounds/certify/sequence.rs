@@ -1,10 +1,10 @@
-//! Sequences: a first arc, an interior with one unknown, a last arc.
+//! Arc sequences: a first arc, an interior with one unknown duration, a last arc.
 
 use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped};
 use super::turn::{IDENTITY, QuatInterval, product, scaled, sum, times_vector};
 
-/// A turn and its derivative in a parameter, both as quaternions.
+/// A turn and its derivative by a parameter, both as quaternions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moving {
     pub(super) turn: QuatInterval,
@@ -28,16 +28,16 @@ impl Moving {
     }
 }
 
-/// What is between the first and the last arc.
+/// The arcs between the first and the last one.
 #[derive(Debug, Clone)]
 pub(super) enum InteriorArcs {
-    /// Nothing: two arcs, no unknown.
+    /// No interior arc and no unknown.
     Nothing,
-    /// FixedArcs of one unknown duration; before each, and before the last arc of the sequence, the rate of
-    /// one of two axes changes its sign, in turn.
+    /// Arcs of one unknown duration. Before each, and before the last arc of the sequence, one of
+    /// two axes flips, alternately.
     Alternating { axes: [usize; 2], arcs: usize },
-    /// Fixed arcs about a dwell of unknown duration at a rate of the given length, whose turn by an
-    /// angle `x` is `cos(x / 2) even + sin(x / 2) odd`.
+    /// Fixed arcs before and after a dwell of unknown duration at a rate of the given norm; with a
+    /// dwell by the angle `x` the whole interior is `cos(x / 2) even + sin(x / 2) odd`.
     Dwelling {
         even: QuatInterval,
         odd: QuatInterval,
@@ -45,18 +45,18 @@ pub(super) enum InteriorArcs {
     },
 }
 
-/// A sequence without its outer durations.
+/// An arc sequence without the durations of its terminal arcs.
 #[derive(Debug, Clone)]
 pub(super) struct ArcSequence {
     pub(super) first: Octant,
     pub(super) last: Octant,
-    /// Sum of the durations that are not unknown.
+    /// Sum of the known durations.
     pub(super) fixed: Interval,
     pub(super) interior: InteriorArcs,
 }
 
 impl ArcSequence {
-    /// The sequence whose axes change sign in turn, with so many arcs between the outer ones.
+    /// The sequence in which two axes flip alternately, with so many interior arcs.
     pub(super) fn alternating(first: Octant, axes: [usize; 2], arcs: usize) -> Self {
         let last = (0..=arcs).fold(first, |octant, flip| flipped(octant, axes[flip % 2]));
         Self {
@@ -67,7 +67,7 @@ impl ArcSequence {
         }
     }
 
-    /// How often the unknown duration occurs.
+    /// Number of arcs with the unknown duration.
     pub(super) fn repeats(&self) -> f64 {
         match self.interior {
             InteriorArcs::Nothing => 0.0,
@@ -76,7 +76,7 @@ impl ArcSequence {
         }
     }
 
-    /// A bound on the sum of the speeds of all arcs of unknown duration.
+    /// Upper bound on the sum of the speeds of all arcs with the unknown duration.
     pub(super) fn speed(&self) -> f64 {
         match &self.interior {
             InteriorArcs::Dwelling { speed, .. } => speed.high,
@@ -84,7 +84,7 @@ impl ArcSequence {
         }
     }
 
-    /// The interior for a value of the unknown.
+    /// The turn of the interior for a value of the unknown, with its derivative.
     pub(super) fn at(&self, rates: &Rates, unknown: f64) -> Moving {
         match &self.interior {
             InteriorArcs::Nothing => Moving::NONE,
@@ -103,7 +103,7 @@ impl ArcSequence {
         }
     }
 
-    /// The product of arcs that repeat with period four, by powers of that period.
+    /// The product of alternating arcs, which repeat with period four, by repeated squaring.
     fn chain(
         &self,
         rates: &Rates,

@@ -1,17 +1,17 @@
-//! The outer arcs of a sequence, known from its interior.
+//! The terminal arcs with which a sequence reaches its target, as functions of its interior.
 //!
-//! With half durations `a`, `b` of the outer arcs and the interior `P`,
+//! With half durations `a`, `b` of the terminal arcs and the interior `P`,
 //!
 //! ```text
 //!   <q, exp(2 a c_0) P exp(2 b c_f)> = x_1 cos S + y_1 sin S + x_2 cos U + y_2 sin U,
 //!   S = a + b,  U = a - b
 //! ```
 //!
-//! which has to be one in size. The lengths `C_1` and `C_2` of `(x_1, y_1)` and `(x_2, y_2)` add up
-//! to one at most (it is the largest value of a scalar product of unit quaternions). Where the
-//! interior is known within a turn of `eta` the sum must reach `cos(eta / 2) >= 1 - eta^2 / 8`, so
-//! `C_1 (1 - cos(S - s)) + C_2 (1 - cos(U - u)) <= eta^2 / 8 - (1 - C_1 - C_2)` with the angles `s`,
-//! `u` of the two vectors, both shifted by half a turn for the other sign of `q`.
+//! whose absolute value has to be one. The lengths `C_1` and `C_2` of `(x_1, y_1)` and `(x_2, y_2)`
+//! add up to one at most (it is the largest value of a scalar product of unit quaternions). Where
+//! the interior is known within a turn of `eta` the sum must reach `cos(eta / 2) >= 1 - eta^2 / 8`,
+//! so `C_1 (1 - cos(S - s)) + C_2 (1 - cos(U - u)) <= eta^2 / 8 - (1 - C_1 - C_2)` with the angles
+//! `s`, `u` of the two vectors, both shifted by half a turn for the other sign of `q`.
 
 use super::interval::{Interval, twice_asin_of_root};
 use super::rates::Rates;
@@ -19,10 +19,10 @@ use super::sequence::{ArcSequence, Moving};
 use super::turn::{QuatInterval, VectorInterval, dot, dot4, product, rotate, times_vector};
 use std::f64::consts::PI;
 
-/// Angle from half a turn, rad, within which an outer half duration is tried as none.
+/// Distance from half a turn, rad, within which a half duration is replaced by zero.
 const LEFT_OUT: f64 = 1e-3;
 
-/// A target as a sequence sees it.
+/// The equation of a sequence for a target.
 #[derive(Debug)]
 pub(super) struct TargetView {
     /// `q`, `-c_0 q`, `-q c_f`, `c_0 q c_f`: their scalar products with `P` make up the equation.
@@ -33,7 +33,7 @@ pub(super) struct TargetView {
     target: Interval,
 }
 
-/// Outer half durations that may close a sequence.
+/// Half durations of the terminal arcs that may close a sequence, enclosed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EnclosedTerminalArcs {
     /// `S` and `U`, each modulo a full turn and both together modulo half a turn.
@@ -41,12 +41,12 @@ pub(super) struct EnclosedTerminalArcs {
     difference: Interval,
 }
 
-/// What the outer arcs must keep to, in half durations.
+/// Limits of the terminal arcs, in half durations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Allowed {
-    /// Neither outer arc is longer.
+    /// Largest value of each.
     pub(super) each: f64,
-    /// Both together are shorter.
+    /// Strict upper bound on the sum of both.
     pub(super) both: f64,
 }
 
@@ -64,7 +64,7 @@ impl TargetView {
         }
     }
 
-    /// Whether `c_0 . P c_f` cannot have the target's value within a cell about `P`.
+    /// Whether `c_0 . P c_f` is proved to differ from the target's value over a cell about `P`.
     pub(super) fn misses(&self, interior: &Moving, half: Interval, curvature: Interval) -> bool {
         // P c_f P* and its derivative, twice the vector part of P' c_f P*.
         let [x, y, z, w] = times_vector(&interior.turn, &self.ends[1]);
@@ -78,7 +78,8 @@ impl TargetView {
         value.abs().low > (slope.abs() * half + curvature).high
     }
 
-    /// What closes an interior that is known within a turn of `eta`: `None` when nothing can.
+    /// The terminal arcs for an interior that is known within a turn of `eta`; `None` when no
+    /// terminal arcs reach the target.
     pub(super) fn terminal_arcs(
         &self,
         interior: &QuatInterval,
@@ -111,7 +112,7 @@ impl TargetView {
 }
 
 impl EnclosedTerminalArcs {
-    /// Whether no outer arcs that are allowed can close the sequence.
+    /// Whether no terminal arcs within these limits close the sequence.
     pub(super) fn impossible(&self, allowed: Allowed) -> bool {
         let first = (self.sum + self.difference).half();
         let last = (self.sum - self.difference).half();
@@ -130,22 +131,22 @@ impl EnclosedTerminalArcs {
         })
     }
 
-    /// Outer durations that close the sequence nearly: numbers without proof.
+    /// Approximate durations of terminal arcs that close the sequence, without error bounds.
     pub(super) fn candidate(&self) -> [f64; 2] {
         let (sum, difference) = (self.sum.middle(), self.difference.middle());
         [sum + difference, sum - difference].map(|twice| {
             let x = (0.5 * twice).rem_euclid(PI);
-            // Next to half a turn it is better to leave the arc out.
+            // An arc near half a turn is replaced by none.
             if x > PI - LEFT_OUT { 0.0 } else { 2.0 * x }
         })
     }
 }
 
-/// Whole numbers of half turns that may bring an angle to `[0, most]`.
-fn shifts(angle: Interval, most: f64) -> impl Iterator<Item = f64> {
+/// Numbers of half turns whose addition may bring an angle into `[0, max]`.
+fn shifts(angle: Interval, max: f64) -> impl Iterator<Item = f64> {
     let slack = 1e-9;
     let from = (-angle.high / Interval::PI.low - slack).ceil();
-    let to = ((most - angle.low) / Interval::PI.low + slack).floor();
+    let to = ((max - angle.low) / Interval::PI.low + slack).floor();
     std::iter::successors(Some(from), |k| Some(k + 1.0)).take_while(move |k| *k <= to)
 }
 
@@ -155,8 +156,7 @@ mod tests {
 
     #[test]
     fn half_turns_at_the_ends_of_the_range_are_among_the_shifts() {
-        let all =
-            |angle: f64, most: f64| shifts(Interval::exactly(angle), most).collect::<Vec<_>>();
+        let all = |angle: f64, max: f64| shifts(Interval::exactly(angle), max).collect::<Vec<_>>();
         assert_eq!(all(0.0, 1.0), [0.0]);
         assert_eq!(all(0.0, PI), [0.0, 1.0]);
         assert_eq!(all(-PI, 1.0), [1.0]);

@@ -2,9 +2,9 @@
 
 use super::interval::Interval;
 
-/// A quaternion, or any vector of four components.
+/// A quaternion of intervals, scalar last.
 pub(super) type QuatInterval = [Interval; 4];
-/// A vector in space.
+/// A vector of intervals.
 pub(super) type VectorInterval = [Interval; 3];
 
 pub(super) const IDENTITY: QuatInterval = [
@@ -75,7 +75,7 @@ pub(super) fn rotate(q: &QuatInterval, v: &VectorInterval) -> VectorInterval {
 /// Angle of a turn, the shorter way round.
 pub(super) fn angle_of(q: &QuatInterval) -> Interval {
     let vector = q[0].length(q[1]).length(q[2]);
-    // Both components of the vector are not negative, so the arc is within [0, pi / 2].
+    // Both components are not negative, so the angle is within [0, pi / 2].
     let angle = Interval::angle(vector, q[3].abs()).twice();
     Interval {
         low: angle.low.max(0.0),
@@ -89,7 +89,7 @@ pub(super) fn swing(q: &QuatInterval, axis: usize) -> Interval {
     Interval::angle(q[j].length(q[k]), q[axis].length(q[3])).twice()
 }
 
-/// Twist of a turn about a body axis, an angle modulo a full turn.
+/// Twist of a turn about a body axis, modulo a full turn.
 pub(super) fn twist(q: &QuatInterval, axis: usize) -> Interval {
     Interval::angle(q[axis], q[3]).twice()
 }

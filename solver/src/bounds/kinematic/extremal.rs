@@ -1,4 +1,4 @@
-//! The motion behind an upper bound: its arcs, made to reach the target.
+//! The motion of an upper bound: its arcs, corrected to reach the target.
 
 use super::RateBox;
 use super::search::Candidate;
@@ -8,21 +8,21 @@ use super::turns::{about, best_axis_sequence, dot, eigenaxis_time, rotation_vect
 use crate::math::quaternion::{Quat, conjugate, product, rotate_back};
 use nalgebra::{Matrix3, Vector3};
 
-/// Newton steps that make a sequence reach its target.
-const POLISHING: usize = 6;
-/// A miss that is left alone, rad.
+/// Newton steps that correct a sequence.
+const NEWTON_STEPS: usize = 6;
+/// A miss that is not corrected, rad.
 const REACHED: f64 = 1e-12;
-/// Damping of the Newton steps, for sequences whose arcs do not span all directions: the misses that a
-/// search leaves, 1e-7 rad, then move no duration by more than 1e-3.
+/// Damping of the Newton steps, for sequences whose arcs do not span all directions: the misses
+/// left by a search, 1e-7 rad, then change no duration by more than 1e-3.
 const DAMPING: f64 = 1e-9;
-/// TimedArcs shorter than this are left out, rad.
+/// Arcs shorter than this are omitted, rad.
 const NO_ARC: f64 = 1e-13;
 
-/// TimedArcs at constant rate, normalised: rate vector and duration.
+/// Arcs at constant rate, normalised: rate vector and duration.
 pub(super) type TimedArcs = Vec<([f64; 3], f64)>;
 
-/// The arcs of the best motion that a search found; the last one covers what Newton's method has
-/// left of the miss, so that the target is reached whatever happens.
+/// The arcs of the best motion that a search found. A last arc about the eigenaxis corrects the
+/// miss that Newton's method leaves, so that the target is always reached.
 pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
     let c = &table.levels.c;
     let mut arcs = match best {
@@ -38,7 +38,7 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
         Candidate::ClosedForm {
             sequence,
             image,
-            outer,
+            terminal,
             parameter,
         } => {
             let sequence = &table.closed_forms[sequence];
@@ -47,14 +47,14 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
                 last: sequence.last,
                 steps: sequence.steps.clone(),
             };
-            steps.polished(c, q, image, outer, parameter)
+            steps.polished(c, q, image, terminal, parameter)
         }
         Candidate::Family {
             family,
             first,
             flips,
             image,
-            outer,
+            terminal,
             parameter,
         } => {
             let family = &table.families[family];
@@ -64,7 +64,7 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
                 last: family.octant(first, flips),
                 steps,
             }
-            .polished(c, q, image, outer, parameter)
+            .polished(c, q, image, terminal, parameter)
         }
     };
     let miss = product(&conjugate(&turn_of(&arcs)), q);
@@ -77,7 +77,7 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
     arcs
 }
 
-/// The turn that arcs make up.
+/// The product of the turns of some arcs.
 pub(super) fn turn_of(arcs: &[([f64; 3], f64)]) -> Quat {
     arcs.iter()
         .fold([0.0, 0.0, 0.0, 1.0], |all, (rate, duration)| {
@@ -86,6 +86,7 @@ pub(super) fn turn_of(arcs: &[([f64; 3], f64)]) -> Quat {
         })
 }
 
+/// An arc sequence without its durations.
 struct CandidateSequence {
     first: usize,
     last: usize,
@@ -93,19 +94,20 @@ struct CandidateSequence {
 }
 
 impl CandidateSequence {
-    /// Its arcs for durations near the given ones, the fastest when a miss is made up for.
+    /// Its arcs after Newton steps from the given durations: those of the iterate that is fastest
+    /// when the remaining miss is corrected about the eigenaxis.
     fn polished(
         &self,
         c: &[f64; 3],
         q: &Quat,
         image: usize,
-        outer: [f64; 2],
+        terminal: [f64; 2],
         parameter: f64,
     ) -> TimedArcs {
         let target = image_of(q, image);
         let mut best = (f64::INFINITY, Vec::new());
-        let mut durations = Vector3::new(outer[0], parameter, outer[1]);
-        for _ in 0..POLISHING {
+        let mut durations = Vector3::new(terminal[0], parameter, terminal[1]);
+        for _ in 0..NEWTON_STEPS {
             let arcs = self.arcs(c, &durations);
             let missing = product(&conjugate(&turn_of(&arcs)), &target);
             let miss = rotation_vector(&missing);
@@ -143,7 +145,8 @@ impl CandidateSequence {
             .collect()
     }
 
-    /// Turn of the end, in its own axes, per change of the three durations.
+    /// Derivative of the final attitude, as a rotation vector in final body axes, by the three
+    /// durations.
     fn slopes(&self, arcs: &[([f64; 3], f64)]) -> Matrix3<f64> {
         let mut slopes = Matrix3::zeros();
         let mut rest: Quat = [0.0, 0.0, 0.0, 1.0];

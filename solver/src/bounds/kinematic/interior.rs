@@ -1,17 +1,18 @@
-//! The interior of a sequence with several arcs of one length, and where its equation can hold.
+//! The interior of a sequence with several arcs of one duration, and the parts of a cell in which
+//! its equation can hold.
 
 use super::sequences::{SequenceFamily, corner};
 use super::turns::rotate;
 use crate::math::quaternion::{Quat, product};
 
-/// Margin of the equation `f = 0`, rad. Rounding in `f` is below 1e-12 even for a thousand arcs.
+/// Margin in the equation `f = 0`, rad. Rounding of `f` is below 1e-12 even for a thousand arcs.
 pub(super) const MARGIN: f64 = 1e-10;
 
-/// The interior of a sequence of a family at a value of its parameter.
+/// The turn of a sequence's interior at a value of its parameter.
 #[derive(Clone, Copy)]
 pub(super) struct InteriorTurn {
     pub(super) turn: Quat,
-    /// Its angular velocity in the parameter, frame of its beginning.
+    /// Its derivative by the parameter, as an angular velocity in the frame of its beginning.
     pub(super) velocity: [f64; 3],
 }
 
@@ -68,8 +69,8 @@ impl InteriorTurn {
     }
 }
 
-/// The parts of `[-half, half]` in which a function can be zero up to the margin, that has a value
-/// and a slope at 0 and a second derivative of at most `curvature`.
+/// The parts of `[-half, half]` in which a function can be zero up to the margin. The function has
+/// the given value and slope at 0 and a second derivative of at most `curvature`.
 pub(super) fn where_zero(
     value: f64,
     slope: f64,

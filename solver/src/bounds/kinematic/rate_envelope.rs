@@ -1,15 +1,14 @@
-//! What a motion with limited rates and accelerations has gone through by a time at most.
-//!
-//! The docs of [`super::ramps`] define `m_i(t; T)` and `s(T)`.
+//! The envelope `m_i(t; T)` of the rates of a motion, and its integral `s(T)`; both are defined in
+//! [`super::ramps`].
 
 use super::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
-/// A box is no narrower than this share of the rates, relative to its widest axis: more extreme
-/// boxes have many extremals and gain nothing.
-const NARROWEST: f64 = 0.1;
-/// Halvings of the duration: to rounding.
-const HALVINGS: usize = 60;
+/// Smallest width of a box, as a share of the rate limit and relative to its widest axis: more
+/// extreme boxes have many extremals and gain nothing.
+const MIN_SHARE: f64 = 0.1;
+/// Bisections of a duration, enough to reach rounding.
+const BISECTIONS: usize = 60;
 
 /// Limits with the rates at the two ends.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +26,7 @@ impl RateEnvelope {
         self.limits.rates_rad_s[axis].min(begin).min(end)
     }
 
-    /// Times at which some `m_i` may have a kink, in order, with both ends.
+    /// Times at which some `m_i` may have a kink, sorted, with both ends.
     fn kinks(&self, duration: f64) -> [f64; 11] {
         let mut times = [0.0; 11];
         times[1] = duration;
@@ -36,7 +35,7 @@ impl RateEnvelope {
                 self.limits.rates_rad_s[i],
                 self.limits.accelerations_rad_s2[i],
             );
-            // A free end has no ramp: beyond the rate it bounds nothing.
+            // An end rate above the limit gives no ramp.
             let begin = self.ends.begin_rad_s[i].min(rate);
             let end = self.ends.end_rad_s[i].min(rate);
             let at = [
@@ -52,7 +51,8 @@ impl RateEnvelope {
         times
     }
 
-    /// Means of `m_i` over a duration, none much narrower than the widest in its share of the limit.
+    /// Means of `m_i` over a duration, each raised to at least [`MIN_SHARE`] of the largest share
+    /// of its limit.
     pub(super) fn mean_rates(&self, duration: f64) -> Vector3<f64> {
         let kinks = self.kinks(duration);
         let shares = Vector3::from_fn(|i, _| {
@@ -65,7 +65,7 @@ impl RateEnvelope {
                 .sum();
             area / (duration * self.limits.rates_rad_s[i])
         });
-        let least = NARROWEST * shares.max();
+        let least = MIN_SHARE * shares.max();
         self.limits
             .rates_rad_s
             .component_mul(&shares.map(|share| share.max(least)))
@@ -100,13 +100,13 @@ impl RateEnvelope {
         sum
     }
 
-    /// A duration whose `s` is at most the least time of the turns, to rounding: `s^-1` from below.
+    /// The duration `s^-1(least)`, from below and to rounding.
     pub(super) fn duration_of(&self, rates: &Vector3<f64>, least: f64) -> f64 {
         self.longest_short_of(rates, least, 0.0, 0.0)
     }
 
-    /// The longest duration `T >= from` with `s(T) + slope (T - from) < least`, to rounding and from
-    /// below; `from` itself if there is none.
+    /// The longest duration `T >= from` with `s(T) + slope (T - from) < least`, to rounding and
+    /// from below; `from` itself if there is none.
     pub(super) fn longest_short_of(
         &self,
         rates: &Vector3<f64>,
@@ -116,7 +116,7 @@ impl RateEnvelope {
     ) -> f64 {
         let short =
             |duration: f64| self.effective(rates, duration) + slope * (duration - from) < least;
-        // No slew is faster than the largest rates of all make it.
+        // A lower bound on the duration: all rates at their limits.
         let mut step = least * rates.component_div(&self.limits.rates_rad_s).min();
         let mut low = from;
         while short(from + step) {
@@ -124,7 +124,7 @@ impl RateEnvelope {
             step *= 2.0;
         }
         let mut high = from + step;
-        for _ in 0..HALVINGS {
+        for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             if short(middle) {
                 low = middle;

@@ -1,4 +1,4 @@
-//! Branch and bound over the sequences of one target.
+//! Branch and bound over the arc sequences that reach one target.
 
 use super::RateBox;
 use super::interior::{InteriorTurn, MARGIN, where_zero};
@@ -11,50 +11,51 @@ use super::turns::{
 use crate::math::quaternion::Quat;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Cells narrower than this are not split, whatever their bound, rad.
+/// Width below which cells are not split, rad.
 const NARROW: f64 = 1e-9;
-/// Turn of the interior over half a cell below which the outer arcs are worth a look, rad.
-const CLOSE_LOOK: f64 = 0.25;
-/// Most flips that are followed near an axis; beyond, the bound of the tail is reported.
+/// Turn of the interior over half a cell below which the terminal arcs are computed, rad.
+const MAX_TURN_FOR_TERMINAL: f64 = 0.25;
+/// Largest number of flips near an axis; the bound of longer sequences becomes part of the result.
 const MAX_FLIPS: usize = 4096;
-/// Rounding allowance for angles that wrap, rad.
+/// Rounding allowance for angles modulo a full turn, rad.
 const WRAP: f64 = 1e-9;
-/// What rounding takes from a cosine of one: a candidate that seems to miss by less is taken to
-/// arrive. Should it not, its time is too low, which the lower value can bear: it is the least of all
+/// Rounding of a cosine near one: a candidate that misses by less counts as reaching the target. If
+/// it does not, its time is too low, which keeps the lower value valid: it is the minimum of all
 /// bounds and of this time.
 const ROUNDED_AWAY: f64 = 1e-15;
-/// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
-/// thousand times faster than another, sequences have thousands of flips and a query would take minutes.
+/// Number of cells after which a query ends with a weaker bound. Ordinary queries take hundreds.
+/// Where one axis is a thousand times faster than another, sequences have thousands of flips, and
+/// an unlimited query would take minutes.
 const MAX_CELLS: usize = 100_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
 
-/// Which sequence, and how long its parts are (normalised).
+/// A motion: which sequence, with its normalised durations.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Candidate {
     /// The turn about its own axis.
     Eigenaxis,
     /// Three turns about body axes.
     Axes,
-    /// A sequence of the table.
+    /// A sequence with one free arc.
     ClosedForm {
         sequence: usize,
         image: usize,
-        outer: [f64; 2],
+        terminal: [f64; 2],
         parameter: f64,
     },
-    /// A two-flip or longer sequence of a family.
+    /// A sequence of a family.
     Family {
         family: usize,
         first: usize,
         flips: usize,
         image: usize,
-        outer: [f64; 2],
+        terminal: [f64; 2],
         parameter: f64,
     },
 }
 
-/// The state of a query; everything of fixed size.
+/// The state of a query; all parts have a fixed size.
 pub(super) struct SequenceSearch<'a> {
     table: &'a RateBox,
     q: Quat,
@@ -63,11 +64,12 @@ pub(super) struct SequenceSearch<'a> {
     probes: Probes,
     stack: [(f64, f64); STACK],
     tolerance: f64,
-    /// Least time of a kept bound_cell.
+    /// Smallest bound of the cells that are not split further, normalised.
     pub(super) lower: f64,
+    /// Time of the best motion, normalised.
     pub(super) upper: f64,
     pub(super) best: Candidate,
-    /// Cells looked at.
+    /// Number of cells so far.
     pub(super) cells: usize,
 }
 
@@ -94,7 +96,7 @@ impl<'a> SequenceSearch<'a> {
         }
     }
 
-    /// Goes through all sequences that can matter.
+    /// Searches all sequences that can be faster than the best motion.
     pub(super) fn run(&mut self) {
         let table = self.table;
         self.two_arcs();
@@ -113,12 +115,12 @@ impl<'a> SequenceSearch<'a> {
             self.search_closed_form(sequence, table.promising + index);
         }
         if self.is_spent() {
-            // Of what was not looked at nothing else is known.
+            // The bound of everything that was not searched.
             self.keep_bound(self.swing_time().max(floor));
         }
     }
 
-    /// A time that no motion undercuts as none moves a body axis faster than the other two rates do.
+    /// Lower bound on the time to the target: a body axis is moved by the other two rates only.
     fn swing_time(&self) -> f64 {
         let c = &self.table.levels.c;
         let time = |axis: usize| {
@@ -133,14 +135,15 @@ impl<'a> SequenceSearch<'a> {
         self.cells >= MAX_CELLS
     }
 
-    /// A time that no motion to the target undercuts.
+    /// Lower bound on the time to the target that needs no search.
     pub(super) fn floor(&self) -> f64 {
         // The rate's length is at most one.
         let angle = 2.0 * (self.q[0].hypot(self.q[1]).hypot(self.q[2])).atan2(self.q[3].abs());
         angle.max(small_angle_bound(&self.q, &self.table.levels.c))
     }
 
-    /// Sequences of one and two arcs; the first flips of the three vertex families are all there are.
+    /// Sequences of one and two arcs; the first flips of the three vertex families cover all of
+    /// them.
     fn two_arcs(&mut self) {
         let c = self.table.levels.c;
         for (family, image) in (0..3).flat_map(|family| (0..4).map(move |image| (family, image))) {
@@ -153,12 +156,12 @@ impl<'a> SequenceSearch<'a> {
                     continue;
                 }
                 if let Some(terminal) = probe.terminal_arcs(&InteriorTurn::NONE.turn, MARGIN) {
-                    let sequence = move |outer| Candidate::Family {
+                    let sequence = move |terminal| Candidate::Family {
                         family,
                         first,
                         flips: 1,
                         image,
-                        outer,
+                        terminal,
                         parameter: 0.0,
                     };
                     self.bound_cell(&terminal, 0.0, 0.0, f64::INFINITY, sequence);
@@ -167,7 +170,8 @@ impl<'a> SequenceSearch<'a> {
         }
     }
 
-    /// Takes the centre of a cell as a candidate, and bounds the cell: whether it must be split.
+    /// Tries the centre of a cell as a candidate and bounds the cell; returns whether it must be
+    /// split.
     fn bound_cell(
         &mut self,
         terminal: &TerminalArcs,
@@ -187,7 +191,7 @@ impl<'a> SequenceSearch<'a> {
             let mut time = interior + 2.0 * (first + last);
             let missing = 1.0 - cosine;
             if missing > ROUNDED_AWAY {
-                // The turn that is missing, about its own axis at the worst.
+                // The missing turn takes no longer than about its own axis.
                 time += 2.0 * (1.0 - missing).acos() / self.table.slowest;
             }
             if time < self.upper {
@@ -202,7 +206,7 @@ impl<'a> SequenceSearch<'a> {
         false
     }
 
-    /// A sequence whose equation is a sinusoid: its roots in closed form.
+    /// Searches a sequence whose equation is a sinusoid, with its roots in closed form.
     fn search_closed_form(&mut self, sequence: &ClosedFormSequence, index: usize) {
         for image in 0..4 {
             if sequence.fixed + sequence.range.0 >= self.upper {
@@ -229,7 +233,7 @@ impl<'a> SequenceSearch<'a> {
             };
             for angle in [sequence.phase - middle, sequence.phase + middle] {
                 let angle = angle.rem_euclid(TAU);
-                // Next to a full turn the parameter may in truth be next to nothing.
+                // An angle near a full turn may be near zero within its error.
                 let angle = if angle + half >= TAU {
                     angle - TAU
                 } else {
@@ -271,10 +275,10 @@ impl<'a> SequenceSearch<'a> {
             } else {
                 f64::INFINITY
             };
-            let candidate = move |outer| Candidate::ClosedForm {
+            let candidate = move |terminal| Candidate::ClosedForm {
                 sequence: index,
                 image,
-                outer,
+                terminal,
                 parameter,
             };
             let split = self.bound_cell(
@@ -300,10 +304,10 @@ impl<'a> SequenceSearch<'a> {
         self.lower = self.lower.min(bound);
     }
 
-    /// The sequences of a gap, by their number of flips, until none can be shorter.
+    /// Searches the sequences of a family by their number of flips, until none can be faster.
     fn family(&mut self, index: usize, floor: f64) {
         let family = &self.table.families[index];
-        // Sequences with two flips are among the closed_forms.
+        // Sequences with two flips have a closed form.
         for flips in 3.. {
             let arcs = (flips - 1) as f64;
             let longest = family.range.1.min(self.upper / arcs);
@@ -337,8 +341,9 @@ impl<'a> SequenceSearch<'a> {
         }
     }
 
-    /// Least times of sequences near an axis whose arcs last at most so long, when the rate about the
-    /// axis is positive and when it is negative: infinite if the target swings too far from it.
+    /// Lower bounds on the times of sequences near an axis whose arcs are no longer than `longest`,
+    /// for a positive and for a negative rate about the axis; infinite if the target's swing is too
+    /// large.
     fn by_twist(&self, axis: usize, longest: f64) -> [f64; 2] {
         let levels = &self.table.levels;
         let cone = levels.cone(axis, longest);
@@ -384,7 +389,7 @@ impl<'a> SequenceSearch<'a> {
             let tip = rotate(&interior.turn, &end);
             let value = dot(&begin, &tip) - target;
             let slope = dot(&begin, &cross(&interior.velocity, &tip));
-            // |f''| <= (sum of the speeds)^2.
+            // |f''| <= (sum of the speeds)^2, with corners of length one.
             let curvature = arcs * arcs;
             if value.abs() > slope.abs() * half + 0.5 * curvature * half * half + MARGIN {
                 continue;
@@ -393,7 +398,7 @@ impl<'a> SequenceSearch<'a> {
                 self.keep_bound(arcs * low);
                 continue;
             }
-            if arcs * half < CLOSE_LOOK {
+            if arcs * half < MAX_TURN_FOR_TERMINAL {
                 let speed = dot(&interior.velocity, &interior.velocity).sqrt();
                 let eta = speed * half + 0.5 * curvature * half * half;
                 let probe = self.probes.of(image, first, last);
@@ -402,12 +407,12 @@ impl<'a> SequenceSearch<'a> {
                     continue;
                 };
                 let cap = 0.5 * high + WRAP;
-                let candidate = move |outer| Candidate::Family {
+                let candidate = move |terminal| Candidate::Family {
                     family: index,
                     first,
                     flips,
                     image,
-                    outer,
+                    terminal,
                     parameter: middle,
                 };
                 if !self.bound_cell(&terminal, arcs * low, arcs * middle, cap, candidate) {
@@ -418,26 +423,40 @@ impl<'a> SequenceSearch<'a> {
                     continue;
                 }
             }
-            for (from, to) in where_zero(value, slope, curvature, half)
-                .into_iter()
-                .flatten()
-            {
-                // A cell that hardly shrank is halved.
-                if to - from > 1.2 * half {
-                    let cut = 0.5 * (from + to);
-                    self.stack[open] = (middle + from, middle + cut);
-                    self.stack[open + 1] = (middle + cut, middle + to);
-                    open += 2;
-                } else {
-                    self.stack[open] = (middle + from, middle + to);
-                    open += 1;
-                }
+            open = self.push_parts(
+                open,
+                middle,
+                half,
+                where_zero(value, slope, curvature, half),
+            );
+        }
+    }
+
+    /// Pushes parts of a cell, given relative to its middle, onto the stack; a part that is hardly
+    /// narrower than the cell is halved. Returns the new height of the stack.
+    fn push_parts(
+        &mut self,
+        mut open: usize,
+        middle: f64,
+        half: f64,
+        parts: [Option<(f64, f64)>; 3],
+    ) -> usize {
+        for (from, to) in parts.into_iter().flatten() {
+            if to - from > 1.2 * half {
+                let cut = 0.5 * (from + to);
+                self.stack[open] = (middle + from, middle + cut);
+                self.stack[open + 1] = (middle + cut, middle + to);
+                open += 2;
+            } else {
+                self.stack[open] = (middle + from, middle + to);
+                open += 1;
             }
         }
+        open
     }
 }
 
-/// Least time of the outer arcs of a cell.
+/// Lower bound on the time of the terminal arcs of a cell.
 fn least_terminal_time(terminal: &TerminalArcs, cap: f64) -> f64 {
     2.0 * terminal.least(cap).unwrap_or(0.0)
 }

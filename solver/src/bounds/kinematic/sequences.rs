@@ -1,7 +1,8 @@
-//! The extremals as sequences: a first arc, an interior that depends on one parameter, a last arc.
+//! The extremals as arc sequences: a first arc, an interior that depends on one parameter, a last
+//! arc.
 //!
-//! Every sequence starts in the octant `(+, +, +)` or `(-, -, -)`; the other six follow by conjugation
-//! with half turns about the body axes, which the search applies to the target instead.
+//! Every sequence starts in the octant `(+, +, +)` or `(-, -, -)`. The other six follow by
+//! conjugation with half turns about the body axes, which the search applies to the target instead.
 
 use super::levels::{Levels, RANGE_SLACK, others};
 use super::turns::{about, chain, cross, dot, rotate};
@@ -19,7 +20,7 @@ pub(super) fn corner(c: &[f64; 3], octant: OctantBits) -> [f64; 3] {
     [0, 1, 2].map(|i| if octant >> i & 1 == 1 { -c[i] } else { c[i] })
 }
 
-/// The product of the signs of an octant: the folded costate moves against it.
+/// The product of the signs of an octant; the folded costate moves in the opposite sense.
 pub(super) fn sense(octant: OctantBits) -> i32 {
     if octant.count_ones().is_multiple_of(2) {
         1
@@ -33,12 +34,12 @@ pub(super) fn sense(octant: OctantBits) -> i32 {
 pub(super) struct InteriorArc {
     /// Rate vector: a corner, or on a dwell a face diagonal.
     pub(super) rate: [f64; 3],
-    /// Its duration; the parameter's value where there is none.
+    /// Its duration; `None` where it is the parameter.
     pub(super) duration: Option<f64>,
 }
 
-/// A sequence whose parameter is the duration of one arc: the interior is `P = cos(x / 2) U +
-/// sin(x / 2) W`, `x = speed p`, and the equation for `x` a sinusoid.
+/// A sequence whose parameter `p` is the duration of one arc. With `x = speed p` the interior is
+/// `P = cos(x / 2) U + sin(x / 2) W`, and the equation for `x` is a sinusoid.
 #[derive(Debug, Clone)]
 pub(super) struct ClosedFormSequence {
     /// Index into [`FIRST`].
@@ -49,7 +50,7 @@ pub(super) struct ClosedFormSequence {
     pub(super) speed: f64,
     /// Range of the parameter.
     pub(super) range: (f64, f64),
-    /// Whether the outer arcs may be no longer than the parameter.
+    /// Whether the terminal arcs may be no longer than the parameter.
     pub(super) capped: bool,
     /// `c_first . P c_last = offset + amplitude cos(x - phase)`.
     pub(super) offset: f64,
@@ -61,7 +62,7 @@ pub(super) struct ClosedFormSequence {
 }
 
 impl ClosedFormSequence {
-    /// From its interior, which has one arc without a duration.
+    /// The sequence with these interior arcs, one of which has no duration.
     pub(super) fn new(
         c: &[f64; 3],
         first: usize,
@@ -104,10 +105,12 @@ impl ClosedFormSequence {
     }
 }
 
-/// The sequences of a gap: the flips of two axes take turns, all interior arcs last equally long.
+/// The regular sequences of a gap: two axes flip alternately, and all interior arcs have one
+/// duration.
 #[derive(Debug, Clone)]
 pub(super) struct SequenceFamily {
-    /// The axis whose rate keeps its sign near that axis; `None` for the far side and a single wall.
+    /// The axis that never flips, near which the costate stays; `None` for the far side and for a
+    /// single wall.
     pub(super) vertex: Option<usize>,
     /// The axes that flip, first and second, for each of [`FIRST`].
     pub(super) flips: [[usize; 2]; 2],
@@ -154,7 +157,7 @@ impl SequenceFamily {
         families
     }
 
-    /// The octant after so many flips.
+    /// The octant after a number of flips.
     pub(super) fn octant(&self, first: usize, flips: usize) -> OctantBits {
         let [one, two] = self.flips[first];
         let mut octant = FIRST[first];
@@ -167,7 +170,7 @@ impl SequenceFamily {
         octant
     }
 
-    /// The interior of the sequence with so many flips.
+    /// The interior of the sequence with a number of flips.
     pub(super) fn steps(&self, c: &[f64; 3], first: usize, flips: usize) -> Vec<InteriorArc> {
         (1..flips)
             .map(|arc| InteriorArc {

@@ -1,9 +1,9 @@
-//! The sequences that dwell: extremals on the level of a saddle.
+//! The sequences with a dwell: extremals on the level of a saddle.
 //!
-//! The costate may rest on the saddle `M_j = 0`, `M` parallel to the face diagonal, with the rate
-//! parallel to it; on leaving, `w_j` has either sign. A later visit is passed or reflected. All
-//! dwells of an extremal are turns about the same axis in space and may be collected at the first
-//! one. Between visits the arcs have durations that the level fixes.
+//! The costate may rest on the saddle `M_j = 0`, where `M` and the rate are parallel to the face
+//! diagonal; on leaving, `w_j` has either sign. At a later visit it passes or is reflected. All
+//! dwells of an extremal are turns about the same axis in space and may be moved to the first
+//! visit. Between visits the level determines the durations of the arcs.
 
 use super::levels::Levels;
 use super::sequences::{ClosedFormSequence, FIRST, InteriorArc, OctantBits, corner, sense};
@@ -11,13 +11,13 @@ use super::turns::{about, best_axis_sequence, eigenaxis_time};
 use crate::math::quaternion::{Quat, product};
 use std::f64::consts::{PI, TAU};
 
-/// Most arcs of an interior.
+/// Largest number of arcs of an interior.
 const MAX_STEPS: usize = 500;
-/// A sequence of fixed arcs is no part of a shortest motion if it can be replaced by one shorter by
-/// this share.
+/// Relative saving from which a turn that replaces some fixed arcs shows that they are no part of a
+/// shortest motion.
 const CLEARLY_SHORTER: f64 = 1e-6;
 
-/// What the folded costate meets on its circle.
+/// What the folded costate reaches on its circle.
 #[derive(Debug, Clone, Copy)]
 enum CostateEvent {
     /// A saddle, where the sign of an axis is free.
@@ -26,7 +26,7 @@ enum CostateEvent {
     Wall(usize, i32),
 }
 
-/// One level and what lies on it, by azimuth.
+/// One level with its saddles and walls, by azimuth.
 struct Circle<'a> {
     c: &'a [f64; 3],
     horizon: f64,
@@ -35,7 +35,7 @@ struct Circle<'a> {
     sequences: &'a mut Vec<ClosedFormSequence>,
 }
 
-/// How far a sequence has been followed.
+/// The end of a sequence under construction.
 #[derive(Clone, Copy)]
 struct PartialSequence {
     /// Index of the first octant.
@@ -49,7 +49,7 @@ struct PartialSequence {
     fixed: f64,
 }
 
-/// All dwelling sequences whose fixed arcs last at most up to the horizon; `None` if there are more
+/// All dwelling sequences whose fixed arcs last less than the horizon; `None` if there are more
 /// than the limit.
 pub(super) fn sequences(
     levels: &Levels,
@@ -106,7 +106,7 @@ pub(super) fn sequences(
 }
 
 impl Circle<'_> {
-    /// Goes on from an event in all ways that there are.
+    /// Continues from an event in all possible ways.
     fn follow(&mut self, at: PartialSequence, steps: &mut Vec<InteriorArc>) -> Option<()> {
         match self.events[at.event].1 {
             CostateEvent::Wall(axis, _) => {
@@ -134,8 +134,8 @@ impl Circle<'_> {
         }
     }
 
-    /// Leaves an event in an octant: ends there with the last arc, or follows the arc to the next
-    /// event.
+    /// Continues from an event in an octant: adds the sequence that ends with this arc, and follows
+    /// the arc to the next event.
     fn leave(
         &mut self,
         at: PartialSequence,
@@ -152,7 +152,7 @@ impl Circle<'_> {
                 ClosedFormSequence::new(self.c, at.first, steps.clone(), octant, range, false);
             self.sequences.extend(sequence);
         }
-        // Refused rather than followed without end, should rounding make arcs vanish.
+        // Prevents endless recursion if rounding makes arcs vanish.
         if steps.len() == MAX_STEPS {
             return None;
         }
@@ -163,7 +163,7 @@ impl Circle<'_> {
         if event == at.event {
             arc = TAU;
         }
-        // Two walls without a saddle between them: no dwell will come.
+        // A second wall before any saddle: this sequence has no dwell.
         if at.dwell.is_none() && matches!(self.events[event].1, CostateEvent::Wall(..)) {
             return Some(());
         }
@@ -185,8 +185,8 @@ impl Circle<'_> {
         Some(())
     }
 
-    /// Whether some of the last arcs, back to the dwell at most, can be replaced by a faster turn:
-    /// then no shortest motion contains them.
+    /// Whether some of the last arcs, at most those since the dwell, can be replaced by a faster
+    /// turn: then no shortest motion contains them.
     fn replaceable(&self, steps: &[InteriorArc], dwell: Option<usize>) -> bool {
         let begin = dwell.map_or(0, |at| at + 1);
         let mut turn: Quat = [0.0, 0.0, 0.0, 1.0];

@@ -1,4 +1,5 @@
-//! The outer arcs that close a sequence: closed forms and what is known of them over a cell.
+//! The terminal arcs with which a sequence reaches its target: closed forms, and bounds over a
+//! cell.
 //!
 //! With `A = t_0 / 2`, `B = t_f / 2` and the interior `P`,
 //!
@@ -7,24 +8,24 @@
 //! ```
 //!
 //! where `C1 (cos u, sin u)` and `C2 (cos v, sin v)` are linear in `P`. The target is reached when
-//! the sum is one in size, both cosines of the same sign.
+//! the absolute value of the sum is one, with both cosines of the same sign.
 
 use super::sequences::{FIRST, OctantBits, corner};
 use crate::math::quaternion::{Quat, dot4, product};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Allowance for rounding in `C1 + C2`: each is the length of two scalar products of four terms of
-/// at most one, of quaternions that are unit to 1e-14; the sum is good to 5e-14.
+/// Allowance for rounding in `C1 + C2`. Each is the length of a pair of scalar products of four
+/// terms of at most one, of quaternions that are unit to 1e-14; the sum is accurate to 5e-14.
 const ROUNDING: f64 = 1e-13;
-/// Rounding of the scalar products that make up `C1 (cos u, sin u)`: it turns `u` by this over `C1`.
-/// (Errors of the interior itself are within the margin that cells are widened by.)
+/// Rounding of the scalar products in `C1 (cos u, sin u)`: an error of this size over `C1` in `u`.
+/// (Errors of the interior itself are within the margin by which cells are widened.)
 const COMPONENT: f64 = 2e-15;
 
-/// The target as sequences see it that begin and end in given octants.
+/// The target for sequences that begin and end in given octants.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Probe<'a> {
     image: &'a Image,
-    /// Index of the last octant or of its opposite.
+    /// Index of the last octant, or of its opposite.
     last: usize,
     /// Signs of the first and of the last octant.
     signs: [f64; 2],
@@ -33,7 +34,7 @@ pub(super) struct Probe<'a> {
 }
 
 /// An image of half the target's quaternion `q` under a half turn, with its products with the
-/// corners: octants that are opposite to each other differ by signs only.
+/// corners. Opposite octants differ in signs only.
 #[derive(Debug)]
 struct Image {
     /// `q / 2` and `c_0 q / 2`.
@@ -100,7 +101,7 @@ impl Probes {
     }
 }
 
-/// Half durations of the outer arcs, modulo half a turn, and how well they are known.
+/// Half durations of the terminal arcs, modulo half a turn, with bounds on their error over a cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TerminalArcs {
     u: f64,
@@ -115,8 +116,8 @@ pub(super) struct TerminalArcs {
 }
 
 impl Probe<'_> {
-    /// What closes an interior that is known within a turn of `2 half_eta`, rad: `None` when
-    /// nothing can.
+    /// The terminal arcs for an interior that is known within a turn of `2 half_eta`, rad; `None`
+    /// when no terminal arcs reach the target.
     pub(super) fn terminal_arcs(&self, interior: &Quat, half_eta: f64) -> Option<TerminalArcs> {
         // <q, P>, <c_0* q, P>, <q c_f*, P> and <c_0* q c_f*, P>, halved.
         let [first, last] = self.signs;
@@ -127,9 +128,9 @@ impl Probe<'_> {
         let both = first * last * dot4(both, interior);
         let (x1, y1, x2, y2) = (plain - both, begun + ended, plain + both, begun - ended);
         let (c1, c2) = ((x1 * x1 + y1 * y1).sqrt(), (x2 * x2 + y2 * y2).sqrt());
-        // The sum must reach the cosine of half the turn within which the interior is known, and
-        // cos x >= 1 - x^2 / 2. It never exceeds one: what it exceeds its least value by is known
-        // without the rounding of the sum.
+        // The sum must reach the cosine of half the turn within which the interior is known, where
+        // cos x >= 1 - x^2 / 2. As the sum never exceeds one, its excess over this value is at most
+        // `drop`, whatever its rounding.
         let drop = 0.5 * half_eta * half_eta;
         let excess = (c1 + c2 - (1.0 - drop) + ROUNDING).min(drop);
         if excess < 0.0 {
@@ -149,8 +150,9 @@ impl Probe<'_> {
     }
 }
 
-/// A bound on `acos(1 - excess / size)`: `2 asin(s)` with `s^2 = excess / (2 size)` and
-/// `asin s <= s + (pi / 2 - 1) s^3` (all terms of the series are positive), and rounding.
+/// An upper bound on `acos(1 - excess / size)`, which is `2 asin(s)` with
+/// `s^2 = excess / (2 size)`, from `asin s <= s + (pi / 2 - 1) s^3` (all terms of the series are
+/// positive), with an allowance for rounding.
 fn widest(excess: f64, size: f64) -> f64 {
     if excess >= 2.0 * size {
         return PI;
@@ -160,16 +162,16 @@ fn widest(excess: f64, size: f64) -> f64 {
 }
 
 impl TerminalArcs {
-    /// Least `A + B` over the cell; `None` when an outer arc must exceed `2 cap`.
+    /// Lower bound on `A + B` over the cell; `None` when a terminal arc must exceed `2 cap`.
     pub(super) fn least(&self, cap: f64) -> Option<f64> {
         let spread = 0.5 * (self.du + self.dv);
         if spread >= FRAC_PI_2 {
-            // One of the angles is badly known: use the other, known modulo pi.
+            // One of the angles is poorly known: use the other, which is known modulo pi.
             let (u, v) = (self.u.rem_euclid(PI), self.v.rem_euclid(PI));
             let by_sum = if u + self.du < PI { u - self.du } else { 0.0 };
             return Some(by_sum.max(v.min(PI - v) - self.dv).max(0.0));
         }
-        // Next to half a turn an angle may in truth be next to zero.
+        // An angle near half a turn may be near zero within its error.
         let low_side = |x: f64| if x + spread >= PI { x - PI } else { x };
         let (first, last) = (low_side(self.first), low_side(self.last));
         let (least_first, least_last) = ((first - spread).max(0.0), (last - spread).max(0.0));
@@ -180,8 +182,8 @@ impl TerminalArcs {
         Some(by_parts.max(least_first + least_last))
     }
 
-    /// Half durations of the outer arcs to try, with the cosine of half the miss: those of the
-    /// centre, and nothing instead of nearly half a turn.
+    /// Half durations of the terminal arcs to try, with the cosine of half the miss: those at the
+    /// cell's centre, and zero in place of nearly half a turn.
     pub(super) fn candidates(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let choices = |x: f64| [Some(x), (x > 3.0).then_some(0.0)].into_iter().flatten();
         choices(self.first).flat_map(move |first| {

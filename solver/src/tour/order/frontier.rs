@@ -1,14 +1,12 @@
-//! The open nodes, in order of their bounds, in bounded memory.
+//! The open nodes of the search tree, ordered by their bounds, in bounded memory.
 
 use super::node::SearchNode;
 use std::collections::BTreeSet;
 
-/// Memory for open nodes when nothing else is asked for: enough for some 300 000 nodes of twenty
-/// targets, little beside what the service may use.
+/// Default memory for open nodes, bytes: enough for some 300 000 nodes of twenty targets.
 pub(super) const DEFAULT_BYTES: usize = 64 << 20;
 
-/// At least this many nodes are kept, whatever the memory: fewer could not even hold the children
-/// of one node and a few of their siblings.
+/// Smallest capacity, whatever the memory: enough for the children of one node and a few others.
 const MIN_NODES: usize = 16;
 
 /// The open nodes.
@@ -19,7 +17,7 @@ pub(super) struct Frontier {
 }
 
 impl Frontier {
-    /// An empty frontier for so many targets within so many bytes.
+    /// An empty frontier for nodes with so many targets, within so many bytes.
     pub(super) fn new(targets: usize, bytes: usize) -> Self {
         let node_bytes = size_of::<SearchNode>() + targets * size_of::<usize>();
         Self {
@@ -38,7 +36,7 @@ impl Frontier {
         self.nodes.pop_first()
     }
 
-    /// Takes the worst node if there are more than fit.
+    /// Takes the node of the largest bound if there are more nodes than the capacity.
     pub(super) fn pop_excess(&mut self) -> Option<SearchNode> {
         if self.nodes.len() > self.capacity {
             self.nodes.pop_last()
@@ -90,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_nodes_are_the_excess() {
+    fn the_nodes_of_largest_bound_are_the_excess() {
         let mut frontier = Frontier::new(100, 0);
         for target in 0..MIN_NODES + 2 {
             frontier.insert(node(target as f64, &[target]));

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// A partial order with what is known about its completions.
+/// A prefix of orders with the bounds on its completions.
 #[derive(Debug, Clone)]
 pub(super) struct SearchNode {
     /// The fixed first targets; all of them in a leaf.
@@ -11,7 +11,7 @@ pub(super) struct SearchNode {
     pub(super) head: f64,
     /// Lower bound of every completion, s.
     pub(super) bound: f64,
-    /// Whether the node's own evaluation is in the bounds, or was tried in vain.
+    /// Whether the node's prefix has been evaluated, resolved or not.
     pub(super) evaluated: bool,
 }
 
@@ -27,7 +27,8 @@ impl SearchNode {
         }
     }
 
-    /// Takes in a better bound of the time until the last fixed target is left.
+    /// Raises the head to a bound of the time until the last fixed target is left, s, and the bound
+    /// with it; `rest` bounds the time after that, s.
     pub(super) fn raise_head(&mut self, head: f64, rest: f64) {
         self.head = self.head.max(head);
         self.bound = self.bound.max(self.head + rest);
@@ -43,7 +44,7 @@ impl SearchNode {
     }
 }
 
-/// Smallest bound first, then by the indices of the prefix.
+/// Smallest bound first, then lexicographic by the prefix.
 impl Ord for SearchNode {
     fn cmp(&self, other: &Self) -> Ordering {
         self.bound

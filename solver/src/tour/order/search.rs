@@ -1,4 +1,4 @@
-//! The loop: best-first in rounds.
+//! The loop of the branch and bound: best-first, in rounds.
 
 mod coupled;
 mod lagrangian;
@@ -15,33 +15,35 @@ use crate::run::stop::{StopReason, StopSignal};
 use reporter::SearchReporter;
 use tree::SearchTree;
 
-/// Fewest and most nodes evaluated per round, and their share of the nodes explored before. The later
-/// nodes of a round are evaluated without the knowledge that the earlier ones bring, so a part of
-/// them is wasted: the share bounds that part, the fewest occupy a small machine from the beginning,
-/// the most a large one later on. All are properties of the search, not of the machine: were they
-/// the number of threads, the nodes explored would depend on that.
+/// Smallest number of nodes evaluated per round. A round has as many nodes as this, [`MAX_NODES`]
+/// and [`EXPLORED_PER_NODE`] allow. The later nodes of a round are evaluated without the results of
+/// the earlier ones, and some of that work is wasted; the share of the nodes explored before limits
+/// the waste. None of the three depends on the number of threads, so that the nodes explored do not
+/// either.
 const MIN_NODES: u64 = 4;
+/// Largest number of nodes evaluated per round.
 const MAX_NODES: u64 = 32;
+/// Nodes explored before a round for each of its nodes.
 const EXPLORED_PER_NODE: u64 = 8;
 
-/// After so many nodes the most promising one is completed by the pair table and flown at once.
-/// Best-first search alone reaches whole orders late, and a stopped search should have a good one;
-/// an order costs as much as a few prefixes, so this may not happen often.
+/// Nodes between two probes. A probe completes the most promising prefix by the pair table and
+/// evaluates the order at once: best-first search alone reaches whole orders late, and a stopped
+/// search should have a good one. An order costs as much as a few prefixes.
 const PROBE_NODES: u64 = 24;
 
-/// After so many nodes a search over few targets that goes on asks for the bounds of longer paths.
+/// Number of explored nodes at which a search over few targets computes the triple bounds.
 const TIGHTEN_NODES: u64 = 160;
 
-/// After so many nodes it prices the legs.
+/// Number of explored nodes at which a search over few targets computes the Lagrangian bounds.
 const LAGRANGIAN_NODES: u64 = 960;
 
-/// What is evaluated in a round.
+/// A unit of work of a round.
 enum RoundTask {
     Node(SearchNode),
     Probe(Vec<usize>),
 }
 
-/// TaskResult to a task.
+/// Result of a task.
 #[derive(Clone, Copy)]
 enum TaskResult {
     Prefix(Evaluation),
@@ -57,23 +59,23 @@ impl TaskResult {
     }
 }
 
-/// A search under way.
+/// A running search.
 struct OrderSearch<'a> {
     model: &'a dyn TourModel,
     pool: &'a SolverPool,
     stop: &'a StopSignal,
     node_limit: u64,
-    /// Number of explored nodes at which an order is probed next.
+    /// Number of explored nodes at which the next probe is made.
     next_probe: u64,
-    /// Whether the bounds of longer paths have been asked for.
+    /// Whether the triple bounds have been computed.
     tightened: bool,
-    /// Whether legs have been lagrangian.
+    /// Whether the Lagrangian bounds have been computed.
     lagrangian: bool,
     tree: SearchTree,
     reporter: SearchReporter<'a>,
 }
 
-/// Searches the best orders; some may have been flown before.
+/// Searches the best orders. `known` lists orders whose duration is known already.
 #[must_use]
 pub fn search(
     model: &dyn TourModel,
@@ -94,10 +96,10 @@ pub fn search(
         tree: SearchTree::new(model, settings, stop),
         reporter: SearchReporter::new(observer),
     };
-    for flown in known {
-        let answer = TourEvaluation::Solved(flown.duration_s);
-        search.tree.record_candidate(&flown.order, answer);
-        search.reporter.is_told(flown.duration_s);
+    for order in known {
+        let answer = TourEvaluation::Solved(order.duration_s);
+        search.tree.record_candidate(&order.order, answer);
+        search.reporter.skip(order.duration_s);
     }
     let mut end = search
         .evaluate_candidates()
@@ -115,14 +117,14 @@ pub fn search(
 }
 
 impl OrderSearch<'_> {
-    /// Flies the orders that the pair table recommends, for a first incumbent.
+    /// Evaluates the orders that are short in the pair table, for a first incumbent.
     fn evaluate_candidates(&mut self) -> Option<SearchEnd> {
         let candidates = self.tree.candidates(self.stop);
         let interrupted = self.evaluate_new(&candidates);
         interrupted.then(|| self.stopped())
     }
 
-    /// Flies the orders that have not been flown; whether that was interrupted.
+    /// Evaluates those orders that have not been evaluated; returns whether that was interrupted.
     fn evaluate_new(&mut self, orders: &[Vec<usize>]) -> bool {
         let fresh: Vec<&Vec<usize>> = orders
             .iter()
@@ -137,7 +139,7 @@ impl OrderSearch<'_> {
         interrupted
     }
 
-    /// One round; says when it was the last.
+    /// Explores one round; returns why the search ends, if it does.
     fn explore_round(&mut self) -> Option<SearchEnd> {
         if self.tree.is_exhausted() {
             return Some(SearchEnd::Exhausted);
@@ -173,7 +175,7 @@ impl OrderSearch<'_> {
         interrupted.then(|| self.stopped())
     }
 
-    /// The nodes of the next round, and now and then an order to probe.
+    /// The tasks of the next round: nodes, and an order if a probe is due.
     fn take_round(&mut self, size: u64) -> Vec<RoundTask> {
         let nodes = self.tree.take_round(size, self.pool, self.stop);
         let explored = self.tree.statistics().nodes_explored;
@@ -192,7 +194,7 @@ impl OrderSearch<'_> {
             .collect()
     }
 
-    /// Asks the model.
+    /// Evaluates a task with the model.
     fn evaluate(&self, task: &RoundTask) -> TaskResult {
         match task {
             RoundTask::Probe(order) => TaskResult::Tour(self.evaluate_order(order)),
@@ -209,7 +211,7 @@ impl OrderSearch<'_> {
             return TourEvaluation::Stopped;
         }
         match self.model.tour(order) {
-            // A duration that is no number is no result.
+            // A duration that is not finite is no result.
             TourEvaluation::Solved(duration_s) if !duration_s.is_finite() => {
                 TourEvaluation::Unresolved
             }
@@ -217,31 +219,32 @@ impl OrderSearch<'_> {
         }
     }
 
-    /// Puts the answer to a node into the tree.
+    /// Records the result for a node in the tree.
     fn merge(&mut self, node: SearchNode, answer: TaskResult) {
         match answer {
             TaskResult::Prefix(Evaluation::Value(bound_s)) => {
-                self.tree.bounded(node, Some(bound_s))
+                self.tree.prefix_evaluated(node, Some(bound_s));
             }
-            TaskResult::Prefix(Evaluation::Unresolved) => self.tree.bounded(node, None),
+            TaskResult::Prefix(Evaluation::Unresolved) => self.tree.prefix_evaluated(node, None),
             TaskResult::Tour(TourEvaluation::Solved(duration_s)) => {
-                self.tree.leaf_solved(&node, duration_s)
+                self.tree.leaf_solved(&node, duration_s);
             }
-            TaskResult::Tour(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
+            TaskResult::Tour(TourEvaluation::Unresolved) => self.tree.leaf_unresolved(&node),
             TaskResult::Prefix(Evaluation::Stopped) | TaskResult::Tour(TourEvaluation::Stopped) => {
                 self.tree.put_back(node);
             }
         }
     }
 
-    /// Puts the answer to a probe into the tree.
+    /// Records the result of a probe in the tree.
     fn merge_probe(&mut self, order: &[usize], answer: TaskResult) {
         if let TaskResult::Tour(answer) = answer {
             self.tree.record_candidate(order, answer);
         }
     }
 
-    /// The signal's reason; a model that stops of its own accord counts as a request.
+    /// The end with the signal's reason. Where a model stops without the signal, the reason is a
+    /// request.
     fn stopped(&self) -> SearchEnd {
         SearchEnd::Stopped(self.stop.reason().unwrap_or(StopReason::Requested))
     }

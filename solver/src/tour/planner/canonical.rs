@@ -12,8 +12,8 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
 use std::fmt::Write;
 
-/// Version of the canonical form and of the numerics behind it. It is part of the identity: legs stored
-/// by another version are not found.
+/// Version of the canonical form and of the numerics behind it. It is part of the identity: legs
+/// stored by another version are not found.
 const VERSION: &str = "leg-8";
 
 /// A leg in the frame in which it begins at the identity attitude.
@@ -103,8 +103,8 @@ impl CanonicalLeg {
     }
 }
 
-/// A waypoint with its attitude in the leg's frame. Conditions that leave nothing free are replaced by
-/// the wheel momenta that they imply, so that equivalent conditions have one identity.
+/// A waypoint with its attitude in the leg's frame. Conditions that leave nothing free are replaced
+/// by the wheel momenta that they imply, so that equivalent conditions have one identity.
 fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoint {
     let mut settled = Waypoint {
         attitude,

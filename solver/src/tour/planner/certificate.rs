@@ -1,15 +1,15 @@
 //! Verification of the certified bounds of a plan.
 //!
-//! The bounds of a plan may come from anywhere. For the bound of a leg, a leg certificate is made from
-//! the scenario (box, turn and end rates; nothing of the flight), the plan's bound is put into it, and
-//! [`crate::bounds::certify`] proves it in interval arithmetic or says why it cannot. The bound on all
-//! tours rests on every leg that can be part of a tour: their bounds are verified in the same way, legs
-//! that cannot be verified count as 0, and the plan's bound must not exceed the shortest path through
-//! the table of these bounds.
+//! The bounds of a plan may come from anywhere. For the bound of a leg, a leg certificate is made
+//! from the scenario (box, turn and end rates; nothing of the flight), the plan's bound is put into
+//! it, and [`crate::bounds::certify`] proves it in interval arithmetic or says why it cannot. The
+//! bound on all tours rests on every leg that can be part of a tour: their bounds are verified in
+//! the same way, legs that cannot be verified count as 0, and the plan's bound must not exceed the
+//! shortest path through the table of these bounds.
 //!
-//! The premises of a certificate (box, turn, end rates) are compared with the scenario by formulas other
-//! than those that made them (`premises`). The search for the shortest path runs in ordinary arithmetic
-//! and is not verified.
+//! The premises of a certificate (box, turn, end rates) are compared with the scenario by formulas
+//! other than those that made them (`premises`). The search for the shortest path runs in ordinary
+//! arithmetic and is not verified.
 
 mod premises;
 
@@ -31,8 +31,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct PlanCertificate {
     /// The bounds of its legs.
     pub legs: Vec<LegCertificate>,
-    /// Lower bound on all tours, s, in any order that the scenario admits; `None` when the plan gives
-    /// none.
+    /// Lower bound on all tours, s, in any order that the scenario admits; `None` when the plan
+    /// gives none.
     pub lower_bound_s: Option<f64>,
     /// Duration of the plan, s, when it is given.
     pub total_time_s: Option<f64>,
@@ -137,8 +137,9 @@ impl CheckedCertificate {
 
 /// Verifies the certified bounds of a plan in interval arithmetic.
 ///
-/// Takes some 10 ms for every leg with a bound and, if there is a bound on all tours, as much for every
-/// distinct leg that can be part of a tour, divided among the workers. The leg store is not used.
+/// Takes some 10 ms for every leg with a bound and, if there is a bound on all tours, as much for
+/// every distinct leg that can be part of a tour, divided among the workers. The leg store is not
+/// used.
 #[must_use]
 pub fn verify_certificate(
     scenario: &Scenario,
@@ -272,8 +273,8 @@ impl CertificateVerifier<'_> {
         })
     }
 
-    /// The verdict on a bound, s, where it needs no proof. `duration_s` is the duration in the plan of
-    /// what the bound is for, s.
+    /// The verdict on a bound, s, where it needs no proof. `duration_s` is the duration in the plan
+    /// of what the bound is for, s.
     fn early_verdict(&self, bound: f64, duration_s: Option<f64>) -> Option<Verdict> {
         if let Some(duration_s) = duration_s.filter(|duration| bound > *duration) {
             return Some(Verdict::Rejected(Objection::AboveDuration { duration_s }));

@@ -15,8 +15,8 @@ use std::time::Instant;
 /// Where the lower bound on the tours in a prescribed order comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoundFrom {
-    /// The certified bounds of its legs. No leg is solved for it, and the plan has no rest-to-rest legs
-    /// for comparison.
+    /// The certified bounds of its legs. No leg is solved for it, and the plan has no rest-to-rest
+    /// legs for comparison.
     Certificates,
     /// Its legs solved one by one with free ends. This bound is tighter and doubles the work.
     Legs,
@@ -36,12 +36,12 @@ pub enum OrderError {
     NotAdmitted,
 }
 
-/// Solves the minimum-time tour of the targets in a prescribed order: torques, bound and verification,
-/// without a search.
+/// Solves the minimum-time tour of the targets in a prescribed order: torques, bound and
+/// verification, without a search.
 ///
 /// `order` lists indices into [`Scenario::targets`]; the work is linear in their number. The flight
-/// equals that of [`super::solve`] for the same order. The bound holds for this order only, so the plan
-/// is never called optimal.
+/// equals that of [`super::solve`] for the same order. The bound holds for this order only, so the
+/// plan is never called optimal.
 ///
 /// # Errors
 ///
@@ -103,8 +103,8 @@ fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: R
     }
 }
 
-/// The legs between neighbours of a route, and those between places that become neighbours because a
-/// place covered by its neighbour is no waypoint.
+/// The legs between neighbours of a route, and those between places that become neighbours because
+/// a place covered by its neighbour is no waypoint.
 fn legs_of(places: &Places<'_>, route: &[Place]) -> Vec<(Place, Place)> {
     let mut legs = Vec::new();
     for (i, from) in route.iter().enumerate() {

@@ -82,8 +82,8 @@ pub(super) fn joined(
     Some((guess, intervals))
 }
 
-/// The solution of all but the last leg of a route, with a perturbed eigenaxis slew as its last leg;
-/// `None` where that solution did not converge.
+/// The solution of all but the last leg of a route, with a perturbed eigenaxis slew as its last
+/// leg; `None` where that solution did not converge.
 pub(super) fn extended(
     legs: &LegSolver<'_>,
     shorter: &LegSolution,

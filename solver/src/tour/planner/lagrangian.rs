@@ -15,8 +15,8 @@ use nalgebra::DVector;
 impl Tours<'_> {
     /// The costates at the targets between the legs of an order, from the solution of its tour.
     ///
-    /// `None` when the resolution asks for polishing: Lagrangian legs are not polished, and an unpolished
-    /// leg is longer than the bound may be.
+    /// `None` when the resolution asks for polishing: Lagrangian legs are not polished, and an
+    /// unpolished leg is longer than the bound may be.
     pub(super) fn flight_costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         if self.places.resolution.polished {
             return None;
@@ -38,8 +38,8 @@ impl Tours<'_> {
         (costates.len() + 2 == route.len()).then_some(costates)
     }
 
-    /// Minimum over a leg's motions of its duration plus the costate terms of its boundary states, s.
-    /// The initial guess is the leg with free ends.
+    /// Minimum over a leg's motions of its duration plus the costate terms of its boundary states,
+    /// s. The initial guess is the leg with free ends.
     pub(super) fn solve_lagrangian_leg(
         &self,
         leg: [Place; 2],
@@ -56,7 +56,7 @@ impl Tours<'_> {
         let perturbed_eigenaxis = (self.perturbed_eigenaxis(leg), self.intervals(&leg));
         let motions = [(free.profile, free.intervals), perturbed_eigenaxis].into_iter();
         for (motion, intervals) in motions.filter(|(motion, _)| motion.duration() > 0.0) {
-            let mut waypoints = self.program(&leg, &motion, &intervals);
+            let mut waypoints = self.signed_waypoints(&leg, &motion, &intervals);
             waypoints[0].costates = begin.as_ref().map(|costate| -costate);
             waypoints[1].costates.clone_from(&end);
             self.legs.count_solve();

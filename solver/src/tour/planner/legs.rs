@@ -1,7 +1,7 @@
 //! Solves legs between places, one by one and in tables.
 //!
-//! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a table,
-//! between the tables of one solve and, through the store, between solves.
+//! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a
+//! table, between the tables of one solve and, through the store, between solves.
 
 use super::canonical::CanonicalLeg;
 use super::from_store::leg_from_store;
@@ -30,8 +30,8 @@ pub(super) struct LegSolver<'a> {
     stop: &'a StopSignal,
     known: ByIdentity<Arc<SolvedLeg>>,
     certified: ByIdentity<CertifiedLeg>,
-    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report of
-    /// progress.
+    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report
+    /// of progress.
     reported: Mutex<(Option<f64>, Option<f64>)>,
     /// Number of legs solved.
     solved: AtomicU64,
@@ -77,8 +77,8 @@ impl<'a> LegSolver<'a> {
         self.report_progress(0, None);
     }
 
-    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all later
-    /// progress of the legs.
+    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all
+    /// later progress of the legs.
     pub(super) fn report_bounds(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
         {
             let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
@@ -120,11 +120,11 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
-    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal are
-    /// missing from the table.
+    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal
+    /// are missing from the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
         self.fill(kind, pairs, |done, total| {
-            self.report_progress(done, Some(total))
+            self.report_progress(done, Some(total));
         })
     }
 
@@ -163,7 +163,7 @@ impl<'a> LegSolver<'a> {
         let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
-            let stored = self.from_store(&canonical);
+            let stored = self.load(&canonical);
             let from_store = stored.is_some();
             let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
             self.keep(&canonical, &leg, from_store);
@@ -173,7 +173,7 @@ impl<'a> LegSolver<'a> {
             leg,
             mirrored: canonical.mirrored,
         };
-        placed.from_attitude(&self.places.waypoint(from).attitude)
+        placed.beginning_at(&self.places.waypoint(from).attitude)
     }
 
     /// A table of [`Self::certified_legs`].
@@ -220,8 +220,8 @@ impl<'a> LegSolver<'a> {
         })
     }
 
-    /// Whether the solve is cancelled or out of time, so that not even stored legs are of use. After a
-    /// request for the best plan so far they still are.
+    /// Whether the solve is cancelled or out of time, so that not even stored legs are of use.
+    /// After a request for the best plan so far they still are.
     fn is_abandoned(&self) -> bool {
         let reason = self.stop.reason();
         reason.is_some_and(|reason| reason != StopReason::Requested)
@@ -241,7 +241,7 @@ impl<'a> LegSolver<'a> {
             if self.is_abandoned() {
                 return;
             }
-            if let Some(stored) = self.from_store(leg) {
+            if let Some(stored) = self.load(leg) {
                 self.keep(leg, &Arc::new(stored), true);
             } else if !self.stop.is_set() {
                 self.keep(leg, &Arc::new(self.solve(kind, leg)), false);
@@ -251,7 +251,7 @@ impl<'a> LegSolver<'a> {
     }
 
     /// A leg from the store, if its motion passes verification.
-    fn from_store(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
+    fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
         let faults = flight_faults(self.places, leg, &stored.solution.profile);
         if !faults.is_empty() {
@@ -265,7 +265,8 @@ impl<'a> LegSolver<'a> {
         Some(stored)
     }
 
-    /// Drops the certified bound of a leg whose duration is below it, and reports the contradiction.
+    /// Drops the certified bound of a leg whose duration is below it, and reports the
+    /// contradiction.
     fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
         let Some((bound_s, solved_s)) = solved.certified.zip(solved.solution.duration()) else {
             return;

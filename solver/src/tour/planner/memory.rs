@@ -1,8 +1,8 @@
 //! An estimate of the memory that a solve may need, made before it begins.
 //!
-//! Three parts grow with the scenario: the table of pairs with its motions; for few targets, the tables
-//! over subsets of the targets; and, where rates at targets are left free, the segments and nodes that
-//! a search keeps, up to fixed limits.
+//! Three parts grow with the scenario: the table of pairs with its motions; for few targets, the
+//! tables over subsets of the targets; and, where rates at targets are left free, the segments and
+//! nodes that a search keeps, up to fixed limits.
 
 use crate::leg::solve::Resolution;
 use crate::model::dynamics::{Authority, Dynamics};
@@ -11,8 +11,8 @@ use crate::tour::order::completion::MAX_EXACT_TARGETS;
 use crate::tour::order::lagrangian::{LagrangianPaths, MAX_LAGRANGIAN_TARGETS};
 use std::f64::consts::FRAC_PI_2;
 
-/// Memory of the smallest solve with its plan, bytes. This and the next two are the measured growth of
-/// the resident memory plus a quarter.
+/// Memory of the smallest solve with its plan, bytes. This and the next two are the measured growth
+/// of the resident memory plus a quarter.
 const BASE_BYTES: u64 = 3 << 20;
 /// Memory that each pair of places adds, bytes, for legs of [`MEASURED_INTERVALS`] intervals.
 const PAIR_BYTES: u64 = 5 << 10;
@@ -23,8 +23,8 @@ const MEASURED_INTERVALS: u64 = 18;
 /// Limit of the cached segments and the open nodes together, bytes.
 const MAX_SEARCH_BYTES: u64 = 144 << 20;
 
-/// Memory that solving a scenario may need, bytes. As a rule an overestimate, by a factor below four
-/// for scenarios of noticeable size.
+/// Memory that solving a scenario may need, bytes. As a rule an overestimate, by a factor below
+/// four for scenarios of noticeable size.
 #[must_use]
 pub fn memory_estimate(scenario: &Scenario) -> u64 {
     let count = scenario.targets().len();

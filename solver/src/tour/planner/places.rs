@@ -21,7 +21,8 @@ pub(super) struct Places<'a> {
     pub(super) dynamics: Dynamics,
     /// Which quaternion signs count as arrived.
     pub(super) arrival: Arrival,
-    /// Null-space momentum of the wheels at the start, N m s; rest-to-rest legs hold it at both ends.
+    /// Null-space momentum of the wheels at the start, N m s; rest-to-rest legs hold it at both
+    /// ends.
     pub(super) null: DVector<f64>,
     /// Discretization of the legs.
     pub(super) resolution: Resolution,
@@ -63,7 +64,8 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// The start and the targets of an order, followed by the end if the tour is `whole` and has one.
+    /// The start and the targets of an order, followed by the end if the tour is `whole` and has
+    /// one.
     pub(super) fn route(&self, order: &[usize], whole: bool) -> Vec<Place> {
         let end = self.scenario.end().filter(|_| whole).map(|_| Place::End);
         let targets = order.iter().map(|i| Place::Target(*i));
@@ -181,8 +183,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether a motion through one place satisfies the conditions of the other: the attitudes are the
-    /// same, and the conditions of the first imply those of the second.
+    /// Whether a motion through one place satisfies the conditions of the other: the attitudes are
+    /// the same, and the conditions of the first imply those of the second.
     pub(super) fn covers(&self, one: Place, other: Place) -> bool {
         let (one, other) = (self.waypoint(one), self.waypoint(other));
         let turn = self.arrival.turn(&one.attitude, &other.attitude);
@@ -199,8 +201,8 @@ impl<'a> Places<'a> {
         self.covers(one, other) || self.covers(other, one)
     }
 
-    /// Whether the time-reversed motion of every tour is a tour of the same targets: tours begin and
-    /// end in the same state, all legs are reversible, and there are no rules for the order.
+    /// Whether the time-reversed motion of every tour is a tour of the same targets: tours begin
+    /// and end in the same state, all legs are reversible, and there are no rules for the order.
     pub(super) fn are_symmetric(&self) -> bool {
         if self.scenario.end().is_none() || !self.scenario.order_rules().is_free() {
             return false;

@@ -35,8 +35,8 @@ pub(super) struct PlanBuilder<'a> {
     certified: Option<f64>,
     run: Run<'a>,
     begin: Instant,
-    /// The order whose flight was verified last, with that flight: a stopped search need not assemble
-    /// it again.
+    /// The order whose flight was verified last, with that flight: a stopped search need not
+    /// assemble it again.
     last: Mutex<Option<(Vec<usize>, VerifiedFlight)>>,
     /// A tour constructed without solving a program, used if the search finds none.
     constructed: Option<(SolvedOrder, VerifiedFlight)>,
@@ -73,14 +73,15 @@ impl<'a> PlanBuilder<'a> {
         self.certified = certified;
     }
 
-    /// The certified lower bound on all tours, s, unless a flight has contradicted a certified bound.
+    /// The certified lower bound on all tours, s, unless a flight has contradicted a certified
+    /// bound.
     pub(super) fn certified_bound(&self) -> Option<f64> {
         self.certified
             .filter(|_| self.tours.legs.bounds_are_trusted())
     }
 
-    /// Constructs a flight of an order, leg by leg, and reports it. Does nothing when a leg cannot be
-    /// constructed or the flight fails its verification.
+    /// Constructs a flight of an order, leg by leg, and reports it. Does nothing when a leg cannot
+    /// be constructed or the flight fails its verification.
     pub(super) fn construct(&mut self, order: Vec<usize>) {
         let route = self.tours.places.route(&order, true);
         let segments = constructed(self.tours.places, &route);
@@ -122,8 +123,8 @@ impl<'a> PlanBuilder<'a> {
         });
     }
 
-    /// Solves the rest-to-rest legs of the final order, with which its plan compares the tour's legs;
-    /// skipped when the solve is to stop.
+    /// Solves the rest-to-rest legs of the final order, with which its plan compares the tour's
+    /// legs; skipped when the solve is to stop.
     pub(super) fn compare_with_rest(&mut self, order: &SolvedOrder) {
         if self.tours.stop.is_set() {
             return;
@@ -367,8 +368,9 @@ impl PlanBuilder<'_> {
             .map_or(bound, |certified| certified.max(bound))
     }
 
-    /// The bound of a plan of this duration, s, and its kind. A certified bound is preferred when it
-    /// equals the other one up to rounding, or proves alone that the plan is within the requested gap.
+    /// The bound of a plan of this duration, s, and its kind. A certified bound is preferred when
+    /// it equals the other one up to rounding, or proves alone that the plan is within the
+    /// requested gap.
     fn bound(&self, other: f64, kind: LowerBoundKind, total: f64) -> (f64, LowerBoundKind) {
         let gap = self.tours.places.scenario.options().relative_gap;
         let enough = (other * (1.0 - ROUNDING)).min(total * (1.0 - gap));
@@ -391,8 +393,8 @@ impl SearchObserver for PlanBuilder<'_> {
     }
 
     fn improved(&self, incumbent: &Incumbent<'_>) {
-        // A plan that fails verification is not reported here; if it stays the best, the search ends
-        // with that failure.
+        // A plan that fails verification is not reported here; if it stays the best, the search
+        // ends with that failure.
         let kind = LowerBoundKind::NlpRelaxation;
         if let Ok(plan) = self.plan(incumbent, Optimality::Feasible, kind) {
             self.history.replace(&plan.statistics.history);

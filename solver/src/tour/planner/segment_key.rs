@@ -1,5 +1,5 @@
-//! What identifies a segment of a tour: its route, and what it is a part of, which decides how it is
-//! solved.
+//! What identifies a segment of a tour: its route, and what it is a part of, which decides how it
+//! is solved.
 
 use crate::tour::order::Place;
 

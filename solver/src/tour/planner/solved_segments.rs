@@ -1,20 +1,20 @@
 //! A cache of solved segments in bounded memory.
 //!
-//! The same route is solved differently as a beginning, a piece or a whole tour, and the solutions may
-//! differ. The key holds both, so that a result never depends on earlier look-ups.
+//! The same route is solved differently as a beginning, a piece or a whole tour, and the solutions
+//! may differ. The key holds both, so that a result never depends on earlier look-ups.
 //!
-//! The cache has two generations. When the young one is full it becomes the old one, and the segments
-//! of the previous old generation are dropped; a look-up moves a segment to the young generation. A
-//! dropped segment is solved again when it is needed, with the same result.
+//! The cache has two generations. When the young one is full it becomes the old one, and the
+//! segments of the previous old generation are dropped; a look-up moves a segment to the young
+//! generation. A dropped segment is solved again when it is needed, with the same result.
 
 use super::segment_key::SegmentKey;
 use crate::leg::multiphase::LegSolution;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Intervals of the motions of one generation. An interval with three wheels takes some 150 bytes, so
-/// that both generations together take at most 100 MB, whatever the number of targets: 40 000 segments
-/// of eight legs, or 1 700 tours of two hundred.
+/// Intervals of the motions of one generation. An interval with three wheels takes some 150 bytes,
+/// so that both generations together take at most 100 MB, whatever the number of targets: 40 000
+/// segments of eight legs, or 1 700 tours of two hundred.
 const MAX_GENERATION_INTERVALS: usize = 1 << 18;
 
 /// Solutions by the keys of their segments.

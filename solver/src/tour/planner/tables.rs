@@ -39,7 +39,7 @@ pub(super) struct TabulatedLeg {
 
 impl TabulatedLeg {
     /// The solution with a motion that begins at the given attitude.
-    pub(super) fn from_attitude(&self, begin: &Attitude) -> LegSolution {
+    pub(super) fn beginning_at(&self, begin: &Attitude) -> LegSolution {
         let solution = &self.leg.solution;
         let mut profile = if self.mirrored {
             solution.profile.reversed()

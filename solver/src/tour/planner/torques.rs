@@ -4,8 +4,8 @@ use crate::leg::profile::Profile;
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// Intervals shorter than this share of the whole flight are joined to their neighbour: their torque
-/// would be a quotient of two vanishing numbers.
+/// Intervals shorter than this share of the whole flight are joined to their neighbour: their
+/// torque would be a quotient of two vanishing numbers.
 pub(super) const MIN_PIECE_SHARE: f64 = 1e-9;
 
 /// Lengths, s, and wheel torques, N m, over some intervals of a motion; none of the pieces is

@@ -1,10 +1,11 @@
 //! A certified lower bound on whole tours, before any program is solved.
 //!
-//! Each leg of a tour lasts at least its certified bound, which holds whatever comes before and after
-//! the leg. So the shortest path through all targets in the table of these bounds, with settle and dwell
-//! times added, bounds all tours in all orders that the scenario admits. The order search finds a bound
-//! on that path: exact up to [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, and beyond
-//! that number the bound reached within a node limit.
+//! Each leg of a tour lasts at least its certified bound, which holds whatever comes before and
+//! after the leg. So the shortest path through all targets in the table of these bounds, with
+//! settle and dwell times added, bounds all tours in all orders that the scenario admits. The order
+//! search finds a bound on that path: exact up to
+//! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, and beyond that number the bound
+//! reached within a node limit.
 
 use super::additive_tours::AdditiveTours;
 use super::places::Places;
@@ -29,8 +30,8 @@ fn certified_tours<'a>(
     AdditiveTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
 }
 
-/// Certified lower bound on the duration of all tours, s, over all orders that the scenario admits. A leg
-/// without a proved bound counts as 0; `None` when no leg has one.
+/// Certified lower bound on the duration of all tours, s, over all orders that the scenario admits.
+/// A leg without a proved bound counts as 0; `None` when no leg has one.
 pub(super) fn tour_bound(
     places: &Places<'_>,
     bounds: &CertifiedTable,

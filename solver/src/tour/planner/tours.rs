@@ -3,8 +3,8 @@
 //! A waypoint that leaves nothing free separates the legs before and after it. So a tour falls into
 //! segments between such waypoints, each a multi-phase problem of its own. Segments recur in many
 //! orders and are cached. The initial guess of a beginning is the solution of the same beginning
-//! without its last place. The result depends on the places alone: a solution that the cache has dropped
-//! is solved again in the same way.
+//! without its last place. The result depends on the places alone: a solution that the cache has
+//! dropped is solved again in the same way.
 
 use super::from_store::{segment_from_store, stored_segment};
 use super::guesses::{InitialGuess, admits_rest, extended, joined};
@@ -35,8 +35,8 @@ const BEGINNING_GUESSES: [InitialGuess; 3] = [
 ];
 /// Initial guess of a whole tour whose solution as a piece has failed.
 const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
-/// Number of guesses tried for a short segment even if the first one converges: longer segments start
-/// from short ones and would inherit a local minimum.
+/// Number of guesses tried for a short segment even if the first one converges: longer segments
+/// start from short ones and would inherit a local minimum.
 const MIN_GUESSES_OF_SHORT: usize = 2;
 
 /// The tours of a scenario, evaluated by solving their segments.
@@ -83,8 +83,8 @@ impl<'a> Tours<'a> {
         self.certified.get().and_then(|legs| legs.bound(from, to))
     }
 
-    /// Sets the legs with free ends, whose durations are tighter bounds than the certified ones. Later
-    /// calls have no effect.
+    /// Sets the legs with free ends, whose durations are tighter bounds than the certified ones.
+    /// Later calls have no effect.
     pub(super) fn set_free_legs(&self, free: SolvedTable) {
         self.free.get_or_init(|| free);
     }
@@ -103,8 +103,8 @@ impl<'a> Tours<'a> {
         legs.collect()
     }
 
-    /// The solutions of a whole route's segments. The list ends early, with the failed solution, when a
-    /// segment did not converge or the solve was stopped.
+    /// The solutions of a whole route's segments. The list ends early, with the failed solution,
+    /// when a segment did not converge or the solve was stopped.
     ///
     /// In a symmetric scenario only one of an order and its reverse is solved; the other is that
     /// solution reversed in time.
@@ -122,8 +122,8 @@ impl<'a> Tours<'a> {
         solutions
     }
 
-    /// The reverse of a route in a symmetric scenario, when it comes first lexicographically: then it
-    /// is the one of the two that is solved.
+    /// The reverse of a route in a symmetric scenario, when it comes first lexicographically: then
+    /// it is the one of the two that is solved.
     fn preferred_reverse(&self, route: &[Place]) -> Option<Vec<Place>> {
         if !self.symmetric {
             return None;
@@ -158,8 +158,8 @@ impl<'a> Tours<'a> {
         solutions
     }
 
-    /// The solution of a segment. A segment of a whole tour has the solution of the piece with the same
-    /// route, if that converges.
+    /// The solution of a segment. A segment of a whole tour has the solution of the piece with the
+    /// same route, if that converges.
     pub(super) fn segment(&self, route: &[Place], kind: SegmentKind) -> Arc<LegSolution> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
@@ -204,16 +204,16 @@ impl<'a> Tours<'a> {
         let known = self.free_legs().and_then(|free| free.get(from, to));
         known.map_or_else(
             || self.legs.leg(LegKind::LowerBound, from, to),
-            |leg| leg.from_attitude(&self.places.waypoint(from).attitude),
+            |leg| leg.beginning_at(&self.places.waypoint(from).attitude),
         )
     }
 
     /// Solves a segment.
     ///
-    /// Where one of two neighbours covers the other, only the covering one is a waypoint of the program:
-    /// a motion that passes it satisfies both. A program with both would have a leg of zero length, whose
-    /// constraints are degenerate. The covered places are inserted into the solution as pauses of zero
-    /// duration.
+    /// Where one of two neighbours covers the other, only the covering one is a waypoint of the
+    /// program: a motion that passes it satisfies both. A program with both would have a leg of
+    /// zero length, whose constraints are degenerate. The covered places are inserted into the
+    /// solution as pauses of zero duration.
     fn solve_segment(&self, segment: &SegmentKey) -> LegSolution {
         let route = &segment.route;
         let mut distinct: Vec<Place> = Vec::new();
@@ -257,8 +257,8 @@ impl<'a> Tours<'a> {
         solution
     }
 
-    /// The best solution from several initial guesses: a chain of legs has local minima that none of its
-    /// legs has.
+    /// The best solution from several initial guesses: a chain of legs has local minima that none
+    /// of its legs has.
     fn solve_distinct(&self, route: &[Place], kind: SegmentKind) -> LegSolution {
         let short = route.len() - 1 <= MAX_SHORT_LEGS;
         let min_guesses = if short { MIN_GUESSES_OF_SHORT } else { 1 };
@@ -281,7 +281,7 @@ impl<'a> Tours<'a> {
         if self.places.resolution.polished {
             let dynamics = &self.places.dynamics;
             let intervals = best.intervals.clone();
-            let waypoints = self.program(route, &best.profile, &intervals);
+            let waypoints = self.signed_waypoints(route, &best.profile, &intervals);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
                 interruption(self.stop)
             });
@@ -295,7 +295,7 @@ impl<'a> Tours<'a> {
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
-        let waypoints = self.program(route, &guess, &intervals);
+        let waypoints = self.signed_waypoints(route, &guess, &intervals);
         let solve = match kind {
             InitialGuess::Shorter => solve_extended,
             InitialGuess::Eigenaxes => solve_rolling,
@@ -317,8 +317,8 @@ impl<'a> Tours<'a> {
         solution
     }
 
-    /// The initial guess of a route and the number of intervals of each of its legs; `None` where there
-    /// is none.
+    /// The initial guess of a route and the number of intervals of each of its legs; `None` where
+    /// there is none.
     fn guess(&self, route: &[Place], kind: InitialGuess) -> Option<(Profile, Vec<usize>)> {
         match (kind, route) {
             (InitialGuess::Shorter, [before @ .., _]) => {
@@ -329,9 +329,9 @@ impl<'a> Tours<'a> {
         }
     }
 
-    /// The waypoints of a route. Their quaternions have the signs with which a motion, which has these
-    /// numbers of intervals on its legs, passes them.
-    pub(super) fn program(
+    /// The waypoints of a route. Their quaternions have the signs with which a motion, which has
+    /// these numbers of intervals on its legs, passes them.
+    pub(super) fn signed_waypoints(
         &self,
         route: &[Place],
         motion: &Profile,

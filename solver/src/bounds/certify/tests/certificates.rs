@@ -1,5 +1,5 @@
-//! True claims are confirmed and damaged ones rejected. (`tests/examples/bound_trials.rs` has
-//! many more.)
+//! Certificates are confirmed and damaged ones rejected. (`tests/examples/bound_trials.rs` has many
+//! more cases.)
 
 use super::*;
 use crate::bounds::kinematic::RateBox;
@@ -14,7 +14,7 @@ fn turn(vector: [f64; 3]) -> Attitude {
     Attitude::from_rotation_vector(vector.into())
 }
 
-fn claimed(turn: &Attitude, least_s: f64) -> CertifiedTurn {
+fn certified(turn: &Attitude, least_s: f64) -> CertifiedTurn {
     CertifiedTurn {
         turn: *turn,
         least_s,
@@ -36,16 +36,16 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn least_times_are_proved_and_more_is_refuted(rates in ratios(), vector in prop::array::uniform3(-2.0..2.0_f64), small in prop::bool::weighted(0.2)) {
+    fn least_times_are_confirmed_and_larger_ones_refuted(rates in ratios(), vector in prop::array::uniform3(-2.0..2.0_f64), small in prop::bool::weighted(0.2)) {
         let target = turn(vector.map(|x| if small { 0.02 * x } else { x }));
         let table = RateBox::new(rates.into()).expect("ordinary rates");
         let answer = table.query(&target, 1e-6);
         let rates = rates.into();
         let room = 1.0 - 2e-6;
-        prop_assert_eq!(verify_turn(&rates, &claimed(&target, answer.lower_s * room)), Ok(()));
-        // Two lists of extremals have the same minimum.
+        prop_assert_eq!(verify_turn(&rates, &certified(&target, answer.lower_s * room)), Ok(()));
+        // The two lists of extremals have the same minimum.
         let more = answer.upper_s * (1.0 + 1e-5);
-        match verify_turn(&rates, &claimed(&target, more)) {
+        match verify_turn(&rates, &certified(&target, more)) {
             Err(Rejection::Faster { time_s, .. }) => {
                 prop_assert!(time_s < more);
                 prop_assert!(time_s >= answer.lower_s * (1.0 - 1e-6));
@@ -55,18 +55,18 @@ proptest! {
     }
 
     #[test]
-    fn turns_about_and_near_an_axis_are_proved(rates in ratios(), axis in 0..3_usize, angle in 0.02..3.1_f64, off in -3.0..-1.0_f64, vector in prop::array::uniform3(-1.0..1.0_f64)) {
+    fn turns_about_and_near_an_axis_are_confirmed(rates in ratios(), axis in 0..3_usize, angle in 0.02..3.1_f64, off in -3.0..-1.0_f64, vector in prop::array::uniform3(-1.0..1.0_f64)) {
         let table = RateBox::new(rates.into()).expect("ordinary rates");
         let about = Vector3::ith(axis, angle);
         for target in [about, about + Vector3::from(vector) * 10.0_f64.powf(off)] {
             let target = Attitude::from_rotation_vector(target);
             let least_s = table.lower_bound(&target, 1e-4) * (1.0 - 2e-6);
-            prop_assert_eq!(verify_turn(&rates.into(), &claimed(&target, least_s)), Ok(()));
+            prop_assert_eq!(verify_turn(&rates.into(), &certified(&target, least_s)), Ok(()));
         }
     }
 
     #[test]
-    fn slews_are_certified_and_damage_is_found(
+    fn certificates_of_slews_are_confirmed_and_damaged_ones_rejected(
         rates in ratios(),
         ramps in prop::array::uniform3(0.1..2.0_f64),
         first in prop::array::uniform3(-1.5..1.5_f64),
@@ -75,7 +75,7 @@ proptest! {
         damage in 0..5_u8,
     ) {
         let rates = Vector3::from(rates);
-        // Ramps in units of the time for a radian at the largest rate.
+        // Ramp times in units of the time for a radian at the largest rate.
         let limits = SlewLimits {
             rates_rad_s: rates,
             accelerations_rad_s2: rates.component_div(&(Vector3::from(ramps) / rates.max())),
@@ -96,7 +96,7 @@ proptest! {
             3 => bad.box_rad_s *= 1.001,
             _ => bad.turns[0].turn = Attitude::identity(),
         }
-        let rejection = verify(&bad).expect_err("the claim is damaged");
+        let rejection = verify(&bad).expect_err("the certificate is damaged");
         match damage {
             0 => prop_assert!(matches!(rejection, Rejection::Link { .. }), "{}", rejection),
             1 | 4 => prop_assert!(matches!(rejection, Rejection::Faster { turn: 0, .. }), "{}", rejection),
@@ -106,7 +106,7 @@ proptest! {
 }
 
 #[test]
-fn what_cannot_be_read_is_malformed() {
+fn certificates_with_invalid_numbers_are_malformed() {
     let limits = SlewLimits {
         rates_rad_s: PAPER.into(),
         accelerations_rad_s2: Vector3::from(PAPER) / 12.0,
@@ -132,14 +132,14 @@ fn what_cannot_be_read_is_malformed() {
 }
 
 #[test]
-fn no_turn_takes_no_time() {
+fn the_identity_takes_no_time() {
     let rates = Vector3::from(PAPER);
     assert_eq!(
-        verify_turn(&rates, &claimed(&Attitude::identity(), 0.0)),
+        verify_turn(&rates, &certified(&Attitude::identity(), 0.0)),
         Ok(())
     );
     assert!(matches!(
-        verify_turn(&rates, &claimed(&Attitude::identity(), 1.0)),
+        verify_turn(&rates, &certified(&Attitude::identity(), 1.0)),
         Err(Rejection::Faster { .. })
     ));
 }

@@ -1,4 +1,5 @@
-//! Sequences: their interiors are products of arcs, and what closes them is found.
+//! Arc sequences: their interiors are products of arcs, and the terminal arcs that close them are
+//! found.
 
 use super::super::interval::Interval;
 use super::super::rates::{Octant, Rates, flipped};
@@ -9,10 +10,10 @@ use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-/// Half the width of what is asked for about an outer half duration. Where both arcs hardly tell
-/// apart what they do together and one against the other, that is known to some 1e-5 only.
+/// Tolerance for the half durations of the terminal arcs, which are known to some 1e-5 only in
+/// ill-conditioned cases.
 const NEAR: f64 = 1e-3;
-/// Step of differences.
+/// Step of finite differences.
 const STEP: f64 = 1e-5;
 
 fn rates(given: [f64; 3]) -> Rates {
@@ -25,8 +26,7 @@ fn arc(rates: &Rates, octant: Octant, duration: f64) -> Attitude {
     Attitude::from_rotation_vector(Vector3::from(corner) * duration)
 }
 
-/// FixedArcs of one duration before each of which one of two axes changes its sign, one after the other;
-/// and the octant of the last arc of the sequence.
+/// The turn of alternating arcs of one duration, and the octant of the last arc of the sequence.
 fn interior(
     rates: &Rates,
     (first, axes, arcs): (Octant, [usize; 2], usize),
@@ -72,14 +72,14 @@ proptest! {
             prop_assert!(found.low - 1e-14 <= component && component <= found.high + 1e-14);
             prop_assert!(found.high - found.low < 1e-11, "{found:?}");
             let slope = (after[i] - before[i]) / (2.0 * STEP);
-            // Third derivatives of so many arcs grow with the cube of their number.
+            // Third derivatives grow with the cube of the number of arcs.
             let error = 1e-9 + 0.1 * (arcs as f64 * STEP).powi(2) * arcs as f64;
             prop_assert!((moving.slope[i].middle() - slope).abs() < error, "{slope}");
         }
     }
 
     #[test]
-    fn outer_arcs_that_close_a_word_are_found(
+    fn terminal_arcs_that_close_a_sequence_are_found(
         given in prop::array::uniform3(0.2..1.0_f64),
         kind in kinds(),
         duration in 0.05..2.0_f64,
@@ -101,7 +101,7 @@ proptest! {
         let (longer, both) = (halves[0].max(halves[1]), halves[0] + halves[1]);
         let allowed = |each: f64, both: f64| Allowed { each, both };
         prop_assert!(!terminal.impossible(allowed(longer + NEAR, both + NEAR)));
-        // Other durations that close it are longer by half turns.
+        // All other durations that close it are longer by half turns.
         prop_assert!(terminal.impossible(allowed(longer + NEAR, both - NEAR)), "{terminal:?}");
         prop_assert!(terminal.impossible(allowed(longer - NEAR, both + NEAR)), "{terminal:?}");
         for (found, half) in terminal.candidate().into_iter().zip(halves) {

@@ -3,35 +3,36 @@
 //! A path from `l` through the set `R` to the end is an edge out of `l`, a path through `R` and an
 //! edge into the end. Three steps lead to a bound on its length:
 //!
-//! 1. *Entry entry_offsets.* Every target of `R` is entered exactly once, so a charge `v_j` may be taken
-//!    off every leg into `j` and added to the bound once. It is chosen to make what is left as
-//!    symmetric as it can be; a dwell at `j`, which is part of every leg into `j`, drops out whole.
-//! 2. *Trees.* Directions are forgotten: an edge of `R` weighs the lesser of its two legs. The path
-//!    through `R` is a spanning tree of `R`, and none is lighter than the least one.
-//! 3. *Prices.* Every target of `R` lies on exactly two legs, so a potential `p_j` may be added to every
-//!    leg at `j` and `2 p_j` be taken off. Any potentials are valid; good ones, found once for the whole
-//!    set by subgradient ascent, push the tree towards a path.
+//! 1. *Entry offsets.* Every target of `R` is entered exactly once, so an offset `v_j` may be
+//!    subtracted from every leg into `j` and added to the bound once. The offsets make the reduced
+//!    legs as nearly symmetric as possible; a dwell at `j`, which is part of every leg into `j`,
+//!    drops out entirely.
+//! 2. *Trees.* Legs are made undirected: an edge of `R` weighs the lesser of its two reduced legs.
+//!    The path through `R` is a spanning tree of `R`, and the minimum spanning tree is no heavier.
+//! 3. *Potentials.* Every target of `R` lies on exactly two legs, so a potential `p_j` may be added
+//!    to every leg at `j` and `2 p_j` subtracted from the bound. Any potentials are valid; good
+//!    ones, found once for all targets by subgradient ascent, bring the tree near to a path.
 
 use super::least_tree::{cheapest, least_tree};
 use crate::tour::order::PairTable;
 
-/// Steps of the ascent; at 0.97 per step the last is a tenth of a percent of the first.
+/// Steps of the ascent; with [`STEP_DECAY`] the last step is a tenth of a percent of the first.
 const ASCENT_STEPS: usize = 230;
-/// Each step is this much shorter than the one before.
+/// Ratio of each step to the one before.
 const STEP_DECAY: f64 = 0.97;
-/// First step, as a share of the mean leg of the tree.
+/// First step, relative to the mean leg of the tree.
 const FIRST_STEP: f64 = 0.5;
 
-/// TripleBounds and potentials of every target, s.
+/// Entry offsets and potentials of every target, s.
 #[derive(Debug)]
 pub struct SpanningTrees {
     entry_offsets: Vec<f64>,
     potentials: Vec<f64>,
-    /// The lesser of the two charged legs between every two targets, by rows.
+    /// The lesser of the two reduced legs between every two targets, by rows.
     edges: Vec<f64>,
 }
 
-/// A least tree with its two outer edges.
+/// A minimum spanning tree with its two outer edges.
 struct OuterTree {
     /// Bound on the path, s.
     bound: f64,
@@ -40,7 +41,7 @@ struct OuterTree {
 }
 
 impl SpanningTrees {
-    /// Finds entry_offsets and potentials for paths from the start through all targets.
+    /// Computes entry offsets and potentials for paths from the start through all targets.
     #[must_use]
     pub fn new(table: &PairTable) -> Self {
         let targets = table.targets();
@@ -70,12 +71,12 @@ impl SpanningTrees {
         trees
     }
 
-    /// What every leg into a target is relieved of, s.
+    /// Offsets subtracted from the legs into each target, s.
     pub(in crate::tour::order) fn entry_offsets(&self) -> &[f64] {
         &self.entry_offsets
     }
 
-    /// What every leg at a target is raised by, s.
+    /// Potentials added to the legs at each target, s.
     pub(in crate::tour::order) fn potentials(&self) -> &[f64] {
         &self.potentials
     }
@@ -89,7 +90,7 @@ impl SpanningTrees {
         self.outer_tree(table, from, remaining).bound.max(0.0)
     }
 
-    /// The least tree over the remaining targets, of which there is at least one.
+    /// The minimum spanning tree of the remaining targets, of which there is at least one.
     fn outer_tree(&self, table: &PairTable, from: usize, remaining: &[usize]) -> OuterTree {
         let count = remaining.len();
         let mut degrees = vec![0; count];
@@ -123,7 +124,7 @@ impl SpanningTrees {
     }
 }
 
-/// The lesser of the two charged legs between every two targets, by rows, s.
+/// The lesser of the two reduced legs between every two targets, by rows, s.
 fn undirected(table: &PairTable, entry_offsets: &[f64]) -> Vec<f64> {
     let leg = |from: usize, to: usize| table.bound(from, to) - entry_offsets[to];
     let targets = entry_offsets.len();
@@ -133,7 +134,7 @@ fn undirected(table: &PairTable, entry_offsets: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The entry_offsets that make the table most nearly symmetric in the sense of least squares, s.
+/// The entry offsets that make the table most nearly symmetric in the least-squares sense, s.
 fn entry_offsets(table: &PairTable) -> Vec<f64> {
     let targets = table.targets();
     (0..targets)

@@ -1,17 +1,17 @@
-//! An order under change: what a move would cost, and the move itself.
+//! An order that moves change, with the change of cost of a move.
 
 use super::cost::{OrderCost, ReducedLegs};
 use std::ops::RangeInclusive;
 
-/// Stands for the place before the first and after the last.
+/// Stands for the missing place before the first one and after the last one.
 const NOWHERE: usize = usize::MAX;
 
 /// A change of the order. Positions count the place before the order as 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Move {
-    /// Turn round what lies between two positions.
+    /// Reverse the places from one position to another.
     Reverse(usize, usize),
-    /// Exchange two adjacent segments, each turned round or not.
+    /// Exchange two adjacent segments, each reversed or not.
     Exchange {
         /// First position of the first segment.
         first: usize,
@@ -19,9 +19,9 @@ pub(super) enum Move {
         middle: usize,
         /// Last position of the second segment.
         last: usize,
-        /// Whether the first segment is turned.
+        /// Whether the first segment is reversed.
         reverse_first: bool,
-        /// Whether the second segment is turned.
+        /// Whether the second segment is reversed.
         reverse_second: bool,
     },
 }
@@ -45,15 +45,16 @@ pub(super) struct OrderPath<'a, C> {
     places: Vec<usize>,
     /// Position of every place.
     positions: Vec<usize>,
-    /// Whether reversal_change a segment round changes the cost of its inside.
+    /// Whether reversing a segment changes the cost of its inside.
     directed: bool,
-    /// For each position what all legs up to it cost more backwards, s; empty unless directed.
+    /// For each position the excess cost of all legs up to it in reverse, s; empty unless directed.
     leg_skews: Vec<f64>,
-    /// For each position what all bends up to it cost more backwards, s; empty unless directed.
+    /// For each position the excess cost of all couplings up to it in reverse, s; empty unless
+    /// directed.
     coupling_skews: Vec<f64>,
 }
 
-/// The sum along some pieces.
+/// A running sum of costs along some segments.
 struct Walk {
     before: usize,
     at: usize,
@@ -61,7 +62,7 @@ struct Walk {
 }
 
 impl<'a, C: OrderCost> OrderPath<'a, C> {
-    /// The way from a place through some targets and to the end.
+    /// The path from a place through some targets and to the end.
     pub(super) fn new(cost: &'a C, from: usize, order: &[usize]) -> Self {
         let legs = ReducedLegs::new(cost, from, order);
         let end = cost.targets() + 1;
@@ -97,7 +98,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         self.positions[place]
     }
 
-    /// The charged legs.
+    /// The reduced legs.
     pub(super) fn legs(&self) -> &ReducedLegs {
         &self.legs
     }
@@ -119,13 +120,13 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Bend at a position, s.
+    /// Coupling at a position, s.
     fn coupling_at(&self, position: usize) -> f64 {
         let before = self.place(position.wrapping_sub(1));
         self.coupling(before, self.places[position], self.place(position + 1))
     }
 
-    /// Cost of the joint after a position: the leg and the bends at both its ends, s.
+    /// Cost of the joint after a position: the leg and the couplings at both its ends, s.
     pub(super) fn joint(&self, position: usize) -> f64 {
         self.legs
             .leg(self.places[position], self.places[position + 1])
@@ -133,7 +134,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
             + self.coupling_at(position + 1)
     }
 
-    /// What a move adds to the cost, s.
+    /// Change of the cost by a move, s.
     pub(super) fn change(&self, step: Move) -> f64 {
         match step {
             Move::Reverse(first, last) => {
@@ -170,8 +171,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Cost of travelling the pieces in place of what lies at a range of positions, their insides
-    /// excepted, s.
+    /// Cost of the joints when these segments replace the places at a range of positions, s. The
+    /// legs and couplings inside the segments are not part of it.
     fn joint_costs<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> f64 {
         let mut walk = Walk {
             before: self.place(range.0.wrapping_sub(2)),
@@ -181,7 +182,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         for (enter, leave) in pieces {
             self.step(&mut walk, self.places[enter]);
             if enter != leave {
-                // The bends at the two ends of a piece belong to its joints.
+                // The couplings at the two ends of a segment belong to its joints.
                 let forth = enter < leave;
                 let second = if forth { enter + 1 } else { enter - 1 };
                 let penultimate = if forth { leave - 1 } else { leave + 1 };
@@ -200,7 +201,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         walk.at = to;
     }
 
-    /// What reversal_change a segment round adds to its inside, s.
+    /// Change of the cost inside a segment when it is reversed, s.
     fn reversal_change(&self, (first, last): SegmentEnds) -> f64 {
         if !self.directed || first == last {
             return 0.0;
@@ -232,16 +233,16 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         self.update(step.range());
     }
 
-    /// Shows the order as it would be after a move.
-    pub(super) fn preview(&mut self, step: Move, look: impl FnOnce(&[usize]) -> bool) -> bool {
+    /// Calls a test with the order as it would be after a move, and leaves the order unchanged.
+    pub(super) fn preview(&mut self, step: Move, test: impl FnOnce(&[usize]) -> bool) -> bool {
         let before = self.places[step.range()].to_vec();
         self.apply(step);
-        let seen = look(self.order());
+        let passed = test(self.order());
         self.restore(*step.range().start(), &before);
-        seen
+        passed
     }
 
-    /// Puts places back to the positions from one on; together they must be those that are there.
+    /// Sets the places from a position on; they must be a permutation of the places there.
     pub(super) fn restore(&mut self, first: usize, places: &[usize]) {
         if !places.is_empty() {
             self.places[first..first + places.len()].copy_from_slice(places);
@@ -249,7 +250,7 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Brings up to date what follows from the places at a range of positions.
+    /// Updates the positions and sums that depend on the places at a range of positions.
     fn update(&mut self, range: RangeInclusive<usize>) {
         for position in range.clone() {
             self.positions[self.places[position]] = position;
@@ -259,8 +260,8 @@ impl<'a, C: OrderCost> OrderPath<'a, C> {
         }
     }
 
-    /// Sums the skews from a position on. What touches the outer places is never turned and has
-    /// none.
+    /// Sums the skews from a position on. Legs and couplings at the outer places are never reversed
+    /// and have none.
     fn sum_skews(&mut self, first: usize) {
         let last_target = self.places.len() - 2;
         for position in first.max(2) - 1..=last_target {

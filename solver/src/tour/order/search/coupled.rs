@@ -1,9 +1,9 @@
-//! What a search knows beyond the pair table when legs couple: bounds from several places in a row,
-//! and orders that are short in what is known so far.
+//! Bounds for legs that couple, from several places in a row, and orders that are short in what is
+//! known of the couplings.
 //!
-//! A few targets are searched with pairs alone at first, since most searches end before the bounds
-//! of longer paths would pay. Many targets need them from the beginning: they are the bound that is
-//! told, and they tell which orders are worth flying.
+//! A search over few targets begins with pair bounds alone, since most of them end before tighter
+//! bounds would save work. A search over many targets computes the triple bounds first: they are
+//! the bound that it reports, and they guide the choice of orders to evaluate.
 
 use super::OrderSearch;
 use crate::model::order_rules::OrderRules;
@@ -15,33 +15,39 @@ use crate::tour::order::lagrangian::LagrangianPaths;
 use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{PairTable, SearchEnd, TourModel};
 
-/// Steps of an ascent at most.
-const STEPS: usize = 400;
-/// Paths asked for per target when few targets turn out to be hard: some seconds of work.
+/// Largest number of steps of an ascent.
+const MAX_STEPS: usize = 400;
+/// Triples solved per target in a search over few targets. With [`FIVES_OF_FEW`] some seconds of
+/// work.
 const TRIPLES_OF_FEW: usize = 30;
+/// Paths of five places solved per target in a search over few targets.
 const FIVES_OF_FEW: usize = 20;
-/// Rounds of raising the bound and improving orders of many targets, what is asked for per target in
-/// a round, and the orders searched after it.
+/// Rounds in which the bound for many targets is raised and orders are improved.
 const ROUNDS: u64 = 6;
+/// Triples solved per target in a round.
 const TRIPLES_OF_MANY: usize = 12;
+/// Paths of five places solved per target in a round.
 const FIVES_OF_MANY: usize = 8;
+/// Heuristic searches for orders in a round.
 const ORDERS_PER_ROUND: u64 = 4;
-/// Kicks per target of a search for an order, and how many of its best orders are flown.
+/// Kicks per target of a heuristic search.
 const KICKS: usize = 60;
+/// Orders of a heuristic search that are evaluated.
 const ORDERS_EVALUATED: usize = 2;
 
-/// Bounds from several places in a row.
+/// Bounds that take couplings into account.
 pub(super) enum CoupledBounds {
-    /// With the rest of an order relaxed to a tree.
+    /// Triple bounds with the remaining targets relaxed to a spanning tree.
     Trees(Box<TripleBounds>),
-    /// With a shortest path in its place.
+    /// Triple bounds with a shortest path through the remaining targets.
     Paths(Box<TripleBoundSubsets>),
-    /// With that and with legs that pay each other for the states they meet in.
+    /// The same and Lagrangian bounds.
     Lagrangian(Box<TripleBoundSubsets>, Box<LagrangianPaths>),
 }
 
 impl CoupledBounds {
-    /// What a first ascent finds for a few targets; nothing where no target couples its legs.
+    /// The triple bounds of a few targets after one ascent; `None` where no target couples its
+    /// legs.
     pub(super) fn of_few(
         model: &dyn TourModel,
         table: &PairTable,
@@ -54,7 +60,7 @@ impl CoupledBounds {
         let effort = AscentEffort {
             triples: TRIPLES_OF_FEW * targets,
             fives: FIVES_OF_FEW * targets,
-            steps: STEPS,
+            steps: MAX_STEPS,
         };
         triple_bounds.raise(model, &effort, pool, stop);
         let subsets = TripleBoundSubsets::new(triple_bounds, rules, stop);
@@ -67,13 +73,13 @@ impl CoupledBounds {
             Self::Trees(triple_bounds) => triple_bounds.bound(from, remaining),
             Self::Paths(subsets) => subsets.bound(from, remaining),
             Self::Lagrangian(subsets, lagrangian) => {
-                let charged = subsets.bound(from, remaining);
-                charged.max(lagrangian.bound(from, remaining))
+                let triple = subsets.bound(from, remaining);
+                triple.max(lagrangian.bound(from, remaining))
             }
         }
     }
 
-    /// Lower bound, s, of all orders that begin with a prefix, whatever is known of the prefix.
+    /// Lower bound, s, of all orders that begin with a prefix; 0 without Lagrangian bounds.
     pub(super) fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
         match self {
             Self::Trees(_) | Self::Paths(_) => 0.0,
@@ -83,7 +89,8 @@ impl CoupledBounds {
 }
 
 impl OrderSearch<'_> {
-    /// Bounds and improves orders of many targets in turn, before the tree is opened.
+    /// For many targets, raises the triple bounds and improves orders in turn, before the root is
+    /// opened.
     pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
         if self.tree.table().targets() <= MAX_EXACT_TARGETS {
             return None;
@@ -95,7 +102,7 @@ impl OrderSearch<'_> {
             let effort = AscentEffort {
                 triples: TRIPLES_OF_MANY * targets,
                 fives: FIVES_OF_MANY * targets,
-                steps: STEPS,
+                steps: MAX_STEPS,
             };
             triple_bounds.raise(self.model, &effort, self.pool, self.stop);
             self.tree.bound_root(triple_bounds.root_bound());
@@ -111,12 +118,12 @@ impl OrderSearch<'_> {
             }
         }
         self.tree
-            .couple(CoupledBounds::Trees(Box::new(triple_bounds)));
+            .set_coupled_bounds(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
     }
 
-    /// Searches for orders that are short in all that is known of couplings, flies them, and learns
-    /// what was unknown of their triples.
+    /// Searches for orders that are short in the known couplings, evaluates them, and solves their
+    /// unknown triples.
     fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, seed: u64) {
         let effort = SearchEffort {
             kicks_per_target: KICKS,
@@ -130,7 +137,7 @@ impl OrderSearch<'_> {
         self.reporter.report(&self.tree);
     }
 
-    /// Tightens the bounds of a search over few targets that is not about to end.
+    /// Computes the triple bounds of a long search over few targets.
     pub(super) fn tighten(&mut self) {
         if self.tree.table().targets() > MAX_EXACT_TARGETS {
             return;
@@ -143,7 +150,7 @@ impl OrderSearch<'_> {
             self.stop,
         );
         if let Some(couplings) = couplings {
-            self.tree.couple(couplings);
+            self.tree.set_coupled_bounds(couplings);
         }
     }
 }

@@ -1,11 +1,12 @@
-//! By how much paths exceed the sums of their parts, as far as the model has been asked.
+//! Coupling gaps: by how much the bound of a path exceeds the sum of the bounds of its parts, as
+//! far as the model has solved them.
 
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{Evaluation, PairTable, Place, TourModel};
 use std::collections::HashMap;
 
-/// Three or five places in a row, in either direction, the smaller number at the front.
+/// Three or five places in a row, in either direction, listed with the smaller end first.
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,21 +22,21 @@ impl ShortPath {
     }
 }
 
-/// CouplingGaps of triples over their pair bounds, and of five places in a row over these.
+/// Coupling gaps of triples, and of five places in a row, over their pair bounds.
 #[derive(Debug)]
 pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
     couples: Vec<bool>,
-    /// Row `via * places + from`, there once something is known of it: coupling_gap of every `to`, s, not
-    /// a number where nothing is known.
+    /// Row `via * places + from`, allocated when its first entry is set: the gap for every `to`, s,
+    /// or NaN where it is unknown.
     triples: Vec<Option<Box<[f64]>>>,
     /// Excess of five places over their four pair bounds, s.
     fives: HashMap<[usize; 5], f64>,
 }
 
 impl CouplingGaps {
-    /// Nothing known yet.
+    /// No gap is known yet.
     pub(super) fn new(model: &dyn TourModel) -> Self {
         let targets = model.target_count();
         Self {
@@ -47,14 +48,14 @@ impl CouplingGaps {
         }
     }
 
-    /// Lower bound, s, of what two legs take together beyond their pair bounds: 0 where nothing
-    /// better is known.
+    /// Lower bound, s, of the time of two consecutive legs beyond their pair bounds; 0 where it is
+    /// not known.
     pub(super) fn triple(&self, from: usize, via: usize, to: usize) -> f64 {
-        // The greater of 0 and what is no number is 0.
+        // An unknown gap is not a number, for which the maximum gives 0.
         self.known_triple(from, via, to).max(0.0)
     }
 
-    /// Lower bound, s, of what four legs take together beyond what their two halves take.
+    /// Lower bound, s, of the time of four consecutive legs beyond the bounds of their two halves.
     pub(super) fn five(&self, path: [usize; 5]) -> f64 {
         if self.fives.is_empty() {
             return 0.0;
@@ -66,7 +67,7 @@ impl CouplingGaps {
             .map_or(0.0, |coupling_gap| (coupling_gap - halves()).max(0.0))
     }
 
-    /// Whether asking the model could tell more.
+    /// Whether the model can be asked for a gap of this path that is not known.
     pub(super) fn is_open(&self, path: &ShortPath) -> bool {
         let middle = path.0[path.0.len() / 2];
         let unknown = |path: Vec<usize>| match path[..] {
@@ -77,8 +78,8 @@ impl CouplingGaps {
         self.couples[middle] && self.directions(path).into_iter().flatten().any(unknown)
     }
 
-    /// Asks the model, about both directions of a path by the same worker, who may know the one
-    /// when he knows the other. What is interrupted stays unknown.
+    /// Asks the model for the gaps of paths. One worker asks for both directions of a path, since a
+    /// model may derive one from the other. Interrupted evaluations leave the gap unknown.
     pub(super) fn ask(
         &mut self,
         paths: &[ShortPath],
@@ -99,7 +100,7 @@ impl CouplingGaps {
                     Evaluation::Value(bound) if bound.is_finite() => {
                         Some((path, (bound - pairs).max(0.0)))
                     }
-                    // Nothing beyond the pairs, and no use asking again.
+                    // No gap beyond the pair bounds; the model is not asked again.
                     Evaluation::Value(_) | Evaluation::Unresolved => Some((path, 0.0)),
                     Evaluation::Stopped => None,
                 }
@@ -114,7 +115,8 @@ impl CouplingGaps {
         }
     }
 
-    /// The directions in which a path can be flown and of which there is something to know.
+    /// The directions of a path that a tour can contain: not into the start, not out of the end,
+    /// and into the end only if one is prescribed.
     fn directions(&self, path: &ShortPath) -> [Option<Vec<usize>>; 2] {
         let (start, end) = (self.targets, self.targets + 1);
         let mut back = path.0.clone();

@@ -1,9 +1,10 @@
-//! UndirectedLegs and pairs of legs with the directions forgotten.
+//! Undirected reduced legs, and the cost of passing a target between two of them.
 
 use super::coupling_gaps::CouplingGaps;
 use crate::tour::order::PairTable;
 
-/// UndirectedLegs with the entry entry_offsets of [`crate::tour::order::completion::SpanningTrees`] taken off, s.
+/// Legs reduced by the entry offsets of [`crate::tour::order::completion::SpanningTrees`], as
+/// undirected edges with their slacks, s.
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug)]
@@ -11,9 +12,9 @@ pub(super) struct UndirectedLegs {
     table: PairTable,
     entry_offsets: Vec<f64>,
     /// The lesser of the two reduced legs between two places; from the start and to the end there
-    /// is only one.
+    /// is only one leg.
     edges: Vec<f64>,
-    /// By how much a reduced leg exceeds its edge.
+    /// By how much each reduced leg exceeds its edge.
     slack: Vec<f64>,
 }
 
@@ -46,12 +47,12 @@ impl UndirectedLegs {
         &self.table
     }
 
-    /// What is taken off every leg into a target, s.
+    /// Offset subtracted from every leg into a target, s.
     pub(super) fn entry_offset(&self, target: usize) -> f64 {
         self.entry_offsets[target]
     }
 
-    /// A leg into a target without its entry_offset, s.
+    /// A leg into a target less the entry offset, s.
     pub(super) fn reduced(&self, from: usize, to: usize) -> f64 {
         self.table.bound(from, to) - self.entry_offsets[to]
     }
@@ -61,9 +62,10 @@ impl UndirectedLegs {
         self.edges[a * (self.entry_offsets.len() + 2) + b]
     }
 
-    /// What passing a target between two places costs beyond half of either edge, s, on a path that
-    /// comes from `entry`: from there every leg is taken as it is, and nothing leads there. The
-    /// lesser of the directions that are possible, and infinite when none is.
+    /// Cost of passing a target between two places beyond the two edges, s: half the slacks of the
+    /// legs and half the coupling gap. The path comes from `entry`: a leg out of it is its own
+    /// edge, and no leg leads into it. The lesser of the possible directions, and infinite when
+    /// none is possible.
     pub(super) fn passing(
         &self,
         coupling_gaps: &CouplingGaps,
@@ -75,8 +77,8 @@ impl UndirectedLegs {
         forth.min(self.directed(coupling_gaps, entry, [b, via, a]))
     }
 
-    /// The same of a target with two places before and after it; what five places in a row exceed
-    /// their halves by counts a quarter.
+    /// The same for a target with two places before and after it, plus a quarter of the coupling
+    /// gap of all five places.
     pub(super) fn passing_five(
         &self,
         coupling_gaps: &CouplingGaps,

@@ -205,8 +205,8 @@ fn speeds(spec: &mut ScenarioSpec) -> &mut Vec<f64> {
     spec.start.wheel_speed_rad_s.as_mut().expect("speeds")
 }
 
-/// A scenario with five wheels, of which one is locked and spinning, with momentum, and with limits and
-/// conditions of every kind.
+/// A scenario with five wheels, of which one is locked and spinning, with momentum, and with limits
+/// and conditions of every kind.
 fn everything() -> ScenarioSpec {
     let mut spec = experiment_a();
     spec.spacecraft.wheels.push(wheel([1.0, 1.0, 1.0]));

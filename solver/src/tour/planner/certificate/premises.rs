@@ -1,9 +1,10 @@
 //! The premises of a certificate, compared with the scenario.
 //!
-//! A certificate says that no motion within some limits and with some end rates makes a turn in less
-//! than a time. Whether the slews of the scenario are within these limits is checked here from the
-//! scenario alone, by formulas other than those of [`crate::bounds::certified`]: largest components from
-//! the corners of boxes, inertias by solving linear systems, turns as products of matrices.
+//! A certificate says that no motion within some limits and with some end rates makes a turn in
+//! less than a time. Whether the slews of the scenario are within these limits is checked here from
+//! the scenario alone, by formulas other than those of [`crate::bounds::certified`]: largest
+//! components from the corners of boxes, inertias by solving linear systems, turns as products of
+//! matrices.
 
 use crate::bounds::kinematic::certificate::Certificate;
 use crate::model::scenario::{RateCondition, Scenario};
@@ -12,14 +13,14 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Tolerance for rounding of a limit, relative.
 const ROUNDING: f64 = 1e-12;
-/// Tolerance for the components of the matrices of two equal turns; attitudes are rounded to a tenth
-/// of a picoradian.
+/// Tolerance for the components of the matrices of two equal turns; attitudes are rounded to a
+/// tenth of a picoradian.
 const SAME_TURN: f64 = 1e-9;
 /// Tolerance for the products of orthonormal axes.
 const ORTHONORMAL: f64 = 1e-12;
 
-/// Checks the premises of a certificate, expressed in axes that are the columns of a matrix, for slews
-/// between two places without momentum.
+/// Checks the premises of a certificate, expressed in axes that are the columns of a matrix, for
+/// slews between two places without momentum.
 ///
 /// # Errors
 ///
@@ -63,8 +64,8 @@ pub(super) fn check(
     Ok(())
 }
 
-/// The body axes in the reference frame, as columns, and the ranges of the rate components at a place,
-/// rad/s.
+/// The body axes in the reference frame, as columns, and the ranges of the rate components at a
+/// place, rad/s.
 fn conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, f64); 3]) {
     let fixed = |rate: &Vector3<f64>| [0, 1, 2].map(|axis| (rate[axis], rate[axis]));
     match place {
@@ -120,8 +121,8 @@ fn over_corners(direction: &Vector3<f64>, ranges: &[(f64, f64); 3]) -> f64 {
 }
 
 /// Largest components along axes of the rates and accelerations that the wheels reach within their
-/// limits without total momentum: `J w = -h_locked - sum a I W` and `J_eff w' = -sum a u`. `None` when an
-/// inertia cannot be inverted.
+/// limits without total momentum: `J w = -h_locked - sum a I W` and `J_eff w' = -sum a u`. `None`
+/// when an inertia cannot be inverted.
 fn reachable(scenario: &Scenario, axes: &Matrix3<f64>) -> Option<[Vector3<f64>; 2]> {
     let (spacecraft, options) = (scenario.spacecraft(), scenario.options());
     let speeds = &scenario.start().wheel_speed;

@@ -4,7 +4,8 @@ use super::*;
 use crate::model::scenario::reference::experiment_a;
 use crate::model::spec::{ScenarioSpec, StateSpec, TargetSpec, WheelSpec};
 
-/// Calls with the places of experiment A, cut to two targets without rate conditions and then changed.
+/// Calls with the places of experiment A, cut to two targets without rate conditions and then
+/// changed.
 fn with<T>(change: impl FnOnce(&mut ScenarioSpec), ask: impl FnOnce(&Places<'_>) -> T) -> T {
     let mut spec = experiment_a();
     spec.targets.truncate(2);
@@ -27,8 +28,8 @@ fn is_symmetric(change: impl FnOnce(&mut ScenarioSpec)) -> bool {
     })
 }
 
-/// Whether the first of two targets covers the second, and the second the first, with z rates within
-/// the given bounds; both have one attitude unless they are `apart`.
+/// Whether the first of two targets covers the second, and the second the first, with z rates
+/// within the given bounds; both have one attitude unless they are `apart`.
 fn covering(bounds: [[f64; 2]; 2], apart: bool) -> [bool; 2] {
     let (one, other) = (Place::Target(0), Place::Target(1));
     with(

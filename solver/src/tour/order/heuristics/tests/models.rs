@@ -1,4 +1,4 @@
-//! Costs of orders in place of slews.
+//! Random costs of orders.
 
 use crate::math::random::SplitMix;
 use crate::model::order_rules::OrderRules;
@@ -6,18 +6,18 @@ use crate::tour::order::heuristics::cost::OrderCost;
 use crate::tour::order::tests::unit;
 use crate::tour::order::{Evaluation, Place, TourEvaluation, TourModel};
 
-/// What a cost is made of.
+/// Kinds of leg costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Legs {
     /// Distances between random points.
     Points,
     /// The same with a dwell at every target, part of the legs into it.
     Dwells,
-    /// Random numbers, other ones in either direction.
+    /// Random numbers, different in the two directions.
     Directed,
 }
 
-/// What consecutive legs cost each other.
+/// Kinds of coupling costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Couplings {
     None,
@@ -25,7 +25,7 @@ pub(super) enum Couplings {
     Directed,
 }
 
-/// Random legs of 0 to some 40 s and couplings of 0 to 15 s.
+/// Random legs of up to some 40 s and couplings of up to 15 s.
 pub(super) struct RandomCost {
     targets: usize,
     legs: Vec<f64>,
@@ -80,7 +80,7 @@ impl RandomCost {
         }
     }
 
-    /// Least cost of all orders from the start, s, by trying all of them.
+    /// Least cost of all orders from the start, s, by enumeration.
     pub(super) fn least(&self) -> f64 {
         let mut order: Vec<usize> = Vec::new();
         let mut best = f64::INFINITY;
@@ -134,7 +134,7 @@ impl OrderCost for RandomCost {
     }
 }
 
-/// For tables of the legs: nothing else is known.
+/// A model with pair bounds only, for pair tables.
 impl TourModel for RandomCost {
     fn target_count(&self) -> usize {
         self.targets

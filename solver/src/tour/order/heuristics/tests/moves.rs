@@ -1,4 +1,4 @@
-//! What moves are said to cost, and what they do.
+//! Moves: their change of the cost and their effect on the order.
 
 use super::models::{Couplings, Legs, RandomCost};
 use crate::math::random::SplitMix;
@@ -23,7 +23,7 @@ fn random_move(random: &mut SplitMix, targets: usize) -> Move {
 }
 
 #[test]
-fn changes_are_differences_of_lengths() {
+fn the_change_of_a_move_is_the_difference_of_the_lengths() {
     for legs in [Legs::Points, Legs::Dwells, Legs::Directed] {
         for couplings in [Couplings::None, Couplings::BothWays, Couplings::Directed] {
             for targets in [2, 3, 5, 12] {
@@ -50,7 +50,7 @@ fn changes_are_differences_of_lengths() {
 }
 
 #[test]
-fn a_preview_leaves_everything_as_it_was() {
+fn a_preview_leaves_the_order_unchanged() {
     let cost = RandomCost::new(9, Legs::Directed, Couplings::Directed, 4);
     let order: Vec<usize> = (0..9).collect();
     let mut path = OrderPath::new(&cost, 9, &order);
@@ -72,7 +72,7 @@ fn a_preview_leaves_everything_as_it_was() {
 }
 
 #[test]
-fn dwells_leave_legs_symmetric() {
+fn reduced_legs_are_symmetric_with_dwells_but_not_with_directed_costs() {
     let order: Vec<usize> = (0..12).collect();
     let symmetric = |kind| {
         let cost = RandomCost::new(12, kind, Couplings::None, 6);

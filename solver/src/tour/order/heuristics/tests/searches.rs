@@ -1,4 +1,4 @@
-//! What searches find, and what they obey.
+//! Iterated searches: quality, reproducibility, rules and stops.
 
 use super::models::{Couplings, Legs, RandomCost};
 use crate::run::stop::StopSignal;
@@ -13,7 +13,7 @@ fn all(targets: usize) -> Vec<usize> {
     (0..targets).collect()
 }
 
-/// The shortest order after a place, whatever it is.
+/// The search for the shortest order after a place, without rules.
 fn after<C>(cost: &C, from: usize) -> OrderTask<'_, C> {
     let admits = None;
     OrderTask { cost, from, admits }
@@ -28,7 +28,7 @@ fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -
 }
 
 #[test]
-fn few_targets_are_solved() {
+fn the_search_finds_the_optimum_of_up_to_nine_targets() {
     let kinds = [
         (Legs::Points, Couplings::None),
         (Legs::Dwells, Couplings::BothWays),
@@ -49,7 +49,7 @@ fn few_targets_are_solved() {
 }
 
 #[test]
-fn fifty_targets_come_near_the_bound() {
+fn fifty_targets_end_within_one_percent_of_the_spanning_tree_bound() {
     for seed in 0..3 {
         let table = PairTable::new(&RandomCost::new(50, Legs::Dwells, Couplings::None, seed));
         let bound = SpanningTrees::new(&table).bound(&table, table.start(), &all(50));
@@ -59,13 +59,13 @@ fn fifty_targets_come_near_the_bound() {
 }
 
 #[test]
-fn targets_are_kept_and_orders_never_get_worse() {
+fn the_best_order_has_the_same_targets_and_is_never_longer() {
     for targets in [0, 1, 2, 3, 4, 40] {
         let cost = RandomCost::new(targets, Legs::Directed, Couplings::Directed, 3);
-        let begun = length(&cost, targets, &all(targets));
+        let initial = length(&cost, targets, &all(targets));
         for kicks in [0, 1, 50] {
             let best = &found(&cost, kicks, 0, 9)[0];
-            assert!(best.duration_s <= begun);
+            assert!(best.duration_s <= initial);
             assert!((best.duration_s - length(&cost, targets, &best.order)).abs() < 1e-9);
             let mut order = best.order.clone();
             order.sort_unstable();
@@ -75,7 +75,7 @@ fn targets_are_kept_and_orders_never_get_worse() {
 }
 
 #[test]
-fn some_targets_after_one_of_the_others_are_searched_too() {
+fn a_subset_of_targets_after_another_target_is_searched() {
     let cost = RandomCost::new(30, Legs::Points, Couplings::BothWays, 8);
     let some: Vec<usize> = (0..30).filter(|t| t % 3 != 0).collect();
     let mut search = IteratedSearch::new(&after(&cost, 6), &some, 0, 0);
@@ -89,7 +89,7 @@ fn some_targets_after_one_of_the_others_are_searched_too() {
 }
 
 #[test]
-fn the_seed_decides() {
+fn the_result_depends_on_the_seed_alone() {
     let cost = RandomCost::new(40, Legs::Directed, Couplings::BothWays, 5);
     assert_eq!(found(&cost, 200, 5, 1), found(&cost, 200, 5, 1));
     assert_ne!(found(&cost, 200, 5, 1), found(&cost, 200, 5, 2));
@@ -112,25 +112,25 @@ fn alternatives_are_distinct_and_sorted() {
 }
 
 #[test]
-fn rules_are_obeyed() {
+fn listed_orders_satisfy_the_rules() {
     let cost = RandomCost::new(30, Legs::Points, Couplings::BothWays, 2);
-    // The first comes third, and 20 to 29 in ascending order.
+    // Target 0 comes third, and the targets 20 to 29 are in ascending order.
     let admits =
         |order: &[usize]| order[2] == 0 && order.iter().filter(|&&target| target >= 20).is_sorted();
-    let mut begun = all(30);
-    begun[..3].rotate_left(1);
-    assert!(admits(&begun));
+    let mut initial = all(30);
+    initial[..3].rotate_left(1);
+    assert!(admits(&initial));
     let task = OrderTask {
         cost: &cost,
         from: 30,
         admits: Some(&admits),
     };
-    let mut search = IteratedSearch::new(&task, &begun, 10, 3);
+    let mut search = IteratedSearch::new(&task, &initial, 10, 3);
     search.run(500, &StopSignal::new());
     assert!(search.best().iter().all(|best| admits(&best.order)));
     let free = found(&cost, 500, 0, 3)[0].duration_s;
     let ruled = search.best()[0].duration_s;
-    let at_first = length(&cost, 30, &begun);
+    let at_first = length(&cost, 30, &initial);
     assert!(
         free <= ruled && ruled < 0.8 * at_first,
         "{free} {ruled} {at_first}"
@@ -138,7 +138,7 @@ fn rules_are_obeyed() {
 }
 
 #[test]
-fn a_stop_is_seen_at_once() {
+fn a_stop_ends_the_search_within_few_moves() {
     let cost = RandomCost::new(40, Legs::Points, Couplings::None, 2);
     let stop = StopSignal::new();
     let seen = AtomicUsize::new(0);
@@ -159,7 +159,7 @@ fn a_stop_is_seen_at_once() {
     assert!(0 < kicks && kicks < 2000, "{kicks}");
     let asked = seen.load(Ordering::Relaxed);
     assert!(asked < 2100, "{asked}");
-    // What there is is good, and nothing more is done.
+    // The result so far is improved, and a further run does nothing.
     let best = search.best()[0].clone();
     assert!(best.duration_s < length(&cost, 40, &all(40)));
     assert_eq!(search.run(10, &stop), 0);

@@ -423,12 +423,8 @@ impl<'a> SequenceSearch<'a> {
                     continue;
                 }
             }
-            open = self.push_parts(
-                open,
-                middle,
-                half,
-                where_zero(value, slope, curvature, half),
-            );
+            let parts = where_zero(value, slope, curvature, half);
+            open = self.push_parts(open, middle, half, parts);
         }
     }
 

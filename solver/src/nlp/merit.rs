@@ -42,3 +42,29 @@ impl Merit {
         total
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nlp::tests::carts::{Period, Sampled};
+    use crate::nlp::values_of;
+
+    #[test]
+    fn merit_is_the_sum_of_violations_and_cost_minus_all_logarithms() {
+        let chain = Sampled {
+            period: Period::Free,
+            intervals: 3,
+            repeats: 1,
+        };
+        let (layout, mut values) = (Layout::of(&chain), values_of(&chain));
+        values[0].cost = 2.0;
+        values[1].gap[1] = -0.5;
+        values[3].equality[0] = 0.25;
+        let slack: Vec<f64> = (1..=9).map(f64::from).collect();
+        let merit = Merit::of(&layout, 0.1, &slack, values.iter());
+        // Inequalities are zero, so every slack is an error.
+        assert!((merit.theta - (0.75 + 45.0)).abs() < 1e-12);
+        let logarithms: f64 = slack.iter().map(|s| s.ln()).sum();
+        assert!((merit.phi - (2.0 - 0.1 * logarithms)).abs() < 1e-12);
+    }
+}

@@ -40,7 +40,7 @@ impl Newton {
         }
     }
 
-    /// Drops what the regularisation has learnt from other solves.
+    /// Resets the regularisation for another solve.
     pub(super) fn restart(&mut self) {
         self.regularisation = Regularisation::default();
     }

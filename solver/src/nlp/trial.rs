@@ -74,8 +74,7 @@ impl Trial {
         Some(problem.merit_of(&self.values, &self.point.slack))
     }
 
-    /// What an inequality's value exceeds its slack by, and its index, of all inequalities of a
-    /// node.
+    /// Index and error of all slacks of a node: values of the inequalities minus the slacks.
     pub(super) fn slack_errors(
         &self,
         layout: &Layout,

@@ -37,7 +37,7 @@ const MAX_TURN: f64 = 0.1;
 /// Intervals of a ramp, and the fewest of a coast; even numbers.
 const RAMP: usize = 4;
 const MIN_COAST: usize = 4;
-/// Most pairs of intervals of a part of the motion.
+/// Limit of the pairs of intervals of each part of the motion.
 const MAX_PAIRS: usize = 2000;
 /// Share of the torque that moves the wheels of a body at rest.
 const SHIFT_TORQUE: f64 = 0.9;

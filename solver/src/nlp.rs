@@ -74,4 +74,4 @@ pub(crate) use interior_point::InteriorPoint;
 pub(crate) use iterate::{Iterate, Layout};
 pub(crate) use riccati::{MAX_CONTROLS, MAX_STATES};
 pub(crate) use settings::Settings;
-pub(crate) use status::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity};
+pub(crate) use status::{Breakdown, NlpReport, NlpStatus, Quantity};

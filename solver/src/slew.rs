@@ -38,7 +38,6 @@ mod cost_weights;
 pub mod evidence;
 mod flow;
 mod found_solution;
-mod interruption;
 mod jet;
 mod min_time_at_energy;
 mod motion;
@@ -67,7 +66,6 @@ pub use sweep::Sweep;
 pub use validated::{Slew, ValidatedSlew};
 
 use crate::run::stop::StopSignal;
-use interruption::interruption;
 use motion::SlewMotion;
 
 /// Solves a slew.
@@ -103,7 +101,7 @@ pub fn trade_curve(
 /// Solves from the motion of a neighbour, and from the usual guesses when there is none or it leads
 /// nowhere.
 fn solve_from(slew: &Slew, neighbour: Option<&SlewMotion>, stop: &StopSignal) -> SlewOutcome {
-    let stop = &|| interruption(stop);
+    let stop = &|| stop.reason();
     let found = match slew.command() {
         TorqueCommand::Sampled { period_s, hold } => {
             sampled::solve(slew, period_s, hold, neighbour, stop)

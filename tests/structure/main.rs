@@ -15,7 +15,9 @@ type Row = (&'static str, &'static [&'static str]);
 /// The solver, from the ground up.
 const SOLVER: &[Row] = &[
     ("math", &[]),
-    ("nlp", &["math"]),
+    // The signal to stop uses nothing, so that every loop may poll it.
+    ("run/stop", &[]),
+    ("nlp", &["math", "run::stop"]),
     ("model", &["math"]),
     ("run", &["model"]),
     ("wheels", &["math", "model"]),
@@ -32,7 +34,10 @@ const SOLVER: &[Row] = &[
             "model::attitude",
         ],
     ),
-    ("leg", &["bounds::kinematic", "math", "model", "nlp"]),
+    (
+        "leg",
+        &["bounds::kinematic", "math", "model", "nlp", "run::stop"],
+    ),
     ("slew", &["checker", "leg", "math", "model", "nlp", "run"]),
     ("simulation", &["checker", "math", "model", "run"]),
     (

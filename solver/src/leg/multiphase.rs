@@ -16,7 +16,8 @@ use crate::leg::transcription::{MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
+use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
+use crate::run::stop::StopReason;
 use between_nodes::excess_between_nodes;
 pub(crate) use between_nodes::{excess_inside, keeps_limits_inside};
 pub(crate) use extended::solve_extended;
@@ -57,7 +58,7 @@ pub(crate) fn solve_through(
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(from_a_guess(dynamics), stop)
 }
@@ -71,7 +72,7 @@ pub(crate) fn polish(
     waypoints: &[Waypoint],
     intervals: &[usize],
     mut solution: LegSolution,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     for _ in 0..POLISH_ROUNDS {
         let Some(before) = solution.least_duration() else {
@@ -137,7 +138,7 @@ impl<'a> MultiphaseSolve<'a> {
 
     /// Runs the passes, and then corrects turns and reserves until the exact motion arrives and
     /// keeps its limits between nodes too.
-    fn run(mut self, passes: &[Pass], stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
+    fn run(mut self, passes: &[Pass], stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
         if !self.run_passes(passes, stop) {
             return self.solution;
         }
@@ -184,7 +185,7 @@ impl<'a> MultiphaseSolve<'a> {
     }
 
     /// Runs one pass after the other; whether all converge.
-    fn run_passes(&mut self, passes: &[Pass], stop: &dyn Fn() -> Option<Interruption>) -> bool {
+    fn run_passes(&mut self, passes: &[Pass], stop: &dyn Fn() -> Option<StopReason>) -> bool {
         passes.iter().all(|pass| {
             self.chain.draw_controls_to(&self.iterate, pass.penalty);
             self.engine.settings = pass.settings;
@@ -205,7 +206,7 @@ impl<'a> MultiphaseSolve<'a> {
     }
 
     /// Runs the engine from the current iterate; whether it converges.
-    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
+    fn converges(&mut self, stop: &dyn Fn() -> Option<StopReason>) -> bool {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
         self.solution = LegSolution {
             status: report.status,

@@ -16,7 +16,8 @@ use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
-use crate::nlp::{Interruption, NlpStatus};
+use crate::nlp::NlpStatus;
+use crate::run::stop::StopReason;
 use arrival::Arrival;
 use eigenaxis::{EigenaxisSlew, Perturbation};
 use extremal::KinematicExtremals;
@@ -65,7 +66,7 @@ pub(crate) struct LegOutcome {
 pub(crate) fn solve(
     leg: &LegProblem<'_>,
     bound: Option<f64>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegOutcome {
     if let Some(solution) = zero_length(leg) {
         return LegOutcome {
@@ -81,7 +82,7 @@ pub(crate) fn solve(
         solves += 1;
     }
     if solution.duration().is_none()
-        && stop() != Some(Interruption::Cancelled)
+        && matches!(stop(), None | Some(StopReason::TimeLimit))
         && let Some(constructed) = leg.constructed()
     {
         solution = constructed;
@@ -115,7 +116,7 @@ impl LegProblem<'_> {
     }
 
     /// Solves from a guess with the leg's own intervals.
-    fn solve_from(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
+    fn solve_from(&self, guess: &Profile, stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
         self.solve_with(&[self.intervals()], guess, stop)
     }
 
@@ -124,7 +125,7 @@ impl LegProblem<'_> {
         &self,
         intervals: &[usize],
         guess: &Profile,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> LegSolution {
         let waypoints = self.waypoints(guess);
         solve_through(self.dynamics, &waypoints, intervals, guess, stop)
@@ -135,7 +136,7 @@ impl LegProblem<'_> {
     fn no_slower_than_eigenaxis(
         &self,
         present: &LegSolution,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> Option<LegSolution> {
         let eigenaxis = self.eigenaxis();
         let allowed = eigenaxis.course.duration() * (1.0 + EIGENAXIS_TOLERANCE);

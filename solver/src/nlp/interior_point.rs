@@ -11,8 +11,9 @@ use super::line_search::LineSearch;
 use super::newton::Newton;
 use super::restoration::Restoration;
 use super::settings::Settings;
-use super::status::{Interruption, NlpReport, NlpStatus};
+use super::status::{NlpReport, NlpStatus};
 use super::trial::Trial;
+use crate::run::stop::StopReason;
 use std::ops::ControlFlow;
 
 /// A barrier problem counts as solved at this multiple of the barrier parameter. Only the last one
@@ -55,7 +56,7 @@ impl InteriorPoint {
         &mut self,
         chain: &C,
         iterate: &mut Iterate,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> NlpReport {
         let caller = Interruptible { chain, stop };
         self.initialise(chain, iterate);

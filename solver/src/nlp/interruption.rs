@@ -1,12 +1,13 @@
 //! Ending a solve on the caller's request.
 
-use super::status::{Interruption, NlpStatus};
+use super::status::NlpStatus;
+use crate::run::stop::StopReason;
 use std::ops::ControlFlow;
 
 /// A chain, and the caller's function that says when its solve is to end.
 pub(super) struct Interruptible<'a, C> {
     pub(super) chain: &'a C,
-    pub(super) stop: &'a dyn Fn() -> Option<Interruption>,
+    pub(super) stop: &'a dyn Fn() -> Option<StopReason>,
 }
 
 impl<C> Interruptible<'_, C> {

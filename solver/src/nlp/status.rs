@@ -1,5 +1,6 @@
 //! How a solve ended, and what it reports.
 
+use crate::run::stop::StopReason;
 use std::fmt;
 
 /// How a solve ended.
@@ -14,18 +15,9 @@ pub(crate) enum NlpStatus {
     /// The iterations are used up.
     IterationLimit,
     /// The caller ended the solve.
-    Interrupted(Interruption),
+    Interrupted(StopReason),
     /// A number stopped being finite, or no step was possible.
     NumericalError(Breakdown),
-}
-
-/// Why the caller ended a solve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Interruption {
-    /// The time is up.
-    TimeLimit,
-    /// The caller asked for it.
-    Cancelled,
 }
 
 /// Where the numbers broke down.
@@ -67,8 +59,9 @@ impl NlpStatus {
             Self::Constructed => "constructed",
             Self::InfeasibleSuspected => "infeasible_suspected",
             Self::IterationLimit => "iteration_limit",
-            Self::Interrupted(Interruption::TimeLimit) => "time_limit",
-            Self::Interrupted(Interruption::Cancelled) => "cancelled",
+            Self::Interrupted(StopReason::TimeLimit) => "time_limit",
+            // Neither wants the solution of the program that is being solved.
+            Self::Interrupted(StopReason::Requested | StopReason::Cancelled) => "cancelled",
             Self::NumericalError(_) => "numerical_error",
         }
     }

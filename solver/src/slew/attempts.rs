@@ -6,7 +6,7 @@ use super::program_choice::ProgramChoice;
 use super::solving::{ProgramSolution, ProgramTask};
 use super::validated::Slew;
 use super::{propagation, starts};
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// Shares of effort in the objectives of a continuation to the fastest motion.
 const EFFORT_SHARES: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
@@ -16,7 +16,7 @@ pub(super) fn solve_program(
     slew: &Slew,
     choice: &ProgramChoice,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> FoundSolution {
     let mut attempts = Attempts {
         slew,
@@ -42,7 +42,7 @@ pub(super) fn solve_program(
 struct Attempts<'a> {
     slew: &'a Slew,
     choice: &'a ProgramChoice,
-    stop: &'a dyn Fn() -> Option<Interruption>,
+    stop: &'a dyn Fn() -> Option<StopReason>,
     best: Option<ProgramSolution>,
     starts: usize,
     iterations: usize,

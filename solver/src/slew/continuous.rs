@@ -8,7 +8,7 @@ use super::program_choice::ProgramChoice;
 use super::spec::{EnergyMeasure, Objective};
 use super::validated::Slew;
 use super::{min_time_at_energy, propagation};
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// Rounds in which a budget is corrected, and the share of it that may be left.
 const BUDGET_ROUNDS: usize = 8;
@@ -18,7 +18,7 @@ const BUDGET_ACCURACY: f64 = 1e-5;
 pub(super) fn solve(
     slew: &Slew,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> FoundSolution {
     let choice = ProgramChoice::of(slew);
     let Objective::MinimumTimeAtEnergy { energy_j, measure } = slew.objective() else {
@@ -46,7 +46,7 @@ fn billed(
     slew: &Slew,
     energy: f64,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> FoundSolution {
     let mut choice = ProgramChoice::of(slew);
     let mut found = solve_program(slew, &choice, neighbour, stop);

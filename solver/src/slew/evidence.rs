@@ -34,7 +34,6 @@ mod cost;
 mod costate;
 
 use super::flow::MotionSample;
-use super::interruption::interruption;
 use super::outcome::SlewOutcome;
 use super::program::Program;
 use super::solving::ProgramSolution;
@@ -107,9 +106,7 @@ pub fn of(slew: &Slew, outcome: &SlewOutcome, stop: &StopSignal) -> Option<Evide
     if !outcome.solved {
         return None;
     }
-    let polished = outcome
-        .solution
-        .polished(slew.vehicle(), &|| interruption(stop));
+    let polished = outcome.solution.polished(slew.vehicle(), &|| stop.reason());
     if stop.is_set() || !polished.converged() {
         return None;
     }

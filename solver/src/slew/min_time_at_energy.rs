@@ -11,7 +11,7 @@ use super::shape::IntervalLengths;
 use super::spec::EnergyMeasure;
 use super::starts;
 use super::validated::Slew;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// Relative error of the bill that ends the search.
 const ACCURACY: f64 = 1e-5;
@@ -32,7 +32,7 @@ pub(super) fn solve(
     slew: &Slew,
     energy: f64,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> FoundSolution {
     let guess = neighbour.cloned().or_else(|| {
         let guesses = starts::of(slew, CostWeights::TIME, stop);
@@ -115,7 +115,7 @@ fn in_time(
     slew: &Slew,
     duration: f64,
     guess: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> FoundSolution {
     let mut choice = ProgramChoice::of(slew);
     choice.cost_weights = CostWeights::energy_in(duration, EnergyMeasure::Proxy);

@@ -16,7 +16,7 @@ use super::propagation::{self, effort};
 use super::shape::{IntervalLengths, TorqueCourse};
 use super::spec::{Objective, SampleHold};
 use super::validated::Slew;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// Samples allowed beyond those of the continuous minimum.
 const MAX_EXTRA: usize = 12;
@@ -29,7 +29,7 @@ pub(super) fn solve(
     period: f64,
     hold: SampleHold,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> FoundSolution {
     let mut continuous = continuous::solve(slew, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
@@ -91,7 +91,7 @@ struct SampleClock<'a> {
     slew: &'a Slew,
     period: f64,
     hold: SampleHold,
-    stop: &'a dyn Fn() -> Option<Interruption>,
+    stop: &'a dyn Fn() -> Option<StopReason>,
 }
 
 impl SampleClock<'_> {

@@ -9,8 +9,9 @@ use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
 use crate::leg::transcription::{Reserves, Scales};
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{
-    Chain, InteriorPoint, Interruption, Iterate, Layout, NlpReport, NlpStatus, Settings, values_of,
+    Chain, InteriorPoint, Iterate, Layout, NlpReport, NlpStatus, Settings, values_of,
 };
+use crate::run::stop::StopReason;
 
 /// A program to solve on the way to another.
 struct SolvePhase {
@@ -119,7 +120,7 @@ impl ProgramSolution {
     pub(super) fn polished(
         &self,
         vehicle: &Vehicle,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> Self {
         let mut best = self.clone();
         for _ in 0..POLISH_ROUNDS {
@@ -150,7 +151,7 @@ impl ProgramTask<'_> {
     pub(super) fn solve(
         &self,
         guess: &SlewMotion,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> ProgramSolution {
         let own = self.shape.lengths == IntervalLengths::Free;
         if !own {
@@ -169,7 +170,7 @@ impl ProgramTask<'_> {
         &self,
         phases: &[SolvePhase],
         guess: &SlewMotion,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> ProgramSolution {
         let program = self.program(guess);
         let mut run = SolveLoop {
@@ -238,7 +239,7 @@ struct SolveLoop<'a> {
 }
 
 impl SolveLoop<'_> {
-    fn pass(&mut self, phases: &[SolvePhase], stop: &dyn Fn() -> Option<Interruption>) {
+    fn pass(&mut self, phases: &[SolvePhase], stop: &dyn Fn() -> Option<StopReason>) {
         for phase in phases {
             let penalty = if self.solved.program.cost_weights.uses_bill() {
                 BILLED_PENALTY
@@ -344,7 +345,7 @@ impl SolveLoop<'_> {
     }
 
     /// Runs the engine from where the run is; whether it converges.
-    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
+    fn converges(&mut self, stop: &dyn Fn() -> Option<StopReason>) -> bool {
         let solved = &mut self.solved;
         let report: NlpReport = self
             .engine

@@ -7,14 +7,14 @@ use crate::leg::solve::eigenaxis::Perturbation;
 use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{self, LegProblem, Resolution};
 use crate::model::spec::Accuracy;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// The guesses, best first: minimum time has one, since the fastest motion is itself the best of
 /// several; what is smooth, or may not use all torques, may have more than one minimum.
 pub(super) fn of(
     slew: &Slew,
     cost_weights: CostWeights,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> Vec<SlewMotion> {
     let vehicle = slew.vehicle();
     let dynamics = &vehicle.dynamics;

@@ -28,10 +28,9 @@ mod verified;
 use crate::model::plan::Outcome;
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::Scenario;
-use crate::nlp::Interruption;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
-use crate::run::stop::{StopReason, StopSignal};
+use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
 use crate::tour::order::{Place, SearchSettings, SolvedOrder, exhaustive, search};
 use crate::wheels::envelope::{OutsideEnvelope, momentum_problems, outside_envelope};
@@ -277,15 +276,6 @@ fn limited(scenario: &Scenario, stop: &StopSignal) -> StopSignal {
         Some(limit) => stop.with_time_limit(Duration::from_secs_f64(limit)),
         None => stop.clone(),
     }
-}
-
-/// Why a program under way has to stop. A request for the best plan so far interrupts it like a
-/// cancellation does.
-fn interruption(stop: &StopSignal) -> Option<Interruption> {
-    stop.reason().map(|reason| match reason {
-        StopReason::TimeLimit => Interruption::TimeLimit,
-        StopReason::Requested | StopReason::Cancelled => Interruption::Cancelled,
-    })
 }
 
 /// All ordered pairs of different places, in the order of a table's rows.

@@ -11,7 +11,7 @@ use super::{LegSolution, MultiphaseSolve, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// Legs of the tail, the new one among them. With two the minima are a little worse, with four no
 /// better.
@@ -24,7 +24,7 @@ pub(crate) fn solve_extended(
     waypoints: &[Waypoint],
     intervals: &[usize],
     motion: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     let held = intervals.len().saturating_sub(TAIL);
     let begin: usize = intervals[..held].iter().sum();

@@ -12,7 +12,8 @@ use crate::leg::profile::Profile;
 use crate::leg::transcription::ControlPenalty;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{Interruption, NlpStatus, Settings};
+use crate::nlp::{NlpStatus, Settings};
+use crate::run::stop::StopReason;
 
 /// Legs of a window, and most legs of a motion that is solved at once.
 const WINDOW: usize = 8;
@@ -37,7 +38,7 @@ pub(crate) fn solve_rolling(
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     if intervals.len() > SHORT {
         let motion = roll(dynamics, waypoints, intervals, guess, stop);
@@ -57,7 +58,7 @@ pub(super) fn solve_from_windows(
     waypoints: &[Waypoint],
     intervals: &[usize],
     motion: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> Option<LegSolution> {
     let whole = MultiphaseSolve::new(dynamics, waypoints, intervals, motion);
     let solution = whole.run(&FROM_WINDOWS, stop);
@@ -71,7 +72,7 @@ fn roll(
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> Option<Profile> {
     let node_of = |leg: usize| intervals[..leg].iter().sum::<usize>();
     let mut motion = Profile::empty();

@@ -7,7 +7,7 @@ use super::resolution::{DETOUR, Resolution};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
 /// Guesses that are tried: the second one only where a lower bound does not settle the first. The
 /// best of two and of the long way round exceeds the best of twenty by 0.72 % at most.
@@ -31,7 +31,7 @@ pub(super) struct Starts<'a> {
     leg: &'a LegProblem<'a>,
     /// A lower bound of the duration, s.
     bound: Option<f64>,
-    stop: &'a dyn Fn() -> Option<Interruption>,
+    stop: &'a dyn Fn() -> Option<StopReason>,
     best: Option<LegSolution>,
     solves: u64,
 }
@@ -40,7 +40,7 @@ impl<'a> Starts<'a> {
     pub(super) fn new(
         leg: &'a LegProblem<'a>,
         bound: Option<f64>,
-        stop: &'a dyn Fn() -> Option<Interruption>,
+        stop: &'a dyn Fn() -> Option<StopReason>,
     ) -> Self {
         Self {
             leg,

@@ -2,6 +2,7 @@
 
 use super::carts::{Least, Metered, Period, Sampled, solve};
 use super::*;
+use crate::run::stop::StopReason;
 use std::cell::Cell;
 
 const JOURNEY: Metered = Metered {
@@ -129,8 +130,9 @@ fn the_stop_signal_is_polled_between_evaluations() {
 #[test]
 fn the_reason_of_an_interruption_is_the_status() {
     for (reason, text) in [
-        (Interruption::TimeLimit, "time_limit"),
-        (Interruption::Cancelled, "cancelled"),
+        (StopReason::TimeLimit, "time_limit"),
+        (StopReason::Requested, "cancelled"),
+        (StopReason::Cancelled, "cancelled"),
     ] {
         // At the first poll, and at every later one.
         for after in 0..40 {

@@ -3,7 +3,6 @@
 //! The attitude at a target is prescribed, so the free state of a passage is that of the wheels.
 //! Costates belong to the wheel momenta; their unit is s per N m s.
 
-use super::interruption;
 use super::tours::Tours;
 use crate::leg::multiphase::solve_through;
 use crate::leg::profile::Profile;
@@ -62,7 +61,7 @@ impl Tours<'_> {
             self.legs.count_solve();
             let dynamics = &self.places.dynamics;
             let solution = solve_through(dynamics, &waypoints, &intervals, &motion, &|| {
-                interruption(self.stop)
+                self.stop.reason()
             });
             if solution.status.is_interrupted() {
                 return Evaluation::Stopped;

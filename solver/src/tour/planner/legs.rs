@@ -3,12 +3,12 @@
 //! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a
 //! table, between the tables of one solve and, through the store, between solves.
 
+use super::Run;
 use super::canonical::CanonicalLeg;
 use super::from_store::leg_from_store;
 use super::places::Places;
 use super::tables::{CertifiedLeg, CertifiedTable, SolvedLeg, SolvedTable, Table, TabulatedLeg};
 use super::verified::{flight_faults, is_feasible};
-use super::{Run, interruption};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
 use crate::model::waypoint::Waypoint;
@@ -359,7 +359,7 @@ fn solve(
         .unwrap_or_else(|| certify(places, leg))
         .lower_bound;
     let problem = leg.problem(&places.extremals);
-    let mut solved = solve::solve(&problem, certified, &|| interruption(stop));
+    let mut solved = solve::solve(&problem, certified, &|| stop.reason());
     if solved.solution.duration().is_some() && !is_feasible(places, leg, &solved.solution.profile) {
         solved.solution.status = NlpStatus::NumericalError(Breakdown {
             stage: solved.solution.profile.intervals(),

@@ -8,7 +8,6 @@
 
 use super::from_store::{segment_from_store, stored_segment};
 use super::guesses::{InitialGuess, admits_rest, extended, joined};
-use super::interruption;
 use super::legs::LegSolver;
 use super::places::Places;
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
@@ -283,7 +282,7 @@ impl<'a> Tours<'a> {
             let intervals = best.intervals.clone();
             let waypoints = self.signed_waypoints(route, &best.profile, &intervals);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
-                interruption(self.stop)
+                self.stop.reason()
             });
         }
         best
@@ -302,7 +301,7 @@ impl<'a> Tours<'a> {
             InitialGuess::Extremals | InitialGuess::AtRest => solve_through,
         };
         let solution = solve(dynamics, &waypoints, &intervals, &guess, &|| {
-            interruption(self.stop)
+            self.stop.reason()
         });
         let failed = solution.duration().is_none() && !solution.status.is_interrupted();
         if kind == InitialGuess::AtRest && failed && admits_rest(self.places, route) {

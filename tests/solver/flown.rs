@@ -102,7 +102,7 @@ fn a_plan_for_a_pyramid_is_followed_to_its_target() {
         let simulation = Simulation::try_new(&scenario, &plan.flight, &spec, "");
         simulation
             .expect("a valid simulation")
-            .fly(0, None, &|| false)
+            .simulate(0, None, &|| false)
             .expect("nobody gives up")
     };
     let open = fly(ControllerSpec::FeedForward);

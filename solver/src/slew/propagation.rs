@@ -4,8 +4,8 @@ use super::motion::SlewMotion;
 use super::spec::EnergyMeasure;
 use super::validated::Slew;
 use crate::checker::{
-    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
-    RATE_TOLERANCE, Ramp, propagate_ramps,
+    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, RATE_TOLERANCE,
+    Ramp, StepPart, propagate_ramps,
 };
 use crate::model::drive::Drive;
 use crate::model::plan::State;
@@ -254,7 +254,7 @@ fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
 
 /// Energies of one wheel over an integration step. Quadrature is exact for power of degree five in
 /// time; parts are cut where the power changes its sign.
-fn spent(drive: &Drive, wheel: usize, moment: &Moment<'_>) -> MotorEnergies {
+fn spent(drive: &Drive, wheel: usize, moment: &StepPart<'_>) -> MotorEnergies {
     let Some(motor) = drive.motor else {
         return MotorEnergies::default();
     };

@@ -9,7 +9,7 @@ use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::simulation::{Simulation, SimulationSpec, Spread};
+use slewplan_solver::simulation::{self, Simulation, SimulationSpec, Spread};
 use slewplan_solver::tour::planner::{Run, solve};
 
 /// Most pairs of shares of one study: each is a plan and as many flights as asked for.
@@ -81,7 +81,7 @@ pub fn study(
     let at = format!("{pointer}/simulation");
     let problems = given
         .as_ref()
-        .map(|given| spec.simulation.problems(given.scenario.spacecraft(), &at));
+        .map(|given| simulation::check(&spec.simulation, given.scenario.spacecraft(), &at));
     let is_flyable = problems.as_ref().is_some_and(Vec::is_empty);
     findings.include(problems.unwrap_or_default());
     let rows = check_shares(&spec.authorities, pointer, &mut findings);

@@ -77,7 +77,7 @@ pub fn fly(study: &FlightStudy, run: Run<'_>) -> Result<Outcome, Vec<Problem>> {
     let keep_every = keep_every(study, simulation.samples())?;
     // Whoever wants the best so far wants this flight: half of it would be worth nothing.
     let cancelled = || run.stop.is_cancelled();
-    let Some(simulated) = simulation.fly(study.number, Some(keep_every), &cancelled) else {
+    let Some(simulated) = simulation.simulate(study.number, Some(keep_every), &cancelled) else {
         return Ok(Outcome::Stopped);
     };
     Ok(Outcome::Flown(Box::new(FlownOnce {

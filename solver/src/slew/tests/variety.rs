@@ -1,4 +1,4 @@
-//! Combinations of objectives, commands and drives that no source has, all of them propagated.
+//! Combinations of objectives, commands and drives that no source has; all solutions are propagated.
 
 use super::craft::{
     OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, pyramid, pyramid_end, solved,
@@ -85,7 +85,7 @@ fn the_bill_includes_efficiency_and_quiescent_power() {
 fn slews_arrive_while_a_speed_law_moves_wheels() {
     let (spacecraft, mut drives, mut start) = biros(true);
     for drive in &mut drives[3..] {
-        // 500 times the published rate, to another speed: a fifth of a wheel's momentum changes.
+        // 500 times the published rate, towards another speed: a fifth of a wheel's momentum changes.
         drive.speed_law = Some(SpeedLawSpec {
             rate_per_s: 0.05,
             speed_rad_s: -100.0,

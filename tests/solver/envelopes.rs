@@ -5,7 +5,7 @@ use slewplan_solver::model::spec::AttitudeSpec;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::WheelAllocation;
-use slewplan_studies::eigenaxis::Limit;
+use slewplan_studies::eigenaxis::EnvelopeLimit;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{
     EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MAX_DEMANDS, TurnSpec,
@@ -48,7 +48,7 @@ fn the_published_slew_in_all_its_ways() {
     };
     assert!((turn.vector.norm() - 120.0_f64.to_radians()).abs() < 1e-12);
     let limits = turn.eigenaxis.iter().map(|(slew, _)| slew.limit);
-    assert!(limits.eq(Limit::ALL));
+    assert!(limits.eq(EnvelopeLimit::ALL));
     let about = |limit: usize| turn.eigenaxis[limit].0.course.duration();
     assert!((about(1) - 51.57).abs() < 0.01 && (about(3) - 38.27).abs() < 0.01);
     let [free, shared] = &turn.time_optimal[..] else {

@@ -3,9 +3,10 @@
 mod arrays;
 mod boundaries;
 mod certified;
+mod closed_loop;
 mod envelopes;
 mod fixed_order;
-mod flown;
+
 mod imported;
 mod infeasible;
 mod invariance;

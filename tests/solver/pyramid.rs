@@ -6,7 +6,7 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_studies::comparison::{Control, Radii};
+use slewplan_studies::comparison::{PyramidControl, Radii};
 use slewplan_studies::eigenaxis::Baselines;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
@@ -26,7 +26,7 @@ fn random_attitude(generator: &mut Generator) -> Attitude {
 }
 
 /// The time on a published curve, s, that has these radii for all directions.
-fn on_curve(control: Control, angle: f64, torque: f64) -> f64 {
+fn on_curve(control: PyramidControl, angle: f64, torque: f64) -> f64 {
     let radius = Radii::PUBLISHED.of(control);
     let acceleration = radius.torque * torque / INERTIA;
     let rate = radius.momentum * MOMENTUM / INERTIA;
@@ -54,7 +54,7 @@ fn worst_share(torque: f64) -> f64 {
     let mut generator = Generator::new(175);
     let shares = (0..SLEWS).map(|_| {
         let (angle, spec) = random_slew(&mut generator, torque);
-        let curve = on_curve(Control::Optimal, angle, torque);
+        let curve = on_curve(PyramidControl::Optimal, angle, torque);
         let share = plan_of(&spec).total_time_s / curve;
         if share > 0.99 {
             println!(
@@ -107,7 +107,7 @@ fn random_slews_by_the_pseudo_inverse_lie_about_the_published_curve() {
         let about = turn.eigenaxis[1].0.course.duration();
         let slack = 1.0 + 1e-4;
         assert!(free <= shared * slack && shared <= about * slack);
-        let curve = on_curve(Control::PseudoOptimal, turn.vector.norm(), 0.0857);
+        let curve = on_curve(PyramidControl::PseudoOptimal, turn.vector.norm(), 0.0857);
         shared / curve
     });
     let shares: Vec<f64> = shares.collect();

@@ -97,7 +97,7 @@ fn momentum_change(disturbance: Vector3<f64>, seconds: f64) -> (Vector3<f64>, f6
     };
     let (begin, truth) = (state.clone(), &drawn.truth);
     let motor = [0.03, -0.02, 0.04, 0.01, 0.0];
-    truth.advance(&mut state, &motor, (seconds / 1000.0, 1000), &mut scratch);
+    truth.advance(&mut state, &motor, seconds / 1000.0, 1000, &mut scratch);
     let momentum = |state: &TrueState| attitude(state).to_reference(truth.body_momentum(state));
     let turn = attitude(&begin).angle_to(&attitude(&state));
     (momentum(&state) - momentum(&begin), turn)

@@ -19,7 +19,7 @@ const HELD_BACK: Authorities = Authorities {
 };
 
 fn flown(row: &AuthorityRow) -> (f64, &Spread) {
-    let RowOutcome::Flown {
+    let RowOutcome::Simulated {
         total_time_s,
         spread,
         ..

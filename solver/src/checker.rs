@@ -26,7 +26,7 @@ mod visits;
 pub use keep_out::Intrusion;
 pub(crate) use leg::{LegEnd, leg_faults};
 pub use propagated::PropagatedMotion;
-pub(crate) use ramped::{Ramp, StepPart, propagate_ramps};
+pub(crate) use ramped::{StepPart, TorqueRamp, propagate_ramps};
 
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Flight, Margins, State, Verification};

@@ -1,4 +1,4 @@
-//! What the solver promises, through its public interface only.
+//! Behaviour of the solver through its public interface.
 
 mod arrays;
 mod boundaries;
@@ -6,7 +6,6 @@ mod certified;
 mod closed_loop;
 mod envelopes;
 mod fixed_order;
-
 mod imported;
 mod infeasible;
 mod invariance;

@@ -157,13 +157,13 @@ impl Body {
     /// `w'`, rad/s².
     pub(super) fn rate_derivative(&self, state: &Snapshot, torque: &[f64]) -> Vector3<f64> {
         let momentum = self.momentum(&state.rate, &state.wheel_speed);
-        let mut part = self.motor_torque(torque) - state.rate.cross(&momentum);
+        let mut moment = self.motor_torque(torque) - state.rate.cross(&momentum);
         for (rotor, speed) in self.rotors.iter().zip(&state.wheel_speed) {
             if let Some(acceleration) = rotor.law_acceleration(*speed) {
-                part -= rotor.axis * (rotor.inertia * acceleration);
+                moment -= rotor.axis * (rotor.inertia * acceleration);
             }
         }
-        self.effective_inverse * part
+        self.effective_inverse * moment
     }
 
     /// `W_i'`, rad/s², of a wheel with its torque and speed, given `w'`.

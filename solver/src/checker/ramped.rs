@@ -13,7 +13,7 @@ use crate::model::scenario::Scenario;
 
 /// Torques that change linearly over a time.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Ramp {
+pub(crate) struct TorqueRamp {
     /// Time at the beginning, s.
     pub(crate) start_s: f64,
     /// Length, s.
@@ -91,7 +91,7 @@ impl StepPart<'_> {
 pub(crate) fn propagate_ramps(
     scenario: &Scenario,
     drives: &[Drive],
-    ramps: &[Ramp],
+    ramps: &[TorqueRamp],
     mut observe: impl FnMut(&StepPart<'_>),
 ) -> Result<RampedFlight, String> {
     let spacecraft = scenario.spacecraft();
@@ -142,7 +142,7 @@ pub(crate) fn propagate_ramps(
 }
 
 /// Rate of change of the torques, N m/s.
-fn slope(ramp: &Ramp) -> Vec<f64> {
+fn slope(ramp: &TorqueRamp) -> Vec<f64> {
     let pairs = ramp.begin_nm.iter().zip(&ramp.end_nm);
     pairs
         .map(|(begin, end)| {

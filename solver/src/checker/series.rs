@@ -64,10 +64,10 @@ impl Expansion {
         momentum: &[Vector3<f64>; LEN],
         k: usize,
     ) {
-        let mut part = Vector3::zeros();
+        let mut moment = Vector3::zeros();
         let mut turn = [0.0; 4];
         for j in 0..=k {
-            part -= self.rate[j].cross(&momentum[k - j]);
+            moment -= self.rate[j].cross(&momentum[k - j]);
             let part = quaternion_derivative(&self.quaternion[j], &self.rate[k - j]);
             turn.iter_mut().zip(part).for_each(|(sum, c)| *sum += c);
         }
@@ -76,17 +76,17 @@ impl Expansion {
             1 => growth,
             _ => &[],
         };
-        part += body.motor_torque(driven);
+        moment += body.motor_torque(driven);
         for (i, rotor) in body.rotors.iter().enumerate() {
             if let Some((rate, speed)) = rotor.law {
                 let held = if k == 0 { speed } else { 0.0 };
                 let acceleration = -rate * (self.wheel[i][k] - held);
-                part -= rotor.axis * (rotor.inertia * acceleration);
+                moment -= rotor.axis * (rotor.inertia * acceleration);
                 self.wheel[i][k + 1] = acceleration / (k + 1) as f64;
             }
         }
         let next = (k + 1) as f64;
-        self.rate[k + 1] = body.effective_inverse * part / next;
+        self.rate[k + 1] = body.effective_inverse * moment / next;
         self.quaternion[k + 1] = turn.map(|c| c / next);
         for (i, rotor) in body.rotors.iter().enumerate().filter(|(_, r)| r.driven) {
             let drive = driven.get(i).map_or(0.0, |u| u / rotor.inertia);
@@ -97,21 +97,21 @@ impl Expansion {
     /// The longest step, s, whose first neglected terms are below `tolerance` relative to the
     /// leading ones; infinite when nothing moves.
     pub(super) fn step_length(&self, tolerance: f64) -> f64 {
-        // The wheel speeds need no test: beyond the linear term they repeat the body rate.
+        // Wheel speeds are not tested: beyond the linear term they are combinations of the body rate.
         let quaternion = longest(&self.quaternion.map(|c| norm(&c)), tolerance);
         let rate = longest(&self.rate.map(|c| c.norm()), tolerance);
         quaternion.min(rate)
     }
 
-    /// How badly the polynomials fail the equations of motion at time `s` into the step: the
-    /// error that would grow over the step, relative to the size of the terms.
+    /// Defect of the polynomials in the equations of motion at time `s` into the step, multiplied by `s`
+    /// and relative to the size of the terms.
     pub(super) fn defect(&self, body: &Body, torque: &[f64], s: f64) -> f64 {
         let state = self.state(s);
         let rate_derivative = body.rate_derivative(&state, torque);
         let turn = quaternion_derivative(&state.quaternion, &state.rate);
         let turn_defect: QuaternionComponents =
             std::array::from_fn(|c| slope(s, |k| self.quaternion[k][c]) - turn[c]);
-        // Torques that cancel each other leave their rounding behind, hence their share.
+        // Torques that cancel each other leave rounding errors, so that the scale includes their size.
         let push: f64 = body
             .rotors
             .iter()

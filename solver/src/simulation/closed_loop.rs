@@ -8,6 +8,7 @@ use super::stop_poll::StopPoll;
 use super::truth::{IntegratorScratch, TrueSpacecraft, TrueState};
 use super::{Simulation, wheel_loop};
 
+use crate::math::random::SplitMix;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
@@ -33,11 +34,7 @@ impl Simulation<'_> {
             noise,
         } = draw(self.scenario, &self.settings, &self.nominal, number);
         let mut craft = SimulatedSpacecraft::new(&truth, start, wheels);
-        let mut computer = OnBoardComputer {
-            controller: FeedbackController::new(&self.settings, self.scenario.spacecraft()),
-            noise,
-            feedback: vec![0.0; wheels],
-        };
+        let mut computer = self.on_board_computer(noise);
         let mut log = FlightLog::open(self.flight, wheels);
         log.reach(
             &self.sampled_plan,
@@ -79,6 +76,15 @@ impl Simulation<'_> {
             )?;
         }
         Some(log.close())
+    }
+
+    fn on_board_computer(&self, noise: SplitMix) -> OnBoardComputer<'_> {
+        let spacecraft = self.scenario.spacecraft();
+        OnBoardComputer {
+            controller: FeedbackController::new(&self.settings, spacecraft),
+            noise,
+            feedback: vec![0.0; spacecraft.wheels().len()],
+        }
     }
 
     /// One sample of the on-board computer: sensors, control law, allocation.
@@ -199,7 +205,7 @@ impl<'a> SimulatedSpacecraft<'a> {
 /// The on-board computer.
 struct OnBoardComputer<'a> {
     controller: FeedbackController<'a>,
-    noise: crate::math::random::SplitMix,
+    noise: SplitMix,
     /// Torque that feedback adds to each wheel, N m.
     feedback: Vec<f64>,
 }

@@ -40,8 +40,8 @@ pub(super) fn solve(
     found.after(&fastest)
 }
 
-/// Solves for the time with a bill: the program's own bill is a little low, so that its budget is
-/// lowered until the flight's keeps within the energy.
+/// Minimises the duration under a limit on the bill. The program underestimates the bill, so that its
+/// budget is lowered until the bill of the propagated motion is within the limit.
 fn billed(
     slew: &Slew,
     energy: f64,

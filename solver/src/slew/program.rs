@@ -43,9 +43,9 @@ pub(super) struct ProgramUnits {
     pub(super) energy: f64,
 }
 
-/// What tells the program of one slew from that of another.
+/// The data of a program besides the vehicle.
 pub(super) struct ProgramSetup<'a> {
-    /// Where the slew begins and ends.
+    /// Conditions at the beginning and the end of the slew.
     pub(super) waypoints: &'a [Waypoint; 2],
     pub(super) intervals: usize,
     pub(super) shape: ProgramShape,

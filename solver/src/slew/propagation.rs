@@ -5,7 +5,7 @@ use super::spec::EnergyMeasure;
 use super::validated::Slew;
 use crate::checker::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, RATE_TOLERANCE,
-    Ramp, StepPart, propagate_ramps,
+    StepPart, TorqueRamp, propagate_ramps,
 };
 use crate::model::drive::Drive;
 use crate::model::plan::State;
@@ -220,7 +220,7 @@ fn speed_error(slew: &Slew, end: &State) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn piece(ramp: &Ramp) -> TorquePiece {
+fn piece(ramp: &TorqueRamp) -> TorquePiece {
     TorquePiece {
         start_s: ramp.start_s,
         duration_s: ramp.duration_s,
@@ -229,7 +229,7 @@ fn piece(ramp: &Ramp) -> TorquePiece {
     }
 }
 
-fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
+fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<TorqueRamp> {
     let dynamics = &slew.vehicle().dynamics;
     let of_all = |torques: &nalgebra::DVector<f64>| {
         let mut all = vec![0.0; slew.all_drives().len()];
@@ -243,7 +243,7 @@ fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
         .iter()
         .zip(&motion.lengths)
         .zip(motion.begin.iter().zip(&motion.end))
-        .map(|((start, length), (begin, end))| Ramp {
+        .map(|((start, length), (begin, end))| TorqueRamp {
             start_s: *start,
             duration_s: *length,
             begin_nm: of_all(begin),

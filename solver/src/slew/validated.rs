@@ -184,7 +184,7 @@ impl Slew {
         ends
     }
 
-    /// Angle between an attitude and the wanted one, rad.
+    /// Angle between an attitude and the prescribed final one, rad.
     pub(super) fn missed_by(&self, attitude: &Attitude) -> f64 {
         self.arrival.turn(attitude, &self.ends[1].attitude)
     }
@@ -209,7 +209,7 @@ impl Slew {
         }
     }
 
-    /// The variables of a program for it.
+    /// The variables of a program for the slew.
     pub(super) fn shape(
         &self,
         course: TorqueCourse,

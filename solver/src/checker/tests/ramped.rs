@@ -1,7 +1,7 @@
 //! Linear torques and wheels under speed laws against the classical Runge-Kutta method.
 
 use super::build::scenario;
-use crate::checker::ramped::{Ramp, propagate_ramps};
+use crate::checker::ramped::{TorqueRamp, propagate_ramps};
 use crate::model::drive::{Drive, SpeedLaw};
 use crate::model::scenario::Scenario;
 use nalgebra::{Matrix3, Vector3};
@@ -70,7 +70,7 @@ fn ramps_and_speed_laws_agree_with_the_equations_of_motion() {
             let u = |i: usize| BEGIN[i] + (END[i] - BEGIN[i]) * t / LENGTH;
             vec![u(0), u(1), 0.0, 0.0]
         };
-        Ramp {
+        TorqueRamp {
             start_s: from,
             duration_s: to - from,
             begin_nm: at(from),

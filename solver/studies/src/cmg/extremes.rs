@@ -65,8 +65,8 @@ impl CmgCluster {
         -self.least(&outer, |state| Some(-state.momentum.norm()))
     }
 
-    /// The least momentum among internal singular states that are impassable: within the sphere of
-    /// this radius null motion leads out of every singular state. Infinite when there are none.
+    /// The least momentum among elliptic singular states: within the sphere of this radius null motion
+    /// leaves every singular state. Infinite when there are none.
     #[must_use]
     pub fn least_elliptic(&self) -> f64 {
         let elliptic = |state: &SingularState| {
@@ -79,8 +79,8 @@ impl CmgCluster {
         least.fold(f64::INFINITY, f64::min)
     }
 
-    /// The greatest lower bound of the momentum among singular states with one rotor against the
-    /// others, rims included: the sphere within which the thesis promises momentum.
+    /// The infimum of the momentum among singular states with one sign reversed, rims included: the
+    /// radius of the thesis's guaranteed sphere.
     #[must_use]
     pub fn least_with_one_reversed(&self) -> f64 {
         let surfaces = (0..self.count()).map(|reversed| {

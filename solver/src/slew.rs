@@ -1,35 +1,37 @@
-//! One slew of one spacecraft, with a choice of what is minimised and of how it is commanded.
+//! One slew of one spacecraft, with a choice of objective and of commands.
 //!
-//! A [`Slew`] leads from a state to a state. Its [`Objective`] is the time (the paper's
-//! problem), time with effort (OLRAC), the energy of the motors at a given time, or the time at a
-//! given energy (the energy thesis). Its [`TorqueCommand`] says which torques can be commanded: constant
-//! on intervals of any length, on equal ones, on the samples of a clock held constant or linearly
-//! (BIROS), or continuous. [`solve`] minimises, and flies what it has found with the integrator of
-//! the [checker](crate::checker), which shares nothing with the optimiser.
+//! A [`Slew`] leads from a state to a state. Its [`Objective`] is the duration (the paper's problem),
+//! duration and effort (OLRAC), the energy of the motors in a given duration, or the duration at a
+//! given energy (the energy thesis). Its [`TorqueCommand`] says which torques can be commanded:
+//! constant on intervals of any length, constant on equal intervals, held constantly or linearly on
+//! the samples of a clock (BIROS), or continuous. [`solve`] minimises the objective and integrates the
+//! solution with the [checker](crate::checker), which shares no code with the optimiser.
 //!
-//! With [`WheelAllocation::PseudoInverse`] the wheels' torques are `A^+ A u`, in the program as in flight.
+//! With [`WheelAllocation::PseudoInverse`] the wheels' torques are `A^+ A u`, both in the program and
+//! in the integration.
 //!
-//! All of it is one nonlinear program (`program`) with other variables (`shape`) and other
+//! Every combination is one nonlinear program (`program`) with other variables (`shape`) and other
 //! weights (`cost_weights`).
 //!
 //! # Drives
 //!
-//! Torques are those that change the wheels' momenta. Where an inner loop makes up for friction the
-//! limits are the motor's, so the program keeps `u + v W + c sign(W)` within them. Where nothing does,
-//! the plan commands the motor and leaves friction to the feedback.
+//! Torques are those that change the wheels' momenta. Where the wheel's inner loop compensates
+//! friction, the torque limits are the motor's, so that the program keeps `u + v W + c sign(W)` within
+//! them. Where nothing compensates it, the plan commands the motor and feedback has to compensate.
 //!
-//! A wheel with a speed law is not commanded. Relative to the body it is locked at a speed that is a
-//! known function of time (`flow`).
+//! A wheel with a speed law is not commanded. Relative to the body it is a locked wheel, whose speed is
+//! a known function of time (`vehicle`).
 //!
 //! # Energy
 //!
-//! Power is `P = (R / k^2) M^2 + M W` with the motor torque `M`. The *proxy* is the integral of `P`,
-//! which counts what braking would return; the *bill* is that of `max(P, 0)`, over the motor's
-//! efficiency and with what its electronics take (the thesis's equation 1.16). Within an interval
-//! the program lets one wheel's power of both signs cancel, so that its own bill is low by what
-//! shrinks with the square of the interval; every [`SlewOutcome`] has both integrals of the propagated
-//! motion, to rounding. The bill has many local minima, some per cent apart: it is minimised from the
-//! optimum of the proxy and from the usual guesses, and the propagated uses_bill are compared.
+//! The motor's power is `P = (R / k^2) M^2 + M W` with its torque `M`. The *proxy* is the integral of
+//! `P`, which counts what braking would return. The *bill* is the energy drawn from the supply: the
+//! integral of `max(P, 0)` over the motor's efficiency, plus the energy of its electronics (equation
+//! 1.16 of the energy thesis). Within an interval the program lets positive and negative power of a
+//! wheel cancel, so that it underestimates the bill by an error of second order in the interval's
+//! length. Every [`SlewOutcome`] has both integrals over the propagated motion, accurate to rounding.
+//! The bill has many local minima, some per cent apart. It is minimised from the optimum of the proxy
+//! and from the usual guesses, and the bills of the propagated solutions are compared.
 
 mod attempts;
 mod choices;
@@ -65,6 +67,7 @@ pub use spec::{
 pub use sweep::Sweep;
 pub use validated::{Slew, ValidatedSlew};
 
+use crate::model::problem::Problem;
 use crate::run::stop::StopSignal;
 use motion::SlewMotion;
 
@@ -74,17 +77,17 @@ pub fn solve(slew: &Slew, stop: &StopSignal) -> SlewOutcome {
     solve_from(slew, None, stop)
 }
 
-/// Solves the same slew along a sweep, each from the solution before it; the objective's own
-/// value of what is swept is not used.
+/// Solves the same slew for every value of a sweep, each from the solution before it. The swept value
+/// of the slew's own objective is not used.
 ///
 /// # Errors
 ///
-/// Problems with the values, all of them at once; the pointers count along the sweep.
+/// All problems with the values at once; pointers have the index in the sweep.
 pub fn trade_curve(
     slew: &Slew,
     sweep: &Sweep,
     stop: &StopSignal,
-) -> Result<Vec<SlewOutcome>, Vec<crate::model::problem::Problem>> {
+) -> Result<Vec<SlewOutcome>, Vec<Problem>> {
     let points = sweep.points(slew)?;
     let mut outcomes: Vec<SlewOutcome> = Vec::new();
     for point in points {
@@ -98,8 +101,8 @@ pub fn trade_curve(
     Ok(outcomes)
 }
 
-/// Solves from the motion of a neighbour, and from the usual guesses when there is none or it leads
-/// nowhere.
+/// Solves from the motion of a neighbouring slew, and from the usual guesses where there is none or the
+/// solve from it does not converge.
 fn solve_from(slew: &Slew, neighbour: Option<&SlewMotion>, stop: &StopSignal) -> SlewOutcome {
     let stop = &|| stop.reason();
     let found = match slew.command() {

@@ -11,7 +11,7 @@ use slewplan_solver::bounds::kinematic::certificate::Certificate;
 use slewplan_solver::bounds::kinematic::limits::{EndRates, SlewLimits};
 use slewplan_solver::bounds::kinematic::ramps::SlewBound;
 use slewplan_solver::model::attitude::Attitude;
-use slewplan_tests::motions::{Kind, end_of, motion};
+use slewplan_tests::motions::{MotionKind, end_of, motion};
 use slewplan_tests::random::Generator;
 use std::f64::consts::PI;
 use std::process::ExitCode;
@@ -117,7 +117,7 @@ fn rotations(tables: &[(Vector3<f64>, RateBox)], generator: &mut Generator, coun
 /// How many motions are faster than their bound, or extremals than the shortest motion found.
 fn motions(tables: &[(Vector3<f64>, RateBox)], generator: &mut Generator, count: usize) -> usize {
     let mut faults = 0;
-    for kind in Kind::ALL {
+    for kind in MotionKind::ALL {
         let (mut closest, mut ratio, mut tried) = (f64::INFINITY, f64::INFINITY, 0);
         for (rates, table) in tables {
             for _ in 0..count {

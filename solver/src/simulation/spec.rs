@@ -1,18 +1,18 @@
-//! What a caller may write about a simulated flight: plain, unvalidated descriptions.
+//! Descriptions of simulated flights as a caller gives them, not yet validated.
 
 use crate::model::drive::DriveSpec;
 
-/// How a plan is to be flown, and with what errors.
+/// How a plan is to be simulated, and with which errors.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SimulationSpec {
     /// The control law.
     pub controller: ControllerSpec,
     /// How the plan's torques reach the wheels; averaged when absent.
-    pub feed_forward: Option<FeedForward>,
+    pub feed_forward: Option<FeedForwardMode>,
     /// Samples of the on-board computer per second, 10 when absent. Its commands are held in between.
     pub on_board_rate_hz: Option<f64>,
-    /// Cycles of the loop at the wheels per second, 100 when absent: the next whole multiple of the
-    /// on-board rate is used.
+    /// Cycles of the wheel loop per second, 100 when absent; rounded up to a whole multiple of the
+    /// on-board rate.
     pub wheel_loop_rate_hz: Option<f64>,
     /// Samples after which feedback is applied, 0 when absent; 1 is `u_FB(k + 1)` of BIROS
     /// equation 23.
@@ -21,10 +21,10 @@ pub struct SimulationSpec {
     pub settle_s: Option<f64>,
     /// Longest step of the integration, s; 0.01 when absent.
     pub max_step_s: Option<f64>,
-    /// What the drives are believed to be, one per wheel, or none for ideal ones. The laws of wheels
-    /// that follow one are part of it; such wheels take no commands.
+    /// Nominal drives, one per wheel, or none for ideal ones. They include speed laws; wheels with a
+    /// speed law take no commands.
     pub drives: Vec<DriveSpec>,
-    /// How the truth differs from what is believed.
+    /// Errors of the true spacecraft relative to the nominal one.
     pub errors: ErrorsSpec,
     /// Seed of everything random, 0 when absent.
     pub seed: Option<u64>,
@@ -34,14 +34,14 @@ pub struct SimulationSpec {
     pub tolerance_deg: Option<f64>,
 }
 
-/// How the torques of a plan, which switch at any time, become commands.
+/// How the torques of a plan, which may switch at any time, become commands.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum FeedForward {
-    /// Each on-board sample commands their mean over the time for which it is held: the rate is the
-    /// plan's at every sample, the attitude lags by a few microradians at a switch.
+pub enum FeedForwardMode {
+    /// Each on-board sample commands their mean until the next sample: body rates at samples are those
+    /// of the plan, the attitude differs by some microradians after a switch.
     #[default]
     Averaged,
-    /// The wheels have a table of them and switch at their times; only feedback is sampled.
+    /// The wheels switch at the plan's times, from a stored table; only feedback is sampled.
     TimeTagged,
 }
 
@@ -55,8 +55,8 @@ pub enum ControllerSpec {
     Quaternion {
         /// `k` and `c`.
         gains: GainsSpec,
-        /// Whether the torque `w x H` that turns the momentum of body and wheels with the body is made
-        /// up for, as far as the plan's torques do not contain it.
+        /// Whether the gyroscopic torque `w x H` of body and wheels is compensated, as far as the plan's
+        /// torques do not contain it.
         gyroscopic: bool,
     },
     /// The final attitude commanded at once, at rest, without the plan's torques (thesis, equation
@@ -64,22 +64,22 @@ pub enum ControllerSpec {
     StepInput {
         /// `k` and `c`.
         gains: GainsSpec,
-        /// Whether the torque `w x H` is made up for.
+        /// Whether the gyroscopic torque `w x H` is compensated.
         gyroscopic: bool,
     },
     /// The plan's torques and the geometric PID on rotations (BIROS, equations 18 to 24).
     GeometricPid {
         /// Its gains.
         gains: PidGainsSpec,
-        /// Whether the integral leaves out what would ask more of a wheel that is at a limit; without
-        /// it, as published, it winds up.
+        /// Whether the integral stops in directions that demand more of a wheel at a limit. Without it,
+        /// as published, the integral winds up.
         anti_windup: bool,
     },
 }
 
 impl Default for ControllerSpec {
-    /// Quaternion feedback of 0.1 rad/s. Without the gyroscopic term: along a plan it makes up for
-    /// little, and for the wrong momentum as far as the inertia is.
+    /// Quaternion feedback with a bandwidth of 0.1 rad/s, without the gyroscopic term: along a plan it
+    /// compensates little, and with the momentum of the nominal inertia.
     fn default() -> Self {
         Self::Quaternion {
             gains: GainsSpec::Bandwidth {
@@ -94,21 +94,21 @@ impl Default for ControllerSpec {
 /// How the gains of quaternion feedback are given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GainsSpec {
-    /// By the natural frequency and damping that small errors of attitude have.
+    /// By the natural frequency and damping ratio of small attitude errors.
     Bandwidth {
         /// Natural frequency, rad/s.
         bandwidth_rad_s: f64,
         /// Damping ratio.
         damping: f64,
     },
-    /// By settling time and damping as published (thesis, equations 39, 42 and 171).
+    /// By settling time and damping ratio as published (thesis, equations 39, 42 and 171).
     SettlingTime {
         /// Settling time to 2 %, s.
         settling_time_s: f64,
         /// Damping ratio.
         damping: f64,
     },
-    /// As they are.
+    /// Directly.
     Given {
         /// `k`, 1/s².
         attitude_per_s2: f64,
@@ -120,16 +120,16 @@ pub enum GainsSpec {
 /// How the gains of the geometric PID are given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PidGainsSpec {
-    /// By the poles that small errors of attitude have: a pair and a real one.
+    /// By the poles of small attitude errors: a conjugate pair and a real pole.
     Bandwidth {
         /// Natural frequency of the pair, rad/s.
         bandwidth_rad_s: f64,
         /// Damping ratio of the pair.
         damping: f64,
-        /// The real pole, with which an offset decays, rad/s; 0 for none and no integral term.
+        /// The real pole, at which an offset decays, rad/s; 0 for no integral term.
         integral_rad_s: f64,
     },
-    /// As they are in BIROS equations 23 and 24.
+    /// Directly, as in BIROS equations 23 and 24.
     Given {
         /// `k_R`, N m.
         attitude_nm: f64,
@@ -142,8 +142,8 @@ pub enum PidGainsSpec {
     },
 }
 
-/// How the truth differs from what is believed. Everything is zero by default; what is drawn has a
-/// normal distribution with mean zero.
+/// Errors of the true spacecraft relative to the nominal one. All are zero by default; random ones have
+/// a normal distribution with mean zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorsSpec {
     /// Three standard deviations of the inertia about any axis, as a share of it.
@@ -155,9 +155,9 @@ pub struct ErrorsSpec {
     pub friction_3_sigma: Option<f64>,
     /// Three standard deviations of the initial attitude about each body axis, rad.
     pub initial_attitude_3_sigma_rad: Option<f64>,
-    /// Standard deviation of a measured attitude about each body axis, rad; new at every sample.
+    /// Standard deviation of the measured attitude about each body axis, rad; drawn at every sample.
     pub attitude_noise_rad: Option<f64>,
-    /// Standard deviation of a measured body rate about each body axis, rad/s; new at every sample.
+    /// Standard deviation of the measured body rate about each body axis, rad/s; drawn at every sample.
     pub rate_noise_rad_s: Option<f64>,
     /// Constant external torque in body axes, N m.
     pub disturbance_torque_nm: Option<[f64; 3]>,

@@ -1,4 +1,4 @@
-//! Solutions of one program from one guess after the other.
+//! Solutions of one program from several guesses.
 
 use super::found_solution::FoundSolution;
 use super::motion::SlewMotion;
@@ -8,7 +8,7 @@ use super::validated::Slew;
 use super::{propagation, starts};
 use crate::run::stop::StopReason;
 
-/// Shares of effort in the objectives of a continuation to the fastest motion.
+/// Weights of effort, as shares of the weight of time, in a continuation to the fastest motion.
 const EFFORT_SHARES: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 /// Solves one program: from a neighbour, or from the best of the usual guesses.
@@ -38,7 +38,7 @@ pub(super) fn solve_program(
     }
 }
 
-/// The best solution so far, and what it took.
+/// The best solution so far, and how many guesses and iterations have been used.
 struct Attempts<'a> {
     slew: &'a Slew,
     choice: &'a ProgramChoice,
@@ -49,12 +49,12 @@ struct Attempts<'a> {
 }
 
 impl Attempts<'_> {
-    /// Solves the program from a guess; whether it converges.
+    /// Solves the program from a guess; returns whether the solve converged.
     fn converges_from(&mut self, guess: &SlewMotion) -> bool {
         let choice = self.choice;
         let mut solved = self.solve(choice, guess);
         if choice.cost_weights.uses_bill() && choice.cost_weights.budget.is_none() {
-            // The program's own bill is low by a different amount for every motion.
+            // The program underestimates the bill by a different amount for every motion.
             solved.cost = propagation::propagate(self.slew, &solved.motion)
                 .energies
                 .bill_j;
@@ -98,7 +98,7 @@ impl Attempts<'_> {
         }
     }
 
-    /// The motion that the smooth proxy of a bill leads to.
+    /// The optimum of the smooth proxy, as a guess for a program that minimises the bill.
     fn optimum_of_proxy(&mut self) -> Option<SlewMotion> {
         let proxy = self.choice.proxy(self.slew)?;
         let found = solve_program(self.slew, &proxy, None, self.stop);
@@ -108,9 +108,9 @@ impl Attempts<'_> {
     }
 
     /// Continuation in the weight of effort (Allgower and Georg, Introduction to Numerical
-    /// Continuation Methods, 2003): where only time counts, some torques may make no difference, and
-    /// effort tells them apart. The last program that converges takes longer than the fastest motion
-    /// by its share of effort at most.
+    /// Continuation Methods, 2003). In minimum time some torques may not affect the cost; with a weight
+    /// on effort the optimum is unique. The duration of the last program that converges exceeds the
+    /// minimum by its share of effort at most.
     fn continue_in_effort(&mut self, guess: &SlewMotion) {
         let mut last: Option<ProgramSolution> = None;
         for share in EFFORT_SHARES {

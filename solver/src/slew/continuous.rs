@@ -1,4 +1,4 @@
-//! Slews without a clock.
+//! Slews in continuous time.
 
 use super::attempts::solve_program;
 use super::cost_weights::CostWeights;
@@ -10,11 +10,11 @@ use super::validated::Slew;
 use super::{min_time_at_energy, propagation};
 use crate::run::stop::StopReason;
 
-/// Rounds in which a budget is corrected, and the share of it that may be left.
+/// Greatest number of corrections of a budget, and the share of it that may stay unused.
 const BUDGET_ROUNDS: usize = 8;
 const BUDGET_ACCURACY: f64 = 1e-5;
 
-/// Solves without a clock.
+/// Solves a slew; of one on a clock, its minimum in continuous time.
 pub(super) fn solve(
     slew: &Slew,
     neighbour: Option<&SlewMotion>,
@@ -30,7 +30,7 @@ pub(super) fn solve(
         .energies
         .bill_j;
     if fastest.solved.converged() && bill <= energy_j {
-        // The energy does not bind: multipliers of a program that keeps within it would vanish.
+        // The limit on energy is not active: the fastest motion is the answer.
         return fastest;
     }
     let found = match measure {
@@ -40,8 +40,8 @@ pub(super) fn solve(
     found.after(&fastest)
 }
 
-/// Solves for the time with a bill: the program's own bill is a little low, so that its budget is
-/// lowered until the flight's keeps within the energy.
+/// Minimises the duration under a limit on the bill. The program underestimates the bill, so that its
+/// budget is lowered until the bill of the propagated motion is within the limit.
 fn billed(
     slew: &Slew,
     energy: f64,

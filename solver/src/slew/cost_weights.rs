@@ -1,11 +1,11 @@
-//! What a program minimises and what it is held to: every objective is a choice of these.
+//! Weights of a program's cost, and its limits on duration and energy; they stand for all objectives.
 //!
 //! ```text
 //!   minimise    a T + b integral u'u dt + c E
 //!   subject to  T = given,  E <= given        (where they are)
 //! ```
 //!
-//! with `E` the integral of the wheels' power or of what the supply gives for it.
+//! with `E` the energy of the motors in the measure of the weights.
 
 use super::spec::EnergyMeasure;
 
@@ -22,7 +22,7 @@ pub(super) struct CostWeights {
     pub(super) measure: EnergyMeasure,
     /// The duration, s.
     pub(super) duration: Option<f64>,
-    /// The most energy, J.
+    /// The limit on the energy, J.
     pub(super) budget: Option<f64>,
 }
 
@@ -37,7 +37,7 @@ impl CostWeights {
         budget: None,
     };
 
-    /// Least energy in a time, s.
+    /// Minimum energy in a duration, s.
     pub(super) fn energy_in(duration: f64, measure: EnergyMeasure) -> Self {
         Self {
             time: 0.0,
@@ -48,7 +48,7 @@ impl CostWeights {
         }
     }
 
-    /// What of the motor's energy counts as the objective's: the bill is at the supply.
+    /// Energy in the measure per energy at the motor: the bill is counted at the supply.
     pub(super) fn supply_factor(&self, efficiency: f64) -> f64 {
         match self.measure {
             EnergyMeasure::Proxy => 1.0,
@@ -56,17 +56,17 @@ impl CostWeights {
         }
     }
 
-    /// Whether only time counts.
+    /// Whether the cost is the duration alone.
     pub(super) fn is_time_only(&self) -> bool {
         self.effort == 0.0 && !self.uses_energy()
     }
 
-    /// Whether energy matters.
+    /// Whether energy is in the cost or limited.
     pub(super) fn uses_energy(&self) -> bool {
         self.energy > 0.0 || self.budget.is_some()
     }
 
-    /// Whether only what the supply gives counts, never what a braking wheel would return.
+    /// Whether energy is counted as the bill: drawn from the supply, nothing returned by braking.
     pub(super) fn uses_bill(&self) -> bool {
         self.uses_energy() && self.measure == EnergyMeasure::Bill
     }

@@ -8,11 +8,11 @@ use crate::math::quaternion::{Quat, rotate_back};
 use crate::model::attitude::Attitude;
 use nalgebra::{DVector, Vector3};
 
-/// Parts of an interval at whose ends the limits are looked at. Between them a parabola finds the peak;
-/// where torque is a ramp, eighths miss one near a node by 2e-5 of a rate limit.
+/// Parts of an interval at whose ends the limits are evaluated; between them a parabola finds the
+/// peak. With linear torque, 8 parts miss a peak near a node by 2e-5 of a rate limit.
 const SAMPLES: usize = 32;
 
-/// The motion at a moment.
+/// The motion at one time.
 #[derive(Debug, Clone)]
 pub(super) struct MotionSample {
     /// Body rate, rad/s.
@@ -25,32 +25,51 @@ pub(super) struct MotionSample {
     pub(super) speeds: Vec<f64>,
     /// Their commanded torques, N m.
     pub(super) torques: DVector<f64>,
-    /// By how much the momentum of wheels with laws of their own changes, body axes, N m.
+    /// Rate of change of the momentum of the speed-law wheels, body axes, N m.
     pub(super) drift_rate: Vector3<f64>,
 }
 
+/// Relative excesses over limits between nodes.
+pub(super) struct Excesses {
+    /// Over the limits of [`Dynamics::limit_shares`](crate::model::dynamics::Dynamics::limit_shares),
+    /// interval by interval, where the peak inside is larger than at both ends.
+    pub(super) shares: Vec<f64>,
+    /// Over the motor torques, one per interval.
+    pub(super) torques: Vec<f64>,
+}
+
+impl Excesses {
+    /// The greatest of all; zero where no limit is exceeded.
+    pub(super) fn greatest(&self) -> f64 {
+        let all = self.shares.iter().chain(&self.torques);
+        all.copied().fold(0.0, f64::max)
+    }
+}
+
 impl Vehicle {
-    /// Wheel momenta on an interval at a share `s` of it, N m s.
+    /// Wheel momenta at the share `s` of an interval, N m s.
     fn momenta(motion: &SlewMotion, k: usize, s: f64) -> DVector<f64> {
         let length = motion.lengths[k];
         let (begin, end) = (&motion.begin[k], &motion.end[k]);
         &motion.momenta[k] + begin * (length * (s - 0.5 * s * s)) + end * (length * 0.5 * s * s)
     }
 
-    /// Body rate, rad/s, with `momentum` that in body axes, N m s.
+    /// Body rate, rad/s, at a time, s, for the total momentum in body axes and the wheels' momenta, N m s.
     fn rate(&self, momentum: &Vector3<f64>, wheels: &DVector<f64>, time: f64) -> Vector3<f64> {
         let dynamics = &self.dynamics;
         let held = dynamics.locked_momentum + self.speed_law_wheels.drift(time)[0];
         dynamics.inertia_inverse * (momentum - held - &dynamics.axes * wheels)
     }
 
-    /// The turn over a part of an interval that begins at a time, s, in an attitude.
+    /// The turn over the part of an interval from one share of its length to another; the interval
+    /// begins at `time`, s, the part in the attitude `q`.
     fn turn(
         &self,
         motion: &SlewMotion,
         k: usize,
         time: f64,
-        (from, to, q): (f64, f64, &Attitude),
+        [from, to]: [f64; 2],
+        q: &Attitude,
     ) -> Quat {
         let length = motion.lengths[k];
         let momentum = q.to_body(self.dynamics.momentum);
@@ -66,11 +85,12 @@ impl Vehicle {
     pub(super) fn turns(&self, motion: &SlewMotion) -> Vec<Quat> {
         let times = motion.times();
         (0..motion.lengths.len())
-            .map(|k| self.turn(motion, k, times[k], (0.0, 1.0, &motion.attitudes[k])))
+            .map(|k| self.turn(motion, k, times[k], [0.0, 1.0], &motion.attitudes[k]))
             .collect()
     }
 
-    /// The motion at the ends of equal parts of an interval, the first and the last included.
+    /// The motion at both ends of an interval and between its equal parts; the interval begins at
+    /// `begin`, s.
     pub(super) fn samples(
         &self,
         motion: &SlewMotion,
@@ -83,7 +103,7 @@ impl Vehicle {
         let mut samples = Vec::with_capacity(parts + 1);
         for i in 0..=parts {
             if i > 0 {
-                let turn = self.turn(motion, k, begin, (at(i - 1), at(i), &attitude));
+                let turn = self.turn(motion, k, begin, [at(i - 1), at(i)], &attitude);
                 attitude =
                     Attitude::from_xyzw(turn).map_or(attitude, |turn| attitude.then_in_body(&turn));
             }
@@ -105,9 +125,8 @@ impl Vehicle {
         samples
     }
 
-    /// Relative excess inside every interval over the limits of [`Dynamics::limit_shares`], where it
-    /// is larger than at both ends, and over the motor torques.
-    pub(super) fn excesses(&self, motion: &SlewMotion) -> (Vec<f64>, Vec<f64>) {
+    /// The excesses over limits inside the intervals of a motion.
+    pub(super) fn excesses(&self, motion: &SlewMotion) -> Excesses {
         let times = motion.times();
         let (mut shares, mut torques) = (Vec::new(), Vec::new());
         for k in 0..motion.lengths.len() {
@@ -123,10 +142,10 @@ impl Vehicle {
             let motors: Vec<f64> = samples.iter().map(|at| self.motor_usage(at)).collect();
             torques.push(excess_inside(&motors));
         }
-        (shares, torques)
+        Excesses { shares, torques }
     }
 
-    /// The greatest share of its limit that any motor torque has.
+    /// The greatest motor torque as a share of its limit.
     fn motor_usage(&self, at: &MotionSample) -> f64 {
         let motors = self.drives.iter().zip(at.torques.iter()).zip(&at.speeds);
         let torques = motors.map(|((drive, torque), speed)| drive.motor_torque(*torque, *speed));

@@ -21,7 +21,7 @@ pub(super) struct SlewMotion {
 }
 
 impl SlewMotion {
-    /// A motion under constant torques.
+    /// The motion of a profile, whose torques are constant on intervals.
     pub(super) fn of_profile(profile: &Profile) -> Self {
         let torques: Vec<_> = profile
             .wheels
@@ -58,8 +58,8 @@ impl SlewMotion {
         std::iter::once(0.0).chain(ends).collect()
     }
 
-    /// About the same motion in another time: rates shrink as the time grows. Between the nodes of
-    /// the result torque is constant.
+    /// The same attitudes in another duration, s, with rates scaled accordingly. Torques of the result
+    /// are constant between nodes.
     pub(super) fn stretched_to(&self, duration: f64, dynamics: &Dynamics) -> Self {
         let factor = duration / self.duration();
         let slower = self.attitudes.iter().zip(&self.momenta).map(|(q, h)| {
@@ -84,7 +84,7 @@ impl SlewMotion {
         })
     }
 
-    /// The motion seen at other nodes, given by the lengths between them, s.
+    /// The motion interpolated at other nodes, given by the lengths between them, s.
     pub(super) fn on_mesh(&self, lengths: &[f64]) -> Self {
         let times = self.times();
         let mut time = 0.0;
@@ -110,12 +110,12 @@ impl SlewMotion {
         Self::of_profile(&profile)
     }
 
-    /// As many equal intervals.
+    /// The motion interpolated on a number of equal intervals.
     pub(super) fn on_equal_mesh(&self, intervals: usize) -> Self {
         self.on_mesh(&vec![self.duration() / intervals as f64; intervals])
     }
 
-    /// The motion on intervals that cut those of this one, the longest first.
+    /// The motion on at least as many intervals, made by cutting its own, the longest first.
     pub(super) fn on_finer_mesh(&self, intervals: usize) -> Self {
         let mut parts = vec![1_usize; self.lengths.len()];
         for _ in self.lengths.len()..intervals {
@@ -133,7 +133,7 @@ impl SlewMotion {
         self.on_mesh(&lengths)
     }
 
-    /// The torque at a node: the mean of those beside it.
+    /// The torque at a node: the mean of those before and after it, N m.
     pub(super) fn node_torque(&self, node: usize) -> DVector<f64> {
         match (node.checked_sub(1), self.begin.get(node)) {
             (Some(before), Some(after)) => (&self.end[before] + after) * 0.5,

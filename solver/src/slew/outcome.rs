@@ -1,4 +1,4 @@
-//! What a slew's solve answers with.
+//! The outcome of a solve.
 
 use super::found_solution::FoundSolution;
 use super::propagation::{self, PropagatedSlew};
@@ -7,15 +7,15 @@ use super::spec::Objective;
 use super::validated::Slew;
 use crate::nlp::NlpStatus;
 
-/// Relative excess over an energy that is no failure.
+/// Relative excess over the allowed energy that is not a failure.
 const BUDGET_TOLERANCE: f64 = 1e-4;
 
-/// What came of a slew.
+/// The outcome of a solve: the propagated solution, and how it was found.
 #[derive(Debug, Clone)]
 pub struct SlewOutcome {
-    /// How the last program ended: `converged`, or why not.
+    /// Status of the last program: `converged`, or why it did not converge.
     pub status: String,
-    /// Whether a local minimum was found and its flight keeps all limits and arrives.
+    /// Whether a local minimum was found, and its propagation keeps all limits and reaches the end.
     pub solved: bool,
     /// The value of the objective, in its own unit: s, or J.
     pub objective: f64,
@@ -23,15 +23,15 @@ pub struct SlewOutcome {
     pub time_s: f64,
     /// Integral of the squared torques, (N m)² s.
     pub effort: f64,
-    /// The flight as the independent integration found it.
+    /// The solution as the checker's integration finds it.
     pub propagated: PropagatedSlew,
-    /// Guesses tried.
+    /// Number of guesses tried.
     pub starts: usize,
-    /// Interior-point iterations, all programs together.
+    /// Number of interior-point iterations of all programs together.
     pub iterations: usize,
-    /// Of a sampled slew the minimum in continuous time, s.
+    /// Duration, s, of the minimum in continuous time; only of a sampled slew.
     pub continuous_time_s: Option<f64>,
-    /// The program's solution, from which a neighbour can begin.
+    /// The program's solution: the guess of the next point of a sweep, and what evidence is taken from.
     pub(super) solution: ProgramSolution,
 }
 

@@ -1,11 +1,11 @@
-//! The nonlinear program of a slew: a [`Transcription`] with other courses of torque, other
-//! lengths and other costs around it.
+//! The nonlinear program of a slew: a [`Transcription`] extended by linear torques, shared or given
+//! interval lengths, and costs of effort and energy.
 //!
-//! The transcription is used for what it knows: the conditions on states at nodes, and the attitude
-//! link of an interval, a function of `(q, h, m, tau)`. Here those become functions of the
-//! program's own variables ([`ProgramShape`]) and derivatives are onto_controls back. A linear torque bends the
-//! momenta; the link then gets momenta that are moved by the mean of the bulge, which makes the
-//! integral of the rate exact, and the rest is left to the corrections of the turns.
+//! The transcription gives the conditions on states at nodes and the attitude link of an interval, a
+//! function of `(q, h, m, tau)`. Here these become functions of the program's own variables
+//! ([`ProgramShape`]), with derivatives by the chain rule. Under a linear torque the momenta are
+//! quadratic in time. The link then gets momenta shifted by their mean distance from the straight
+//! line, which makes the integral of the rate exact; the corrections of the turns take the rest.
 
 mod allocation;
 mod chain;
@@ -27,25 +27,25 @@ use crate::nlp::Link;
 use allocation::PinnedNullSpace;
 use nalgebra::DMatrix;
 
-/// Weight of the penalty that draws interval lengths together, and to which lengths.
+/// The penalty `weight / 2 (length - given)^2` on the scaled length of every interval.
 #[derive(Debug, Clone)]
 pub(super) struct LengthPenalty {
     pub(super) weight: f64,
     pub(super) lengths: Vec<f64>,
 }
 
-/// Units of what is neither state nor control.
+/// Units of the quantities that are neither state nor control.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ProgramUnits {
-    /// Of the cost, in that of the cost_weights.
+    /// Unit of the cost, in the unit of [`CostWeights`].
     pub(super) cost: f64,
-    /// Of energies, J.
+    /// Unit of energies, J.
     pub(super) energy: f64,
 }
 
-/// What tells the program of one slew from that of another.
+/// The data of a program besides the vehicle.
 pub(super) struct ProgramSetup<'a> {
-    /// Where the slew begins and ends.
+    /// Conditions at the beginning and the end of the slew.
     pub(super) waypoints: &'a [Waypoint; 2],
     pub(super) intervals: usize,
     pub(super) shape: ProgramShape,
@@ -54,7 +54,7 @@ pub(super) struct ProgramSetup<'a> {
     pub(super) units: ProgramUnits,
 }
 
-/// The program.
+/// The program of one slew, to be solved as a [`Chain`](crate::nlp::Chain).
 #[derive(Debug, Clone)]
 pub(super) struct Program {
     pub(super) base: Transcription,
@@ -67,22 +67,22 @@ pub(super) struct Program {
     speeds: Vec<Row>,
     /// Speed of wheel `i` per momentum of wheel `j` and unit of time, 1/(kg m²).
     speed_per_momentum: DMatrix<f64>,
-    /// Share of the supplied power that reaches each motor.
+    /// Efficiency of each motor's supply: power at the motor over power drawn.
     efficiency: Vec<f64>,
-    /// What the electronics of all motors take, W.
+    /// Quiescent power of all motors' electronics together, W.
     quiescent_power: f64,
     pub(super) penalty: LengthPenalty,
-    /// Wheels whose momentum is a function of the clock.
+    /// Wheels under a speed law, whose momentum is a function of the clock.
     speed_law_wheels: SpeedLawWheels,
-    /// Momenta of the enabled wheels, scaled, that do the same to the body as a momentum, per N m s.
+    /// Momenta of the enabled wheels, scaled, with the same effect on the body as a momentum of 1 N m s.
     equivalent: DMatrix<f64>,
-    /// Reserve kept from the torque limits on every interval, relative.
+    /// Reserve kept from the torque limits at every node, relative to the limit.
     pub(super) torque_reserve: Vec<f64>,
-    /// What the momenta keep where the pseudo-inverse shares torques out.
+    /// The null-space momentum, where the pseudo-inverse allocates torques.
     pinned_null_space: Option<PinnedNullSpace>,
 }
 
-/// Where a term belongs.
+/// The function of the program that a term is added to.
 #[derive(Debug, Clone, Copy)]
 enum TermTarget {
     Cost,
@@ -90,7 +90,7 @@ enum TermTarget {
     Inequality(usize),
 }
 
-/// A term with the derivatives of its features.
+/// A term of one wheel with its derivatives by the wheel's features.
 struct WheelTerm<'a> {
     place: TermTarget,
     jet: Jet,
@@ -98,7 +98,8 @@ struct WheelTerm<'a> {
     link: &'a Link<'a>,
 }
 
-/// A function of a few variables to second order: gradient and Hessian by index.
+/// Gradient and Hessian of a function of a few variables, as `(index, value)` and `(row, column,
+/// value)` of the lower triangle.
 #[derive(Default)]
 struct SparseDerivatives {
     gradient: Vec<(usize, f64)>,
@@ -166,12 +167,12 @@ impl Program {
         }
     }
 
-    /// What the locked wheels have taken of the momentum at a point.
+    /// Momentum that the wheels under a speed law have taken up at a point.
     fn drift(&self, point: &[f64]) -> Drift {
         self.drift_after(point, 0.0)
     }
 
-    /// The same a while later, of which the clock is part, scaled.
+    /// The same after a further time `length`, scaled, on the clock of the point.
     fn drift_after(&self, point: &[f64], length: f64) -> Drift {
         let clock = self.shape.clock_at();
         if !self.speed_law_wheels.any_drift() {
@@ -187,7 +188,8 @@ impl Program {
         }
     }
 
-    /// Makes the turn of one interval exact; the angle, rad, by which the correction changes.
+    /// Corrects the attitude link so that it gives the exact turn of one interval; returns the angle,
+    /// rad, by which the correction changes.
     pub(super) fn correct_turn(&mut self, link: &Link<'_>, exact: &Quat) -> f64 {
         let base = self.base_link(link);
         let wheels = self.shape.wheels;
@@ -195,7 +197,7 @@ impl Program {
         self.base.correct_turn(&link, exact)
     }
 
-    /// What the penalty on lengths costs on an interval.
+    /// The penalty on the length of an interval, scaled.
     pub(super) fn penalty_of(&self, link: &Link<'_>) -> f64 {
         if link.has_interval() && self.draws_lengths() {
             0.5 * self.penalty.weight * self.stray(link).powi(2)
@@ -218,12 +220,12 @@ impl Program {
     pub(super) fn length(&self, link: &Link<'_>) -> f64 {
         match &self.shape.lengths {
             IntervalLengths::Free => link.control[self.shape.wheels],
-            IntervalLengths::SharedControls => link.point[1 + self.shape.shared_at()],
+            IntervalLengths::Shared => link.point[1 + self.shape.shared_at()],
             IntervalLengths::Given(lengths) => lengths[link.node] / self.scales.time,
         }
     }
 
-    /// The features of a wheel; at the last node those of the node alone.
+    /// The features of a wheel on an interval; at the last node only those of the node.
     fn wheel_state(&self, wheel: usize, link: &Link<'_>) -> WheelState {
         let (shape, unit) = (&self.shape, self.torque_unit());
         let view = self.base.view(link.point, self.drift(link.point));
@@ -262,7 +264,7 @@ impl Program {
         }
     }
 
-    /// Derivatives of a wheel's features by the variables, state and controls, sparse.
+    /// Derivatives of a wheel's feature by the variables, counted over state and controls.
     fn feature_gradient(&self, wheel: usize, feature: usize, link: &Link<'_>) -> Vec<(usize, f64)> {
         let (shape, unit) = (&self.shape, self.torque_unit());
         let (torques, controls) = (shape.torque_at(), shape.states());
@@ -296,7 +298,7 @@ impl Program {
         }
     }
 
-    /// A jet as a function of the variables.
+    /// Derivatives of a jet by the program's variables.
     fn local(&self, wheel: usize, jet: &Jet, link: &Link<'_>) -> SparseDerivatives {
         let used: Vec<_> = (0..super::jet::FEATURES)
             .filter(|&f| jet.gradient[f] != 0.0 || jet.hessian[f].iter().any(|h| *h != 0.0))

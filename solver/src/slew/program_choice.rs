@@ -7,7 +7,7 @@ use super::shape::{IntervalLengths, ProgramShape, TorqueCourse};
 use super::spec::{EnergyMeasure, TorqueCommand};
 use super::validated::Slew;
 
-/// A program that one solve answers.
+/// Weights, variables and number of intervals of a program.
 pub(super) struct ProgramChoice {
     pub(super) cost_weights: CostWeights,
     pub(super) shape: ProgramShape,
@@ -27,12 +27,12 @@ impl ProgramChoice {
             }
             TorqueCommand::Uniform { intervals } => (TorqueCourse::Steps, false, intervals),
             TorqueCommand::Smooth { intervals } => (TorqueCourse::Ramps, false, intervals),
-            // In continuous time, as free as can be.
+            // The first step of a sampled slew is the minimum in continuous time.
             TorqueCommand::Sampled { .. } => (TorqueCourse::Steps, true, slew.usual_intervals()),
         };
         let lengths = match (own, cost_weights.duration) {
             (true, _) => IntervalLengths::Free,
-            (false, None) => IntervalLengths::SharedControls,
+            (false, None) => IntervalLengths::Shared,
             (false, Some(duration)) => {
                 IntervalLengths::Given(vec![duration / intervals as f64; intervals])
             }
@@ -45,7 +45,8 @@ impl ProgramChoice {
         }
     }
 
-    /// The same program with the smooth proxy instead of the bill, which has many local minima.
+    /// The same program with the smooth proxy in place of the bill, which has many local minima; `None`
+    /// where the bill is not minimised.
     pub(super) fn proxy(&self, slew: &Slew) -> Option<Self> {
         let billed = self.cost_weights.uses_bill() && self.cost_weights.budget.is_none();
         let cost_weights = CostWeights {
@@ -55,7 +56,8 @@ impl ProgramChoice {
         billed.then(|| self.with(slew, cost_weights))
     }
 
-    /// The same program where effort counts too, this share of what time counts for on a motion.
+    /// The same program with a weight on effort, so that on a motion effort costs `share` of what time
+    /// costs.
     pub(super) fn with_effort(&self, slew: &Slew, share: f64, motion: &SlewMotion) -> Self {
         let cost_weights = CostWeights {
             effort: share * motion.duration() / propagation::effort(motion),
@@ -64,7 +66,7 @@ impl ProgramChoice {
         self.with(slew, cost_weights)
     }
 
-    /// The same program with other cost_weights.
+    /// The same program with other cost weights.
     pub(super) fn with(&self, slew: &Slew, cost_weights: CostWeights) -> Self {
         Self {
             shape: slew.shape(self.shape.course, self.shape.lengths.clone(), &cost_weights),
@@ -81,7 +83,8 @@ impl ProgramChoice {
         let guess = guess.stretched_to(guess_duration, dynamics);
         match &self.shape.lengths {
             IntervalLengths::Given(lengths) => guess.on_mesh(lengths),
-            // What only time counts for switches, and the guess knows when; what is smooth does not.
+            // In minimum time torques switch, about where the guess does: keep its nodes. Other
+            // objectives have smooth torques.
             IntervalLengths::Free
                 if self.cost_weights.is_time_only() && self.intervals >= guess.lengths.len() =>
             {

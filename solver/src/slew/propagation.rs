@@ -1,19 +1,19 @@
-//! The flight of a solution, as an independent integration finds it, and what it takes.
+//! Propagation of a solution with the checker's integrator: end errors, excesses over limits, energies.
 
 use super::motion::SlewMotion;
 use super::spec::EnergyMeasure;
 use super::validated::Slew;
 use crate::checker::{
-    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
-    RATE_TOLERANCE, Ramp, propagate_ramps,
+    ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, RATE_TOLERANCE,
+    StepPart, TorqueRamp, propagate_ramps,
 };
 use crate::model::drive::Drive;
 use crate::model::plan::State;
 use crate::model::waypoint::WheelCondition;
 
-/// Halvings that find where the power of a wheel changes its sign.
+/// Bisections for the time at which the power of a wheel changes its sign.
 const HALVINGS: usize = 40;
-/// Parts of a moment between which the power is looked at for its sign.
+/// Parts of an integration step at whose ends the sign of the power is evaluated.
 const PARTS: usize = 4;
 /// Gauss's rule with three points.
 const GAUSS: [(f64, f64); 3] = [
@@ -22,14 +22,14 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Commanded torques from a time on, linear from begin to end.
+/// Commanded torques over a time, linear from its beginning to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TorquePiece {
-    /// Begin, s.
+    /// Time at the beginning, s.
     pub start_s: f64,
     /// Length, s.
     pub duration_s: f64,
-    /// Torque on each wheel at the begin, N m; zero for wheels that are not commanded.
+    /// Torque of each wheel at the beginning, N m; zero for wheels that are not commanded.
     pub torque_begin_nm: Vec<f64>,
     /// The same at the end.
     pub torque_end_nm: Vec<f64>,
@@ -38,10 +38,10 @@ pub struct TorquePiece {
 /// Energies of all motors together, J.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MotorEnergies {
-    /// Integral of the power, braking counted against it.
+    /// Integral of the power; power that a braking wheel returns counts as negative.
     pub proxy_j: f64,
-    /// What the supply gives: the integral of the power where it is positive over the efficiency,
-    /// and what the electronics take.
+    /// Energy drawn from the supply: the integral of the positive part of the power over the
+    /// efficiency, plus the energy of the electronics.
     pub bill_j: f64,
 }
 
@@ -56,16 +56,16 @@ impl MotorEnergies {
     }
 }
 
-/// A solution with what its independent integration found.
+/// A solution, and the result of its integration by the checker.
 #[derive(Debug, Clone)]
 pub struct PropagatedSlew {
-    /// The commands; they tile the time from zero to the end.
+    /// The commanded torques, without gaps from zero to the end.
     pub pieces: Vec<TorquePiece>,
-    /// States at the begin of every piece that takes time, and at the end.
+    /// States at the beginning of every piece of positive duration, and at the end.
     pub states: Vec<State>,
     /// The motors' energies.
     pub energies: MotorEnergies,
-    /// Angle between the attitude at the end and the wanted one, rad.
+    /// Angle between the attitude at the end and the prescribed one, rad.
     pub attitude_error_rad: f64,
     /// Norm of the error of the body rate at the end, rad/s.
     pub rate_error_rad_s: f64,
@@ -77,7 +77,7 @@ pub struct PropagatedSlew {
     pub rate_excess: f64,
     /// Greatest error of a prescribed final wheel speed, rad/s; zero where none is.
     pub wheel_speed_error_rad_s: f64,
-    /// What is wrong with the flight, in sentences; empty when all is well.
+    /// Every limit or end condition that is violated, as a sentence; empty when there is none.
     pub failures: Vec<String>,
 }
 
@@ -90,7 +90,7 @@ pub(super) fn effort(motion: &SlewMotion) -> f64 {
         .sum()
 }
 
-/// Flies a motion.
+/// Integrates a motion's torques from the start.
 pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     let scenario = slew.scenario();
     let ramps = ramps(slew, motion);
@@ -139,8 +139,8 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     propagated
 }
 
-/// The excess over 1, or 0; finite even for limits that are almost nothing, and the greatest where
-/// there is no usage to tell.
+/// The excess of a usage over 1, or 0. It is finite for any limit, and `f64::MAX` for a usage that is
+/// not a number.
 fn excess(usage: f64) -> f64 {
     if usage.is_nan() {
         f64::MAX
@@ -149,7 +149,8 @@ fn excess(usage: f64) -> f64 {
     }
 }
 
-/// Sentences about the end and the torques; speeds and rates have their own.
+/// Sentences about attitude, rate and torques that are out of tolerance; [`propagate_ramps`] reports
+/// those about speeds and rates.
 fn faults(propagated: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
     let too_large = [
         (
@@ -179,14 +180,14 @@ fn faults(propagated: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
     ];
     too_large
         .into_iter()
-        // What is not a number is no success.
+        // A value that is not a number is out of tolerance.
         .filter(|(value, tolerance, ..)| value.is_nan() || value > tolerance)
         .map(|(value, _, what, unit)| format!("{what} {value:.3e} {unit}").trim_end().to_owned())
         .collect()
 }
 
-/// A sentence when the wheels miss their prescribed speeds, measured by the least limit or, where
-/// nothing is limited, by the fastest wheel.
+/// A sentence when the wheels miss their prescribed speeds; the tolerance is relative to the least
+/// speed limit or, without limits, to the fastest wheel.
 fn speed_fault(slew: &Slew, propagated: &PropagatedSlew) -> Option<String> {
     let actuators = slew.vehicle().dynamics.actuators.iter();
     let least = actuators
@@ -203,7 +204,7 @@ fn speed_fault(slew: &Slew, propagated: &PropagatedSlew) -> Option<String> {
         .then(|| format!("a wheel misses its final speed by {error:.3e} rad/s"))
 }
 
-/// The greatest error of a prescribed final speed, rad/s.
+/// The greatest error of a prescribed final speed, rad/s; zero where none is prescribed.
 fn speed_error(slew: &Slew, end: &State) -> f64 {
     let dynamics = &slew.vehicle().dynamics;
     let momenta = dynamics.wheels_of_speeds(&end.body_rate_rad_s, &end.wheel_speed_rad_s);
@@ -219,7 +220,7 @@ fn speed_error(slew: &Slew, end: &State) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn piece(ramp: &Ramp) -> TorquePiece {
+fn piece(ramp: &TorqueRamp) -> TorquePiece {
     TorquePiece {
         start_s: ramp.start_s,
         duration_s: ramp.duration_s,
@@ -228,7 +229,7 @@ fn piece(ramp: &Ramp) -> TorquePiece {
     }
 }
 
-fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
+fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<TorqueRamp> {
     let dynamics = &slew.vehicle().dynamics;
     let of_all = |torques: &nalgebra::DVector<f64>| {
         let mut all = vec![0.0; slew.all_drives().len()];
@@ -242,7 +243,7 @@ fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
         .iter()
         .zip(&motion.lengths)
         .zip(motion.begin.iter().zip(&motion.end))
-        .map(|((start, length), (begin, end))| Ramp {
+        .map(|((start, length), (begin, end))| TorqueRamp {
             start_s: *start,
             duration_s: *length,
             begin_nm: of_all(begin),
@@ -251,9 +252,9 @@ fn ramps(slew: &Slew, motion: &SlewMotion) -> Vec<Ramp> {
         .collect()
 }
 
-/// What one wheel takes in a short while: exact where the power is a polynomial of degree five, cut
-/// where it changes its sign.
-fn spent(drive: &Drive, wheel: usize, moment: &Moment<'_>) -> MotorEnergies {
+/// Energies of one wheel over an integration step. Quadrature is exact for power of degree five in
+/// time; parts are cut where the power changes its sign.
+fn spent(drive: &Drive, wheel: usize, moment: &StepPart<'_>) -> MotorEnergies {
     let Some(motor) = drive.motor else {
         return MotorEnergies::default();
     };

@@ -1,9 +1,9 @@
-//! Commands held on the samples of a clock, in BIROS's three steps.
+//! Torques held on the samples of a clock, in the three steps of BIROS.
 //!
-//! First the minimum in continuous time; then its duration is rounded up to the clock, and torque
-//! held linearly; then it is held constant, from the motion before. Where no motion is found in so
-//! many samples, one more is allowed. In its fixed time a slew for time alone takes the least
-//! effort.
+//! First the minimum in continuous time is solved. Its duration is then rounded up to the clock, and
+//! the slew is solved with torques linear between samples; from that motion it is solved with torques
+//! constant between samples. Where no motion is found in that number of samples, one sample is added.
+//! Once the duration is fixed, a slew in minimum time minimises effort.
 
 use super::attempts::solve_program;
 use super::choices::MAX_INTERVALS;
@@ -20,7 +20,7 @@ use crate::run::stop::StopReason;
 
 /// Samples allowed beyond those of the continuous minimum.
 const MAX_EXTRA: usize = 12;
-/// Share of a sample by which a duration may exceed a multiple of it as rounding.
+/// Excess of a duration over a whole number of samples, in samples, that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// Solves a sampled slew.
@@ -76,7 +76,7 @@ pub(super) fn solve(
     found
 }
 
-/// A whole number as a count; more than any program has intervals counts as one too many.
+/// A whole number as a count, cut off just above the greatest number of intervals.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -86,7 +86,7 @@ fn whole(number: f64) -> usize {
     number.clamp(0.0, (MAX_INTERVALS + 1) as f64) as usize
 }
 
-/// A slew on a clock.
+/// A slew whose torques are held on the samples of a clock.
 struct SampleClock<'a> {
     slew: &'a Slew,
     period: f64,
@@ -95,13 +95,13 @@ struct SampleClock<'a> {
 }
 
 impl SampleClock<'_> {
-    /// Numbers of samples to try, given the least that the continuous minimum admits.
+    /// Numbers of samples to try; `least` is that of the continuous minimum.
     fn candidates(&self, least: usize) -> Vec<usize> {
         match self.slew.objective() {
             Objective::Energy { duration_s, .. } => {
                 vec![whole((duration_s / self.period).round())]
             }
-            // Time weighs against effort, so that the shorter side of the optimum counts too.
+            // The optimum duration lies between two numbers of samples: try the smaller one too.
             Objective::TimeAndEffort { .. } => {
                 (least.saturating_sub(1).max(2)..=least + MAX_EXTRA).collect()
             }
@@ -109,7 +109,7 @@ impl SampleClock<'_> {
         }
     }
 
-    /// What is minimised once the number of samples is fixed.
+    /// The cost of a program with a fixed duration, s.
     fn cost_weights(&self, duration: f64) -> CostWeights {
         match self.slew.objective() {
             Objective::MinimumTime => CostWeights {
@@ -129,7 +129,7 @@ impl SampleClock<'_> {
         }
     }
 
-    /// The optimum in so many samples: held linearly, and from there held constant.
+    /// The optimum in a number of samples: with linear torques, and from there with constant ones.
     fn hold(&self, samples: usize, guess: &SlewMotion) -> FoundSolution {
         let duration = samples as f64 * self.period;
         let cost_weights = self.cost_weights(duration);
@@ -147,8 +147,8 @@ impl SampleClock<'_> {
         if self.hold == SampleHold::Linear {
             return linear;
         }
-        // Torque that may jump needs less time than one that may not: no motion of the second kind
-        // says nothing about the first.
+        // Constant torques may jump at samples and so need less time than continuous linear ones: they
+        // can have a solution where the latter have none.
         let guess = if linear.solved.converged() {
             &linear.solved.motion
         } else {
@@ -169,6 +169,7 @@ impl SampleClock<'_> {
             }
     }
 
+    /// The objective of a solution among those of different durations.
     fn value(&self, found: &FoundSolution) -> f64 {
         let motion = &found.solved.motion;
         match self.slew.objective() {

@@ -6,15 +6,15 @@
 //! | torques `u` at the node | torque is linear on intervals |
 //! | length of the intervals | all intervals have the same unknown length |
 //! | clock | the duration is prescribed and lengths are unknown, or a speed law moves a wheel |
-//! | energy_account | the energy is prescribed |
+//! | energy account: what has been used since the start | the energy is limited |
 //!
 //! | part of the controls | when |
 //! |---|---|
 //! | change of the momenta `m`, or the torques `v` at the interval's end | always |
 //! | length | every interval has a length of its own |
-//! | what the supply gives to each wheel | nothing is fed back |
+//! | slacks: energy at each motor, at least 0 | the bill is counted, braking returns nothing |
 
-/// How torque runs over an interval.
+/// Torque as a function of time within an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TorqueCourse {
     /// Constant.
@@ -23,14 +23,14 @@ pub(super) enum TorqueCourse {
     Ramps,
 }
 
-/// What is known of the lengths of intervals.
+/// Whether the lengths of the intervals are unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum IntervalLengths {
-    /// Each is an unknown of its own.
+    /// Each length is an unknown.
     Free,
-    /// All are the same unknown.
-    SharedControls,
-    /// They are given, s.
+    /// One unknown is the length of all intervals.
+    Shared,
+    /// The lengths are given, s.
     Given(Vec<f64>),
 }
 
@@ -46,6 +46,7 @@ pub(super) struct ProgramShape {
 }
 
 impl ProgramShape {
+    /// Number of torques in a state.
     fn ramps(&self) -> usize {
         match self.course {
             TorqueCourse::Steps => 0,
@@ -54,7 +55,7 @@ impl ProgramShape {
     }
 
     fn shared(&self) -> usize {
-        usize::from(self.lengths == IntervalLengths::SharedControls)
+        usize::from(self.lengths == IntervalLengths::Shared)
     }
 
     fn own(&self) -> usize {
@@ -71,36 +72,36 @@ impl ProgramShape {
         self.wheels * (1 + usize::from(self.slacks)) + self.own()
     }
 
-    /// First torque of a state.
+    /// Index of the first torque in a state.
     pub(super) fn torque_at(&self) -> usize {
         3 + self.wheels
     }
 
-    /// The shared length in a state.
+    /// Index of the shared length in a state.
     pub(super) fn shared_at(&self) -> usize {
         self.torque_at() + self.ramps()
     }
 
-    /// The clock in a state.
+    /// Index of the clock in a state.
     pub(super) fn clock_at(&self) -> usize {
         self.shared_at() + self.shared()
     }
 
-    /// The energy_account in a state.
+    /// Index of the energy account in a state.
     pub(super) fn energy_account_at(&self) -> usize {
         self.clock_at() + usize::from(self.clock)
     }
 
-    /// The first slack among the controls.
+    /// Index of the first slack among the controls.
     pub(super) fn slack_at(&self) -> usize {
         self.wheels + self.own()
     }
 
-    /// The variable that is an interval's length, counted over states and controls.
+    /// Index of an interval's length, counted over states and controls; `None` where it is given.
     pub(super) fn length_variable(&self) -> Option<usize> {
         match self.lengths {
             IntervalLengths::Free => Some(self.states() + self.wheels),
-            IntervalLengths::SharedControls => Some(self.shared_at()),
+            IntervalLengths::Shared => Some(self.shared_at()),
             IntervalLengths::Given(_) => None,
         }
     }

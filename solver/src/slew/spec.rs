@@ -8,7 +8,7 @@ use crate::model::spec::{AttitudeEquivalence, SpacecraftSpec, StateSpec};
 pub enum EnergyMeasure {
     /// The integral of the power, which is smooth but counts what a braking wheel returns.
     Proxy,
-    /// What the supply gives: nothing is fed back.
+    /// The energy drawn from the supply: braking returns nothing.
     Bill,
 }
 
@@ -40,12 +40,12 @@ pub enum Objective {
     },
 }
 
-/// How torque runs between two samples.
+/// Torque as a function of time between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleHold {
-    /// It is constant.
+    /// Constant.
     Constant,
-    /// It is linear, and continuous across samples.
+    /// Linear, and continuous across samples.
     Linear,
 }
 
@@ -76,10 +76,10 @@ pub enum TorqueCommand {
     },
 }
 
-/// What the wheels must hold at the end.
+/// Condition on the wheels at the end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum FinalWheels {
-    /// What attitude and rate leave free is free.
+    /// None besides conservation of momentum at the final attitude and rate.
     #[default]
     Free,
     /// The speeds of the end's state.
@@ -88,15 +88,15 @@ pub enum FinalWheels {
     NullSpaceOfStart,
 }
 
-/// How torque on the body is shared out among the wheels.
+/// How torque on the body is allocated to the wheels.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, strum::IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 pub enum WheelAllocation {
-    /// Any way within the limits: the wheels' torques are free of each other.
+    /// Every wheel's torque is chosen by itself, within its limits.
     #[default]
     Free,
-    /// By the pseudo-inverse, as most flight software does: `u = A^+ A u`. Null-space momentum stays
-    /// what it is at the start, and less than the [full envelope](crate::wheels::array) is within reach.
+    /// By the pseudo-inverse, as in most flight software: `u = A^+ A u`. Null-space momentum stays
+    /// that of the start, and less than the [full envelope](crate::wheels::array) can be reached.
     PseudoInverse,
 }
 
@@ -122,7 +122,7 @@ pub struct SlewSpec {
     pub objective: Objective,
     /// What can be commanded.
     pub command: TorqueCommand,
-    /// How torque is shared out among the wheels.
+    /// How torque is allocated to the wheels.
     pub allocation: WheelAllocation,
     /// Meaning of equal attitudes.
     pub attitude_equivalence: AttitudeEquivalence,

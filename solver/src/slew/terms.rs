@@ -1,4 +1,4 @@
-//! What an interval costs and what limits it, wheel by wheel, in physical units.
+//! Cost and limits of an interval, wheel by wheel, in physical units.
 //!
 //! A wheel on an interval is described by six features, all of them linear in the variables. With
 //! `s` in `[0, 1]` along the interval, `tau` its length and `W` the wheel's speed:
@@ -10,8 +10,8 @@
 //! | `SPEED_CHANGE`, `SPEED_CHANGE_END` | `W(1) - W(0)`, - | acceleration at the two ends |
 //! | speed | `W(0) + s SPEED_CHANGE` | `W(0) + tau (s SPEED_CHANGE + s^2 / 2 (SPEED_CHANGE_END - SPEED_CHANGE))` |
 //!
-//! The turn of a stored momentum within an interval is left out of the speed: it reaches a wheel
-//! only through the body rate, a share of about the wheel's inertia in the body's.
+//! The speed within an interval leaves out that stored momentum turns in body axes: this acts on a
+//! wheel only through the body rate, of the order of the wheel's inertia over the body's.
 
 use super::jet::{FEATURES, Jet};
 use super::shape::TorqueCourse;
@@ -31,10 +31,10 @@ pub(super) const TORQUE_END: usize = 4;
 /// Length, s.
 pub(super) const LENGTH: usize = 5;
 
-/// Speed below which Coulomb friction turns over, as a share of the speed limit: the program needs
-/// smooth functions. Limits are kept for either sign there, so that none is exceeded.
+/// Speed below which Coulomb friction changes its sign smoothly, as a share of the speed limit: the
+/// program needs smooth functions. Below it torque limits hold for friction of either sign.
 const TURNOVER: f64 = 0.01;
-/// The same in rad/s without a speed limit.
+/// The same speed, rad/s, for a wheel without a speed limit.
 const UNLIMITED_TURNOVER: f64 = 1.0;
 /// Nodes and weights of Gauss's rule with three points, which is exact for the power of an ideal
 /// wheel: of degree two in time under a constant torque, four under a linear one.
@@ -44,14 +44,14 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Which sign Coulomb friction is given while it turns over.
+/// How Coulomb friction is smoothed while it changes its sign.
 #[derive(Debug, Clone, Copy)]
 enum FrictionSign {
-    /// Never below the true one.
+    /// Never below the exact function.
     Above,
-    /// Between.
+    /// Between the other two.
     Mean,
-    /// Never above it.
+    /// Never above the exact function.
     Below,
 }
 
@@ -61,11 +61,11 @@ pub(super) struct DrivenWheel {
     /// Limits of the torque, N m.
     min_torque: f64,
     max_torque: f64,
-    /// Friction that the motor makes up for.
+    /// Coefficients of the friction that the motor compensates, N m s and N m; otherwise zero.
     viscous: f64,
     coulomb: f64,
     turnover: f64,
-    /// `R / k^2`, W/(N m)², where the motor is known.
+    /// Heat per squared torque `R / k^2`, W/(N m)², where the motor is known.
     heat: Option<f64>,
 }
 
@@ -150,7 +150,7 @@ impl WheelState {
 }
 
 impl DrivenWheel {
-    /// A wheel's share of the limits with its drive.
+    /// A wheel with its limits, and its drive's friction and motor.
     pub(super) fn new(wheel: &Actuator, drive: &Drive) -> Self {
         let compensated = f64::from(u8::from(drive.friction_compensated));
         let turnover = if wheel.max_speed.is_finite() {
@@ -174,13 +174,13 @@ impl DrivenWheel {
         self.viscous > 0.0 || self.coulomb > 0.0
     }
 
-    /// Rows that limit a constant torque.
+    /// Number of inequalities that limit a constant torque.
     pub(super) fn step_rows(&self) -> usize {
         if self.has_friction() { 4 } else { 2 }
     }
 
-    /// Margins of a constant motor torque over an interval, as times, s: `tau - M tau / limit` at
-    /// its ends. Speed is all but linear in between, and so is what friction takes.
+    /// Margins of a constant motor torque at the ends of an interval, `tau - M tau / limit`, s. Speed and
+    /// friction are almost linear in between.
     pub(super) fn step_margins(&self, wheel: &WheelState) -> impl Iterator<Item = Jet> {
         let ends: &[f64] = if self.has_friction() {
             &[0.0, 1.0]
@@ -213,12 +213,12 @@ impl DrivenWheel {
         })
     }
 
-    /// What friction takes, N m.
+    /// Torque of friction, N m.
     fn friction(&self, speed: &Jet, sign: FrictionSign) -> Jet {
         *speed * self.viscous + self.direction(speed, sign) * self.coulomb
     }
 
-    /// The sign of a speed, smooth within the turnover.
+    /// The sign of a speed, smoothed within the turnover speed.
     fn direction(&self, speed: &Jet, sign: FrictionSign) -> Jet {
         if self.coulomb == 0.0 {
             return Jet::constant(0.0);

@@ -30,12 +30,12 @@ pub struct Slew {
     command: TorqueCommand,
 }
 
-/// A valid slew with what the caller should know about it.
+/// A valid slew, and warnings about it.
 #[derive(Debug, Clone)]
 pub struct ValidatedSlew {
     /// The slew.
     pub slew: Slew,
-    /// Doubts that do not stand in the way.
+    /// Remarks that do not keep the slew from being solved.
     pub warnings: Vec<Problem>,
 }
 
@@ -138,7 +138,7 @@ impl Slew {
         self.command
     }
 
-    /// How torque is shared out among the wheels.
+    /// How torque is allocated to the wheels.
     #[must_use]
     pub fn allocation(&self) -> WheelAllocation {
         match self.vehicle.pinned_null {
@@ -176,7 +176,7 @@ impl Slew {
         &self.ends
     }
 
-    /// Both ends, the second with the sign at which a motion arrives.
+    /// Both ends; the quaternion of the second has the sign with which a motion arrives.
     pub(super) fn ends_towards(&self, motion: &SlewMotion) -> [Waypoint; 2] {
         let mut ends = self.ends.clone();
         if let Some(last) = motion.attitudes.last() {
@@ -185,12 +185,12 @@ impl Slew {
         ends
     }
 
-    /// Angle between an attitude and the wanted one, rad.
+    /// Angle between an attitude and the prescribed final one, rad.
     pub(super) fn missed_by(&self, attitude: &Attitude) -> f64 {
         self.arrival.turn(attitude, &self.ends[1].attitude)
     }
 
-    /// The program's cost_weights in continuous time.
+    /// The program's cost weights in continuous time.
     pub(super) fn cost_weights(&self) -> CostWeights {
         match self.objective {
             Objective::MinimumTime => CostWeights::TIME,
@@ -210,7 +210,7 @@ impl Slew {
         }
     }
 
-    /// The variables of a program for it.
+    /// The variables of a program for the slew.
     pub(super) fn shape(
         &self,
         course: TorqueCourse,
@@ -241,7 +241,7 @@ fn fixed(rate: &Vector3<f64>) -> [RateCondition; 3] {
     [0, 1, 2].map(|axis| RateCondition::Fixed(rate[axis]))
 }
 
-/// The slew as a scenario without targets; wheels with a law of their own are no actuators.
+/// The slew as a scenario without targets; wheels under a speed law are disabled in it.
 fn scenario_spec(spec: &SlewSpec) -> ScenarioSpec {
     let mut spacecraft = spec.spacecraft.clone();
     for (wheel, drive) in spacecraft.wheels.iter_mut().zip(&spec.drives) {

@@ -9,7 +9,7 @@ use crate::model::drive::{Drive, SpeedLaw};
 use crate::model::dynamics::Dynamics;
 use nalgebra::{DVector, Vector3};
 
-/// A wheel that follows a law.
+/// A wheel under a speed law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct SpeedLawWheel {
     /// `a I`, kg m².
@@ -19,12 +19,12 @@ struct SpeedLawWheel {
     start: f64,
 }
 
-/// All wheels that follow laws.
+/// All wheels under a speed law.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct SpeedLawWheels(Vec<SpeedLawWheel>);
 
 impl SpeedLawWheels {
-    /// Adds a wheel of axis times inertia `spin` that starts at a speed, rad/s.
+    /// Adds a wheel, with `spin` its axis times its inertia, kg m², and its speed at the start, rad/s.
     pub(super) fn add(&mut self, spin: Vector3<f64>, law: SpeedLaw, start: f64) {
         self.0.push(SpeedLawWheel { spin, law, start });
     }
@@ -50,14 +50,14 @@ impl SpeedLawWheels {
     }
 }
 
-/// A spacecraft with everything that turns on it.
+/// A spacecraft with its wheels and drives.
 #[derive(Debug, Clone)]
 pub(super) struct Vehicle {
     pub(super) dynamics: Dynamics,
     /// Drives of the commanded wheels.
     pub(super) drives: Vec<Drive>,
     pub(super) speed_law_wheels: SpeedLawWheels,
-    /// What the commanded wheels' momenta keep in the null space of their axes, N m s, where the
-    /// pseudo-inverse shares torques out; none where torques are free of each other.
+    /// The null-space component of the commanded wheels' momenta, N m s, which stays constant where the
+    /// pseudo-inverse allocates torques; `None` where every torque is chosen by itself.
     pub(super) pinned_null: Option<DVector<f64>>,
 }

@@ -1,11 +1,11 @@
-//! What the wheels of a spacecraft can do together: envelopes, slews within them, demands shared out.
+//! Envelopes of a spacecraft's wheels, slews within them, and the allocation of demands.
 //!
 //! For every turn from rest to rest, without stored momentum, the study has the slews about the
-//! eigenaxis under each [limit](crate::eigenaxis::Limit) and, on request, the fastest ones, once with
-//! torques free of each other and once with those that the pseudo-inverse shares out; all with
-//! their ways through the envelopes (RW/CMG thesis, figures 71 to 76).
+//! eigenaxis under each [limit](crate::eigenaxis::EnvelopeLimit) and, on request, the fastest ones, with
+//! every torque chosen by itself and with torques allocated by the pseudo-inverse; all with their
+//! paths within the envelopes (RW/CMG thesis, figures 71 to 76).
 
-use crate::eigenaxis::{Baselines, EigenaxisSlew};
+use crate::eigenaxis::{Baselines, EigenaxisBaseline};
 use crate::envelope_path::EnvelopePath;
 use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;
@@ -17,14 +17,14 @@ use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, Spacecraft
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::{self, FinalWheels, Slew, SlewOutcome, SlewSpec, WheelAllocation};
-use slewplan_solver::wheels::allocation::{self, Allocation};
+use slewplan_solver::wheels::allocation::{self, DemandAllocation};
 use slewplan_solver::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
 
-/// Most turns of a study, each with two optimisations at most.
+/// Greatest number of turns of a study, each with two optimisations at most.
 pub const MAX_TURNS: usize = 100;
-/// Most demands of a study, each with a linear program.
+/// Greatest number of demands of a study, each with a linear program.
 pub const MAX_DEMANDS: usize = 1000;
-/// Turns below this angle, rad, are rounding.
+/// Turns below this angle, rad, count as none.
 const MIN_ANGLE: f64 = 1e-9;
 
 /// A turn as a caller describes it.
@@ -32,7 +32,7 @@ const MIN_ANGLE: f64 = 1e-9;
 pub struct TurnSpec {
     /// Attitude at the start.
     pub from: AttitudeSpec,
-    /// Attitude at the end; of the two ways to it the study takes the shorter one.
+    /// Attitude at the end; the study takes the shorter turn to it.
     pub to: AttitudeSpec,
 }
 
@@ -47,7 +47,7 @@ pub struct EnvelopeStudySpec {
     pub momentum_authority: f64,
     /// Turns from rest to rest.
     pub turns: Vec<TurnSpec>,
-    /// Torques that the wheels are to take up together, body axes, N m; the body gets the opposite.
+    /// Sums of the wheels' torques, body axes, N m; the body gets the opposite.
     pub demands_nm: Vec<[f64; 3]>,
     /// Whether the fastest slews are wanted too.
     pub time_optimal: bool,
@@ -58,19 +58,19 @@ pub struct EnvelopeStudySpec {
 pub struct EnvelopeStudy {
     spacecraft: Spacecraft,
     baselines: Baselines,
-    turns: Vec<Turn>,
+    turns: Vec<StudiedTurn>,
     demands: Vec<Vector3<f64>>,
 }
 
 #[derive(Debug, Clone)]
-struct Turn {
+struct StudiedTurn {
     /// Axis times angle, body axes, rad.
     vector: Vector3<f64>,
     /// The slews to optimise.
     slews: Vec<Slew>,
 }
 
-/// What a study finds.
+/// The results of a study.
 #[derive(Debug, Clone)]
 pub struct EnvelopeReport {
     /// The envelopes with the usable shares of the limits.
@@ -84,7 +84,7 @@ pub struct EnvelopeReport {
 }
 
 impl EnvelopeReport {
-    /// Number of slews in minimum time that were tried and not found.
+    /// Number of slews in minimum time that were not solved.
     #[must_use]
     pub fn unsolved(&self) -> usize {
         let tried = self.turns.iter().flat_map(|turn| &turn.time_optimal);
@@ -92,42 +92,42 @@ impl EnvelopeReport {
     }
 }
 
-/// A turn in all its ways.
+/// The slews of one turn.
 #[derive(Debug, Clone)]
 pub struct TurnReport {
     /// Axis times angle, body axes, rad.
     pub vector: Vector3<f64>,
-    /// About the eigenaxis, in the order of [`crate::eigenaxis::Limit::ALL`].
-    pub eigenaxis: Vec<(EigenaxisSlew, EnvelopePath)>,
-    /// The fastest ones that were asked for and reached.
+    /// About the eigenaxis, in the order of [`crate::eigenaxis::EnvelopeLimit::ALL`].
+    pub eigenaxis: Vec<(EigenaxisBaseline, EnvelopePath)>,
+    /// The fastest slews that were asked for, as far as they were tried before a stop.
     pub time_optimal: Vec<TimeOptimalSlew>,
 }
 
 /// A slew in minimum time; null-space momentum is zero at both ends.
 #[derive(Debug, Clone)]
 pub struct TimeOptimalSlew {
-    /// How torque is shared out.
+    /// How torque is allocated.
     pub allocation: WheelAllocation,
-    /// How the program ended: `converged`, or why not.
+    /// Status of the program: `converged`, or why it did not converge.
     pub status: String,
-    /// Duration, s, and the way through the envelopes; none when no slew was found that flies.
+    /// Duration, s, and path within the envelopes; `None` when no verified slew was found.
     pub found: Option<(f64, EnvelopePath)>,
 }
 
-/// A demand, shared out in both ways.
+/// A demand and its two allocations.
 #[derive(Debug, Clone)]
 pub struct DemandReport {
     /// The demand, N m.
     pub torque: Vector3<f64>,
     /// By the pseudo-inverse.
-    pub pseudo_inverse: Allocation,
-    /// With the least load; none when the linear program could not be solved.
-    pub least_load: Option<Allocation>,
+    pub pseudo_inverse: DemandAllocation,
+    /// With the least load; `None` when the linear program could not be solved.
+    pub least_load: Option<DemandAllocation>,
 }
 
 impl EnvelopeStudy {
-    /// Validates a description, with what the caller should know about it. Pointers are those of the
-    /// fields: `/spacecraft`, `/options`, `/turns`, `/demands_nm`.
+    /// Validates a description and returns warnings with the study. Pointers are those of the fields:
+    /// `/spacecraft`, `/options`, `/turns`, `/demands_nm`.
     ///
     /// # Errors
     ///
@@ -176,7 +176,7 @@ impl EnvelopeStudy {
             } else {
                 Vec::new()
             };
-            Ok(Turn { vector, slews })
+            Ok(StudiedTurn { vector, slews })
         });
         let study = Self {
             turns: turns.collect::<Result<_, Vec<Problem>>>()?,
@@ -187,7 +187,7 @@ impl EnvelopeStudy {
         Ok((study, warnings))
     }
 
-    /// Conducts the study; what the stop signal cuts short is left out.
+    /// Conducts the study; slews that the stop signal interrupts are left out.
     #[must_use]
     pub fn conduct(&self, pool: &SolverPool, stop: &StopSignal) -> EnvelopeReport {
         let torque = &self.baselines.envelopes().torque.array;
@@ -204,7 +204,7 @@ impl EnvelopeStudy {
         }
     }
 
-    fn turn(&self, turn: &Turn, stop: &StopSignal) -> TurnReport {
+    fn turn(&self, turn: &StudiedTurn, stop: &StopSignal) -> TurnReport {
         let envelopes = self.baselines.envelopes();
         let slews = self.baselines.slews(&turn.vector).into_iter().flatten();
         let mut time_optimal = Vec::new();
@@ -213,7 +213,7 @@ impl EnvelopeStudy {
                 break;
             }
             let outcome = slew::solve(slew, stop);
-            // What was interrupted says nothing.
+            // An interrupted solve has no result.
             if stop.is_set() && !outcome.solved {
                 break;
             }
@@ -250,7 +250,8 @@ impl EnvelopeStudy {
     }
 }
 
-/// What leaves the range of numbers: finite limits have volumes, durations and loads that are not.
+/// Problems with results that overflow: finite limits can have volumes, durations or loads that are not
+/// finite.
 fn beyond_numbers(
     baselines: &Baselines,
     turns: &[Vector3<f64>],
@@ -266,7 +267,7 @@ fn beyond_numbers(
         [full, pseudo_inverse]
     });
     let sound = polytopes.all(|polytope| {
-        let figures = polytope.figures();
+        let figures = polytope.size();
         figures.volume.is_normal() && figures.mean_radius.is_normal()
     });
     let problem = |pointer: String, what: &str| {
@@ -274,7 +275,7 @@ fn beyond_numbers(
         Problem::new(pointer, Code::OutOfRange, what, hint)
     };
     if !sound {
-        let what = "the envelope of the wheels is beyond the range of numbers";
+        let what = "the size of the wheels' envelope overflows";
         return vec![problem("/spacecraft/wheels".to_owned(), what)];
     }
     let slow = turns.iter().enumerate().filter(|(_, turn)| {
@@ -283,7 +284,7 @@ fn beyond_numbers(
         !durations.all(f64::is_normal)
     });
     let slow = slow.map(|(i, _)| {
-        let what = "the turn about the eigenaxis takes a time beyond the range of numbers";
+        let what = "the duration of the turn about the eigenaxis overflows";
         problem(format!("/turns/{i}"), what)
     });
     let torque = &envelopes.torque.array;
@@ -292,13 +293,13 @@ fn beyond_numbers(
         .enumerate()
         .filter(|(_, demand)| !is_finite(&allocation::pseudo_inverse(torque, demand)));
     let heavy = heavy.map(|(i, _)| {
-        let what = "the torque asks for shares of the wheels beyond the range of numbers";
+        let what = "the allocation of the torque to the wheels overflows";
         problem(format!("/demands_nm/{i}"), what)
     });
     slow.chain(heavy).collect()
 }
 
-fn is_finite(allocation: &Allocation) -> bool {
+fn is_finite(allocation: &DemandAllocation) -> bool {
     allocation.load.is_finite() && allocation.wheels.iter().all(|wheel| wheel.is_finite())
 }
 
@@ -323,7 +324,7 @@ fn read_turn(spec: &TurnSpec, pointer: &str, findings: &mut Findings) -> Option<
     Some(vector)
 }
 
-/// The slews that are to be optimised for a valid turn.
+/// The slews to optimise for a valid turn.
 fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Slew>, Vec<Problem>> {
     let at = |attitude: &AttitudeSpec| StateSpec {
         attitude: attitude.clone(),

@@ -11,7 +11,7 @@ use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_studies::flight::{FlightStudy, fly};
+use slewplan_studies::flight::{FlightStudy, simulate};
 use std::sync::Arc;
 
 /// Simulate a plan once in closed loop
@@ -45,6 +45,6 @@ pub(in crate::api) async fn handler(
 }
 
 fn answer(study: &FlightStudy, pool: &SolverPool, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
-    let flown = fly(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
-    respond::written(&FlightAnswerDocument::new(study, &flown), "flight")
+    let outcome = simulate(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
+    respond::written(&FlightAnswerDocument::new(study, &outcome), "flight")
 }

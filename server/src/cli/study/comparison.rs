@@ -4,7 +4,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::{self, Destination};
 use crate::cli::{Exit, input};
 use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
-use slewplan_studies::comparison::{Study, StudySpec};
+use slewplan_studies::comparison::{ComparisonStudy, ComparisonStudySpec};
 use std::path::PathBuf;
 
 /// Arguments of `study comparison`.
@@ -21,7 +21,7 @@ pub(super) struct ComparisonStudyArguments {
 pub(super) fn run(arguments: &ComparisonStudyArguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
     let spec = arguments.study.as_deref().map_or_else(
-        || Ok(StudySpec::default()),
+        || Ok(ComparisonStudySpec::default()),
         |path| {
             comparison::read(&input::read(path)?).map_err(|problems| Failure::Invalid {
                 name: input::name(path),
@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &ComparisonStudyArguments) -> Result<Exit, Failure>
             })
         },
     )?;
-    let study = Study::of(spec).map_err(|problems| Failure::Invalid {
+    let study = ComparisonStudy::of(spec).map_err(|problems| Failure::Invalid {
         name: name(arguments),
         problems,
     })?;

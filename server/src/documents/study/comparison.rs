@@ -8,7 +8,9 @@ use crate::documents::document::{self, Node};
 use crate::documents::reader::{Cursor, Fields, Sink};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_studies::catalogue::PowerLaw;
-use slewplan_studies::comparison::{ComparisonSpec, Control, Laws, Radii, Radius, StudySpec};
+use slewplan_studies::comparison::{
+    ComparisonSpec, ComparisonStudySpec, Laws, PyramidControl, Radii, Radius,
+};
 
 /// Most circles of latitude of the singular surfaces in an answer: eight surfaces of some 300 kB.
 pub(crate) const MAX_ROWS: usize = 40;
@@ -20,7 +22,7 @@ pub(crate) const MAX_ENTRIES: usize = 1000;
 /// # Errors
 ///
 /// Everything that is wrong with its shape.
-pub(crate) fn read(bytes: &[u8]) -> Result<StudySpec, Vec<Problem>> {
+pub(crate) fn read(bytes: &[u8]) -> Result<ComparisonStudySpec, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
     read_node(&node)
 }
@@ -30,14 +32,14 @@ pub(crate) fn read(bytes: &[u8]) -> Result<StudySpec, Vec<Problem>> {
 /// # Errors
 ///
 /// Everything that is wrong with its shape.
-pub(crate) fn read_node(node: &Node) -> Result<StudySpec, Vec<Problem>> {
+pub(crate) fn read_node(node: &Node) -> Result<ComparisonStudySpec, Vec<Problem>> {
     let sink = Sink::default();
     let spec = decode(&Cursor::root(node, &sink));
     let problems = sink.into_problems();
     spec.filter(|_| problems.is_empty()).ok_or(problems)
 }
 
-fn decode(cursor: &Cursor<'_>) -> Option<StudySpec> {
+fn decode(cursor: &Cursor<'_>) -> Option<ComparisonStudySpec> {
     let fields = cursor.object(&[
         "momenta_nms",
         "angles_rad",
@@ -48,9 +50,9 @@ fn decode(cursor: &Cursor<'_>) -> Option<StudySpec> {
         "device_masses_kg",
         "surface_rows",
     ])?;
-    let usual = StudySpec::default();
+    let usual = ComparisonStudySpec::default();
     let list = |name, usual| list(&fields, name).unwrap_or(usual);
-    Some(StudySpec {
+    Some(ComparisonStudySpec {
         comparison: ComparisonSpec {
             momenta_nms: list("momenta_nms", usual.comparison.momenta_nms),
             angles_rad: list("angles_rad", usual.comparison.angles_rad),
@@ -115,16 +117,16 @@ fn radii(cursor: &Cursor<'_>) -> Option<Radii> {
                 "cmg",
             ];
             let fields = cursor.object(known)?;
-            let radius = |control: Control| {
+            let radius = |control: PyramidControl| {
                 let given = fields.optional(control.into());
                 let given = given.and_then(|it| radius(&it));
                 given.unwrap_or(Radii::PUBLISHED.of(control))
             };
             Some(Radii {
-                eigenaxis: radius(Control::Eigenaxis),
-                pseudo_optimal: radius(Control::PseudoOptimal),
-                optimal: radius(Control::Optimal),
-                gyroscopes: radius(Control::Gyroscopes),
+                eigenaxis: radius(PyramidControl::Eigenaxis),
+                pseudo_optimal: radius(PyramidControl::PseudoOptimal),
+                optimal: radius(PyramidControl::Optimal),
+                gyroscopes: radius(PyramidControl::Gyroscopes),
             })
         }
     }
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn nothing_given_is_the_study_of_the_thesis() {
-        assert_eq!(read(b"{}").unwrap(), StudySpec::default());
+        assert_eq!(read(b"{}").unwrap(), ComparisonStudySpec::default());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::documents::drives;
 use crate::documents::reader::{Cursor, Fields};
 use slewplan_solver::simulation::{
-    ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, PidGainsSpec, SimulationSpec,
+    ControllerSpec, ErrorsSpec, FeedForwardMode, GainsSpec, PidGainsSpec, SimulationSpec,
 };
 
 /// Damping where none is given.
@@ -34,8 +34,8 @@ pub(super) fn read(cursor: &Cursor<'_>) -> SimulationSpec {
         asked.map(|count| usize::try_from(count).unwrap_or(usize::MAX))
     };
     let ways = [
-        ("averaged", FeedForward::Averaged),
-        ("time_tagged", FeedForward::TimeTagged),
+        ("averaged", FeedForwardMode::Averaged),
+        ("time_tagged", FeedForwardMode::TimeTagged),
     ];
     SimulationSpec {
         controller: fields

@@ -3,7 +3,7 @@ mod table;
 
 use super::*;
 use proptest::prelude::*;
-use slewplan_tests::motions::{Kind, end_of, motion};
+use slewplan_tests::motions::{MotionKind, end_of, motion};
 use slewplan_tests::random::Generator;
 use table::TABLE;
 
@@ -122,7 +122,7 @@ fn no_motion_beats_the_bound() {
         [1.0, 0.999, 0.9],
     ] {
         let table = rate_box(rates);
-        for kind in (0..60).flat_map(|_| Kind::ALL) {
+        for kind in (0..60).flat_map(|_| MotionKind::ALL) {
             let arcs = motion(&mut generator, kind, rates.into(), 4.5);
             let time: f64 = arcs.iter().map(|arc| arc.1).sum();
             let target = attitude_after(&arcs);

@@ -1,13 +1,13 @@
-//! The costates: from the multipliers at the nodes, by their equations in between.
+//! Costates: the multipliers at the nodes, integrated by the costate equations in between.
 
 use super::{OptimalityTest, cost::RunningCost};
 use crate::slew::flow::MotionSample;
 use nalgebra::{DVector, Vector3};
 
-/// Steps of the costates' integration per interval; as many moments are looked at.
+/// Integration steps of the costates per interval; the conditions are evaluated at their ends.
 pub(super) const PARTS: usize = 8;
 
-/// The costates at a moment.
+/// The costates at one time.
 #[derive(Debug, Clone)]
 pub(super) struct Costate {
     /// `p`, unit of the objective per rad, body axes.
@@ -29,7 +29,7 @@ impl Costate {
 }
 
 impl OptimalityTest<'_> {
-    /// The costates at the end of an interval, as the links' multipliers have them.
+    /// The costates at the end of an interval: the multipliers of its link in physical units.
     pub(super) fn end_costate(&self, k: usize) -> Costate {
         let program = self.program();
         let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
@@ -49,7 +49,7 @@ impl OptimalityTest<'_> {
         }
     }
 
-    /// The multiplier of the clock's own condition at the end, scaled; none where the end is free.
+    /// The multiplier of the condition on the clock at the end, scaled; zero where the duration is free.
     fn duration_multiplier(&self) -> f64 {
         let row = self.program().clock_end_row();
         let at = |row: usize| self.layout.equality(self.layout.intervals).start + row;
@@ -84,7 +84,7 @@ impl OptimalityTest<'_> {
     }
 }
 
-/// The costates' equations.
+/// Time derivatives of the costates.
 fn slope(p: &Costate, at: &MotionSample, running: &RunningCost<'_>) -> Costate {
     let dynamics = running.dynamics();
     // The running cost depends on attitude, momenta and time through the wheels' speeds.

@@ -1,8 +1,8 @@
-//! The list of a program's terms: which wheel adds what to the cost, the links and the limits.
+//! The terms of a program: what each wheel, and each linear variable, adds to cost, links and limits.
 //!
-//! Inequalities of a node come in this order: the conditions on the state, those of each wheel
-//! (torque, then energy against its slack), the length or the budget, the slacks, the rates in the
-//! middle.
+//! The inequalities of a node come in this order: the conditions on the state; those of each wheel
+//! (torque, then energy against its slack); the length or the budget; the slacks; the body rates in
+//! the middle of the interval.
 
 use super::{Program, TermTarget, WheelTerm};
 use crate::nlp::{Chain, Link};
@@ -11,7 +11,7 @@ use crate::slew::shape::{IntervalLengths, TorqueCourse};
 use crate::slew::terms::DrivenWheel;
 
 impl Program {
-    /// Shows every term of a link.
+    /// Passes every nonlinear term of a link to `show`.
     pub(super) fn terms<'a>(&self, link: &'a Link<'a>, mut show: impl FnMut(&WheelTerm<'a>)) {
         let shape = &self.shape;
         let mut row = self.base.state_inequalities(link.node);
@@ -69,7 +69,7 @@ impl Program {
         }
     }
 
-    /// Energy as far as it is not a slack.
+    /// Adds energy to the cost or to the energy account where no slack stands for it.
     fn spend(&self, energy: &Jet, emit: &mut impl FnMut(TermTarget, Jet)) {
         if self.cost_weights.energy > 0.0 {
             emit(
@@ -83,8 +83,8 @@ impl Program {
         }
     }
 
-    /// Where the rows of a wheel at a node and on its interval begin; where those of all wheels end
-    /// for the wheel after the last.
+    /// First inequality of a wheel at a node and on its interval; one past the last of all wheels for
+    /// `wheel` equal to their number.
     fn wheel_rows_at(&self, node: usize, wheel: usize) -> usize {
         let interval = node < self.base.intervals();
         let rows = |wheel: &DrivenWheel| match self.shape.course {
@@ -97,7 +97,7 @@ impl Program {
         self.base.state_inequalities(node) + before
     }
 
-    /// Number of inequalities of a node and its interval.
+    /// Number of the inequalities of a node and its interval.
     pub(super) fn rows(&self, node: usize) -> usize {
         let middle = if node == self.base.intervals() {
             0
@@ -107,7 +107,7 @@ impl Program {
         self.middle_rows_at(node) + middle
     }
 
-    /// Where the rows of the rates in the middle of an interval begin.
+    /// First inequality of the body rates in the middle of an interval.
     pub(super) fn middle_rows_at(&self, node: usize) -> usize {
         let shared_rows = if node == self.base.intervals() {
             usize::from(self.cost_weights.budget.is_some())
@@ -127,34 +127,49 @@ impl Program {
             && !matches!(self.shape.lengths, IntervalLengths::Given(_))
     }
 
-    /// What the supply gives per slack: energy over the motor's efficiency.
+    /// Energy drawn from the supply per unit of a wheel's slack, J: the unit over the motor's efficiency.
     fn supply_energy_per_slack(&self, wheel: usize) -> f64 {
         self.units.energy / self.efficiency[wheel]
     }
 
-    /// Linear terms as `(place, variable or none, coefficient)`.
+    /// Passes every linear term to `show` as `(target, variable or none, coefficient)`.
     pub(super) fn linear_terms(
         &self,
         node: usize,
         mut show: impl FnMut(TermTarget, Option<usize>, f64),
     ) {
-        let (shape, states) = (&self.shape, self.shape.states());
-        let mut row = self.wheel_rows_at(node, shape.wheels);
+        let mut row = self.wheel_rows_at(node, self.shape.wheels);
         if node == self.base.intervals() {
-            if let Some(budget) = self.cost_weights.budget {
-                show(
-                    TermTarget::Inequality(row),
-                    None,
-                    budget / self.units.energy,
-                );
-                show(
-                    TermTarget::Inequality(row),
-                    Some(shape.energy_account_at()),
-                    -1.0,
-                );
-            }
+            self.budget_terms(row, &mut show);
             return;
         }
+        self.carried_terms(&mut show);
+        self.length_terms(node, &mut show);
+        if self.limits_length() {
+            show(
+                TermTarget::Inequality(row),
+                self.shape.length_variable(),
+                1.0,
+            );
+            row += 1;
+        }
+        if self.shape.slacks {
+            self.slack_terms(node, row, &mut show);
+        }
+    }
+
+    /// The inequality of the last node: the energy account is at most the budget.
+    fn budget_terms(&self, row: usize, show: &mut impl FnMut(TermTarget, Option<usize>, f64)) {
+        if let Some(budget) = self.cost_weights.budget {
+            let target = TermTarget::Inequality(row);
+            show(target, None, budget / self.units.energy);
+            show(target, Some(self.shape.energy_account_at()), -1.0);
+        }
+    }
+
+    /// States that the next node begins with: momenta as they are, node torques from the controls.
+    fn carried_terms(&self, show: &mut impl FnMut(TermTarget, Option<usize>, f64)) {
+        let (shape, states) = (&self.shape, self.shape.states());
         for i in 3..shape.torque_at() {
             show(TermTarget::Gap(i), Some(i), 1.0);
         }
@@ -167,6 +182,12 @@ impl Program {
                 );
             }
         }
+    }
+
+    /// What is linear in the length of an interval: time in the cost, the shared length, the clock, and
+    /// the energy of the electronics.
+    fn length_terms(&self, node: usize, show: &mut impl FnMut(TermTarget, Option<usize>, f64)) {
+        let shape = &self.shape;
         let length = shape.length_variable();
         let given = match &shape.lengths {
             IntervalLengths::Given(lengths) => lengths[node] / self.scales.time,
@@ -177,7 +198,7 @@ impl Program {
             length,
             given * self.cost_weights.time * self.scales.time / self.units.cost,
         );
-        if shape.lengths == IntervalLengths::SharedControls {
+        if shape.lengths == IntervalLengths::Shared {
             show(
                 TermTarget::Gap(shape.shared_at()),
                 Some(shape.shared_at()),
@@ -207,26 +228,30 @@ impl Program {
                 given * idle,
             );
         }
-        if self.limits_length() {
-            show(TermTarget::Inequality(row), length, 1.0);
-            row += 1;
-        }
-        if shape.slacks {
-            for wheel in 0..shape.wheels {
-                let slack = Some(states + shape.slack_at() + wheel);
-                // The row of the wheel's energy is its last.
-                let energy_row = self.wheel_rows_at(node, wheel + 1) - 1;
-                show(TermTarget::Inequality(energy_row), slack, 1.0);
-                show(TermTarget::Inequality(row + wheel), slack, 1.0);
-                let price = self.supply_energy_per_slack(wheel);
-                if self.cost_weights.energy > 0.0 {
-                    let weight = self.cost_weights.energy / self.units.cost;
-                    show(TermTarget::Cost, slack, price * weight);
-                }
-                if shape.energy_account {
-                    let at = TermTarget::Gap(shape.energy_account_at());
-                    show(at, slack, price / self.units.energy);
-                }
+    }
+
+    /// The slacks: bounds below them, and their share of cost and energy account.
+    fn slack_terms(
+        &self,
+        node: usize,
+        row: usize,
+        show: &mut impl FnMut(TermTarget, Option<usize>, f64),
+    ) {
+        let (shape, states) = (&self.shape, self.shape.states());
+        for wheel in 0..shape.wheels {
+            let slack = Some(states + shape.slack_at() + wheel);
+            // The row of the wheel's energy is its last.
+            let energy_row = self.wheel_rows_at(node, wheel + 1) - 1;
+            show(TermTarget::Inequality(energy_row), slack, 1.0);
+            show(TermTarget::Inequality(row + wheel), slack, 1.0);
+            let supplied = self.supply_energy_per_slack(wheel);
+            if self.cost_weights.energy > 0.0 {
+                let weight = self.cost_weights.energy / self.units.cost;
+                show(TermTarget::Cost, slack, supplied * weight);
+            }
+            if shape.energy_account {
+                let at = TermTarget::Gap(shape.energy_account_at());
+                show(at, slack, supplied / self.units.energy);
             }
         }
     }

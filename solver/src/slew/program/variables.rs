@@ -23,7 +23,7 @@ impl Program {
             if shape.course == TorqueCourse::Ramps {
                 points.extend(motion.node_torque(node).iter().map(|u| u / torque));
             }
-            if shape.lengths == IntervalLengths::SharedControls {
+            if shape.lengths == IntervalLengths::Shared {
                 points.push(mean / scales.time);
             }
             if shape.clock {
@@ -56,7 +56,7 @@ impl Program {
         iterate
     }
 
-    /// The motion of an iterate.
+    /// The motion of an iterate, in physical units.
     pub(in crate::slew) fn motion_of(&self, iterate: &Iterate) -> SlewMotion {
         let layout = Layout::of(self);
         let (shape, scales) = (&self.shape, &self.scales);
@@ -105,7 +105,7 @@ impl Program {
         motion
     }
 
-    /// What the motion of an iterate takes, J, braking never counted against it.
+    /// Energy of the motors over the motion of an iterate, J; negative energy of an interval counts as 0.
     pub(in crate::slew) fn energy_of(&self, iterate: &Iterate) -> f64 {
         let layout = Layout::of(self);
         let energy = |link: &Link<'_>| -> f64 {
@@ -118,7 +118,7 @@ impl Program {
             .sum()
     }
 
-    /// Fills the slacks and the energy_account of an iterate with what its motion takes.
+    /// Fills the slacks and the energy account of an iterate with the energies of its motion.
     fn fill_energies(&self, iterate: &mut Iterate) {
         if !self.cost_weights.uses_energy() {
             return;
@@ -136,9 +136,9 @@ impl Program {
                 for (i, energy) in energies.iter().enumerate() {
                     iterate.controls[at + i] = energy.max(0.0) / self.units.energy;
                 }
-                let prices = energies.iter().zip(&self.efficiency);
+                let supplied = energies.iter().zip(&self.efficiency);
                 spent += self.quiescent_power * length;
-                spent += prices.map(|(e, share)| e.max(0.0) / share).sum::<f64>();
+                spent += supplied.map(|(e, share)| e.max(0.0) / share).sum::<f64>();
             } else {
                 spent += energies.iter().sum::<f64>();
             }

@@ -1,4 +1,4 @@
-//! Slews whose torques the pseudo-inverse shares out.
+//! Slews whose torques the pseudo-inverse allocates.
 
 use super::craft::{OLRAC_AXIS, olrac, pyramid, pyramid_end, solved, turn};
 use crate::model::problem::Code;
@@ -8,7 +8,7 @@ use crate::slew::{
 };
 use nalgebra::DVector;
 
-/// The pyramid's slew from and to null-space momentum, in each way of sharing torque out.
+/// The pyramid's slew from and to null-space momentum, with an allocation and a command.
 fn slew(allocation: WheelAllocation, command: TorqueCommand) -> SlewSpec {
     SlewSpec {
         spacecraft: pyramid(),
@@ -24,8 +24,8 @@ fn slew(allocation: WheelAllocation, command: TorqueCommand) -> SlewSpec {
     }
 }
 
-/// Greatest part of a torque that the pseudo-inverse would not have asked for, N m.
-fn greatest_stray(spec: &SlewSpec) -> f64 {
+/// Greatest component of the torques in the null space of the axes, N m.
+fn greatest_null_space_torque(spec: &SlewSpec) -> f64 {
     let valid = Slew::try_new(spec).expect("a valid slew");
     let dynamics = &valid.slew.vehicle().dynamics;
     let pieces = solved(spec).propagated.pieces;
@@ -41,7 +41,7 @@ fn greatest_stray(spec: &SlewSpec) -> f64 {
 }
 
 #[test]
-fn torques_are_those_of_the_pseudo_inverse_whatever_the_command() {
+fn pseudo_inverse_torques_have_no_null_space_component_under_any_command() {
     let intervals = 24;
     let sampled = |hold| TorqueCommand::Sampled {
         period_s: 2.0,
@@ -54,15 +54,15 @@ fn torques_are_those_of_the_pseudo_inverse_whatever_the_command() {
         sampled(SampleHold::Constant),
         sampled(SampleHold::Linear),
     ] {
-        let shared = greatest_stray(&slew(WheelAllocation::PseudoInverse, command));
+        let shared = greatest_null_space_torque(&slew(WheelAllocation::PseudoInverse, command));
         assert!(shared < 1e-9, "{command:?}: {shared} N m");
-        let free = greatest_stray(&slew(WheelAllocation::Free, command));
+        let free = greatest_null_space_torque(&slew(WheelAllocation::Free, command));
         assert!(free > 1e-3, "{command:?}: {free} N m");
     }
 }
 
 #[test]
-fn the_published_slew_takes_between_the_eigenaxis_and_the_free_optimum() {
+fn the_published_slew_by_the_pseudo_inverse_is_between_eigenaxis_and_free_optimum() {
     let time = |allocation| {
         let spec = SlewSpec {
             start: StateSpec::default(),
@@ -72,14 +72,14 @@ fn the_published_slew_takes_between_the_eigenaxis_and_the_free_optimum() {
     };
     let shared = time(WheelAllocation::PseudoInverse);
     let free = time(WheelAllocation::Free);
-    println!("{shared} s shared out by the pseudo-inverse, {free} s free");
-    // About the eigenaxis 51.57 s; the axis is the one along which the pseudo-inverse has least.
+    println!("{shared} s by the pseudo-inverse, {free} s free");
+    // About the eigenaxis it is 51.57 s; along this axis the pseudo-inverse has its least torque.
     assert!(shared < 51.57 - 0.5 && shared > free + 5.0);
 }
 
 #[test]
-fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
-    // Where only effort is weighed and no limit is met, nothing along the null space is of use.
+fn much_weight_on_effort_gives_the_same_optimum_with_either_allocation() {
+    // Without active limits, torque in the null space only adds effort.
     let objective = |allocation| {
         solved(&SlewSpec {
             spacecraft: olrac(5),
@@ -96,7 +96,7 @@ fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
 }
 
 #[test]
-fn speeds_at_the_end_cannot_be_given() {
+fn final_wheel_speeds_are_refused_with_the_pseudo_inverse() {
     let mut given = slew(
         WheelAllocation::PseudoInverse,
         TorqueCommand::Free { intervals: 24 },

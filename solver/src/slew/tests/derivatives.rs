@@ -13,7 +13,7 @@ use crate::slew::shape::{IntervalLengths, ProgramShape, TorqueCourse};
 use crate::slew::{EnergyMeasure, Slew, SlewSpec, WheelAllocation};
 use nalgebra::{DVector, Vector3};
 
-/// Four wheels with friction and motors, one that follows a law, stored momentum, rate limits.
+/// Four wheels with friction and motors, one under a speed law, stored momentum, rate limits.
 fn slew(allocation: WheelAllocation) -> Slew {
     let mut drives = lro_drives();
     for drive in &mut drives {
@@ -53,7 +53,7 @@ fn slew(allocation: WheelAllocation) -> Slew {
     Slew::try_new(&spec).expect("a valid slew").slew
 }
 
-/// A wild motion of two intervals.
+/// A motion of two intervals, far from any solution.
 fn motion() -> SlewMotion {
     let at = |v: [f64; 3]| crate::model::attitude::Attitude::from_rotation_vector(Vector3::from(v));
     SlewMotion::of_profile(&Profile {
@@ -102,7 +102,7 @@ fn shapes(slew: &Slew) -> Vec<(ProgramShape, CostWeights)> {
         ),
         (
             TorqueCourse::Steps,
-            IntervalLengths::SharedControls,
+            IntervalLengths::Shared,
             budget(EnergyMeasure::Bill),
         ),
         (
@@ -110,7 +110,7 @@ fn shapes(slew: &Slew) -> Vec<(ProgramShape, CostWeights)> {
             given.clone(),
             energy(EnergyMeasure::Proxy),
         ),
-        (TorqueCourse::Ramps, IntervalLengths::SharedControls, effort),
+        (TorqueCourse::Ramps, IntervalLengths::Shared, effort),
         (
             TorqueCourse::Ramps,
             IntervalLengths::Free,
@@ -265,7 +265,7 @@ impl Fixture {
 }
 
 #[test]
-fn derivatives_of_every_shape_match_finite_differences() {
+fn derivatives_of_programs_of_every_shape_match_finite_differences() {
     for allocation in [WheelAllocation::Free, WheelAllocation::PseudoInverse] {
         let slew = slew(allocation);
         for of in shapes(&slew) {
@@ -279,7 +279,7 @@ fn derivatives_of_every_shape_match_finite_differences() {
 }
 
 #[test]
-fn a_wheel_under_a_law_is_no_actuator() {
+fn a_wheel_under_a_speed_law_is_locked_and_not_an_actuator() {
     let (spacecraft, drives, start) = biros(true);
     let spec = SlewSpec {
         spacecraft,

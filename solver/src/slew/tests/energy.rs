@@ -1,9 +1,9 @@
-//! The energy thesis: the proxy, the bill, and times at a given energy.
+//! The slews of the energy thesis: the proxy, the bill, and durations at a given energy.
 
 use super::craft::{lro, lro_drives, lro_end, solved};
 use crate::slew::{EnergyMeasure, FinalWheels, Objective, SlewOutcome, SlewSpec, TorqueCommand};
 
-/// The duration and the bill of the slew about the eigenaxis.
+/// Duration and bill of the slew about the eigenaxis.
 const EIGENAXIS_S: f64 = 910.1;
 const EIGENAXIS_J: f64 = 28.12;
 
@@ -20,7 +20,7 @@ fn lro_slew(objective: Objective, command: TorqueCommand) -> SlewOutcome {
 }
 
 #[test]
-fn the_proxy_is_as_published_and_billed_more() {
+fn the_optimum_of_the_proxy_and_its_bill_are_as_published() {
     let objective = Objective::Energy {
         duration_s: EIGENAXIS_S,
         measure: EnergyMeasure::Proxy,
@@ -32,7 +32,7 @@ fn the_proxy_is_as_published_and_billed_more() {
 }
 
 #[test]
-fn the_proxy_is_billed_like_the_eigenaxis_in_870_seconds() {
+fn the_optimum_of_the_proxy_has_the_eigenaxis_bill_at_870_seconds() {
     let objective = Objective::MinimumTimeAtEnergy {
         energy_j: EIGENAXIS_J,
         measure: EnergyMeasure::Proxy,
@@ -46,7 +46,7 @@ fn the_proxy_is_billed_like_the_eigenaxis_in_870_seconds() {
 }
 
 #[test]
-fn the_bill_itself_can_be_cut_further() {
+fn minimising_the_bill_itself_lowers_it_below_that_of_the_proxy() {
     let objective = Objective::Energy {
         duration_s: EIGENAXIS_S,
         measure: EnergyMeasure::Bill,
@@ -56,7 +56,7 @@ fn the_bill_itself_can_be_cut_further() {
 }
 
 #[test]
-fn the_eigenaxis_bill_buys_a_slew_a_minute_shorter() {
+fn minimum_time_at_the_eigenaxis_bill_is_a_minute_shorter() {
     let objective = Objective::MinimumTimeAtEnergy {
         energy_j: EIGENAXIS_J,
         measure: EnergyMeasure::Bill,
@@ -76,7 +76,7 @@ fn minimum_time_is_a_quarter_shorter_than_the_eigenaxis() {
 }
 
 #[test]
-fn an_energy_that_does_not_bind_buys_the_fastest_slew() {
+fn a_limit_on_energy_that_is_not_active_gives_the_fastest_slew() {
     let command = TorqueCommand::Uniform { intervals: 40 };
     let fastest = lro_slew(Objective::MinimumTime, command);
     for (measure, plenty) in [(EnergyMeasure::Proxy, 2.0), (EnergyMeasure::Bill, 1e3)] {

@@ -1,4 +1,4 @@
-//! The minimum principle along solutions.
+//! Conditions of the minimum principle along solutions.
 
 use super::craft::{
     OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, pyramid, pyramid_end, turn,
@@ -78,7 +78,7 @@ fn the_hamiltonian_of_minimum_time_is_constant() {
 }
 
 #[test]
-fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
+fn the_hamiltonian_at_a_given_duration_is_the_derivative_of_the_energy_by_it() {
     let at = |duration_s: f64| SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
@@ -105,7 +105,7 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
     assert!(evidence.principle_gap < 1e-2);
 }
 
-/// The pyramid's published slew, by the pseudo-inverse.
+/// The pyramid's published slew with torques allocated by the pseudo-inverse.
 fn shared_out(command: TorqueCommand) -> SlewSpec {
     SlewSpec {
         spacecraft: pyramid(),
@@ -118,7 +118,7 @@ fn shared_out(command: TorqueCommand) -> SlewSpec {
 }
 
 #[test]
-fn torques_of_the_pseudo_inverse_are_chosen_together() {
+fn torques_of_the_pseudo_inverse_keep_the_minimum_principle_in_three_controls() {
     let evidence = evidence_for(&shared_out(TorqueCommand::Free { intervals: 60 }));
     assert!(evidence.hamiltonian.abs() <= 1e-5);
     assert!((evidence.scale - 1.0).abs() <= 1e-5);
@@ -132,8 +132,8 @@ fn torques_of_the_pseudo_inverse_are_chosen_together() {
 }
 
 #[test]
-fn effort_by_the_pseudo_inverse_makes_the_switching_function_vanish() {
-    // Away from limits the torque on all wheels together is where the Hamiltonian is flat.
+fn with_effort_and_without_active_limits_the_switching_function_vanishes() {
+    // Away from limits the Hamiltonian is stationary in the torque on all wheels together.
     let evidence = evidence_for(&SlewSpec {
         spacecraft: olrac(5),
         end: turn(OLRAC_AXIS, 1.25),
@@ -147,7 +147,7 @@ fn effort_by_the_pseudo_inverse_makes_the_switching_function_vanish() {
         .iter()
         .flat_map(|one| &one.momentum_costate[0]);
     let size = costates.fold(0.0_f64, |size, r| size.max(r.abs()));
-    // Torque is constant on an interval: at its middle it is that of the minimum.
+    // Torque is constant on an interval: the switching function vanishes in its middle.
     let middles = evidence.intervals.iter().flat_map(|one| {
         let [begin, end] = &one.switching;
         begin.iter().zip(end).map(|(a, b)| 0.5 * (a + b).abs())

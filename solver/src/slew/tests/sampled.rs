@@ -1,4 +1,4 @@
-//! BIROS: commands on the samples of a clock.
+//! The slews of BIROS: torques held on the samples of a clock.
 
 use super::craft::{biros, biros_end, diagonal, solved, turn};
 use crate::model::spec::SpacecraftSpec;
@@ -23,7 +23,7 @@ const TWO_HERTZ: TorqueCommand = TorqueCommand::Sampled {
 };
 
 #[test]
-fn nineteen_samples_are_enough_with_and_without_the_small_wheels() {
+fn the_slew_takes_nineteen_samples_with_and_without_the_small_wheels() {
     for pyramid in [false, true] {
         let outcome = biros_slew(pyramid, TWO_HERTZ);
         let continuous = outcome.continuous_time_s.expect("a continuous minimum");
@@ -36,7 +36,7 @@ fn nineteen_samples_are_enough_with_and_without_the_small_wheels() {
 }
 
 #[test]
-fn linear_hold_is_continuous_and_flies() {
+fn torques_under_linear_hold_are_continuous() {
     let command = TorqueCommand::Sampled {
         period_s: 0.5,
         hold: SampleHold::Linear,
@@ -50,14 +50,14 @@ fn linear_hold_is_continuous_and_flies() {
 }
 
 #[test]
-fn continuous_torques_take_little_longer_than_jumps() {
+fn continuous_torques_take_at_most_five_per_cent_longer_than_jumping_ones() {
     let free = biros_slew(false, TorqueCommand::Free { intervals: 24 }).time_s;
     let smooth = biros_slew(false, TorqueCommand::Smooth { intervals: 40 }).time_s;
     assert!(free < smooth && smooth < 1.05 * free, "{free} {smooth}");
 }
 
 #[test]
-fn thirty_degrees_about_ten_take_ten_seconds() {
+fn a_sampled_turn_by_thirty_degrees_about_one_axis_takes_ten_seconds() {
     let (spacecraft, drives, start) = biros(false);
     let outcome = solved(&SlewSpec {
         spacecraft: SpacecraftSpec {

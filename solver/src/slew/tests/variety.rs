@@ -1,4 +1,4 @@
-//! Combinations of objectives, commands and drives that no source has, all of them propagated.
+//! Combinations of objectives, commands and drives that no source has; all solutions are propagated.
 
 use super::craft::{
     OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, pyramid, pyramid_end, solved,
@@ -12,7 +12,7 @@ use crate::slew::{
     trade_curve,
 };
 
-fn thrifty(command: TorqueCommand, measure: EnergyMeasure) -> SlewSpec {
+fn minimum_energy(command: TorqueCommand, measure: EnergyMeasure) -> SlewSpec {
     SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
@@ -28,7 +28,7 @@ fn thrifty(command: TorqueCommand, measure: EnergyMeasure) -> SlewSpec {
 }
 
 #[test]
-fn every_command_comes_to_about_the_same_energy() {
+fn energies_under_all_commands_are_within_five_per_cent() {
     let hold = |hold| TorqueCommand::Sampled {
         period_s: 10.0,
         hold,
@@ -41,7 +41,7 @@ fn every_command_comes_to_about_the_same_energy() {
             hold(SampleHold::Constant),
             hold(SampleHold::Linear),
         ]
-        .map(|command| solved(&thrifty(command, measure)).objective);
+        .map(|command| solved(&minimum_energy(command, measure)).objective);
         let least = energies.iter().copied().fold(f64::INFINITY, f64::min);
         for energy in energies {
             assert!(energy < 1.05 * least, "{measure:?} {energies:?}");
@@ -50,8 +50,8 @@ fn every_command_comes_to_about_the_same_energy() {
 }
 
 #[test]
-fn losses_of_the_supply_are_billed() {
-    let mut spec = thrifty(
+fn the_bill_includes_efficiency_and_quiescent_power() {
+    let mut spec = minimum_energy(
         TorqueCommand::Uniform { intervals: 60 },
         EnergyMeasure::Bill,
     );
@@ -82,10 +82,10 @@ fn losses_of_the_supply_are_billed() {
 }
 
 #[test]
-fn a_wheel_that_returns_to_its_speed_is_carried_along() {
+fn slews_arrive_while_a_speed_law_moves_wheels() {
     let (spacecraft, mut drives, mut start) = biros(true);
     for drive in &mut drives[3..] {
-        // A thousandfold the published rate, from another speed: a fifth of a wheel's momentum moves.
+        // 500 times the published rate, towards another speed: a fifth of a wheel's momentum changes.
         drive.speed_law = Some(SpeedLawSpec {
             rate_per_s: 0.05,
             speed_rad_s: -100.0,
@@ -117,7 +117,7 @@ fn a_wheel_that_returns_to_its_speed_is_carried_along() {
 }
 
 #[test]
-fn friction_costs_time_where_it_is_made_up_for() {
+fn friction_costs_time_where_the_motors_compensate_it() {
     let time = |compensated: Option<bool>| {
         let (spacecraft, _, start) = biros(false);
         let drive = DriveSpec {
@@ -140,7 +140,7 @@ fn friction_costs_time_where_it_is_made_up_for() {
     };
     let (ideal, made_up, left) = (time(None), time(Some(true)), time(Some(false)));
     assert!((left - ideal).abs() < 1e-4, "{left} {ideal}");
-    // Speeding up takes more of the motor, and slowing down less.
+    // The motor's torque is larger when the wheel speeds up, and smaller when it slows down.
     assert!(
         made_up > ideal * 1.0001 && made_up < ideal * 1.05,
         "{made_up} {ideal}"
@@ -148,11 +148,11 @@ fn friction_costs_time_where_it_is_made_up_for() {
 }
 
 #[test]
-fn a_pinned_null_space_returns_and_costs_time() {
+fn keeping_the_null_space_momentum_of_the_start_costs_time() {
     let spec = |final_wheels| SlewSpec {
         spacecraft: pyramid(),
         start: StateSpec {
-            // Along the null space: no momentum in sum.
+            // In the null space: the momenta sum to zero.
             wheel_speed_rad_s: Some(vec![157.0, -157.0, 157.0, -157.0]),
             ..StateSpec::default()
         },
@@ -171,7 +171,7 @@ fn a_pinned_null_space_returns_and_costs_time() {
     {
         assert!((speed - start).abs() < 1e-5, "{speed}");
     }
-    // Published for half of the maximum: 41.19 s.
+    // Published for half of the greatest null-space momentum: 41.19 s.
     assert!(
         pinned.time_s <= 41.2 && free.time_s < pinned.time_s - 0.5,
         "{} {}",
@@ -181,7 +181,7 @@ fn a_pinned_null_space_returns_and_costs_time() {
 }
 
 #[test]
-fn a_failed_wheel_is_done_without() {
+fn a_disabled_wheel_gets_no_torque_and_the_slew_takes_longer() {
     let time = |failed: Option<usize>| {
         let mut spacecraft = olrac(5);
         if let Some(failed) = failed {
@@ -208,8 +208,8 @@ fn a_failed_wheel_is_done_without() {
 }
 
 #[test]
-fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
-    let spec = thrifty(
+fn a_trade_curve_falls_and_each_point_starts_from_the_one_before() {
+    let spec = minimum_energy(
         TorqueCommand::Uniform { intervals: 60 },
         EnergyMeasure::Proxy,
     );
@@ -223,7 +223,7 @@ fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
             .windows(2)
             .all(|pair| pair[1].objective < pair[0].objective)
     );
-    // From its neighbour, a point takes one start, and gets where its own starts lead.
+    // From its neighbour a point takes one guess, and has the optimum that it has by itself.
     assert_eq!(curve[2].starts, 1);
     let alone = solved(&spec).objective;
     assert!((curve[2].objective / alone - 1.0).abs() < 1e-4);
@@ -238,8 +238,8 @@ fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
 }
 
 #[test]
-fn all_problems_are_told_at_once() {
-    let mut spec = thrifty(TorqueCommand::Free { intervals: 1 }, EnergyMeasure::Bill);
+fn all_problems_of_a_description_are_found_at_once() {
+    let mut spec = minimum_energy(TorqueCommand::Free { intervals: 1 }, EnergyMeasure::Bill);
     spec.spacecraft.inertia_kg_m2[0][0] = -1.0;
     spec.drives[2].motor = None;
     spec.objective = Objective::Energy {
@@ -263,8 +263,8 @@ fn all_problems_are_told_at_once() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_and_a_stop_is_obeyed() {
-    let mut spec = thrifty(
+fn an_impossible_duration_is_not_solved_and_a_stop_is_reported() {
+    let mut spec = minimum_energy(
         TorqueCommand::Uniform { intervals: 40 },
         EnergyMeasure::Proxy,
     );

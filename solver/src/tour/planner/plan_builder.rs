@@ -50,7 +50,7 @@ pub(super) struct PlanBuilder<'a> {
 struct VerifiedFlight {
     flight: Flight,
     legs: Vec<Leg>,
-    report: checker::Report,
+    report: checker::CheckReport,
 }
 
 impl<'a> PlanBuilder<'a> {

@@ -3,7 +3,7 @@
 use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::torques::{MIN_PIECE_SHARE, torques};
-use crate::checker::{ATTITUDE_TOLERANCE, Arrival, leg_faults};
+use crate::checker::{ATTITUDE_TOLERANCE, LegEnd, leg_faults};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Control, Flight, State};
@@ -26,7 +26,7 @@ pub(super) fn flight_faults(
         return vec!["there is no motion".into()];
     };
     let target = leg.arrival.signed(&leg.to.attitude, last);
-    let arrival = Arrival {
+    let arrival = LegEnd {
         quaternion: target.xyzw(),
         rate: leg.to.rate.map(|condition| match condition {
             RateCondition::Fixed(rate) => Some(rate),
@@ -58,7 +58,7 @@ pub(super) fn node_faults(
         let rate = |node: usize| leg.dynamics.rate(&part.attitudes[node], &part.wheels[node]);
         let begin = state(places, leg, &part.attitudes[0], &part.wheels[0], rate(0));
         let end = rate(1);
-        let arrival = Arrival {
+        let arrival = LegEnd {
             quaternion: next.xyzw(),
             rate: [end.x, end.y, end.z].map(Some),
         };

@@ -1,62 +1,62 @@
-//! A plan laid out in time for the computers that fly it: the same for every flight of it.
+//! A plan on the time grid of on-board computer and wheel loop; all simulated flights share it.
 //!
-//! Between two samples of the on-board computer lie the cycles of the loop at the wheels; at arrivals,
-//! at the end of the plan and, with time-tagged torques, at their switches, a cycle is cut in two.
+//! Between two samples of the on-board computer lie the cycles of the wheel loop. At arrivals, at the
+//! end of the plan and, with time-tagged torques, at their switches, a cycle is cut in two.
 
 use super::controller::Desired;
-use super::settings::Settings;
-use super::spec::FeedForward;
+use super::settings::SimulationSettings;
+use super::spec::FeedForwardMode;
 use crate::checker::PropagatedMotion;
 use crate::model::plan::{Control, Flight};
 use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// Part of a sample below which the last one is rounding.
+/// Share of a sample by which times may differ as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A plan in samples and pieces.
+/// A plan as samples of the on-board computer and parts of wheel-loop cycles.
 #[derive(Debug)]
-pub(super) struct Course {
-    pub(super) samples: Vec<Sample>,
-    pub(super) pieces: Vec<Piece>,
-    /// In order of time.
-    pub(super) marks: Vec<Mark>,
+pub(super) struct SampledPlan {
+    pub(super) samples: Vec<ControlSample>,
+    pub(super) parts: Vec<CyclePart>,
+    /// Times at which errors are recorded, in order.
+    pub(super) marks: Vec<ErrorMark>,
     /// Torques fed forward, N m: one row per sample or control, each with one entry per wheel.
     torques: Vec<f64>,
     wheels: usize,
 }
 
-/// A moment at which the on-board computer acts.
+/// A sample of the on-board computer.
 #[derive(Debug)]
-pub(super) struct Sample {
+pub(super) struct ControlSample {
     pub(super) time_s: f64,
     pub(super) desired: Desired,
-    pub(super) pieces: Range<usize>,
+    pub(super) parts: Range<usize>,
 }
 
-/// A cycle of the loop at the wheels, or a part of one.
+/// A cycle of the wheel loop, or a part of one.
 #[derive(Debug)]
-pub(super) struct Piece {
+pub(super) struct CyclePart {
     pub(super) end_s: f64,
     pub(super) seconds: f64,
     pub(super) steps: usize,
     row: usize,
 }
 
-/// A moment at which errors are noted.
+/// A time at which the error is recorded.
 #[derive(Debug)]
-pub(super) struct Mark {
+pub(super) struct ErrorMark {
     pub(super) time_s: f64,
-    pub(super) event: Event,
-    /// By the plan, whatever the controller follows.
+    pub(super) event: MarkEvent,
+    /// The plan's state, also where the controller follows a step input.
     pub(super) planned: Desired,
 }
 
-/// Why errors are noted.
+/// The event of the plan at such a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Event {
-    /// The arrival with this index among the passages.
+pub(super) enum MarkEvent {
+    /// Arrival at the passage with this index.
     Arrival(usize),
     /// The end of the plan.
     PlanEnd,
@@ -64,17 +64,17 @@ pub(super) enum Event {
     End,
 }
 
-impl Course {
-    /// Lays out a plan that has been flown.
+impl SampledPlan {
+    /// Puts a plan with its propagated motion on the time grid.
     ///
-    /// `None` when the motion has no state at some time, which it has at all.
+    /// `None` when the motion has no state at some time.
     pub(super) fn new(
         scenario: &Scenario,
         flight: &Flight,
         motion: &PropagatedMotion,
-        settings: &Settings,
+        settings: &SimulationSettings,
     ) -> Option<Self> {
-        let plan = Plan {
+        let plan = PlanMotion {
             scenario,
             flight,
             motion,
@@ -82,29 +82,29 @@ impl Course {
         let wheels = scenario.spacecraft().wheels().len();
         let marks = plan.marks(settings)?;
         let intervals = plan.intervals();
-        let mut course = Self {
+        let mut sampled_plan = Self {
             samples: Vec::new(),
-            pieces: Vec::new(),
+            parts: Vec::new(),
             marks,
             torques: Vec::new(),
             wheels,
         };
         let end_s = flight.total_time_s + settings.settle_s;
-        let cuts = course.cuts(&intervals, settings);
-        course.lay(&plan, (&intervals, &cuts), end_s, settings)?;
-        Some(course)
+        let cuts = sampled_plan.cuts(&intervals, settings);
+        sampled_plan.lay(&plan, &intervals, &cuts, end_s, settings)?;
+        Some(sampled_plan)
     }
 
-    /// Torques fed forward during a piece, N m, one per wheel.
-    pub(super) fn torques(&self, piece: &Piece) -> &[f64] {
-        let begin = piece.row * self.wheels;
+    /// Torques fed forward during a part, N m, one per wheel.
+    pub(super) fn torques(&self, part: &CyclePart) -> &[f64] {
+        let begin = part.row * self.wheels;
         &self.torques[begin..begin + self.wheels]
     }
 
     /// Times at which cycles are cut, sorted.
-    fn cuts(&self, intervals: &[Interval<'_>], settings: &Settings) -> Vec<f64> {
+    fn cuts(&self, intervals: &[TorqueInterval<'_>], settings: &SimulationSettings) -> Vec<f64> {
         let mut cuts: Vec<f64> = self.marks.iter().map(|mark| mark.time_s).collect();
-        if settings.feed_forward == FeedForward::TimeTagged {
+        if settings.feed_forward == FeedForwardMode::TimeTagged {
             cuts.extend(intervals.iter().map(|interval| interval.end_s));
         }
         cuts.sort_by(f64::total_cmp);
@@ -114,10 +114,11 @@ impl Course {
 
     fn lay(
         &mut self,
-        plan: &Plan<'_>,
-        (intervals, cuts): (&[Interval<'_>], &[f64]),
+        plan: &PlanMotion<'_>,
+        intervals: &[TorqueInterval<'_>],
+        cuts: &[f64],
         end_s: f64,
-        settings: &Settings,
+        settings: &SimulationSettings,
     ) -> Option<()> {
         let mut begin_s = 0.0;
         let mut done = 0;
@@ -130,29 +131,30 @@ impl Course {
                 done += 1;
             }
             let ahead = &intervals[done..];
-            let first_piece = self.pieces.len();
-            self.cut(ahead, cuts, (begin_s, until), settings);
-            self.samples.push(Sample {
+            let first_piece = self.parts.len();
+            self.cut(ahead, cuts, begin_s, until, settings);
+            self.samples.push(ControlSample {
                 time_s: begin_s,
                 desired: if settings.step_input {
                     plan.at_rest()?
                 } else {
                     plan.desired(begin_s)?
                 },
-                pieces: first_piece..self.pieces.len(),
+                parts: first_piece..self.parts.len(),
             });
             begin_s = until;
         }
         Some(())
     }
 
-    /// The pieces of one sample.
+    /// Adds the parts of one sample.
     fn cut(
         &mut self,
-        ahead: &[Interval<'_>],
+        ahead: &[TorqueInterval<'_>],
         cuts: &[f64],
-        (begin_s, until): (f64, f64),
-        settings: &Settings,
+        begin_s: f64,
+        until: f64,
+        settings: &SimulationSettings,
     ) {
         let cycle = settings.sample_s / settings.cycles as f64;
         let first = cuts.partition_point(|cut| *cut <= begin_s);
@@ -162,9 +164,9 @@ impl Course {
         ends.extend(inside);
         ends.push(until);
         ends.sort_by(f64::total_cmp);
-        let averaged = settings.feed_forward == FeedForward::Averaged || settings.step_input;
+        let averaged = settings.feed_forward == FeedForwardMode::Averaged || settings.step_input;
         if averaged {
-            self.average(ahead, (begin_s, until), settings);
+            self.average(ahead, begin_s, until, settings);
         }
         let mut from = begin_s;
         for end_s in ends {
@@ -175,7 +177,7 @@ impl Course {
             if !averaged {
                 self.copy(ahead, from + 0.5 * seconds);
             }
-            self.pieces.push(Piece {
+            self.parts.push(CyclePart {
                 end_s,
                 seconds,
                 steps: steps(seconds, settings.max_step_s),
@@ -185,12 +187,13 @@ impl Course {
         }
     }
 
-    /// Adds a row with the mean torques from one time to another; none of a step input.
+    /// Adds a row with the mean torques from one time to another; zero with a step input.
     fn average(
         &mut self,
-        ahead: &[Interval<'_>],
-        (begin_s, until): (f64, f64),
-        settings: &Settings,
+        ahead: &[TorqueInterval<'_>],
+        begin_s: f64,
+        until: f64,
+        settings: &SimulationSettings,
     ) {
         let begin = self.torques.len();
         self.torques.resize(begin + self.wheels, 0.0);
@@ -208,7 +211,7 @@ impl Course {
     }
 
     /// Adds a row with the torques at a time.
-    fn copy(&mut self, ahead: &[Interval<'_>], time_s: f64) {
+    fn copy(&mut self, ahead: &[TorqueInterval<'_>], time_s: f64) {
         let at = ahead.iter().find(|interval| time_s < interval.end_s);
         match at {
             Some(interval) => self
@@ -228,23 +231,23 @@ fn steps(seconds: f64, longest: f64) -> usize {
     (seconds / longest - ROUNDING).ceil().max(1.0) as usize
 }
 
-/// Torques from one time to another.
-struct Interval<'a> {
+/// A control of the plan with its beginning and end.
+struct TorqueInterval<'a> {
     begin_s: f64,
     end_s: f64,
     control: &'a Control,
 }
 
-/// A plan with its motion.
-struct Plan<'a> {
+/// A plan with its propagated motion.
+struct PlanMotion<'a> {
     scenario: &'a Scenario,
     flight: &'a Flight,
     motion: &'a PropagatedMotion,
 }
 
-impl<'a> Plan<'a> {
-    /// From the begin of one control to that of the next, as the verification flies them.
-    fn intervals(&self) -> Vec<Interval<'a>> {
+impl<'a> PlanMotion<'a> {
+    /// From the beginning of one control to that of the next, as the checker integrates them.
+    fn intervals(&self) -> Vec<TorqueInterval<'a>> {
         let controls = &self.flight.controls;
         let total = self.flight.total_time_s;
         let ends = controls
@@ -258,7 +261,7 @@ impl<'a> Plan<'a> {
             .zip(ends)
             .map(|(control, end)| {
                 let end_s = end.clamp(begin_s, total);
-                let interval = Interval {
+                let interval = TorqueInterval {
                     begin_s,
                     end_s,
                     control,
@@ -269,20 +272,20 @@ impl<'a> Plan<'a> {
             .collect()
     }
 
-    fn marks(&self, settings: &Settings) -> Option<Vec<Mark>> {
+    fn marks(&self, settings: &SimulationSettings) -> Option<Vec<ErrorMark>> {
         let total = self.flight.total_time_s;
         let mut marks = Vec::new();
         for (index, passage) in self.flight.passages.iter().enumerate() {
             let time_s = passage.time_s.clamp(0.0, total);
-            marks.push(Mark {
+            marks.push(ErrorMark {
                 time_s,
-                event: Event::Arrival(index),
+                event: MarkEvent::Arrival(index),
                 planned: self.desired(time_s)?,
             });
         }
         let end_s = total + settings.settle_s;
-        for (time_s, event) in [(total, Event::PlanEnd), (end_s, Event::End)] {
-            marks.push(Mark {
+        for (time_s, event) in [(total, MarkEvent::PlanEnd), (end_s, MarkEvent::End)] {
+            marks.push(ErrorMark {
                 time_s,
                 event,
                 planned: self.desired(time_s)?,
@@ -292,7 +295,7 @@ impl<'a> Plan<'a> {
         Some(marks)
     }
 
-    /// The plan at a time; its end at rest after it.
+    /// The plan's state at a time, s; after its end, its final attitude at rest.
     fn desired(&self, time_s: f64) -> Option<Desired> {
         if time_s > self.flight.total_time_s {
             return self.at_rest();
@@ -308,7 +311,7 @@ impl<'a> Plan<'a> {
         })
     }
 
-    /// The attitude of the end, at rest.
+    /// The plan's final attitude at rest.
     fn at_rest(&self) -> Option<Desired> {
         let state = self.motion.state(self.flight.total_time_s)?;
         Some(Desired {

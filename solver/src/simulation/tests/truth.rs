@@ -1,8 +1,8 @@
-//! The truth: convergence, conservation, drives and their limits.
+//! The true spacecraft: convergence of the integration, conservation, drives and their limits.
 
 use super::super::draws::draw;
-use super::super::truth::{Scratch, State};
-use super::super::{ControllerSpec, ErrorsSpec, FeedForward, GainsSpec, SimulationSpec};
+use super::super::truth::{IntegratorScratch, TrueState};
+use super::super::{ControllerSpec, ErrorsSpec, FeedForwardMode, GainsSpec, SimulationSpec};
 use super::build::{
     BANDWIDTH, MAX_TORQUE, calm_scenario, idle, lively, quaternion, scenario, simulation,
 };
@@ -10,7 +10,7 @@ use crate::model::attitude::Attitude;
 use crate::model::drive::{DriveSpec, SpeedLawSpec};
 use nalgebra::Vector3;
 
-fn open(feed_forward: FeedForward) -> SimulationSpec {
+fn open(feed_forward: FeedForwardMode) -> SimulationSpec {
     SimulationSpec {
         controller: ControllerSpec::FeedForward,
         feed_forward: Some(feed_forward),
@@ -19,35 +19,38 @@ fn open(feed_forward: FeedForward) -> SimulationSpec {
 }
 
 #[test]
-fn without_errors_the_flight_is_the_plan() {
+fn without_errors_the_simulated_motion_is_the_plan() {
     let (scenario, flight) = (scenario(), lively());
-    let flown = simulation(&scenario, &flight, &open(FeedForward::TimeTagged))
-        .fly(0, None, &|| false)
-        .expect("nobody gives up");
-    assert!(flown.end.attitude_rad < 1e-9, "{flown:?}");
-    assert!(flown.end.rate_rad_s < 1e-10, "{flown:?}");
-    assert!(flown.passages[0].error.attitude_rad < 1e-9, "{flown:?}");
-    assert!(flown.peak.attitude_rad < 1e-9, "{flown:?}");
-    assert_eq!(flown.plan_end, flown.end);
+    let simulated = simulation(&scenario, &flight, &open(FeedForwardMode::TimeTagged))
+        .simulate(0, None, &|| false)
+        .expect("not stopped");
+    assert!(simulated.end.attitude_rad < 1e-9, "{simulated:?}");
+    assert!(simulated.end.rate_rad_s < 1e-10, "{simulated:?}");
+    assert!(
+        simulated.passages[0].error.attitude_rad < 1e-9,
+        "{simulated:?}"
+    );
+    assert!(simulated.peak.attitude_rad < 1e-9, "{simulated:?}");
+    assert_eq!(simulated.plan_end, simulated.end);
     let idle = |share: f64| share.abs() <= 0.0;
-    let wheels = &flown.saturation;
+    let wheels = &simulated.saturation;
     assert!(wheels.iter().all(|s| idle(s.torque) && idle(s.speed)));
 }
 
 #[test]
-fn errors_fall_with_the_fourth_power_of_the_step() {
+fn the_integration_error_falls_with_the_fourth_power_of_the_step() {
     let (scenario, flight) = (scenario(), lively());
     let error = |max_step_s| {
         let spec = SimulationSpec {
             on_board_rate_hz: Some(0.5),
             wheel_loop_rate_hz: Some(0.5),
             max_step_s: Some(max_step_s),
-            ..open(FeedForward::TimeTagged)
+            ..open(FeedForwardMode::TimeTagged)
         };
-        let flown = simulation(&scenario, &flight, &spec)
-            .fly(0, None, &|| false)
-            .expect("nobody gives up");
-        flown.end.attitude_rad
+        let simulated = simulation(&scenario, &flight, &spec)
+            .simulate(0, None, &|| false)
+            .expect("not stopped");
+        simulated.end.attitude_rad
     };
     let (coarse, fine) = (error(0.5), error(0.25));
     assert!(coarse > 1e-9, "{coarse:e} is too small to tell");
@@ -56,20 +59,20 @@ fn errors_fall_with_the_fourth_power_of_the_step() {
 }
 
 #[test]
-fn mean_torques_keep_the_rate_and_nearly_the_attitude() {
+fn averaged_feed_forward_keeps_the_rate_and_almost_the_attitude() {
     let (scenario, flight) = (scenario(), lively());
-    let flown = simulation(&scenario, &flight, &open(FeedForward::Averaged))
-        .fly(0, None, &|| false)
-        .expect("nobody gives up");
+    let simulated = simulation(&scenario, &flight, &open(FeedForwardMode::Averaged))
+        .simulate(0, None, &|| false)
+        .expect("not stopped");
     // Largest change of acceleration 0.04 rad/s2, an eighth of its product with 0.1 s squared at a
     // switch, and three switches.
-    assert!(flown.end.attitude_rad < 1.5e-4, "{flown:?}");
-    assert!(flown.end.attitude_rad > 1e-8, "{flown:?}");
-    assert!(flown.end.rate_rad_s < 1e-4, "{flown:?}");
+    assert!(simulated.end.attitude_rad < 1.5e-4, "{simulated:?}");
+    assert!(simulated.end.attitude_rad > 1e-8, "{simulated:?}");
+    assert!(simulated.end.rate_rad_s < 1e-4, "{simulated:?}");
 }
 
-/// How the momentum in the reference frame changes, of a body with every error, and the angle by
-/// which the body turns meanwhile.
+/// Change of the momentum in the reference frame, N m s, of a spacecraft with every error, and the angle
+/// by which the body turns, rad.
 fn momentum_change(disturbance: Vector3<f64>, seconds: f64) -> (Vector3<f64>, f64) {
     let (scenario, flight) = (scenario(), idle(1.0));
     let spec = SimulationSpec {
@@ -87,26 +90,26 @@ fn momentum_change(disturbance: Vector3<f64>, seconds: f64) -> (Vector3<f64>, f6
     let simulation = simulation(&scenario, &flight, &spec);
     let drawn = draw(&scenario, &simulation.settings, &simulation.nominal, 3);
     let mut state = drawn.start;
-    let mut scratch = Scratch::new(&state);
-    let attitude = |state: &State| {
+    let mut scratch = IntegratorScratch::new(&state);
+    let attitude = |state: &TrueState| {
         let q = state.attitude;
         Attitude::from_xyzw([q.i, q.j, q.k, q.w]).unwrap()
     };
     let (begin, truth) = (state.clone(), &drawn.truth);
     let motor = [0.03, -0.02, 0.04, 0.01, 0.0];
-    truth.advance(&mut state, &motor, (seconds / 1000.0, 1000), &mut scratch);
-    let momentum = |state: &State| attitude(state).to_reference(truth.body_momentum(state));
+    truth.advance(&mut state, &motor, seconds / 1000.0, 1000, &mut scratch);
+    let momentum = |state: &TrueState| attitude(state).to_reference(truth.body_momentum(state));
     let turn = attitude(&begin).angle_to(&attitude(&state));
     (momentum(&state) - momentum(&begin), turn)
 }
 
 #[test]
-fn momentum_is_conserved_but_for_external_torques() {
+fn momentum_changes_by_external_torques_only() {
     let (change, turn) = momentum_change(Vector3::zeros(), 10.0);
     assert!(change.norm() < 1e-10, "{change}");
     assert!(turn > 0.2, "{turn}");
     let torque = Vector3::new(1e-3, -2e-3, 5e-4);
-    // The body hardly turns away from its start, which is turned itself: only the size is known.
+    // The initial attitude has an error, so that only the size of the change is known.
     let (change, turn) = momentum_change(torque, 0.1);
     assert!(turn < 1e-3, "{turn}");
     let expected = 0.1 * torque.norm();
@@ -126,7 +129,7 @@ fn rubbing(friction_compensated: bool) -> DriveSpec {
 }
 
 #[test]
-fn the_wheel_loop_takes_friction_away() {
+fn the_wheel_loop_compensates_friction() {
     let (scenario, mut flight) = (scenario(), lively());
     // The motors need some of their torque for friction.
     for control in &mut flight.controls {
@@ -137,11 +140,11 @@ fn the_wheel_loop_takes_friction_away() {
     let error = |compensated| {
         let spec = SimulationSpec {
             drives: vec![rubbing(compensated); 5],
-            ..open(FeedForward::TimeTagged)
+            ..open(FeedForwardMode::TimeTagged)
         };
         simulation(&scenario, &flight, &spec)
-            .fly(0, None, &|| false)
-            .expect("nobody gives up")
+            .simulate(0, None, &|| false)
+            .expect("not stopped")
             .end
             .attitude_rad
     };
@@ -151,7 +154,7 @@ fn the_wheel_loop_takes_friction_away() {
 }
 
 #[test]
-fn a_wheel_with_a_law_comes_to_its_speed() {
+fn a_wheel_with_a_speed_law_reaches_its_speed() {
     let (scenario, flight) = (calm_scenario(), idle(200.0));
     let mut drives = vec![DriveSpec::default(); 5];
     drives[3].speed_law = Some(SpeedLawSpec {
@@ -163,33 +166,36 @@ fn a_wheel_with_a_law_comes_to_its_speed() {
         controller: quaternion(BANDWIDTH),
         ..SimulationSpec::default()
     };
-    let flown = simulation(&scenario, &flight, &spec)
-        .fly(0, Some(1), &|| false)
-        .expect("nobody gives up");
-    let last = flown.states.last().unwrap();
+    let simulated = simulation(&scenario, &flight, &spec)
+        .simulate(0, Some(1), &|| false)
+        .expect("not stopped");
+    let last = simulated.states.last().unwrap();
     assert!((last.wheel_speed_rad_s[3] - 25.0).abs() < 0.01, "{last:?}");
-    // The others take up its momentum, without a command for it.
-    assert!(flown.end.attitude_rad < 1e-4, "{flown:?}");
+    // Feedback has the other wheels take up its momentum.
+    assert!(simulated.end.attitude_rad < 1e-4, "{simulated:?}");
     assert!(last.wheel_torque_nm[3].abs() <= 0.0);
 }
 
 #[test]
-fn drives_stay_within_torque_and_speed() {
+fn drives_keep_the_limits_of_torque_and_speed() {
     let scenario = calm_scenario();
     let mut flight = lively();
-    // Twice the torque, and for long.
+    // Twice the greatest torque, until the speed limit is reached.
     for control in &mut flight.controls {
         control.wheel_torque_nm = vec![2.0 * MAX_TORQUE, 0.0, 0.0, 0.0, 0.0];
     }
-    let flown = simulation(&scenario, &flight, &open(FeedForward::Averaged))
-        .fly(0, Some(1), &|| false)
-        .expect("nobody gives up");
-    let speeds = flown.states.iter().map(|state| state.wheel_speed_rad_s[0]);
+    let simulated = simulation(&scenario, &flight, &open(FeedForwardMode::Averaged))
+        .simulate(0, Some(1), &|| false)
+        .expect("not stopped");
+    let speeds = simulated
+        .states
+        .iter()
+        .map(|state| state.wheel_speed_rad_s[0]);
     let fastest = speeds.fold(0.0, f64::max);
     assert!((fastest - 400.0).abs() < 1e-2, "{fastest}");
     // The limit is reached after 400 * 2e-3 / 0.05 = 16 of 20 s.
-    let [first, second, ..] = flown.saturation[..] else {
-        panic!("{flown:?}")
+    let [first, second, ..] = simulated.saturation[..] else {
+        panic!("{simulated:?}")
     };
     assert!((first.speed - 0.2).abs() < 2e-3, "{first:?}");
     assert!(first.torque > 0.99, "{first:?}");
@@ -197,14 +203,14 @@ fn drives_stay_within_torque_and_speed() {
 }
 
 #[test]
-fn kept_states_tell_which_limits_are_met_until_the_next() {
+fn kept_states_show_which_limits_are_reached_before_the_next() {
     let (scenario, flight) = (scenario(), lively());
-    let calm = simulation(&scenario, &flight, &open(FeedForward::TimeTagged));
-    let flown = calm.fly(0, Some(1), &|| false).expect("nobody gives up");
-    assert_eq!(flown.states.len(), calm.samples());
+    let calm = simulation(&scenario, &flight, &open(FeedForwardMode::TimeTagged));
+    let simulated = calm.simulate(0, Some(1), &|| false).expect("not stopped");
+    assert_eq!(simulated.states.len(), calm.samples());
     let met = |flags: &[bool]| flags.contains(&true);
     assert!(
-        !flown
+        !simulated
             .states
             .iter()
             .any(|s| met(&s.torque_limited) || met(&s.speed_limited))
@@ -223,8 +229,8 @@ fn kept_states_tell_which_limits_are_met_until_the_next() {
     };
     let stiff = simulation(&scenario, &flight, &stiff);
     let (all, few) = (
-        stiff.fly(0, Some(1), &|| false).expect("nobody gives up"),
-        stiff.fly(0, Some(10), &|| false).expect("nobody gives up"),
+        stiff.simulate(0, Some(1), &|| false).expect("not stopped"),
+        stiff.simulate(0, Some(10), &|| false).expect("not stopped"),
     );
     for (wheel, share) in all.saturation.iter().enumerate() {
         let limited = all

@@ -1,4 +1,4 @@
-//! Plans flown in closed loop: how much of the wheels a plan has to leave to feedback.
+//! Plans simulated in closed loop: the share of the wheels that a plan has to leave to feedback.
 
 use slewplan_solver::simulation::{
     ControllerSpec, ErrorsSpec, GainsSpec, Simulation, SimulationSpec, Spread,
@@ -18,14 +18,14 @@ const HELD_BACK: Authorities = Authorities {
     momentum: 0.95,
 };
 
-fn flown(row: &AuthorityRow) -> (f64, &Spread) {
-    let RowOutcome::Flown {
+fn simulated(row: &AuthorityRow) -> (f64, &Spread) {
+    let RowOutcome::Simulated {
         total_time_s,
         spread,
         ..
     } = &row.outcome
     else {
-        panic!("not flown: {row:?}");
+        panic!("not simulated: {row:?}");
     };
     (*total_time_s, spread)
 }
@@ -58,21 +58,21 @@ fn experiment_a_needs_a_twentieth_of_the_wheels_for_feedback() {
     let [all, held_back] = &rows[..] else {
         panic!("{rows:?}")
     };
-    let (least_s, all) = flown(all);
+    let (least_s, all) = simulated(all);
     assert_eq!((all.runs, all.runs_asked), (1000, 1000));
     assert!(all.share_within < 0.5, "{all:?}");
-    // It fails for want of speed: feedback asks for more than the wheels have left.
+    // The cause is wheel speed: feedback demands more than the plan has left.
     assert!(
         all.saturation.iter().any(|wheel| wheel.speed_mean > 0.1),
         "{all:?}"
     );
-    let (longer_s, held_back) = flown(held_back);
+    let (longer_s, held_back) = simulated(held_back);
     assert!(held_back.share_within >= 0.99, "{held_back:?}");
     assert!(
         held_back.end_attitude_rad.p99 <= 0.1_f64.to_radians(),
         "{held_back:?}"
     );
-    // What it costs.
+    // The duration that this costs.
     assert!(least_s < 468.0, "{least_s}");
     assert!(
         (1.0..1.06).contains(&(longer_s / least_s)),
@@ -88,7 +88,7 @@ fn a_plan_for_a_pyramid_is_followed_to_its_target() {
     let plan = plan_of(&spec);
     assert_eq!(order_of(&plan), "turned");
     let scenario = scenario_of(&spec);
-    let fly = |controller: ControllerSpec| {
+    let simulate = |controller: ControllerSpec| {
         let spec = SimulationSpec {
             controller,
             errors: ErrorsSpec {
@@ -102,15 +102,15 @@ fn a_plan_for_a_pyramid_is_followed_to_its_target() {
         let simulation = Simulation::try_new(&scenario, &plan.flight, &spec, "");
         simulation
             .expect("a valid simulation")
-            .fly(0, None, &|| false)
-            .expect("nobody gives up")
+            .simulate(0, None, &|| false)
+            .expect("not stopped")
     };
-    let open = fly(ControllerSpec::FeedForward);
+    let open = simulate(ControllerSpec::FeedForward);
     let gains = GainsSpec::Bandwidth {
         bandwidth_rad_s: 0.3,
         damping: 0.9,
     };
-    let closed = fly(ControllerSpec::Quaternion {
+    let closed = simulate(ControllerSpec::Quaternion {
         gains,
         gyroscopic: false,
     });
@@ -118,7 +118,7 @@ fn a_plan_for_a_pyramid_is_followed_to_its_target() {
     assert!(closed.end.attitude_rad < 1e-5, "{closed:?}");
     assert!(closed.passages[0].error.attitude_rad < open.passages[0].error.attitude_rad);
     // Without a plan the same loop is far from the target when the plan has arrived.
-    let step = fly(ControllerSpec::StepInput {
+    let step = simulate(ControllerSpec::StepInput {
         gains,
         gyroscopic: false,
     });

@@ -45,6 +45,6 @@ pub(in crate::api) async fn handler(
 }
 
 fn answer(study: &FlightStudy, pool: &SolverPool, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
-    let flown = fly(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
-    respond::written(&FlightAnswerDocument::new(study, &flown), "flight")
+    let simulated = fly(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
+    respond::written(&FlightAnswerDocument::new(study, &simulated), "flight")
 }

@@ -21,13 +21,15 @@ pub(super) struct FlightStudyArguments {
 pub(super) fn run(arguments: &FlightStudyArguments) -> Result<Exit, Failure> {
     let given = &arguments.given;
     let (destination, study) = given.open(flight::read)?;
-    let (flown, received) = arguments.planning.conduct(|run| fly(&study, run))?;
-    let flown = flown.map_err(|problems| given.invalid(problems))?;
-    if let (Outcome::Stopped, Some(code)) = (&flown, received.exit_code()) {
+    let (simulated, received) = arguments.planning.conduct(|run| fly(&study, run))?;
+    let simulated = simulated.map_err(|problems| given.invalid(problems))?;
+    if let (Outcome::Stopped, Some(code)) = (&simulated, received.exit_code()) {
         return Ok(Exit::Signalled(code));
     }
-    destination.write(&output::json(&FlightAnswerDocument::new(&study, &flown))?)?;
-    Ok(match flown {
+    destination.write(&output::json(&FlightAnswerDocument::new(
+        &study, &simulated,
+    ))?)?;
+    Ok(match simulated {
         Outcome::Flown(_) => Exit::Complete,
         Outcome::NoPlan(_) => Exit::Negative,
         Outcome::Stopped => Exit::Stopped,

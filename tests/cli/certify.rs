@@ -174,7 +174,7 @@ fn bounds_with_stored_momentum_are_not_checked() {
     assert!(told.contains("momentum"), "{told}");
     let summary = solved.certify(&solved.plan, &["--summary"]).expect_code(3);
     assert!(
-        summary.stdout.starts_with("NOT CONFIRMED: 0 of 5 claims"),
+        summary.stdout.starts_with("NOT CONFIRMED: 0 of 5 bounds"),
         "{summary:?}"
     );
 }

@@ -95,7 +95,7 @@ fn options_are_checked_against_the_format() {
 
 #[test]
 fn labels_that_cannot_be_written_are_refused_before_the_solve() {
-    let refused = |label: (&str, &str), options: &[&str]| {
+    let refused = |label: (&str, &str), choices: &[&str]| {
         let mut scenario = fixture_json("two-targets.json");
         scenario[label.0] = json!(label.1);
         // A solve would fail with this time limit.

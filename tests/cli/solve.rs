@@ -12,16 +12,16 @@ fn assert_vector(value: &Value, length: usize) {
 
 fn assert_verified(plan: &Value) {
     let found = &plan["verification"];
-    let figure = |name: &str| found[name].as_f64().expect("a number");
+    let number = |name: &str| found[name].as_f64().expect("a number");
     assert_eq!(found["passed"], true, "{found}");
-    assert!(figure("max_attitude_error_rad") <= 1e-6, "{found}");
-    assert!(figure("max_rate_error_rad_s") <= 1e-7, "{found}");
+    assert!(number("max_attitude_error_rad") <= 1e-6, "{found}");
+    assert!(number("max_rate_error_rad_s") <= 1e-7, "{found}");
     for excess in [
         "max_wheel_speed_excess",
         "max_torque_excess",
         "max_rate_excess",
     ] {
-        assert!(figure(excess) <= 1e-6, "{found}");
+        assert!(number(excess) <= 1e-6, "{found}");
     }
 }
 
@@ -37,15 +37,15 @@ fn two_targets_are_solved_to_optimality_with_a_complete_document() {
     let certified = plan["certified_lower_bound_s"].as_f64().expect("a number");
     assert!(certified > 0.8 * total && certified <= total);
     for leg in plan["legs"].as_array().expect("a list") {
-        let figure = |name: &str| leg[name].as_f64().expect("a number");
-        let least = figure("certified_lower_bound_s");
-        let rest = figure("rest_to_rest_duration_s");
+        let number = |name: &str| leg[name].as_f64().expect("a number");
+        let least = number("certified_lower_bound_s");
+        let rest = number("rest_to_rest_duration_s");
         assert!(
-            rest > 0.0 && rest <= figure("eigenaxis_duration_s") * (1.0 + 1e-6),
+            rest > 0.0 && rest <= number("eigenaxis_duration_s") * (1.0 + 1e-6),
             "{leg}"
         );
         assert!(
-            least > 0.0 && least <= figure("duration_s") * (1.0 + 1e-6),
+            least > 0.0 && least <= number("duration_s") * (1.0 + 1e-6),
             "{leg}"
         );
     }

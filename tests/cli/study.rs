@@ -298,7 +298,7 @@ fn a_flight_is_reproducible_and_takes_a_given_plan() {
     let drawn = slewplan_fed(&line, first.to_string().as_bytes());
     let drawn = drawn.expect_code(0).stdout;
     assert!(drawn.contains("Attitude error") && drawn.contains("limit \u{b1}710"));
-    assert!(drawn.contains("flown in closed loop") && !drawn.contains("NaN"));
+    assert!(drawn.contains("simulated in closed loop") && !drawn.contains("NaN"));
 }
 
 #[test]

@@ -105,10 +105,10 @@ fn legs_are_not_solved_again_after_a_kill() {
     let service = Service::on(&database, &[]);
     let searching = |job: &Value| job["attempt"] == 2 && job["stage"] == "search";
     service.wait(&id, searching);
-    let figures = service.get("/metrics").expect(200).body;
+    let metrics = service.get("/metrics").expect(200).body;
     for (outcome, is_zero) in [("hit", false), ("miss", true)] {
         let name = format!("slewplan_leg_lookups_total{{outcome=\"{outcome}\"}} ");
-        let count = figures.lines().find_map(|line| line.strip_prefix(&*name));
+        let count = metrics.lines().find_map(|line| line.strip_prefix(&*name));
         assert_eq!(count == Some("0"), is_zero, "{outcome} {count:?}");
     }
 }

@@ -43,16 +43,17 @@ pub(super) async fn in_turn<T: Send + 'static>(
     work: impl FnOnce(&StopSignal) -> T + Send + 'static,
 ) -> Result<T, ApiError> {
     let turn = app.0.solving.take().await?;
-    watched(app, Some(turn), (StopSignal::new(), longest), work).await
+    watched(app, Some(turn), StopSignal::new(), longest, work).await
 }
 
 /// Does the work now, with a stop signal that may be set already.
 pub(super) async fn at_once<T: Send + 'static>(
     app: &App,
-    limits: (StopSignal, Duration),
+    stop: StopSignal,
+    longest: Duration,
     work: impl FnOnce(&StopSignal) -> T + Send + 'static,
 ) -> Result<T, ApiError> {
-    watched(app, None, limits, work).await
+    watched(app, None, stop, longest, work).await
 }
 
 /// Waits for a turn to integrate a flight, then integrates it to the end without a time limit.
@@ -69,7 +70,8 @@ pub(super) async fn integrated<T: Send + 'static>(
 async fn watched<T: Send + 'static>(
     app: &App,
     turn: Option<WorkTurn>,
-    (stop, longest): (StopSignal, Duration),
+    stop: StopSignal,
+    longest: Duration,
     work: impl FnOnce(&StopSignal) -> T + Send + 'static,
 ) -> Result<T, ApiError> {
     let _guard = StopOnDrop(stop.clone());

@@ -21,7 +21,7 @@ pub(crate) fn counter() -> &'static IntCounter {
 /// Logs and counts a contradiction; the span of the log names the job or the request.
 pub(crate) fn record(contradiction: &Contradiction) {
     COUNTER.inc();
-    tracing::error!(%contradiction, "a flight contradicts a claim; the answer carries no such claim");
+    tracing::error!(%contradiction, "a flight contradicts a proved bound or a stored leg, which the answer leaves out");
 }
 
 /// Listens for contradictions only.

@@ -35,7 +35,7 @@ pub(super) struct CertifyArguments {
 pub(super) fn run(arguments: &CertifyArguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
-    let claims = input::of_plan(&arguments.plan, &scenario, documents::claims::read)?;
+    let certificate = input::of_plan(&arguments.plan, &scenario, documents::claims::read)?;
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
@@ -47,12 +47,12 @@ pub(super) fn run(arguments: &CertifyArguments) -> Result<Exit, Failure> {
         legs: &NoStore,
         segments: &NoStore,
     };
-    let checked = planner::verify_certificate(&scenario, &claims, run);
+    let checked = planner::verify_certificate(&scenario, &certificate, run);
     drop(observer);
     output::print(&if arguments.summary || stdout().is_terminal() {
-        report::certification(&claims, &checked)
+        report::certification(&certificate, &checked)
     } else {
-        output::json(&CertificationDocument::new(&claims, &checked))?
+        output::json(&CertificationDocument::new(&certificate, &checked))?
     })?;
     // After a signal the remaining bounds are reported as not checked.
     let signal = received.exit_code().map(Exit::Signalled);

@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<Exit, Failure> {
     }
     let text = arguments
         .choices
-        .write(arguments.format, (&scenario, &flight))?;
+        .write(arguments.format, &scenario, &flight)?;
     destination.write(&text)?;
     Ok(Exit::Complete)
 }

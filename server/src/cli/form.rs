@@ -89,9 +89,10 @@ impl FormatOptions {
     pub(super) fn write(
         &self,
         format: Format,
-        of: (&Scenario, &Flight),
+        scenario: &Scenario,
+        flight: &Flight,
     ) -> Result<String, Failure> {
-        export::write(format, of, &self.options()).map_err(failed(format))
+        export::write(format, scenario, flight, &self.options()).map_err(failed(format))
     }
 
     fn options(&self) -> ExportOptions {

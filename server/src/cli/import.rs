@@ -37,17 +37,17 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<Exit, Failure> {
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let Some(judged) = import.judge(&pool, &stop) else {
+    let Some(checked) = import.check(&pool, &stop) else {
         return Ok(received.exit_code().map_or(Exit::Failed, Exit::Signalled));
     };
     let counts = runtime::with_store(&arguments.database, async |store| {
-        Ok(judged.store(store).await.map_err(ServiceError::from)?)
+        Ok(checked.store(store).await.map_err(ServiceError::from)?)
     })?;
-    let document = LegImportDocument::new(counts, &judged.refused);
+    let document = LegImportDocument::new(counts, &checked.refused);
     output::print(&output::json(&document)?)?;
-    if judged.refused.is_empty() {
+    if checked.refused.is_empty() {
         return Ok(Exit::Complete);
     }
-    output::complain(&format!("{} legs are refused", judged.refused.len()));
+    output::complain(&format!("{} legs are refused", checked.refused.len()));
     Ok(Exit::Negative)
 }

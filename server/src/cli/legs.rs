@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
                 }
                 return Ok(Exit::Negative);
             }
-            let (table, received) = solve(arguments, (node, &scenario))?;
+            let (table, received) = solve(arguments, node, &scenario)?;
             let nothing = table.rows.is_empty() && !table.complete;
             if let (true, Some(code)) = (nothing, received.exit_code()) {
                 return Ok(Exit::Signalled(code));
@@ -114,7 +114,8 @@ pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
 
 fn solve(
     arguments: &LegsArguments,
-    (node, scenario): (Node, &Scenario),
+    node: Node,
+    scenario: &Scenario,
 ) -> Result<(LegTable, Received), Failure> {
     let (kind, shard) = (arguments.kind.into(), arguments.shard.resolve()?);
     if arguments.trajectories && kind == LegKind::Certified {

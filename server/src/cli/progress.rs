@@ -73,7 +73,7 @@ impl Observer for Bar {
         }
         bar.set_prefix(<&str>::from(progress.stage));
         bar.set_position(progress.done);
-        bar.set_message(figures(&progress));
+        bar.set_message(status(&progress));
     }
 
     fn contradicted(&self, contradiction: &Contradiction) {
@@ -87,7 +87,7 @@ impl Drop for Bar {
     }
 }
 
-fn figures(progress: &Progress) -> String {
+fn status(progress: &Progress) -> String {
     let seconds = |label, value: Option<f64>| {
         value.map_or_else(String::new, |value| format!("  {label} {value:.3} s"))
     };

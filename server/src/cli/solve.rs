@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<Exit, Failure> {
         output::complain("stopped before a first plan was found");
         return Ok(Exit::Signalled(code));
     }
-    outlets.write(arguments, (&outcome, &warnings), &scenario)?;
+    outlets.write(arguments, &outcome, &warnings, &scenario)?;
     Ok(exit(&outcome))
 }
 
@@ -179,7 +179,8 @@ impl Outlets {
     fn write(
         &self,
         arguments: &SolveArguments,
-        (outcome, doubts): (&Outcome, &[Problem]),
+        outcome: &Outcome,
+        warnings: &[Problem],
         scenario: &Scenario,
     ) -> Result<(), Failure> {
         if let Some((destination, form)) = &self.plan {
@@ -187,18 +188,18 @@ impl Outlets {
                 (Form::Json, _) => {
                     // After a signal without a plan nothing is written.
                     let stopped = [Interruption::TimeLimit.reason()];
-                    let document = documents::plan::document(outcome, &stopped, doubts);
+                    let document = documents::plan::document(outcome, &stopped, warnings);
                     destination.write(&output::json(&document)?)?;
                 }
                 (Form::Export(format), Outcome::Planned(plan)) => {
-                    let flight = (scenario, &plan.flight);
-                    destination.write(&arguments.choices.write(*format, flight)?)?;
+                    let choices = &arguments.choices;
+                    destination.write(&choices.write(*format, scenario, &plan.flight)?)?;
                 }
                 // There is no plan to export; the reasons go to standard error below.
                 (Form::Export(_), _) => {}
             }
         }
-        let text = report::outcome(outcome, doubts, scenario);
+        let text = report::outcome(outcome, warnings, scenario);
         match self.summary {
             Summary::Output => output::print(&text),
             Summary::Error => {

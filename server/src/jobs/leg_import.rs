@@ -112,7 +112,7 @@ fn unsuitable(table: &LegTable) -> Vec<Problem> {
 
 impl Import {
     /// Checks every leg; `None` when stopped.
-    pub(crate) fn judge(self, pool: &SolverPool, stop: &StopSignal) -> Option<CheckedLegs> {
+    pub(crate) fn check(self, pool: &SolverPool, stop: &StopSignal) -> Option<CheckedLegs> {
         let keys: HashSet<&str> = self.motions.iter().map(|motion| &*motion.key).collect();
         let wanted = |identity: &str| keys.contains(&*leg_key(identity));
         let check = LegCheck::new(&self.scenario, self.kind, &wanted, (pool, stop))?;
@@ -122,7 +122,7 @@ impl Import {
             .collect();
         let numbered: Vec<_> = self.motions.iter().enumerate().collect();
         let found = pool.map(&numbered, |(index, motion)| {
-            (!stop.is_set()).then(|| judge(&check, &identities, *index, motion))
+            (!stop.is_set()).then(|| check_leg(&check, &identities, *index, motion))
         });
         let (mut legs, mut refused) = (Vec::new(), Vec::new());
         for leg in found {
@@ -135,7 +135,7 @@ impl Import {
     }
 }
 
-fn judge(
+fn check_leg(
     check: &LegCheck<'_>,
     identities: &HashMap<String, &str>,
     index: usize,

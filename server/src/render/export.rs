@@ -170,7 +170,8 @@ pub(crate) enum ExportError {
 /// The errors of [`check`], and those of propagating and sampling the flight.
 pub(crate) fn write(
     format: Format,
-    (scenario, flight): (&Scenario, &Flight),
+    scenario: &Scenario,
+    flight: &Flight,
     options: &ExportOptions,
 ) -> Result<String, ExportError> {
     check(format, scenario, options)?;

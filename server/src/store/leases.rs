@@ -31,7 +31,7 @@ macro_rules! bound_beside {
 /// The claim of this process on a running job.
 #[derive(Debug)]
 pub(crate) struct Lease {
-    /// The job as claimed.
+    /// The job when it was leased.
     pub(crate) job: JobRow,
     /// Its scenario as JSON.
     pub(crate) scenario: Vec<u8>,

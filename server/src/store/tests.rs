@@ -73,7 +73,7 @@ async fn submitted(store: &Store) {
 }
 
 async fn lease(store: &Store, boot_id: &str) -> Lease {
-    let lease = store.lease(boot_id, 1_000, 2).await.expect("claimed");
+    let lease = store.lease(boot_id, 1_000, 2).await.expect("leased");
     lease.expect("a job waits")
 }
 

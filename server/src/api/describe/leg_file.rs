@@ -50,7 +50,7 @@ struct ShardBody {
 
 /// The time of a leg.
 #[derive(Serialize, ToSchema)]
-#[schema(as = CachedLegRow)]
+#[schema(as = LegRow)]
 #[serde(deny_unknown_fields)]
 struct LegRowBody {
     from: String,

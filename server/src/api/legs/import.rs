@@ -33,12 +33,12 @@ pub(in crate::api) async fn handler(
     let import = leg_import::read(&body.node).map_err(ApiError::input)?;
     admission::check_targets(&app, import.scenario.targets().len())?;
     let pool = Arc::clone(&app.0.pool);
-    let work = move |stop: &StopSignal| import.judge(&pool, stop);
-    let judged = computing::in_turn(&app, computing::UNTIL_DONE, work).await?;
-    let judged =
-        judged.ok_or_else(|| ApiError::new(ErrorCode::NotReady, "the service is shutting down"))?;
-    let counts = judged.store(app.store()).await?;
-    let document = LegImportDocument::new(counts, &judged.refused);
+    let work = move |stop: &StopSignal| import.check(&pool, stop);
+    let checked = computing::in_turn(&app, computing::UNTIL_DONE, work).await?;
+    let checked = checked
+        .ok_or_else(|| ApiError::new(ErrorCode::NotReady, "the service is shutting down"))?;
+    let counts = checked.store(app.store()).await?;
+    let document = LegImportDocument::new(counts, &checked.refused);
     let json = respond::written(&document, "answer")?;
     Ok(respond::json(json))
 }

@@ -61,7 +61,7 @@ pub(in crate::api) async fn handler(
         let stop = StopSignal::new();
         stop.request();
         let answers =
-            computing::at_once(&app, (stop, computing::LONGEST), work(&app, query, false)).await;
+            computing::at_once(&app, stop, computing::LONGEST, work(&app, query, false)).await;
         return answers.map(Json);
     }
     computing::in_turn(&app, computing::LONGEST, work(&app, query, true))

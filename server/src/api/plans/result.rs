@@ -168,9 +168,7 @@ pub(in crate::api) async fn handler(
     let mut response = match (respond::unless_made(known, &tag), form) {
         (Some(unchanged), _) => unchanged,
         (None, Form::Json) => json(&result),
-        (None, Form::Export(format)) => {
-            exported(&app, (&id, &tag), &result, (format, options)).await?
-        }
+        (None, Form::Export(format)) => exported(&app, &id, &tag, &result, format, options).await?,
     };
     let state = HeaderValue::from_static(state.into_str());
     response.headers_mut().insert(JOB_STATE, state);
@@ -185,13 +183,15 @@ pub(super) fn json(result: &ResultRow) -> Response {
 /// The plan in the format of another tool.
 async fn exported(
     app: &App,
-    (id, tag): (&str, &str),
+    id: &str,
+    tag: &str,
     result: &ResultRow,
-    (format, options): (Format, ExportOptions),
+    format: Format,
+    options: ExportOptions,
 ) -> Result<Response, ApiError> {
     let found = app.store().scenario(id).await?;
     let (scenario, created_us) = found.ok_or_else(|| ApiError::not_found("plan", id))?;
-    // The end of the job rather than the time of the request, so that the same plan has the same
+    // The time of the submission rather than of the request, so that the same plan has the same
     // bytes and tag.
     let options = ExportOptions {
         created_us,
@@ -199,7 +199,7 @@ async fn exported(
     };
     let document = result.document.clone();
     // On other threads, because a long flight takes long to integrate.
-    let work = move || write(format, (&scenario, &document), &options);
+    let work = move || write(format, &scenario, &document, &options);
     let text = computing::integrated(&app.0.integrating, work).await??;
     let kind = format.media_type();
     // XML and JSON need no charset parameter.
@@ -233,7 +233,8 @@ fn choices(format: Format, options: &ExportOptions) -> String {
 
 fn write(
     format: Format,
-    (scenario, plan): (&[u8], &[u8]),
+    scenario: &[u8],
+    plan: &[u8],
     options: &ExportOptions,
 ) -> Result<String, ApiError> {
     let valid = documents::scenario::read(scenario, None).map_err(|error| unreadable(&error))?;
@@ -244,7 +245,7 @@ fn write(
         let detail = "there is no plan and so no trajectory; see the JSON";
         return Err(ApiError::new(ErrorCode::NoResult, detail));
     };
-    export::write(format, (scenario, &flight), options).map_err(|error| match error {
+    export::write(format, scenario, &flight, options).map_err(|error| match error {
         ExportError::Choice(what) => ApiError::new(ErrorCode::InvalidParameter, what),
         ExportError::Label { .. } => ApiError::new(ErrorCode::NotAcceptable, error.to_string()),
         ExportError::NotFlown(_) | ExportError::NotFinite => unreadable(&error),

@@ -53,7 +53,7 @@ pub(super) fn message(
     Ok(Message {
         header: header(scenario, options),
         segments: segments
-            .map(|segment| block(scenario, segment, (epoch, options)))
+            .map(|segment| block(scenario, segment, epoch, options))
             .collect::<Result<_, _>>()?,
         rates: options.rates,
     })
@@ -78,7 +78,8 @@ fn header(scenario: &Scenario, options: &ExportOptions) -> Vec<(&'static str, St
 fn block(
     scenario: &Scenario,
     segment: &FlightSegment<'_>,
-    (epoch, options): (CalendarTime, &ExportOptions),
+    epoch: CalendarTime,
+    options: &ExportOptions,
 ) -> Result<Block, ExportError> {
     let lines: Vec<DataLine> = segment
         .samples

@@ -95,7 +95,7 @@ fn stepped(step_s: f64) -> ExportOptions {
 }
 
 fn written(format: Format, options: &ExportOptions) -> String {
-    write(format, (&labelled(), &flight()), options).unwrap()
+    write(format, &labelled(), &flight(), options).unwrap()
 }
 
 fn with_trajectory(spacing: Spacing, look: impl Fn(&SampledFlight<'_>)) {
@@ -366,7 +366,7 @@ fn options_that_a_format_does_not_have_are_refused() {
         (Format::WheelRpm, few),
     ];
     for (format, options) in cases {
-        let refused = write(format, (&labelled(), &flight()), &options);
+        let refused = write(format, &labelled(), &flight(), &options);
         assert!(
             matches!(refused, Err(ExportError::Choice(_))),
             "{format:?} {options:?}"
@@ -387,7 +387,7 @@ fn labels_that_a_format_cannot_represent_are_refused_with_their_pointer() {
         ),
     ];
     for (format, labels, place) in cases {
-        let refused = write(format, (&scenario(labels), &flight()), &options());
+        let refused = write(format, &scenario(labels), &flight(), &options());
         let Err(ExportError::Label { pointer, .. }) = refused else {
             panic!("{format:?}: {refused:?}");
         };
@@ -399,6 +399,6 @@ fn labels_that_a_format_cannot_represent_are_refused_with_their_pointer() {
 fn a_flight_with_a_gap_is_refused() {
     let mut broken = flight();
     broken.controls.remove(1);
-    let refused = write(Format::Csv, (&labelled(), &broken), &options());
+    let refused = write(Format::Csv, &labelled(), &broken, &options());
     assert!(matches!(refused, Err(ExportError::NotFlown(_))));
 }

@@ -69,7 +69,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: PlotArea, chart: &Chart) {
         let x = across.at(mark);
         let pen = Pen::new(LINE, 1.2).dashed();
         canvas.line((x, frame.top), (x, bottom), pen);
-        canvas.text(x + 4.0, frame.top + 12.0, Ink::SMALL, &figure(mark));
+        canvas.text(x + 4.0, frame.top + 12.0, Ink::SMALL, &significant(mark));
     }
     for curve in &chart.curves {
         draw_curve(canvas, scales, curve);
@@ -78,7 +78,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: PlotArea, chart: &Chart) {
         let y = up.at(level);
         let pen = Pen::new(LINE, 1.2).dashed();
         canvas.line((frame.left, y), (right, y), pen);
-        canvas.text(right, y - 5.0, Ink::SMALL.end(), &figure(level));
+        canvas.text(right, y - 5.0, Ink::SMALL.end(), &significant(level));
         for curve in &chart.curves {
             draw_crossings(canvas, scales, curve, level);
         }
@@ -117,13 +117,13 @@ fn draw_crossings(canvas: &mut Canvas, (across, up): (Scale, Scale), curve: &Cur
         let (from, to) = (across.at(pair[0].0), across.at(pair[1].0));
         let x = from + share * (to - from);
         canvas.circle((x, y), 4.0, "none", Pen::new(INK, 1.4));
-        let words = figure(across.value(x));
+        let words = significant(across.value(x));
         canvas.text(x + 7.0, y - 7.0, Ink::SMALL.coloured(INK), &words);
     }
 }
 
 /// A number with four significant digits, as many as can be read off a diagram.
-pub(super) fn figure(value: f64) -> String {
+pub(super) fn significant(value: f64) -> String {
     let text = if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         let whole = value.abs().max(1e-3).log10().floor() + 1.0;
         let digits = (4.0 - whole).clamp(0.0, 6.0);
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn numbers_have_four_significant_digits() {
-        let texts = [910.1, 28.364, 0.013_567, 1234.5, 0.0, -2.5, 1e-7].map(figure);
+        let texts = [910.1, 28.364, 0.013_567, 1234.5, 0.0, -2.5, 1e-7].map(significant);
         assert_eq!(
             texts,
             [

@@ -2,7 +2,7 @@
 
 use super::axes::{self, Key};
 use super::canvas::{Canvas, PlotArea, SERIES};
-use super::chart::{self, Chart, Curve, Stroke, figure};
+use super::chart::{self, Chart, Curve, Stroke, significant};
 use super::written_comparison::{Fit, Size, WrittenComparison};
 use super::{HEAD, MARGIN, WIDTH};
 
@@ -100,7 +100,7 @@ fn slew_times(study: &WrittenComparison, size: &Size) -> Chart {
     Chart {
         title: format!(
             "Slew time, s; devices of {} N m s",
-            figure(size.momentum_nms)
+            significant(size.momentum_nms)
         ),
         across: "angle, degrees".to_owned(),
         logarithms: false,

@@ -92,7 +92,7 @@ fn summary(written: &WrittenFlight) -> String {
         format!("{name} {value:.3} {} off", unit.angle)
     };
     let mut parts = vec![format!(
-        "flown in closed loop, {:.2} s",
+        "simulated in closed loop, {:.2} s",
         flight.flight_time_s
     )];
     if flight.flight_time_s > flight.total_time_s {

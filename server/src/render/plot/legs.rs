@@ -11,7 +11,7 @@ const NAMES: f64 = 130.0;
 const OURS: f64 = 150.0;
 const THEIRS: f64 = 64.0;
 const SAVED: f64 = 0.0;
-const FIGURES: f64 = OURS + 70.0;
+const NUMBERS: f64 = OURS + 70.0;
 /// Thickness of a bar as a share of its row.
 const THICK: f64 = 0.62;
 /// Maximum number of characters of a name.
@@ -39,11 +39,11 @@ pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan) {
     });
     let longest = |leg: &WrittenLeg| leg.duration_s.max(leg.eigenaxis_duration_s.unwrap_or(0.0));
     let most = plan.legs.iter().map(longest).fold(1e-9, f64::max);
-    let scale = (frame.width - NAMES - FIGURES) / most;
+    let scale = (frame.width - NAMES - NUMBERS) / most;
     let mut top = frame.top + 28.0;
     let mut drawn = 0;
     for (_, leg) in shown {
-        row(canvas, (frame, top, height), leg, scale);
+        row(canvas, frame, top, height, leg, scale);
         top += height;
         drawn += 1;
     }
@@ -53,12 +53,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan) {
     }
 }
 
-fn row(
-    canvas: &mut Canvas,
-    (frame, top, height): (PlotArea, f64, f64),
-    leg: &WrittenLeg,
-    scale: f64,
-) {
+fn row(canvas: &mut Canvas, frame: PlotArea, top: f64, height: f64, leg: &WrittenLeg, scale: f64) {
     let middle = top + 0.5 * height + 4.0;
     let names = format!("{} \u{2192} {}", short(&leg.from), short(&leg.to));
     canvas.text(frame.left, middle, Ink::PLAIN, &names);

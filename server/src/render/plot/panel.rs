@@ -176,18 +176,18 @@ impl Panel {
         if !high.is_finite() {
             return Some("no limit".to_owned());
         }
-        let figure = |value: f64| {
+        let rounded = |value: f64| {
             format!("{value:.3}")
                 .trim_end_matches('0')
                 .trim_end_matches('.')
                 .to_owned()
         };
         let words = if !low.is_finite() {
-            format!("limit {}", figure(high))
+            format!("limit {}", rounded(high))
         } else if (low + high).abs() < 1e-12 * high {
-            format!("limit \u{b1}{}", figure(high))
+            format!("limit \u{b1}{}", rounded(high))
         } else {
-            minus(&format!("limits {} and {}", figure(low), figure(high)))
+            minus(&format!("limits {} and {}", rounded(low), rounded(high)))
         };
         let beyond = if self.is_shown(high) { "" } else { ", beyond" };
         Some(words + beyond)

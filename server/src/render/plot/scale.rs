@@ -137,7 +137,7 @@ impl Scale {
             let values = factors.iter().map(|factor| factor * 10_f64.powf(power));
             ticks.extend(values.filter(|value| self.holds(*value)).map(|value| Tick {
                 value,
-                words: figure(value),
+                words: round_text(value),
             }));
             power += stride;
         }
@@ -156,7 +156,7 @@ fn ends(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// The text of a power of ten or its multiple by 2 or 5.
-fn figure(value: f64) -> String {
+fn round_text(value: f64) -> String {
     if (1e-4..1e5).contains(&value) {
         let text = format!("{value:.4}");
         return text.trim_end_matches('0').trim_end_matches('.').to_owned();

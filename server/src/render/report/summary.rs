@@ -1,6 +1,6 @@
 //! The summary of a plan.
 
-use super::figures::{count, line, margins, verification};
+use super::blocks::{count, line, margins, verification};
 use super::table::aligned;
 use crate::documents::plan::status;
 use slewplan_solver::model::plan::{Leg, LowerBoundKind, Plan};
@@ -135,10 +135,7 @@ fn rest_to_rest(plan: &Plan) -> String {
 fn eigenaxis(plan: &Plan) -> String {
     let turns: Option<f64> = plan.legs.iter().map(|leg| leg.eigenaxis_duration_s).sum();
     let Some(turns) = turns else {
-        return line(
-            "eigenaxis",
-            "not every leg can be flown about its eigenaxis",
-        );
+        return line("eigenaxis", "not every leg has a slew about its eigenaxis");
     };
     same_order(plan, "eigenaxis", "rest-to-rest eigenaxis slews", turns)
 }

@@ -87,7 +87,7 @@ fn the_header_has_creation_date_and_originator() {
 #[test]
 fn a_missing_epoch_is_noted_in_a_comment() {
     assert!(!written(Format::AemKvn, &options()).contains("no epoch"));
-    let text = write(Format::AemKvn, (&scenario(""), &flight()), &options()).unwrap();
+    let text = write(Format::AemKvn, &scenario(""), &flight(), &options()).unwrap();
     assert!(
         text.contains("COMMENT The scenario has no epoch: times count from 2000-01-01T12:00:00")
     );

@@ -100,7 +100,7 @@ fn labels_that_cannot_be_written_are_refused_before_the_solve() {
         scenario[label.0] = json!(label.1);
         // A solve would fail with this time limit.
         let line = ["solve", "-", "--time-limit", "1e-6", "--format"];
-        let line = [&line, options].concat();
+        let line = [&line, choices].concat();
         let ended = slewplan_fed(&line, scenario.to_string().as_bytes()).expect_code(2);
         assert_eq!(ended.stdout, "");
         ended.stderr

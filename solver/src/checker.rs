@@ -2,7 +2,7 @@
 //!
 //! No plan is given out that this module has not verified. It shares no code with the optimiser, and on
 //! purpose implements the dynamics again, with the full state: quaternion, body rate and all wheel
-//! speeds. LimitObserver are tested between integration steps too: a step is a polynomial, whose extrema can
+//! speeds. Limits are tested between integration steps too: a step is a polynomial, whose extrema can
 //! be found.
 //!
 //! A flight may be of any origin. Everything wrong with it is reported as a sentence in

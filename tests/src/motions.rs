@@ -3,7 +3,7 @@
 use crate::random::Generator;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// ConstantRateArcs at a constant rate: rad/s in body axes, and seconds.
+/// Arcs at a constant rate: rad/s in body axes, and seconds.
 pub type ConstantRateArcs = Vec<(Vector3<f64>, f64)>;
 
 /// How a motion is generated.

@@ -1,4 +1,4 @@
-//! LimitObserver of torque, wheel speed and body rate along the whole flight.
+//! Limits of torque, wheel speed and body rate along the whole flight.
 
 use super::extremum::critical_points;
 use super::integrator::IntegrationStep;

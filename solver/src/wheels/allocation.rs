@@ -1,4 +1,4 @@
-//! DemandAllocation of a torque or a momentum to the wheels.
+//! Allocation of a torque or a momentum to the wheels.
 //!
 //! With more than three wheels `A x = y` has many solutions (see [`crate::wheels::array`]). Three are
 //! common:

@@ -1,4 +1,4 @@
-//! The program as a chain of stages: values, and derivatives onto_controls back to its variables.
+//! The program as a chain of stages: values, and derivatives by the chain rule.
 
 use super::{Program, SparseDerivatives, TermTarget};
 use crate::nlp::{Chain, Link, LinkModel, LinkMultipliers, LinkValues};

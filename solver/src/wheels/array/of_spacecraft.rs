@@ -59,6 +59,7 @@ impl SpacecraftEnvelopes {
 }
 
 /// Problems with the usable shares of torque and speed limits.
+#[must_use]
 pub fn authority_problems(torque: f64, momentum: f64) -> Vec<Problem> {
     let shares = [
         ("/options/torque_authority", torque),

@@ -4,6 +4,7 @@ pub mod attitude;
 pub mod drive;
 pub(crate) mod dynamics;
 pub mod findings;
+pub mod input;
 pub mod order_rules;
 pub mod plan;
 pub mod problem;

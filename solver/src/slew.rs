@@ -52,7 +52,8 @@ mod tests;
 
 pub use propagated::{Energies, Piece, PropagatedSlew};
 pub use spec::{
-    Command, FinalWheels, Hold, Measure, Objective, Slew, SlewSpec, Validated, WheelAllocation,
+    Command, DEFAULT_INTERVALS, FinalWheels, Hold, MAX_POINTS, Measure, Objective, Slew,
+    SlewOptionsSpec, SlewSpec, Sweep, Validated, WheelAllocation,
 };
 
 use crate::nlp::{Interruption, NlpStatus};
@@ -91,17 +92,6 @@ pub struct SlewOutcome {
     pub continuous_time_s: Option<f64>,
     /// The program's solution, from which a neighbour can begin.
     solution: Solved,
-}
-
-/// What is swept along a trade curve.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Sweep {
-    /// Durations, s, of [`Objective::Energy`].
-    Durations(Vec<f64>),
-    /// Weights of [`Objective::TimeAndEffort`].
-    Weights(Vec<f64>),
-    /// Energies, J, of [`Objective::MinimumTimeAtEnergy`].
-    Energies(Vec<f64>),
 }
 
 /// Solves a slew.

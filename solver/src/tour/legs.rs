@@ -9,27 +9,18 @@
 //!
 //! Beside them, the segments of one scenario's tours, which mean nothing to others.
 
-/// Which boundary conditions a tabulated leg has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LegKind {
-    /// All rates zero at both ends; with more than three wheels the null-space momentum of the
-    /// scenario's start is held at both ends.
-    RestToRest,
-    /// Each end with only its own conditions, everything else free: a lower bound of the leg.
-    LowerBound,
-    /// All rates zero at both ends: no slew is solved, and the answer is a proved bound on its time.
-    Certified,
-}
+use crate::model::input::input_choice;
 
-impl LegKind {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::RestToRest => "rest_to_rest",
-            Self::LowerBound => "lower_bound",
-            Self::Certified => "certified",
-        }
+input_choice! {
+    /// Which boundary conditions a tabulated leg has.
+    pub enum LegKind as "Kind" {
+        /// All rates zero at both ends; with more than three wheels the null-space momentum of the
+        /// scenario's start is held at both ends.
+        RestToRest = "rest_to_rest",
+        /// Each end with only its own conditions, everything else free: a lower bound of the leg.
+        LowerBound = "lower_bound",
+        /// All rates zero at both ends: no slew is solved, and the answer is a proved bound on its time.
+        Certified = "certified",
     }
 }
 

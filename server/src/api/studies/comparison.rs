@@ -8,7 +8,7 @@ use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
 use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_studies::comparison::{Study, StudySpec};
+use slewplan_studies::comparison::{ComparisonSpec, Study};
 
 /// Compare reaction wheels with control moment gyroscopes
 ///
@@ -34,7 +34,7 @@ pub(in crate::api) async fn handler(
     Ok(respond::json(json))
 }
 
-fn answer(spec: StudySpec) -> Result<Vec<u8>, ApiError> {
+fn answer(spec: ComparisonSpec) -> Result<Vec<u8>, ApiError> {
     let study = Study::of(spec).map_err(ApiError::input)?;
     let missing = || ApiError::new(ErrorCode::Internal, "the comparison cannot be made");
     let study = study.ok_or_else(missing)?;

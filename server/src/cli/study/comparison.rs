@@ -4,7 +4,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output::{self, Destination};
 use crate::cli::{Exit, input};
 use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
-use slewplan_studies::comparison::{Study, StudySpec};
+use slewplan_studies::comparison::{ComparisonSpec, Study};
 use std::path::PathBuf;
 
 /// What `study comparison` takes.
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
     let spec = arguments.study.as_deref().map_or_else(
-        || Ok(StudySpec::default()),
+        || Ok(ComparisonSpec::default()),
         |path| {
             comparison::read(&input::read(path)?).map_err(|problems| Failure::Invalid {
                 name: input::name(path),

@@ -240,7 +240,7 @@ fn all_problems_are_told_at_once() {
         measure: Measure::Bill,
     };
     spec.end.wheel_speed_rad_s = None;
-    spec.torque_authority = 2.0;
+    spec.options.torque_authority = 2.0;
     let problems = Slew::try_new(&spec).expect_err("nothing is right");
     let pointers: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
     for wanted in [

@@ -16,32 +16,18 @@ const STEEPEST: f64 = 8.0;
 const PER_DECADE: i32 = 8;
 const DECADES: (i32, i32) = (-3, 1);
 /// Rows of the usual singular surfaces.
-const SURFACE_ROWS: usize = 12;
+pub(super) const SURFACE_ROWS: usize = 12;
 
-/// What the study is asked for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StudySpec {
-    /// Slews and sizes to compare.
-    pub comparison: ComparisonSpec,
-    /// Momenta of a device (N m s) at which the advantage angle is told.
-    pub curve_momenta_nms: Vec<f64>,
-    /// Masses of a device (kg) at which arrays are compared.
-    pub device_masses_kg: Vec<f64>,
-    /// Circles of latitude of the singular surfaces, at most [`MAX_SURFACE_ROWS`].
-    pub surface_rows: usize,
+/// Momenta of a device (N m s) at which the advantage angle is usually told.
+pub(super) fn usual_curve_momenta_nms() -> Vec<f64> {
+    let (from, to) = DECADES;
+    let power = |i| 10_f64.powf(f64::from(from) + f64::from(i) / f64::from(PER_DECADE));
+    (0..=PER_DECADE * (to - from)).map(power).collect()
 }
 
-impl Default for StudySpec {
-    fn default() -> Self {
-        let (from, to) = DECADES;
-        let power = |i| 10_f64.powf(f64::from(from) + f64::from(i) / f64::from(PER_DECADE));
-        Self {
-            comparison: ComparisonSpec::default(),
-            curve_momenta_nms: (0..=PER_DECADE * (to - from)).map(power).collect(),
-            device_masses_kg: vec![0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0],
-            surface_rows: SURFACE_ROWS,
-        }
-    }
+/// Masses of a device (kg) at which arrays are usually compared.
+pub(super) fn usual_device_masses_kg() -> Vec<f64> {
+    vec![0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
 }
 
 /// The advantage angle of one control over the momentum of a device.
@@ -93,7 +79,7 @@ pub struct MarketFit {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     /// What was asked for.
-    pub spec: StudySpec,
+    pub spec: ComparisonSpec,
     /// Rates, accelerations, slews and advantage angles.
     pub comparison: Comparison,
     /// One entry per control of wheels.
@@ -121,10 +107,10 @@ impl Study {
     ///
     /// All problems of the request at once, with pointers as of [`Comparison::of`] and
     /// `/curve_momenta_nms`, `/device_masses_kg`, `/surface_rows`.
-    pub fn of(spec: StudySpec) -> Result<Option<Self>, Vec<Problem>> {
+    pub fn of(spec: ComparisonSpec) -> Result<Option<Self>, Vec<Problem>> {
         let mut findings = Findings::default();
         check(&spec, &mut findings);
-        let comparison = Comparison::of(spec.comparison.clone())
+        let comparison = Comparison::of(spec.clone())
             .map_err(|problems| findings.include(problems))
             .ok();
         let (comparison, _) = findings.conclude(comparison)?;
@@ -132,13 +118,13 @@ impl Study {
             momenta_nms: spec.curve_momenta_nms.clone(),
             // Advantage angles do not depend on them, and a list must not be empty.
             angles_rad: vec![1.0],
-            ..spec.comparison.clone()
+            ..spec.clone()
         })?;
         Ok(Self::conduct(spec, comparison, &curves))
     }
 
-    fn conduct(spec: StudySpec, comparison: Comparison, curves: &Comparison) -> Option<Self> {
-        let ComparisonSpec { radii, laws, .. } = spec.comparison;
+    fn conduct(spec: ComparisonSpec, comparison: Comparison, curves: &Comparison) -> Option<Self> {
+        let ComparisonSpec { radii, laws, .. } = spec;
         let mass = MassStudy::of(radii, laws)?;
         let table = Laws::of_the_tables()?;
         Some(Self {
@@ -207,13 +193,13 @@ fn advantage_curves(curves: &Comparison) -> Vec<AdvantageCurve> {
     wheels.iter().enumerate().map(curve).collect()
 }
 
-fn check(spec: &StudySpec, findings: &mut Findings) {
+fn check(spec: &ComparisonSpec, findings: &mut Findings) {
     super::check_list("curve_momenta_nms", &spec.curve_momenta_nms, findings);
     super::check_list("device_masses_kg", &spec.device_masses_kg, findings);
-    let of = &spec.comparison;
+
     for (name, values) in [
-        ("momenta_nms", &of.momenta_nms),
-        ("angles_rad", &of.angles_rad),
+        ("momenta_nms", &spec.momenta_nms),
+        ("angles_rad", &spec.angles_rad),
         ("curve_momenta_nms", &spec.curve_momenta_nms),
         ("device_masses_kg", &spec.device_masses_kg),
     ] {
@@ -221,13 +207,16 @@ fn check(spec: &StudySpec, findings: &mut Findings) {
             within(&format!("/{name}/{i}"), value, findings);
         }
     }
-    within("/required_rate_rad_s", of.required_rate_rad_s, findings);
+    within("/required_rate_rad_s", spec.required_rate_rad_s, findings);
     for control in Control::ALL {
-        let (at, radius) = (control.as_str(), of.radii.of(control));
+        let (at, radius) = (control.as_str(), spec.radii.of(control));
         within(&format!("/radii/{at}/momentum"), radius.momentum, findings);
         within(&format!("/radii/{at}/torque"), radius.torque, findings);
     }
-    for (name, law) in [("wheel", of.laws.wheel), ("gyroscope", of.laws.gyroscope)] {
+    for (name, law) in [
+        ("wheel", spec.laws.wheel),
+        ("gyroscope", spec.laws.gyroscope),
+    ] {
         within(&format!("/laws/{name}/factor"), law.factor, findings);
         if law.exponent.abs() > STEEPEST {
             findings.refuse(
@@ -267,7 +256,7 @@ mod tests {
 
     #[test]
     fn the_study_holds_the_figures_of_the_thesis() {
-        let study = Study::of(StudySpec::default()).unwrap().unwrap();
+        let study = Study::of(ComparisonSpec::default()).unwrap().unwrap();
         let full = study.envelopes.full;
         assert!((full.volume - 128.0 / (3.0 * 3.0_f64.sqrt())).abs() < 1e-9);
         assert!((study.envelopes.pseudo_inverse.inscribed_radius - 4.0 / 3.0).abs() < 1e-9);
@@ -287,15 +276,15 @@ mod tests {
 
     #[test]
     fn every_problem_is_found_once() {
-        let mut spec = StudySpec {
+        let mut spec = ComparisonSpec {
             curve_momenta_nms: Vec::new(),
             surface_rows: MAX_SURFACE_ROWS + 1,
             device_masses_kg: vec![1.0, 1e300],
-            ..StudySpec::default()
+            ..ComparisonSpec::default()
         };
-        spec.comparison.laws.wheel.exponent = 9.0;
-        spec.comparison.required_rate_rad_s = -1.0;
-        spec.comparison.momenta_nms = vec![1e-300];
+        spec.laws.wheel.exponent = 9.0;
+        spec.required_rate_rad_s = -1.0;
+        spec.momenta_nms = vec![1e-300];
         let problems = Study::of(spec).unwrap_err();
         let mut places: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
         places.sort_unstable();
@@ -314,13 +303,13 @@ mod tests {
 
     #[test]
     fn extreme_requests_have_finite_answers() {
-        let mut spec = StudySpec {
+        let mut spec = ComparisonSpec {
             surface_rows: 1,
-            ..StudySpec::default()
+            ..ComparisonSpec::default()
         };
-        spec.comparison.momenta_nms = vec![1e-9, 1e9];
-        spec.comparison.angles_rad = vec![1e-9, 1e9];
-        spec.comparison.laws.wheel = PowerLaw {
+        spec.momenta_nms = vec![1e-9, 1e9];
+        spec.angles_rad = vec![1e-9, 1e9];
+        spec.laws.wheel = PowerLaw {
             factor: 1e9,
             exponent: 8.0,
         };

@@ -219,7 +219,7 @@ struct MassPointDocument {
 impl ComparisonAnswerDocument {
     /// The answer to a study.
     pub(crate) fn new(study: &Study) -> Self {
-        let of = &study.spec.comparison;
+        let of = &study.spec;
         let (wheels, gyroscopes) = Study::devices();
         let radius = |control: Control| {
             let Radius { momentum, torque } = of.radii.of(control);

@@ -24,7 +24,7 @@
 //! says which further members it has.
 //!
 //! No format of documents is known here: [`InputPlace`] is what a reader of a format offers, [`Schema`]
-//! what a description is made of. MemberBounds are described only; a value that was read may still be
+//! what a description is made of. Bounds are described only; a value that was read may still be
 //! nonsense, which is for validation to say.
 
 #[macro_use]
@@ -33,12 +33,12 @@ mod forms;
 mod rule;
 mod schema;
 
-pub use {input_choice, input_object, input_union};
 pub use forms::{Unread, UpTo};
 pub use rule::{
     InputMembers, MemberRule, nullable, optional, or, required, required_elsewhere, required_or,
 };
-pub use schema::{MemberBounds, Literal, MemberSchema, NamedSchema, Schema, text_of};
+pub use schema::{Literal, MemberBounds, MemberSchema, NamedSchema, Schema, text_of};
+pub use {input_choice, input_object, input_union};
 
 use super::problem::Code;
 
@@ -70,7 +70,7 @@ pub trait InputPlace: Sized {
     /// The index of the text that stands there.
     fn choice(&self, texts: &[&str]) -> Option<usize>;
 
-    /// Whether an object stands there. InputMembers that are repeated, or not among the known ones, are
+    /// Whether an object stands there. Members that are repeated, or not among the known ones, are
     /// recorded; without a list any member is known.
     fn is_object(&self, known: Option<&[&str]>) -> bool;
 

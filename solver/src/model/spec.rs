@@ -12,8 +12,8 @@ pub use attitude::{AttitudeSpec, PairSpec};
 pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
 
 use super::input::{
-    self, InputForm, InputPlace, MemberRule, Schema, UpTo, input_choice, input_object, nullable, optional, or,
-    required_or,
+    self, InputForm, InputPlace, MemberRule, Schema, UpTo, input_choice, input_object, nullable,
+    optional, or, required_or,
 };
 use super::scenario::{MAX_CONES, MAX_TARGETS};
 
@@ -77,7 +77,7 @@ input_object! {
         pub dwell_s: f64 = or(0.0).at_least(0.0),
         /// Time to settle at rest after arrival.
         pub settle_s: f64 = or(0.0).at_least(0.0),
-        /// InputPlace in the order of visits, counted from 1; any without it. No two targets have the same.
+        /// Place in the order of visits, counted from 1; any without it. No two targets have the same.
         pub position: Option<usize> = optional().at_least(1.0),
         /// Identifiers of targets that must have been visited before. Some order has to keep all
         /// positions and precedences.
@@ -86,11 +86,11 @@ input_object! {
 }
 
 input_object! {
-    /// A cone that a boresight must not point into.
+    /// A cone that a boresight should avoid.
     pub struct KeepOutSpec as "KeepOut" {
         /// Name of the boresight.
         pub boresight: String = required_or(String::new()),
-        /// RateAxis of the cone in the reference frame, any length.
+        /// Axis of the cone in the reference frame, any length.
         pub direction: [f64; 3] = required_or([1.0, 0.0, 0.0]),
         /// Half angle of the cone.
         pub half_angle_deg: f64 = required_or(1.0).above(0.0).below(180.0),

@@ -11,8 +11,8 @@ use crate::model::drive::{Drive, DriveSpec};
 use crate::model::dynamics::Dynamics;
 use crate::model::findings::Findings;
 use crate::model::input::{
-    self, InputForm, MemberSchema, NamedSchema, InputPlace, Schema, input_choice, input_object, input_union, nullable,
-    optional, or, required, required_elsewhere, required_or,
+    self, InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_choice, input_object,
+    input_union, nullable, optional, or, required, required_elsewhere, required_or,
 };
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::{RateCondition, Scenario};

@@ -78,7 +78,7 @@ pub struct EnvelopeStudy {
 
 #[derive(Debug, Clone)]
 struct Turn {
-    /// RateAxis times angle, body axes, rad.
+    /// Axis times angle, body axes, rad.
     vector: Vector3<f64>,
     /// The slews to optimise.
     slews: Vec<Slew>,
@@ -109,7 +109,7 @@ impl EnvelopeReport {
 /// A turn in all its ways.
 #[derive(Debug, Clone)]
 pub struct TurnReport {
-    /// RateAxis times angle, body axes, rad.
+    /// Axis times angle, body axes, rad.
     pub vector: Vector3<f64>,
     /// About the eigenaxis, in the order of [`crate::eigenaxis::Limit::ALL`].
     pub eigenaxis: Vec<(EigenaxisSlew, EnvelopePath)>,

@@ -1,13 +1,13 @@
 //! The macros that declare what stands in a document.
 //!
 //! A declaration becomes the type as it would be written by hand and an implementation of
-//! [`InputForm`](super::InputForm) for it. InputMembers are read in the order of their declaration, all of them, so
+//! [`InputForm`](super::InputForm) for it. Members are read in the order of their declaration, all of them, so
 //! that one pass finds everything that is wrong.
 
 /// Declares an object: a struct whose fields are members with the same names.
 ///
 /// A field is `name: Type = rule` or, where the type has a form other than itself,
-/// `name: Type as InputForm = rule`. What [`rules`](crate::model::input::MemberRule) there are says
+/// `name: Type as Form = rule`. What [`rules`](crate::model::input::MemberRule) there are says
 /// [`crate::model::input`]; its documentation shows an example. The literal after `as` is the name of
 /// the object in descriptions; `open` behind it admits members that are not declared.
 #[macro_export]

@@ -1,6 +1,6 @@
 //! The forms of plain values and of lists.
 
-use super::{InputForm, Literal, NamedSchema, InputPlace, Schema};
+use super::{InputForm, InputPlace, Literal, NamedSchema, Schema};
 use crate::model::problem::{Code, Problem};
 use std::marker::PhantomData;
 

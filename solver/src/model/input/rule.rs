@@ -1,6 +1,6 @@
 //! The rule of a member: what its absence means, and what its description tells beside its type.
 
-use super::schema::{MemberBounds, Literal};
+use super::schema::{Literal, MemberBounds};
 use super::{InputForm, InputPlace};
 
 /// The rule of a member with a value of this type.

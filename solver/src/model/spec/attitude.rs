@@ -1,7 +1,7 @@
 //! An attitude as a caller writes it, in one of several forms.
 
 use crate::model::input::{
-    InputForm, MemberSchema, NamedSchema, InputPlace, Schema, input_object, required, required_or,
+    InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_object, required, required_or,
 };
 use crate::model::problem::Code;
 
@@ -110,7 +110,9 @@ impl InputForm for AttitudeSpec {
 
 /// The form in which an attitude is given, unless it is none or several.
 fn only_form<P: InputPlace>(place: &P) -> Option<&'static str> {
-    let given = FORMS.into_iter().filter(|form| place.member(form).is_some());
+    let given = FORMS
+        .into_iter()
+        .filter(|form| place.member(form).is_some());
     let given: Vec<&str> = given.collect();
     let message = match given[..] {
         [form] => return Some(form),

@@ -1,8 +1,8 @@
 //! The spacecraft as a caller writes it, or refers to it.
 
 use crate::model::input::{
-    InputForm, MemberSchema, NamedSchema, InputPlace, MemberRule, Schema, UpTo, input_object, optional, or, required,
-    required_or,
+    InputForm, InputPlace, MemberRule, MemberSchema, NamedSchema, Schema, UpTo, input_object,
+    optional, or, required, required_or,
 };
 use crate::model::problem::Code;
 use crate::model::spacecraft::{MAX_BORESIGHTS, MAX_WHEELS};
@@ -23,7 +23,7 @@ input_object! {
         /// At least three enabled ones that span space. Every per-wheel array has their order.
         pub wheels: Vec<WheelSpec> as UpTo<MAX_WHEELS, WheelSpec>
             = required_or(substitute_wheels()).min_length(3),
-        /// NamedSchema instrument axes.
+        /// Named instrument axes.
         pub boresights: Vec<BoresightSpec> as UpTo<MAX_BORESIGHTS, BoresightSpec> = or(Vec::new()),
     }
 }
@@ -128,7 +128,11 @@ fn reference() -> Schema {
             let version = optional().at_least(1.0).format("int32");
             Schema::Object(vec![
                 MemberSchema::of::<String>("ref", "Its name.", &required()),
-                MemberSchema::of::<Option<u64>>("version", "Its version; the newest without it.", &version),
+                MemberSchema::of::<Option<u64>>(
+                    "version",
+                    "Its version; the newest without it.",
+                    &version,
+                ),
             ])
         },
     })

@@ -149,13 +149,17 @@ pub(crate) enum Refusal {
 
 /// Number of legs that a query asks for, whatever they are.
 fn legs_asked_for(node: &Node) -> usize {
-    let length = |name| match node.member(name) {
-        Some(Node::List(entries)) => entries.len(),
-        _ => 0,
-    };
-    let attitudes = length("attitudes");
+    let attitudes = listed(node, "attitudes").unwrap_or(0);
     let matrix = attitudes.saturating_mul(attitudes.saturating_sub(1));
-    matrix.max(length("pairs"))
+    matrix.max(listed(node, "pairs").unwrap_or(0))
+}
+
+/// Number of entries of a list of a query, readable or not.
+fn listed(node: &Node, name: &str) -> Option<usize> {
+    match node.member(name)? {
+        Node::List(entries) => Some(entries.len()),
+        _ => None,
+    }
 }
 
 /// A query of the right shape.
@@ -163,15 +167,13 @@ fn decode(node: &Node) -> Result<LegQuerySpec, Vec<Problem>> {
     let sink = Sink::default();
     let root = Cursor::root(node, &sink);
     let spec = LegQuerySpec::read(&root);
-    if let Some(spec) = &spec {
-        check_lists(spec, &root);
-    }
+    check_lists(node, &root);
     let problems = sink.into_problems();
     spec.filter(|_| problems.is_empty()).ok_or(problems)
 }
 
 /// Of attitudes and pairs exactly one is given, and there is a leg in it.
-fn check_lists(spec: &LegQuerySpec, root: &Cursor<'_>) {
+fn check_lists(node: &Node, root: &Cursor<'_>) {
     let given = |name| root.member(name).filter(|list| !list.is_null());
     match (given("attitudes"), given("pairs")) {
         (Some(both), Some(_)) => both.report(
@@ -180,17 +182,17 @@ fn check_lists(spec: &LegQuerySpec, root: &Cursor<'_>) {
             "give attitudes for the full matrix, or pairs",
         ),
         (None, None) => {
-            root.required("attitudes");
+            // Tells that it is missing, or that null is no list.
+            root.required("attitudes").and_then(|null| null.entries());
         }
         (Some(list), None) => {
-            let count = spec.attitudes.as_ref().map(Vec::len);
-            if let Some(few @ ..2) = count {
+            if let Some(few @ ..2) = listed(node, "attitudes") {
                 let message = format!("{few} attitudes have no leg between them");
                 list.report(Code::WrongLength, message, "list at least two attitudes");
             }
         }
         (None, Some(list)) => {
-            if spec.pairs.as_ref().is_some_and(Vec::is_empty) {
+            if listed(node, "pairs") == Some(0) {
                 let hint = "list at least one pair";
                 list.report(Code::WrongLength, "there is no pair", hint);
             }

@@ -109,6 +109,10 @@ input_union! {
     }
 }
 
+#[expect(
+    clippy::derivable_impls,
+    reason = "a declaration has no attributes on variants"
+)]
 impl Default for Objective {
     fn default() -> Self {
         Self::MinimumTime
@@ -458,7 +462,7 @@ impl Slew {
         self.arrival.turn(attitude, &self.ends[1].attitude)
     }
 
-    /// The program's cost_weights in continuous time.
+    /// The program's cost weights in continuous time.
     pub(super) fn cost_weights(&self) -> CostWeights {
         match self.objective {
             Objective::MinimumTime => CostWeights::TIME,

@@ -1,7 +1,7 @@
 //! Studies of envelopes: the published pyramid, and what is refused.
 
 use slewplan_solver::model::problem::Code;
-use slewplan_solver::model::spec::AttitudeSpec;
+use slewplan_solver::model::spec::{AttitudeSpec, PairSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::WheelAllocation;

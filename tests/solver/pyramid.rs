@@ -3,7 +3,7 @@
 
 use slewplan_solver::math::bang_coast_bang::BangCoastBang;
 use slewplan_solver::model::attitude::Attitude;
-use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
+use slewplan_solver::model::spec::{AttitudeSpec, PairSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_studies::comparison::{Control, Radii};

@@ -2,7 +2,8 @@
 //!
 //! Reading goes in two steps, so that every problem is found at once: [`document`] turns text
 //! into a tree that loses nothing, and a [`reader`] walks the tree, knows where it is and
-//! collects what is wrong. Writing is plain `serde` on structs whose fields carry their units.
+//! collects what is wrong. What stands in a document is declared once, with
+//! [`slewplan_solver::model::input`]; [`schema`] makes its description of that. Writing is plain `serde` on structs whose fields carry their units.
 
 #[cfg(test)]
 mod attitude;

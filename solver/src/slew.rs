@@ -41,6 +41,7 @@ mod min_time_at_energy;
 mod motion;
 mod program;
 mod propagated;
+mod request;
 mod sampled;
 mod shape;
 mod solving;
@@ -51,10 +52,11 @@ mod terms;
 mod tests;
 
 pub use propagated::{Energies, Piece, PropagatedSlew};
-pub use spec::{
-    Command, DEFAULT_INTERVALS, FinalWheels, Hold, MAX_POINTS, Measure, Objective, Slew,
-    SlewOptionsSpec, SlewSpec, Sweep, Validated, WheelAllocation,
+pub use request::{
+    Command, DEFAULT_INTERVALS, FinalWheels, Hold, MAX_POINTS, Measure, Objective, SlewOptionsSpec,
+    SlewSpec, Sweep, WheelAllocation,
 };
+pub use spec::{Slew, Validated};
 
 use crate::nlp::{Interruption, NlpStatus};
 use crate::run::stop::{StopReason, StopSignal};

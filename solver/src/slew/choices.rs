@@ -1,6 +1,6 @@
 //! Whether objective, command and conditions of a slew are valid and go with its wheels.
 
-use super::spec::{Command, FinalWheels, Hold, Measure, Objective, SlewSpec, WheelAllocation};
+use super::request::{Command, FinalWheels, Hold, Measure, Objective, SlewSpec, WheelAllocation};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::nlp::{MAX_CONTROLS, MAX_STATES};

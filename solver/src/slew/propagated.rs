@@ -1,7 +1,8 @@
 //! The flight of a solution, as an independent integration finds it, and what it takes.
 
 use super::motion::SlewMotion;
-use super::spec::{Measure, Slew};
+use super::request::Measure;
+use super::spec::Slew;
 use crate::checker::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, Moment,
     RATE_TOLERANCE, Ramp, propagate_ramps,

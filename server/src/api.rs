@@ -1,4 +1,4 @@
-//! HTTP: routes, what they take and what they answer. No SQL and no solving here.
+//! The HTTP interface: routes, their requests and answers. No SQL and no solving here.
 
 mod access;
 mod admission;
@@ -29,71 +29,70 @@ use crate::base::lifecycle::Shutdown;
 use crate::jobs::Jobs;
 use crate::store::Store;
 use computing::Turns;
-use metrics::Metrics;
+use metrics::RequestMetrics;
 use slewplan_solver::run::pool::SolverPool;
 use std::sync::Arc;
 use tokio::sync::Semaphore;
 
-/// What every handler can reach.
+/// The state that all handlers share.
 #[derive(Clone)]
 pub(crate) struct App(Arc<Parts>);
 
-/// The parts of the service.
+/// The parts of [`App`].
 struct Parts {
-    /// The queue.
+    /// The jobs.
     jobs: Jobs,
-    /// What a request may ask for at most.
-    limits: Limits,
-    /// Whether keys are asked for.
+    /// Limits on requests.
+    limits: RequestLimits,
+    /// Whether requests need keys.
     access: Access,
-    /// When the service ends.
+    /// Signals the shutdown.
     shutdown: Shutdown,
-    /// Where jobs and queries are solved.
+    /// Threads for jobs and queries.
     pool: Arc<SolverPool>,
-    /// Where legs are looked up, so that this never waits for a solve.
+    /// Threads for look-ups of legs, which never wait for a solve.
     lookups: Arc<SolverPool>,
-    /// Requests that compute take turns.
+    /// Turns of requests that solve.
     solving: Turns,
-    /// So do those that integrate flights.
-    flying: Turns,
-    /// Streams of events that are open: a part of all connections.
+    /// Turns of requests that integrate flights.
+    integrating: Turns,
+    /// Permits for event streams, fewer than connections.
     streams: Arc<Semaphore>,
-    /// Whether work can be taken, as found lately.
+    /// The cached answer of the readiness check.
     readiness: operations::health::Readiness,
-    /// What is known about requests.
-    metrics: Metrics,
+    /// Counts and durations of requests.
+    metrics: RequestMetrics,
 }
 
-/// What a request may ask for at most.
+/// Limits on requests.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    /// Largest body, bytes.
+pub(crate) struct RequestLimits {
+    /// Maximum size of a body, bytes.
     pub(crate) body_bytes: usize,
-    /// Most targets of a scenario.
+    /// Maximum number of targets of a scenario.
     pub(crate) targets: usize,
-    /// Most streams of events at once.
+    /// Maximum number of event streams at once.
     pub(crate) streams: usize,
 }
 
-/// Bytes of the largest body for each of its values and names. Plans and files of legs have some 15 for
-/// each, so that half of the largest body can be full of them; in memory they take about 24 bytes.
+/// The number of values and names allowed in a body is its maximum size divided by this, bytes.
+/// Plans and files of legs have about 15 bytes per value; in memory a value takes about 24 bytes.
 const BYTES_PER_VALUE: usize = 32;
-/// Values and names that every body may have, however small the largest body is.
+/// Number of values and names that a body may always have.
 const MIN_VALUES: usize = 1 << 16;
 
-impl Limits {
-    /// Most values in a body, those in lists and objects included, and names of members.
+impl RequestLimits {
+    /// Maximum number of values in a body, nested ones included, and names of members.
     pub(crate) fn body_values(self) -> usize {
         (self.body_bytes / BYTES_PER_VALUE).max(MIN_VALUES)
     }
 }
 
 impl App {
-    /// The state of a service: its queue, limits, doors, end, and the pools for solving and for
-    /// looking up.
+    /// The state of a service, with its pools for solving and for look-ups.
     pub(crate) fn new(
         jobs: Jobs,
-        limits: Limits,
+        limits: RequestLimits,
         access: Access,
         shutdown: Shutdown,
         [pool, lookups]: [Arc<SolverPool>; 2],
@@ -106,10 +105,10 @@ impl App {
             pool,
             lookups,
             solving: computing::solving(),
-            flying: computing::flying(),
+            integrating: computing::integrating(),
             streams: Arc::new(Semaphore::new(limits.streams)),
             readiness: operations::health::Readiness::default(),
-            metrics: Metrics::default(),
+            metrics: RequestMetrics::default(),
         }))
     }
 
@@ -121,7 +120,7 @@ impl App {
         self.0.jobs.store()
     }
 
-    fn limits(&self) -> &Limits {
+    fn limits(&self) -> &RequestLimits {
         &self.0.limits
     }
 

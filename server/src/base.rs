@@ -1,4 +1,4 @@
-//! What everything else uses and what uses nothing of it: clock, digests, metrics, keys' scopes, shutdown.
+//! Small tools for all other rooms: clock, digests, metrics, scopes of keys, shutdown.
 
 pub(crate) mod access;
 pub(crate) mod clock;

@@ -1,4 +1,4 @@
-//! The command line: what can be asked for, and with which exit code it ends.
+//! The command line: commands, options and exit codes.
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -38,60 +38,59 @@ pub(crate) use failure::Failure;
     about,
     after_help = "A file name of - means standard input or output."
 )]
-struct Arguments {
+struct CommandLine {
     #[command(subcommand)]
-    command: Command,
+    command: CliCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Find the visiting order and the wheel torques of minimum time
-    Solve(solve::Arguments),
+    Solve(solve::SolveArguments),
     /// Solve one slew, with a choice of objective and command
-    Slew(slew::Arguments),
-    /// Compare what a choice leads to
-    Study(study::Arguments),
+    Slew(slew::SlewArguments),
+    /// Study the effects of options, wheels and gyroscopes
+    Study(study::StudyArguments),
     /// Tabulate the times of the legs between start, targets and end
-    Legs(legs::Arguments),
-    /// Put legs that were solved elsewhere into the database of a service
-    Import(import::Arguments),
-    /// List everything that is wrong or doubtful with a scenario
-    Validate(validate::Arguments),
-    /// Fly a plan made by anyone again and test every limit
-    Verify(verify::Arguments),
+    Legs(legs::LegsArguments),
+    /// Import legs that were solved elsewhere into the database of a service
+    Import(import::ImportArguments),
+    /// List all errors and warnings of a scenario
+    Validate(validate::ValidateArguments),
+    /// Propagate a plan of any origin again and test every limit
+    Verify(verify::VerifyArguments),
     /// Prove the certified bounds of a plan a second time
-    Certify(certify::Arguments),
+    Certify(certify::CertifyArguments),
     /// Write a plan in the format of another tool
-    Export(export::Arguments),
+    Export(export::ExportArguments),
     /// Draw a plan, a slew, trade curves or a study of wheels
-    Plot(plot::Arguments),
+    Plot(plot::PlotArguments),
     /// Run the HTTP service
-    Serve(serve::Arguments),
+    Serve(serve::ServeArguments),
     /// Ask a running service whether it can take work
-    Health(health::Arguments),
+    Health(health::HealthArguments),
     /// Copy the database while the service uses it
-    Backup(backup::Arguments),
+    Backup(backup::BackupArguments),
     /// Make, list and revoke keys for the service
-    Keys(keys::Arguments),
+    Keys(keys::KeysArguments),
     /// Print the description of the HTTP service
     Openapi,
 }
 
-/// How a command ended.
+/// The end of a command, as its exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
     /// The answer is complete: optimal, valid, passed, confirmed.
     Complete,
-    /// An error of ours or of the machine, or no answer found.
+    /// An error of the program or of the machine, or no answer was found.
     Failed,
     /// The input is not valid.
     Invalid,
-    /// No plan can exist, or the plan did not pass or its bounds are not confirmed, or legs are
-    /// refused.
+    /// No plan can exist, a plan did not pass, bounds are not confirmed, or legs are refused.
     Negative,
     /// Stopped with the best answer so far.
     Stopped,
-    /// Ended by a signal before there was an answer.
+    /// Ended by a signal without an answer.
     Signalled(u8),
 }
 
@@ -109,8 +108,9 @@ impl From<Exit> for ExitCode {
 }
 
 /// Runs the program on the arguments of the process.
-pub(crate) fn run() -> ExitCode {
-    let command = Arguments::parse().command;
+#[must_use]
+pub fn run() -> ExitCode {
+    let command = CommandLine::parse().command;
     let exit = match panics::contain(|| dispatch(&command)) {
         Ok(Ok(exit)) => exit,
         Ok(Err(failure)) => {
@@ -125,23 +125,23 @@ pub(crate) fn run() -> ExitCode {
     exit.into()
 }
 
-fn dispatch(command: &Command) -> Result<Exit, Failure> {
+fn dispatch(command: &CliCommand) -> Result<Exit, Failure> {
     match command {
-        Command::Solve(arguments) => solve::run(arguments),
-        Command::Slew(arguments) => slew::run(arguments),
-        Command::Study(arguments) => study::run(arguments),
-        Command::Legs(arguments) => legs::run(arguments),
-        Command::Import(arguments) => import::run(arguments),
-        Command::Validate(arguments) => validate::run(arguments),
-        Command::Verify(arguments) => verify::run(arguments),
-        Command::Certify(arguments) => certify::run(arguments),
-        Command::Export(arguments) => export::run(arguments),
-        Command::Plot(arguments) => plot::run(arguments),
-        Command::Serve(arguments) => serve::run(arguments),
-        Command::Health(arguments) => health::run(arguments),
-        Command::Backup(arguments) => backup::run(arguments),
-        Command::Keys(arguments) => keys::run(arguments),
-        Command::Openapi => openapi::run(),
+        CliCommand::Solve(arguments) => solve::run(arguments),
+        CliCommand::Slew(arguments) => slew::run(arguments),
+        CliCommand::Study(arguments) => study::run(arguments),
+        CliCommand::Legs(arguments) => legs::run(arguments),
+        CliCommand::Import(arguments) => import::run(arguments),
+        CliCommand::Validate(arguments) => validate::run(arguments),
+        CliCommand::Verify(arguments) => verify::run(arguments),
+        CliCommand::Certify(arguments) => certify::run(arguments),
+        CliCommand::Export(arguments) => export::run(arguments),
+        CliCommand::Plot(arguments) => plot::run(arguments),
+        CliCommand::Serve(arguments) => serve::run(arguments),
+        CliCommand::Health(arguments) => health::run(arguments),
+        CliCommand::Backup(arguments) => backup::run(arguments),
+        CliCommand::Keys(arguments) => keys::run(arguments),
+        CliCommand::Openapi => openapi::run(),
     }
 }
 
@@ -152,6 +152,6 @@ mod tests {
 
     #[test]
     fn the_definition_of_the_command_line_is_consistent() {
-        Arguments::command().debug_assert();
+        CommandLine::command().debug_assert();
     }
 }

@@ -1,64 +1,62 @@
-//! The queue at work: one job at a time, in the order of submission, on the solver's own threads.
+//! Execution of queued jobs: one at a time, in the order of submission, on the solver's own threads.
 
 pub(crate) mod leg_cache;
 pub(crate) mod leg_import;
 mod memory;
+mod metrics;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;
 pub(crate) mod slews;
 mod solve;
-mod tally;
 mod worker;
 
-pub(crate) use tally::JobTally;
+pub(crate) use metrics::JobMetrics;
 pub(crate) use worker::Worker;
 
 use crate::base::clock::now_us;
-use crate::jobs::leg_cache::{LegCache, Tally};
+use crate::jobs::leg_cache::LegCache;
 use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 use tokio::sync::{Notify, watch};
 
-/// What the routes and the worker share about jobs.
+/// The state that the API and the worker share.
 #[derive(Debug, Clone)]
-pub(crate) struct Jobs(Arc<Shared>);
+pub(crate) struct Jobs(Arc<SharedJobs>);
 
 #[derive(Debug)]
-struct Shared {
+struct SharedJobs {
     store: Store,
-    /// Counts changes of any job, so that those who wait for one look again.
+    /// Counts changes of any job; waiting requests look again at each change.
     changes: watch::Sender<u64>,
-    /// Something has been queued.
+    /// Notified when a job has been queued.
     queued: Notify,
-    active: Mutex<Option<Active>>,
+    active: Mutex<Option<ActiveJob>>,
     queue: QueueLimits,
     /// Memory of one job, bytes.
     memory: u64,
-    tally: Arc<Tally>,
-    job_tally: JobTally,
+    metrics: Arc<JobMetrics>,
 }
 
 #[derive(Debug)]
-struct Active {
+struct ActiveJob {
     id: String,
     stop: StopSignal,
 }
 
 impl Jobs {
-    /// Jobs of a store, of which at most so many wait, each with so much memory, bytes.
+    /// Jobs of a store with limits on the queue and on the memory of one job, bytes.
     pub(crate) fn new(store: Store, queue: QueueLimits, memory: u64) -> Self {
-        Self(Arc::new(Shared {
+        Self(Arc::new(SharedJobs {
             store,
             changes: watch::Sender::new(0),
             queued: Notify::new(),
             active: Mutex::new(None),
             queue,
             memory,
-            tally: Arc::default(),
-            job_tally: JobTally::default(),
+            metrics: Arc::default(),
         }))
     }
 
@@ -67,22 +65,17 @@ impl Jobs {
         &self.0.store
     }
 
-    /// The remembered legs, for one solve on threads outside of the runtime.
+    /// The leg cache, for one solve on threads outside of the runtime.
     pub(crate) fn legs(&self, runtime: Handle) -> LegCache {
-        LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.tally))
+        LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.metrics))
     }
 
-    /// How often legs were found.
-    pub(crate) fn tally(&self) -> &Tally {
-        &self.0.tally
+    /// Metrics of the jobs of this process.
+    pub(crate) fn metrics(&self) -> &JobMetrics {
+        &self.0.metrics
     }
 
-    /// What is known about the jobs of this process.
-    pub(crate) fn job_tally(&self) -> &JobTally {
-        &self.0.job_tally
-    }
-
-    /// Told of every change of any job.
+    /// A receiver that is notified of every change of any job.
     pub(crate) fn changes(&self) -> watch::Receiver<u64> {
         self.0.changes.subscribe()
     }
@@ -93,7 +86,7 @@ impl Jobs {
             .send_modify(|count| *count = count.wrapping_add(1));
     }
 
-    /// How many jobs may wait.
+    /// Limits on the number of queued jobs.
     pub(crate) fn queue_limits(&self) -> QueueLimits {
         self.0.queue
     }
@@ -116,22 +109,22 @@ impl Jobs {
         Ok(submitted)
     }
 
-    /// Asks a running job for the best plan so far.
+    /// Asks a running job to finish with its best plan so far.
     pub(crate) async fn stop(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
         let job = self.store().request_stop(id, now_us()).await?;
         self.with_active(id, StopSignal::request);
         Ok(job)
     }
 
-    /// Abandons a job. Its core is freed even when the request cannot be recorded.
+    /// Cancels a job. Its threads are freed even when the request cannot be recorded.
     pub(crate) async fn cancel(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
         self.with_active(id, StopSignal::cancel);
         let job = self.store().request_cancel(id, now_us()).await?;
-        // It may have begun in between.
+        // The job may have begun in between.
         self.with_active(id, StopSignal::cancel);
         if job.as_ref().is_some_and(|job| job.finished_us.is_some()) {
-            // A job that waited for another attempt leaves what the last one has solved.
-            tokio::spawn(segments::forget(self.store().clone()));
+            // A job that waited for another attempt leaves the segments of the last one.
+            tokio::spawn(segments::delete_of_ended_jobs(self.store().clone()));
         }
         self.changed();
         Ok(job)
@@ -152,7 +145,7 @@ impl Jobs {
         }
     }
 
-    fn set_active(&self, active: Option<Active>) {
+    fn set_active(&self, active: Option<ActiveJob>) {
         *self.0.active.lock().unwrap_or_else(PoisonError::into_inner) = active;
     }
 }

@@ -1,7 +1,7 @@
-//! The service put together: database, worker, routes, and their end.
+//! The service: start of database, worker and routes, and their shutdown.
 
 use crate::api::connections;
-use crate::api::{self, Access, App, Limits};
+use crate::api::{self, Access, App, RequestLimits};
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::documents::jobs::EventDocument;
 use crate::jobs::leg_cache::upkeep;
@@ -17,49 +17,49 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use uuid::Uuid;
 
-/// How the service shall run.
+/// Settings of the service.
 #[derive(Debug)]
-pub(crate) struct Settings {
+pub(crate) struct ServiceSettings {
     /// Address to listen on.
     pub(crate) listen: SocketAddr,
-    /// The database.
+    /// The path of the database.
     pub(crate) database: PathBuf,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
-    /// Largest body, bytes.
+    /// Maximum size of a request body, bytes.
     pub(crate) max_body_bytes: usize,
-    /// Most targets of a scenario.
+    /// Maximum number of targets of a scenario.
     pub(crate) max_targets: usize,
-    /// How many jobs may wait.
+    /// Limits on the number of queued jobs.
     pub(crate) queue: QueueLimits,
-    /// Memory of one job, bytes.
+    /// Memory limit of one job, bytes.
     pub(crate) job_memory: u64,
-    /// Whether everybody is let in, whatever the address and the keys.
+    /// Whether requests need no key, whatever the address.
     pub(crate) no_keys: bool,
-    /// Time after their end for which jobs are kept; for ever without it.
+    /// Time for which ended jobs are kept; without it they are not deleted.
     pub(crate) retain: Option<Duration>,
-    /// Most legs that are remembered.
+    /// Maximum number of cached legs.
     pub(crate) legs: u64,
-    /// Most connections at once.
+    /// Maximum number of connections.
     pub(crate) connections: usize,
 }
 
-/// By how much the solver's threads stand back behind those for requests.
-const POLITENESS: i32 = 10;
-/// Longest wait for threads at the very end.
-const LAST: Duration = Duration::from_millis(500);
-/// How soon a first key closes a service that was open without one.
-const KEY_WATCH: Duration = Duration::from_millis(500);
-/// Threads for requests: they only wait and move bytes.
+/// Niceness of the solver's threads, so that threads for requests take precedence.
+const SOLVER_NICENESS: i32 = 10;
+/// Longest wait for blocking threads after the shutdown.
+const RUNTIME_SHUTDOWN: Duration = Duration::from_millis(500);
+/// Interval at which a service without keys looks for a first one.
+const KEY_POLL: Duration = Duration::from_millis(500);
+/// Threads for requests, which do no computing.
 const REQUEST_THREADS: usize = 2;
 
-/// What can keep the service from running.
+/// Errors that end the service.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ServiceError {
-    /// The database.
+    /// The path of the database.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// An address for others, and nothing that keeps them out.
+    /// A public address without keys.
     #[error(
         "--listen: {0} can be reached from other machines, and there are no keys; make one with \
          slewplan keys create, or let everybody in with --no-keys"
@@ -68,21 +68,20 @@ pub(crate) enum ServiceError {
     /// The operating system refused threads.
     #[error(transparent)]
     Pool(#[from] PoolError),
-    /// What was acknowledged can no longer be kept.
+    /// A sync of the database failed.
     #[error(
-        "the disk did not keep what was written; start again when it works: nothing that was \
-         acknowledged is lost"
+        "the disk failed to sync a write; restart the service when the disk works: no acknowledged write is lost"
     )]
     Disk,
-    /// No connections are taken any more.
+    /// The listener has ended.
     #[error("internal error: the service has stopped listening; the log has the cause")]
     ListenerStopped,
     /// The operating system.
     #[error("{what}: {source}")]
     System {
-        /// What was tried.
+        /// The operation that failed.
         what: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
@@ -94,18 +93,18 @@ fn system(what: impl Into<String>) -> impl FnOnce(io::Error) -> ServiceError {
     }
 }
 
-/// Serves until a signal ends it. The address is told when requests are taken.
+/// Serves until a signal ends it. Calls `tell` with the address once requests are accepted.
 ///
 /// # Errors
 ///
-/// What kept it from running, or from telling.
+/// What kept it from running, and errors of `tell`.
 pub(crate) fn run<E: From<ServiceError>>(
-    settings: &Settings,
+    settings: &ServiceSettings,
     tell: impl FnOnce(SocketAddr) -> Result<(), E>,
 ) -> Result<(), E> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
     let pools = [
-        SolverPool::prepared(threads, step_back),
+        SolverPool::prepared(threads, lower_priority),
         SolverPool::new(NonZeroUsize::new(1)),
     ];
     let [solver, lookups] = pools.map(|pool| pool.map(Arc::new).map_err(ServiceError::from));
@@ -117,20 +116,20 @@ pub(crate) fn run<E: From<ServiceError>>(
         .map_err(system("cannot start the threads for requests"))?;
     let served = runtime.block_on(serve(settings, pools, tell));
     if served.is_ok() {
-        // What blocks a thread now is not worth waiting for.
-        runtime.shutdown_timeout(LAST);
+        // Threads that still block are left to the end of the process.
+        runtime.shutdown_timeout(RUNTIME_SHUTDOWN);
     } else {
-        // The process ends at once; a worker that was not asked to end must not find its runtime
-        // gone before that.
+        // The process ends at once. The worker, which was not asked to end, still uses the runtime.
         std::mem::forget(runtime);
     }
     served
 }
 
-/// Whether keys are asked for: always once there is one. Without keys only this machine is served.
-async fn access(settings: &Settings, store: &Store) -> Result<Access, ServiceError> {
+/// Whether requests need a key: always once there is one. Without keys only loopback addresses are
+/// served.
+async fn access(settings: &ServiceSettings, store: &Store) -> Result<Access, ServiceError> {
     if settings.no_keys {
-        tracing::warn!("no keys are asked for: whoever reaches the service can do everything");
+        tracing::warn!("no keys are required: everyone who reaches the service has full access");
         return Ok(Access::new(false));
     }
     let keys = store.keys().await?;
@@ -145,30 +144,30 @@ async fn access(settings: &Settings, store: &Store) -> Result<Access, ServiceErr
     Err(ServiceError::NoKeysOnPublicAddress(settings.listen))
 }
 
-/// Asks for keys as soon as there is one.
+/// Requires keys as soon as there is one.
 async fn await_first_key(store: Store, access: Access) {
     while !access.asks_for_keys() {
-        tokio::time::sleep(KEY_WATCH).await;
+        tokio::time::sleep(KEY_POLL).await;
         match store.keys().await {
             Ok(keys) if keys.is_empty() => {}
             Ok(_) => {
                 access.ask_for_keys();
-                tracing::info!("there is a key now: from now on keys are asked for");
+                tracing::info!("a key has been created: requests need keys from now on");
             }
-            Err(error) => tracing::warn!(%error, "keys cannot be looked for"),
+            Err(error) => tracing::warn!(%error, "keys cannot be read"),
         }
     }
 }
 
-/// Lets threads that answer requests go first. On Linux this concerns only the calling thread.
-fn step_back() {
-    if let Err(error) = rustix::process::nice(POLITENESS) {
-        tracing::debug!(%error, "the solver competes with requests");
+/// Lowers the priority of the calling thread (Linux applies niceness per thread).
+fn lower_priority() {
+    if let Err(error) = rustix::process::nice(SOLVER_NICENESS) {
+        tracing::debug!(%error, "the priority of the solver's threads cannot be lowered");
     }
 }
 
 async fn serve<E: From<ServiceError>>(
-    settings: &Settings,
+    settings: &ServiceSettings,
     pools: [Arc<SolverPool>; 2],
     tell: impl FnOnce(SocketAddr) -> Result<(), E>,
 ) -> Result<(), E> {
@@ -193,15 +192,15 @@ async fn serve<E: From<ServiceError>>(
     if let Some(time) = settings.retain {
         tokio::spawn(retention::keep_for(store.clone(), time));
     }
-    tokio::spawn(segments::forget(store.clone()));
+    tokio::spawn(segments::delete_of_ended_jobs(store.clone()));
     tokio::spawn(upkeep::keep_within(store.clone(), settings.legs));
     let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
     let worker = Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id)
         .map_err(system("cannot start the worker"))?;
-    let limits = Limits {
+    let limits = RequestLimits {
         body_bytes: settings.max_body_bytes,
         targets: settings.max_targets,
-        // Who only listens does not keep others from asking.
+        // Event streams take at most half of the connections.
         streams: settings.connections.div_ceil(2),
     };
     let router = api::router(App::new(jobs, limits, access, shutdown.clone(), pools));
@@ -216,10 +215,10 @@ async fn serve<E: From<ServiceError>>(
         () = store.sync_failed() => return Err(ServiceError::Disk.into()),
         _ = &mut serving => return Err(ServiceError::ListenerStopped.into()),
     }
-    // Both at once: streams tell what becomes of the job that they follow.
+    // Both at once: event streams report the release of the job that they follow.
     let finished = async { tokio::join!(worker.drain(), &mut serving) };
     if tokio::time::timeout(GRACE, finished).await.is_err() {
-        tracing::warn!("requests or the running job were cut off; the job runs again");
+        tracing::warn!("requests or the running job did not end in time; the job will run again");
     }
     store.close().await;
     tracing::info!("the service has ended");

@@ -1,8 +1,8 @@
 //! The database: all SQL of the program, and nothing else.
 //!
-//! One connection writes, a few read, one folds the write-ahead log. Every write transaction begins
-//! IMMEDIATE, so that it never finds out at its end that somebody else wrote meanwhile; no
-//! transaction is open while anything is computed or sent.
+//! One connection writes, a few read, one checkpoints the write-ahead log. Every write transaction
+//! begins IMMEDIATE, so that it cannot fail at its commit because of another writer; no transaction
+//! is open while anything is computed or sent.
 
 mod backup;
 mod ends;
@@ -12,6 +12,7 @@ mod jobs;
 mod keys;
 mod leases;
 mod legs;
+mod migrations;
 mod packed;
 mod recent;
 mod results;
@@ -27,18 +28,18 @@ mod writing;
 pub(crate) use backup::backup;
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
-pub(crate) use events::{EventRow, TellJob};
+pub(crate) use events::{EventRow, FormatEvent};
 pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey};
 pub(crate) use leases::Lease;
-pub(crate) use legs::{LegFilter, LegRow, LegTrajectory, NewLeg, key as leg_key};
+pub(crate) use legs::{CachedLegRow, LegFilter, NewLeg, key as leg_key};
 pub(crate) use packed::PackedPlan;
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow};
 pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
-use recent::Recent;
+use recent::RecentPlans;
 use sqlx::Connection as _;
 use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
@@ -48,36 +49,33 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::Notify;
-use wal_checkpoint::Folding;
-use writing::Alarm;
+use wal_checkpoint::WalCheckpoint;
+use writing::SyncAlarm;
 
-/// Embedded when building.
-static MIGRATOR: sqlx::migrate::Migrator = sqlx::migrate!("../migrations");
-
-/// Older versions can corrupt the write-ahead log when a writer and a checkpoint meet.
+/// Older versions can corrupt the write-ahead log when a write and a checkpoint coincide.
 const OLDEST_SQLITE: i32 = 3_051_003;
 const _: () = assert!(
     libsqlite3_sys::SQLITE_VERSION_NUMBER >= OLDEST_SQLITE,
     "the embedded SQLite can corrupt its write-ahead log"
 );
 const READERS: u32 = 4;
-const PATIENCE: Duration = Duration::from_secs(5);
+const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The database of the service.
 #[derive(Debug, Clone)]
 pub(crate) struct Store {
     writer: SqlitePool,
     readers: SqlitePool,
-    folder: SqlitePool,
-    tell: TellJob,
-    alarm: Alarm,
-    /// Told after every commit.
+    checkpointer: SqlitePool,
+    format_event: FormatEvent,
+    alarm: SyncAlarm,
+    /// Notified after every commit.
     written: Arc<Notify>,
-    recent: Recent,
+    recent: RecentPlans,
     path: PathBuf,
 }
 
-/// Keeps other services off the same database while it lives.
+/// Locks the database against other services until it is dropped.
 #[derive(Debug)]
 pub(crate) struct DatabaseLock {
     _file: File,
@@ -88,7 +86,7 @@ impl DatabaseLock {
     ///
     /// # Errors
     ///
-    /// When another process has it, or its file cannot be opened.
+    /// When another process holds it, or its file cannot be opened.
     pub(crate) fn take(database: &Path) -> Result<Self, StoreError> {
         let mut path = database.as_os_str().to_owned();
         path.push(".lock");
@@ -109,65 +107,66 @@ impl DatabaseLock {
 }
 
 impl Store {
-    /// Opens or creates the database and brings its schema up to date; `tell` writes the events of jobs.
+    /// Opens or creates the database and migrates its schema; `format_event` formats the events of jobs.
     ///
     /// # Errors
     ///
-    /// When the file cannot be used, or the embedded SQLite is too old to be trusted.
-    pub(crate) async fn open(path: &Path, tell: TellJob) -> Result<Self, StoreError> {
+    /// When the file cannot be used, or the embedded SQLite is older than [`OLDEST_SQLITE`].
+    pub(crate) async fn open(path: &Path, format_event: FormatEvent) -> Result<Self, StoreError> {
         let options = SqliteConnectOptions::new()
             .filename(path)
             .create_if_missing(true)
             .journal_mode(SqliteJournalMode::Wal)
-            // What was acknowledged survives the loss of power, not only of the process.
+            // Acknowledged writes survive a loss of power, not only the end of the process.
             .synchronous(SqliteSynchronous::Full)
-            .busy_timeout(PATIENCE)
+            .busy_timeout(BUSY_TIMEOUT)
             .foreign_keys(true)
             .pragma("temp_store", "memory")
             .pragma("trusted_schema", "off")
             .pragma("journal_size_limit", "67108864")
-            // Done by `wal_checkpoint`, which does not overlook a failing disk.
+            // `wal_checkpoint` checkpoints and reports failed syncs, which SQLite's own checkpoint
+            // hides.
             .pragma("wal_autocheckpoint", "0");
         let writer = SqlitePoolOptions::new()
             .max_connections(1)
-            .acquire_timeout(PATIENCE)
-            // A failed COMMIT can leave a connection inside a transaction that nobody owns.
+            .acquire_timeout(BUSY_TIMEOUT)
+            // A failed COMMIT can leave a connection inside a transaction that no code will end.
             .before_acquire(|connection, _| {
                 Box::pin(async move { Ok(!connection.is_in_transaction()) })
             })
             .connect_with(options.clone())
             .await?;
         check_version(&writer).await?;
-        MIGRATOR.run(&writer).await?;
-        let wal_checkpoint = Folding::new(options.clone(), writer.clone());
-        let folder = wal_checkpoint.own();
+        migrations::migrator().run(&writer).await?;
+        let wal_checkpoint = WalCheckpoint::new(options.clone(), writer.clone());
+        let checkpointer = wal_checkpoint.own();
         let readers = SqlitePoolOptions::new()
             .max_connections(READERS)
-            .acquire_timeout(PATIENCE)
+            .acquire_timeout(BUSY_TIMEOUT)
             .connect_with(options.read_only(true).create_if_missing(false))
             .await?;
-        let (alarm, written) = (Alarm::default(), Arc::default());
+        let (alarm, written) = (SyncAlarm::default(), Arc::default());
         tokio::spawn(wal_checkpoint.keep_small(alarm.clone(), Arc::clone(&written)));
         Ok(Self {
             writer,
             readers,
-            folder,
-            tell,
+            checkpointer,
+            format_event,
             alarm,
             written,
-            recent: Recent::default(),
+            recent: RecentPlans::default(),
             path: path.to_owned(),
         })
     }
 
-    /// Closes all connections, which folds the write-ahead log into the database.
+    /// Closes all connections, which checkpoints the write-ahead log.
     pub(crate) async fn close(&self) {
         self.readers.close().await;
-        self.folder.close().await;
+        self.checkpointer.close().await;
         self.writer.close().await;
     }
 
-    /// Sizes of the database and of its write-ahead log, bytes; 0 for what is not there.
+    /// Sizes of the database and of its write-ahead log, bytes; 0 for a file that does not exist.
     pub(crate) fn sizes(&self) -> [(&'static str, u64); 2] {
         let mut log = self.path.as_os_str().to_owned();
         log.push("-wal");
@@ -178,7 +177,7 @@ impl Store {
         ]
     }
 
-    /// Really writes, to find out whether that is possible.
+    /// Commits a write, which proves that the database is writable.
     pub(crate) async fn check_writable(&self, now_us: i64) -> Result<(), StoreError> {
         let mut transaction = self.begin().await?;
         sqlx::query(

@@ -1,4 +1,4 @@
-//! Durations that no slew undercuts, proved, and the same proved a second time.
+//! Certified lower bounds on the durations of slews, and their verification in interval arithmetic.
 
 pub(crate) mod certified;
 pub mod certify;

@@ -1,12 +1,12 @@
 //! Independent verification: re-integrates a flight and tests every limit and boundary.
 //!
-//! Nothing is believed until this has flown it. The module shares no code with the optimiser and
-//! repeats, on purpose, the dynamics with the full state: quaternion, body rate and all wheel
-//! speeds. It looks between steps as well as at them, because a step of its integrator is a
-//! polynomial whose extrema can be found.
+//! No plan is given out that this module has not verified. It shares no code with the optimiser, and on
+//! purpose implements the dynamics again, with the full state: quaternion, body rate and all wheel
+//! speeds. Limits are tested between integration steps too: a step is a polynomial, whose extrema can
+//! be found.
 //!
-//! A flight may come from anyone. Whatever is wrong with it ends in
-//! [`Verification::failures`] as sentences, never in a panic.
+//! A flight may be of any origin. Everything wrong with it is reported as a sentence in
+//! [`Verification::failures`], never by a panic.
 
 mod dynamics;
 mod extremum;
@@ -24,18 +24,18 @@ mod timeline;
 mod visits;
 
 pub use keep_out::Intrusion;
-pub(crate) use leg::{Arrival, leg_faults};
+pub(crate) use leg::{LegEnd, leg_faults};
 pub use propagated::PropagatedMotion;
-pub(crate) use ramped::{Moment, Ramp, propagate_ramps};
+pub(crate) use ramped::{StepPart, TorqueRamp, propagate_ramps};
 
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Flight, Margins, State, Verification};
 use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 use dynamics::{Body, Snapshot};
-use integrator::{Interval, Propagation, STEP_TOLERANCE};
-use keep_out::Watch;
-use limits::{Limits, excess, margin};
+use integrator::{Integration, STEP_TOLERANCE, TorqueSpan};
+use keep_out::ConeObserver;
+use limits::{LimitObserver, excess, margin};
 use samples::Sampler;
 use visits::{Misses, Visit};
 
@@ -47,67 +47,69 @@ pub const ATTITUDE_TOLERANCE: f64 = 1e-6;
 /// spacecraft by no more than the attitude tolerance.
 pub const RATE_TOLERANCE: f64 = 1e-7;
 
-/// Largest excess over a limit, relative to the limit: what optimisers leave as rounding.
+/// Largest excess over a limit, relative to the limit: of the order of an optimiser's rounding.
 pub const LIMIT_TOLERANCE: f64 = 1e-6;
 
 /// Largest error of a prescribed final wheel speed, relative to the wheel's speed limit or,
 /// without one, to the fastest wheel.
 pub const END_SPEED_TOLERANCE: f64 = 1e-6;
 
-/// Largest disagreement of times, relative to the flight: text with ten digits passes.
+/// Largest difference of times, relative to the duration of the flight: times written with ten digits
+/// pass.
 pub const TIME_TOLERANCE: f64 = 1e-9;
 
-/// Torque during settle and dwell, relative to the wheel's limit, that still counts as none.
+/// Largest torque during settle and dwell, relative to the wheel's limit, that counts as zero.
 pub const REST_TORQUE_TOLERANCE: f64 = 1e-9;
 
-/// Largest relative change of the conserved momentum before the integration itself is doubted.
+/// Largest relative change of the conserved momentum; beyond it the integration itself has failed.
 pub const MOMENTUM_TOLERANCE: f64 = 1e-10;
 
-/// Stands for a figure that could not be computed, with its sign turned for margins: so large
-/// that it passes no test, and finite, so that it can be written anywhere.
+/// Value of a number that could not be computed, negative for margins: so large that it passes no
+/// test, and finite, so that every format can hold it.
 pub const NOT_COMPUTED: f64 = f64::MAX;
 
-/// Distance of a passage from a control boundary, relative to the flight, that is rounding.
+/// Distance of a passage from a control boundary, relative to the duration of the flight, that counts
+/// as rounding.
 const SNAP: f64 = 1e-12;
 
-/// What the re-integration of a flight found.
+/// The result of a flight's re-integration.
 ///
-/// A flight that cannot be flown at all (controls that do not fit the wheels or leave gaps,
-/// numbers that are not finite) or that breaks off has [`NOT_COMPUTED`] in every figure that rests
-/// on the motion.
+/// Where a flight cannot be propagated (controls that do not fit the wheels or leave gaps, numbers that
+/// are not finite, an integration that breaks off), every number that depends on the motion is
+/// [`NOT_COMPUTED`].
 #[derive(Debug, Clone)]
-pub struct Report {
+pub struct CheckReport {
     /// Errors against the tolerances.
     pub verification: Verification,
-    /// What is left of every limit. Unlike the excesses these refer to the limits of the hardware,
-    /// not to the shares of them that the options leave to the plan.
+    /// Margins to every limit. Unlike the excesses these refer to the limits of the hardware, not to
+    /// the shares of them that the options allow the plan to use.
     pub margins: Margins,
     /// States in order of time, strictly increasing: at every control boundary, every arrival and
     /// departure, and evenly in between so that no gap exceeds a 500th of the flight or a 20th of
-    /// a slew. The sign of the quaternion is continuous from the start's.
+    /// a leg. The sign of the quaternion is continuous from the start's.
     pub states: Vec<State>,
     /// Keep-out violations, with time and depth: one warning per cone.
     pub keep_out: Vec<Problem>,
-    /// The same violations one by one, in order of cone and time.
+    /// The same violations, each with its times, in order of cone and time.
     pub intrusions: Vec<Intrusion>,
     /// Largest relative error of a prescribed final wheel speed; `None` when none is prescribed.
     pub end_wheel_speed_error: Option<f64>,
-    /// Largest change of the total momentum in the reference frame relative to its parts, as a
-    /// measure of the integration.
+    /// Largest change of the total momentum in the reference frame relative to its parts: a measure of
+    /// the integration error.
     pub momentum_drift: f64,
     /// Steps of the integration.
     pub steps: usize,
 }
 
-/// Re-integrates a flight made by anyone from the scenario's start and tests it.
+/// Re-integrates a flight of any origin from the scenario's start and tests it.
 #[must_use]
-pub fn verify(scenario: &Scenario, flight: &Flight) -> Report {
+pub fn verify(scenario: &Scenario, flight: &Flight) -> CheckReport {
     let spacecraft = scenario.spacecraft();
     let intervals = match timeline::intervals(flight, spacecraft.wheels()) {
         Ok(intervals) => intervals,
         Err(mut failures) => {
             failures.extend(visits::book(scenario, flight, &[]).1);
-            return Report::not_flown(scenario, failures);
+            return CheckReport::not_propagated(scenario, failures);
         }
     };
     let (visits, mut failures) = visits::book(scenario, flight, &intervals);
@@ -115,61 +117,61 @@ pub fn verify(scenario: &Scenario, flight: &Flight) -> Report {
         Ok(body) => body,
         Err(sentence) => {
             failures.push(sentence);
-            return Report::not_flown(scenario, failures);
+            return CheckReport::not_propagated(scenario, failures);
         }
     };
     let (torque_usage, torque_failures) = limits::torque(scenario, flight);
     failures.extend(torque_failures);
     failures.extend(visits::driven_rests(scenario, &visits, &intervals));
-    let mut observed = Observed::new(scenario);
-    match observed.fly(&body, &intervals, &visits, flight.total_time_s) {
-        Ok(flown) => {
+    let mut observed = FlightObserver::new(scenario);
+    match observed.integrate(&body, &intervals, &visits, flight.total_time_s) {
+        Ok(integration) => {
             let misses = visits::inspect(scenario, &visits, &observed.states);
             failures.extend(misses.failures.iter().cloned());
-            observed.report(scenario, (torque_usage, flown, &misses), failures)
+            observed.report(scenario, torque_usage, integration, &misses, failures)
         }
         Err(sentence) => {
             failures.push(sentence);
-            let mut report = Report::not_flown(scenario, failures);
+            let mut report = CheckReport::not_propagated(scenario, failures);
             report.states = observed.states.iter().filter_map(state).collect();
             report
         }
     }
 }
 
-/// Everything that watches the flight.
-struct Observed<'a> {
+/// The observers of an integration.
+struct FlightObserver<'a> {
     start: Snapshot,
     states: Vec<Snapshot>,
-    limits: Limits<'a>,
-    watches: Vec<Watch<'a>>,
+    limits: LimitObserver<'a>,
+    observers: Vec<ConeObserver<'a>>,
 }
 
-impl<'a> Observed<'a> {
+impl<'a> FlightObserver<'a> {
     fn new(scenario: &'a Scenario) -> Self {
         let start = Snapshot::at_start(scenario);
-        let watches = scenario.keep_out().iter().enumerate();
+        let observers = scenario.keep_out().iter().enumerate();
         Self {
-            watches: watches
-                .map(|(index, cone)| Watch::new(index, cone, &start.quaternion))
+            observers: observers
+                .map(|(index, cone)| ConeObserver::new(index, cone, &start.quaternion))
                 .collect(),
-            limits: Limits::new(scenario),
+            limits: LimitObserver::new(scenario),
             states: Vec::new(),
             start,
         }
     }
 
-    fn fly(
+    fn integrate(
         &mut self,
         body: &Body,
-        intervals: &[Interval<'_>],
+        intervals: &[TorqueSpan<'_>],
         visits: &[Visit<'_>],
         total_s: f64,
-    ) -> Result<Propagation, String> {
+    ) -> Result<Integration, String> {
         let times = samples::times(intervals, visits, total_s);
         let mut sampler = Sampler::new(&times, &self.start);
-        let (limits, watches) = (&mut self.limits, &mut self.watches);
-        let flown = integrator::fly(
+        let (limits, observers) = (&mut self.limits, &mut self.observers);
+        let integration = integrator::integrate(
             body,
             self.start.clone(),
             intervals,
@@ -177,36 +179,42 @@ impl<'a> Observed<'a> {
             |step| {
                 sampler.observe(step);
                 limits.observe(step);
-                for watch in watches.iter_mut() {
-                    watch.observe(step);
+                for observer in observers.iter_mut() {
+                    observer.observe(step);
                 }
             },
         );
         self.states = sampler.states;
-        flown
+        integration
     }
 
     fn report(
         mut self,
         scenario: &Scenario,
-        (torque_usage, flown, misses): (f64, Propagation, &Misses),
+        torque_usage: f64,
+        integration: Integration,
+        misses: &Misses,
         mut failures: Vec<String>,
-    ) -> Report {
+    ) -> CheckReport {
         failures.extend(self.limits.failures());
-        if flown.momentum_drift > MOMENTUM_TOLERANCE {
+        if integration.momentum_drift > MOMENTUM_TOLERANCE {
             failures.push(format!(
-                "the integration lost momentum ({} of it), so that nothing it found counts",
-                number_format::figure(flown.momentum_drift)
+                "the integration lost momentum ({} of it), so that its results are invalid",
+                number_format::figure(integration.momentum_drift)
             ));
         }
         let options = scenario.options();
         let (wheel_usage, rate_usage) = (self.limits.wheel_usage(), self.limits.rate_usage());
-        let keep_out: Vec<Problem> = self.watches.iter_mut().filter_map(Watch::finish).collect();
+        let keep_out: Vec<Problem> = self
+            .observers
+            .iter_mut()
+            .filter_map(ConeObserver::finish)
+            .collect();
         let clearances = self
-            .watches
+            .observers
             .iter()
-            .map(|watch| watch.clearance.to_degrees());
-        Report {
+            .map(|observer| observer.clearance.to_degrees());
+        CheckReport {
             margins: Margins {
                 torque: margin(torque_usage, options.torque_authority),
                 wheel_speed: wheel_usage.map(|usage| margin(usage, options.momentum_authority)),
@@ -227,20 +235,20 @@ impl<'a> Observed<'a> {
             states: self.states.iter().filter_map(state).collect(),
             keep_out,
             intrusions: self
-                .watches
+                .observers
                 .into_iter()
                 .flat_map(|w| w.intrusions)
                 .collect(),
             end_wheel_speed_error: misses.end_speed,
-            momentum_drift: flown.momentum_drift,
-            steps: flown.steps,
+            momentum_drift: integration.momentum_drift,
+            steps: integration.steps,
         }
     }
 }
 
-impl Report {
-    /// The report of a flight without a motion to judge: the worst of every figure.
-    fn not_flown(scenario: &Scenario, failures: Vec<String>) -> Self {
+impl CheckReport {
+    /// The report of a flight that cannot be propagated: the worst value of every number.
+    fn not_propagated(scenario: &Scenario, failures: Vec<String>) -> Self {
         Self {
             verification: Verification {
                 passed: false,

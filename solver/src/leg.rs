@@ -1,4 +1,5 @@
-//! The minimum-time slew between two waypoints, and through several of them in a given order.
+//! Minimum-time legs: the program between two waypoints, and the one through several of them in a
+//! given order.
 
 pub(crate) mod kinematics;
 pub(crate) mod multiphase;

@@ -3,9 +3,9 @@
 //! # The problem
 //!
 //! A rigid spacecraft with reaction wheels starts from a known state and has to pass through a set
-//! of attitudes `q_1 .. q_n` in an order of its own choice, at each of them with certain body-rate
-//! components zero, bounded or free, and to end in a given attitude and rate. Wanted is the order
-//! with the wheel torques that take the least time:
+//! of attitudes `q_1 .. q_n` in any order, at each of them with certain body-rate components zero,
+//! bounded or free, and to end in a given attitude and rate. Sought are the order and the wheel
+//! torques of minimum time:
 //!
 //! ```text
 //!   minimise   T
@@ -17,13 +17,14 @@
 //! with `h` the wheels' momenta about their axes (the columns of `A`) and `H` the total momentum,
 //! constant in the reference frame: the body rate follows from attitude and wheels.
 //!
-//! # The way
+//! # The method
 //!
-//! [`scenario::Scenario::try_new`] turns a description into a scenario that is valid by
-//! construction, or lists all that is wrong. [`planner::solve`] then solves the tables of leg
+//! [`model::scenario::Scenario::try_new`] turns a description into a scenario that is valid by
+//! construction, or lists all problems. [`tour::planner::solve`] then solves the tables of leg
 //! times, searches the order by branch and bound with multi-phase nonlinear programs as nodes and
 //! leaves, and hands the winner to [`checker::verify`], which integrates the full dynamics again
-//! with code of its own. The mathematics, the symbols and the module map are in `solver/README.md`.
+//! with code of its own. The mathematics and the symbols are in `solver/docs/mathematics.md`, the map of
+//! the modules and a glossary in `ARCHITECTURE.md`, further programs in `solver/examples`.
 //!
 //! # Example
 //!

@@ -1,4 +1,4 @@
-//! Mathematics that knows no spacecraft.
+//! Mathematics without spacecraft: quaternions, convex programs, cones, random numbers.
 
 pub mod bang_coast_bang;
 pub(crate) mod cone;

@@ -1,10 +1,12 @@
-//! What is given and what is answered: spacecraft, scenario, dynamics, plan, and what can be wrong with them.
+//! Inputs and answers: spacecraft, scenario, dynamics, plan, and the problems that an input can
+//! have.
 
 pub mod attitude;
 pub mod drive;
 pub(crate) mod dynamics;
 pub mod findings;
 pub mod input;
+pub mod motion;
 pub mod order_rules;
 pub mod plan;
 pub mod problem;

@@ -27,21 +27,33 @@
 //!
 //! The method is the primal-dual barrier method with a filter line search of Waechter and Biegler
 //! (Math. Program. 106, 2006), with exact second derivatives and second-order corrections.
-//! Differences: a system that is convex but too flat for its step is regularised in the next
-//! iteration, which shortens steps in directions that hardly matter; node equalities enter
-//! the sweep as a proximal penalty whose centre is iterated to the exact multiplier, which keeps
-//! the factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
+//! Differences: where a convex system is so flat that its step had to be shortened a lot, the next
+//! one is regularised, which shortens steps in flat directions; node equalities enter the sweep as
+//! a proximal penalty whose centre is iterated to the exact multiplier, which keeps the
+//! factorisation a plain Cholesky; restoration takes least-squares steps on the same structure.
+//!
+//! | role | type |
+//! |---|---|
+//! | the problem, as its author writes it | [`Chain`] |
+//! | the point, and where its blocks lie | [`Iterate`], [`Layout`] |
+//! | models of the links at the point, barrier parameter | [`barrier`] |
+//! | how far the point is from the optimality conditions | [`convergence`] |
+//! | the step | [`newton`], [`riccati`], [`regularisation`] |
+//! | how far along the step | [`trial`], [`merit`], [`filter`], [`line_search`] |
+//! | when no part of a step is accepted | [`restoration`] |
+//! | the loop | [`InteriorPoint`] |
 
+mod barrier;
 mod breakdown;
-pub(crate) mod chain;
+mod chain;
 mod convergence;
 mod dense;
 mod filter;
 mod interior_point;
+mod interruption;
 mod iterate;
 mod line_search;
 mod merit;
-mod model;
 mod newton;
 mod regularisation;
 mod restoration;
@@ -50,15 +62,16 @@ mod riccati;
 #[cfg(test)]
 pub(crate) mod second_engine;
 mod settings;
+mod status;
 #[cfg(test)]
 pub(crate) mod tests;
+mod trial;
 
-pub(crate) use chain::{Chain, Link, LinkMultipliers};
+#[cfg(test)]
+pub(crate) use chain::models_of;
+pub(crate) use chain::{Chain, Link, LinkModel, LinkMultipliers, LinkValues, values_of};
 pub(crate) use interior_point::InteriorPoint;
 pub(crate) use iterate::{Iterate, Layout};
-#[cfg(test)]
-pub(crate) use model::models_of;
-pub(crate) use model::values_of;
-pub(crate) use model::{LinkModel, LinkValues};
 pub(crate) use riccati::{MAX_CONTROLS, MAX_STATES};
-pub(crate) use settings::{Breakdown, Interruption, NlpReport, NlpStatus, Quantity, Settings};
+pub(crate) use settings::Settings;
+pub(crate) use status::{Breakdown, NlpReport, NlpStatus, Quantity};

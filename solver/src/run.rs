@@ -1,4 +1,4 @@
-//! What accompanies a solve: threads, the signal to stop, the observer.
+//! The environment of a solve: threads, stop signal, observer.
 
 pub mod contradiction;
 pub mod pool;

@@ -1,4 +1,4 @@
-//! From a scenario to a verified plan: legs, their order, the whole flight.
+//! From a scenario to a verified plan: solved legs, the order of the targets, the whole flight.
 
 pub mod legs;
 pub mod order;

@@ -1,4 +1,4 @@
-//! What several wheels can do together.
+//! Arrays of wheels: envelopes of torque and momentum, allocation of demands, momentum checks.
 
 pub mod allocation;
 pub mod array;

@@ -3,7 +3,7 @@
 use crate::run::{Ended, fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
 
-/// A scenario in a file of its own, and its plan.
+/// A scenario in a file, and its plan.
 struct Solved {
     folder: tempfile::TempDir,
     plan: Value,
@@ -94,7 +94,7 @@ fn a_bound_that_is_too_large_is_rejected_with_the_reason() {
         (
             leg,
             solved.number(leg) * 1.001,
-            "is the bound that is known",
+            "the solver's own bound for such slews",
         ),
         (leg, duration * 1.001, "the plan itself takes"),
         (tour, solved.number(tour) * 1.001, "bounds of 42 of 42 legs"),
@@ -123,7 +123,7 @@ fn a_bound_that_is_too_large_is_rejected_with_the_reason() {
 }
 
 #[test]
-fn a_bound_that_is_called_certified_is_a_claim_too() {
+fn a_lower_bound_of_the_kind_certified_is_checked_too() {
     let solved = Solved::of(&all_axes());
     let mut plan = solved.with("/lower_bound_kind", json!("certified"));
     plan["certified_lower_bound_s"] = Value::Null;
@@ -136,9 +136,9 @@ fn a_bound_that_is_called_certified_is_a_claim_too() {
 }
 
 #[test]
-fn a_bound_of_another_leg_is_no_bound_of_this_one() {
+fn the_bound_of_another_leg_is_rejected() {
     let solved = Solved::of(&fixture_json("olivares-a.json"));
-    // Of all legs the one between the start and the first target is the shortest.
+    // The leg from the start to the first target is the shortest.
     let mut plan = solved.with("/legs/6/from", solved.plan["sequence"][0].clone());
     plan["legs"][1]["to"] = json!("start");
     let found = solved.certify(&plan, &[]).expect_code(3).json();
@@ -150,7 +150,7 @@ fn a_bound_of_another_leg_is_no_bound_of_this_one() {
 }
 
 #[test]
-fn where_nothing_is_claimed_nothing_is_confirmed() {
+fn plans_without_certified_bounds_are_not_confirmed() {
     let solved = Solved::of(&fixture_json("two-targets.json"));
     let mut plan = solved.with("/legs/0/certified_lower_bound_s", Value::Null);
     let found = solved.certify(&plan, &[]).expect_code(0).json();
@@ -174,13 +174,13 @@ fn bounds_with_stored_momentum_are_not_checked() {
     assert!(told.contains("momentum"), "{told}");
     let summary = solved.certify(&solved.plan, &["--summary"]).expect_code(3);
     assert!(
-        summary.stdout.starts_with("NOT CONFIRMED: 0 of 5 claims"),
+        summary.stdout.starts_with("NOT CONFIRMED: 0 of 5 bounds"),
         "{summary:?}"
     );
 }
 
 #[test]
-fn claims_that_cannot_be_read_are_refused_with_pointers() {
+fn malformed_bounds_are_refused_with_pointers() {
     let leg = |from: Value, bound: Value| {
         let leg = json!({"from": from, "to": "a", "certified_lower_bound_s": bound});
         json!({"legs": [leg]})

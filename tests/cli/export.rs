@@ -4,22 +4,22 @@ use crate::run::{Ended, fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::json;
 
 /// The plan of a fixture and its export.
-fn exported(name: &str, choices: &[&str]) -> Ended {
+fn exported(name: &str, options: &[&str]) -> Ended {
     let scenario = fixture(name);
     let plan = slewplan(&["solve", &scenario]).expect_code(0).stdout;
     let mut line = vec!["export", &scenario, "-"];
-    line.extend(choices);
+    line.extend(options);
     slewplan_fed(&line, plan.as_bytes())
 }
 
-/// What does not depend on the moment.
+/// The lines without the creation date.
 fn without_date(text: &str) -> String {
     let is_date = |line: &&str| line.contains("CREATION_DATE");
     text.lines().filter(|line| !is_date(line)).collect()
 }
 
 #[test]
-fn every_format_is_the_same_from_a_plan_as_from_a_solve() {
+fn export_and_solve_write_the_same_files() {
     let scenario = fixture("quarter-turn.json");
     for (format, begin) in [
         ("csv", "time_s,q_x,"),
@@ -71,7 +71,7 @@ fn a_plan_that_does_not_pass_is_not_exported() {
 }
 
 #[test]
-fn choices_are_checked_against_the_format() {
+fn options_are_checked_against_the_format() {
     for choices in [
         &["--format", "csv", "--wheel", "0"][..],
         &["--format", "wheel-rpm", "--wheel", "7"],
@@ -94,11 +94,11 @@ fn choices_are_checked_against_the_format() {
 }
 
 #[test]
-fn what_cannot_be_written_is_refused_before_the_solve() {
+fn labels_that_cannot_be_written_are_refused_before_the_solve() {
     let refused = |label: (&str, &str), choices: &[&str]| {
         let mut scenario = fixture_json("two-targets.json");
         scenario[label.0] = json!(label.1);
-        // A solve would fail within this time.
+        // A solve would fail with this time limit.
         let line = ["solve", "-", "--time-limit", "1e-6", "--format"];
         let line = [&line, choices].concat();
         let ended = slewplan_fed(&line, scenario.to_string().as_bytes()).expect_code(2);
@@ -127,7 +127,7 @@ fn what_cannot_be_written_is_refused_before_the_solve() {
 }
 
 #[test]
-fn wheel_commands_have_the_period_that_was_asked_for() {
+fn wheel_commands_have_the_requested_period() {
     let choices = ["--format", "wheel-rpm", "--step", "0.5", "--wheel", "2"];
     let text = exported("quarter-turn.json", &choices)
         .expect_code(0)

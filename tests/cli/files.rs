@@ -1,4 +1,4 @@
-//! Output files: complete or not at all.
+//! Output files appear complete or not at all.
 
 use crate::run::{fixture, names_in, slewplan, slewplan_fed};
 use serde_json::Value;
@@ -6,7 +6,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 
 #[test]
-fn a_plan_replaces_its_predecessor_and_leaves_nothing_beside_it() {
+fn a_plan_replaces_the_file_and_leaves_no_temporary_one() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("plan.json");
     fs::write(&path, "old").expect("written");
@@ -22,7 +22,7 @@ fn a_plan_replaces_its_predecessor_and_leaves_nothing_beside_it() {
 }
 
 #[test]
-fn a_new_file_is_as_readable_as_any_other() {
+fn a_new_file_has_the_permissions_of_the_umask() {
     let folder = tempfile::tempdir().expect("a folder");
     let (plan, other) = (folder.path().join("plan.json"), folder.path().join("other"));
     fs::write(&other, "").expect("written");
@@ -33,7 +33,7 @@ fn a_new_file_is_as_readable_as_any_other() {
 }
 
 #[test]
-fn a_refused_scenario_leaves_the_old_file_alone() {
+fn a_refused_scenario_does_not_touch_the_old_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("plan.json");
     fs::write(&path, "old").expect("written");
@@ -44,7 +44,7 @@ fn a_refused_scenario_leaves_the_old_file_alone() {
 }
 
 #[test]
-fn an_output_that_cannot_be_written_is_told_in_one_line() {
+fn an_unwritable_output_is_an_error_of_one_line() {
     let folder = tempfile::tempdir().expect("a folder");
     for path in [
         folder.path().join("none/plan.json"),

@@ -1,4 +1,4 @@
-//! Spacecraft as people fly them, with rate limits and momentum in their wheels: `fixtures/gallery`.
+//! Realistic spacecraft with rate limits and stored momentum: `fixtures/gallery`.
 
 use crate::run::{fixture, fixture_json, names_in, slewplan, slewplan_fed};
 use serde_json::{Value, json};
@@ -18,7 +18,7 @@ fn number(value: &Value, place: &str) -> f64 {
 }
 
 #[test]
-fn every_tour_is_planned_and_flies() {
+fn every_tour_is_planned_and_verified() {
     for name in gallery() {
         let plan = slewplan(&["solve", &fixture(&name)]).expect_code(0).json();
         assert_eq!(plan["status"], "optimal", "{name}");

@@ -10,7 +10,7 @@ fn file(scenario: &str, kind: &str) -> Value {
     slewplan(&arguments).expect_code(0).json()
 }
 
-/// Imports a file into a database: exit code and what became of the legs.
+/// Imports a file into a database, expecting an exit code; the answer.
 fn import(file: &Value, database: &Path, code: i32) -> Value {
     let database = database.to_str().expect("UTF-8");
     let arguments = ["import", "-", "--database", database];
@@ -20,7 +20,7 @@ fn import(file: &Value, database: &Path, code: i32) -> Value {
 }
 
 #[test]
-fn a_plan_takes_imported_legs_from_the_cache_and_is_the_same() {
+fn a_plan_with_imported_legs_is_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     let scenario = fixture("two-targets.json");
     let solve = |database: &Path| {
@@ -37,7 +37,7 @@ fn a_plan_takes_imported_legs_from_the_cache_and_is_the_same() {
         let legs = file["trajectories"].as_array().expect("a list").len();
         let found = import(&file, &database, 0);
         let expected = [&found["imported"], &found["known"]].map(|n| n.as_u64().expect("a count"));
-        // The kinds share the legs between targets that demand rest.
+        // Legs between targets at rest are the same for both kinds.
         assert_eq!(expected[0] + expected[1], legs as u64, "{found}");
         assert_eq!(found["refused"], json!([]));
         imported += expected[0];
@@ -57,14 +57,15 @@ fn a_plan_takes_imported_legs_from_the_cache_and_is_the_same() {
 }
 
 #[test]
-fn legs_that_do_not_fly_are_listed_and_left_out() {
+fn legs_that_fail_the_check_are_listed_and_left_out() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("legs.db");
     let mut file = file(&fixture("two-targets.json"), "rest_to_rest");
     let motions = file["trajectories"].as_array_mut().expect("a list");
     let count = motions.len();
     assert!(count >= 3);
-    // One misses its end, another is no leg of the scenario; a leg that stays cannot miss.
+    // One misses its end, another is not a leg of the scenario. Legs without rotation cannot miss
+    // their end.
     let duration = |motion: &Value| -> f64 {
         let lengths = motion["lengths_s"].as_array().expect("a list");
         lengths.iter().filter_map(Value::as_f64).sum()
@@ -97,7 +98,7 @@ fn legs_that_do_not_fly_are_listed_and_left_out() {
 }
 
 #[test]
-fn files_that_cannot_be_imported_are_refused_with_everything_that_is_wrong() {
+fn files_that_cannot_be_imported_are_refused_with_all_problems() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("legs.db");
     let database = database.to_str().expect("UTF-8");

@@ -1,4 +1,4 @@
-//! Input of every bad kind: all problems at once, with pointer, code and hint, exit code 2.
+//! Invalid inputs: all problems at once, with pointer, code and hint, and exit code 2.
 
 use crate::refusals::expect_refused;
 use crate::run::{fixture_json, slewplan, slewplan_fed};
@@ -43,7 +43,7 @@ fn with_text(number: &str, replacement: &str) -> Vec<u8> {
 }
 
 #[test]
-fn documents_that_are_not_json() {
+fn documents_that_are_not_json_are_refused() {
     let nested = "[".repeat(100_000);
     for text in [
         "",
@@ -73,7 +73,7 @@ fn malformed_json_names_line_and_column() {
 }
 
 #[test]
-fn numbers_that_json_does_not_have() {
+fn numbers_that_json_does_not_have_are_refused() {
     for number in [
         "NaN",
         "Infinity",
@@ -88,7 +88,7 @@ fn numbers_that_json_does_not_have() {
 }
 
 #[test]
-fn documents_of_another_kind() {
+fn documents_of_another_kind_are_refused() {
     for text in ["[]", "null", "3", "\"text\""] {
         expect_refused(text.as_bytes(), &[("", "wrong_type")]);
     }
@@ -103,7 +103,7 @@ fn documents_of_another_kind() {
 }
 
 #[test]
-fn text_where_a_number_belongs() {
+fn text_in_place_of_a_number_is_refused() {
     let place = "/spacecraft/inertia_kg_m2/0/0";
     expect_refused(&with(&[(place, json!("NaN"))]), &[(place, "wrong_type")]);
     let place = "/targets/0/attitude/roll_pitch_yaw_deg/2";
@@ -111,7 +111,7 @@ fn text_where_a_number_belongs() {
 }
 
 #[test]
-fn missing_fields() {
+fn missing_fields_are_named() {
     for place in [
         "/spacecraft",
         "/spacecraft/inertia_kg_m2",
@@ -129,7 +129,7 @@ fn missing_fields() {
 }
 
 #[test]
-fn missing_wheel_fields() {
+fn missing_wheel_fields_are_named() {
     for name in ["axis", "inertia_kg_m2", "max_torque_nm"] {
         let place = format!("/spacecraft/wheels/1/{name}");
         expect_refused(&without(&place), &[(&place, "missing_field")]);
@@ -137,7 +137,7 @@ fn missing_wheel_fields() {
 }
 
 #[test]
-fn unknown_fields_come_with_a_proposal() {
+fn unknown_fields_have_a_suggestion() {
     let scenario = with(&[("/spacecraft/wheels/0/max_sped_rad_s", json!(1.0))]);
     expect_refused(
         &scenario,
@@ -155,14 +155,14 @@ fn pointers_of_unknown_fields_are_escaped() {
 }
 
 #[test]
-fn the_same_key_twice() {
+fn duplicate_keys_are_refused() {
     let scenario = fixture_json("two-targets.json").to_string();
     let scenario = scenario.replacen('{', r#"{"name": "first", "#, 1);
     expect_refused(scenario.as_bytes(), &[("/name", "duplicate_field")]);
 }
 
 #[test]
-fn choices_and_lengths() {
+fn unknown_choices_and_wrong_lengths_are_refused() {
     let cases = [
         (
             "/options",
@@ -216,7 +216,7 @@ fn choices_and_lengths() {
 }
 
 #[test]
-fn impossible_inertia() {
+fn impossible_inertias_are_refused() {
     let place = "/spacecraft/inertia_kg_m2";
     let cases = [
         (
@@ -235,7 +235,7 @@ fn impossible_inertia() {
 }
 
 #[test]
-fn impossible_wheels() {
+fn impossible_wheels_are_refused() {
     let wheels = "/spacecraft/wheels";
     let mut two = fixture_json("two-targets.json");
     two["spacecraft"]["wheels"]
@@ -248,7 +248,7 @@ fn impossible_wheels() {
     let disabled = with(&[("/spacecraft/wheels/2/enabled", json!(false))]);
     expect_refused(&disabled, &[(wheels, "too_few_wheels")]);
 
-    // That as many as seventeen fly is shown by the solver's tests.
+    // The solver's tests show that seventeen wheels can be planned.
     let mut many = fixture_json("two-targets.json");
     let list = many["spacecraft"]["wheels"].as_array_mut().expect("a list");
     list.extend(vec![list[2].clone(); 15]);
@@ -268,7 +268,7 @@ fn impossible_wheels() {
 }
 
 #[test]
-fn a_wheel_beyond_its_limit() {
+fn a_wheel_speed_beyond_its_limit_is_refused() {
     let place = "/start/wheel_speed_rad_s/1";
     expect_refused(
         &with(&[(place, json!(-710.5))]),
@@ -277,7 +277,7 @@ fn a_wheel_beyond_its_limit() {
 }
 
 #[test]
-fn impossible_attitudes() {
+fn impossible_attitudes_are_refused() {
     let place = "/targets/0/attitude";
     let zero = json!({"quaternion": {"x": 0, "y": 0, "z": 0, "w": 0}});
     let long = json!({"quaternion": {"x": 0, "y": 0, "z": 0, "w": 1.1}});
@@ -299,7 +299,7 @@ fn impossible_attitudes() {
 }
 
 #[test]
-fn names_that_clash_or_refer_to_nothing() {
+fn duplicate_and_unknown_names_are_refused() {
     expect_refused(
         &with(&[("/targets/1/id", json!("a"))]),
         &[("/targets/1/id", "duplicate_id")],
@@ -315,7 +315,7 @@ fn names_that_clash_or_refer_to_nothing() {
 }
 
 #[test]
-fn positions_and_precedences_that_make_no_sense() {
+fn contradictory_positions_and_precedences_are_refused() {
     for place in [json!(0), json!(3), json!(u64::MAX)] {
         let place = ("/targets/1/position", place);
         expect_refused(&with(&[place]), &[("/targets/1/position", "out_of_range")]);
@@ -357,7 +357,8 @@ fn positions_and_precedences_that_make_no_sense() {
         ]),
         &[("/targets/1/position", "order_infeasible")],
     );
-    // Nobody knows whether the target that cannot be read is the one that is meant.
+    // An unreadable target may be the one that is referred to, so that the reference is not a
+    // problem.
     expect_refused(
         &with(&[
             ("/targets/0/id", json!(7)),
@@ -368,7 +369,7 @@ fn positions_and_precedences_that_make_no_sense() {
 }
 
 #[test]
-fn everything_that_is_wrong_is_said_at_once() {
+fn all_problems_are_reported_at_once() {
     let scenario = with(&[
         ("/colour", json!("red")),
         ("/spacecraft/inertia_kg_m2/0/0", json!(-1)),
@@ -401,7 +402,7 @@ fn everything_that_is_wrong_is_said_at_once() {
 }
 
 #[test]
-fn arguments_that_do_not_exist() {
+fn unknown_arguments_are_refused() {
     let scenario = crate::run::fixture("two-targets.json");
     for arguments in [
         &["solve", &scenario, "--format", "aem"][..],
@@ -420,7 +421,7 @@ fn arguments_that_do_not_exist() {
 }
 
 #[test]
-fn a_scenario_that_cannot_be_read() {
+fn an_unreadable_file_is_an_error() {
     for command in ["solve", "legs", "validate"] {
         for path in ["no/such/file.json", "/"] {
             let ended = slewplan(&[command, path]).expect_code(2);

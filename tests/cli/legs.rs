@@ -75,7 +75,7 @@ fn lower_bounds_are_below_the_rest_to_rest_times() {
 }
 
 #[test]
-fn certified_bounds_need_no_solve_and_are_below_the_times() {
+fn certified_bounds_are_below_the_leg_times() {
     let path = fixture("two-targets.json");
     let rest = slewplan(&["legs", &path]).expect_code(0).json();
     let table = slewplan(&["legs", &path, "--kind", "certified"])
@@ -96,7 +96,7 @@ fn certified_bounds_need_no_solve_and_are_below_the_times() {
             .collect()
     };
     assert_eq!(bounds(&rest), bounds(&table));
-    // With stored momentum too; not without limits of speed.
+    // Also with stored momentum, but not without wheel speed limits.
     let biased = slewplan(&[
         "legs",
         &fixture("pyramid-momentum-bias.json"),
@@ -105,7 +105,7 @@ fn certified_bounds_need_no_solve_and_are_below_the_times() {
     ]);
     let biased = biased.expect_code(0).json();
     for row in biased["legs"].as_array().expect("a list") {
-        // Start and end are one attitude.
+        // Start and end have the same attitude.
         let moves = row["from"] != "start" || row["to"] != "end";
         let moves = moves && (row["from"] != "end" || row["to"] != "start");
         let bound = row["certified_lower_bound_s"].as_f64();
@@ -129,7 +129,7 @@ fn certified_bounds_need_no_solve_and_are_below_the_times() {
 }
 
 #[test]
-fn shards_together_are_the_table() {
+fn all_shards_together_are_the_table() {
     let path = fixture("two-targets.json");
     let whole = rows(&slewplan(&["legs", &path]).expect_code(0).json());
     let first = rows(
@@ -150,7 +150,7 @@ fn shards_together_are_the_table() {
 }
 
 #[test]
-fn the_table_goes_to_a_file() {
+fn the_table_is_written_to_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("legs.json");
     let ended = slewplan(&[

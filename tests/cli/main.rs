@@ -1,4 +1,4 @@
-//! The command line as a caller sees it: exit codes, documents, messages.
+//! The command line from outside: exit codes, documents, messages.
 
 mod certify;
 mod export;

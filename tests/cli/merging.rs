@@ -4,7 +4,7 @@ use crate::run::{Ended, fixture, fixture_json, slewplan};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The files of the parts of a table, in a folder.
+/// The files of the shards of a table, in a folder.
 fn parts(folder: &Path, scenario: &str, of: usize, options: &[&str]) -> Vec<String> {
     let part = |index: usize| {
         let path = folder.join(format!("part-{index}-of-{of}.json"));
@@ -21,7 +21,7 @@ fn merged(files: &[&str]) -> Ended {
     slewplan(&[&["legs", "--merge"], files].concat())
 }
 
-/// A table as text without what is measured.
+/// A table as text without measured times.
 fn without_times(text: &str) -> String {
     let is_time = |line: &&str| !line.contains("\"solve_time_s\"");
     text.lines().filter(is_time).collect::<Vec<_>>().join("\n")
@@ -35,7 +35,7 @@ fn merged_shards_are_the_unsharded_table() {
         let options = ["--kind", kind];
         let whole = slewplan(&[&["legs", &*scenario], &options[..]].concat()).expect_code(0);
         let parts = parts(folder.path(), &scenario, 3, &options);
-        // In any order; what is measured differs from run to run.
+        // In any order; measured times differ from run to run.
         let merged = merged(&[&parts[2], &parts[0], &parts[1]]).expect_code(0);
         assert_eq!(without_times(&merged.stdout), without_times(&whole.stdout));
         assert_eq!(merged.json()["shard"], json!({"index": 1, "of": 1}));
@@ -48,7 +48,7 @@ fn merged_shards_of_known_legs_are_the_unsharded_file_byte_for_byte() {
     let database = folder.path().join("legs.db");
     let database = database.to_str().expect("UTF-8");
     let scenario = fixture("two-targets.json");
-    // A known leg keeps the time that its solve took, so that nothing is measured again.
+    // A cached leg keeps its solve time, so that no time is measured again.
     let options = ["--trajectories", "--database", database];
     let command = [&["legs", &*scenario], &options[..]].concat();
     slewplan(&command).expect_code(0);
@@ -60,12 +60,12 @@ fn merged_shards_of_known_legs_are_the_unsharded_file_byte_for_byte() {
     let table = joined.json();
     assert_eq!(table["scenario"], fixture_json("two-targets.json"));
     let motions = table["trajectories"].as_array().expect("a list");
-    // Pairs that are equal, or flown backwards, share a motion.
+    // Equal pairs and reversed ones share a motion.
     assert!((3..6).contains(&motions.len()), "{}", motions.len());
 }
 
 #[test]
-fn parts_that_are_not_one_table_are_refused_with_everything_that_is_wrong() {
+fn shards_that_are_not_one_table_are_refused_with_all_problems() {
     let folder = tempfile::tempdir().expect("a folder");
     let scenario = fixture("two-targets.json");
     let files = parts(folder.path(), &scenario, 3, &["--kind", "certified"]);
@@ -93,7 +93,7 @@ fn parts_that_are_not_one_table_are_refused_with_everything_that_is_wrong() {
     }
     assert_eq!(told.stderr.matches("hint: ").count(), 5, "{}", told.stderr);
 
-    // Parts that say of themselves that they are not finished, or have lost rows.
+    // Shards that are marked as incomplete, or lack rows.
     let spoil = |name: &str, change: &dyn Fn(&mut Value)| {
         let text = std::fs::read_to_string(&files[1]).expect("the part");
         let mut part: Value = serde_json::from_str(&text).expect("JSON");

@@ -4,7 +4,7 @@ use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::json;
 
 #[test]
-fn a_plan_is_drawn_alone_or_with_its_scenario() {
+fn a_plan_is_drawn_with_and_without_its_scenario() {
     let scenario = fixture("two-targets.json");
     let plan = slewplan(&["solve", &scenario]).expect_code(0).stdout;
     let alone = slewplan_fed(&["plot", "-"], plan.as_bytes())
@@ -18,7 +18,7 @@ fn a_plan_is_drawn_alone_or_with_its_scenario() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused() {
+fn documents_that_cannot_be_drawn_are_refused() {
     let scenario = fixture("two-targets.json");
     let plan = slewplan(&["solve", &scenario]).expect_code(0).stdout;
     let unknown = slewplan_fed(&["plot", "-", "--boresight", "nose"], plan.as_bytes());
@@ -73,9 +73,9 @@ fn answers_with_a_sweep_are_drawn_together() {
         assert!(drawn.contains(&format!(">{words}<")), "{words}");
     }
     assert!(drawn.contains("14 slews over weight of the effort"));
-    // Each curve crosses the level once, somewhere near a weight of 0.1.
+    // Each curve crosses the level once, near a weight of 0.1.
     assert_eq!(drawn.matches("r=\"4.0\"").count(), 2);
-    // Other sweeps, and other documents, have no place in this picture.
+    // Answers with another swept quantity and other documents are refused.
     let bill = answer("lro-bill-curve.json");
     slewplan(&["plot", &three, &bill]).expect_code(2);
     let scenario = fixture("two-targets.json");

@@ -1,4 +1,4 @@
-//! What every refusal of an input must look like.
+//! Assertions on refusals of inputs.
 
 use crate::run::slewplan_fed;
 use serde_json::Value;
@@ -30,11 +30,11 @@ pub(crate) fn expect_refused(scenario: &[u8], expected: &[(&str, &str)]) {
             "{error}"
         );
     }
-    expect_told_in_text(scenario, expected);
+    expect_listed_as_text(scenario, expected);
 }
 
 #[track_caller]
-fn expect_told_in_text(scenario: &[u8], expected: &[(&str, &str)]) {
+fn expect_listed_as_text(scenario: &[u8], expected: &[(&str, &str)]) {
     let validated = slewplan_fed(&["validate", "-"], scenario)
         .expect_code(2)
         .stdout;

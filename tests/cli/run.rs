@@ -1,11 +1,11 @@
-//! Running the built binary.
+//! Runs the built binary.
 
 use serde_json::Value;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// How a run ended.
+/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,
@@ -19,7 +19,7 @@ impl Ended {
         serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// Asserts the exit code, and that no trace of a panic escaped.
+    /// Asserts the exit code, and that there is no trace of a panic.
     #[track_caller]
     pub(crate) fn expect_code(self, code: i32) -> Self {
         assert_eq!(self.code, Some(code), "{self:?}");
@@ -68,7 +68,7 @@ pub(crate) fn slewplan_fed(arguments: &[&str], input: &[u8]) -> Ended {
         .spawn()
         .expect("the binary starts");
     let mut stdin = child.stdin.take().expect("standard input is piped");
-    // A binary that refuses its arguments does not read.
+    // A binary that refuses its arguments does not read its input.
     let _ = stdin.write_all(input);
     drop(stdin);
     child.wait_with_output().expect("the binary ends").into()

@@ -1,4 +1,4 @@
-//! `slewplan slew` on the slews of the sources.
+//! `slewplan slew` on published slews.
 
 use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
@@ -26,7 +26,7 @@ fn number(slew: &Value, place: &str) -> f64 {
 }
 
 #[test]
-fn more_weight_on_effort_takes_more_time_and_more_wheels_take_less() {
+fn weight_on_effort_lengthens_and_more_wheels_shorten_the_slew() {
     // Weights 0.01, 0.1 and 10 of an independent model with 35 equal intervals.
     let columns = [
         ("olrac-three-wheels.json", [28.905, 30.98, 71.58]),
@@ -53,7 +53,7 @@ fn more_weight_on_effort_takes_more_time_and_more_wheels_take_less() {
 }
 
 #[test]
-fn continuous_torques_cost_next_to_nothing() {
+fn continuous_torques_take_hardly_more_time() {
     let (held, smooth) = (
         slews("olrac-four-wheels.json"),
         slews("olrac-four-wheels-smooth.json"),
@@ -62,11 +62,12 @@ fn continuous_torques_cost_next_to_nothing() {
         let ratio = number(smooth, "/objective") / number(held, "/objective");
         assert!((ratio - 1.0).abs() < 5e-4, "{ratio}");
     }
-    // Much weight makes torques about linear in time, little weight has them switch.
+    // With a large weight torques are nearly linear in time, with a small one they switch.
     assert!(bend(&smooth[6]) < 0.3 && bend(&smooth[0]) > 0.9);
 }
 
-/// How far torques are from the straight lines between their ends, in the largest torque.
+/// Largest distance of torques from the straight lines between their ends, relative to the largest
+/// torque.
 fn bend(slew: &Value) -> f64 {
     let controls = slew["trajectory"]["controls"].as_array().expect("a list");
     let begin =
@@ -88,8 +89,9 @@ fn bend(slew: &Value) -> f64 {
 }
 
 #[test]
-fn the_trade_of_time_and_energy_is_that_of_the_thesis() {
-    // It optimises the proxy and bills what is not fed back; minimising the bill itself is cheaper.
+fn the_trade_of_time_and_energy_agrees_with_the_thesis() {
+    // The thesis minimises a proxy and reports the energy without regeneration; minimising that
+    // energy itself costs less.
     let (bill, proxy) = (slews("lro-bill-curve.json"), slews("lro-proxy-curve.json"));
     for (bill, proxy) in bill.iter().zip(&proxy) {
         assert_eq!(bill["swept"], proxy["swept"]);
@@ -110,7 +112,7 @@ fn the_trade_of_time_and_energy_is_that_of_the_thesis() {
 }
 
 #[test]
-fn samples_are_whole_periods_and_held_wheels_are_not_commanded() {
+fn sampled_slews_take_whole_periods_and_held_wheels_have_no_torque() {
     let slews = slews("biros-sampled.json");
     assert!((number(&slews[0], "/time_s") - 9.5).abs() < 1e-9);
     assert!(number(&slews[0], "/continuous_time_s") <= 9.30);
@@ -131,7 +133,7 @@ fn samples_are_whole_periods_and_held_wheels_are_not_commanded() {
 }
 
 #[test]
-fn the_bill_is_less_than_what_the_thesis_paid() {
+fn the_least_energy_is_below_that_of_the_thesis() {
     let slews = slews("lro-least-bill.json");
     assert_eq!(slews[0]["objective_unit"], "J");
     assert!((number(&slews[0], "/time_s") - 910.1).abs() < 1e-9);
@@ -140,7 +142,7 @@ fn the_bill_is_less_than_what_the_thesis_paid() {
 }
 
 #[test]
-fn evidence_comes_with_the_slew_and_stopping_has_its_code() {
+fn evidence_is_part_of_the_answer_and_stopping_has_its_exit_code() {
     let mut slew = fixture_json("slews/olrac-four-wheels.json");
     let members = slew.as_object_mut().expect("an object");
     members.remove("sweep");
@@ -159,7 +161,7 @@ fn evidence_comes_with_the_slew_and_stopping_has_its_code() {
 }
 
 #[test]
-fn problems_are_listed_with_their_places() {
+fn problems_are_listed_with_pointers() {
     let mut slew = fixture_json("slews/lro-least-bill.json");
     slew["drives"][1]["motor"]["efficiency"] = json!(2);
     slew["objective"]["duration_s"] = json!(-1);
@@ -170,9 +172,9 @@ fn problems_are_listed_with_their_places() {
 }
 
 #[test]
-fn limits_that_are_hardly_numbers_are_exceeded_by_a_number() {
+fn excesses_over_subnormal_limits_are_finite() {
     let mut slew = fixture_json("slews/quarter-turn.json");
-    // No time to find out that nothing can turn so.
+    // Stopped before the slew is found to be infeasible.
     slew["options"] = json!({"momentum_authority": 5e-324, "time_limit_s": 5e-324});
     let stopped = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes());
     let stopped = stopped.expect_code(4).json();

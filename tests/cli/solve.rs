@@ -3,8 +3,7 @@
 use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::Value;
 
-/// Fails on the first number that is missing where the contract has one, and on any `null` in a
-/// list of numbers.
+/// Asserts that a value is a list of finite numbers of this length.
 fn assert_vector(value: &Value, length: usize) {
     let items = value.as_array().expect("a list");
     assert_eq!(items.len(), length);
@@ -13,16 +12,16 @@ fn assert_vector(value: &Value, length: usize) {
 
 fn assert_verified(plan: &Value) {
     let found = &plan["verification"];
-    let figure = |name: &str| found[name].as_f64().expect("a number");
+    let number = |name: &str| found[name].as_f64().expect("a number");
     assert_eq!(found["passed"], true, "{found}");
-    assert!(figure("max_attitude_error_rad") <= 1e-6, "{found}");
-    assert!(figure("max_rate_error_rad_s") <= 1e-7, "{found}");
+    assert!(number("max_attitude_error_rad") <= 1e-6, "{found}");
+    assert!(number("max_rate_error_rad_s") <= 1e-7, "{found}");
     for excess in [
         "max_wheel_speed_excess",
         "max_torque_excess",
         "max_rate_excess",
     ] {
-        assert!(figure(excess) <= 1e-6, "{found}");
+        assert!(number(excess) <= 1e-6, "{found}");
     }
 }
 
@@ -38,15 +37,15 @@ fn two_targets_are_solved_to_optimality_with_a_complete_document() {
     let certified = plan["certified_lower_bound_s"].as_f64().expect("a number");
     assert!(certified > 0.8 * total && certified <= total);
     for leg in plan["legs"].as_array().expect("a list") {
-        let figure = |name: &str| leg[name].as_f64().expect("a number");
-        let least = figure("certified_lower_bound_s");
-        let rest = figure("rest_to_rest_duration_s");
+        let number = |name: &str| leg[name].as_f64().expect("a number");
+        let least = number("certified_lower_bound_s");
+        let rest = number("rest_to_rest_duration_s");
         assert!(
-            rest > 0.0 && rest <= figure("eigenaxis_duration_s") * (1.0 + 1e-6),
+            rest > 0.0 && rest <= number("eigenaxis_duration_s") * (1.0 + 1e-6),
             "{leg}"
         );
         assert!(
-            least > 0.0 && least <= figure("duration_s") * (1.0 + 1e-6),
+            least > 0.0 && least <= number("duration_s") * (1.0 + 1e-6),
             "{leg}"
         );
     }
@@ -105,7 +104,7 @@ fn intervals_tile_the_plan_and_states_hold_every_boundary() {
 }
 
 #[test]
-fn four_wheels_a_failed_wheel_and_stored_momentum_are_solved_and_verified() {
+fn redundant_failed_and_biased_wheels_are_solved_and_verified() {
     for name in [
         "pyramid.json",
         "pyramid-one-disabled.json",
@@ -123,7 +122,7 @@ fn four_wheels_a_failed_wheel_and_stored_momentum_are_solved_and_verified() {
 }
 
 #[test]
-fn the_number_of_threads_changes_nothing_but_the_statistics() {
+fn the_number_of_threads_changes_only_the_statistics() {
     let plan_with = |threads: &str| {
         let path = fixture("two-targets.json");
         let mut plan = slewplan(&["solve", &path, "--threads", threads])
@@ -136,7 +135,7 @@ fn the_number_of_threads_changes_nothing_but_the_statistics() {
 }
 
 #[test]
-fn a_scenario_comes_from_standard_input() {
+fn a_scenario_is_read_from_standard_input() {
     let text = fixture_json("two-targets.json").to_string();
     let plan = slewplan_fed(&["solve", "-", "-o", "-"], text.as_bytes())
         .expect_code(0)
@@ -145,7 +144,7 @@ fn a_scenario_comes_from_standard_input() {
 }
 
 #[test]
-fn the_table_has_units_in_its_head_and_every_switch_among_its_rows() {
+fn csv_has_units_in_its_header_and_a_row_for_every_switch() {
     let path = fixture("two-targets.json");
     let table = slewplan(&["solve", &path, "--format", "csv"])
         .expect_code(0)
@@ -184,7 +183,7 @@ fn the_table_has_units_in_its_head_and_every_switch_among_its_rows() {
 }
 
 #[test]
-fn the_summary_is_readable() {
+fn the_summary_has_its_lines() {
     let path = fixture("two-targets.json");
     let text = slewplan(&["solve", &path, "--summary"])
         .expect_code(0)
@@ -203,7 +202,7 @@ fn the_summary_is_readable() {
 }
 
 #[test]
-fn progress_as_json_lines_on_standard_error() {
+fn progress_is_written_as_json_lines_on_standard_error() {
     let path = fixture("two-targets.json");
     let ended = slewplan(&["solve", &path, "--progress", "json"]).expect_code(0);
     let lines: Vec<Value> = ended

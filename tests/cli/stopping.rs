@@ -1,4 +1,4 @@
-//! Stopping by time limit and by signal.
+//! Stopping by limits and by signals.
 
 use crate::run::{Ended, binary, fixture, fixture_json, names_in, slewplan, slewplan_fed};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -14,7 +14,7 @@ fn send(child: &Child, signal: i32) {
     assert!(sent.success());
 }
 
-/// Experiment C with so many more targets that a first plan takes a while.
+/// Experiment C with additional targets, so that the first plan takes a while.
 fn crowded(folder: &Path) -> String {
     let mut scenario = fixture_json("olivares-c.json");
     let targets = (0..240).map(|i| {
@@ -31,7 +31,7 @@ fn crowded(folder: &Path) -> String {
     path.to_str().expect("UTF-8").to_owned()
 }
 
-/// Solves a scenario and sends a signal at the first line of progress that fits.
+/// Solves a scenario and sends a signal at the first matching line of progress.
 fn signalled(scenario: &str, signal: i32, output: &Path, when: impl Fn(&str) -> bool) -> Ended {
     let mut child = binary()
         .args(["solve", scenario, "--progress", "json", "-o"])
@@ -62,7 +62,7 @@ fn signalled(scenario: &str, signal: i32, output: &Path, when: impl Fn(&str) -> 
 }
 
 #[test]
-fn a_signal_before_the_first_plan_ends_without_one() {
+fn a_signal_before_the_first_plan_ends_without_a_plan() {
     for (signal, code) in [(SIGTERM, 143), (SIGINT, 130)] {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("plan.json");
@@ -100,7 +100,7 @@ fn a_node_limit_ends_with_the_best_so_far() {
 }
 
 #[test]
-fn a_time_limit_that_allows_nothing_is_a_failure_with_its_reason() {
+fn a_time_limit_without_a_plan_is_a_failure_with_its_reason() {
     let path = fixture("olivares-c.json");
     let ended = slewplan(&["solve", &path, "--time-limit", "1e-6"]).expect_code(1);
     let plan = ended.json();

@@ -4,7 +4,7 @@ use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
 
 #[test]
-fn a_study_answers_for_every_pair() {
+fn a_study_of_shares_answers_for_every_pair() {
     let study = json!({
         "scenario": fixture_json("two-targets.json"),
         "simulation": {
@@ -35,7 +35,7 @@ fn a_study_answers_for_every_pair() {
 }
 
 #[test]
-fn what_is_wrong_is_listed_with_its_place() {
+fn problems_are_listed_with_pointers() {
     let study = json!({
         "scenario": fixture_json("two-targets.json"),
         "simulation": {"controller": {"kind": "quaternion"}, "wheels": 3},
@@ -66,7 +66,8 @@ fn the_published_pyramid_has_its_envelopes_slews_and_allocations() {
         (&document["complete"], &document["warnings"]),
         (&json!(true), &json!([]))
     );
-    // Published for wheels of one unit: spheres inside and spheres of equal volume.
+    // Published for wheels of unit torque and momentum: inscribed spheres and spheres of equal
+    // volume.
     for (place, published) in [
         ("/momentum/full/inscribed_radius", 1.633),
         ("/momentum/full/equal_volume_radius", 1.805),
@@ -90,7 +91,7 @@ fn the_published_pyramid_has_its_envelopes_slews_and_allocations() {
     let count = |name: &str| full[name].as_array().map_or(0, Vec::len);
     // A rhombic dodecahedron.
     assert_eq!((count("vertices"), count("facets")), (14, 12));
-    // By the pseudo-inverse 51.8 s published for a simulation, 51.57 s by the formula.
+    // With the pseudo-inverse: 51.8 s published for a simulation, 51.57 s by the formula.
     for (place, seconds) in [
         ("/turns/0/eigenaxis/1/duration_s", 51.57),
         ("/turns/0/eigenaxis/3/duration_s", 38.27),
@@ -154,7 +155,7 @@ fn every_problem_of_a_study_of_envelopes_is_listed() {
 }
 
 #[test]
-fn wheels_are_compared_with_gyroscopes_without_any_input() {
+fn the_published_comparison_needs_no_input() {
     let answer = slewplan(&["study", "comparison"]).expect_code(0);
     let study = answer.json();
     let number = |place: &str| {
@@ -183,7 +184,7 @@ fn wheels_are_compared_with_gyroscopes_without_any_input() {
     );
     let surfaces = study["singular_states"]["surfaces"].as_array();
     assert_eq!(surfaces.map(Vec::len), Some(8));
-    // And its picture.
+    // It can be drawn.
     let drawn = slewplan_fed(&["plot", "-"], answer.stdout.as_bytes());
     let drawn = drawn.expect_code(0).stdout;
     for words in [
@@ -199,7 +200,7 @@ fn wheels_are_compared_with_gyroscopes_without_any_input() {
 }
 
 #[test]
-fn a_comparison_takes_other_figures_and_lists_what_is_wrong_with_them() {
+fn a_comparison_takes_other_values_and_lists_their_problems() {
     let other = json!({"momenta_nms": [0.1], "angles_rad": [1.0], "radii": {"kind": "computed"}});
     let line = ["study", "comparison", "-"];
     let answer = slewplan_fed(&line, other.to_string().as_bytes());
@@ -215,7 +216,7 @@ fn a_comparison_takes_other_figures_and_lists_what_is_wrong_with_them() {
     }
 }
 
-/// A flight of a scenario.
+/// The document of a study of a flight.
 fn flight(scenario: &str, members: &[(&str, Value)]) -> Value {
     let mut study = json!({"scenario": fixture_json(scenario)});
     for (name, value) in members {
@@ -231,7 +232,7 @@ fn end_error(answer: &Value) -> f64 {
 }
 
 #[test]
-fn without_errors_a_flight_is_its_plan_and_a_step_input_is_not() {
+fn a_flight_without_errors_follows_its_plan_and_a_step_command_does_not() {
     let open = json!({"controller": {"kind": "feed_forward"}, "feed_forward": "time_tagged"});
     let turn = "quarter-turn.json";
     let answer = flight(turn, &[("simulation", open), ("keep_every", json!(1))]);
@@ -246,7 +247,7 @@ fn without_errors_a_flight_is_its_plan_and_a_step_input_is_not() {
     );
     assert!(end_error(&answer) < 1e-9, "{}", flown["end"]);
     assert!(flown["peak"]["attitude_rad"].as_f64() < Some(1e-9));
-    // Every tenth of a second there is a sample.
+    // There is a sample every tenth of a second.
     let samples = flown["samples"].as_array().expect("a list");
     let seconds = flown["flight_time_s"].as_f64().expect("a time");
     assert!((samples.len() as f64 - seconds * 10.0).abs() < 1.0 + 1e-9);
@@ -254,7 +255,7 @@ fn without_errors_a_flight_is_its_plan_and_a_step_input_is_not() {
     for list in ["wheel_torque_nm", "torque_limited", "speed_limited"] {
         assert_eq!(wheels[list].as_array().map(Vec::len), Some(3), "{list}");
     }
-    // The end commanded at once, from the first sample on, meets the limits and is late.
+    // Commanding the end attitude from the first sample on reaches the limits and takes longer.
     let step = json!({"controller": {"kind": "step_input",
         "gains": {"kind": "bandwidth", "bandwidth_rad_s": 0.1}}});
     let step = flight(turn, &[("simulation", step)]);
@@ -269,7 +270,7 @@ fn without_errors_a_flight_is_its_plan_and_a_step_input_is_not() {
 }
 
 #[test]
-fn a_flight_follows_from_seed_and_number_and_can_be_of_a_given_plan() {
+fn a_flight_is_reproducible_and_takes_a_given_plan() {
     let scenario = fixture("two-targets.json");
     let plan = slewplan(&["solve", &scenario]).expect_code(0).json();
     let errors = json!({"errors": {"inertia_3_sigma": 0.05}, "seed": 7});
@@ -288,20 +289,20 @@ fn a_flight_follows_from_seed_and_number_and_can_be_of_a_given_plan() {
     assert_eq!(first["flight"]["plan_status"], Value::Null);
     let kept = |answer: &Value| answer["flight"]["samples"].as_array().map(Vec::len);
     assert!(kept(&first).is_some_and(|count| count > 2));
-    // The planned flight is the same one.
+    // With the given plan the flight is the same.
     let members = [("simulation", errors.clone()), ("keep_every", json!(50))];
     let planned = flight("two-targets.json", &members);
     assert!((end_error(&planned) - end_error(&first)).abs() < 1e-9);
-    // And it is drawn, with the limits of the scenario.
+    // It can be drawn with the limits of the scenario.
     let line = ["plot", "-", "--scenario", &scenario];
     let drawn = slewplan_fed(&line, first.to_string().as_bytes());
     let drawn = drawn.expect_code(0).stdout;
     assert!(drawn.contains("Attitude error") && drawn.contains("limit \u{b1}710"));
-    assert!(drawn.contains("flown in closed loop") && !drawn.contains("NaN"));
+    assert!(drawn.contains("simulated in closed loop") && !drawn.contains("NaN"));
 }
 
 #[test]
-fn everything_wrong_with_a_flight_is_listed() {
+fn all_problems_of_a_flight_are_listed() {
     let mut scenario = fixture_json("two-targets.json");
     scenario["targets"][0]["id"] = json!("");
     let study = json!({

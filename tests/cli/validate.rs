@@ -25,7 +25,7 @@ fn every_fixture_is_valid() {
 }
 
 #[test]
-fn a_quaternion_that_is_off_by_little_is_a_warning() {
+fn a_quaternion_with_a_small_norm_error_is_a_warning() {
     let mut scenario = fixture_json("two-targets.json");
     scenario["targets"][0]["attitude"] =
         json!({"quaternion": {"x": 0, "y": 0, "z": 0.0, "w": 1.0005}});
@@ -49,7 +49,7 @@ fn a_quaternion_that_is_off_by_little_is_a_warning() {
 }
 
 #[test]
-fn warnings_are_told_with_the_errors() {
+fn warnings_are_reported_with_the_errors() {
     let mut scenario = fixture_json("two-targets.json");
     scenario["targets"][0]["attitude"] =
         json!({"quaternion": {"x": 0, "y": 0, "z": 0.0, "w": 1.0005}});
@@ -75,7 +75,8 @@ fn warnings_are_told_with_the_errors() {
     );
 }
 
-/// Momentum along x that the x wheel holds at the start, but no wheel alone across the target.
+/// Momentum that the x wheel holds at the start, but that exceeds the wheels at the target's
+/// attitude.
 fn too_much_momentum() -> String {
     let mut scenario = fixture_json("two-targets.json");
     scenario["start"]["wheel_speed_rad_s"] = json!([700, 700, 700]);
@@ -104,7 +105,7 @@ fn a_rest_that_the_wheels_cannot_hold_is_an_error() {
 }
 
 #[test]
-fn solving_it_is_infeasible_with_the_same_reason() {
+fn solving_a_rest_that_cannot_be_held_is_infeasible() {
     let ended = slewplan_fed(&["solve", "-"], too_much_momentum().as_bytes()).expect_code(3);
     let plan = ended.json();
     assert_eq!(plan["status"], "infeasible");

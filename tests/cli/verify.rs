@@ -14,8 +14,8 @@ fn controls(plan: &mut Value) -> &mut Vec<Value> {
         .expect("a list")
 }
 
-/// The plan with the largest torque times its duration changed by one per cent, in the direction
-/// that no torque limit forbids.
+/// The plan with one torque changed by one per cent: that with the largest impulse, in the
+/// direction that torque limits allow.
 fn with_one_torque_changed(mut plan: Value) -> Value {
     let impulse = |control: &Value, wheel: usize| {
         let torque = control["wheel_torque_nm"][wheel]
@@ -46,7 +46,7 @@ fn verify(scenario: &str, plan: &Value) -> crate::run::Ended {
 }
 
 #[test]
-fn good_plans_pass_and_one_torque_off_by_a_per_cent_does_not() {
+fn plans_pass_and_a_torque_changed_by_a_per_cent_does_not() {
     for name in [
         "two-targets.json",
         "pyramid.json",
@@ -69,7 +69,7 @@ fn good_plans_pass_and_one_torque_off_by_a_per_cent_does_not() {
 }
 
 #[test]
-fn a_foreign_plan_needs_only_what_can_be_flown() {
+fn a_foreign_plan_needs_only_its_controls_and_passages() {
     let plan = solved("two-targets.json");
     let passages: Vec<Value> = plan["passages"]
         .as_array()
@@ -91,7 +91,7 @@ fn a_foreign_plan_needs_only_what_can_be_flown() {
 }
 
 #[test]
-fn the_summary_says_what_failed() {
+fn the_summary_lists_failed_tests() {
     let plan = with_one_torque_changed(solved("two-targets.json"));
     let ended = slewplan_fed(
         &["verify", &fixture("two-targets.json"), "-", "--summary"],
@@ -104,7 +104,7 @@ fn the_summary_says_what_failed() {
     );
 }
 
-/// A plan of the right shape for the two-target fixture; it goes nowhere.
+/// A plan for the two-target fixture with zero torques.
 fn idle() -> Value {
     json!({
         "total_time_s": 10.0,
@@ -120,13 +120,13 @@ fn idle() -> Value {
 }
 
 #[test]
-fn a_plan_that_goes_nowhere_does_not_pass() {
+fn a_plan_with_zero_torques_does_not_pass() {
     let found = verify("two-targets.json", &idle()).expect_code(3).json();
     assert!(found["max_attitude_error_rad"].as_f64().expect("a number") > 0.1);
 }
 
 #[test]
-fn plans_that_cannot_be_flown_are_refused_with_pointers() {
+fn plans_that_cannot_be_propagated_are_refused_with_pointers() {
     let cases = [
         (
             "/total_time_s",
@@ -182,7 +182,7 @@ fn plans_that_cannot_be_flown_are_refused_with_pointers() {
 }
 
 #[test]
-fn times_that_do_not_fit_together_do_not_pass() {
+fn inconsistent_times_do_not_pass() {
     let cases = [
         ("/trajectory/controls/0/duration_s", json!(-1.0)),
         ("/trajectory/controls/0/start_s", json!(0.5)),
@@ -205,7 +205,7 @@ fn times_that_do_not_fit_together_do_not_pass() {
 }
 
 #[test]
-fn an_empty_plan_misses_every_field() {
+fn every_missing_field_of_an_empty_plan_is_named() {
     let ended = verify("two-targets.json", &json!({})).expect_code(2);
     for field in ["/total_time_s", "/sequence", "/passages", "/trajectory"] {
         assert!(
@@ -216,7 +216,7 @@ fn an_empty_plan_misses_every_field() {
 }
 
 #[test]
-fn two_inputs_cannot_share_one_stream() {
+fn two_inputs_from_standard_input_are_refused() {
     let ended = slewplan(&["verify", "-", "-"]).expect_code(2);
     assert!(ended.stderr.contains("standard input"), "{ended:?}");
 }

@@ -57,7 +57,7 @@ fn main() {
         } = row.authorities;
         print!("{torque:6.2} {momentum:8.2} ");
         match row.outcome {
-            RowOutcome::Flown {
+            RowOutcome::Simulated {
                 total_time_s,
                 spread,
                 ..

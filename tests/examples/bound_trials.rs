@@ -11,7 +11,7 @@ use slewplan_solver::bounds::kinematic::certificate::Certificate;
 use slewplan_solver::bounds::kinematic::limits::{EndRates, SlewLimits};
 use slewplan_solver::bounds::kinematic::ramps::SlewBound;
 use slewplan_solver::model::attitude::Attitude;
-use slewplan_tests::motions::{Kind, end_of, motion};
+use slewplan_tests::motions::{MotionKind, end_of, motion};
 use slewplan_tests::random::Generator;
 use std::f64::consts::PI;
 use std::process::ExitCode;
@@ -117,7 +117,7 @@ fn rotations(tables: &[(Vector3<f64>, RateBox)], generator: &mut Generator, coun
 /// How many motions are faster than their bound, or extremals than the shortest motion found.
 fn motions(tables: &[(Vector3<f64>, RateBox)], generator: &mut Generator, count: usize) -> usize {
     let mut faults = 0;
-    for kind in Kind::ALL {
+    for kind in MotionKind::ALL {
         let (mut closest, mut ratio, mut tried) = (f64::INFINITY, f64::INFINITY, 0);
         for (rates, table) in tables {
             for _ in 0..count {
@@ -215,7 +215,7 @@ fn certificates(generator: &mut Generator, good: usize, bad: usize) -> usize {
     for _ in 0..good {
         let certificate = certificate(generator);
         let started = Instant::now();
-        let answer = certify::check(&certificate);
+        let answer = certify::verify(&certificate);
         times.push(started.elapsed().as_secs_f64() * 1e3);
         if let Err(rejection) = answer {
             println!("not confirmed: {rejection}: {certificate:?}");
@@ -232,7 +232,7 @@ fn certificates(generator: &mut Generator, good: usize, bad: usize) -> usize {
     for number in 0..bad {
         let mut damaged = certificate(generator);
         damage(&mut damaged, number % 5);
-        let reason = match certify::check(&damaged) {
+        let reason = match certify::verify(&damaged) {
             Ok(()) => {
                 println!("confirmed though damaged, {}: {damaged:?}", number % 5);
                 faults += 1;

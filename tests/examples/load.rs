@@ -86,6 +86,10 @@ impl Client {
 }
 
 /// Asks until the end: at once again, or when the next request of all clients is due.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "waits for the time of the next request"
+)]
 fn run(mut client: Client, begin: Instant, end: Instant, rate: Option<(f64, &AtomicU64)>) -> Seen {
     let mut seen = Seen::default();
     loop {
@@ -124,6 +128,7 @@ fn quantiles(mut latencies: Vec<Duration>) -> String {
     format!("{{\"p50\":{median:.3},\"p99\":{p99:.3},\"p999\":{p999:.3},\"max\":{worst:.3}}}")
 }
 
+#[expect(clippy::disallowed_methods, reason = "ends before anything has begun")]
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [address, mode, amount, seconds, path, body @ ..] = arguments.as_slice() else {

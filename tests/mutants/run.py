@@ -34,7 +34,7 @@ from rewriting import changes, rewritten  # noqa: E402
 MODULES = {
     "checker": ["solver/src/checker.rs", "solver/src/checker"],
     "certified": ["solver/src/bounds/certified.rs", "solver/src/bounds/certified", "solver/src/model/dynamics.rs"],
-    "certify": ["solver/src/bounds/certify.rs", "solver/src/bounds/certify", "solver/src/tour/planner/claims.rs"],
+    "certify": ["solver/src/bounds/certify.rs", "solver/src/bounds/certify", "solver/src/tour/planner/certificate.rs", "solver/src/tour/planner/certificate"],
     "kinematic_bound": ["solver/src/bounds/kinematic.rs", "solver/src/bounds/kinematic"],
     "canonical": ["solver/src/tour/planner/canonical.rs", "solver/src/tour/planner/places.rs", "solver/src/tour/planner/legs.rs"],
     "order_rules": ["solver/src/model/order_rules.rs", "solver/src/model/scenario/order.rs"],

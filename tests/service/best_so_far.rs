@@ -1,4 +1,4 @@
-//! The plan of a job that has not ended.
+//! The best plan so far of a running job.
 
 use crate::client::{Answer, Request};
 use crate::running::{Service, large, small};
@@ -34,11 +34,11 @@ fn a_running_job_gives_a_verified_plan_with_its_bound() {
     assert_eq!(plan["verification"]["passed"], true);
     assert_eq!(plan["sequence"].as_array().map(Vec::len), Some(48));
     let bound = plan["lower_bound_s"].as_f64().expect("a bound");
-    // Of many targets the first plan comes before anything is proved.
+    // With many targets the first plan is found before any bound is proved.
     assert!(0.0 <= bound && bound <= total(&plan), "{bound}");
     let job = service.job(id);
     let told = job["incumbent_s"].as_f64().expect("an incumbent");
-    // What the job tells may be newer than what was read before, never older.
+    // The job may be newer than the result read before, never older.
     assert!(told <= total(&plan) * (1.0 + 1e-9), "{told}");
     let table = service.get(&format!("{path}?format=csv")).expect(200);
     assert!(table.body.starts_with("time_s,q_x,"));
@@ -82,7 +82,7 @@ fn waiting_for_a_plan_does_not_answer_with_the_best_so_far() {
 }
 
 #[test]
-fn the_best_so_far_outlives_the_process_and_is_never_taken_for_the_end() {
+fn the_best_plan_so_far_survives_a_kill_and_is_not_final() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("killed.db");
     let mut service = Service::on(&database, &[]);
@@ -100,7 +100,7 @@ fn the_best_so_far_outlives_the_process_and_is_never_taken_for_the_end() {
     let kept = after.json();
     assert_eq!(kept["status"], "feasible");
     assert!(total(&kept) <= total(&before));
-    // Asked to stop before the second attempt has a plan, or soon after.
+    // The stop may arrive before or after the second attempt has a plan.
     service.wait(&id, |job| job["state"] == "running");
     service
         .send(&Request::new("POST", &format!("/v1/plans/{id}/stop")))

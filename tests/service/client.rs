@@ -53,7 +53,7 @@ impl Answer {
     }
 }
 
-/// A request that is being put together.
+/// A request, built step by step.
 #[derive(Debug)]
 pub(crate) struct Request {
     head: String,
@@ -104,7 +104,7 @@ impl Request {
         stream
             .write_all(format!("{}\r\n", self.head).as_bytes())
             .expect("the head is sent");
-        // A service that refuses the head does not read the body.
+        // A service that refuses the headers does not read the body.
         let _ = stream.write_all(&self.body);
         stream
     }

@@ -1,4 +1,4 @@
-//! Clients that are slow, silent or many.
+//! Slow, silent and many clients.
 
 use crate::client::Request;
 use crate::running::{Service, large};
@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
-/// Longer than the service waits for anything that a client sends.
+/// Longer than every time limit of the service on its clients.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 fn connected(service: &Service) -> TcpStream {
@@ -15,7 +15,7 @@ fn connected(service: &Service) -> TcpStream {
     stream
 }
 
-/// What is left to be read; nothing from a connection that was cut off.
+/// The rest of a stream; nothing from a closed connection.
 fn rest(mut stream: TcpStream) -> String {
     let mut text = Vec::new();
     match stream.read_to_end(&mut text) {
@@ -26,7 +26,7 @@ fn rest(mut stream: TcpStream) -> String {
 }
 
 #[test]
-fn a_body_that_breaks_off_is_told_from_one_that_is_wrong() {
+fn truncated_and_malformed_bodies_have_different_errors() {
     let service = Service::start();
     let mut broken = connected(&service);
     broken
@@ -43,7 +43,7 @@ fn a_body_that_breaks_off_is_told_from_one_that_is_wrong() {
 }
 
 #[test]
-fn who_does_not_send_is_cut_off() {
+fn clients_that_do_not_send_are_cut_off() {
     let service = Service::start();
     let silent = connected(&service);
     let mut half_head = connected(&service);
@@ -67,7 +67,7 @@ fn who_does_not_send_is_cut_off() {
 }
 
 #[test]
-fn open_sockets_do_not_keep_others_out() {
+fn idle_connections_do_not_block_other_clients() {
     let service = Service::start_with(&["--max-connections", "4"]);
     let idle: Vec<TcpStream> = (0..20).map(|_| connected(&service)).collect();
     for _ in 0..4 {
@@ -77,14 +77,14 @@ fn open_sockets_do_not_keep_others_out() {
 }
 
 #[test]
-fn streams_leave_room_for_requests() {
+fn event_streams_leave_connections_for_requests() {
     let service = Service::start_with(&["--max-connections", "4"]);
     let id = service.submit(&large());
     let events = Request::new("GET", &format!("/v1/plans/{id}/events"));
     let open: Vec<TcpStream> = (0..2)
         .map(|_| {
             let mut stream = events.open(&service.address);
-            // The head of the answer is there: the stream has its place.
+            // The headers of the answer have arrived: the stream is open.
             stream.read_exact(&mut [0; 1]).expect("an answer");
             stream
         })
@@ -97,7 +97,7 @@ fn streams_leave_room_for_requests() {
 }
 
 #[test]
-fn every_answer_tells_browsers_what_not_to_do() {
+fn every_answer_has_security_headers() {
     let service = Service::start();
     for path in [
         "/none",

@@ -1,11 +1,11 @@
-//! What survives the end of the process, expected or not.
+//! Durability over shutdowns and kills of the process.
 
 use crate::client::Request;
 use crate::running::{Service, fixture, large, small};
 use serde_json::{Value, json};
 use std::io::Read;
 
-/// A scenario that takes seconds and ends by itself on any machine.
+/// A scenario that is solved within seconds on any machine, but not at once.
 fn sizeable() -> Value {
     let mut scenario = fixture("olivares-c.json");
     scenario["options"] = json!({"relative_gap": 0.05, "time_limit_s": null});
@@ -33,7 +33,7 @@ fn a_killed_solve_runs_again_and_nothing_acknowledged_is_lost() {
 }
 
 #[test]
-fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
+fn a_shutdown_returns_the_running_job_without_counting_the_attempt() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("ended.db");
     let mut service = Service::on(&database, &[]);
@@ -60,7 +60,7 @@ fn an_orderly_end_gives_the_running_job_back_without_counting_the_attempt() {
 }
 
 #[test]
-fn a_database_has_one_service() {
+fn a_database_is_locked_by_one_service() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("shared.db");
     let _service = Service::on(&database, &[]);
@@ -95,7 +95,7 @@ fn a_command_shares_legs_with_the_service() {
 }
 
 #[test]
-fn legs_on_which_a_search_rests_are_not_solved_again_after_a_kill() {
+fn legs_are_not_solved_again_after_a_kill() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("legs.db");
     let mut service = Service::on(&database, &[]);
@@ -105,16 +105,16 @@ fn legs_on_which_a_search_rests_are_not_solved_again_after_a_kill() {
     let service = Service::on(&database, &[]);
     let searching = |job: &Value| job["attempt"] == 2 && job["stage"] == "search";
     service.wait(&id, searching);
-    let figures = service.get("/metrics").expect(200).body;
+    let metrics = service.get("/metrics").expect(200).body;
     for (outcome, is_zero) in [("hit", false), ("miss", true)] {
         let name = format!("slewplan_leg_lookups_total{{outcome=\"{outcome}\"}} ");
-        let count = figures.lines().find_map(|line| line.strip_prefix(&*name));
+        let count = metrics.lines().find_map(|line| line.strip_prefix(&*name));
         assert_eq!(count == Some("0"), is_zero, "{outcome} {count:?}");
     }
 }
 
-/// Runs the program beside a service, in a folder where nothing can be written; whether it ends well,
-/// and what it writes to standard error.
+/// Runs the program beside a service, in a folder that is not writable; whether it succeeds, and
+/// its standard error.
 fn beside(arguments: &[&std::ffi::OsStr]) -> (bool, String) {
     let ended = std::process::Command::new(env!("CARGO_BIN_EXE_slewplan"))
         .args(arguments)
@@ -126,7 +126,7 @@ fn beside(arguments: &[&std::ffi::OsStr]) -> (bool, String) {
 }
 
 #[test]
-fn a_copy_made_beside_the_service_is_sound_or_absent() {
+fn a_backup_beside_the_service_is_valid_or_absent() {
     let folder = tempfile::tempdir().expect("a folder");
     let [database, copy, text] =
         ["used.db", "copy.db", "text.db"].map(|name| folder.path().join(name));

@@ -1,4 +1,4 @@
-//! Following a job.
+//! Streams of events.
 
 use crate::client::Request;
 use crate::running::{Service, small};
@@ -27,7 +27,7 @@ fn events(stream: &str) -> Vec<(u64, String, Value)> {
 }
 
 #[test]
-fn a_stream_tells_everything_and_ends_with_the_job() {
+fn a_stream_has_all_events_and_ends_with_the_job() {
     let service = Service::start();
     let id = service.submit(&small());
     let answer = service.get(&format!("/v1/plans/{id}/events")).expect(200);
@@ -55,7 +55,7 @@ fn a_stream_tells_everything_and_ends_with_the_job() {
 }
 
 #[test]
-fn a_broken_stream_is_resumed_after_the_last_event_that_is_known() {
+fn a_broken_stream_is_resumed_after_the_last_received_event() {
     let service = Service::start();
     let id = service.submit(&small());
     service.wait_end(&id);
@@ -64,7 +64,7 @@ fn a_broken_stream_is_resumed_after_the_last_event_that_is_known() {
     let resume =
         |known: &str| service.send(&Request::new("GET", &path).header("Last-Event-ID", known));
     assert_eq!(events(&resume("2").expect(200).body), all[2..]);
-    // Two hundred and an empty stream would make an EventSource come again for ever.
+    // With status 200 and an empty stream an EventSource would reconnect without end.
     for known in [all.len().to_string(), "999".to_owned()] {
         assert_eq!(resume(&known).expect(204).body, "");
     }

@@ -1,4 +1,4 @@
-//! The description of the interface: that of the code, with examples that work.
+//! The description of the interface agrees with the code, and its examples are valid.
 
 use crate::client::Request;
 use crate::running::Service;
@@ -14,7 +14,7 @@ fn committed() -> String {
 }
 
 #[test]
-fn the_committed_description_is_that_of_the_code() {
+fn the_committed_description_agrees_with_the_code() {
     let printed = Command::new(env!("CARGO_BIN_EXE_slewplan"))
         .arg("openapi")
         .output();

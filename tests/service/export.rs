@@ -1,4 +1,4 @@
-//! Results in the formats of other tools.
+//! Exports of results.
 
 use crate::client::Request;
 
@@ -15,7 +15,7 @@ const TYPES: [(&str, &str, &str); 7] = [
 ];
 
 #[test]
-fn every_format_is_there_by_name_and_by_media_type() {
+fn every_format_is_selected_by_name_and_by_media_type() {
     let service = Service::start();
     let id = service.submit(&small());
     service.wait_end(&id);
@@ -38,7 +38,7 @@ fn every_format_is_there_by_name_and_by_media_type() {
             "{file}"
         );
         let accepting = Request::new("GET", &path).header("Accept", media_type);
-        // Byte for byte: an entity tag stands for it.
+        // Byte for byte, because they have the same entity tag.
         assert_eq!(service.send(&accepting).expect(200).body, named.body);
         let tag = named.header("etag").expect("a tag").to_owned();
         let again = Request::new("GET", &format!("{path}?format={name}"));
@@ -53,7 +53,7 @@ fn every_format_is_there_by_name_and_by_media_type() {
 }
 
 #[test]
-fn samples_and_names_can_be_chosen() {
+fn options_of_formats_are_applied() {
     let service = Service::start();
     let id = service.submit(&small());
     service.wait_end(&id);
@@ -74,7 +74,7 @@ fn samples_and_names_can_be_chosen() {
         "format=csv&step_s=0",
         "format=csv&tolerance=2",
         "format=csv&wheel=x",
-        // Each is valid, but not together.
+        // Each is valid alone, but not together.
         "format=csv&step_s=1&tolerance=1e-3",
         "format=csv&wheel=0",
         "format=wheel-rpm&wheel=9",
@@ -86,7 +86,7 @@ fn samples_and_names_can_be_chosen() {
 }
 
 #[test]
-fn what_a_format_cannot_say_is_not_acceptable() {
+fn labels_that_a_format_cannot_represent_are_not_acceptable() {
     let service = Service::start();
     let mut scenario = small();
     scenario["time_system"] = "TAI".into();

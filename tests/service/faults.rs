@@ -1,4 +1,4 @@
-//! Solves that fail on purpose: what they cost, and what callers are told.
+//! Injected failures of solves: their effects and their errors.
 
 use crate::client::Request;
 use crate::running::{Service, large, small};
@@ -18,7 +18,7 @@ fn last_event(service: &Service, id: &str) -> Value {
 }
 
 #[test]
-fn a_panic_takes_no_plan_away() {
+fn a_panic_keeps_the_best_plan() {
     let service = Service::start();
     let id = service.submit(&failing(large(), "fault:late"));
     service.wait(&id, |job| !job["incumbent_s"].is_null());
@@ -42,7 +42,7 @@ fn a_panic_takes_no_plan_away() {
 }
 
 #[test]
-fn memory_and_panics_are_told_apart() {
+fn memory_limits_and_panics_have_different_codes() {
     let service = Service::start_with(&["--job-memory", "16"]);
     let end = |fault: &str| {
         let id = service.submit(&failing(small(), fault));

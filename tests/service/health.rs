@@ -13,7 +13,7 @@ fn health(address: &str, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn a_service_is_well_until_it_has_ended() {
+fn a_service_is_healthy_until_it_ends() {
     let mut service = Service::start();
     for arguments in [&[][..], &["--live"]] {
         let asked = health(&service.address, arguments);
@@ -23,7 +23,7 @@ fn a_service_is_well_until_it_has_ended() {
             "{asked:?}"
         );
     }
-    // The flag goes before the environment; no service answers there.
+    // The flag takes precedence over the environment; no service answers at this address.
     let elsewhere = health(&service.address, &["--listen", "127.0.0.1:1"]);
     assert_eq!(elsewhere.status.code(), Some(1), "{elsewhere:?}");
     assert!(service.terminate());
@@ -37,8 +37,8 @@ fn a_service_is_well_until_it_has_ended() {
 }
 
 #[test]
-fn one_that_cannot_take_work_is_not_well_but_alive() {
-    // Nobody may wait: whatever is submitted, the queue is full.
+fn a_service_with_a_full_queue_is_alive_but_not_ready() {
+    // With a queue of size zero every submission finds it full.
     let service = Service::start_with(&["--queue-limit", "0"]);
     let asked = health(&service.address, &[]);
     assert_eq!(asked.status.code(), Some(1), "{asked:?}");

@@ -1,11 +1,11 @@
-//! The same request twice.
+//! Idempotency keys.
 
 use crate::client::Request;
 use crate::running::{Service, small};
 use serde_json::{Value, json};
 
 #[test]
-fn one_key_makes_one_job_and_belongs_to_one_body() {
+fn a_key_makes_one_job_and_belongs_to_one_body() {
     let service = Service::start();
     let submit = |scenario: &Value, key: &str| {
         service.send(
@@ -33,7 +33,7 @@ fn one_key_makes_one_job_and_belongs_to_one_body() {
 }
 
 #[test]
-fn many_at_once_under_one_key_make_one_job() {
+fn concurrent_requests_under_one_key_make_one_job() {
     let service = Service::start();
     let ids: Vec<String> = std::thread::scope(|scope| {
         let submit = || {
@@ -56,7 +56,7 @@ fn many_at_once_under_one_key_make_one_job() {
 }
 
 #[test]
-fn what_was_refused_is_not_remembered_under_its_key() {
+fn refused_requests_do_not_use_up_their_key() {
     let service = Service::start();
     let submit = |scenario: &Value| {
         service.send(

@@ -1,4 +1,4 @@
-//! Legs that were solved elsewhere.
+//! Import of legs.
 
 use crate::client::Request;
 use crate::running::{Service, small};
@@ -33,7 +33,7 @@ fn file(scenario: &Value, kind: &str) -> Value {
 }
 
 #[test]
-fn a_plan_rests_on_imported_legs() {
+fn a_plan_uses_imported_legs() {
     let service = Service::start();
     for kind in ["rest_to_rest", "lower_bound"] {
         let file = file(&small(), kind);
@@ -57,11 +57,11 @@ fn a_plan_rests_on_imported_legs() {
 }
 
 #[test]
-fn what_does_not_fly_is_listed_and_what_means_nothing_refused() {
+fn failing_legs_are_listed_and_invalid_files_refused() {
     let service = Service::start_with(&["--max-targets", "2"]);
     let whole = file(&small(), "rest_to_rest");
     let mut spoilt = whole.clone();
-    // A leg that turns: one that stays is where it should be whatever it says.
+    // A leg with a rotation: one without ends at its end whatever its torques.
     let motions = whole["trajectories"].as_array().expect("a list");
     let turns = |motion: &Value| motion["lengths_s"][0].as_f64() > Some(0.1);
     let turning = motions.iter().position(turns).expect("a leg that turns");

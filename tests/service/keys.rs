@@ -1,7 +1,7 @@
-//! Who may use the service, and what of it.
+//! Keys and scopes.
 
 use crate::client::{Answer, Request};
-use crate::running::{Service, small};
+use crate::running::{Service, pause, small};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -69,7 +69,7 @@ const PUBLIC: [&str; 7] = [
 ];
 
 #[test]
-fn every_route_is_closed_to_who_has_no_valid_key() {
+fn every_route_needs_a_valid_key() {
     let (_folder, database) = folder();
     let owner = key(&database, &["owner"]);
     let revoked = key(&database, &["owner"]);
@@ -134,7 +134,7 @@ fn the_page_opens_without_a_key_and_then_asks_for_one() {
 }
 
 #[test]
-fn what_belongs_to_one_client_is_not_there_for_another() {
+fn clients_do_not_see_each_others_jobs_and_spacecraft() {
     let (_folder, database) = folder();
     let mine = key(&database, &["mine"]);
     let replacement = key(&database, &["mine"]);
@@ -178,7 +178,7 @@ fn what_belongs_to_one_client_is_not_there_for_another() {
 }
 
 #[test]
-fn a_key_opens_what_its_scopes_say() {
+fn a_key_grants_its_scopes_only() {
     let (_folder, database) = folder();
     let reader = key(&database, &["one", "--scopes", "read", "--expires", "1"]);
     let operator = key(&database, &["one", "--scopes", "operate"]);
@@ -195,7 +195,7 @@ fn a_key_opens_what_its_scopes_say() {
 }
 
 #[test]
-fn a_client_has_a_share_of_the_queue() {
+fn a_client_has_its_own_queue_limit() {
     let (_folder, database) = folder();
     let [greedy, modest] = ["greedy", "modest"].map(|client| key(&database, &[client]));
     let service = Service::on(&database, &["--client-queue-limit", "0"]);
@@ -207,7 +207,7 @@ fn a_client_has_a_share_of_the_queue() {
 }
 
 #[test]
-fn other_machines_are_not_served_without_keys() {
+fn public_addresses_need_keys() {
     let (_folder, database) = folder();
     let anywhere = ["serve", "--listen", "0.0.0.0:0"];
     let refused = slewplan(&anywhere, &database);
@@ -222,7 +222,7 @@ fn other_machines_are_not_served_without_keys() {
 }
 
 #[test]
-fn the_first_key_closes_a_service_that_runs() {
+fn a_running_service_requires_keys_after_the_first_one() {
     let (_folder, database) = folder();
     let service = Service::on(&database, &[]);
     service.get("/v1/plans").expect(200);
@@ -230,7 +230,7 @@ fn the_first_key_closes_a_service_that_runs() {
     let begin = Instant::now();
     while service.get("/v1/plans").status != 401 {
         assert!(begin.elapsed() < Duration::from_secs(30), "still open");
-        std::thread::sleep(Duration::from_millis(20));
+        pause();
     }
     service
         .send(&request("GET", "/v1/plans", &secret))

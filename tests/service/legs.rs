@@ -15,7 +15,7 @@ fn sources(answer: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn a_query_computes_once_and_finds_legs_from_either_side() {
+fn a_query_computes_once_and_finds_reversed_legs() {
     let service = Service::start();
     let mut query = json!({
         "spacecraft": small()["spacecraft"], "mode": "cached_only",
@@ -35,7 +35,7 @@ fn a_query_computes_once_and_finds_legs_from_either_side() {
     let [Some(back), Some(forth)] = times else {
         panic!("{times:?}");
     };
-    // The same intervals, added up in the other order.
+    // The same intervals, added in the other order.
     assert!((back - forth).abs() < 1e-12 * forth, "{back} {forth}");
     let key = computed["legs"][0]["key"].as_str().expect("a key");
     let leg = service.get(&format!("/v1/legs/{key}")).expect(200).json();
@@ -49,7 +49,7 @@ fn a_query_computes_once_and_finds_legs_from_either_side() {
 }
 
 #[test]
-fn a_plan_leaves_its_legs_for_a_query() {
+fn a_query_finds_the_legs_of_a_plan() {
     let service = Service::start();
     let id = service.submit(&small());
     service.wait_end(&id);
@@ -80,7 +80,7 @@ fn a_plan_leaves_its_legs_for_a_query() {
 }
 
 #[test]
-fn certified_bounds_are_computed_without_legs_and_kept_with_solved_ones() {
+fn certified_bounds_are_computed_without_legs_and_stored_with_solved_ones() {
     let service = Service::start();
     let mut query = json!({
         "spacecraft": small()["spacecraft"], "mode": "cached_only", "kind": "certified",
@@ -126,9 +126,10 @@ fn found_between(service: &Service, from: &str, to: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_leg_is_listed_by_the_attitudes_at_its_ends_from_either_side_where_that_is_valid() {
+fn a_leg_is_listed_by_its_attitudes_in_both_directions_if_reversible() {
     let service = Service::start();
-    // A turn of 60 degrees about x, begun 90 degrees about z away from the reference.
+    // A rotation of 60 degrees about x, from an attitude 90 degrees about z away from the
+    // reference.
     let ends = [
         "0,0,0.707106781,0.707106781",
         "0.353553391,0.353553391,0.612372436,0.612372436",
@@ -153,14 +154,14 @@ fn a_leg_is_listed_by_the_attitudes_at_its_ends_from_either_side_where_that_is_v
     for (from, to) in [(ends[0], ends[1]), (ends[1], ends[0])] {
         assert_eq!(found_between(&service, from, to), [symmetric.as_str()]);
     }
-    // The turn alone, seen from the identity; not the absolute attitude of an end.
+    // The rotation from the identity; absolute attitudes of the ends do not count.
     assert_eq!(
         found_between(&service, "0,0,0,1", "0.5,0,0,0.866025404"),
         [symmetric.as_str()]
     );
     assert_eq!(found_between(&service, "0,0,0,1", ends[1]), [""; 0]);
 
-    // With stored momentum the way back is another leg.
+    // With stored momentum the reversed leg is another one.
     query["start"] = json!({"attitude": place("0,0,0,1"), "wheel_speed_rad_s": [30, 20, 10]});
     let forth = computed(&query);
     query["pairs"] = json!([{"from": place(ends[1]), "to": place(ends[0])}]);
@@ -212,7 +213,7 @@ fn wrong_queries_are_refused_with_pointers() {
             .expect("text")
             .contains("max_leg_pairs")
     );
-    // All pairs of these would not fit into memory.
+    // The matrix of all pairs would not fit into memory.
     let query = json!({"spacecraft": spacecraft, "attitudes": vec![attitude(1.0, 0.0); 20_000]});
     service
         .post("/v1/legs/query", &query)

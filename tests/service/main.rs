@@ -1,4 +1,4 @@
-//! The service as a caller sees it: every route with its success and its errors.
+//! The service from outside: every route with its success and its errors.
 
 mod best_so_far;
 mod client;

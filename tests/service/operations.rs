@@ -1,10 +1,10 @@
-//! Running the service.
+//! Operations: version, limits, metrics, documentation.
 
 use crate::client::Request;
 use crate::running::{Service, small};
 
 #[test]
-fn the_service_tells_about_itself() {
+fn version_limits_and_health_are_answered() {
     let service = Service::start();
     let request = Request::new("GET", "/v1/version").header("X-Request-Id", "my-id.7");
     let answer = service.send(&request).expect(200);
@@ -22,26 +22,26 @@ fn metrics_count_jobs_legs_and_requests() {
     let service = Service::start();
     let id = service.submit(&small());
     service.wait_end(&id);
-    let figures = service.get("/metrics").expect(200).body;
+    let metrics = service.get("/metrics").expect(200).body;
     for line in [
         "slewplan_jobs{state=\"succeeded\"} 1",
         "slewplan_jobs{state=\"queued\"} 0",
     ] {
-        assert!(figures.lines().any(|found| found == line), "{figures}");
+        assert!(metrics.lines().any(|found| found == line), "{metrics}");
     }
     let posted = "slewplan_http_request_duration_seconds_count{method=\"POST\",\
                   route=\"/v1/plans\",status=\"202\"} 1";
-    assert!(figures.lines().any(|found| found == posted), "{figures}");
+    assert!(metrics.lines().any(|found| found == posted), "{metrics}");
     for name in [
         "slewplan_queue_wait_seconds_count",
         "slewplan_solve_seconds_count",
         "slewplan_gap_at_end_count",
     ] {
         let line = format!("{name} 1");
-        assert!(figures.lines().any(|found| found == line), "{line}");
+        assert!(metrics.lines().any(|found| found == line), "{line}");
     }
-    assert!(figures.contains("slewplan_database_bytes{file=\"log\"} "));
-    let misses = figures
+    assert!(metrics.contains("slewplan_database_bytes{file=\"log\"} "));
+    let misses = metrics
         .lines()
         .find(|line| line.contains("outcome=\"miss\""))
         .expect("misses");
@@ -49,7 +49,7 @@ fn metrics_count_jobs_legs_and_requests() {
 }
 
 #[test]
-fn the_documentation_needs_no_other_host() {
+fn the_documentation_loads_nothing_from_other_hosts() {
     let service = Service::start();
     let page = service.get("/docs/").expect(200).body;
     assert!(
@@ -60,11 +60,11 @@ fn the_documentation_needs_no_other_host() {
 }
 
 #[test]
-fn the_index_of_errors_is_where_problems_point_to() {
+fn problem_types_lead_to_the_index_of_errors() {
     let service = Service::start();
     let index = service.get("/docs/errors").expect(200).body;
     assert!(!index.contains("https://"), "{index}");
-    // Every row has a place, a meaning and what to do.
+    // Every row has an anchor, a meaning and a remedy.
     let rows: Vec<&str> = index.split("<tr id=").skip(1).collect();
     assert!(rows.len() > 60, "{}", rows.len());
     for row in &rows {
@@ -90,7 +90,7 @@ fn the_index_of_errors_is_where_problems_point_to() {
 }
 
 #[test]
-fn who_knows_the_documents_of_this_build_is_told_that_they_are_the_same() {
+fn cached_documents_are_answered_with_not_modified() {
     let service = Service::start();
     for path in ["/openapi.yaml", "/docs/errors"] {
         let answer = service.get(path).expect(200);

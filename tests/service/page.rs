@@ -20,7 +20,7 @@ fn folder(page: &str) -> String {
 }
 
 #[test]
-fn the_page_loads_its_files_from_here_and_nothing_inline() {
+fn the_page_loads_its_files_from_the_service_and_nothing_inline() {
     let service = Service::start();
     let answer = service.get("/").expect(200);
     assert_eq!(
@@ -57,7 +57,7 @@ fn the_page_loads_its_files_from_here_and_nothing_inline() {
 }
 
 #[test]
-fn a_browser_asks_for_the_page_again_and_keeps_it() {
+fn the_page_is_revalidated_by_its_entity_tag() {
     let service = Service::start();
     let first = service.get("/").expect(200);
     assert_eq!(first.header("cache-control"), Some("private, no-cache"));
@@ -68,7 +68,7 @@ fn a_browser_asks_for_the_page_again_and_keeps_it() {
 }
 
 #[test]
-fn nothing_but_the_files_of_this_version_can_be_read() {
+fn only_files_of_this_version_are_served() {
     let service = Service::start();
     let page = service.get("/").expect(200).body;
     let folder = folder(&page);
@@ -120,7 +120,7 @@ fn the_examples_of_the_page_are_valid_scenarios() {
 }
 
 #[test]
-fn the_slews_and_studies_of_the_page_are_answered() {
+fn the_slew_and_study_examples_of_the_page_are_answered() {
     let service = Service::start();
     let page = service.get("/").expect(200).body;
     let folder = folder(&page);
@@ -187,7 +187,7 @@ fn the_slews_and_studies_of_the_page_are_answered() {
     }
 }
 
-/// The values that a schema allows, wherever in it they are listed.
+/// All enumerated values in a schema.
 fn listed(schema: &Value) -> Vec<String> {
     match schema {
         Value::Object(members) => members

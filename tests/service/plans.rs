@@ -1,9 +1,8 @@
 //! Jobs from submission to deletion.
 
 use crate::client::Request;
-use crate::running::{Service, large, small};
+use crate::running::{Service, large, pause, small};
 use serde_json::{Value, json};
-use std::time::Duration;
 
 #[test]
 fn a_job_ends_with_a_verified_plan() {
@@ -46,7 +45,7 @@ fn a_second_run_solves_no_leg_and_gives_the_same_plan() {
 }
 
 #[test]
-fn the_form_of_a_result_is_chosen_by_query_or_by_accept() {
+fn the_form_of_a_result_is_selected_by_query_or_by_accept() {
     let service = Service::start();
     let id = service.submit(&small());
     service.wait_end(&id);
@@ -62,7 +61,7 @@ fn the_form_of_a_result_is_chosen_by_query_or_by_accept() {
 }
 
 #[test]
-fn validation_alone_queues_nothing() {
+fn validate_only_queues_nothing() {
     let service = Service::start();
     let valid = service
         .post("/v1/plans?validate_only=true", &small())
@@ -107,7 +106,7 @@ fn too_much_momentum() -> Value {
 }
 
 #[test]
-fn an_impossible_scenario_ends_infeasible_with_its_reasons() {
+fn an_infeasible_scenario_ends_with_its_reasons() {
     let service = Service::start();
     let id = service.submit(&too_much_momentum());
     let job = service.wait_end(&id);
@@ -124,7 +123,7 @@ fn an_impossible_scenario_ends_infeasible_with_its_reasons() {
 }
 
 #[test]
-fn a_time_limit_that_allows_nothing_is_a_failure_with_its_reason() {
+fn a_time_limit_without_a_plan_is_a_failure_with_its_reason() {
     let service = Service::start();
     let mut scenario = small();
     scenario["options"] = json!({"time_limit_s": 1e-6});
@@ -186,7 +185,7 @@ fn a_list_is_filtered_and_paged() {
 }
 
 #[test]
-fn stop_gives_the_best_plan_so_far_at_once() {
+fn stop_answers_with_the_best_plan_so_far() {
     let service = Service::start();
     let id = service.submit(&large());
     let queued = service.submit(&small());
@@ -217,7 +216,7 @@ fn stop_gives_the_best_plan_so_far_at_once() {
 }
 
 #[test]
-fn cancel_frees_the_core_for_the_next_job() {
+fn cancel_frees_the_threads_for_the_next_job() {
     let service = Service::start();
     let id = service.submit(&large());
     let next = service.submit(&small());
@@ -238,7 +237,7 @@ fn cancel_frees_the_core_for_the_next_job() {
 }
 
 #[test]
-fn who_waits_for_a_job_that_is_cancelled_is_told_that_it_has_ended() {
+fn waiting_for_a_cancelled_job_is_answered_with_its_end() {
     let service = Service::start();
     let first = service.submit(&large());
     service.wait(&first, |job| job["state"] == "running");
@@ -248,13 +247,13 @@ fn who_waits_for_a_job_that_is_cancelled_is_told_that_it_has_ended() {
         .json(&small());
     std::thread::scope(|scope| {
         let waiting = scope.spawn(|| service.send(&submission));
-        // Behind the one that runs.
+        // Queued behind the running job.
         let id = loop {
             let queued = service.get("/v1/plans?state=queued").expect(200).json();
             if let Some(id) = queued["plans"][0]["id"].as_str() {
                 break id.to_owned();
             }
-            std::thread::sleep(Duration::from_millis(10));
+            pause();
         };
         let cancel = Request::new("POST", &format!("/v1/plans/{id}/cancel"));
         service.send(&cancel).expect(200);
@@ -266,13 +265,13 @@ fn who_waits_for_a_job_that_is_cancelled_is_told_that_it_has_ended() {
             (&json!(id), &json!("cancelled"))
         );
     });
-    // The same request again has nothing to wait for.
+    // The same request again does not wait.
     let again = service.send(&submission).expect(200);
     assert_eq!(again.json()["state"], "cancelled");
 }
 
 #[test]
-fn a_deleted_job_is_gone_and_a_running_one_is_abandoned() {
+fn deleting_a_running_job_cancels_it() {
     let service = Service::start();
     let id = service.submit(&large());
     let next = service.submit(&small());

@@ -1,11 +1,11 @@
-//! Requests that no route takes, all answered with problem details.
+//! Refused requests are answered with problem details.
 
 use crate::client::Request;
 use crate::running::{Service, large, small};
 use serde_json::{Value, json};
 
 #[test]
-fn what_is_no_request_is_refused_in_one_form() {
+fn every_error_is_a_problem_document() {
     let service = Service::start_with(&["--max-body-bytes", "2000", "--max-targets", "2"]);
     let post = || Request::new("POST", "/v1/plans").header("Content-Type", "application/json");
     let cases = [
@@ -56,7 +56,7 @@ fn a_body_of_too_many_values_is_refused_before_it_is_read() {
     let service = Service::start();
     let limits = service.get("/v1/limits").expect(200).json();
     let most = limits["max_body_values"].as_u64().expect("a number");
-    // With the list itself there are as many values as there may be, then one more.
+    // As many values as allowed, the list included; then one more.
     let zeros = |count: u64| format!("[{}0]", "0,".repeat(usize::try_from(count).unwrap() - 2));
     for (values, status, code) in [
         (most, 422, "invalid_input"),
@@ -95,7 +95,7 @@ fn more_problems_than_are_listed_are_counted() {
 }
 
 #[test]
-fn a_limit_that_is_exceeded_is_named() {
+fn exceeded_limits_are_named() {
     let service = Service::start_with(&["--max-targets", "3"]);
     for (path, body) in [
         ("plans", large()),
@@ -137,7 +137,7 @@ fn authorities_of(scenario: &Value) -> Value {
 }
 
 #[test]
-fn a_full_queue_says_when_to_come_again() {
+fn a_full_queue_answers_with_retry_after() {
     let service = Service::start_with(&["--queue-limit", "1"]);
     let running = service.submit(&large());
     service.wait(&running, |job| job["state"] == "running");

@@ -8,7 +8,13 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A running service; it ends with the value.
+/// Time between two looks at what another process does.
+#[expect(clippy::disallowed_methods, reason = "polls another process")]
+pub(crate) fn pause() {
+    std::thread::sleep(Duration::from_millis(10));
+}
+
+/// A running service; it is killed when it is dropped.
 pub(crate) struct Service {
     child: Child,
     pub(crate) address: String,
@@ -72,7 +78,7 @@ impl Service {
         request.send(&self.address)
     }
 
-    /// Submits a scenario; the identifier of its job.
+    /// Submits a scenario and returns the identifier of its job.
     pub(crate) fn submit(&self, scenario: &Value) -> String {
         let answer = self.post("/v1/plans", scenario).expect(202);
         let id = answer.json()["id"]
@@ -96,7 +102,7 @@ impl Service {
                 return job;
             }
             assert!(begin.elapsed() < Duration::from_mins(2), "still {job}");
-            std::thread::sleep(Duration::from_millis(10));
+            pause();
         }
     }
 
@@ -111,7 +117,7 @@ impl Service {
         self.child.wait().expect("it ends");
     }
 
-    /// Asks the service to end; whether it did so without complaint.
+    /// Sends SIGTERM; whether the service exited with success.
     pub(crate) fn terminate(&mut self) -> bool {
         let sent = Command::new("kill")
             .arg(self.child.id().to_string())
@@ -123,7 +129,7 @@ impl Service {
 
 impl Drop for Service {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The service may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -143,8 +149,8 @@ pub(crate) fn small() -> Value {
     fixture("two-targets.json")
 }
 
-/// A scenario that goes on until it is stopped: many targets near each other, of which good orders
-/// abound, and short legs, which couple most.
+/// A scenario whose search runs until it is stopped: many close targets have many orders of similar
+/// time, and their short legs have loose bounds.
 pub(crate) fn large() -> Value {
     let mut scenario = fixture("olivares-c.json");
     let targets = (0..48_u8).map(|number| {

@@ -5,7 +5,7 @@ use crate::running::{Service, small};
 use serde_json::json;
 
 #[test]
-fn the_scenario_of_a_job_is_what_was_submitted() {
+fn the_scenario_of_a_job_is_returned_as_submitted() {
     let service = Service::start();
     let id = service.submit(&small());
     let path = format!("/v1/plans/{id}/scenario");

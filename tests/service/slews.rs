@@ -18,7 +18,7 @@ fn quarter() -> Value {
 }
 
 #[test]
-fn a_slew_is_solved_and_flown() {
+fn a_slew_is_solved_and_verified() {
     let service = Service::start();
     let answer = service.post("/v1/slews", &quarter()).expect(200).json();
     let slew = &answer["slews"][0];

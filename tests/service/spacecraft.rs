@@ -68,7 +68,7 @@ fn wrong_spacecraft_and_unknown_names_are_refused() {
 }
 
 #[test]
-fn a_damaged_spacecraft_is_no_fault_of_who_refers_to_it() {
+fn a_damaged_spacecraft_is_an_internal_error() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("damaged.db");
     let mut service = Service::on(&database, &[]);
@@ -88,7 +88,7 @@ fn a_damaged_spacecraft_is_no_fault_of_who_refers_to_it() {
     }
 }
 
-/// Cuts off the stored spacecraft.
+/// Truncates the stored spacecraft.
 fn damage(database: &Path) {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {

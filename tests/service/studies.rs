@@ -14,7 +14,7 @@ fn study(shares: &[(f64, f64)]) -> Value {
     })
 }
 
-/// Where the problems of a refused request are.
+/// Pointers of the problems of a refused request.
 fn places(problem: &Value) -> Vec<&str> {
     let errors = problem["errors"].as_array().expect("a list");
     let pointers = errors.iter().filter_map(|error| error["pointer"].as_str());
@@ -22,7 +22,7 @@ fn places(problem: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn smaller_shares_take_longer_and_are_flown_as_often_as_asked() {
+fn smaller_shares_take_longer_and_are_simulated_as_often_as_requested() {
     let service = Service::start();
     let body = study(&[(1.0, 1.0), (0.8, 0.8)]);
     let answer = service
@@ -45,7 +45,7 @@ fn smaller_shares_take_longer_and_are_flown_as_often_as_asked() {
 }
 
 #[test]
-fn problems_of_scenario_and_study_have_their_places() {
+fn problems_of_scenario_and_study_have_pointers() {
     let service = Service::start();
     let mut body = study(&[(1.5, 1.0)]);
     body["scenario"]["spacecraft"]["wheels"][0]["max_torque_nm"] = json!(-1);
@@ -82,7 +82,7 @@ fn a_stored_spacecraft_has_envelopes_and_slews_within_them() {
     let answer = service.post(path, &study).expect(200).json();
     assert_eq!(answer["complete"], true);
     let turn = &answer["turns"][0];
-    // Without wheels to spare the pseudo-inverse is the only way, and both optima are one.
+    // With three wheels the allocation is unique, so that both optima are equal.
     let times = [0, 1].map(|i| {
         turn["time_optimal"][i]["duration_s"]
             .as_f64()
@@ -125,7 +125,7 @@ fn the_published_comparison_is_repeated_over_http() {
 }
 
 #[test]
-fn a_flight_is_flown_over_http() {
+fn a_flight_is_simulated_over_http() {
     let service = Service::start();
     let mut body = json!({
         "scenario": small(),
@@ -150,7 +150,7 @@ fn a_flight_is_flown_over_http() {
 }
 
 #[test]
-fn a_flight_with_gains_beyond_all_numbers_is_lost_and_says_so() {
+fn a_flight_with_excessive_gains_is_reported_as_lost() {
     let service = Service::start();
     let gains = json!({"kind": "settling_time", "settling_time_s": 5e-324});
     let study = json!({

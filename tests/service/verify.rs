@@ -1,4 +1,4 @@
-//! Verification of plans made by anyone.
+//! Verification of plans of any origin.
 
 use crate::client::Request;
 use crate::running::{Service, small};
@@ -25,7 +25,7 @@ fn a_plan_of_the_service_passes_and_a_damaged_one_does_not() {
 }
 
 #[test]
-fn what_cannot_be_flown_is_refused_with_pointers() {
+fn plans_that_cannot_be_propagated_are_refused_with_pointers() {
     let service = Service::start();
     let problem = service.post("/v1/verify", &json!({"scenario": small()}));
     assert_eq!(

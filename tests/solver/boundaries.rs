@@ -1,5 +1,5 @@
-//! Every kind of condition at the ends of a slew and every set of limits, one case each: a plan is
-//! found and passes its verification.
+//! Every kind of condition at the ends of a leg and every set of limits, one case each: a plan is found
+//! and passes its verification.
 
 use slewplan_solver::model::plan::{Outcome, Plan};
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
@@ -10,11 +10,11 @@ use slewplan_tests::solving::{agree, on_threads, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, pyramid_spec, target, wheel};
 
 /// A condition of a rate component, by its bounds.
-type Bounds = (Option<f64>, Option<f64>);
-const ZERO: Bounds = (Some(0.0), Some(0.0));
-const BOUNDED: Bounds = (Some(-0.004), Some(0.006));
-const PRESCRIBED: Bounds = (Some(0.005), Some(0.005));
-const FREE: Bounds = (None, None);
+type RateBounds = (Option<f64>, Option<f64>);
+const ZERO: RateBounds = (Some(0.0), Some(0.0));
+const BOUNDED: RateBounds = (Some(-0.004), Some(0.006));
+const PRESCRIBED: RateBounds = (Some(0.005), Some(0.005));
+const FREE: RateBounds = (None, None);
 
 /// The published spacecraft with a target but no end; with stored momentum or without.
 fn published(momentum: bool) -> ScenarioSpec {
@@ -38,7 +38,7 @@ fn to_an_end(momentum: bool) -> ScenarioSpec {
     spec
 }
 
-/// What is wrong with a case; `None` when it flies.
+/// Name and outcome of a case without a verified plan.
 fn fault(name: &str, spec: &ScenarioSpec) -> Option<String> {
     let scenario = scenario_of(spec);
     match on_threads(1, |run| planner::solve(&scenario, run)) {
@@ -47,7 +47,7 @@ fn fault(name: &str, spec: &ScenarioSpec) -> Option<String> {
     }
 }
 
-fn assert_all_fly(cases: &[(String, ScenarioSpec)]) {
+fn assert_all_are_verified(cases: &[(String, ScenarioSpec)]) {
     let faults: Vec<_> = cases
         .iter()
         .filter_map(|(name, spec)| fault(name, spec))
@@ -69,11 +69,11 @@ fn every_condition_of_every_rate_component_is_met() {
             }
         }
     }
-    assert_all_fly(&cases);
+    assert_all_are_verified(&cases);
 }
 
-/// Legs whose ends leave or demand what their own conditions say: with four targets that permute
-/// the kinds every component has each kind at either end.
+/// With four targets that permute the kinds of conditions, every rate component has each kind at either
+/// end of some leg.
 #[test]
 fn legs_between_every_two_kinds_of_conditions_converge() {
     let kinds = [ZERO, BOUNDED, PRESCRIBED, FREE];
@@ -118,7 +118,7 @@ fn rates_at_start_and_end_are_met() {
             }
         }
     }
-    assert_all_fly(&cases);
+    assert_all_are_verified(&cases);
 }
 
 fn last_wheel_speeds(plan: &Plan) -> Vec<f64> {
@@ -129,7 +129,7 @@ fn last_wheel_speeds(plan: &Plan) -> Vec<f64> {
 #[test]
 fn wheel_speeds_at_the_end_are_met() {
     for momentum in [false, true] {
-        // Three wheels: the only speeds there are.
+        // With three wheels the speeds at the end follow from the momentum.
         let mut spec = to_an_end(momentum);
         let free = plan_of(&spec);
         spec.end.as_mut().expect("an end").wheel_speed_rad_s = Some(last_wheel_speeds(&free));
@@ -137,7 +137,7 @@ fn wheel_speeds_at_the_end_are_met() {
         assert!(agree(free.total_time_s, held.total_time_s, 1e-4));
     }
     for share in [0.0, 0.3, 0.9] {
-        // Four wheels: null-space momentum is to spare.
+        // With four wheels the null-space momentum can be chosen.
         let mut spec = pyramid_spec();
         spec.end = Some(StateSpec {
             attitude: spec.targets[0].attitude.clone(),
@@ -153,7 +153,7 @@ fn wheel_speeds_at_the_end_are_met() {
         let speeds = last_wheel_speeds(&plan);
         assert!((speeds[0] - share * 314.0).abs() <= 1e-4, "{speeds:?}");
     }
-    // Four wheels with stored momentum: the spare momentum is shifted from where it would end.
+    // Four wheels with stored momentum: the null-space momentum is shifted from its free end value.
     let mut spec = pyramid_spec();
     spec.start.wheel_speed_rad_s = Some(vec![60.0, 20.0, -30.0, 10.0]);
     let attitude = spec.targets[0].attitude.clone();
@@ -176,9 +176,9 @@ fn wheel_speeds_at_the_end_are_met() {
 }
 
 #[test]
-fn any_number_of_wheels_of_any_size_flies() {
+fn plans_with_3_to_17_wheels_of_different_sizes_are_verified() {
     let mut cases = Vec::new();
-    // Up to eight, and as many as can be enabled.
+    // Up to eight wheels, and the greatest number that can be enabled.
     for count in (3..=8_u32).chain([17]) {
         for momentum in [false, true] {
             let mut generator = Generator::new(u64::from(count));
@@ -196,11 +196,11 @@ fn any_number_of_wheels_of_any_size_flies() {
             cases.push((format!("{count} wheels, momentum {momentum}"), spec));
         }
     }
-    assert_all_fly(&cases);
+    assert_all_are_verified(&cases);
 }
 
 #[test]
-fn any_subset_of_limits_is_kept() {
+fn plans_under_every_subset_of_limits_are_verified() {
     let mut cases = Vec::new();
     for subset in 0..32_u32 {
         let has = |bit: u32| subset & (1 << bit) != 0;
@@ -215,11 +215,11 @@ fn any_subset_of_limits_is_kept() {
         }
         cases.push((format!("limits {subset:05b}"), spec));
     }
-    assert_all_fly(&cases);
+    assert_all_are_verified(&cases);
 }
 
 #[test]
-fn wheels_that_begin_near_their_limits_fly() {
+fn plans_that_start_near_wheel_speed_limits_are_verified() {
     let mut cases = Vec::new();
     for share in [0.9, 0.99, 1.0] {
         let mut spec = published(false);
@@ -232,7 +232,7 @@ fn wheels_that_begin_near_their_limits_fly() {
         spec.start.wheel_speed_rad_s = Some(vec![limit, 0.0, 0.0, 0.0]);
         cases.push((format!("one of four at {share}"), spec));
     }
-    assert_all_fly(&cases);
+    assert_all_are_verified(&cases);
 }
 
 #[test]
@@ -254,15 +254,16 @@ fn half_a_revolution_is_the_same_plan_for_any_number_of_threads() {
         assert!(one.verification.passed);
         assert_eq!(one.flight, three.flight);
         assert_eq!(one.flight, again.flight);
-        // The sign of the quaternion breaks no tie.
+        // The sign of the quaternion does not decide between equal plans.
         spec.targets[0].attitude = AttitudeSpec::Quaternion(quaternion.map(|c| -c));
         assert_eq!(one.flight, plan_of(&spec).flight);
     }
 }
 
-/// From a pocket satellite to a station, from milliseconds to hours, from 1e-7 rad to half a turn.
+/// Inertias of 0.01 to 1e5 kg m², durations from milliseconds to hours, turns from 1e-7 rad to half a
+/// turn.
 #[test]
-fn slews_of_every_size_fly() {
+fn legs_of_every_scale_are_verified() {
     let mut cases = Vec::new();
     for inertia in [0.01, 1.0, 100.0, 1e5] {
         for acceleration in [1e-6_f64, 1e-2, 10.0] {
@@ -296,5 +297,5 @@ fn slews_of_every_size_fly() {
             }
         }
     }
-    assert_all_fly(&cases);
+    assert_all_are_verified(&cases);
 }

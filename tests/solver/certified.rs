@@ -1,4 +1,4 @@
-//! Certified bounds hold for every slew that is flown, and say how good a plan is.
+//! Certified bounds hold for every leg and plan, and bound the gap of a plan.
 
 use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;
@@ -14,7 +14,8 @@ use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
 use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec};
 use std::sync::Mutex;
 
-/// What a flight may exceed limits by, relative: so much may it be faster than a bound.
+/// Relative excess over limits within the checker's tolerance: by as much a leg may be faster than its
+/// bound.
 const ROUNDING: f64 = 2e-6;
 
 fn table(spec: &ScenarioSpec, kind: LegKind) -> Vec<LegRow> {
@@ -160,7 +161,7 @@ fn a_certified_table_is_that_of_the_solved_legs() {
 /// Wheels on any axes, any inertia, limits of the norm, locked wheels at rest, prescribed and bounded
 /// and free rates at the target.
 #[test]
-fn no_random_leg_is_faster_than_its_bound() {
+fn random_legs_are_not_faster_than_their_bounds() {
     let mut bounded = 0;
     for seed in 0..24 {
         let mut generator = Generator::new(500 + seed);
@@ -172,7 +173,7 @@ fn no_random_leg_is_faster_than_its_bound() {
             ..ScenarioSpec::default()
         };
         let plan = plan_of(&spec);
-        // Without limits of speeds and rates there is no box.
+        // Without limits of wheel speeds and body rates there is no box of rates.
         let body = &spec.spacecraft;
         let limited = body
             .wheels
@@ -188,7 +189,7 @@ fn no_random_leg_is_faster_than_its_bound() {
                 bound <= duration * (1.0 + ROUNDING),
                 "seed {seed}: {bound} {duration}"
             );
-            // Weak for wheels on any axes, but not nothing.
+            // The bound is weak for wheels on arbitrary axes, but positive.
             assert!(bound >= 0.25 * duration, "seed {seed}: {bound} {duration}");
             bounded += 1;
         }
@@ -198,7 +199,7 @@ fn no_random_leg_is_faster_than_its_bound() {
 
 /// Momentum, locked wheels that turn, limits of the norm, asymmetric torques, windows of rates.
 #[test]
-fn no_ordinary_plan_is_faster_than_its_bounds() {
+fn plans_of_ordinary_spacecraft_are_not_faster_than_their_bounds() {
     for seed in 0..60 {
         let targets = 1 + usize::try_from(seed % 3).expect("few");
         let plan = plan_of(&conditioned(4000 + seed, targets, 3.0));
@@ -206,21 +207,21 @@ fn no_ordinary_plan_is_faster_than_its_bounds() {
     }
 }
 
-/// Keeps what is told while legs are solved.
+/// Records the progress reports while legs are solved.
 #[derive(Default)]
-struct Bounds(Mutex<Vec<Progress>>);
+struct ProgressRecord(Mutex<Vec<Progress>>);
 
-impl Observer for Bounds {
+impl Observer for ProgressRecord {
     fn progress(&self, progress: Progress) {
         self.0.lock().expect("no panic").push(progress);
     }
 }
 
 #[test]
-fn a_bound_is_told_before_any_leg_is_solved_and_no_thread_changes_it() {
+fn a_bound_is_reported_before_any_leg_is_solved_whatever_the_number_of_threads() {
     let scenario = scenario_of(&published_targets_spec(&["a", "c", "g"]));
     let told = [1, 2].map(|threads| {
-        let (pool, observer) = (pool(threads), Bounds::default());
+        let (pool, observer) = (pool(threads), ProgressRecord::default());
         let run = Run {
             pool: &pool,
             stop: &StopSignal::new(),
@@ -231,7 +232,7 @@ fn a_bound_is_told_before_any_leg_is_solved_and_no_thread_changes_it() {
         let plan = planned(planner::solve(&scenario, run));
         let told = observer.0.into_inner().expect("no panic");
         assert_eq!((told[0].stage, told[0].done), (Stage::Legs, 0));
-        // Nothing is known at the very beginning.
+        // The first report has no bound yet.
         assert_eq!(told[0].lower_bound_s, None);
         assert_eq!((told[1].stage, told[1].done), (Stage::Legs, 0));
         let bounds = told[1..].iter().map(|progress| progress.lower_bound_s);

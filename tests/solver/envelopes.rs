@@ -5,7 +5,7 @@ use slewplan_solver::model::spec::{AttitudeSpec, PairSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::WheelAllocation;
-use slewplan_studies::eigenaxis::Limit;
+use slewplan_studies::eigenaxis::EnvelopeLimit;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{
     EnvelopeOptionsSpec, EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MAX_DEMANDS,
@@ -25,7 +25,7 @@ fn thesis() -> EnvelopeStudySpec {
         options: EnvelopeOptionsSpec::default(),
         turns: vec![PairSpec {
             from: AttitudeSpec::default(),
-            // With the sign that would mean the long way round.
+            // With the sign of the longer turn, which the study does not take.
             to: AttitudeSpec::Quaternion([-S * sin_half, 0.0, -C * sin_half, -0.5]),
         }],
         demands_nm: vec![[2.0 * S * 0.0857, 0.0, 2.0 * C * 0.0857]],
@@ -40,7 +40,7 @@ fn report(spec: &EnvelopeStudySpec) -> EnvelopeReport {
 }
 
 #[test]
-fn the_published_slew_in_all_its_ways() {
+fn the_published_slew_has_its_durations_and_shares_of_the_envelopes() {
     let report = report(&thesis());
     assert!(report.complete);
     let [turn] = &report.turns[..] else {
@@ -48,7 +48,7 @@ fn the_published_slew_in_all_its_ways() {
     };
     assert!((turn.vector.norm() - 120.0_f64.to_radians()).abs() < 1e-12);
     let limits = turn.eigenaxis.iter().map(|(slew, _)| slew.limit);
-    assert!(limits.eq(Limit::ALL));
+    assert!(limits.eq(EnvelopeLimit::ALL));
     let about = |limit: usize| turn.eigenaxis[limit].0.course.duration();
     assert!((about(1) - 51.57).abs() < 0.01 && (about(3) - 38.27).abs() < 0.01);
     let [free, shared] = &turn.time_optimal[..] else {
@@ -60,7 +60,7 @@ fn the_published_slew_in_all_its_ways() {
     println!("free {free} s, by the pseudo-inverse {shared} s");
     assert!((free - 38.27).abs() < 0.01);
     assert!(*shared < about(1) - 3.0 && *shared > free + 5.0);
-    // One goes where no pseudo-inverse does, the other stays where it does.
+    // The first exceeds the pseudo-inverse envelope, the second stays within it.
     let most = |path: &EnvelopePath| {
         let momentum = path.momentum.iter().map(|sample| sample.momentum);
         let torque = path.torque.iter().map(|step| step.torque);
@@ -98,7 +98,7 @@ fn without_a_speed_limit_there_are_paths_of_torque_only() {
 }
 
 #[test]
-fn a_stop_leaves_out_what_takes_time() {
+fn a_stop_leaves_out_the_optimised_slews() {
     let stop = StopSignal::new();
     stop.cancel();
     let (study, _) = EnvelopeStudy::try_new(&thesis()).expect("a valid study");
@@ -108,7 +108,7 @@ fn a_stop_leaves_out_what_takes_time() {
 }
 
 #[test]
-fn every_problem_is_named_with_its_place() {
+fn all_problems_of_a_study_have_their_pointers() {
     let mut spec = thesis();
     spec.spacecraft.wheels[2].max_torque_nm = -1.0;
     spec.options.momentum_authority = 1.5;
@@ -137,7 +137,7 @@ fn every_problem_is_named_with_its_place() {
 }
 
 #[test]
-fn what_no_number_holds_is_refused() {
+fn requests_whose_results_overflow_are_refused() {
     let at = |change: fn(&mut EnvelopeStudySpec)| {
         let mut spec = thesis();
         change(&mut spec);

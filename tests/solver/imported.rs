@@ -1,75 +1,67 @@
-//! Legs that were solved elsewhere: taken bit for bit when they fly, refused when they do not.
+//! Legs that were solved elsewhere: taken bit for bit when they pass verification, otherwise refused.
 
+use slewplan_solver::model::motion::Motion;
 use slewplan_solver::model::spec::{AttitudeEquivalence, ScenarioSpec};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
-use slewplan_solver::tour::planner::{ImportedLeg, LegCheck, Run, Shard, leg_table};
+use slewplan_solver::tour::planner::{LegCheck, Run, Shard, leg_table};
 use slewplan_tests::random::Generator;
-use slewplan_tests::schedules::{Rates, Region, schedule};
+use slewplan_tests::schedules::{RateConditions, Region, schedule};
 use slewplan_tests::solving::{on_threads, pool, scenario_of};
 use slewplan_tests::suite;
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-/// What makes a leg one that does not fly.
-type Spoil = fn(&mut ImportedLeg);
+/// A change of a leg that makes it fail its verification.
+type Spoil = fn(&mut Motion);
 
 const WHOLE: Shard = Shard { index: 0, of: 1 };
 
 #[derive(Default)]
-struct Memory(Mutex<HashMap<String, StoredLeg>>);
+struct LegMemory(Mutex<HashMap<String, StoredLeg>>);
 
-impl LegStore for Memory {
+impl LegStore for LegMemory {
     fn get(&self, _: &str) -> Option<StoredLeg> {
         None
     }
 
     fn put(&self, identity: &str, leg: &StoredLeg) {
-        let mut legs = self.0.lock().expect("nobody panics");
+        let mut legs = self.0.lock().expect("not poisoned");
         legs.insert(identity.to_owned(), leg.clone());
     }
 }
 
 /// All solved legs of a scenario.
 fn solved(spec: &ScenarioSpec, kind: LegKind) -> HashMap<String, StoredLeg> {
-    let (scenario, memory) = (scenario_of(spec), Memory::default());
+    let (scenario, memory) = (scenario_of(spec), LegMemory::default());
     on_threads(2, |run| {
         let legs = &memory;
         leg_table(&scenario, kind, WHOLE, Run { legs, ..run })
     });
-    memory.0.into_inner().expect("nobody panics")
+    memory.0.into_inner().expect("not poisoned")
 }
 
-fn imported(leg: &StoredLeg) -> ImportedLeg {
-    ImportedLeg {
-        attitudes_xyzw: leg.attitudes_xyzw.clone(),
-        wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
-        lengths_s: leg.lengths_s.clone(),
-        solve_time_s: leg.solve_time_s,
-    }
-}
-
-/// What becomes of a leg that is imported for a scenario.
+/// The result of importing a leg for a scenario.
 fn judged(
     spec: &ScenarioSpec,
     kind: LegKind,
     identity: &str,
-    leg: ImportedLeg,
+    leg: &StoredLeg,
 ) -> Result<StoredLeg, Vec<String>> {
     let (scenario, pool, stop) = (scenario_of(spec), pool(1), StopSignal::new());
     let wanted = |other: &str| other == identity;
-    let check = LegCheck::new(&scenario, kind, &wanted, (&pool, &stop)).expect("nobody stops it");
-    check.check(identity, leg)
+    let check = LegCheck::new(&scenario, kind, &wanted, (&pool, &stop)).expect("not stopped");
+    check.check(identity, leg.motion.clone(), leg.solve_time_s)
 }
 
 fn quaternions() -> ScenarioSpec {
-    let mut spec = schedule(Region::Sphere, Rates::ZeroAboutZ, 4, 3);
+    let mut spec = schedule(Region::Sphere, RateConditions::ZeroAboutZ, 4, 3);
     spec.options.attitude_equivalence = AttitudeEquivalence::Quaternion;
     spec
 }
 
 #[test]
-fn what_the_solver_found_is_taken_as_it_is() {
+fn a_solved_leg_is_imported_unchanged() {
     let random = (0..6).map(|seed| Generator::new(seed).single_slews());
     let arrays = [1, 6, 15].map(|spacecraft| suite::leg(spacecraft, 1));
     let scenarios = random.chain(arrays).chain([quaternions()]);
@@ -77,7 +69,7 @@ fn what_the_solver_found_is_taken_as_it_is() {
     for (number, spec) in scenarios.enumerate() {
         for kind in [LegKind::RestToRest, LegKind::LowerBound] {
             for (identity, leg) in solved(&spec, kind) {
-                let taken = judged(&spec, kind, &identity, imported(&leg));
+                let taken = judged(&spec, kind, &identity, &leg);
                 assert_eq!(taken.as_ref(), Ok(&leg), "scenario {number}, {kind:?}");
                 count += 1;
             }
@@ -87,8 +79,8 @@ fn what_the_solver_found_is_taken_as_it_is() {
 }
 
 #[test]
-fn what_does_not_fly_is_refused_with_a_reason() {
-    let spec = schedule(Region::Sphere, Rates::AllZero, 2, 1);
+fn a_leg_that_fails_verification_is_refused_with_a_reason() {
+    let spec = schedule(Region::Sphere, RateConditions::AllZero, 2, 1);
     let kind = LegKind::RestToRest;
     let legs = solved(&spec, kind);
     let (identity, leg) = legs
@@ -100,13 +92,13 @@ fn what_does_not_fly_is_refused_with_a_reason() {
             leg.lengths_s.iter_mut().for_each(|length| *length *= 1.001);
         }),
         ("the end is missed", |leg| {
-            // Twice as fast: with torques within their limits the wheels do not follow.
+            // Twice as fast: torques are cut to their limits, so that the wheels do not reach the momenta.
             leg.lengths_s.iter_mut().for_each(|length| *length *= 0.5);
             let momenta = leg.wheel_momenta_nms.iter_mut().flatten();
             momenta.for_each(|momentum| *momentum *= 2.0);
         }),
         ("eigenaxis", |leg| {
-            // Twice as slow: it flies, but is no minimum.
+            // Twice as slow: within all limits, but not a minimum.
             leg.lengths_s.iter_mut().for_each(|length| *length *= 2.0);
             let momenta = leg.wheel_momenta_nms.iter_mut().flatten();
             momenta.for_each(|momentum| *momentum *= 0.5);
@@ -137,13 +129,13 @@ fn what_does_not_fly_is_refused_with_a_reason() {
         ("negative", |leg| leg.lengths_s[1] = -1.0),
     ];
     for (reason, spoil) in cases {
-        let mut spoilt = imported(leg);
-        spoil(&mut spoilt);
-        let faults = judged(&spec, kind, identity, spoilt).expect_err(reason);
+        let mut spoilt = leg.clone();
+        spoil(&mut spoilt.motion);
+        let faults = judged(&spec, kind, identity, &spoilt).expect_err(reason);
         assert!(faults.join("; ").contains(reason), "{reason}: {faults:?}");
     }
     let other = legs.keys().find(|key| *key != identity).expect("another");
-    assert!(judged(&spec, kind, other, imported(leg)).is_err());
-    let unknown = judged(&spec, kind, "another problem", imported(leg));
+    assert!(judged(&spec, kind, other, leg).is_err());
+    let unknown = judged(&spec, kind, "another problem", leg);
     assert!(unknown.expect_err("unknown")[0].contains("no such leg"));
 }

@@ -1,4 +1,4 @@
-//! What cannot be flown, and the corners of what can.
+//! Infeasible scenarios, and the limits of feasible ones.
 
 use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::model::problem::Code;
@@ -33,8 +33,8 @@ fn optimal(spec: &ScenarioSpec) -> Plan {
 /// the wheel's speed limit allows, and the same backwards.
 fn turn_about_z(angle: f64) -> f64 {
     let (inertia, wheel): (f64, f64) = (9.63, 0.000_169);
-    // No momentum in all: at the rate w the wheel has the speed J w / I against the body, and its
-    // torque moves what is left of the body without it.
+    // The total momentum is zero: at the rate w the wheel has the speed J w / I relative to the body, and
+    // its torque accelerates the inertia without its own.
     let acceleration = 0.0101 / (inertia - wheel);
     let fastest = (wheel * 710.0 / inertia).min(0.04);
     if angle < fastest * fastest / acceleration {
@@ -45,7 +45,7 @@ fn turn_about_z(angle: f64) -> f64 {
 }
 
 #[test]
-fn a_rest_that_the_wheels_cannot_hold_is_named() {
+fn a_target_whose_momentum_the_wheels_cannot_hold_is_reported() {
     let mut spec = visits([
         target("held", [10.0, 0.0, 0.0]),
         target("lost", [0.0, 0.0, 45.0]),
@@ -64,7 +64,7 @@ fn a_rest_that_the_wheels_cannot_hold_is_named() {
 }
 
 #[test]
-fn two_targets_at_one_rest_cost_no_more_than_one() {
+fn two_targets_at_the_same_rest_take_no_longer_than_one() {
     let (a, again) = ([15.0, 0.0, 10.0], "again");
     let b = target("b", [25.0, 0.0, 50.0]);
     let once = optimal(&visits([target("a", a), b.clone()]));
@@ -74,7 +74,7 @@ fn two_targets_at_one_rest_cost_no_more_than_one() {
 }
 
 #[test]
-fn two_targets_at_one_passage_cost_no_more_than_one() {
+fn two_targets_at_the_same_passage_take_no_longer_than_one() {
     let (a, again) = ([15.0, 0.0, 10.0], "again");
     let b = passing("b", [25.0, 0.0, 50.0]);
     let once = optimal(&visits([passing("a", a), b.clone()]));
@@ -84,7 +84,7 @@ fn two_targets_at_one_passage_cost_no_more_than_one() {
 }
 
 #[test]
-fn a_target_at_the_start_costs_nothing() {
+fn a_target_at_the_start_takes_no_time() {
     let b = target("b", [25.0, 0.0, 50.0]);
     let here = target("here", [0.0; 3]);
     let direct = optimal(&visits([b.clone()]));
@@ -116,7 +116,7 @@ fn an_end_needs_no_target() {
 }
 
 #[test]
-fn a_half_turn_is_flown_either_way_round() {
+fn a_half_turn_takes_the_same_time_in_either_direction() {
     let half = |z: f64| TargetSpec {
         attitude: AttitudeSpec::Quaternion([0.0, 0.0, z, 0.0]),
         ..target("half", [0.0; 3])
@@ -130,13 +130,13 @@ fn a_half_turn_is_flown_either_way_round() {
 fn a_tiny_turn_takes_its_analytic_time() {
     let angle: f64 = 1e-5;
     let time = optimal(&visits([target("near", [0.0, 0.0, angle.to_degrees()])])).total_time_s;
-    // Turns about three axes at once buy nothing for so small an angle.
+    // For so small an angle rotation about other axes saves no time.
     assert!(agree(time, turn_about_z(angle), 1e-3), "{time} s");
 }
 
 #[test]
-fn a_slew_that_no_motion_was_found_for_is_named_with_its_place() {
-    // All wheels at their limits in one direction: there is no room to turn.
+fn a_leg_without_a_solution_is_reported_with_its_pointer() {
+    // All wheels are at their limits in one direction, so that no turn is possible.
     let mut spec = visits([
         passing("near", [15.0, 0.0, 10.0]),
         passing("far", [25.0, 0.0, 50.0]),
@@ -158,10 +158,10 @@ fn a_slew_that_no_motion_was_found_for_is_named_with_its_place() {
 }
 
 #[test]
-fn attitudes_on_the_way_that_the_wheels_cannot_hold_are_named() {
+fn attitudes_between_targets_that_the_wheels_cannot_hold_are_reported() {
     let mut spec = visits([target("beyond", [90.0, 0.0, 0.0])]);
     spec.start.wheel_speed_rad_s = Some(vec![650.0; 3]);
-    // So slowly the body carries little of what two wheels had to share half way there.
+    // At so low a rate the body carries little of the momentum that two wheels had to share half way.
     spec.spacecraft.max_body_rate_rad_s = [Some(0.002); 3];
     let outcome = outcome_of(&spec);
     let Outcome::Failed(problems) = outcome else {

@@ -1,4 +1,4 @@
-//! What must not change an answer.
+//! Changes of a description that must not change the plan.
 
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::{Flight, Plan};
@@ -22,7 +22,7 @@ fn quaternion_of(attitude: &Attitude) -> AttitudeSpec {
     AttitudeSpec::Quaternion(attitude.xyzw())
 }
 
-/// All of a plan but the work it was.
+/// A plan without its statistics.
 fn answer(plan: &Plan) -> impl PartialEq + std::fmt::Debug {
     let flight: Flight = plan.flight.clone();
     let figures = [plan.total_time_s, plan.lower_bound_s, plan.relative_gap];
@@ -38,7 +38,7 @@ fn answer(plan: &Plan) -> impl PartialEq + std::fmt::Debug {
 }
 
 #[test]
-fn the_sign_of_a_quaternion_is_no_part_of_a_rotation() {
+fn the_sign_of_a_quaternion_does_not_change_a_plan() {
     let spec = lopsided_spec();
     let mut negated = spec.clone();
     let targets = scenario_of(&spec).targets().to_vec();
@@ -57,7 +57,7 @@ fn the_sign_of_a_quaternion_is_no_part_of_a_rotation() {
 }
 
 #[test]
-fn the_number_of_threads_changes_no_bit_of_the_answer() {
+fn the_number_of_threads_does_not_change_a_bit_of_the_plan() {
     let scenario = scenario_of(&published_targets_spec(&["a", "b", "e", "h"]));
     let [one, two, three] =
         [1, 2, 3].map(|count| planned(on_threads(count, |run| planner::solve(&scenario, run))));
@@ -66,7 +66,7 @@ fn the_number_of_threads_changes_no_bit_of_the_answer() {
 }
 
 #[test]
-fn the_order_of_the_list_of_targets_changes_no_duration() {
+fn the_order_of_the_list_of_targets_does_not_change_the_duration() {
     let spec = lopsided_spec();
     let mut turned = spec.clone();
     turned.targets.rotate_left(1);
@@ -104,7 +104,7 @@ fn relabelled(spec: &ScenarioSpec) -> ScenarioSpec {
 }
 
 #[test]
-fn the_names_of_the_body_axes_change_no_duration() {
+fn relabelled_body_axes_do_not_change_the_duration() {
     let mut spec = lopsided_spec();
     spec.spacecraft.max_body_rate_rad_s = [Some(0.03), Some(0.04), None];
     spec.targets[0].zero_rate_axes = Some([true, false, true]);
@@ -115,9 +115,9 @@ fn the_names_of_the_body_axes_change_no_duration() {
 }
 
 #[test]
-fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
-    // The enabled x wheel holds what the locked one has, so that there is no momentum in all; it has
-    // a tenth of its speeds left for turns to one side.
+fn a_leg_with_a_spinning_locked_wheel_has_different_durations_in_both_directions() {
+    // The enabled x wheel holds the opposite of the locked one's momentum, so that the total is zero; in
+    // one direction a tenth of its speed range is left.
     let mut spec = published_targets_spec(&["a", "b"]);
     let locked = WheelSpec {
         enabled: false,
@@ -138,7 +138,7 @@ fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
         let row = rows.iter().find(|row| row.from == from && row.to == to);
         row.and_then(|row| row.duration_s).expect("a leg")
     });
-    // By a solver that knows nothing of canonical legs.
+    // By the solver of single slews, which has no canonical legs.
     let [slew_forth, slew_back] = [[0, 1], [1, 0]].map(|[from, to]| {
         let state = |attitude: &AttitudeSpec| StateSpec {
             attitude: attitude.clone(),
@@ -152,7 +152,7 @@ fn a_leg_past_a_locked_wheel_that_turns_takes_its_own_time_in_each_direction() {
         };
         let slew = Slew::try_new(&slew).expect("valid").slew;
         let outcome = slew::solve(&slew, &StopSignal::new());
-        assert!(outcome.solved, "{:?}", outcome.flown.failures);
+        assert!(outcome.solved, "{:?}", outcome.propagated.failures);
         outcome.time_s
     });
     assert!(agree(forth, slew_forth, 1e-3), "{forth} {slew_forth}");

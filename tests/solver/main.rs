@@ -1,11 +1,11 @@
-//! What the solver promises, through its public interface only.
+//! Behaviour of the solver through its public interface.
 
 mod arrays;
 mod boundaries;
 mod certified;
+mod closed_loop;
 mod envelopes;
 mod fixed_order;
-mod flown;
 mod imported;
 mod infeasible;
 mod invariance;

@@ -1,4 +1,4 @@
-//! Branch and bound against all orders, flown one by one; ninety more of these cases are in the program
+//! Branch and bound against the solution of all orders; ninety more cases are in the example
 //! `order_oracle`.
 
 use slewplan_tests::orders::{

@@ -1,12 +1,12 @@
-//! Fixed places and precedences of targets.
+//! Fixed positions and precedences of targets.
 
 use slewplan_solver::model::plan::{Optimality, Plan};
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, fly_order};
+use slewplan_solver::tour::planner::{BoundFrom, OrderError, every_order, solve_order};
 use slewplan_tests::solving::{agree, on_threads, order_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, published_targets_spec};
 
-/// Experiment A with c second, and d after both b and f: neither of its best orders.
+/// Experiment A with c second, and d after both b and f, which its best orders do not keep.
 fn ruled_spec() -> ScenarioSpec {
     let mut spec = experiment_a_spec();
     spec.targets[2].position = Some(2);
@@ -31,7 +31,7 @@ fn experiment_a_under_rules_is_the_best_of_the_orders_that_keep_them() {
     assert!(keeps_the_rules(&order_of(&plan)), "{}", order_of(&plan));
     assert_eq!(plan.optimality, Optimality::Optimal);
     assert!(plan.verification.passed && plan.total_time_s > free.total_time_s + 1.0);
-    // The certified bound is one of the orders under rules too.
+    // The certified bound takes the rules into account too.
     let certified = plan.certified_lower_bound_s.expect("a proved bound");
     assert!(Some(certified) > free.certified_lower_bound_s && certified <= plan.total_time_s);
     for other in &plan.alternatives {
@@ -48,7 +48,7 @@ fn experiment_a_under_rules_is_the_best_of_the_orders_that_keep_them() {
 }
 
 #[test]
-fn every_place_alone_is_kept() {
+fn every_fixed_position_is_kept() {
     for (target, place) in (0..3).flat_map(|target| (1..=3).map(move |place| (target, place))) {
         let mut spec = published_targets_spec(&["a", "b", "e"]);
         spec.targets[target].position = Some(place);
@@ -65,14 +65,14 @@ fn every_place_alone_is_kept() {
 #[test]
 fn a_given_order_has_to_keep_the_rules() {
     let scenario = scenario_of(&ruled_spec());
-    let fly = |order: &str| {
+    let solve = |order: &str| {
         let order = indices(order);
         on_threads(2, |run| {
-            fly_order(&scenario, &order, BoundFrom::Certificates, run)
+            solve_order(&scenario, &order, BoundFrom::Certificates, run)
         })
     };
     for wrong in ["cabfde", "acdbfe", "acfdbe"] {
-        assert_eq!(fly(wrong).err(), Some(OrderError::NotAdmitted), "{wrong}");
+        assert_eq!(solve(wrong).err(), Some(OrderError::NotAdmitted), "{wrong}");
     }
-    assert!(fly("acbfde").is_ok());
+    assert!(solve("acbfde").is_ok());
 }

@@ -1,4 +1,4 @@
-//! Ordinary spacecraft: whatever the wheels can hold, a plan is found that flies.
+//! Ordinary spacecraft: every scenario whose momentum the wheels can hold has a verified plan.
 
 use slewplan_solver::model::plan::{Optimality, Outcome};
 use slewplan_solver::tour::legs::LegKind;
@@ -11,16 +11,16 @@ const LEGS: u64 = 400;
 const TOURS: u64 = 60;
 /// Tours with conditions of every kind.
 const CONDITIONED: u64 = 40;
-/// How much larger the largest wheel is than the smallest, at most.
+/// Greatest ratio of the largest to the smallest wheel.
 const SPREAD: f64 = 3.0;
 const WILD_SPREAD: f64 = 1000.0;
 
 #[test]
-fn every_leg_is_solved_and_flies() {
+fn every_leg_is_solved_and_verified() {
     let mut constructed = Vec::new();
     for seed in 0..LEGS {
         let scenario = scenario_of(&scenario(seed, 1, SPREAD));
-        // From the start to the target; the checker flies what the table lists.
+        // The leg from the start to the target; the checker verifies what the table lists.
         let there = Shard { index: 0, of: 2 };
         let (rows, _) = on_threads(1, |run| {
             planner::leg_table(&scenario, LegKind::LowerBound, there, run)
@@ -42,7 +42,7 @@ fn every_leg_is_solved_and_flies() {
 }
 
 #[test]
-fn every_tour_is_planned_and_flies() {
+fn every_tour_is_planned_and_verified() {
     for seed in 0..TOURS {
         let targets = 2 + usize::try_from(seed % 5).expect("few");
         let spec = scenario(1000 + seed, targets, SPREAD);
@@ -71,7 +71,7 @@ fn conditions_of_every_kind_are_met_with_momentum_and_limits() {
 }
 
 #[test]
-fn wheels_of_very_different_size_are_flown_too() {
+fn scenarios_with_wheels_of_very_different_sizes_are_solved() {
     for seed in 0..20 {
         let mut spec = scenario(
             2000 + seed,

@@ -1,7 +1,7 @@
 //! Published cases: the scheduling experiments A and C, and the pyramid of four wheels.
 //!
-//! The published durations of the experiments rest on two intervals per leg and cannot be flown;
-//! the figures here are those of the same problems solved on fine grids.
+//! The published durations of the experiments are for two intervals per leg, with which the motion
+//! violates its conditions; the numbers here are those of the same problems on fine grids.
 
 use slewplan_solver::model::plan::{Optimality, Plan, Statistics};
 use slewplan_solver::model::spec::{AttitudeEquivalence, ScenarioSpec};
@@ -12,7 +12,7 @@ use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spe
 
 const BOTH_WAYS: [&str; 2] = ["abcdef", "fedcba"];
 
-fn assert_flown_within_tolerances(plan: &Plan) {
+fn assert_verified_within_tolerances(plan: &Plan) {
     let found = &plan.verification;
     assert!(found.passed, "{found:?}");
     assert!(found.max_attitude_error_rad <= 1e-6, "{found:?}");
@@ -40,13 +40,13 @@ fn duration(rows: &[LegRow], from: &str, to: &str) -> f64 {
 }
 
 #[test]
-fn experiment_a_is_solved_proven_and_flown() {
+fn experiment_a_is_solved_proved_and_verified() {
     let plan = plan_of(&experiment_a_spec());
     assert!(BOTH_WAYS.contains(&order_of(&plan).as_str()));
     assert!(plan.total_time_s <= 468.0, "{}", plan.total_time_s);
     assert_eq!(plan.optimality, Optimality::Optimal);
     assert!(plan.relative_gap.abs() <= f64::EPSILON);
-    assert_flown_within_tolerances(&plan);
+    assert_verified_within_tolerances(&plan);
     assert_saves_against_rest(&plan);
     assert_work_adds_up(&plan.statistics);
     let last = plan.statistics.history.last().expect("a last entry");
@@ -54,12 +54,13 @@ fn experiment_a_is_solved_proven_and_flown() {
     assert!((last.lower_bound_s - plan.lower_bound_s).abs() <= 0.0);
 }
 
-/// Each slew is fastest alone from rest to rest, and the tour is faster still.
+/// Legs from rest to rest take no longer than eigenaxis turns, and the tour is 1 to 3 % shorter than their
+/// sum.
 fn assert_saves_against_rest(plan: &Plan) {
     let mut all_at_rest = 0.0;
     for leg in &plan.legs {
         let rest = leg.rest_to_rest_duration_s.expect("a solved slew");
-        let turn = leg.eigenaxis_duration_s.expect("a flyable turn");
+        let turn = leg.eigenaxis_duration_s.expect("a feasible turn");
         assert!(rest <= turn * (1.0 + 1e-6), "{leg:?}");
         all_at_rest += rest;
     }
@@ -96,7 +97,7 @@ fn experiment_a_with_signed_quaternions_goes_the_published_targets_in_turn() {
         "{}",
         plan.total_time_s
     );
-    assert_flown_within_tolerances(&plan);
+    assert_verified_within_tolerances(&plan);
     assert_passes_with_the_signs_as_given(&spec, &plan);
 
     let others: Vec<String> = plan
@@ -161,7 +162,7 @@ fn all_pairs_of_experiment_c_are_solved_alike_both_ways_and_next_to_their_bounds
         assert!((time - back).abs() <= 1e-9 * time, "{row:?}");
         let bound = row.certified_lower_bound_s.expect("a proved bound");
         shares.push(bound / time);
-        // Every pair of targets is met twice, every pair with the start once.
+        // Every pair of targets occurs twice, every pair with the start once.
         sum += if row.from == "start" {
             time
         } else {
@@ -184,5 +185,5 @@ fn all_pairs_of_experiment_c_are_solved_alike_both_ways_and_next_to_their_bounds
 fn the_pyramid_turns_by_120_degrees_in_the_known_time() {
     let plan = plan_of(&pyramid_spec());
     assert!(plan.total_time_s <= 38.4, "{}", plan.total_time_s);
-    assert_flown_within_tolerances(&plan);
+    assert_verified_within_tolerances(&plan);
 }

@@ -1,12 +1,12 @@
-//! The published pyramid of four wheels: random slews against the published curve, and the way of a
-//! slew through the envelopes.
+//! The published pyramid of four wheels: random slews against the published curve, and the path of a
+//! slew within the envelopes.
 
 use slewplan_solver::math::bang_coast_bang::BangCoastBang;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::spec::{AttitudeSpec, PairSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_studies::comparison::{Control, Radii};
+use slewplan_studies::comparison::{PyramidControl, Radii};
 use slewplan_studies::eigenaxis::Baselines;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{EnvelopeOptionsSpec, EnvelopeStudy, EnvelopeStudySpec};
@@ -25,8 +25,8 @@ fn random_attitude(generator: &mut Generator) -> Attitude {
     Attitude::from_xyzw(components).expect("not all components are zero")
 }
 
-/// The time on a published curve, s, that has these radii for all directions.
-fn on_curve(control: Control, angle: f64, torque: f64) -> f64 {
+/// Duration, s, on a published curve, which has the radii of a control in all directions.
+fn on_curve(control: PyramidControl, angle: f64, torque: f64) -> f64 {
     let radius = Radii::PUBLISHED.of(control);
     let acceleration = radius.torque * torque / INERTIA;
     let rate = radius.momentum * MOMENTUM / INERTIA;
@@ -49,12 +49,12 @@ fn random_slew(generator: &mut Generator, torque: f64) -> (f64, ScenarioSpec) {
     (from.angle_to(&Attitude::identity()), spec)
 }
 
-/// The greatest share that a slew takes of the time on the curve of the spheres.
+/// The greatest ratio of a slew's duration to that on the curve.
 fn worst_share(torque: f64) -> f64 {
     let mut generator = Generator::new(175);
     let shares = (0..SLEWS).map(|_| {
         let (angle, spec) = random_slew(&mut generator, torque);
-        let curve = on_curve(Control::Optimal, angle, torque);
+        let curve = on_curve(PyramidControl::Optimal, angle, torque);
         let share = plan_of(&spec).total_time_s / curve;
         if share > 0.99 {
             println!(
@@ -82,7 +82,7 @@ fn random_slews_with_the_torque_of_the_published_figure_lie_on_or_below_its_curv
 }
 
 #[test]
-fn random_slews_by_the_pseudo_inverse_lie_about_the_published_curve() {
+fn random_slews_by_the_pseudo_inverse_lie_near_the_published_curve() {
     let mut generator = Generator::new(175);
     let turns = [(); SLEWS / 2].map(|()| PairSpec {
         from: AttitudeSpec::Quaternion(random_attitude(&mut generator).xyzw()),
@@ -107,7 +107,7 @@ fn random_slews_by_the_pseudo_inverse_lie_about_the_published_curve() {
         let about = turn.eigenaxis[1].0.course.duration();
         let slack = 1.0 + 1e-4;
         assert!(free <= shared * slack && shared <= about * slack);
-        let curve = on_curve(Control::PseudoOptimal, turn.vector.norm(), 0.0857);
+        let curve = on_curve(PyramidControl::PseudoOptimal, turn.vector.norm(), 0.0857);
         shared / curve
     });
     let shares: Vec<f64> = shares.collect();
@@ -118,7 +118,7 @@ fn random_slews_by_the_pseudo_inverse_lie_about_the_published_curve() {
 }
 
 #[test]
-fn a_time_optimal_slew_goes_where_no_pseudo_inverse_does() {
+fn a_time_optimal_slew_exceeds_the_pseudo_inverse_envelope() {
     let spec = pyramid_spec();
     let scenario = scenario_of(&spec);
     let spacecraft = scenario.spacecraft();

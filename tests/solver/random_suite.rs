@@ -1,4 +1,4 @@
-//! Every leg of the random suite is solved and flies.
+//! Every leg of the random suite is solved and verified.
 
 use slewplan_solver::model::plan::Outcome;
 use slewplan_solver::tour::planner;
@@ -13,7 +13,7 @@ fn failure(spacecraft: u64, number: u64) -> Option<String> {
         Outcome::Planned(plan) if plan.verification.passed => {
             let leg = &plan.legs[0];
             let bound = leg.certified_lower_bound_s.unwrap_or(0.0);
-            // As much as a flight may exceed limits by.
+            // The checker's relative tolerance of limits.
             (bound > leg.duration_s * (1.0 + 2e-6))
                 .then(|| format!("spacecraft {spacecraft}, leg {number}: {leg:?}"))
         }
@@ -41,9 +41,9 @@ fn every_leg_of_the_random_suite_converges_and_is_verified() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// Long intervals that turn by little and are bent by stored momentum all the same: how finely
-/// they must be integrated does not follow from their turns.
+/// Long intervals with small turns whose motion is curved by stored momentum: the number of integration
+/// steps that they need does not follow from the turns.
 #[test]
-fn momentum_that_bends_slow_motions_is_integrated_finely_enough() {
+fn slow_motions_with_stored_momentum_are_integrated_accurately() {
     assert_eq!(failure(12, 6), None);
 }

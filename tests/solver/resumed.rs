@@ -1,32 +1,32 @@
-//! A search that begins again with what another one had solved: the same plan for less work.
+//! A resumed search with the segments of an interrupted one: the same plan for less work.
 
 use slewplan_solver::model::plan::Outcome;
 use slewplan_solver::model::problem::Code;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::tour::legs::{SegmentStore, StoredSegment};
 use slewplan_solver::tour::planner::{self, Run};
-use slewplan_tests::schedules::{Rates, Region, schedule};
+use slewplan_tests::schedules::{RateConditions, Region, schedule};
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
-/// Keeps the first segments, as a process does that is killed.
+/// A store that keeps only the first segments, as after an interruption.
 #[derive(Default)]
-struct Memory {
+struct SegmentMemory {
     segments: Mutex<HashMap<String, StoredSegment>>,
     most: usize,
     /// How often a segment was found.
     found: AtomicUsize,
 }
 
-impl Memory {
+impl SegmentMemory {
     fn segments(&self) -> MutexGuard<'_, HashMap<String, StoredSegment>> {
-        self.segments.lock().expect("nobody panics")
+        self.segments.lock().expect("not poisoned")
     }
 }
 
-impl SegmentStore for Memory {
+impl SegmentStore for SegmentMemory {
     fn get(&self, name: &str) -> Option<StoredSegment> {
         let found = self.segments().get(name).cloned()?;
         self.found.fetch_add(1, Ordering::Relaxed);
@@ -42,11 +42,11 @@ impl SegmentStore for Memory {
 }
 
 fn eight_targets() -> Scenario {
-    scenario_of(&schedule(Region::Strip, Rates::ZeroAboutZ, 8, 1))
+    scenario_of(&schedule(Region::Strip, RateConditions::ZeroAboutZ, 8, 1))
 }
 
 /// The plan with all of its numbers, and how many programs of several legs it took.
-fn solved(memory: &Memory) -> (String, u64) {
+fn solved(memory: &SegmentMemory) -> (String, u64) {
     let scenario = eight_targets();
     let mut plan = on_threads(2, |run| {
         let segments = memory;
@@ -57,21 +57,21 @@ fn solved(memory: &Memory) -> (String, u64) {
 }
 
 #[test]
-fn what_was_solved_is_not_solved_again_and_the_plan_is_the_same() {
-    let all = Memory {
+fn stored_segments_are_not_solved_again_and_give_the_same_plan() {
+    let all = SegmentMemory {
         most: usize::MAX,
-        ..Memory::default()
+        ..SegmentMemory::default()
     };
     let (cold, solves) = solved(&all);
     let count = all.segments().len();
     assert!(count > 20, "{count} segments in {solves} programs");
     assert_eq!(all.found.load(Ordering::Relaxed), 0);
-    // Everything, and then what there was in the middle of the search.
+    // With all segments, and then with the first half of them.
     let (again, few) = solved(&all);
     assert_eq!((again, few), (cold.clone(), 0));
-    let half = Memory {
+    let half = SegmentMemory {
         most: count / 2,
-        ..Memory::default()
+        ..SegmentMemory::default()
     };
     assert_eq!(solved(&half).0, cold);
     let (resumed, fewer) = solved(&half);
@@ -80,16 +80,16 @@ fn what_was_solved_is_not_solved_again_and_the_plan_is_the_same() {
     assert!(4 * fewer < 3 * solves, "{fewer} programs after {solves}");
 }
 
-/// Whatever a store gives back, no plan leaves that does not fly.
+/// A plan from changed segments fails its verification.
 #[test]
-fn what_comes_back_changed_ends_in_a_failure_with_a_name() {
-    let memory = Memory {
+fn changed_segments_end_in_a_reported_failure() {
+    let memory = SegmentMemory {
         most: usize::MAX,
-        ..Memory::default()
+        ..SegmentMemory::default()
     };
     solved(&memory);
     for segment in memory.segments().values_mut() {
-        for length in &mut segment.lengths_s {
+        for length in &mut segment.motion.lengths_s {
             *length *= 0.9;
         }
     }

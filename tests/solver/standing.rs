@@ -1,5 +1,5 @@
-//! Slews between places of one attitude: rates and wheels change, the attitude comes back, or there
-//! is nothing to do at all.
+//! Legs between states of one attitude: rates or wheel speeds change and the attitude returns, or the leg
+//! has length zero.
 
 use slewplan_solver::model::plan::Outcome;
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, TargetSpec};
@@ -12,7 +12,7 @@ const TUMBLING: [f64; 3] = [0.002, -0.003, 0.004];
 /// Wheel speeds of the published spacecraft that store momentum, rad/s.
 const STORED: [f64; 3] = [120.0, -80.0, 100.0];
 
-/// The published spacecraft with nothing to do yet; with stored momentum or without.
+/// The published spacecraft without targets and end; with stored momentum or without.
 fn published(momentum: bool) -> ScenarioSpec {
     let mut spec = experiment_a_spec();
     spec.targets.clear();
@@ -21,7 +21,7 @@ fn published(momentum: bool) -> ScenarioSpec {
     spec
 }
 
-/// A target at the attitude of the start, rates free where nothing is asked.
+/// A target at the attitude of the start, with fixed or free rate components.
 fn here(id: &str, rates: [Option<f64>; 3]) -> TargetSpec {
     TargetSpec {
         rate_min_rad_s: Some(rates),
@@ -38,9 +38,9 @@ fn time_of(name: &str, spec: &ScenarioSpec) -> f64 {
     }
 }
 
-/// Braking from a rate `w` turns by `w² / 2a`, which is turned back by a bang-bang.
+/// Braking from a rate `w` turns by `w² / 2a`, which a bang-bang turn takes back.
 #[test]
-fn a_tumbling_spacecraft_comes_back_to_where_it_began() {
+fn a_tumbling_spacecraft_returns_to_its_initial_attitude() {
     for momentum in [false, true] {
         for as_target in [false, true] {
             let mut spec = published(momentum);
@@ -64,7 +64,7 @@ fn a_tumbling_spacecraft_comes_back_to_where_it_began() {
 }
 
 #[test]
-fn rates_are_taken_up_where_the_start_is() {
+fn reaching_a_rate_at_the_initial_attitude_takes_longer_than_the_change_of_rate() {
     for momentum in [false, true] {
         for rates in [
             [Some(0.005), None, None],
@@ -73,14 +73,14 @@ fn rates_are_taken_up_where_the_start_is() {
             let mut spec = published(momentum);
             spec.targets = vec![here("spinning", rates)];
             let time = time_of(&format!("momentum {momentum}, {rates:?}"), &spec);
-            // To swing back takes longer than to reach the rate at once.
+            // The attitude has to return, which takes longer than to reach the rate alone.
             assert!(time > 0.005 * 6.63 / 0.0101, "{time} s");
         }
     }
 }
 
 #[test]
-fn what_is_met_at_once_takes_no_time() {
+fn targets_that_the_start_meets_take_no_time() {
     let spinning = [Some(0.002), Some(-0.003), Some(0.004)];
     for momentum in [false, true] {
         for (rate, conditions) in [
@@ -100,7 +100,7 @@ fn what_is_met_at_once_takes_no_time() {
 }
 
 #[test]
-fn spare_momentum_is_shifted_where_the_start_is() {
+fn null_space_momentum_can_be_shifted_at_the_attitude_of_the_start() {
     let mut spec = pyramid_spec();
     spec.targets.clear();
     let shift = 30.0;
@@ -112,16 +112,16 @@ fn spare_momentum_is_shifted_where_the_start_is() {
     let least = shift * wheel.inertia_kg_m2 / wheel.max_torque_nm;
     let time = time_of("shifted", &spec);
     assert!(agree(time, least, 1e-4), "{time} s instead of {least} s");
-    // The other way: both ends have momentum, too.
+    // In the other direction, with momentum at both ends.
     spec.start.wheel_speed_rad_s = Some(vec![60.0, 20.0, -30.0, 10.0]);
     spec.end.as_mut().expect("an end").wheel_speed_rad_s = Some(vec![80.0, 0.0, -10.0, -10.0]);
     let time = time_of("shifted with momentum", &spec);
     assert!(agree(time, least * 2.0 / 3.0, 1e-4), "{time} s");
 }
 
-/// From no turn at all to one that the rate at the start decides.
+/// From a zero turn to one that the rate at the start dominates.
 #[test]
-fn the_smaller_the_turn_the_more_it_is_like_none() {
+fn the_duration_of_small_turns_tends_to_that_of_a_zero_turn() {
     let time = |angle: f64| {
         let mut spec = published(false);
         spec.start.body_rate_rad_s = Some(TUMBLING);
@@ -139,9 +139,9 @@ fn the_smaller_the_turn_the_more_it_is_like_none() {
     }
 }
 
-/// Several targets of one attitude under conditions of which some follow from others.
+/// Several targets of one attitude, some with conditions that imply those of others.
 #[test]
-fn targets_of_one_attitude_are_passed_together() {
+fn targets_of_one_attitude_with_compatible_conditions_are_passed_together() {
     let angles = [40.0, -20.0, 75.0];
     let twin = |id: &str, rates: [Option<f64>; 3]| TargetSpec {
         attitude: target(id, angles).attitude,
@@ -167,7 +167,7 @@ fn targets_of_one_attitude_are_passed_together() {
         let together = plan.total_time_s;
         assert!(agree(together, alone, 1e-4), "{together} s, {alone} s");
         assert!(plan.lower_bound_s <= together * (1.0 + 1e-9));
-        // One that has to be at rest is a stop of its own, or shares the stop of the others.
+        // A target that requires rest is a separate passage, or shares that of the others.
         spec.targets.push(target("e", angles));
         assert!(plan_of(&spec).total_time_s >= together * (1.0 - 1e-4));
     }

@@ -1,4 +1,4 @@
-//! Stop requests and limits: what is known so far is returned, and hardly any work is done after them.
+//! Stop requests and limits: the best result so far is returned, after hardly any further work.
 
 use slewplan_solver::model::plan::{Leg, Optimality, Outcome, Plan};
 use slewplan_solver::model::scenario::Scenario;
@@ -11,12 +11,12 @@ use slewplan_tests::solving::{on_threads, planned, pool, scenario_of};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Legs, and nodes of the search, that may be under way when a stop is requested: one per thread, and
-/// a round. Work is counted, because no time is promised on a machine with other work to do.
+/// Legs, and nodes of the search, that may be in progress when a stop is requested: one per thread, and
+/// one round. Work is counted instead of time, since the machine may be busy.
 const LEGS_UNDER_WAY: u64 = 2;
 const NODES_UNDER_WAY: u64 = 32;
 
-/// Seven targets of which many orders are nearly equal: long to search, short to tabulate.
+/// Seven targets with many orders of nearly equal durations: a long search with few legs.
 fn long_spec() -> ScenarioSpec {
     published_targets_spec(&["a", "c", "e", "g", "i", "k", "m"])
 }
@@ -37,7 +37,7 @@ impl Observer for StopsWhen<'_> {
     }
 }
 
-/// The outcome, and what had been done when the stop was requested.
+/// The outcome, and the work done when the stop was requested.
 fn stopped_when(scenario: &Scenario, met: fn(&Progress) -> bool) -> (Outcome, u64) {
     let (pool, stop) = (pool(2), StopSignal::new());
     let observer = StopsWhen {
@@ -65,14 +65,14 @@ fn assert_honest(plan: &Plan) {
 }
 
 #[test]
-fn a_stop_at_the_very_beginning_ends_empty() {
+fn a_stop_before_any_work_ends_without_a_plan() {
     let (outcome, done) = stopped_when(&scenario_of(&long_spec()), |_| true);
     assert!(matches!(outcome, Outcome::StoppedEmpty));
     assert_eq!(done, 0);
 }
 
 #[test]
-fn a_stop_among_the_first_legs_ends_with_a_first_plan_and_what_is_proved() {
+fn a_stop_among_the_first_legs_returns_a_first_plan_and_a_bound() {
     let (outcome, done) = stopped_when(&scenario_of(&long_spec()), |progress| {
         progress.stage == Stage::Legs && progress.done >= 3
     });
@@ -83,7 +83,7 @@ fn a_stop_among_the_first_legs_ends_with_a_first_plan_and_what_is_proved() {
 }
 
 #[test]
-fn a_stop_in_the_search_ends_with_the_best_plan_and_its_bound() {
+fn a_stop_in_the_search_returns_the_best_plan_and_its_bound() {
     let (outcome, done) = stopped_when(&scenario_of(&long_spec()), |progress| {
         progress.stage == Stage::Search && progress.incumbent_s.is_some()
     });
@@ -94,7 +94,7 @@ fn a_stop_in_the_search_ends_with_the_best_plan_and_its_bound() {
         "{explored} after {done}"
     );
     assert_honest(&plan);
-    // Nothing more is solved, only to be compared with.
+    // No leg is solved only for comparison after the stop.
     let compared = |leg: &Leg| leg.rest_to_rest_duration_s.is_some();
     assert!(!plan.legs.iter().any(compared));
 }

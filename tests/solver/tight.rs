@@ -1,4 +1,4 @@
-//! What must not change a duration at the tight accuracy setting.
+//! Changes of a description that must not change the duration at the tight accuracy setting.
 
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::spec::{Accuracy, AttitudeSpec, ScenarioSpec};
@@ -22,9 +22,9 @@ fn duration(spec: &ScenarioSpec) -> f64 {
     plan_of(spec).total_time_s
 }
 
-/// Inertia, wheels' inertia and torque together: the motion stays the same.
+/// Scaling inertia, wheels' inertia and torque together does not change the motion.
 #[test]
-fn the_unit_of_mass_changes_no_duration() {
+fn the_unit_of_mass_does_not_change_the_duration() {
     for (spacecraft, number) in LEGS {
         let spec = tight(spacecraft, number);
         let expected = duration(&spec);
@@ -68,7 +68,7 @@ fn turned(spec: &ScenarioSpec, turn: &Attitude) -> ScenarioSpec {
 }
 
 #[test]
-fn the_body_axes_of_the_description_change_no_duration() {
+fn turned_body_axes_do_not_change_the_duration() {
     let mut generator = Generator::new(41);
     for (spacecraft, number) in LEGS {
         let spec = tight(spacecraft, number);
@@ -86,7 +86,7 @@ fn the_body_axes_of_the_description_change_no_duration() {
 }
 
 #[test]
-fn the_direction_of_travel_changes_no_duration_without_momentum() {
+fn without_momentum_both_directions_of_a_leg_take_the_same_time() {
     // Three wheels: their momenta at rest are zero at either end.
     for (spacecraft, number) in [(0, 7), (0, 11), (8, 3), (8, 9)] {
         let spec = tight(spacecraft, number);

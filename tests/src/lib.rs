@@ -142,7 +142,7 @@ mod tests {
     use slewplan_solver::wheels::envelope::momentum_problems;
 
     #[test]
-    fn the_reference_scenarios_are_valid_without_doubts() {
+    fn the_reference_scenarios_are_valid_without_warnings() {
         for (spec, targets) in [
             (experiment_a_spec(), 6),
             (experiment_c_spec(), 18),

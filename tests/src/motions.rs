@@ -1,14 +1,14 @@
-//! Motions within a box of body rates, made without any knowledge of shortest ones but the costate.
+//! Motions within a box of body rates, generated independently of the kinematic bound.
 
 use crate::random::Generator;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Arcs at a constant rate: rad/s in body axes, and seconds.
-pub type Arcs = Vec<(Vector3<f64>, f64)>;
+pub type ConstantRateArcs = Vec<(Vector3<f64>, f64)>;
 
-/// How a motion was made.
+/// How a motion is generated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum MotionKind {
     /// Any rates, any times.
     Any,
     /// Rates in corners of the box, any times.
@@ -17,11 +17,11 @@ pub enum Kind {
     Dwell,
     /// An extremal, from any costate.
     Extremal,
-    /// An extremal whose costate stays near a body axis: many flips.
+    /// An extremal whose costate stays near a body axis: many switches.
     NearAxis,
 }
 
-impl Kind {
+impl MotionKind {
     /// All of them.
     pub const ALL: [Self; 5] = [
         Self::Any,
@@ -38,7 +38,7 @@ impl Kind {
     }
 }
 
-/// Where arcs lead from the identity.
+/// The attitude at the end of arcs from the identity.
 #[must_use]
 pub fn end_of(arcs: &[(Vector3<f64>, f64)]) -> UnitQuaternion<f64> {
     let all = arcs.iter().fold(
@@ -50,30 +50,30 @@ pub fn end_of(arcs: &[(Vector3<f64>, f64)]) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(all.into_inner())
 }
 
-/// A motion with `|w_i| <= rates_i` of at most so many radians at the length of `rates`, 4.5 or less
-/// for the longest that are worth while.
+/// A motion with `|w_i| <= rates_i` that turns by at most the given angle, rad, at the norm of `rates`;
+/// angles above 4.5 give no further shortest motions.
 pub fn motion(
     generator: &mut Generator,
-    kind: Kind,
+    kind: MotionKind,
     rates: Vector3<f64>,
     longest_rad: f64,
-) -> Arcs {
+) -> ConstantRateArcs {
     let total = generator.between(0.01, 1.0) * longest_rad / rates.norm();
     let corner = |generator: &mut Generator| {
         let signs = Vector3::from(generator.vector(-1.0, 1.0)).map(f64::signum);
         rates.component_mul(&signs)
     };
     match kind {
-        Kind::Any => (0..4)
+        MotionKind::Any => (0..4)
             .map(|_| {
                 let share = Vector3::from(generator.vector(-1.0, 1.0));
                 (rates.component_mul(&share), 0.25 * total)
             })
             .collect(),
-        Kind::Corners => (0..4)
+        MotionKind::Corners => (0..4)
             .map(|_| (corner(generator), generator.between(0.0, 0.4) * total))
             .collect(),
-        Kind::Dwell => (0..3)
+        MotionKind::Dwell => (0..3)
             .map(|arc| {
                 let mut rate = corner(generator);
                 if arc == 1 {
@@ -82,8 +82,8 @@ pub fn motion(
                 (rate, generator.between(0.0, 0.6) * total)
             })
             .collect(),
-        Kind::Extremal => extremal(rates, generator.vector(-1.0, 1.0).into(), total),
-        Kind::NearAxis => {
+        MotionKind::Extremal => extremal(rates, generator.vector(-1.0, 1.0).into(), total),
+        MotionKind::NearAxis => {
             let axis = Vector3::ith(generator.below(3), 1.0);
             let off = Vector3::from(generator.vector(-0.1, 0.1));
             extremal(rates, axis + off, total)
@@ -91,9 +91,10 @@ pub fn motion(
     }
 }
 
-/// Follows a costate, `M' = M x w`, `w_i = r_i sign(M_i)`, by small steps and bisection.
-fn extremal(rates: Vector3<f64>, mut costate: Vector3<f64>, total: f64) -> Arcs {
-    let mut arcs = Arcs::new();
+/// Integrates the costate equation `M' = M x w`, `w_i = r_i sign(M_i)`, in small steps with bisection at
+/// switches.
+fn extremal(rates: Vector3<f64>, mut costate: Vector3<f64>, total: f64) -> ConstantRateArcs {
+    let mut arcs = ConstantRateArcs::new();
     let mut left = total;
     let mut signs = costate.map(f64::signum);
     while left > 0.0 {

@@ -1,4 +1,4 @@
-//! Random scenarios of a few targets, searched and compared with all orders, flown one by one.
+//! Random scenarios of a few targets: the search compared with the solution of all orders.
 
 use crate::experiment_a_spec;
 use crate::random::Generator;
@@ -7,7 +7,7 @@ use slewplan_solver::model::plan::Optimality;
 use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::tour::planner::every_order;
 
-/// What a random scenario is to have; the seed decides the rest.
+/// Properties of a random scenario; the seed determines the rest.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each says whether a scenario has a trait"
@@ -30,7 +30,7 @@ pub struct Case {
     pub signed: bool,
 }
 
-/// Four targets of a mixture of conditions, with an end and nothing else.
+/// Four targets with mixed conditions and an end, without momentum, dwell or signs.
 pub const PLAIN: Case = Case {
     seed: 0,
     targets: 4,

@@ -1,9 +1,9 @@
 //! Ordinary spacecraft: rate limits for operations and momentum in the wheels.
 //!
 //! Bodies of 0.03 to 3000 kg m² with 3 to 8 wheels: orthogonal ones, pyramids and random arrays, wheels
-//! of one size or of several, torques that differ by their sign, a wheel that is locked; rate limits
-//! per axis and on the norm at 5 to 100 % of what the wheels can reach; stored momentum of up to 80 % of
-//! what the wheels hold in every direction.
+//! of one size or of several, torque limits that differ by sign, a locked wheel; rate limits per axis and
+//! on the norm at 5 to 100 % of the rates that the wheels can reach; stored momentum of up to 80 % of the
+//! momentum that the wheels hold in every direction.
 
 use crate::random::Generator;
 use crate::wheel;
@@ -14,20 +14,20 @@ use slewplan_solver::model::spec::{
 };
 use std::cell::Cell;
 
-/// Most momentum of the scenarios, as a share of what the wheels hold in every direction.
+/// Greatest momentum of the scenarios, as a share of that which the wheels hold in every direction.
 const MAX_STORED: f64 = 0.8;
-/// Most of a wheel's speed limit that its momentum takes at the start.
+/// Greatest wheel speed at the start, as a share of the limit.
 const MAX_SPEED: f64 = 0.98;
 
-/// Sum of the momenta, about the three axes, that the body has at a small rate about each, as a share of
-/// what the wheels hold in every direction.
+/// Sum of the body's momenta at a small rate about each of the three axes, as a share of the momentum that
+/// the wheels hold in every direction.
 const SMALL_RATE: f64 = 0.1;
 
-/// Most momentum of a locked wheel as a share of that.
+/// Greatest momentum of a locked wheel, as a share of the same.
 const LOCKED: f64 = 0.05;
 
-/// A scenario of an ordinary spacecraft with so many targets; `spread` is how much larger the largest
-/// wheel may be than the smallest.
+/// A scenario of an ordinary spacecraft with a number of targets; `spread` is the greatest ratio of the
+/// largest to the smallest wheel.
 #[must_use]
 pub fn scenario(seed: u64, targets: usize, spread: f64) -> ScenarioSpec {
     let mut generator = Generator::new(seed);
@@ -232,8 +232,8 @@ pub fn held_everywhere(wheels: &[&WheelSpec]) -> f64 {
     least
 }
 
-/// Momenta of the least weighted sum of squares that add up to a demand, N m s, each wheel weighed by
-/// what it can hold: `h = W A^T (A W A^T)^-1 d`.
+/// Momenta with the least weighted sum of squares that add up to a demand, N m s, with weights by the
+/// capacity of each wheel: `h = W A^T (A W A^T)^-1 d`.
 fn shared(wheels: &[&WheelSpec], demand: [f64; 3]) -> Option<Vec<f64>> {
     let mut gram = nalgebra::Matrix3::zeros();
     for wheel in wheels {

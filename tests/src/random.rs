@@ -7,8 +7,8 @@ use slewplan_solver::model::spec::{
 };
 use std::f64::consts::TAU;
 
-/// Smallest determinant of the best triple of unit wheel axes: arrays nearer to a plane are
-/// refused, because what they cannot do says nothing about the solver.
+/// Smallest determinant of the best triple of unit wheel axes: arrays nearer to a plane are not
+/// generated, since their infeasible scenarios do not test the solver.
 const MIN_SPAN: f64 = 0.3;
 
 /// Marsaglia's xorshift generator with a final multiplication.
@@ -19,7 +19,7 @@ impl Generator {
     /// A generator whose numbers follow from the seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        // The state must not be zero, and close seeds must not begin alike.
+        // The state must not be zero, and close seeds must give different numbers.
         let mut generator = Self(seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
         for _ in 0..8 {
             generator.next();
@@ -39,7 +39,7 @@ impl Generator {
         low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A positive number between two bounds, its logarithm without preference.
+    /// A positive number between two bounds with a uniform logarithm.
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -49,7 +49,7 @@ impl Generator {
         [(); 3].map(|()| self.between(low, high))
     }
 
-    /// One of the numbers below a count.
+    /// A natural number below a count.
     ///
     /// # Panics
     ///
@@ -59,12 +59,12 @@ impl Generator {
         usize::try_from(self.next() % count).expect("less than a count of things in memory")
     }
 
-    /// Yes or no.
+    /// True or false with equal probability.
     pub fn coin(&mut self) -> bool {
         self.below(2) == 0
     }
 
-    /// A direction without preference, length 1.
+    /// A unit vector, uniform over directions.
     pub fn direction(&mut self) -> [f64; 3] {
         let z = self.between(-1.0, 1.0);
         let (sin, cos) = self.between(0.0, TAU).sin_cos();
@@ -72,7 +72,7 @@ impl Generator {
         [radius * cos, radius * sin, z]
     }
 
-    /// A quaternion without preference.
+    /// A unit quaternion, uniform over attitudes.
     pub fn quaternion(&mut self) -> [f64; 4] {
         let share = self.between(0.0, 1.0);
         let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
@@ -85,8 +85,8 @@ impl Generator {
         ]
     }
 
-    /// A target anywhere, with one of the four kinds of rate conditions: rest, no rate about z,
-    /// none, and bounds.
+    /// A target at a random attitude with one of the four kinds of rate conditions: rest, no rate about
+    /// z, no condition, and bounds.
     pub fn target(&mut self, id: String, rate_kind: usize) -> TargetSpec {
         let bounds = rate_kind == 3;
         TargetSpec {
@@ -103,8 +103,8 @@ impl Generator {
         }
     }
 
-    /// A body of no particular shape with 3 to 6 wheels of no particular kind that hold some
-    /// momentum; where there is a wheel to spare, one may be locked while it turns.
+    /// A random body with 3 to 6 random wheels that hold some momentum; with more than three wheels one
+    /// may be locked while it spins.
     pub fn spacecraft(&mut self) -> (SpacecraftSpec, StateSpec) {
         let count = 3 + self.below(4);
         let locked = (count > 3 && self.coin()).then_some(count - 1);
@@ -180,7 +180,7 @@ impl Generator {
     }
 
     /// Principal moments between two bounds, kg m² (a body can have them when the upper is at most
-    /// twice the lower), about the body axes or turned anyhow.
+    /// twice the lower), about the body axes or about random ones.
     pub fn inertia(&mut self, low: f64, high: f64, turned: bool) -> [[f64; 3]; 3] {
         let moments = self.vector(low, high);
         let turn = if turned {
@@ -189,7 +189,7 @@ impl Generator {
             Attitude::identity()
         };
         let axes = turn.matrix();
-        // Mirrored entries are computed alike, so that the matrix is symmetric to the last bit.
+        // Mirrored entries are computed in the same way, so that the matrix is exactly symmetric.
         let entry = |i: usize, j: usize| {
             (0..3)
                 .map(|k| axes[(i.min(j), k)] * moments[k] * axes[(i.max(j), k)])
@@ -223,7 +223,7 @@ mod tests {
     use slewplan_solver::model::scenario::Scenario;
 
     #[test]
-    fn equal_seeds_make_equal_scenarios_and_others_differ() {
+    fn equal_seeds_give_equal_scenarios_and_different_seeds_different_ones() {
         let of = |seed| Generator::new(seed).single_slews();
         assert_eq!(of(7), of(7));
         assert_ne!(of(7), of(8));

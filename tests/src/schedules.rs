@@ -1,38 +1,38 @@
-//! Random schedules: many targets for the published spacecraft, in any number.
+//! Random schedules: any number of targets for the published spacecraft.
 //!
-//! Two kinds of places to be, each under two kinds of conditions on the rates there. A seed repeats
-//! a schedule exactly, and the targets of a shorter one are the first of a longer one.
+//! There are two regions of targets, each with two kinds of rate conditions. A seed gives the same
+//! schedule every time, and the targets of a shorter schedule are the first of a longer one.
 
 use crate::experiment_a_spec;
 use crate::random::Generator;
 use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
 
-/// Where the targets are.
+/// The region of the targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Region {
-    /// Anywhere: attitudes without preference.
+    /// Attitudes distributed uniformly.
     Sphere,
-    /// A strip on the ground below an orbit: clusters of places within 50 degrees before and behind
-    /// and 25 degrees to the sides, the camera's axis turned at will by up to 10 degrees.
+    /// A strip on the ground below an orbit: clusters within 50 degrees ahead and behind and 25 degrees
+    /// to the sides, turned about the camera's axis by up to 10 degrees.
     Strip,
 }
 
-/// What the rates must be at a target.
+/// Rate conditions at a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rates {
-    /// No turning at all.
+pub enum RateConditions {
+    /// All components are zero.
     AllZero,
-    /// None about the camera's axis, z.
+    /// The component about the camera's axis, z, is zero.
     ZeroAboutZ,
 }
 
-/// Targets of a cluster, and how far they are from its middle, degrees.
+/// Number of targets of a cluster, and their greatest distance from its middle, degrees.
 const CLUSTER: usize = 5;
 const CLUSTER_RADIUS_DEG: f64 = 6.0;
 
-/// So many targets for the published spacecraft, from the identity at rest and back there.
+/// A number of targets for the published spacecraft, from the identity at rest and back.
 #[must_use]
-pub fn schedule(region: Region, rates: Rates, targets: usize, seed: u64) -> ScenarioSpec {
+pub fn schedule(region: Region, rates: RateConditions, targets: usize, seed: u64) -> ScenarioSpec {
     let mut spec = experiment_a_spec();
     let mut generator = Generator::new(seed);
     let mut middle = [0.0; 2];
@@ -51,7 +51,8 @@ pub fn schedule(region: Region, rates: Rates, targets: usize, seed: u64) -> Scen
                     Region::Sphere => AttitudeSpec::Quaternion(generator.quaternion()),
                     Region::Strip => near(middle, &mut generator),
                 },
-                zero_rate_axes: (rates == Rates::ZeroAboutZ).then_some([false, false, true]),
+                zero_rate_axes: (rates == RateConditions::ZeroAboutZ)
+                    .then_some([false, false, true]),
                 ..TargetSpec::default()
             }
         })

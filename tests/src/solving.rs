@@ -1,4 +1,4 @@
-//! Short ways from a description to an outcome.
+//! From a description to an outcome in one call.
 
 use slewplan_solver::model::plan::{Outcome, Plan};
 use slewplan_solver::model::scenario::Scenario;
@@ -9,12 +9,12 @@ use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::planner::{self, Run};
 use std::num::NonZeroUsize;
 
-/// The scenario of a description without its wall-clock limit: what a test finds must not depend on
-/// the load of the machine.
+/// The scenario of a description without its time limit, so that results do not depend on the load of
+/// the machine.
 ///
 /// # Panics
 ///
-/// When the description is not valid, with all that is wrong.
+/// When the description is not valid, with all problems.
 #[must_use]
 pub fn scenario_of(spec: &ScenarioSpec) -> Scenario {
     let mut spec = spec.clone();
@@ -25,18 +25,18 @@ pub fn scenario_of(spec: &ScenarioSpec) -> Scenario {
     }
 }
 
-/// A pool of so many threads.
+/// A pool with a number of threads.
 ///
 /// # Panics
 ///
-/// When the threads cannot be started, or none are asked for.
+/// When the threads cannot be started, or their number is zero.
 #[must_use]
 pub fn pool(threads: usize) -> SolverPool {
     let threads = NonZeroUsize::new(threads).expect("at least one thread");
     SolverPool::new(Some(threads)).expect("threads can be started")
 }
 
-/// Calls with a run that nobody watches or stops, on so many threads.
+/// Calls with a run without observer, stop and store, on a number of threads.
 pub fn on_threads<R>(threads: usize, work: impl FnOnce(Run<'_>) -> R) -> R {
     let pool = pool(threads);
     work(Run {

@@ -1,5 +1,5 @@
-//! The random suite of legs: from a state at rest to one target at rest, on spacecraft of every
-//! make. Seeds repeat them exactly.
+//! The random suite of legs: from a state at rest to one target at rest, on random spacecraft. Seeds give
+//! the same legs every time.
 
 use crate::random::Generator;
 use crate::wheel;
@@ -12,19 +12,19 @@ use slewplan_solver::wheels::envelope::momentum_problems;
 
 /// Spacecraft of the suite.
 pub const SPACECRAFT: u64 = 20;
-/// Legs with each of them.
+/// Legs of each spacecraft.
 pub const LEGS_PER_SPACECRAFT: u64 = 15;
 /// Smallest turn of a leg, rad.
 const MIN_TURN: f64 = 1e-4;
 
 /// A leg of the suite, named after its seeds.
 ///
-/// The spacecraft's number decides what it has: 3 to 6 wheels; stored momentum or none; rate
+/// The number of the spacecraft determines its properties: 3 to 6 wheels; stored momentum or none; rate
 /// limits or none.
 ///
 /// # Panics
 ///
-/// When no wheel speeds are found with which the spacecraft can rest at the target.
+/// When no wheel speeds are found that the wheels can hold at the target.
 #[must_use]
 pub fn leg(spacecraft: u64, leg: u64) -> ScenarioSpec {
     let craft = craft(spacecraft);

@@ -4,6 +4,8 @@
 //! itself. Of a folder inside a room that has a line of its own, that line counts. Tests may use
 //! anything. `cargo test -p slewplan-tests --test structure -- --nocapture` prints what is used.
 
+mod pages;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -13,7 +15,9 @@ type Row = (&'static str, &'static [&'static str]);
 /// The solver, from the ground up.
 const SOLVER: &[Row] = &[
     ("math", &[]),
-    ("nlp", &["math"]),
+    // The signal to stop uses nothing, so that every loop may poll it.
+    ("run/stop", &[]),
+    ("nlp", &["math", "run::stop"]),
     ("model", &["math"]),
     ("run", &["model"]),
     ("wheels", &["math", "model"]),
@@ -30,7 +34,10 @@ const SOLVER: &[Row] = &[
             "model::attitude",
         ],
     ),
-    ("leg", &["bounds::kinematic", "math", "model", "nlp"]),
+    (
+        "leg",
+        &["bounds::kinematic", "math", "model", "nlp", "run::stop"],
+    ),
     ("slew", &["checker", "leg", "math", "model", "nlp", "run"]),
     ("simulation", &["checker", "math", "model", "run"]),
     (

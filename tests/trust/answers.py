@@ -75,8 +75,8 @@ def texts_of_tests():
 def every_failure_is_named(scale):
     """Every status and code is named by a test, and no number of an answer is not one."""
     tests, rows = texts_of_tests(), []
-    optimiser = (ROOT / "solver/src/nlp/settings.rs").read_text().partition("impl NlpStatus")[2].partition("\n}")[0]
-    statuses = re.findall(r'Self::(\w+)(?:\(_\))? => "(\w+)"', optimiser)
+    optimiser = (ROOT / "solver/src/nlp/status.rs").read_text().partition("impl NlpStatus")[2].partition("\n}")[0]
+    statuses = re.findall(r'(\w+)(?:\(_\))?\)? => "(\w+)"', optimiser)
     for what, codes in {
         "states of jobs": codes_of("server/src/store/rows.rs", "states! {\n    ///"),
         "codes of problems": codes_of("solver/src/model/problem.rs", "codes! {\n    ///"),

@@ -75,7 +75,7 @@ def example(name):
 
 def unit_test(name, **settings):
     """What a test of the server's own says while it passes; of one that fails, nothing."""
-    command = ["cargo", "test", "--quiet", "--locked", "--package", "slewplan-server", "--bin", "slewplan", name, "--", "--nocapture"]
+    command = ["cargo", "test", "--quiet", "--locked", "--package", "slewplan-server", "--lib", name, "--", "--nocapture"]
     environment = {**os.environ, **{key: str(value) for key, value in settings.items()}}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else ""

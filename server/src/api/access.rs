@@ -1,6 +1,6 @@
-//! Who may do what: the rule of every route, and the caller behind a request.
+//! Authorization: the rule of every route, and the client behind a request.
 //!
-//! A route without a rule is open to nobody where keys are asked for.
+//! Where keys are required, a route without a rule is closed.
 
 use super::error::{ApiError, ErrorCode};
 use super::{App, page};
@@ -15,34 +15,34 @@ use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether keys are asked for: of everybody alike, and once they are, for good.
+/// Whether requests need keys. Once they do, they do until the service ends.
 ///
-/// Without keys everybody may do everything; with them only who has one, and only with what is the
-/// client's own.
+/// Without keys every request is allowed. With keys a request needs one, and sees only the jobs and
+/// spacecraft of its client.
 #[derive(Debug, Clone)]
 pub(crate) struct Access(Arc<AtomicBool>);
 
 impl Access {
-    /// With keys or without.
+    /// Access with or without keys.
     pub(crate) fn new(asks_for_keys: bool) -> Self {
         Self(Arc::new(AtomicBool::new(asks_for_keys)))
     }
 
-    /// Whether keys are asked for.
+    /// Whether requests need keys.
     pub(crate) fn asks_for_keys(&self) -> bool {
         self.0.load(Ordering::SeqCst)
     }
 
-    /// Lets nobody in without a key from now on.
+    /// Requires keys from now on.
     pub(crate) fn ask_for_keys(&self) {
         self.0.store(true, Ordering::SeqCst);
     }
 }
 
-/// What a route asks for.
+/// The requirement of a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Rule {
-    /// Nothing: the answer tells nothing about anybody.
+    /// No key: the answer has no data of clients.
     Public,
     /// A key with this scope.
     Needs(Scope),
@@ -57,7 +57,7 @@ fn rule(method: &Method, route: &str) -> Option<Rule> {
             Some(Rule::Public)
         }
         _ if route.starts_with("/docs") => Some(Rule::Public),
-        // Cached legs tell about the spacecraft of all clients, and the plans of all rest on them.
+        // Cached legs reveal the spacecraft of all clients, and the plans of all clients use them.
         "/metrics" | "/v1/legs" | "/v1/legs/import" | "/v1/legs/{key}" => {
             Some(Rule::Needs(Scope::Operate))
         }
@@ -70,8 +70,7 @@ fn rule(method: &Method, route: &str) -> Option<Rule> {
     }
 }
 
-/// On whose behalf a request is made: a client, or nobody in particular where no keys are asked
-/// for.
+/// The client behind a request; none where no keys are required.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Caller(Option<String>);
 
@@ -81,8 +80,8 @@ impl Caller {
         self.0.as_deref()
     }
 
-    /// A name as it is stored, so that every client has names of its own. Neither clients nor names
-    /// contain the space.
+    /// The stored form of a name, distinct for every client. Neither clients nor names contain
+    /// spaces.
     pub(super) fn own(&self, name: &str) -> String {
         match &self.0 {
             Some(client) => format!("{client} {name}"),
@@ -99,8 +98,8 @@ impl FromRequestParts<App> for Caller {
     }
 }
 
-/// Lets a request pass that is allowed, and tells the handler who makes it. The job of another
-/// client is not there.
+/// Passes allowed requests on, with their [`Caller`]. A job of another client is answered as not
+/// found.
 pub(super) async fn authorize(
     State(app): State<App>,
     route: Option<MatchedPath>,
@@ -130,15 +129,15 @@ async fn examine(app: &App, route: &str, request: &Parts) -> Result<Caller, ApiE
     let found = app.store().key(&digest_of(key)).await?;
     let key = found
         .filter(|key| key.is_valid(now_us()))
-        .ok_or_else(|| unknown("the key is not one of this service, or is no longer valid"))?;
+        .ok_or_else(|| unknown("the key is unknown or no longer valid"))?;
     let Some(Rule::Needs(scope)) = rule else {
         return Err(ApiError::new(ErrorCode::NotFound, "there is nothing here"));
     };
     if !key.scopes()?.contain(scope) {
-        let detail = format!("the key has not the scope {}", scope.as_str());
+        let detail = format!("the key does not have the scope {}", scope.into_str());
         return Err(ApiError::new(ErrorCode::ScopeMissing, detail));
     }
-    // As it stands in the path: an identifier has nothing that must be escaped.
+    // Compared without decoding: identifiers have no characters that need escaping.
     let job = request.uri.path().strip_prefix("/v1/plans/");
     if let Some(id) = job.and_then(|rest| rest.split('/').next())
         && !app.store().owns(&key.client, id).await?

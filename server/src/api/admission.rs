@@ -1,4 +1,4 @@
-//! What the service takes on at all, whatever else a request says.
+//! Limits on the size of scenarios.
 
 use super::App;
 use super::error::{ApiError, ErrorCode};
@@ -6,7 +6,7 @@ use crate::documents::document::Node;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::tour::planner;
 
-/// Refuses more targets than the service plans.
+/// Refuses scenarios with too many targets.
 pub(super) fn check_targets(app: &App, count: usize) -> Result<(), ApiError> {
     let limit = app.limits().targets;
     if count <= limit {
@@ -16,7 +16,7 @@ pub(super) fn check_targets(app: &App, count: usize) -> Result<(), ApiError> {
     Err(ApiError::new(ErrorCode::TooManyTargets, detail))
 }
 
-/// The same before the scenario is read in full, which takes long with many targets.
+/// The same before the scenario is read, which takes long with many targets.
 pub(super) fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
     match scenario.member("targets") {
         Some(Node::List(targets)) => check_targets(app, targets.len()),
@@ -24,7 +24,7 @@ pub(super) fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
     }
 }
 
-/// Refuses to plan what may need more memory than a job has.
+/// Refuses scenarios that may need more memory than a job may take.
 pub(super) fn check_memory(app: &App, scenario: &Scenario) -> Result<(), ApiError> {
     let (needed, given) = (
         planner::memory_estimate(scenario),

@@ -1,5 +1,5 @@
-//! Work of a request away from the threads that serve requests: in turn, and, where it can be
-//! stopped, within a time and only while somebody waits.
+//! Runs the computations of requests on other threads than those that serve them: in turn, with a
+//! time limit, and stopped when the client disconnects.
 
 use super::App;
 use super::error::{ApiError, ErrorCode};
@@ -9,50 +9,55 @@ use tokio::task::{JoinError, JoinHandle, spawn_blocking};
 
 mod turns;
 
-use turns::Turn;
 pub(super) use turns::Turns;
+use turns::WorkTurn;
 
-/// Longest time that a request may wait for its turn, and compute, s.
+/// Longest time that a request may wait for its turn, and longest that it may compute, s.
 pub(super) const MAX_S: u64 = 60;
 pub(super) const LONGEST: Duration = Duration::from_secs(MAX_S);
-/// For work of which half is worth nothing.
+/// No time limit, for work without partial results.
 pub(super) const UNTIL_DONE: Duration = Duration::MAX;
-/// Flights that are integrated at once: there are not more cores to spare beside the solver.
+/// Number of flights integrated at once, beside the threads of the solver.
 const FLIGHTS: usize = 2;
 /// Longest wait for a turn to integrate a flight.
-const PATIENCE: Duration = Duration::from_secs(10);
+const INTEGRATION_WAIT: Duration = Duration::from_secs(10);
 
-/// Turns for what is computed on the solver's threads: one after another.
+/// Turns for computations on the solver's threads, one at a time.
 pub(super) fn solving() -> Turns {
     Turns::new(1, LONGEST, "other requests are being computed")
 }
 
-/// Turns for verifications and samples of flights.
-pub(super) fn flying() -> Turns {
-    Turns::new(FLIGHTS, PATIENCE, "other flights are being integrated")
+/// Turns for verifications and exports, which integrate flights.
+pub(super) fn integrating() -> Turns {
+    Turns::new(
+        FLIGHTS,
+        INTEGRATION_WAIT,
+        "other flights are being integrated",
+    )
 }
 
-/// Waits for its turn, then does the work; the signal is given when the time is up.
+/// Waits for a turn, then does the work; its stop signal is set when the time is up.
 pub(super) async fn in_turn<T: Send + 'static>(
     app: &App,
     longest: Duration,
     work: impl FnOnce(&StopSignal) -> T + Send + 'static,
 ) -> Result<T, ApiError> {
     let turn = app.0.solving.take().await?;
-    watched(app, Some(turn), (StopSignal::new(), longest), work).await
+    watched(app, Some(turn), StopSignal::new(), longest, work).await
 }
 
-/// Does the work now, with a signal that may have been given already.
+/// Does the work now, with a stop signal that may be set already.
 pub(super) async fn at_once<T: Send + 'static>(
     app: &App,
-    limits: (StopSignal, Duration),
+    stop: StopSignal,
+    longest: Duration,
     work: impl FnOnce(&StopSignal) -> T + Send + 'static,
 ) -> Result<T, ApiError> {
-    watched(app, None, limits, work).await
+    watched(app, None, stop, longest, work).await
 }
 
-/// Waits for a turn to integrate a flight, then does it to the end: no signal can stop it.
-pub(super) async fn flown<T: Send + 'static>(
+/// Waits for a turn to integrate a flight, then integrates it to the end without a time limit.
+pub(super) async fn integrated<T: Send + 'static>(
     turns: &Turns,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, ApiError> {
@@ -64,8 +69,9 @@ pub(super) async fn flown<T: Send + 'static>(
 
 async fn watched<T: Send + 'static>(
     app: &App,
-    turn: Option<Turn>,
-    (stop, longest): (StopSignal, Duration),
+    turn: Option<WorkTurn>,
+    stop: StopSignal,
+    longest: Duration,
     work: impl FnOnce(&StopSignal) -> T + Send + 'static,
 ) -> Result<T, ApiError> {
     let _guard = StopOnDrop(stop.clone());
@@ -80,10 +86,10 @@ async fn watched<T: Send + 'static>(
     finished.map_err(|error| failed(&error))
 }
 
-/// Starts the work. A turn ends with the work, not with the request, which ends early when its
-/// caller hangs up: what goes on for nobody takes as much of the machine.
+/// Starts the work. The turn ends with the work and not with the request, because the work may
+/// continue after its client has disconnected.
 fn started<T: Send + 'static>(
-    turn: Option<Turn>,
+    turn: Option<WorkTurn>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> JoinHandle<T> {
     spawn_blocking(move || {
@@ -97,7 +103,7 @@ fn failed(error: &JoinError) -> ApiError {
     ApiError::new(ErrorCode::Internal, "the answer could not be computed")
 }
 
-/// Stops the work when nobody waits for it any more.
+/// Stops the work when the request is dropped.
 struct StopOnDrop(StopSignal);
 
 impl Drop for StopOnDrop {
@@ -113,7 +119,7 @@ mod tests {
     use tokio::sync::oneshot;
 
     #[tokio::test]
-    async fn a_turn_ends_with_the_work_and_not_with_who_waits_for_it() {
+    async fn a_turn_ends_with_the_work_and_not_with_the_request() {
         let turns = Arc::new(Turns::new(1, LONGEST, "busy"));
         let (has_begun, begun) = oneshot::channel();
         let (end, ending) = mpsc::channel::<()>();
@@ -123,7 +129,7 @@ mod tests {
                 has_begun.send(()).unwrap();
                 ending.recv().unwrap();
             };
-            async move { flown(&turns, work).await }
+            async move { integrated(&turns, work).await }
         });
         begun.await.unwrap();
         request.abort();
@@ -134,15 +140,15 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn work_that_panics_gives_its_turn_back() {
+    async fn a_panic_of_the_work_ends_its_turn() {
         let turns = Turns::new(1, LONGEST, "busy");
         let failing = || -> u8 { panic!("on purpose") };
-        assert!(flown(&turns, failing).await.is_err());
+        assert!(integrated(&turns, failing).await.is_err());
         assert_eq!(turns.free(), 1);
     }
 
     #[tokio::test(start_paused = true)]
-    async fn who_waits_too_long_for_a_turn_is_told_to_come_again() {
+    async fn waiting_too_long_for_a_turn_is_answered_with_busy() {
         let turns = Turns::new(1, LONGEST, "busy");
         let turn = turns.take().await.unwrap();
         assert!(turns.take().await.is_err());

@@ -8,16 +8,16 @@ use serde::Serialize;
 use slewplan_solver::model::problem::{Code, Problem};
 use utoipa::ToSchema;
 
-/// Most problems of one input that are listed.
+/// Maximum number of listed problems of an input.
 const MAX_PROBLEMS: usize = 100;
-/// When to come again, s, if the error itself does not know better.
+/// `Retry-After` of errors that set no other, s.
 const RETRY_S: u32 = 10;
 /// The media type of every error.
 pub(super) const PROBLEM_JSON: &str = "application/problem+json";
 
 macro_rules! error_codes {
     ($($name:ident = $text:literal, $status:ident, $title:literal, $remedy:literal;)+) => {
-        /// Stable codes of errors of the service; those of an input are in its `errors`.
+        /// Stable codes of errors of requests; those of problems of an input are in `errors`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub(super) enum ErrorCode { $($name,)+ }
 
@@ -30,7 +30,7 @@ macro_rules! error_codes {
                 match self { $(Self::$name => $text,)+ }
             }
 
-            /// The status it is answered with.
+            /// The HTTP status.
             pub(super) const fn status(self) -> StatusCode {
                 match self { $(Self::$name => StatusCode::$status,)+ }
             }
@@ -93,20 +93,20 @@ error_codes! {
         "The idempotency key belongs to another request",
         "Use a new key for another request.";
     QuotaExceeded = "quota_exceeded", TOO_MANY_REQUESTS, "The client has too many jobs waiting",
-        "Come again after Retry-After, or cancel jobs that wait.";
+        "Try again after Retry-After, or cancel queued jobs.";
     QueueFull = "queue_full", SERVICE_UNAVAILABLE, "Too many jobs wait already",
-        "Come again after Retry-After.";
+        "Try again after Retry-After.";
     Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy",
-        "Come again after Retry-After.";
+        "Try again after Retry-After.";
     NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now",
-        "Come again later; the log of the service tells why.";
+        "Try again later; the log of the service has the cause.";
     DiskFull = "disk_full", INSUFFICIENT_STORAGE, "The disk of the service is full",
         "Make room on the disk of the service; slewplan serve --retain DAYS deletes old jobs.";
     Internal = "internal_error", INTERNAL_SERVER_ERROR, "Something went wrong inside",
         "Look into the log of the service for the X-Request-Id of the answer.";
 }
 
-/// An error on its way to the caller.
+/// An error of a request.
 #[derive(Debug)]
 pub(super) struct ApiError {
     code: ErrorCode,
@@ -119,7 +119,7 @@ pub(super) struct ApiError {
 /// RFC 9457 problem details.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Problem)]
-pub(super) struct ErrorDocument<'a> {
+pub(super) struct ProblemDetails<'a> {
     /// Where the code is explained.
     #[schema(format = "uri-reference")]
     r#type: String,
@@ -131,12 +131,12 @@ pub(super) struct ErrorDocument<'a> {
     code: &'static str,
     /// What is wrong with the input, each with its place; at most the first 100.
     errors: Vec<ProblemDocument<'a>>,
-    /// What is doubtful with the scenario that was submitted, besides.
+    /// Warnings about the submitted scenario.
     warnings: Vec<ProblemDocument<'a>>,
 }
 
 impl ApiError {
-    /// An error with what is wrong in this case.
+    /// An error with a detail.
     pub(super) fn new(code: ErrorCode, detail: impl Into<String>) -> Self {
         Self {
             code,
@@ -147,7 +147,7 @@ impl ApiError {
         }
     }
 
-    /// Says when to come again, if that is not what [`RETRY_S`] says.
+    /// Sets `Retry-After`, s, instead of [`RETRY_S`].
     pub(super) fn retry_after(self, seconds: u32) -> Self {
         Self {
             retry_after_s: Some(seconds),
@@ -155,12 +155,12 @@ impl ApiError {
         }
     }
 
-    /// Nothing of this identifier.
+    /// There is nothing with this identifier.
     pub(super) fn not_found(what: &str, id: &str) -> Self {
         Self::new(ErrorCode::NotFound, format!("there is no {what} {id:?}"))
     }
 
-    /// An input with problems: not JSON at all, or JSON that means nothing.
+    /// An input with problems: malformed JSON, or an invalid document.
     pub(super) fn input(problems: Vec<Problem>) -> Self {
         let malformed = problems
             .iter()
@@ -184,7 +184,7 @@ impl ApiError {
         }
     }
 
-    /// Says what is doubtful with the input besides.
+    /// Adds warnings about the input.
     pub(super) fn with_warnings(self, warnings: Vec<Problem>) -> Self {
         Self { warnings, ..self }
     }
@@ -239,7 +239,7 @@ impl From<StoreError> for ApiError {
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let status = self.code.status();
-        let document = ErrorDocument {
+        let document = ProblemDetails {
             r#type: format!("/docs/errors#{}", self.code.as_str()),
             title: self.code.title(),
             status: status.as_u16(),
@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whoever_shall_come_again_is_told_when() {
+    fn temporary_errors_have_retry_after() {
         for code in ErrorCode::ALL {
             let response = ApiError::new(*code, "").into_response();
             let told = response.headers().contains_key(header::RETRY_AFTER);

@@ -1,4 +1,4 @@
-//! What requests bring: bodies, parameters, headers.
+//! Extraction of bodies, parameters and headers from requests.
 
 use super::App;
 use super::error::{ApiError, ErrorCode};
@@ -12,11 +12,11 @@ use http_body_util::BodyExt;
 use serde::de::DeserializeOwned;
 use std::error::Error;
 
-/// A JSON body: as it came, and as a tree.
+/// A JSON body: its bytes and its parsed tree.
 pub(super) struct JsonBody {
-    /// The bytes as they came.
+    /// The bytes as received.
     pub(super) bytes: Bytes,
-    /// What they say.
+    /// The parsed document.
     pub(super) node: Node,
 }
 
@@ -57,7 +57,7 @@ fn check_form(headers: &HeaderMap) -> Result<(), ApiError> {
     }
     let coding = text(header::CONTENT_ENCODING).trim();
     if !coding.is_empty() && !coding.eq_ignore_ascii_case("identity") {
-        let detail = format!("send the body as it is, without Content-Encoding: {coding}");
+        let detail = format!("send the body without Content-Encoding: {coding}");
         return Err(ApiError::new(ErrorCode::UnsupportedMediaType, detail));
     }
     Ok(())
@@ -75,8 +75,8 @@ async fn read(request: Request, limit: usize) -> Result<Bytes, ApiError> {
     if announced.is_some_and(|length| length > limit) {
         return Err(too_large());
     }
-    // One buffer from the beginning: pieces that are joined, or a buffer that grows, would take twice
-    // as much. Of what is reserved, only what is written to takes memory.
+    // One buffer of the full size: joining pieces or growing a buffer would take twice the memory.
+    // Reserved pages take memory only once they are written.
     let mut bytes = Vec::with_capacity(announced.unwrap_or(limit));
     let mut body = request.into_body();
     while let Some(frame) = body.frame().await {
@@ -102,12 +102,12 @@ fn broken(error: &axum::Error) -> ApiError {
     }
 }
 
-/// Whether the body was given up, somewhere below what the framework makes of it.
+/// Whether [`TooSlow`] is among the sources of an error.
 fn is_too_slow(error: &(dyn Error + 'static)) -> bool {
     error.is::<TooSlow>() || error.source().is_some_and(is_too_slow)
 }
 
-/// The name in the path, or the names. What cannot be a name, because it is no text, names nothing.
+/// The parameters of the path. Parameters that are not valid text are answered as not found.
 pub(super) struct Named<T = String>(pub(super) T);
 
 impl<T: DeserializeOwned + Send> FromRequestParts<App> for Named<T> {
@@ -134,7 +134,7 @@ impl<T: DeserializeOwned> FromRequestParts<App> for Parameters<T> {
     }
 }
 
-/// A header as text, when it is there.
+/// A header as text, if present.
 pub(super) fn header_text<'a>(
     headers: &'a HeaderMap,
     name: &'static str,
@@ -149,10 +149,10 @@ pub(super) fn header_text<'a>(
         .transpose()
 }
 
-/// The place that a cursor stands for.
+/// The sequence number of a cursor.
 pub(super) fn cursor(text: Option<&str>) -> Result<Option<i64>, ApiError> {
     let wrong = |_| {
-        let detail = "the cursor is not one that was given as next_cursor";
+        let detail = "the cursor is not a value of next_cursor";
         ApiError::new(ErrorCode::InvalidParameter, detail)
     };
     text.map(|text| text.parse::<u32>().map(i64::from).map_err(wrong))

@@ -1,63 +1,44 @@
-//! Requests, counted and timed.
+//! Counts and durations of requests.
 
-use crate::base::metrics::{Histogram, head};
+use crate::base::metrics::{Scrape, histogram};
 use axum::http::{Method, StatusCode};
-use std::collections::BTreeMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use prometheus::HistogramVec;
 use std::time::Duration;
 
-/// Upper ends of the classes of durations, s.
-const CLASSES: [f64; 8] = [0.001, 0.005, 0.02, 0.05, 0.2, 1.0, 5.0, 30.0];
+/// Upper ends of the buckets of durations, s.
+const DURATIONS_S: [f64; 8] = [0.001, 0.005, 0.02, 0.05, 0.2, 1.0, 5.0, 30.0];
 
-/// What is known about all requests so far. Routes, not paths, so that it stays small.
-#[derive(Debug, Default)]
-pub(super) struct Metrics(Mutex<BTreeMap<Request, Histogram>>);
+/// Durations of all requests so far, by method, route and status. Routes rather than paths bound the
+/// number of their combinations.
+#[derive(Debug)]
+pub(super) struct RequestMetrics(HistogramVec);
 
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Request {
-    method: String,
-    route: String,
-    status: u16,
+impl Default for RequestMetrics {
+    fn default() -> Self {
+        Self(histogram(
+            "slewplan_http_request_duration_seconds",
+            "Time until the answer to a request began.",
+            &["method", "route", "status"],
+            &DURATIONS_S,
+        ))
+    }
 }
 
-impl Metrics {
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<Request, Histogram>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
+impl RequestMetrics {
     /// Counts a request; its duration is the time until its answer began.
     pub(super) fn count(&self, method: &Method, route: &str, status: StatusCode, took: Duration) {
-        // Anybody can invent methods.
+        // Clients can send any method; each would be a series of its own.
         let method = match method.as_str() {
             known @ ("GET" | "HEAD" | "POST" | "PUT" | "DELETE" | "OPTIONS" | "PATCH") => known,
             _ => "other",
         };
-        let request = Request {
-            method: method.to_owned(),
-            route: route.to_owned(),
-            status: status.as_u16(),
-        };
-        let mut all = self.lock();
-        let durations = all.entry(request);
-        let durations = durations.or_insert_with(|| Histogram::new(&CLASSES));
-        durations.count(took.as_secs_f64());
+        self.0
+            .with_label_values(&[method, route, status.as_str()])
+            .observe(took.as_secs_f64());
     }
 
-    /// Writes them in the text form of Prometheus.
-    pub(super) fn write(&self, text: &mut String) {
-        let name = "slewplan_http_request_duration_seconds";
-        head(
-            text,
-            name,
-            "histogram",
-            "Time until the answer to a request began.",
-        );
-        for (request, durations) in &*self.lock() {
-            let labels = format!(
-                "method=\"{}\",route=\"{}\",status=\"{}\"",
-                request.method, request.route, request.status
-            );
-            durations.write(text, name, &labels);
-        }
+    /// Adds them to a scrape.
+    pub(super) fn report(&self, scrape: &Scrape) {
+        scrape.add(&self.0);
     }
 }

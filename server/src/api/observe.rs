@@ -1,4 +1,4 @@
-//! What happens around every request: an id, a log line, a count, and the one form of errors.
+//! Middleware of every request: its id, log line, metrics, and problem details for all errors.
 
 use super::App;
 use super::error::{ApiError, ErrorCode, PROBLEM_JSON};
@@ -40,7 +40,7 @@ pub(super) async fn observe(State(app): State<App>, request: Request, next: Next
     response
 }
 
-/// The caller's id when it is a plain one, a new one otherwise.
+/// The caller's id if it is a valid one, a new one otherwise.
 fn request_id(request: &Request) -> String {
     let given = request
         .headers()
@@ -58,14 +58,14 @@ fn request_id(request: &Request) -> String {
         .map_or_else(|| Uuid::new_v4().to_string(), str::to_owned)
 }
 
-/// Fails on purpose, for tests of what that costs.
+/// Injects failures for tests.
 #[cfg(feature = "faults")]
 pub(super) async fn fault(request: Request, next: Next) -> Response {
     crate::base::faults::strike_request(request.headers());
     next.run(request).await
 }
 
-/// Turns errors that the framework answered by itself into problem details.
+/// Replaces error answers of the framework by problem details.
 pub(super) async fn envelop(request: Request, next: Next) -> Response {
     let (method, path) = (request.method().clone(), request.uri().path().to_owned());
     let response = next.run(request).await;
@@ -89,7 +89,7 @@ fn described(status: StatusCode, method: &Method, path: &str) -> ApiError {
         }
         StatusCode::METHOD_NOT_ALLOWED => ApiError::new(
             ErrorCode::MethodNotAllowed,
-            format!("{path} does not know {method}"),
+            format!("{path} does not support {method}"),
         ),
         status => ApiError::of_status(status),
     }

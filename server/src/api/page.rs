@@ -1,8 +1,8 @@
-//! The page at `/`: files of `server/page`, which are part of the binary, and the examples that it
+//! The page at `/`: the files of `server/page`, embedded in the binary, and the examples that it
 //! offers.
 //!
-//! The address of every file but the first has the digest of them all. So browsers may keep a file
-//! for good, and never mix those of two versions.
+//! The address of every file but the first contains the digest of all of them, so that browsers may
+//! cache files for ever and never mix two versions.
 
 use super::error::ApiError;
 use super::extract::{Named, header_text};
@@ -14,23 +14,23 @@ use rust_embed::RustEmbed;
 use std::borrow::Cow;
 use std::sync::LazyLock;
 
-/// Where the files are.
+/// The route of the files.
 pub(super) const FILES: &str = "/page/{digest}/{*path}";
 
-/// Only what is here, no frame around it, nothing inline.
+/// Content from this service only, no embedding in frames, nothing inline.
 const CONTENT_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
     img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; \
     frame-ancestors 'none'";
 
 const FIRST: &str = "index.html";
-/// Stands in the first file for the folder of the others.
+/// Placeholder in the first file for the folder of the others.
 const FOLDER_MARK: &str = "{{files}}";
 
 #[derive(RustEmbed)]
 #[folder = "page/"]
 struct Files;
 
-/// What the page offers to begin with, under `examples/`: scenarios, slews and studies.
+/// The examples of the page, under `examples/`: scenarios, slews and studies.
 const EXAMPLES: [(&str, &str); 13] = [
     (
         "examples/two-targets.json",
@@ -108,11 +108,11 @@ fn content(name: &str) -> Option<Cow<'static, [u8]>> {
 
 /// Open the page
 ///
-/// Everything it loads is in this service, under addresses that change with the content.
+/// Everything that it loads comes from this service, under addresses that change with the content.
 #[utoipa::path(
     get, path = "/", tag = "operations", operation_id = "get_page",
     params(("If-None-Match" = Option<String>, Header,
-        description = "Entity tags that are known already")),
+        description = "Entity tags of cached contents")),
     responses(
         (status = 200, description = "The page", body = String, content_type = "text/html",
             headers(("ETag" = String, description = "Hash of all its files"))),
@@ -148,7 +148,7 @@ pub(super) async fn file(
     Ok((StatusCode::OK, headers, body).into_response())
 }
 
-/// The media type of a file; `None` where a browser has no use for it.
+/// The media type of a file; `None` for files that are not served.
 fn form(path: &str) -> Option<&'static str> {
     let (_, ending) = path.rsplit_once('.')?;
     match ending {
@@ -165,7 +165,7 @@ fn form(path: &str) -> Option<&'static str> {
 mod tests {
     use super::*;
 
-    /// Name and text of every file that is ours.
+    /// Name and text of every file of our own.
     fn sources() -> Vec<(String, String)> {
         let text = |name: &str| String::from_utf8(content(name)?.into_owned()).ok();
         let sources: Vec<_> = Files::iter()
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_licence_stands_beside_what_is_not_ours() {
+    fn every_vendored_file_has_a_licence_beside_it() {
         let foreign: Vec<_> = Files::iter()
             .filter(|name| name.starts_with("vendor/"))
             .collect();
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn no_file_names_another_host_or_has_scripts_and_styles_inline() {
         for (name, text) in sources() {
-            // The name space of SVG is a name, not an address.
+            // The namespace of SVG is a name, not an address.
             let text = text.replace("http://www.w3.org/2000/svg", "");
             for forbidden in ["http://", "https://", "style=\"", "innerHTML", "eval("] {
                 assert!(!text.contains(forbidden), "{name} has {forbidden}");

@@ -18,10 +18,10 @@ use axum::http::StatusCode;
 use axum::response::Response;
 use std::time::Duration;
 
-/// How long a request that ends a job waits for its end.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Longest wait of requests that stop or cancel a job for its end.
+const END_WAIT: Duration = Duration::from_secs(2);
 
-/// The job of an identifier.
+/// The job with an identifier.
 async fn find(app: &App, id: &str) -> Result<JobRow, ApiError> {
     present(app.store().job(id).await?, id)
 }
@@ -30,13 +30,13 @@ fn present(job: Option<JobRow>, id: &str) -> Result<JobRow, ApiError> {
     job.ok_or_else(|| ApiError::not_found("plan", id))
 }
 
-/// The answer for a job that has been asked to end: when it has ended, or after a while.
+/// Waits for the end of a job that was stopped or cancelled, and answers with the job.
 async fn ending(app: &App, id: &str) -> Result<Response, ApiError> {
-    standing(&present(respond::await_end(app, id, PATIENCE).await?, id)?)
+    ended_or_accepted(&present(respond::await_end(app, id, END_WAIT).await?, id)?)
 }
 
-/// A job that was waited for: accepted as long as it has not ended.
-fn standing(job: &JobRow) -> Result<Response, ApiError> {
+/// The answer with a job: 200 if it has ended, else 202.
+fn ended_or_accepted(job: &JobRow) -> Result<Response, ApiError> {
     let status = if job.state()?.is_final() {
         StatusCode::OK
     } else {
@@ -45,8 +45,8 @@ fn standing(job: &JobRow) -> Result<Response, ApiError> {
     respond::job(status, job)
 }
 
-/// A request to end that came too late.
+/// The error of a request to stop or cancel a job that has ended.
 fn has_ended(state: JobState) -> ApiError {
-    let detail = format!("the job has ended {}", state.as_str());
+    let detail = format!("the job has ended {}", state.into_str());
     ApiError::new(ErrorCode::JobHasEnded, detail)
 }

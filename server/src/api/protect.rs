@@ -1,12 +1,11 @@
-//! Headers that every answer carries, so that browsers do nothing with it that was not meant.
+//! Security headers of every answer.
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue, header};
 use axum::middleware::Next;
 use axum::response::Response;
 
-/// Nothing from elsewhere, no frames around it. The documentation brings styles of its own within
-/// its elements.
+/// Content from this service only, no embedding in frames. The documentation needs inline styles.
 const CONTENT_POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src 'self' data:; object-src 'none'; base-uri 'none'; form-action 'none'; \
     frame-ancestors 'none'";
@@ -18,8 +17,8 @@ const HEADERS: [(HeaderName, &str); 4] = [
     (header::X_FRAME_OPTIONS, "DENY"),
 ];
 
-/// Adds the headers where a handler has not set its own. What has an entity tag may be kept if it is
-/// asked for again; the rest is of the moment.
+/// Adds the headers that a handler has not set. Answers with an entity tag may be cached with
+/// revalidation, others not at all.
 pub(super) async fn protect(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();

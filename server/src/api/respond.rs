@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// A job with a status and, where it is found, its address.
+/// An answer with a job and its address.
 pub(super) fn job(status: StatusCode, job: &JobRow) -> Result<Response, ApiError> {
     let mut response = (status, Json(JobDocument::new(job)?)).into_response();
     if let Ok(location) = HeaderValue::from_str(&format!("/v1/plans/{}", job.id)) {
@@ -23,13 +23,13 @@ pub(super) fn job(status: StatusCode, job: &JobRow) -> Result<Response, ApiError
     Ok(response)
 }
 
-/// Waits for the end of a job, at most so long; the job as it is then, `None` when it is gone.
+/// Waits for the end of a job, at most for `longest`. Returns the job, `None` when it is gone.
 pub(super) async fn await_end(
     app: &App,
     id: &str,
-    patience: Duration,
+    longest: Duration,
 ) -> Result<Option<JobRow>, StoreError> {
-    let until = Instant::now() + patience;
+    let until = Instant::now() + longest;
     let mut changes = app.jobs().changes();
     let mut shutdown = app.shutdown().clone();
     loop {
@@ -50,7 +50,7 @@ pub(super) async fn await_end(
     }
 }
 
-/// A document as JSON; `what` names it should that fail.
+/// A document as JSON; `what` names it in errors.
 pub(super) fn written(document: &impl Serialize, what: &str) -> Result<Vec<u8>, ApiError> {
     serde_json::to_vec(document).map_err(|error| {
         tracing::error!(%error, "the {what} cannot be written");
@@ -63,7 +63,7 @@ pub(super) fn json(document: Vec<u8>) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], document).into_response()
 }
 
-/// A content of a media type with the tag that belongs to it.
+/// An answer with a content, its media type and its entity tag.
 pub(super) fn tagged(form: &str, tag: &str, body: Bytes) -> Response {
     let mut response = ([(header::CONTENT_TYPE, form.to_owned())], body).into_response();
     if let Some(tag) = quoted(tag) {
@@ -72,15 +72,14 @@ pub(super) fn tagged(form: &str, tag: &str, body: Bytes) -> Response {
     response
 }
 
-/// The response, or only its tag when that is one of those that `If-None-Match` lists.
+/// The response, or 304 when `If-None-Match` lists its tag.
 pub(super) fn unless_known(known: &str, response: Response) -> Response {
     let tag = response.headers().get(header::ETAG);
     let unchanged = tag.and_then(|tag| not_modified(known, tag));
     unchanged.unwrap_or(response)
 }
 
-/// The answer to whoever knows the content of a tag, if `If-None-Match` lists it: for contents that
-/// take long to make.
+/// 304 if `If-None-Match` lists a tag, for contents that take long to make.
 pub(super) fn unless_made(known: &str, tag: &str) -> Option<Response> {
     not_modified(known, &quoted(tag)?)
 }
@@ -96,7 +95,7 @@ fn quoted(tag: &str) -> Option<HeaderValue> {
     HeaderValue::from_str(&format!("\"{tag}\"")).ok()
 }
 
-/// A tag for the weak comparison that `If-None-Match` asks for.
+/// A tag without its weakness mark, because `If-None-Match` compares weakly.
 fn bare(tag: &str) -> &str {
     tag.trim().trim_start_matches("W/")
 }

@@ -1,20 +1,21 @@
-//! The only list of routes, and what every request passes through.
+//! The list of all routes, and the middleware of every request.
 
+use super::operations::docs::OpenApiPage;
 use super::{
     App, access, legs, observe, operations, page, plans, protect, slews, spacecraft, studies,
     verify,
 };
 use crate::documents::jobs::EventDocument;
-use axum::Router;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::routing::get;
+use axum::{Extension, Router};
 use tower_http::catch_panic::CatchPanicLayer;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::SwaggerUi;
 
-/// What the description says about itself.
+/// Head of the OpenAPI description.
 #[derive(OpenApi)]
 #[openapi(
     info(
@@ -28,16 +29,16 @@ use utoipa_swagger_ui::SwaggerUi;
         (name = "plans", description = "Planning jobs"),
         (name = "legs", description = "Leg times"),
         (name = "slews", description = "Single slews with a choice of objective and command"),
-        (name = "studies", description = "What the choice of an option leads to, and what wheels can do together"),
+        (name = "studies", description = "Effects of options, and envelopes of wheels"),
         (name = "spacecraft", description = "Stored spacecraft"),
         (name = "verify", description = "Independent verification"),
         (name = "operations", description = "Running the service"),
     ),
 )]
-struct Description;
+struct InterfaceDescription;
 
 fn routes() -> OpenApiRouter<App> {
-    OpenApiRouter::with_openapi(Description::openapi())
+    OpenApiRouter::with_openapi(InterfaceDescription::openapi())
         .routes(routes!(plans::create::handler, plans::list::handler))
         .routes(routes!(plans::get::handler, plans::delete::handler))
         .routes(routes!(plans::scenario::handler))
@@ -68,7 +69,7 @@ fn routes() -> OpenApiRouter<App> {
 
 /// The whole service.
 pub(crate) fn router(app: App) -> Router {
-    let (router, _) = routes().split_for_parts();
+    let (router, description) = routes().split_for_parts();
     let docs = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
     let router = router.merge(docs).route(page::FILES, get(page::file));
     #[cfg(feature = "faults")]
@@ -79,17 +80,16 @@ pub(crate) fn router(app: App) -> Router {
         .layer(from_fn(observe::envelop))
         .layer(from_fn_with_state(app.clone(), observe::observe))
         .layer(from_fn(protect::protect))
+        .layer(Extension(OpenApiPage::new(yaml(&description))))
         .with_state(app)
 }
 
 /// The description of the interface as YAML.
-///
-/// # Panics
-///
-/// Never: the description is made of types that all can be written.
 pub(crate) fn openapi() -> String {
-    let description = routes().into_openapi();
-    description
-        .to_yaml()
-        .expect("the description can be written as YAML")
+    yaml(&routes().into_openapi())
+}
+
+fn yaml(description: &utoipa::openapi::OpenApi) -> String {
+    let yaml = description.to_yaml();
+    yaml.expect("all types of the description can be written as YAML")
 }

@@ -15,9 +15,9 @@ use std::sync::Arc;
 /// Solve one slew
 ///
 /// From a state to a state, in minimum time or for another objective, with torques that are free,
-/// sampled or continuous. With `sweep` once for every value, each from the solution before it. The
-/// answer is flown by an integrator that shares nothing with the optimiser. What is not done within
-/// a minute is left out, and `complete` is false.
+/// sampled or continuous. With `sweep` it is solved for every value, each starting from the
+/// solution before. The answer is verified by an integrator that shares no code with the optimiser.
+/// Slews not solved within a minute are left out, and `complete` is false.
 #[utoipa::path(
     post, path = "/v1/slews", tag = "slews", operation_id = "solve_slew",
     request_body(content = SlewBody, examples(
@@ -39,7 +39,7 @@ pub(super) async fn handler(
     let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
     let request = slew::read_node(&node).map_err(ApiError::input)?;
     let pool = Arc::clone(&app.0.pool);
-    // On the solver's threads, which stand back behind those for requests.
+    // On the solver's threads, which have a lower priority than those for requests.
     let work = move |stop: &StopSignal| pool.map(&[request], |request| answer(request, stop)).pop();
     let answered = computing::in_turn(&app, computing::LONGEST, work).await?;
     let json =

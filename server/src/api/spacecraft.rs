@@ -19,13 +19,13 @@ pub(super) struct StoredSpacecraft {
     /// When this version was stored.
     #[schema(format = "date-time")]
     created_at: String,
-    /// The spacecraft as it was written.
+    /// The spacecraft as submitted.
     #[schema(value_type = super::describe::Spacecraft)]
     spacecraft: Box<RawValue>,
 }
 
 impl StoredSpacecraft {
-    /// What is stored, unless it is no JSON any more.
+    /// The document of a row; an error if it is not valid JSON.
     fn new(name: String, row: SpacecraftRow) -> Result<Self, StoreError> {
         let damaged = |_| StoreError::Damaged { what: "spacecraft" };
         Ok(Self {

@@ -1,4 +1,4 @@
-//! Stored spacecraft written out where a scenario refers to them.
+//! Replaces references to stored spacecraft by their documents.
 
 use super::App;
 use super::access::Caller;
@@ -9,8 +9,8 @@ use crate::store::StoreError;
 use slewplan_solver::model::problem::{Code, Problem};
 
 /// Replaces `{"ref": name}` or `{"ref": name, "version": n}` under `spacecraft` by the stored
-/// document; the tree is unchanged when there is none. The flag tells whether there was one.
-/// Problems point below the place of the tree in the request.
+/// document. Returns the tree and whether it had a reference. Pointers of problems begin with the
+/// place of the tree in the request.
 pub(super) async fn write_out(
     app: &App,
     caller: &Caller,
@@ -33,7 +33,7 @@ pub(super) async fn write_out(
             "store it with PUT /v1/spacecraft/{name}, or write it out in the scenario",
         )]));
     };
-    // Only JSON was stored: that it is none any more is no fault of the request.
+    // Only valid JSON is stored, so that an error here is not an error of the request.
     let damaged = |_| StoreError::Damaged { what: "spacecraft" };
     let stored = document::parse(row.document.as_bytes()).map_err(damaged)?;
     if let Some(spacecraft) = node.member_mut("spacecraft") {

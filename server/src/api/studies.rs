@@ -1,4 +1,4 @@
-//! What the choice of an option leads to, and what wheels can do together.
+//! Studies: effects of options, and envelopes of wheels.
 
 pub(super) mod authority;
 pub(super) mod comparison;
@@ -8,14 +8,14 @@ pub(super) mod flight;
 use super::access::Caller;
 use super::error::ApiError;
 use super::{App, admission, stored};
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents::document::Node;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::NoStore;
 use slewplan_solver::tour::planner::Run;
 
-/// The study with the spacecraft of its scenario written out, if it is not too large.
+/// Checks the size of a study's scenario and writes out its stored spacecraft.
 async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Node, ApiError> {
     if let Some(scenario) = node.member_mut("scenario") {
         admission::check_size(app, scenario)?;
@@ -25,12 +25,12 @@ async fn with_scenario(app: &App, caller: &Caller, mut node: Node) -> Result<Nod
     Ok(node)
 }
 
-/// Planning for a study, which tells nobody how far it is and keeps no legs.
+/// The resources of planning for a study: no progress reports, no leg cache.
 fn quiet_run<'a>(pool: &'a SolverPool, stop: &'a StopSignal) -> Run<'a> {
     Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     }

@@ -1,4 +1,4 @@
-//! `POST /v1/verify`: a plan made by anyone is flown again.
+//! `POST /v1/verify`: verifies a plan of any origin.
 
 use super::access::Caller;
 use super::describe::{self, BodyErrors, ServerErrors, VerifyBody};
@@ -15,7 +15,7 @@ use slewplan_solver::checker;
 use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::Problem;
 
-/// Fly a plan again and test every limit
+/// Propagate a plan again and test every limit
 #[utoipa::path(
     post, path = "/v1/verify", tag = "verify", operation_id = "verify_plan",
     request_body(content = VerifyBody, example = json!(describe::verify_request())),
@@ -32,8 +32,9 @@ pub(super) async fn handler(
     let (scenario, plan) = parts(body.node)?;
     admission::check_size(&app, &scenario)?;
     let (scenario, _) = stored::write_out(&app, &caller, scenario, "/scenario").await?;
-    // Integrating a long flight takes long, and the answer borrows from what it integrates.
-    let json = computing::flown(&app.0.flying, move || verify(&scenario, &plan)).await??;
+    // On other threads, because a long flight takes long to integrate; the answer borrows from it.
+    let json =
+        computing::integrated(&app.0.integrating, move || verify(&scenario, &plan)).await??;
     Ok(respond::json(json))
 }
 

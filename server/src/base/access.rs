@@ -1,19 +1,32 @@
-//! Keys of clients: what they look like and what they open.
+//! API keys of clients: their form and their scopes.
 //!
-//! A key is 256 random bits, so that a plain SHA-256 of it can be stored and compared: there is
-//! nothing to guess that a slow hash would protect.
+//! A key has 256 random bits, so that its plain SHA-256 can be stored: a slow hash protects secrets
+//! that can be guessed, which these cannot.
 
 use crate::base::digest::{self, hexadecimal};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// What every key begins with, for those who search for leaked ones.
+/// Prefix of every key, by which scanners find leaked ones.
 const PREFIX: &str = "slewplan_";
 const SECRET_BYTES: usize = 32;
 const ID_BYTES: usize = 6;
 
-/// What a key opens.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+/// A permission that a key grants.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    clap::ValueEnum,
+    strum::EnumString,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "lowercase", const_into_str)]
+#[strum(parse_err_ty = String, parse_err_fn = unknown_scope)]
 pub(crate) enum Scope {
     /// Read the client's own jobs and spacecraft
     Read,
@@ -23,25 +36,16 @@ pub(crate) enum Scope {
     Operate,
 }
 
-impl Scope {
-    const ALL: [Self; 3] = [Self::Read, Self::Write, Self::Operate];
-
-    /// The stable text of the scope.
-    pub(crate) const fn as_str(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Write => "write",
-            Self::Operate => "operate",
-        }
-    }
+fn unknown_scope(text: &str) -> String {
+    format!("{text:?} is no scope")
 }
 
-/// What a key opens, all of it.
+/// The permissions that a key grants.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Scopes(Vec<Scope>);
 
 impl Scopes {
-    /// Each of them once.
+    /// A set of scopes, sorted and without duplicates.
     pub(crate) fn new(scopes: &[Scope]) -> Self {
         let mut scopes = scopes.to_vec();
         scopes.sort_unstable();
@@ -57,7 +61,7 @@ impl Scopes {
 
 impl Display for Scopes {
     fn fmt(&self, form: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<&str> = self.0.iter().map(|scope| scope.as_str()).collect();
+        let names: Vec<&str> = self.0.iter().map(Scope::into_str).collect();
         form.write_str(&names.join(" "))
     }
 }
@@ -66,23 +70,16 @@ impl FromStr for Scopes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let scope = |name: &str| {
-            let found = Scope::ALL.into_iter().find(|scope| scope.as_str() == name);
-            found.ok_or_else(|| format!("{name:?} is no scope"))
-        };
-        Ok(Self(
-            text.split_whitespace()
-                .map(scope)
-                .collect::<Result<_, _>>()?,
-        ))
+        let scopes = text.split_whitespace().map(str::parse);
+        Ok(Self(scopes.collect::<Result<_, _>>()?))
     }
 }
 
-/// A key that nobody has yet. Its secret is in memory only, to be shown once.
+/// A new key. Its secret is held in memory only, to be shown once.
 pub(crate) struct FreshKey {
-    /// Names the key.
+    /// Public identifier of the key.
     pub(crate) id: String,
-    /// The key itself.
+    /// The secret key.
     pub(crate) secret: String,
 }
 
@@ -91,7 +88,7 @@ impl FreshKey {
     ///
     /// # Errors
     ///
-    /// When the operating system has none.
+    /// When the operating system provides no randomness.
     pub(crate) fn new() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; SECRET_BYTES];
         getrandom::fill(&mut bytes)?;
@@ -103,14 +100,14 @@ impl FreshKey {
         })
     }
 
-    /// What is stored of the key.
+    /// The digest that is stored of the key.
     pub(crate) fn digest(&self) -> String {
         digest_of(&self.secret)
     }
 }
 
-/// What is stored of a key that somebody has sent. It is looked up by this: how long that takes
-/// depends on a hash that nobody can steer, not on the key.
+/// The digest by which a received key is looked up. The time of the look-up depends on the digest,
+/// which a client cannot choose, and not on the key.
 pub(crate) fn digest_of(key: &str) -> String {
     digest::hex(key.as_bytes())
 }
@@ -120,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_are_long_and_never_the_same() {
+    fn keys_have_256_random_bits() {
         let keys = [(); 2].map(|()| FreshKey::new().expect("randomness"));
         assert_ne!(keys[0].secret, keys[1].secret);
         assert_ne!(keys[0].id, keys[1].id);
@@ -133,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn scopes_are_read_as_they_were_written() {
+    fn scopes_are_parsed_from_their_text() {
         let scopes = Scopes::new(&[Scope::Write, Scope::Read, Scope::Write]);
         assert_eq!(scopes.to_string(), "read write");
         assert_eq!("read write".parse(), Ok(scopes));

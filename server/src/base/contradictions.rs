@@ -1,29 +1,36 @@
-//! What was flown and contradicts what was claimed: logged as an error, and counted.
+//! Contradictions between a propagated flight and a proved bound or a stored leg: logged and counted.
 
+use prometheus::IntCounter;
 use slewplan_solver::run::contradiction::Contradiction;
 use slewplan_solver::run::progress::{Observer, Progress};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::LazyLock;
 
-static COUNT: AtomicU64 = AtomicU64::new(0);
+static COUNTER: LazyLock<IntCounter> = LazyLock::new(|| {
+    IntCounter::new(
+        "slewplan_contradictions_total",
+        "Flights that contradicted a certified bound or a stored leg: defects of the planner.",
+    )
+    .expect("a valid metric")
+});
 
 /// Contradictions since the process began.
-pub(crate) fn count() -> u64 {
-    COUNT.load(Ordering::Relaxed)
+pub(crate) fn counter() -> &'static IntCounter {
+    &COUNTER
 }
 
 /// Logs and counts a contradiction; the span of the log names the job or the request.
-pub(crate) fn tell(contradiction: &Contradiction) {
-    COUNT.fetch_add(1, Ordering::Relaxed);
-    tracing::error!(%contradiction, "a flight contradicts a claim; the answer carries no such claim");
+pub(crate) fn record(contradiction: &Contradiction) {
+    COUNTER.inc();
+    tracing::error!(%contradiction, "a flight contradicts a proved bound or a stored leg, which the answer leaves out");
 }
 
 /// Listens for contradictions only.
-pub(crate) struct Unwatched;
+pub(crate) struct ContradictionObserver;
 
-impl Observer for Unwatched {
+impl Observer for ContradictionObserver {
     fn progress(&self, _: Progress) {}
 
     fn contradicted(&self, contradiction: &Contradiction) {
-        tell(contradiction);
+        record(contradiction);
     }
 }

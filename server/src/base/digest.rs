@@ -1,4 +1,4 @@
-//! Content addresses, and bytes as text.
+//! SHA-256 digests and hexadecimal text.
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -21,7 +21,7 @@ pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_digest_of_the_standard_example_is_right() {
+    fn the_digest_of_the_fips_example_is_right() {
         let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(super::hex(b"abc"), expected);
     }

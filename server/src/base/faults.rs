@@ -1,20 +1,24 @@
-//! Failures on purpose, for tests of what they cost. Only in builds with the feature `faults`,
-//! which nobody ships: a scenario with one of these names does what it says.
+//! Injected failures for tests, in builds with the feature `faults` only. The name of a scenario
+//! selects the failure.
 
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use std::time::Duration;
 
-/// Most memory that is taken on purpose, MiB.
+/// Maximum memory taken by `fault:memory`, MiB.
 const MAX_BALLAST: usize = 2048;
 
-/// Fails if the name of a scenario asks for it.
+/// Fails if the name of a scenario selects a failure.
 ///
 /// # Panics
 ///
-/// For `fault:panic`, `fault:pool` and `fault:drop`, on the worker's thread, on a thread of the
-/// pool, and while a value is dropped. `fault:abort` ends the process; `fault:memory` takes more and
-/// more of it until it is stopped.
+/// For `fault:panic` on the worker's thread, for `fault:pool` on a thread of the pool, for
+/// `fault:drop` while a value is dropped. `fault:abort` aborts the process; `fault:memory`
+/// allocates memory until the solve is stopped.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "grows slowly, on a thread of the worker"
+)]
 pub(crate) fn strike(name: Option<&str>, pool: &SolverPool, stop: &StopSignal) {
     match name {
         Some("fault:panic") => panic!("a fault on purpose"),
@@ -34,7 +38,7 @@ pub(crate) fn strike(name: Option<&str>, pool: &SolverPool, stop: &StopSignal) {
     }
 }
 
-/// Fails when the search is over, with whatever plans it has found.
+/// Fails after the search.
 ///
 /// # Panics
 ///
@@ -51,7 +55,7 @@ impl Drop for FailsToDrop {
     }
 }
 
-/// Fails a request that asks for it.
+/// Fails a request.
 ///
 /// # Panics
 ///

@@ -1,19 +1,19 @@
-//! The end of the service: told to everybody, with a deadline.
+//! Shutdown of the service on signals.
 
 use std::io;
 use std::time::Duration;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::watch;
 
-/// Time for open requests and the running job to end.
+/// Time that open requests and the running job have to end.
 pub(crate) const GRACE: Duration = Duration::from_secs(20);
 
-/// Tells when the service ends.
+/// Signals the shutdown to all parts of the service.
 #[derive(Debug, Clone)]
 pub(crate) struct Shutdown(watch::Receiver<bool>);
 
 impl Shutdown {
-    /// Begins with the first SIGTERM or SIGINT; the second ends the process at once.
+    /// Shuts down at the first SIGTERM or SIGINT; the second ends the process at once.
     ///
     /// # Errors
     ///
@@ -29,23 +29,27 @@ impl Shutdown {
                     _ = interrupt.recv() => 130,
                 };
                 if !first {
+                    #[expect(
+                        clippy::disallowed_methods,
+                        reason = "the second signal ends at once"
+                    )]
                     std::process::exit(code);
                 }
-                tracing::info!("the service ends");
+                tracing::info!("the service shuts down");
                 sender.send_replace(true);
             }
         });
         Ok(Self(receiver))
     }
 
-    /// Whether the end has begun.
+    /// Whether the shutdown has begun.
     pub(crate) fn has_begun(&self) -> bool {
         *self.0.borrow()
     }
 
-    /// Waits for the begin of the end.
+    /// Waits until the shutdown has begun.
     pub(crate) async fn begun(&mut self) {
-        // Without its sender nothing can end any more.
+        // The sender is gone only when the runtime ends.
         if self.0.wait_for(|begun| *begun).await.is_err() {
             std::future::pending::<()>().await;
         }

@@ -1,68 +1,58 @@
-//! Figures for those who run the service, in the text form of Prometheus.
+//! Metrics in the text format of Prometheus.
 
-use std::fmt::{Display, Write};
+use prometheus::core::Collector;
+use prometheus::{
+    HistogramOpts, HistogramVec, IntCounterVec, IntGaugeVec, Opts, Registry, TextEncoder,
+};
 
-/// How often a quantity was in each class; a class holds everything up to its end.
-#[derive(Debug)]
-pub(crate) struct Histogram {
-    ends: &'static [f64],
-    classes: Vec<u64>,
-    count: u64,
-    sum: f64,
+/// Media type of [`Scrape::text`].
+pub(crate) const TEXT_FORMAT: &str = "text/plain; version=0.0.4; charset=utf-8";
+
+/// Names, labels and buckets are constants of this program.
+const VALID: &str = "a valid metric";
+
+/// A histogram with buckets of these upper ends, in ascending order.
+pub(crate) fn histogram(name: &str, help: &str, labels: &[&str], ends: &[f64]) -> HistogramVec {
+    let options = HistogramOpts::new(name, help).buckets(ends.to_vec());
+    HistogramVec::new(options, labels).expect(VALID)
 }
 
-impl Histogram {
-    /// An empty one with classes of these upper ends, in ascending order.
-    pub(crate) fn new(ends: &'static [f64]) -> Self {
-        Self {
-            ends,
-            classes: vec![0; ends.len()],
-            count: 0,
-            sum: 0.0,
-        }
-    }
-
-    /// Counts a value.
-    pub(crate) fn count(&mut self, value: f64) {
-        self.count += 1;
-        self.sum += value;
-        for (class, end) in self.classes.iter_mut().zip(self.ends) {
-            *class += u64::from(value <= *end);
-        }
-    }
-
-    /// Writes it with labels, or without any.
-    pub(crate) fn write(&self, text: &mut String, name: &str, labels: &str) {
-        let bucket = format!("{name}_bucket");
-        let comma = if labels.is_empty() { "" } else { "," };
-        for (class, end) in self.classes.iter().zip(self.ends) {
-            sample(
-                text,
-                &bucket,
-                &format!("{labels}{comma}le=\"{end}\""),
-                class,
-            );
-        }
-        let all = format!("{labels}{comma}le=\"+Inf\"");
-        sample(text, &bucket, &all, self.count);
-        sample(text, &format!("{name}_sum"), labels, self.sum);
-        sample(text, &format!("{name}_count"), labels, self.count);
-    }
+/// A counter for every value of a label.
+pub(crate) fn counter(name: &str, help: &str, labels: &[&str]) -> IntCounterVec {
+    IntCounterVec::new(Opts::new(name, help), labels).expect(VALID)
 }
 
-/// Writes what a figure is.
-pub(crate) fn head(text: &mut String, name: &str, kind: &str, help: &str) {
-    // Writing into a text cannot fail.
-    let _ = writeln!(text, "# HELP {name} {help}\n# TYPE {name} {kind}");
-}
+/// Everything that one request for metrics reads. Metrics without any sample are left out.
+#[derive(Default)]
+pub(crate) struct Scrape(Registry);
 
-/// Writes one value of a figure.
-pub(crate) fn sample(text: &mut String, name: &str, labels: &str, value: impl Display) {
-    let _ = if labels.is_empty() {
-        writeln!(text, "{name} {value}")
-    } else {
-        writeln!(text, "{name}{{{labels}}} {value}")
-    };
+impl Scrape {
+    /// Adds a metric that is counted while the service runs.
+    pub(crate) fn add(&self, metric: &(impl Collector + Clone + 'static)) {
+        self.0.register(Box::new(metric.clone())).expect(VALID);
+    }
+
+    /// Adds quantities as they are now, each with the values of its labels.
+    pub(crate) fn gauge<'a, const N: usize>(
+        &self,
+        name: &str,
+        help: &str,
+        labels: [&str; N],
+        samples: impl IntoIterator<Item = ([&'a str; N], i64)>,
+    ) {
+        let gauge = IntGaugeVec::new(Opts::new(name, help), &labels).expect(VALID);
+        for (values, quantity) in samples {
+            gauge.with_label_values(&values).set(quantity);
+        }
+        self.add(&gauge);
+    }
+
+    /// The metrics in the order of their names.
+    pub(crate) fn text(&self) -> String {
+        let metrics = self.0.gather();
+        let text = TextEncoder::new().encode_to_string(&metrics);
+        text.expect("gathered metrics have samples")
+    }
 }
 
 #[cfg(test)]
@@ -70,16 +60,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_hold_everything_below_their_ends() {
-        let mut histogram = Histogram::new(&[1.0, 10.0]);
+    fn buckets_are_cumulative_and_labels_are_written() {
+        let sizes = histogram("x", "Sizes.", &[], &[1.0, 10.0]);
         for value in [0.5, 1.0, 5.0, 50.0] {
-            histogram.count(value);
+            sizes.with_label_values::<&str>(&[]).observe(value);
         }
-        let mut text = String::new();
-        histogram.write(&mut text, "x", "");
+        let scrape = Scrape::default();
+        scrape.add(&sizes);
+        scrape.gauge("a", "States.", ["state"], [(["on"], 12_345_678_901)]);
+        scrape.gauge("b", "Free.", [], [([], 0)]);
         assert_eq!(
-            text,
-            "x_bucket{le=\"1\"} 2\nx_bucket{le=\"10\"} 3\nx_bucket{le=\"+Inf\"} 4\n\
+            scrape.text(),
+            "# HELP a States.\n# TYPE a gauge\na{state=\"on\"} 12345678901\n\
+             # HELP b Free.\n# TYPE b gauge\nb 0\n\
+             # HELP x Sizes.\n# TYPE x histogram\n\
+             x_bucket{le=\"1\"} 2\nx_bucket{le=\"10\"} 3\nx_bucket{le=\"+Inf\"} 4\n\
              x_sum 56.5\nx_count 4\n"
         );
     }

@@ -1,14 +1,14 @@
-//! `slewplan backup`: a copy of the database, while the service uses it.
+//! `slewplan backup`: copies the database while the service uses it.
 
 use super::{Exit, Failure, runtime};
 use crate::service::ServiceError;
 use crate::store;
 use std::path::PathBuf;
 
-/// What `backup` takes.
+/// Arguments of `backup`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
-    /// Where the copy goes; it appears complete or not at all
+pub(super) struct BackupArguments {
+    /// File of the copy, which appears complete or not at all
     copy: PathBuf,
     /// The database of the service
     #[arg(
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
 }
 
 /// Copies the database.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &BackupArguments) -> Result<Exit, Failure> {
     let copied = runtime::start()?.block_on(store::backup(&arguments.database, &arguments.copy));
     copied.map_err(ServiceError::from)?;
     Ok(Exit::Complete)

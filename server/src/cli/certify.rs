@@ -14,14 +14,14 @@ use slewplan_solver::tour::planner::{self, Run};
 use std::io::{IsTerminal, stdout};
 use std::path::PathBuf;
 
-/// What `certify` takes.
+/// Arguments of `certify`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct CertifyArguments {
     /// The scenario, - for standard input
     scenario: PathBuf,
     /// The plan in JSON, - for standard input
     plan: PathBuf,
-    /// Print text for people, as on a terminal
+    /// Print text instead of JSON, as on a terminal
     #[arg(long)]
     summary: bool,
     #[command(flatten)]
@@ -31,11 +31,11 @@ pub(super) struct Arguments {
     progress: ProgressMode,
 }
 
-/// Prints what became of every claim on standard output.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Checks every proved bound and prints the results on standard output.
+pub(super) fn run(arguments: &CertifyArguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let scenario = input::scenario(&arguments.scenario, None)?.scenario;
-    let claims = input::of_plan(&arguments.plan, &scenario, documents::claims::read)?;
+    let certificate = input::of_plan(&arguments.plan, &scenario, documents::claims::read)?;
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
@@ -47,14 +47,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         legs: &NoStore,
         segments: &NoStore,
     };
-    let checked = planner::certify_plan(&scenario, &claims, run);
+    let checked = planner::verify_certificate(&scenario, &certificate, run);
     drop(observer);
     output::print(&if arguments.summary || stdout().is_terminal() {
-        report::certification(&claims, &checked)
+        report::certification(&certificate, &checked)
     } else {
-        output::json(&CertificationDocument::new(&claims, &checked))?
+        output::json(&CertificationDocument::new(&certificate, &checked))?
     })?;
-    // What was not reached before a signal came is told to be not checked.
+    // After a signal the remaining bounds are reported as not checked.
     let signal = received.exit_code().map(Exit::Signalled);
     let confirmed = checked.confirmed();
     Ok(match (confirmed, signal) {

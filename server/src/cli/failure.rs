@@ -1,4 +1,4 @@
-//! Why a command could not do its work.
+//! Errors that end a command.
 
 use super::Exit;
 use crate::service::ServiceError;
@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::io;
 use std::net::SocketAddr;
 
-/// Ends a command with a message on standard error.
+/// An error that ends a command with a message on standard error.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// An input that cannot be opened or read.
@@ -16,10 +16,10 @@ pub(crate) enum Failure {
     Unreadable {
         /// The input as the caller named it.
         name: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// An input of a size that cannot be meant.
+    /// An input beyond the limit of its size.
     #[error("cannot read {name}: it is larger than {limit_mib} MiB")]
     TooLarge {
         /// The input as the caller named it.
@@ -27,7 +27,7 @@ pub(crate) enum Failure {
         /// The limit, MiB.
         limit_mib: u64,
     },
-    /// Two inputs from one stream.
+    /// Two inputs from standard input.
     #[error("only one input can be - (standard input); name a file for the other")]
     StandardInputTwice,
     /// An input with problems.
@@ -35,13 +35,13 @@ pub(crate) enum Failure {
     Invalid {
         /// The input as the caller named it.
         name: String,
-        /// Everything that is wrong with it.
+        /// All its problems.
         problems: Vec<Problem>,
     },
-    /// Inputs that do not fit together; problems of all of them together have no name.
+    /// Inputs that do not fit together; problems of all of them as a whole have no name.
     #[error("{}", listings(problems))]
     Misfits {
-        /// Everything that is wrong, with the input that it is wrong with.
+        /// All problems, each with its input.
         problems: Vec<(Option<String>, Problem)>,
     },
     /// An output that cannot be written.
@@ -49,10 +49,10 @@ pub(crate) enum Failure {
     Unwritable {
         /// The output as the caller named it.
         name: String,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// A setting that means nothing.
+    /// A setting with an invalid value.
     #[error("{name}: {what}")]
     Setting {
         /// The setting.
@@ -63,14 +63,14 @@ pub(crate) enum Failure {
     /// The service cannot run.
     #[error(transparent)]
     Service(#[from] ServiceError),
-    /// A service that is not there or cannot take work.
-    #[error("not well: http://{address}{route}: {what}")]
+    /// A service that does not answer or cannot take work.
+    #[error("not healthy: http://{address}{route}: {what}")]
     Unhealthy {
-        /// Where it was asked.
+        /// Address of the service.
         address: SocketAddr,
-        /// What it was asked for.
+        /// Route of the request.
         route: &'static str,
-        /// What it said, or why it said nothing.
+        /// Its answer, or why there is none.
         what: String,
     },
     /// The operating system refused threads.
@@ -79,7 +79,7 @@ pub(crate) enum Failure {
     /// The operating system refused signal handlers.
     #[error("cannot listen for signals: {0}")]
     Signals(io::Error),
-    /// An answer that must not be given.
+    /// An answer with numbers that JSON cannot represent.
     #[error("internal error: the answer cannot be written: {0}")]
     Unspeakable(String),
 }
@@ -105,7 +105,7 @@ impl Failure {
     }
 }
 
-/// Problems of several inputs as text, those of one input in a row.
+/// Problems of several inputs as text, grouped by input.
 fn listings(problems: &[(Option<String>, Problem)]) -> String {
     let mut names: Vec<&Option<String>> = problems.iter().map(|(name, _)| name).collect();
     names.dedup();

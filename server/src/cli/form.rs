@@ -1,15 +1,16 @@
-//! The form in which a command writes a plan.
+//! Format of a written plan, and its options.
 
 use super::failure::Failure;
 use crate::render::export::{
-    self, ExportError, Form, Format, Options, PERIOD_S, Spacing, TOLERANCE,
+    self, ExportError, ExportOptions, Form, Format, PERIOD_S, Spacing, TOLERANCE,
 };
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use slewplan_solver::model::plan::Flight;
 use slewplan_solver::model::scenario::Scenario;
+use strum::VariantArray as _;
 
-/// Most samples of a file: a week at three per second.
+/// Maximum number of samples of a file: a week at three per second.
 const MAX_SAMPLES: usize = 2_000_000;
 
 impl ValueEnum for Form {
@@ -24,7 +25,7 @@ impl ValueEnum for Form {
 
 impl ValueEnum for Format {
     fn value_variants<'a>() -> &'a [Self] {
-        &Self::ALL
+        Self::VARIANTS
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
@@ -32,10 +33,10 @@ impl ValueEnum for Format {
     }
 }
 
-/// What can be chosen about a format.
+/// Options of the formats.
 #[derive(Debug, Default, clap::Args)]
 #[command(next_help_heading = "Formats other than json")]
-pub(super) struct Choices {
+pub(super) struct FormatOptions {
     #[arg(long, value_name = "S", value_parser = step, conflicts_with = "tolerance",
         help = format!("Sample at multiples of this time, s, and at every switch; the period of \
             wheel-rpm [default there: {PERIOD_S}]"))]
@@ -68,8 +69,8 @@ fn tolerance(text: &str) -> Result<f64, &'static str> {
     Spacing::checked_tolerance(text.parse().unwrap_or(f64::NAN))
 }
 
-impl Choices {
-    /// Whether nothing was chosen.
+impl FormatOptions {
+    /// Whether no option is set.
     pub(super) fn are_default(&self) -> bool {
         self.step.is_none()
             && self.tolerance.is_none()
@@ -79,29 +80,30 @@ impl Choices {
             && self.object_id.is_none()
     }
 
-    /// Whether plans of a scenario can be written so, before there is one.
+    /// Tests whether plans of a scenario can be written with these options.
     pub(super) fn check(&self, format: Format, scenario: &Scenario) -> Result<(), Failure> {
         export::check(format, scenario, &self.options()).map_err(failed(format))
     }
 
-    /// A flight in a format with these choices.
+    /// A flight in a format with these options.
     pub(super) fn write(
         &self,
         format: Format,
-        of: (&Scenario, &Flight),
+        scenario: &Scenario,
+        flight: &Flight,
     ) -> Result<String, Failure> {
-        export::write(format, of, &self.options()).map_err(failed(format))
+        export::write(format, scenario, flight, &self.options()).map_err(failed(format))
     }
 
-    fn options(&self) -> Options {
+    fn options(&self) -> ExportOptions {
         let step = self.step.map(Spacing::Step);
-        Options {
+        ExportOptions {
             spacing: step.or(self.tolerance.map(Spacing::Tolerance)),
             rates: !self.no_rates,
             wheel: self.wheel,
             object_name: self.object_name.clone(),
             object_id: self.object_id.clone(),
-            ..Options::new(MAX_SAMPLES)
+            ..ExportOptions::new(MAX_SAMPLES)
         }
     }
 }

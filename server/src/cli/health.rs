@@ -1,6 +1,6 @@
 //! `slewplan health`: asks a running service whether it can take work.
 //!
-//! For images that hold nothing but this program, neither a shell nor an HTTP client.
+//! For container images that have neither a shell nor an HTTP client.
 
 use super::Exit;
 use super::failure::Failure;
@@ -8,16 +8,16 @@ use std::io::{self, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-/// Far above any answer of these routes, bytes.
+/// Maximum size of an answer, far above any answer of these routes, bytes.
 const LARGEST: usize = 64 << 10;
 
-/// What `health` takes.
+/// Arguments of `health`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
-    /// Address on which the service was told to listen
+pub(super) struct HealthArguments {
+    /// Address on which the service listens
     #[arg(long, env = "SLEWPLAN_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Ask only whether the process answers, not whether it can take work
+    /// Check only that the process answers, not that it can take work
     #[arg(long)]
     live: bool,
     /// Longest wait for the answer, s
@@ -26,8 +26,8 @@ pub(super) struct Arguments {
     timeout: u16,
 }
 
-/// Asks once.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Sends one request and reports the answer.
+pub(super) fn run(arguments: &HealthArguments) -> Result<Exit, Failure> {
     let address = reachable(arguments.listen)?;
     let route = if arguments.live {
         "/health/live"
@@ -50,13 +50,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
 }
 
-/// Where a service that listens on an address is found from its own machine: who listens on every
-/// address listens on the loopback address too.
+/// The address of a service for its own machine: a service that listens on all addresses is reached
+/// on the loopback address.
 fn reachable(listen: SocketAddr) -> Result<SocketAddr, Failure> {
     if listen.port() == 0 {
         return Err(Failure::Setting {
             name: "--listen",
-            what: "port 0 was any free one; name the port that the service printed".into(),
+            what: "port 0 stands for any free port; name the port that the service printed".into(),
         });
     }
     let ip = match listen.ip() {
@@ -67,12 +67,12 @@ fn reachable(listen: SocketAddr) -> Result<SocketAddr, Failure> {
     Ok(SocketAddr::new(ip, listen.port()))
 }
 
-/// The whole answer to a request, within a time from now.
+/// Sends a request and returns the whole answer, within a time limit.
 fn ask(address: SocketAddr, route: &str, patience: Duration) -> io::Result<Vec<u8>> {
     let end = Instant::now() + patience;
     let mut stream = TcpStream::connect_timeout(&address, patience)?;
     stream.set_write_timeout(Some(patience))?;
-    // At once: whoever answers the first piece and hangs up would break the next one.
+    // In one write: a server that answers and closes after a first part would break a second write.
     let request = format!("GET {route} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n");
     stream.write_all(request.as_bytes())?;
     let mut answer = Vec::new();
@@ -86,7 +86,7 @@ fn ask(address: SocketAddr, route: &str, patience: Duration) -> io::Result<Vec<u
         match stream.read(&mut part) {
             Ok(0) => return Ok(answer),
             Ok(count) => answer.extend_from_slice(&part[..count]),
-            // How the operating system tells that the time is over.
+            // The operating system's error for an expired timeout.
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
                 return Err(io::ErrorKind::TimedOut.into());
             }
@@ -102,7 +102,7 @@ fn ask(address: SocketAddr, route: &str, patience: Duration) -> io::Result<Vec<u
     }
 }
 
-/// What an answer says against the service; nothing if it is well.
+/// Why an answer is negative; `None` if the service is healthy.
 fn complaint(answer: &[u8]) -> Option<String> {
     let text = String::from_utf8_lossy(answer);
     let (head, body) = text.split_once("\r\n\r\n").unwrap_or((&text, ""));
@@ -126,7 +126,8 @@ mod tests {
     use std::net::TcpListener;
     use std::thread;
 
-    /// Asks something that answers every request with these bytes and then hangs up, or is silent.
+    /// Sends a request to a server that answers with these bytes and closes, or never answers.
+    #[expect(clippy::disallowed_methods, reason = "a test may panic")]
     fn ask_one_that_says(answer: Option<&'static str>, patience: Duration) -> io::Result<Vec<u8>> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let address = listener.local_addr().unwrap();
@@ -137,7 +138,7 @@ mod tests {
             if let Some(answer) = answer {
                 stream.write_all(answer.as_bytes()).unwrap();
             } else {
-                // Until the other side has gone.
+                // Until the client has closed the connection.
                 let _ = stream.read(&mut request[count..]);
             }
             String::from_utf8_lossy(&request[..count]).into_owned()
@@ -170,9 +171,9 @@ mod tests {
     #[test]
     fn answers_are_understood_whole() {
         let patience = Duration::from_secs(30);
-        let well = "HTTP/1.1 200 OK\r\ncontent-length: 2\r\n\r\n{}";
-        let answer = ask_one_that_says(Some(well), patience).unwrap();
-        assert_eq!(answer, well.as_bytes());
+        let healthy = "HTTP/1.1 200 OK\r\ncontent-length: 2\r\n\r\n{}";
+        let answer = ask_one_that_says(Some(healthy), patience).unwrap();
+        assert_eq!(answer, healthy.as_bytes());
         assert_eq!(complaint(&answer), None);
         let ill = "HTTP/1.1 503 Service Unavailable\r\n\r\n{\"detail\": \"the queue is full\"}";
         assert_eq!(

@@ -1,4 +1,4 @@
-//! `slewplan import`: legs that were solved elsewhere enter a database.
+//! `slewplan import`: imports legs that were solved elsewhere into a database.
 
 use super::failure::Failure;
 use super::solve::{Threads, start_pool};
@@ -10,9 +10,9 @@ use crate::service::ServiceError;
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
-/// What `import` takes.
+/// Arguments of `import`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct ImportArguments {
     /// A file of legs --trajectories, whole or a shard, - for standard input
     file: PathBuf,
     /// The database of the service, which may be running
@@ -27,8 +27,8 @@ pub(super) struct Arguments {
     threads: Threads,
 }
 
-/// Flies every leg, keeps those that fly, and prints what became of them.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Checks every leg, stores those that pass, and prints the counts and the refused legs.
+pub(super) fn run(arguments: &ImportArguments) -> Result<Exit, Failure> {
     let read = leg_import::read(&input::document(&arguments.file)?);
     let import = read.map_err(|problems| Failure::Invalid {
         name: input::name(&arguments.file),
@@ -37,17 +37,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let Some(judged) = import.judge(&pool, &stop) else {
+    let Some(checked) = import.check(&pool, &stop) else {
         return Ok(received.exit_code().map_or(Exit::Failed, Exit::Signalled));
     };
     let counts = runtime::with_store(&arguments.database, async |store| {
-        Ok(judged.store(store).await.map_err(ServiceError::from)?)
+        Ok(checked.store(store).await.map_err(ServiceError::from)?)
     })?;
-    let document = LegImportDocument::new(counts, &judged.refused);
+    let document = LegImportDocument::new(counts, &checked.refused);
     output::print(&output::json(&document)?)?;
-    if judged.refused.is_empty() {
+    if checked.refused.is_empty() {
         return Ok(Exit::Complete);
     }
-    output::complain(&format!("{} legs are refused", judged.refused.len()));
+    output::complain(&format!("{} legs are refused", checked.refused.len()));
     Ok(Exit::Negative)
 }

@@ -9,7 +9,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Far above any real document, far below the memory of a small machine.
+/// Maximum size of an input, MiB: far above any real document, far below the memory of a small
+/// machine.
 const MAX_MIB: u64 = 256;
 
 /// The name of an input in messages.
@@ -61,7 +62,7 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a document of any meaning.
+/// Reads a document of any kind.
 pub(super) fn document(path: &Path) -> Result<Node, Failure> {
     documents::document::parse(&read(path)?).map_err(|problem| Failure::Invalid {
         name: name(path),
@@ -77,7 +78,7 @@ pub(super) fn scenario(path: &Path, time_limit_s: Option<f64>) -> Result<Validat
     })
 }
 
-/// Reads what a command needs of a plan for a scenario.
+/// Reads the part of a plan that a command needs.
 pub(super) fn of_plan<T>(
     path: &Path,
     scenario: &Scenario,

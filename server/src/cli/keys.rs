@@ -1,4 +1,4 @@
-//! `slewplan keys`: who may use the service.
+//! `slewplan keys`: makes, lists and revokes keys of the service.
 
 use super::{Exit, Failure, output, runtime};
 use crate::base::access::{FreshKey, Scope, Scopes};
@@ -12,9 +12,9 @@ use std::path::PathBuf;
 const DAY_US: i64 = 86_400_000_000;
 const MAX_CLIENT: usize = 64;
 
-/// What `keys` takes.
+/// Arguments of `keys`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct KeysArguments {
     /// The database of the service
     #[arg(
         long,
@@ -30,28 +30,28 @@ pub(super) struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Make a key and print it, once; a running service asks for keys within a second
+    /// Make a key and print it, once; a running service requires keys within a second
     Create {
-        /// For whom the key acts: keys of the same client see the same jobs
+        /// Client of the key: keys of the same client see the same jobs
         client: String,
-        /// What the key opens
+        /// Scopes of the key
         #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Scope::Read, Scope::Write])]
         scopes: Vec<Scope>,
-        /// Days after which the key opens nothing any more [default: never]
+        /// Days after which the key expires [default: never]
         #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
         expires: Option<u32>,
     },
     /// List all keys, without their secrets
     List,
-    /// End a key at once
+    /// Revoke a key at once
     Revoke {
-        /// The first column of the list
+        /// Identifier of the key: the first column of the list
         id: String,
     },
 }
 
-/// Makes, lists or ends keys.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Makes, lists or revokes keys.
+pub(super) fn run(arguments: &KeysArguments) -> Result<Exit, Failure> {
     runtime::with_store(&arguments.database, async |store| match &arguments.action {
         Action::Create {
             client,

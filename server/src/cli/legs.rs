@@ -1,8 +1,8 @@
-//! `slewplan legs`: the table of leg times, whole, in parts, or joined from parts.
+//! `slewplan legs`: the table of leg times, whole, as a shard, or merged from shards.
 
 use super::failure::Failure;
 use super::output::{self, Destination};
-use super::remembered::RememberedLegs;
+use super::remembered::CommandLegCache;
 use super::shard::ShardArgument;
 use super::solve::{Threads, start_pool};
 use super::{Exit, input};
@@ -22,27 +22,27 @@ use std::path::PathBuf;
 mod merge;
 mod recorder;
 
-/// What `legs` takes.
+/// Arguments of `legs`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct LegsArguments {
     /// The scenario, - for standard input
     #[arg(required_unless_present = "merge")]
     scenario: Option<PathBuf>,
-    /// Join the files of all parts of a table to the file of the whole
+    /// Merge the files of all shards of a table
     #[arg(long, value_name = "FILE", num_args = 1..,
         conflicts_with_all = ["scenario", "kind", "shard", "trajectories", "database", "threads"])]
     merge: Vec<PathBuf>,
     /// The conditions at the two ends of a leg
-    #[arg(long, value_enum, default_value_t = Kind::RestToRest)]
-    kind: Kind,
-    /// Solve only part I of N, counted from 1; the parts together are the whole table; with
-    /// indexed/N, in a pod of a Kubernetes Indexed Job, the part of that pod
+    #[arg(long, value_enum, default_value_t = TableKind::RestToRest)]
+    kind: TableKind,
+    /// Solve only shard I of N, counted from 1; all shards together are the whole table; with
+    /// indexed/N, in a pod of a Kubernetes Indexed Job, the shard of that pod
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: ShardArgument,
     /// Write the motions and the scenario too, so that the file can be imported
     #[arg(long)]
     trajectories: bool,
-    /// Take known legs from this database of the service, and remember new ones in it
+    /// Read known legs from this database of the service, and store new ones in it
     #[arg(long, value_name = "FILE")]
     database: Option<PathBuf>,
     /// Write the table to this file instead of standard output
@@ -56,11 +56,11 @@ pub(super) struct Arguments {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Kind {
+enum TableKind {
     /// All rates zero at both ends
     #[value(name = "rest_to_rest")]
     RestToRest,
-    /// Each end with only its own conditions, the rest free
+    /// Each end with its own conditions only, everything else free
     #[value(name = "lower_bound")]
     LowerBound,
     /// All rates zero at both ends: proved bounds of the times, without solving any slew
@@ -68,18 +68,18 @@ enum Kind {
     Certified,
 }
 
-impl From<Kind> for LegKind {
-    fn from(kind: Kind) -> Self {
+impl From<TableKind> for LegKind {
+    fn from(kind: TableKind) -> Self {
         match kind {
-            Kind::RestToRest => Self::RestToRest,
-            Kind::LowerBound => Self::LowerBound,
-            Kind::Certified => Self::Certified,
+            TableKind::RestToRest => Self::RestToRest,
+            TableKind::LowerBound => Self::LowerBound,
+            TableKind::Certified => Self::Certified,
         }
     }
 }
 
-/// Solves the legs, or joins parts, and writes the table.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Solves the legs, or merges shards, and writes the table.
+pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
     let table = match &arguments.scenario {
         None => merge::table(&arguments.merge)?,
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 }
                 return Ok(Exit::Negative);
             }
-            let (table, received) = solve(arguments, (node, &scenario))?;
+            let (table, received) = solve(arguments, node, &scenario)?;
             let nothing = table.rows.is_empty() && !table.complete;
             if let (true, Some(code)) = (nothing, received.exit_code()) {
                 return Ok(Exit::Signalled(code));
@@ -113,8 +113,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn solve(
-    arguments: &Arguments,
-    (node, scenario): (Node, &Scenario),
+    arguments: &LegsArguments,
+    node: Node,
+    scenario: &Scenario,
 ) -> Result<(LegTable, Received), Failure> {
     let (kind, shard) = (arguments.kind.into(), arguments.shard.resolve()?);
     if arguments.trajectories && kind == LegKind::Certified {
@@ -128,9 +129,9 @@ fn solve(
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
     let observer = progress::observer(arguments.progress);
     let database = arguments.database.as_deref();
-    let remembered = database.map(RememberedLegs::open).transpose()?;
+    let remembered = database.map(CommandLegCache::open).transpose()?;
     let legs = remembered.as_ref();
-    let legs = legs.map_or(&NoStore as &dyn LegStore, RememberedLegs::legs);
+    let legs = legs.map_or(&NoStore as &dyn LegStore, CommandLegCache::legs);
     let recorder = arguments.trajectories.then(|| Recorder::new(legs));
     let run = Run {
         pool: &pool,
@@ -157,7 +158,7 @@ fn exit(table: &LegTable) -> Exit {
     if !table.complete {
         return Exit::Stopped;
     }
-    // That nothing is proved of a leg is an answer.
+    // A leg without a proved bound is a complete answer.
     if table.kind == LegKind::Certified {
         return Exit::Complete;
     }

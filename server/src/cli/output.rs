@@ -1,4 +1,4 @@
-//! Files and standard output: complete or not at all.
+//! Output to files, which appear complete or not at all, and to standard output.
 
 use super::failure::Failure;
 use super::input::is_stream;
@@ -9,19 +9,19 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Where an answer goes.
+/// The destination of an answer.
 #[derive(Debug)]
 pub(super) enum Destination {
     /// Standard output.
     Stream,
-    /// A regular file, or none yet, that is replaced by renaming.
+    /// A regular file, existing or not, that is replaced by renaming.
     File(PathBuf),
     /// A device or pipe that must not be replaced.
     Device(PathBuf),
 }
 
 impl Destination {
-    /// The destination behind a path, tested for being writable before any work is done.
+    /// The destination at a path, tested for being writable before any work is done.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         if is_stream(path) {
             return Ok(Self::Stream);
@@ -36,7 +36,7 @@ impl Destination {
         match fs::metadata(path) {
             Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
             Ok(found) if !found.is_file() => Ok(Self::Device(path.into())),
-            // Behind a symbolic link it is the file that is replaced, not the link.
+            // The target of a symbolic link is replaced, not the link.
             Ok(_) => {
                 temporary_beside(&fs::canonicalize(path)?).map(|(_, target)| Self::File(target))
             }
@@ -67,8 +67,8 @@ impl Destination {
     }
 }
 
-/// A new file in the folder of a path, and that path; on the same file system, so that renaming
-/// is atomic.
+/// A temporary file in the folder of a path, and that path: on the same file system, so that
+/// renaming is atomic.
 fn temporary_beside(path: &Path) -> io::Result<(NamedTempFile, PathBuf)> {
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -78,7 +78,7 @@ fn temporary_beside(path: &Path) -> io::Result<(NamedTempFile, PathBuf)> {
     fs::metadata(folder)?;
     let file = tempfile::Builder::new()
         .prefix(".slewplan-")
-        // What any new file gets: the umask of the caller decides.
+        // The permissions of any new file, from the caller's umask.
         .permissions(Permissions::from_mode(0o666))
         .tempfile_in(folder)?;
     Ok((file, path.to_owned()))
@@ -106,7 +106,7 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
         .write_all(text.as_bytes())
         .and_then(|()| stream.flush())
     {
-        // A reader that has seen enough, `head` for one, is no error.
+        // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Unwritable {
             name: "standard output".into(),
             source: error,
@@ -117,7 +117,7 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes text to standard error.
 pub(super) fn remark(text: &str) {
-    // When even that fails there is nobody left to tell.
+    // An error of standard error cannot be reported.
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 

@@ -1,11 +1,11 @@
-//! Panics end in one line, never in a trace.
+//! Panics as a message of one line instead of a trace.
 
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::{Mutex, PoisonError};
 
 static FIRST: Mutex<Option<String>> = Mutex::new(None);
 
-/// Runs work; a panic on any thread of it that reaches this one becomes its description.
+/// Runs work; a panic, also one propagated from another thread, becomes its description.
 pub(super) fn contain<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     panic::set_hook(Box::new(remember));
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| {
@@ -14,7 +14,7 @@ pub(super) fn contain<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// The first panic is the cause, later ones may follow from it.
+/// The first panic is the cause; later ones may follow from it.
 fn remember(info: &PanicHookInfo<'_>) {
     let message = info
         .payload_as_str()

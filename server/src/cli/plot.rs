@@ -1,35 +1,35 @@
-//! `slewplan plot`: plans and other answers as pictures.
+//! `slewplan plot`: draws plans and other answers as SVG.
 
 use super::failure::Failure;
 use super::output::Destination;
 use super::{Exit, input};
 use crate::documents::slew;
 use crate::render::plot::{
-    self, Boresight, Document, Marks, WrittenComparison, WrittenEnvelopes, WrittenFlight,
-    WrittenPlan, WrittenSlews,
+    self, DrawableDocument, DrawnBoresight, Marks, WrittenComparison, WrittenEnvelopes,
+    WrittenFlight, WrittenPlan, WrittenSlews,
 };
 use slewplan_solver::model::scenario::Scenario;
 use std::path::{Path, PathBuf};
 
-/// What `plot` takes.
+/// Arguments of `plot`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct PlotArguments {
     /// What to draw, - for standard input: a plan, the answer to a slew, to a study of a flight or
     /// of wheels, or answers to slews with a sweep, which are drawn as trade curves in one picture
     #[arg(required = true, value_name = "DOCUMENT")]
     documents: Vec<PathBuf>,
-    /// The scenario of the plan or flight, which knows the limits, the keep-out cones and the
-    /// boresights; of a single slew the document that asked for it
+    /// The scenario of the plan or flight, for limits, keep-out cones and boresights; for a single
+    /// slew its request
     #[arg(long, value_name = "SCENARIO")]
     scenario: Option<PathBuf>,
-    /// What to follow on the sphere of a plan: a boresight of the scenario, x, y, z, -x, -y or -z
+    /// Direction drawn on the sphere of a plan: a boresight of the scenario, x, y, z, -x, -y or -z
     /// [default: the first boresight, or x]
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     boresight: Option<String>,
     /// Which turn of a study of envelopes, counted from 0 [default: 0]
     #[arg(long, value_name = "N")]
     turn: Option<usize>,
-    /// Mark this value of what is swept in a trade curve; may be given several times
+    /// Mark this value of the swept quantity in a trade curve; may be given several times
     #[arg(long, value_name = "VALUE")]
     mark: Vec<f64>,
     /// Mark this cost in a trade curve, and where curves cross it; may be given several times
@@ -40,25 +40,27 @@ pub(super) struct Arguments {
     output: PathBuf,
 }
 
-/// Draws the documents as they were written.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Draws the documents.
+pub(super) fn run(arguments: &PlotArguments) -> Result<Exit, Failure> {
     let inputs = arguments.documents.iter().chain(&arguments.scenario);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     input::one_stream_at_most(&inputs)?;
     let destination = Destination::open(&arguments.output)?;
-    let read = |path: &PathBuf| Document::read(&input::read(path)?).map_err(wrong("DOCUMENT"));
-    let documents: Result<Vec<Document>, Failure> = arguments.documents.iter().map(read).collect();
+    let read =
+        |path: &PathBuf| DrawableDocument::read(&input::read(path)?).map_err(wrong("DOCUMENT"));
+    let documents: Result<Vec<DrawableDocument>, Failure> =
+        arguments.documents.iter().map(read).collect();
     let mut documents = documents?;
-    let picture = if documents.iter().all(Document::is_swept) || documents.len() > 1 {
+    let picture = if documents.iter().all(DrawableDocument::is_swept) || documents.len() > 1 {
         trade(documents, arguments)
     } else {
-        // There is exactly one.
+        // The list has exactly one document.
         match documents.pop() {
-            Some(Document::Plan(plan)) => draw_plan(&plan, arguments),
-            Some(Document::Slews(slew)) => draw_slew(&slew, arguments),
-            Some(Document::Comparison(study)) => draw_comparison(&study, arguments),
-            Some(Document::Envelopes(study)) => draw_envelopes(&study, arguments),
-            Some(Document::Flight(flight)) => draw_flight(&flight, arguments),
+            Some(DrawableDocument::Plan(plan)) => draw_plan(&plan, arguments),
+            Some(DrawableDocument::Slews(slew)) => draw_slew(&slew, arguments),
+            Some(DrawableDocument::Comparison(study)) => draw_comparison(&study, arguments),
+            Some(DrawableDocument::Envelopes(study)) => draw_envelopes(&study, arguments),
+            Some(DrawableDocument::Flight(flight)) => draw_flight(&flight, arguments),
             None => Err(wrong("DOCUMENT")("there is none".to_owned())),
         }
     };
@@ -70,17 +72,17 @@ fn wrong(name: &'static str) -> impl Fn(String) -> Failure {
     move |what| Failure::Setting { name, what }
 }
 
-fn draw_plan(plan: &WrittenPlan, arguments: &Arguments) -> Result<String, Failure> {
+fn draw_plan(plan: &WrittenPlan, arguments: &PlotArguments) -> Result<String, Failure> {
     arguments.refuse_marks()?;
     arguments.refuse_turn()?;
     let scenario = arguments.scenario()?;
     let scenario = scenario.as_ref();
-    let boresight =
-        Boresight::find(arguments.boresight.as_deref(), scenario).map_err(wrong("--boresight"))?;
+    let boresight = DrawnBoresight::find(arguments.boresight.as_deref(), scenario)
+        .map_err(wrong("--boresight"))?;
     plot::plan(plan, scenario, &boresight).map_err(wrong("--scenario"))
 }
 
-fn draw_slew(answer: &WrittenSlews, arguments: &Arguments) -> Result<String, Failure> {
+fn draw_slew(answer: &WrittenSlews, arguments: &PlotArguments) -> Result<String, Failure> {
     arguments.refuse_marks()?;
     arguments.refuse_turn()?;
     arguments.refuse_boresight()?;
@@ -95,7 +97,7 @@ fn draw_slew(answer: &WrittenSlews, arguments: &Arguments) -> Result<String, Fai
     plot::slew(answer, craft).map_err(wrong("DOCUMENT"))
 }
 
-fn draw_flight(flight: &WrittenFlight, arguments: &Arguments) -> Result<String, Failure> {
+fn draw_flight(flight: &WrittenFlight, arguments: &PlotArguments) -> Result<String, Failure> {
     arguments.refuse_marks()?;
     arguments.refuse_turn()?;
     arguments.refuse_boresight()?;
@@ -104,7 +106,10 @@ fn draw_flight(flight: &WrittenFlight, arguments: &Arguments) -> Result<String, 
     plot::flight(flight, craft).map_err(wrong("DOCUMENT"))
 }
 
-fn draw_comparison(study: &WrittenComparison, arguments: &Arguments) -> Result<String, Failure> {
+fn draw_comparison(
+    study: &WrittenComparison,
+    arguments: &PlotArguments,
+) -> Result<String, Failure> {
     arguments.refuse_marks()?;
     arguments.refuse_turn()?;
     arguments.refuse_boresight()?;
@@ -112,21 +117,21 @@ fn draw_comparison(study: &WrittenComparison, arguments: &Arguments) -> Result<S
     plot::comparison(study).map_err(wrong("DOCUMENT"))
 }
 
-fn draw_envelopes(study: &WrittenEnvelopes, arguments: &Arguments) -> Result<String, Failure> {
+fn draw_envelopes(study: &WrittenEnvelopes, arguments: &PlotArguments) -> Result<String, Failure> {
     arguments.refuse_marks()?;
     arguments.refuse_boresight()?;
     arguments.refuse_scenario()?;
     plot::envelopes(study, arguments.turn.unwrap_or(0)).map_err(wrong("--turn"))
 }
 
-fn trade(documents: Vec<Document>, arguments: &Arguments) -> Result<String, Failure> {
+fn trade(documents: Vec<DrawableDocument>, arguments: &PlotArguments) -> Result<String, Failure> {
     arguments.refuse_turn()?;
     arguments.refuse_boresight()?;
     arguments.refuse_scenario()?;
     let answers: Option<Vec<WrittenSlews>> = documents
         .into_iter()
         .map(|document| match document {
-            Document::Slews(answer) => Some(answer),
+            DrawableDocument::Slews(answer) => Some(answer),
             _ => None,
         })
         .collect();
@@ -139,7 +144,7 @@ fn trade(documents: Vec<Document>, arguments: &Arguments) -> Result<String, Fail
     plot::trade(&answers, &marks).map_err(wrong("DOCUMENT"))
 }
 
-impl Arguments {
+impl PlotArguments {
     fn scenario(&self) -> Result<Option<Scenario>, Failure> {
         let path = self.scenario.as_deref();
         path.map(|path| Ok(input::scenario(path, None)?.scenario))

@@ -1,4 +1,4 @@
-//! Showing progress on standard error: a bar for people, JSON lines for programs.
+//! Progress on standard error: a bar for terminals, JSON lines for programs.
 
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -20,7 +20,7 @@ pub(crate) enum ProgressMode {
     None,
 }
 
-/// The observer of a mode.
+/// The observer for a mode.
 pub(crate) fn observer(mode: ProgressMode) -> Box<dyn Observer> {
     match mode {
         ProgressMode::Auto if std::io::stderr().is_terminal() => Box::new(Bar::new()),
@@ -29,7 +29,7 @@ pub(crate) fn observer(mode: ProgressMode) -> Box<dyn Observer> {
     }
 }
 
-/// Shows nothing but contradictions.
+/// Reports contradictions only.
 struct Quiet;
 
 impl Observer for Quiet {
@@ -40,7 +40,7 @@ impl Observer for Quiet {
     }
 }
 
-/// Writes a line to standard error. Nobody reading is no reason to stop the solve.
+/// Writes a line to standard error. A failure of this does not stop the solve.
 fn complain(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
@@ -50,7 +50,7 @@ struct Bar(ProgressBar);
 
 impl Bar {
     fn new() -> Self {
-        // Until the first report there is nothing to count.
+        // Hidden counters until the first report.
         let bar = ProgressBar::new_spinner();
         bar.enable_steady_tick(Duration::from_millis(200));
         Self(bar)
@@ -71,9 +71,9 @@ impl Observer for Bar {
             Some(total) => bar.set_length(total),
             None => bar.unset_length(),
         }
-        bar.set_prefix(progress.stage.as_str());
+        bar.set_prefix(<&str>::from(progress.stage));
         bar.set_position(progress.done);
-        bar.set_message(figures(&progress));
+        bar.set_message(status(&progress));
     }
 
     fn contradicted(&self, contradiction: &Contradiction) {
@@ -87,7 +87,7 @@ impl Drop for Bar {
     }
 }
 
-fn figures(progress: &Progress) -> String {
+fn status(progress: &Progress) -> String {
     let seconds = |label, value: Option<f64>| {
         value.map_or_else(String::new, |value| format!("  {label} {value:.3} s"))
     };
@@ -101,14 +101,14 @@ fn figures(progress: &Progress) -> String {
     )
 }
 
-/// JSON lines: every change of stage, incumbent or bound, and otherwise ten lines a second.
+/// JSON lines: every change of stage, incumbent or bound, else at most ten lines per second.
 struct JsonLines {
     begin: Instant,
     last: Mutex<Option<(Instant, Progress)>>,
 }
 
 #[derive(Serialize)]
-struct Line {
+struct ProgressLine {
     stage: &'static str,
     done: u64,
     total: Option<u64>,
@@ -128,9 +128,9 @@ impl JsonLines {
         }
     }
 
-    fn line(&self, progress: &Progress, now: Instant) -> Line {
-        Line {
-            stage: progress.stage.as_str(),
+    fn line(&self, progress: &Progress, now: Instant) -> ProgressLine {
+        ProgressLine {
+            stage: progress.stage.into(),
             done: progress.done,
             total: progress.total,
             incumbent_s: progress.incumbent_s.filter(|value| value.is_finite()),
@@ -144,7 +144,7 @@ impl JsonLines {
 impl Observer for JsonLines {
     fn progress(&self, progress: Progress) {
         let now = Instant::now();
-        // Held while writing, so that lines do not mix.
+        // Locked while writing, so that lines of several threads do not mix.
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.is_some_and(|(at, shown)| now - at < MIN_PAUSE && !news(&shown, &progress)) {
             return;

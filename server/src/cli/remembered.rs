@@ -1,4 +1,4 @@
-//! The legs of a database for one command.
+//! The leg cache of a database for one command.
 
 use super::failure::Failure;
 use super::runtime;
@@ -11,14 +11,14 @@ use std::path::Path;
 use std::sync::Arc;
 use tokio::runtime::Runtime;
 
-/// Remembered legs; new ones are written at the latest when the value is dropped.
-pub(super) struct RememberedLegs {
-    // Dropped before the runtime that it needs for that.
+/// The leg cache; new legs are stored at the latest when it is dropped.
+pub(super) struct CommandLegCache {
+    // Dropped before the runtime, which it needs to store legs.
     legs: LegCache,
     _runtime: Runtime,
 }
 
-impl RememberedLegs {
+impl CommandLegCache {
     /// Opens or creates a database.
     pub(super) fn open(database: &Path) -> Result<Self, Failure> {
         let runtime = runtime::start()?;
@@ -32,7 +32,7 @@ impl RememberedLegs {
         })
     }
 
-    /// The legs.
+    /// The cached legs.
     pub(super) fn legs(&self) -> &dyn LegStore {
         &self.legs
     }

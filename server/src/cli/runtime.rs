@@ -1,4 +1,4 @@
-//! The database for commands that are not the service.
+//! Access to the database for commands other than `serve`.
 
 use super::Failure;
 use crate::documents::jobs::EventDocument;
@@ -7,7 +7,7 @@ use crate::store::Store;
 use std::path::Path;
 use tokio::runtime::Runtime;
 
-/// A thread for the database.
+/// A runtime with one thread for the database.
 pub(super) fn start() -> Result<Runtime, Failure> {
     let started = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
@@ -19,7 +19,7 @@ pub(super) fn start() -> Result<Runtime, Failure> {
     })?)
 }
 
-/// Works on a database, which is opened or created for it.
+/// Opens or creates a database, works on it and closes it.
 pub(super) fn with_store<T>(
     database: &Path,
     work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,

@@ -1,9 +1,9 @@
-//! `slewplan serve`: the service.
+//! `slewplan serve`: runs the service.
 
 use super::Exit;
 use super::failure::Failure;
 use super::output;
-use crate::service::{self, Settings};
+use crate::service::{self, ServiceSettings};
 use crate::store::QueueLimits;
 use clap::ValueEnum;
 use std::net::SocketAddr;
@@ -13,13 +13,13 @@ use tracing_subscriber::EnvFilter;
 
 const DAY: Duration = Duration::from_hours(24);
 
-/// What `serve` takes.
+/// Arguments of `serve`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
-    /// Address to listen on; port 0 takes any free one
+pub(super) struct ServeArguments {
+    /// Address to listen on; port 0 stands for any free port
     #[arg(long, env = "SLEWPLAN_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// The database; created when there is none
+    /// File of the database; created when it does not exist
     #[arg(
         long,
         env = "SLEWPLAN_DATABASE",
@@ -31,15 +31,15 @@ pub(super) struct Arguments {
     #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
         value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Largest body of a request, bytes
+    /// Maximum size of a request body, bytes
     #[arg(long, env = "SLEWPLAN_MAX_BODY_BYTES", value_name = "BYTES", default_value_t = 4 << 20,
         value_parser = clap::value_parser!(u32).range(1024..))]
     max_body_bytes: u32,
-    /// Most targets of a scenario
+    /// Maximum number of targets of a scenario
     #[arg(long, env = "SLEWPLAN_MAX_TARGETS", value_name = "N", default_value_t = 200,
         value_parser = clap::value_parser!(u32).range(1..))]
     max_targets: u32,
-    /// Most jobs that wait
+    /// Maximum number of queued jobs
     #[arg(
         long,
         env = "SLEWPLAN_QUEUE_LIMIT",
@@ -47,11 +47,11 @@ pub(super) struct Arguments {
         default_value_t = 1000
     )]
     queue_limit: u32,
-    /// Memory that one job may take, MiB
+    /// Memory limit of one job, MiB
     #[arg(long, env = "SLEWPLAN_JOB_MEMORY", value_name = "MIB", default_value_t = 1024,
         value_parser = clap::value_parser!(u32).range(16..))]
     job_memory: u32,
-    /// Most jobs of one client that wait, where keys are asked for
+    /// Maximum number of queued jobs of one client, where keys are required
     #[arg(
         long,
         env = "SLEWPLAN_CLIENT_QUEUE_LIMIT",
@@ -59,25 +59,26 @@ pub(super) struct Arguments {
         default_value_t = 100
     )]
     client_queue_limit: u32,
-    /// Let everybody in, at any address and whatever keys there are
+    /// Require no keys, at any address and even if there are some
     #[arg(long, env = "SLEWPLAN_NO_KEYS")]
     no_keys: bool,
-    /// Days for which ended jobs are kept, with their plans and idempotency keys [default: for ever]
+    /// Days for which ended jobs are kept, with their plans and idempotency keys [default: without
+    /// end]
     #[arg(long, env = "SLEWPLAN_RETAIN", value_name = "DAYS",
         value_parser = clap::value_parser!(u32).range(1..=36_500))]
     retain: Option<u32>,
-    /// Most solved legs that are remembered for other jobs; those that were stored first go first
+    /// Maximum number of cached legs; the oldest are deleted first
     #[arg(long, env = "SLEWPLAN_LEG_CACHE", value_name = "N", default_value_t = 1_000_000,
         value_parser = clap::value_parser!(u32).range(1..))]
     leg_cache: u32,
-    /// Most connections at once
+    /// Maximum number of connections
     #[arg(long, env = "SLEWPLAN_MAX_CONNECTIONS", value_name = "N", default_value_t = 512,
         value_parser = clap::value_parser!(u16).range(1..))]
     max_connections: u16,
-    /// Form of the log on standard error
+    /// Format of the log on standard error
     #[arg(long, env = "SLEWPLAN_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     log_format: LogFormat,
-    /// What is logged: a level, or levels by module
+    /// Level of the log, or levels by module
     #[arg(
         long,
         env = "SLEWPLAN_LOG",
@@ -89,16 +90,16 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum LogFormat {
-    /// Lines for people
+    /// Plain text
     Text,
     /// One JSON object per line
     Json,
 }
 
 /// Serves until a signal ends it.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
     start_log(arguments)?;
-    let settings = Settings {
+    let settings = ServiceSettings {
         listen: arguments.listen,
         database: arguments.database.clone(),
         threads: arguments.threads.map(usize::from),
@@ -120,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Complete)
 }
 
-fn start_log(arguments: &Arguments) -> Result<(), Failure> {
+fn start_log(arguments: &ServeArguments) -> Result<(), Failure> {
     let filter = EnvFilter::try_new(&arguments.log).map_err(|error| Failure::Setting {
         name: "--log",
         what: error.to_string(),
@@ -134,7 +135,7 @@ fn start_log(arguments: &Arguments) -> Result<(), Failure> {
         LogFormat::Text => log.with_ansi(false).init(),
         LogFormat::Json => log.json().init(),
     }
-    // A panic costs one job or request; the log keeps what it was.
+    // A panic ends one job or request only and is logged.
     std::panic::set_hook(Box::new(|info| {
         let message = info.payload_as_str().unwrap_or("no message");
         let place = info.location().map(ToString::to_string).unwrap_or_default();

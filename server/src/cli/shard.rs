@@ -1,21 +1,21 @@
-//! Parts of a table, for runs side by side.
+//! Shards of a table, for parallel runs.
 
 use super::failure::Failure;
 use slewplan_solver::tour::planner::Shard;
 use std::ffi::OsStr;
 use std::str::FromStr;
 
-/// Where Kubernetes tells every pod of an Indexed Job its number, counted from 0.
+/// The variable with the number of a pod of a Kubernetes Indexed Job, counted from 0.
 const COMPLETION_INDEX: &str = "JOB_COMPLETION_INDEX";
 
-/// A part of the table as written on the command line.
+/// A shard as written on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ShardArgument {
-    /// This one.
+    /// A shard by its number.
     Named(Shard),
-    /// The one whose number the environment has.
+    /// The shard whose number the environment has.
     Indexed {
-        /// How many parts there are.
+        /// Number of shards.
         of: usize,
     },
 }
@@ -42,7 +42,7 @@ impl FromStr for ShardArgument {
 }
 
 impl ShardArgument {
-    /// The part that is meant in this process.
+    /// The shard of this process.
     pub(super) fn resolve(self) -> Result<Shard, Failure> {
         match self {
             Self::Named(shard) => Ok(shard),
@@ -54,7 +54,7 @@ impl ShardArgument {
     }
 }
 
-/// The part with an index of the environment, counted from 0.
+/// The shard with an index from the environment, counted from 0.
 fn indexed(index: Option<&str>, of: usize) -> Result<Shard, Failure> {
     let wrong = |what| Failure::Setting {
         name: "--shard",

@@ -7,12 +7,12 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
 
-/// Remembers which signal came first.
+/// The first signal that was received.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Received(Arc<AtomicI32>);
 
 impl Received {
-    /// The exit code by which a shell tells that a signal ended the program, if one came.
+    /// The exit code that shells use for the end by a signal (128 + its number), if there was one.
     pub(crate) fn exit_code(&self) -> Option<u8> {
         match self.0.load(Ordering::Relaxed) {
             0 => None,
@@ -23,8 +23,8 @@ impl Received {
 
 /// Turns SIGINT and SIGTERM into stop requests from now on.
 ///
-/// The first asks for the best plan so far, the second abandons it, the third ends the program
-/// at once, in case that a computation does not listen.
+/// The first asks for the best plan so far, the second cancels the solve, the third ends the
+/// program at once, in case a computation does not react.
 ///
 /// # Errors
 ///
@@ -43,6 +43,7 @@ pub(crate) fn listen(stop: &StopSignal) -> io::Result<Received> {
                         stop.request();
                     }
                     1 => stop.cancel(),
+                    #[expect(clippy::disallowed_methods, reason = "the third ends at once")]
                     _ => std::process::exit(128 + signal),
                 }
             }

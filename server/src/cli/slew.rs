@@ -1,17 +1,17 @@
-//! `slewplan slew`: one slew with a choice of objective and command.
+//! `slewplan slew`: solves one slew with a choice of objective and command.
 
 use super::failure::Failure;
 use super::output::{self, Destination};
 use super::{Exit, input};
 use crate::cli::signals;
 use crate::documents::slew::{self, SlewAnswerDocument};
-use crate::jobs::slews::{self, Solved};
+use crate::jobs::slews::{self, SlewSolutions};
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
-/// What `slew` takes.
+/// Arguments of `slew`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct SlewArguments {
     /// The slew, - for standard input
     slew: PathBuf,
     /// Write the answer to this file instead of standard output
@@ -20,7 +20,7 @@ pub(super) struct Arguments {
 }
 
 /// Solves the slew and writes the answer.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &SlewArguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
     let bytes = input::read(&arguments.slew)?;
     let invalid = |problems| Failure::Invalid {
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit(&solved))
 }
 
-fn exit(solved: &Solved) -> Exit {
+fn exit(solved: &SlewSolutions) -> Exit {
     if !solved.complete {
         return Exit::Stopped;
     }

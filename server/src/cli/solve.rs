@@ -1,9 +1,9 @@
-//! `slewplan solve`: one scenario in, one plan out.
+//! `slewplan solve`: plans a scenario.
 
 use super::failure::Failure;
-use super::form::Choices;
+use super::form::FormatOptions;
 use super::output::{self, Destination};
-use super::remembered::RememberedLegs;
+use super::remembered::CommandLegCache;
 use super::{Exit, input};
 use crate::cli::progress::{self, ProgressMode};
 use crate::cli::signals::{self, Received};
@@ -22,18 +22,18 @@ use std::io::{IsTerminal, stdout};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-/// What `solve` takes.
+/// Arguments of `solve`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct SolveArguments {
     /// The scenario, - for standard input
     scenario: PathBuf,
     /// Write the plan to this file
     #[arg(short, long, value_name = "PLAN")]
     output: Option<PathBuf>,
-    /// Form of the plan [default: json]
+    /// Format of the plan [default: json]
     #[arg(long, value_enum)]
     format: Option<Form>,
-    /// Print a summary for people, as on a terminal
+    /// Print a summary as text, as on a terminal
     #[arg(long)]
     summary: bool,
     #[command(flatten)]
@@ -41,17 +41,17 @@ pub(super) struct Arguments {
     /// Stop with the best plan so far after this time, s, whatever the scenario says
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<f64>,
-    /// Take known legs from this database of the service, and remember new ones in it
+    /// Read known legs from this database of the service, and store new ones in it
     #[arg(long, value_name = "FILE")]
     database: Option<PathBuf>,
     /// How to show progress on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     progress: ProgressMode,
     #[command(flatten)]
-    choices: Choices,
+    choices: FormatOptions,
 }
 
-/// How many workers solve.
+/// Number of worker threads.
 #[derive(Debug, clap::Args)]
 pub(super) struct Threads {
     /// Worker threads [default: one per core]
@@ -59,7 +59,7 @@ pub(super) struct Threads {
     threads: Option<u16>,
 }
 
-/// Starts the workers.
+/// Starts the worker threads.
 pub(super) fn start_pool(threads: &Threads) -> Result<SolverPool, Failure> {
     let count = threads
         .threads
@@ -67,7 +67,7 @@ pub(super) fn start_pool(threads: &Threads) -> Result<SolverPool, Failure> {
     Ok(SolverPool::new(count)?)
 }
 
-/// A time limit as a scenario may have it.
+/// A time limit within the range of scenarios.
 fn seconds(text: &str) -> Result<f64, &'static str> {
     text.parse()
         .ok()
@@ -76,7 +76,7 @@ fn seconds(text: &str) -> Result<f64, &'static str> {
 }
 
 /// Solves the scenario and writes plan and summary.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &SolveArguments) -> Result<Exit, Failure> {
     let outlets = Outlets::open(arguments)?;
     let Validated { scenario, warnings } =
         input::scenario(&arguments.scenario, arguments.time_limit)?;
@@ -86,11 +86,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         output::complain("stopped before a first plan was found");
         return Ok(Exit::Signalled(code));
     }
-    outlets.write(arguments, (&outcome, &warnings), &scenario)?;
+    outlets.write(arguments, &outcome, &warnings, &scenario)?;
     Ok(exit(&outcome))
 }
 
-fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Received), Failure> {
+fn solve(arguments: &SolveArguments, scenario: &Scenario) -> Result<(Outcome, Received), Failure> {
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
@@ -98,7 +98,7 @@ fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Receive
     let remembered = arguments
         .database
         .as_deref()
-        .map(RememberedLegs::open)
+        .map(CommandLegCache::open)
         .transpose()?;
     let run = Run {
         pool: &pool,
@@ -106,7 +106,7 @@ fn solve(arguments: &Arguments, scenario: &Scenario) -> Result<(Outcome, Receive
         observer: &*observer,
         legs: remembered
             .as_ref()
-            .map_or(&NoStore as &dyn LegStore, RememberedLegs::legs),
+            .map_or(&NoStore as &dyn LegStore, CommandLegCache::legs),
         segments: &NoStore,
     };
     Ok((planner::solve(scenario, run), received))
@@ -123,7 +123,7 @@ fn exit(outcome: &Outcome) -> Exit {
     }
 }
 
-/// Where plan and summary go.
+/// The destinations of plan and summary.
 struct Outlets {
     plan: Option<(Destination, Form)>,
     summary: Summary,
@@ -133,14 +133,14 @@ struct Outlets {
 enum Summary {
     None,
     Output,
-    /// Standard output is taken by the plan.
+    /// To standard error, because the plan goes to standard output.
     Error,
 }
 
 impl Outlets {
-    /// The plan goes to the named file, or to standard output when a program reads it or its form
-    /// was asked for; the summary goes where a person reads.
-    fn open(arguments: &Arguments) -> Result<Self, Failure> {
+    /// The plan goes to the named file, or to standard output if that is no terminal or a format
+    /// was requested; the summary goes to a terminal, or where it was requested.
+    fn open(arguments: &SolveArguments) -> Result<Self, Failure> {
         let person = stdout().is_terminal();
         let format = arguments.format.unwrap_or(Form::Json);
         if format == Form::Json && !arguments.choices.are_default() {
@@ -168,8 +168,8 @@ impl Outlets {
         })
     }
 
-    /// Finds out before the solve whether its plan can be written.
-    fn check(&self, arguments: &Arguments, scenario: &Scenario) -> Result<(), Failure> {
+    /// Tests before the solve whether the plan can be written.
+    fn check(&self, arguments: &SolveArguments, scenario: &Scenario) -> Result<(), Failure> {
         match &self.plan {
             Some((_, Form::Export(format))) => arguments.choices.check(*format, scenario),
             _ => Ok(()),
@@ -178,27 +178,28 @@ impl Outlets {
 
     fn write(
         &self,
-        arguments: &Arguments,
-        (outcome, doubts): (&Outcome, &[Problem]),
+        arguments: &SolveArguments,
+        outcome: &Outcome,
+        warnings: &[Problem],
         scenario: &Scenario,
     ) -> Result<(), Failure> {
         if let Some((destination, form)) = &self.plan {
             match (form, outcome) {
                 (Form::Json, _) => {
-                    // After a signal nothing is written.
+                    // After a signal without a plan nothing is written.
                     let stopped = [Interruption::TimeLimit.reason()];
-                    let document = documents::plan::document(outcome, &stopped, doubts);
+                    let document = documents::plan::document(outcome, &stopped, warnings);
                     destination.write(&output::json(&document)?)?;
                 }
                 (Form::Export(format), Outcome::Planned(plan)) => {
-                    let flight = (scenario, &plan.flight);
-                    destination.write(&arguments.choices.write(*format, flight)?)?;
+                    let choices = &arguments.choices;
+                    destination.write(&choices.write(*format, scenario, &plan.flight)?)?;
                 }
-                // There is nothing to export; the reasons go to standard error below.
+                // There is no plan to export; the reasons go to standard error below.
                 (Form::Export(_), _) => {}
             }
         }
-        let text = report::outcome(outcome, doubts, scenario);
+        let text = report::outcome(outcome, warnings, scenario);
         match self.summary {
             Summary::Output => output::print(&text),
             Summary::Error => {

@@ -1,4 +1,4 @@
-//! `slewplan study`: what the choice of an option leads to, and what wheels can do together.
+//! `slewplan study`: effects of options, and envelopes of wheels.
 
 mod authority;
 mod comparison;
@@ -11,37 +11,37 @@ use super::Exit;
 use super::failure::Failure;
 use clap::Subcommand;
 
-/// What `study` takes.
+/// Arguments of `study`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct StudyArguments {
     #[command(subcommand)]
-    study: Study,
+    study: StudyCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Study {
-    /// Which shares of torque and wheel speed a plan should leave to feedback
+enum StudyCommand {
+    /// Compare shares of torque and wheel speed that a plan leaves to feedback
     ///
     /// The document has a scenario, a simulation and the pairs of shares.
-    Authority(authority::Arguments),
-    /// What the wheels can do together: envelopes, slews within them, torques shared out
+    Authority(authority::AuthorityStudyArguments),
+    /// Envelopes of the wheels, slews within them, and allocation of torques
     ///
     /// The document has a spacecraft, turns and torques.
-    Envelopes(envelopes::Arguments),
-    /// Reaction wheels against control moment gyroscopes: who turns faster, and from which angle on
-    Comparison(comparison::Arguments),
-    /// Fly a plan once in closed loop
+    Envelopes(envelopes::EnvelopesStudyArguments),
+    /// Compare reaction wheels with control moment gyroscopes
+    Comparison(comparison::ComparisonStudyArguments),
+    /// Simulate a plan once in closed loop
     ///
-    /// The document has a scenario, how it is flown, and perhaps a plan of it.
-    Flight(flight::Arguments),
+    /// The document has a scenario, the settings of the simulation, and optionally a plan.
+    Flight(flight::FlightStudyArguments),
 }
 
-/// Conducts the study and writes the answer.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Runs the study and writes the answer.
+pub(super) fn run(arguments: &StudyArguments) -> Result<Exit, Failure> {
     match &arguments.study {
-        Study::Authority(arguments) => authority::run(arguments),
-        Study::Envelopes(arguments) => envelopes::run(arguments),
-        Study::Comparison(arguments) => comparison::run(arguments),
-        Study::Flight(arguments) => flight::run(arguments),
+        StudyCommand::Authority(arguments) => authority::run(arguments),
+        StudyCommand::Envelopes(arguments) => envelopes::run(arguments),
+        StudyCommand::Comparison(arguments) => comparison::run(arguments),
+        StudyCommand::Flight(arguments) => flight::run(arguments),
     }
 }

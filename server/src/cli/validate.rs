@@ -1,4 +1,4 @@
-//! `slewplan validate`: everything that is wrong or doubtful with a scenario.
+//! `slewplan validate`: lists all errors and warnings of a scenario.
 
 use super::failure::{Failure, listing};
 use super::{Exit, input, output};
@@ -10,24 +10,24 @@ use slewplan_solver::tour::planner;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// What `validate` takes.
+/// Arguments of `validate`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct ValidateArguments {
     /// The scenario, - for standard input
     scenario: PathBuf,
-    /// How to print the findings
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
+    /// Format of the findings
+    #[arg(long, value_enum, default_value_t = FindingsFormat::Text)]
+    format: FindingsFormat,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Format {
+enum FindingsFormat {
     Text,
     Json,
 }
 
 /// Prints the findings on standard output.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &ValidateArguments) -> Result<Exit, Failure> {
     let name = input::name(&arguments.scenario);
     let malformed = |problem| Faults {
         problems: vec![problem],
@@ -44,8 +44,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Err(faults) => (faults.problems, faults.warnings),
     };
     output::print(&match arguments.format {
-        Format::Text => text(&name, &errors, &warnings),
-        Format::Json => output::json(&ValidationDocument::new(&errors, &warnings))?,
+        FindingsFormat::Text => text(&name, &errors, &warnings),
+        FindingsFormat::Json => output::json(&ValidationDocument::new(&errors, &warnings))?,
     })?;
     Ok(if errors.is_empty() {
         Exit::Complete

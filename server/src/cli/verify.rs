@@ -1,4 +1,4 @@
-//! `slewplan verify`: flies a plan made by anyone again.
+//! `slewplan verify`: verifies a plan of any origin.
 
 use super::failure::Failure;
 use super::{Exit, input, output};
@@ -10,20 +10,20 @@ use slewplan_solver::model::problem::Problem;
 use std::io::{IsTerminal, stdout};
 use std::path::PathBuf;
 
-/// What `verify` takes.
+/// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct VerifyArguments {
     /// The scenario, - for standard input
     scenario: PathBuf,
     /// The plan in JSON, - for standard input
     plan: PathBuf,
-    /// Print text for people, as on a terminal
+    /// Print text instead of JSON, as on a terminal
     #[arg(long)]
     summary: bool,
 }
 
 /// Prints the verification on standard output.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &VerifyArguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let valid = input::scenario(&arguments.scenario, None)?;
     let flight = input::of_plan(&arguments.plan, &valid.scenario, documents::flight::read)?;

@@ -60,7 +60,7 @@ impl ClaimDocument {
 /// The stable text of a verdict.
 pub(crate) const fn name(verdict: &Verdict) -> &'static str {
     match verdict {
-        Verdict::NoClaim => "no_claim",
+        Verdict::NoBound => "no_claim",
         Verdict::Confirmed => "confirmed",
         Verdict::Rejected(_) => "rejected",
         Verdict::NotChecked(_) => "not_checked",
@@ -70,7 +70,7 @@ pub(crate) const fn name(verdict: &Verdict) -> &'static str {
 /// Why a claim is not confirmed.
 pub(crate) fn reason(verdict: &Verdict) -> Option<String> {
     match verdict {
-        Verdict::NoClaim | Verdict::Confirmed => None,
+        Verdict::NoBound | Verdict::Confirmed => None,
         Verdict::Rejected(objection) => Some(objection.to_string()),
         Verdict::NotChecked(obstacle) => Some(obstacle.to_string()),
     }

@@ -33,8 +33,8 @@ fn decode(root: &Cursor<'_>, scenario: &Scenario) -> Option<PlanCertificate> {
     let proved = number(&fields, "certified_lower_bound_s");
     let kind = fields.optional("lower_bound_kind");
     let kind = kind.and_then(|kind| kind.text());
-    let bound = number(&fields, "lower_bound_s")
-        .filter(|_| kind == Some(LowerBoundKind::Certified.as_str()));
+    let bound =
+        number(&fields, "lower_bound_s").filter(|_| kind == Some(LowerBoundKind::Certified.into()));
     Some(PlanCertificate {
         legs: legs?,
         // Where both are claimed to be proved, so is the larger.

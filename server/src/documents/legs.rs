@@ -5,8 +5,9 @@ use super::document::{Member, Node};
 use super::number::Number;
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
+use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{ImportedLeg, LegRow, Shard};
+use slewplan_solver::tour::planner::{LegRow, Shard};
 
 pub(crate) mod read;
 
@@ -37,7 +38,9 @@ pub(crate) struct KeyedLeg {
     /// SHA-256 of the canonical text of the leg's problem, hex.
     pub(crate) key: String,
     /// The motion.
-    pub(crate) leg: ImportedLeg,
+    pub(crate) motion: Motion,
+    /// Wall-clock time that the solve took, s.
+    pub(crate) solve_time_s: f64,
 }
 
 /// The key of a scenario: SHA-256 of its text with sorted members and all numbers written as
@@ -128,7 +131,7 @@ impl<'a> LegTableDocument<'a> {
         let lines = |motions: &'a Vec<KeyedLeg>| motions.iter().map(line).collect();
         Ok(Self {
             version: &table.version,
-            kind: table.kind.as_str(),
+            kind: table.kind.into(),
             scenario_key: &table.scenario_key,
             shard: ShardDocument {
                 index: table.shard.index + 1,
@@ -147,7 +150,7 @@ impl<'a> From<&'a LegRow> for LegDocument<'a> {
         Self {
             from: &row.from,
             to: &row.to,
-            kind: row.kind.as_str(),
+            kind: row.kind.into(),
             duration_s: row.duration_s.map(Number),
             certified_lower_bound_s: row.certified_lower_bound_s.map(Number),
             solve_time_s: Number(row.solve_time_s),
@@ -157,13 +160,13 @@ impl<'a> From<&'a LegRow> for LegDocument<'a> {
 }
 
 impl<'a> From<&'a KeyedLeg> for MotionDocument<'a> {
-    fn from(KeyedLeg { key, leg }: &'a KeyedLeg) -> Self {
-        let attitudes = leg.attitudes_xyzw.iter();
-        let momenta = leg.wheel_momenta_nms.iter();
+    fn from(leg: &'a KeyedLeg) -> Self {
+        let attitudes = leg.motion.attitudes_xyzw.iter();
+        let momenta = leg.motion.wheel_momenta_nms.iter();
         Self {
-            key,
+            key: &leg.key,
             solve_time_s: Number(leg.solve_time_s),
-            lengths_s: Number::all(&leg.lengths_s),
+            lengths_s: Number::all(&leg.motion.lengths_s),
             attitudes_xyzw: attitudes.map(|xyzw| xyzw.map(Number)).collect(),
             wheel_momenta_nms: momenta.map(|node| Number::all(node)).collect(),
         }

@@ -118,7 +118,7 @@ fn planned(plan: &Plan) -> PlanDocument<'_> {
         total_time_s: Some(Number(plan.total_time_s)),
         lower_bound_s: Some(Number(plan.lower_bound_s)),
         relative_gap: Some(Number(plan.relative_gap)),
-        lower_bound_kind: Some(plan.lower_bound_kind.as_str()),
+        lower_bound_kind: Some(plan.lower_bound_kind.into()),
         certified_lower_bound_s: plan.certified_lower_bound_s.map(Number),
         largest_open_share: plan.largest_open_share().map(Number),
         sequence: flight

@@ -18,7 +18,7 @@ impl<'a> From<&'a Problem> for ProblemDocument<'a> {
     fn from(problem: &'a Problem) -> Self {
         Self {
             pointer: &problem.pointer,
-            code: problem.code.as_str(),
+            code: problem.code.into(),
             message: &problem.message,
             hint: &problem.hint,
         }

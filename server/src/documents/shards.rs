@@ -57,7 +57,7 @@ fn strangers(parts: &[LegTable]) -> Vec<Misfit> {
         let has = |has: bool| if has { "with" } else { "without" };
         let pairs = [
             ("/version", &*first.version, &*part.version),
-            ("/kind", first.kind.as_str(), part.kind.as_str()),
+            ("/kind", first.kind.into(), part.kind.into()),
             ("/scenario_key", &first.scenario_key, &part.scenario_key),
             (
                 "/trajectories",
@@ -96,7 +96,7 @@ fn gaps(parts: &[LegTable]) -> Vec<Misfit> {
         }
         if let Some(row) = part.rows.iter().position(|row| row.kind != part.kind) {
             let place = format!("/legs/{row}/kind");
-            let problem = mismatch(&place, part.kind.as_str(), part.rows[row].kind.as_str());
+            let problem = mismatch(&place, part.kind.into(), part.rows[row].kind.into());
             misfits.push((Some(index), problem));
         }
         let Shard { index: number, of } = part.shard;

@@ -3,8 +3,9 @@
 use super::number::Number;
 use super::plan::{ControlDocument, QuaternionDocument};
 use crate::base::clock::rfc3339;
-use crate::store::{LegRow, LegTrajectory};
+use crate::store::CachedLegRow;
 use serde::Serialize;
+use slewplan_solver::model::motion::Motion;
 use utoipa::ToSchema;
 
 /// A remembered leg: a slew between two attitudes, told relative to the one where it begins.
@@ -80,8 +81,8 @@ pub(crate) struct StoredLegListDocument {
     pub(crate) next_cursor: Option<String>,
 }
 
-impl From<&LegRow> for StoredLegDocument {
-    fn from(row: &LegRow) -> Self {
+impl From<&CachedLegRow> for StoredLegDocument {
+    fn from(row: &CachedLegRow) -> Self {
         Self {
             key: row.key.clone(),
             spacecraft_key: row.spacecraft.clone(),
@@ -101,14 +102,11 @@ impl From<&LegRow> for StoredLegDocument {
 
 impl FlownLegDocument {
     /// A leg with its motion.
-    pub(crate) fn new(row: &LegRow, trajectory: &LegTrajectory) -> Self {
-        let begins = begins(&trajectory.lengths_s);
-        let nodes = trajectory
-            .attitudes_xyzw
-            .iter()
-            .zip(&trajectory.wheel_momenta_nms);
-        let momenta = trajectory.wheel_momenta_nms.windows(2);
-        let intervals = trajectory.lengths_s.iter().zip(momenta);
+    pub(crate) fn new(row: &CachedLegRow, motion: &Motion) -> Self {
+        let begins = begins(&motion.lengths_s);
+        let nodes = motion.attitudes_xyzw.iter().zip(&motion.wheel_momenta_nms);
+        let momenta = motion.wheel_momenta_nms.windows(2);
+        let intervals = motion.lengths_s.iter().zip(momenta);
         Self {
             leg: row.into(),
             trajectory: LegTrajectoryDocument {

@@ -1,43 +1,24 @@
-//! Legs remembered in the database, as the solver's threads see them.
+//! The leg cache: the solver's view of the legs in the database.
 
 pub(crate) mod upkeep;
 
 use crate::base::clock::now_us;
-use crate::store::{LegTrajectory, NewLeg, Store};
-use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
-use std::sync::atomic::{AtomicU64, Ordering};
+use crate::jobs::metrics::JobMetrics;
+use crate::store::{NewLeg, Store};
+use slewplan_solver::tour::legs::{LegStore, StoredLeg};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::runtime::Handle;
 
-/// Legs that are written together.
+/// Number of legs per transaction.
 const BATCH: usize = 64;
 
-/// How often legs were found.
-#[derive(Debug, Default)]
-pub(crate) struct Tally {
-    hits: AtomicU64,
-    misses: AtomicU64,
-}
-
-impl Tally {
-    /// Legs that were found.
-    pub(crate) fn hits(&self) -> u64 {
-        self.hits.load(Ordering::Relaxed)
-    }
-
-    /// Legs that were not.
-    pub(crate) fn misses(&self) -> u64 {
-        self.misses.load(Ordering::Relaxed)
-    }
-}
-
-/// The legs of a database for one solve. What is new is written in batches, when somebody asks for
-/// that, and when the value is dropped, which must not happen on a thread of the runtime.
+/// The legs of a database for one solve. New legs are written in batches, on request, and when the
+/// value is dropped, which must not happen on a thread of the runtime.
 #[derive(Debug)]
 pub(crate) struct LegCache {
     store: Store,
     runtime: Handle,
-    tally: Arc<Tally>,
+    metrics: Arc<JobMetrics>,
     unwritten: Unwritten,
 }
 
@@ -59,16 +40,16 @@ impl Unwritten {
         if legs.is_empty() {
             return;
         }
-        // A leg that is forgotten is solved again: no reason to fail.
+        // Not an error of the job: a lost leg is solved again.
         if let Err(error) = self.store.put_legs(&legs, now_us()).await {
-            tracing::warn!(%error, legs = legs.len(), "solved legs are forgotten");
+            tracing::warn!(%error, legs = legs.len(), "solved legs cannot be stored");
         }
     }
 }
 
 impl LegCache {
     /// The legs of a store, reached from threads outside of the runtime.
-    pub(crate) fn new(store: Store, runtime: Handle, tally: Arc<Tally>) -> Self {
+    pub(crate) fn new(store: Store, runtime: Handle, metrics: Arc<JobMetrics>) -> Self {
         Self {
             unwritten: Unwritten {
                 store: store.clone(),
@@ -76,11 +57,11 @@ impl LegCache {
             },
             store,
             runtime,
-            tally,
+            metrics,
         }
     }
 
-    /// What is not in the database yet.
+    /// The legs that are not in the database yet.
     pub(crate) fn unwritten(&self) -> Unwritten {
         self.unwritten.clone()
     }
@@ -93,33 +74,17 @@ impl LegStore for LegCache {
             tracing::warn!(%error, "a leg cannot be looked up and is solved again");
             None
         });
-        let tally = if leg.is_some() {
-            &self.tally.hits
-        } else {
-            &self.tally.misses
-        };
-        tally.fetch_add(1, Ordering::Relaxed);
-        let (row, spacecraft, trajectory) = leg?;
-        Some(StoredLeg {
-            spacecraft,
-            kind: kind(&row.kind)?,
-            turn_xyzw: row.turn_xyzw(),
-            body_momentum_nms: row.momentum(),
-            reversible: row.reversible,
-            duration_s: row.duration_s,
-            certified_lower_bound_s: row.certified_lower_bound_s,
-            status: row.status,
-            solve_time_s: row.solve_time_s,
-            attitudes_xyzw: trajectory.attitudes_xyzw,
-            wheel_momenta_nms: trajectory.wheel_momenta_nms,
-            lengths_s: trajectory.lengths_s,
-        })
+        self.metrics.looked_up(leg.is_some());
+        leg
     }
 
     fn put(&self, identity: &str, leg: &StoredLeg) {
         let waiting = {
             let mut unwritten = self.unwritten.legs();
-            unwritten.push(new_leg(identity, leg));
+            unwritten.push(NewLeg {
+                identity: identity.to_owned(),
+                leg: leg.clone(),
+            });
             unwritten.len()
         };
         if waiting >= BATCH {
@@ -132,31 +97,4 @@ impl Drop for LegCache {
     fn drop(&mut self) {
         self.runtime.block_on(self.unwritten.write());
     }
-}
-
-/// A leg as the database keeps it.
-pub(crate) fn new_leg(identity: &str, leg: &StoredLeg) -> NewLeg {
-    NewLeg {
-        identity: identity.to_owned(),
-        spacecraft: leg.spacecraft.clone(),
-        kind: leg.kind.as_str(),
-        turn_xyzw: leg.turn_xyzw,
-        momentum: leg.body_momentum_nms,
-        reversible: leg.reversible,
-        duration_s: leg.duration_s,
-        certified_lower_bound_s: leg.certified_lower_bound_s,
-        solve_time_s: leg.solve_time_s,
-        status: leg.status.clone(),
-        trajectory: LegTrajectory {
-            attitudes_xyzw: leg.attitudes_xyzw.clone(),
-            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
-            lengths_s: leg.lengths_s.clone(),
-        },
-    }
-}
-
-fn kind(text: &str) -> Option<LegKind> {
-    [LegKind::RestToRest, LegKind::LowerBound]
-        .into_iter()
-        .find(|kind| kind.as_str() == text)
 }

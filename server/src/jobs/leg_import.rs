@@ -1,14 +1,13 @@
-//! Legs of a file on their way into the cache: nothing in it is believed but what flies.
+//! Import of legs from a file into the cache, after a check of every leg.
 //!
-//! A table with trajectories carries its scenario. From that follow the problems of its legs and
-//! the names under which they are cached; the checker flies every motion, and what is proved of a
-//! leg is proved anew. Only that the motions are the fastest has to be taken on trust.
+//! A table with trajectories contains its scenario, which determines the problems of its legs and
+//! the keys under which they are cached. The checker integrates every motion, and lower bounds are
+//! proved again. Only the optimality of the motions is taken on trust.
 
 use crate::base::clock::now_us;
 use crate::documents;
 use crate::documents::document::Node;
 use crate::documents::legs::{KeyedLeg, LegTable};
-use crate::jobs::leg_cache::new_leg;
 use crate::store::{NewLeg, Store, StoreError, leg_key};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
@@ -18,24 +17,24 @@ use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::planner::{self, LegCheck};
 use std::collections::{HashMap, HashSet};
 
-/// Legs that are written together, so that nobody else has to wait long for the database.
+/// Legs per transaction; small enough that other writers do not wait long.
 const BATCH: usize = 256;
 const WITH_TRAJECTORIES: &str = "make the file with slewplan legs --trajectories";
 
-/// A file of legs that can be looked at.
+/// A file of legs that was read without problems.
 #[derive(Debug)]
 pub(crate) struct Import {
-    /// The scenario of which the legs are.
+    /// The scenario of the legs.
     pub(crate) scenario: Scenario,
     kind: LegKind,
     motions: Vec<KeyedLeg>,
 }
 
-/// What was found out about the legs of a file.
+/// The result of checking the legs of a file.
 #[derive(Debug)]
-pub(crate) struct Judged {
+pub(crate) struct CheckedLegs {
     legs: Vec<NewLeg>,
-    /// Why some are not taken.
+    /// Why some of them are refused.
     pub(crate) refused: Vec<Problem>,
 }
 
@@ -43,7 +42,7 @@ pub(crate) struct Judged {
 ///
 /// # Errors
 ///
-/// Everything that keeps it from being imported.
+/// All reasons why it cannot be imported.
 pub(crate) fn read(node: &Node) -> Result<Import, Vec<Problem>> {
     let table = documents::legs::read::read(node)?;
     let mut problems = unsuitable(&table);
@@ -69,22 +68,22 @@ pub(crate) fn read(node: &Node) -> Result<Import, Vec<Problem>> {
     }
 }
 
-/// Why a table is none that can be imported.
+/// The reasons why a table cannot be imported.
 fn unsuitable(table: &LegTable) -> Vec<Problem> {
     let mut problems = Vec::new();
-    let mut tell = |pointer: &str, code, message: String, hint: &str| {
+    let mut refuse = |pointer: &str, code, message: String, hint: &str| {
         problems.push(Problem::new(pointer, code, message, hint));
     };
     let version = env!("CARGO_PKG_VERSION");
     if table.version != version {
         let message = format!("version {:?} solved it, this is {version:?}", table.version);
-        let hint = "solve the legs with this version; those of others are not used";
-        tell("/version", Code::VersionMismatch, message, hint);
+        let hint = "solve the legs with this version; legs of other versions are not used";
+        refuse("/version", Code::VersionMismatch, message, hint);
     }
     if table.kind == LegKind::Certified {
         let message = "a table of bounds has no legs to import".to_owned();
         let hint = "take a table of the kind rest_to_rest or lower_bound";
-        tell("/kind", Code::UnknownChoice, message, hint);
+        refuse("/kind", Code::UnknownChoice, message, hint);
     }
     for (pointer, there) in [
         ("/scenario", table.scenario.is_some()),
@@ -92,7 +91,7 @@ fn unsuitable(table: &LegTable) -> Vec<Problem> {
     ] {
         if !there {
             let message = format!("the table has no {}", &pointer[1..]);
-            tell(pointer, Code::MissingField, message, WITH_TRAJECTORIES);
+            refuse(pointer, Code::MissingField, message, WITH_TRAJECTORIES);
         }
     }
     let mut seen = HashSet::new();
@@ -100,7 +99,7 @@ fn unsuitable(table: &LegTable) -> Vec<Problem> {
         if !seen.insert(&motion.key) {
             let pointer = format!("/trajectories/{index}/key");
             let message = "a leg before this one has the same key".to_owned();
-            tell(
+            refuse(
                 &pointer,
                 Code::DuplicateId,
                 message,
@@ -112,8 +111,8 @@ fn unsuitable(table: &LegTable) -> Vec<Problem> {
 }
 
 impl Import {
-    /// Looks at every leg; `None` when stopped.
-    pub(crate) fn judge(self, pool: &SolverPool, stop: &StopSignal) -> Option<Judged> {
+    /// Checks every leg; `None` when stopped.
+    pub(crate) fn check(self, pool: &SolverPool, stop: &StopSignal) -> Option<CheckedLegs> {
         let keys: HashSet<&str> = self.motions.iter().map(|motion| &*motion.key).collect();
         let wanted = |identity: &str| keys.contains(&*leg_key(identity));
         let check = LegCheck::new(&self.scenario, self.kind, &wanted, (pool, stop))?;
@@ -123,7 +122,7 @@ impl Import {
             .collect();
         let numbered: Vec<_> = self.motions.iter().enumerate().collect();
         let found = pool.map(&numbered, |(index, motion)| {
-            (!stop.is_set()).then(|| judge(&check, &identities, *index, motion))
+            (!stop.is_set()).then(|| check_leg(&check, &identities, *index, motion))
         });
         let (mut legs, mut refused) = (Vec::new(), Vec::new());
         for leg in found {
@@ -132,18 +131,18 @@ impl Import {
                 Err(problem) => refused.push(problem),
             }
         }
-        Some(Judged { legs, refused })
+        Some(CheckedLegs { legs, refused })
     }
 }
 
-fn judge(
+fn check_leg(
     check: &LegCheck<'_>,
     identities: &HashMap<String, &str>,
     index: usize,
-    motion: &KeyedLeg,
+    given: &KeyedLeg,
 ) -> Result<NewLeg, Problem> {
     let place = format!("/trajectories/{index}");
-    let Some(identity) = identities.get(&motion.key) else {
+    let Some(identity) = identities.get(&given.key) else {
         return Err(Problem::new(
             format!("{place}/key"),
             Code::UnknownReference,
@@ -151,8 +150,11 @@ fn judge(
             "take the file as slewplan legs wrote it",
         ));
     };
-    match check.check(identity, motion.leg.clone()) {
-        Ok(leg) => Ok(new_leg(identity, &leg)),
+    match check.check(identity, given.motion.clone(), given.solve_time_s) {
+        Ok(leg) => Ok(NewLeg {
+            identity: (*identity).to_owned(),
+            leg,
+        }),
         Err(faults) => Err(Problem::new(
             place,
             Code::LegRefused,
@@ -162,13 +164,13 @@ fn judge(
     }
 }
 
-impl Judged {
-    /// Puts the legs that fly into the cache: how many of them are new there, and how many were there
-    /// before and stay as they are.
+impl CheckedLegs {
+    /// Stores the legs that passed. Returns how many of them are new, and how many were there
+    /// before and stay unchanged.
     ///
     /// # Errors
     ///
-    /// When the database fails; some of the legs may be in it then.
+    /// When the database fails; some of the legs may be stored then.
     pub(crate) async fn store(&self, store: &Store) -> Result<[u64; 2], StoreError> {
         let mut imported = 0;
         for batch in self.legs.chunks(BATCH) {

@@ -1,4 +1,4 @@
-//! What a job may take of the memory, watched while it runs.
+//! The memory limit of a job, enforced while it runs.
 
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::Arc;
@@ -7,11 +7,12 @@ use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::task::AbortHandle;
 
-/// How often the memory is looked at.
-const LOOK: Duration = Duration::from_millis(100);
+/// Interval between two looks at the memory.
+const INTERVAL: Duration = Duration::from_millis(100);
 
-/// Ends a solve with the best so far when the process has grown too much since its begin. Watches
-/// as long as it lives. Where the operating system does not tell, nothing is watched.
+/// Stops a solve with its best plan so far when the memory of the process has grown beyond a limit
+/// since its begin, until the guard is dropped. Without effect where the operating system does not
+/// report the memory.
 pub(super) struct MemoryGuard {
     exceeded: Arc<AtomicBool>,
     limit: u64,
@@ -19,16 +20,16 @@ pub(super) struct MemoryGuard {
 }
 
 impl MemoryGuard {
-    /// Watches from now on.
+    /// Starts watching.
     pub(super) fn watch(runtime: &Handle, limit: u64, stop: StopSignal) -> Self {
         let exceeded = Arc::new(AtomicBool::new(false));
         let task = resident().map(|before| {
-            let told = Arc::clone(&exceeded);
+            let exceeded_by_task = Arc::clone(&exceeded);
             let watching = runtime.spawn(async move {
                 while resident().is_none_or(|now| now <= before.saturating_add(limit)) {
-                    tokio::time::sleep(LOOK).await;
+                    tokio::time::sleep(INTERVAL).await;
                 }
-                told.store(true, Ordering::SeqCst);
+                exceeded_by_task.store(true, Ordering::SeqCst);
                 stop.request();
             });
             watching.abort_handle()
@@ -40,7 +41,7 @@ impl MemoryGuard {
         }
     }
 
-    /// The limit, bytes, once the process has grown beyond it.
+    /// The limit, bytes, if the process has grown beyond it.
     pub(super) fn exceeded(&self) -> Option<u64> {
         let exceeded = self.exceeded.load(Ordering::SeqCst);
         exceeded.then_some(self.limit)
@@ -55,7 +56,7 @@ impl Drop for MemoryGuard {
     }
 }
 
-/// Memory of this process that is really there, bytes.
+/// Resident memory of this process, bytes.
 fn resident() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
@@ -70,7 +71,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_solve_that_grows_is_stopped_and_one_that_does_not_is_left_alone() {
+    #[expect(clippy::disallowed_methods, reason = "polls what another thread does")]
+    fn only_a_solve_beyond_its_memory_limit_is_stopped() {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)
             .enable_all()
@@ -82,7 +84,7 @@ mod tests {
         let ballast = vec![1_u8; 64 << 20];
         let begin = std::time::Instant::now();
         while !growing.is_set() && begin.elapsed() < Duration::from_mins(1) {
-            std::thread::sleep(LOOK);
+            std::thread::sleep(INTERVAL);
         }
         assert!(growing.is_set() && !calm.is_set());
         assert_eq!(

@@ -1,4 +1,4 @@
-//! From the solver's observer, called on any of its threads, to recorded events.
+//! Records what the solver's observer reports from any of its threads as events of the job.
 
 use super::Jobs;
 use crate::base::clock::now_us;
@@ -14,41 +14,42 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch;
 
-/// Time between two recorded events of a job: what comes faster is dropped except for the newest.
+/// Minimum time between two recorded events of a job; of reports in between only the newest is
+/// recorded.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// The newest of a solve.
+/// The newest progress and incumbent of a solve.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Report {
+pub(super) struct ProgressReport {
     progress: Option<Progress>,
     incumbent: Option<Arc<NewIncumbent>>,
 }
 
-/// Keeps the newest progress and plan for the recorder; never waits.
-pub(super) struct Reporter(watch::Sender<Report>);
+/// Holds the newest progress and plan for the recorder; never blocks.
+pub(super) struct Reporter(watch::Sender<ProgressReport>);
 
 impl Reporter {
-    /// A reporter and where its reports arrive.
-    pub(super) fn new() -> (Self, watch::Receiver<Report>) {
-        let (sender, receiver) = watch::channel(Report::default());
+    /// A reporter, and the receiver of its reports.
+    pub(super) fn new() -> (Self, watch::Receiver<ProgressReport>) {
+        let (sender, receiver) = watch::channel(ProgressReport::default());
         (Self(sender), receiver)
     }
 
-    /// The observer of the solve of a scenario about which there are doubts.
+    /// The observer of a solve; `doubts` are the warnings of its scenario.
     pub(super) fn observer<'a>(&'a self, doubts: &'a [Problem]) -> impl Observer + use<'a> {
-        Watch {
+        ReportingObserver {
             reports: &self.0,
             doubts,
         }
     }
 }
 
-struct Watch<'a> {
-    reports: &'a watch::Sender<Report>,
+struct ReportingObserver<'a> {
+    reports: &'a watch::Sender<ProgressReport>,
     doubts: &'a [Problem],
 }
 
-impl Observer for Watch<'_> {
+impl Observer for ReportingObserver<'_> {
     fn progress(&self, progress: Progress) {
         self.reports
             .send_modify(|report| report.progress = Some(progress));
@@ -64,7 +65,7 @@ impl Observer for Watch<'_> {
             total_time_s: plan.total_time_s,
             lower_bound_s: plan.lower_bound_s,
         });
-        // The progress that tells of it wakes the recorder: both are recorded together.
+        // The next progress wakes the recorder, which records both together.
         self.reports.send_if_modified(|report| {
             report.incumbent = Some(incumbent);
             false
@@ -72,30 +73,30 @@ impl Observer for Watch<'_> {
     }
 
     fn contradicted(&self, contradiction: &Contradiction) {
-        contradictions::tell(contradiction);
+        contradictions::record(contradiction);
     }
 }
 
 /// Records reports until the reporter is dropped or the lease is lost. The legs that a report rests
-/// on are written before it: whoever takes the job over does not solve them again.
+/// on are stored before it, so that another attempt does not solve them again.
 pub(super) async fn record(
     jobs: Jobs,
     lease: JobRow,
     legs: Unwritten,
-    mut reports: watch::Receiver<Report>,
+    mut reports: watch::Receiver<ProgressReport>,
 ) {
     let mut recorded = None;
     let mut kept: Option<Arc<NewIncumbent>> = None;
     loop {
         let open = reports.changed().await.is_ok();
-        let Report {
+        let ProgressReport {
             progress,
             incumbent,
         } = reports.borrow_and_update().clone();
         let newest = progress.as_ref().map(row);
         if let Some(progress) = newest.filter(|row| recorded.as_ref() != Some(row)) {
             legs.write().await;
-            // Written once, and again after a failure.
+            // Stored once, and again after a failure.
             let fresh =
                 incumbent.filter(|plan| !kept.as_ref().is_some_and(|k| Arc::ptr_eq(k, plan)));
             let written = jobs
@@ -114,7 +115,7 @@ pub(super) async fn record(
         if !open {
             return;
         }
-        // Cut short when the reporter is gone: the end of the job waits for this.
+        // Returns at once when the reporter is dropped, because the end of the job waits for this.
         let _ = tokio::time::timeout(PAUSE, reports.clone().wait_for(|_| false)).await;
     }
 }
@@ -123,7 +124,7 @@ fn row(progress: &Progress) -> ProgressRow {
     let count = |value| i64::try_from(value).unwrap_or(i64::MAX);
     let seconds = |value: Option<f64>| value.filter(|value| value.is_finite());
     ProgressRow {
-        stage: progress.stage.as_str(),
+        stage: progress.stage.into(),
         done: count(progress.done),
         total: progress.total.map(count),
         incumbent_s: seconds(progress.incumbent_s),

@@ -1,4 +1,4 @@
-//! One job from its scenario to how it ended.
+//! Solves one job: from its stored scenario to its end.
 
 use super::memory::MemoryGuard;
 use super::progress::Reporter;
@@ -15,40 +15,40 @@ use slewplan_solver::tour::planner::{self, Run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-/// What a job is solved with.
+/// The resources of a job's solve.
 pub(super) struct JobContext<'a> {
-    /// Where the work is done.
+    /// The threads of the solver.
     pub(super) pool: &'a SolverPool,
-    /// Requests of callers.
+    /// Requests to stop or cancel.
     pub(super) stop: &'a StopSignal,
-    /// Told about progress and better plans.
+    /// Receives progress and better plans.
     pub(super) reporter: &'a Reporter,
-    /// The remembered legs.
+    /// The leg cache.
     pub(super) legs: &'a dyn LegStore,
-    /// What an earlier attempt has solved.
+    /// Segments that an earlier attempt has solved.
     pub(super) segments: &'a dyn SegmentStore,
-    /// Stops the solve when there is not enough of it.
+    /// Stops the solve at its memory limit.
     pub(super) memory: &'a MemoryGuard,
 }
 
 impl JobContext<'_> {
-    /// What has stopped the solve.
+    /// The cause that stopped the solve.
     fn interruption(&self) -> Interruption {
         match self.memory.exceeded() {
             Some(limit) => Interruption::Memory { limit },
-            // The time limit is not a request.
+            // The signal is set by requests, not by the time limit.
             None if self.stop.is_set() => Interruption::Request,
             None => Interruption::TimeLimit,
         }
     }
 }
 
-/// Solves a scenario as stored. A panic costs this job and no other.
+/// Solves a stored scenario. A panic ends this job only.
 pub(super) fn solve(scenario: &[u8], context: &JobContext<'_>) -> Ended {
     catch_unwind(AssertUnwindSafe(|| attempt(scenario, context))).unwrap_or_else(|_| broken())
 }
 
-/// The end of a job that met an error of ours.
+/// The end of a job after an error of the program.
 pub(super) fn broken() -> Ended {
     without_plan(
         JobState::Failed,
@@ -77,7 +77,7 @@ fn attempt(scenario: &[u8], context: &JobContext<'_>) -> Ended {
     #[cfg(feature = "faults")]
     crate::base::faults::strike_late(scenario.name());
     if run.stop.reason() == Some(StopReason::Cancelled) {
-        return without_plan(JobState::Cancelled, None, "abandoned on request");
+        return without_plan(JobState::Cancelled, None, "cancelled on request");
     }
     let stopped = context.interruption().reason();
     let document = documents::plan::document(&outcome, slice::from_ref(&stopped), &warnings);

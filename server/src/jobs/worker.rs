@@ -1,13 +1,13 @@
-//! The bridge between the asynchronous service and the solver's threads.
+//! The thread that takes jobs from the queue of the asynchronous service and solves them.
 //!
-//! One plain thread leases a job, solves it on the pool and records its end. The database is
-//! reached through the handle of the runtime; nothing is computed on the runtime's threads.
+//! It leases a job, solves it on the pool and records its end. It reaches the database through the
+//! handle of the runtime; nothing is computed on the runtime's threads.
 
 use super::memory::MemoryGuard;
 use super::progress::{Reporter, record};
 use super::segments::{self, SegmentCache};
 use super::solve::{self, JobContext};
-use super::{Active, Jobs};
+use super::{ActiveJob, Jobs};
 use crate::base::clock::now_us;
 use crate::store::{Ended, JobRow, JobState, Lease, StoreError};
 use slewplan_solver::run::pool::SolverPool;
@@ -21,12 +21,12 @@ use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::task::AbortHandle;
 
-/// How long a lease lasts without a beat, and how often it beats.
+/// Duration of a lease, and the interval between two prolongations.
 const LEASE: Duration = Duration::from_secs(10);
-const BEAT: Duration = Duration::from_secs(2);
-/// Pause after a failure of the database before it is asked again.
+const PROLONGATION: Duration = Duration::from_secs(2);
+/// Pause before another try after a failure of the database.
 const RETRY: Duration = Duration::from_millis(500);
-/// How often the queue is looked at when nobody said that something is in it.
+/// Interval between two looks at the queue without a notification.
 const POLL: Duration = Duration::from_secs(5);
 
 /// The thread that solves.
@@ -45,7 +45,7 @@ impl Worker {
     /// When the operating system refuses it.
     pub(crate) fn start(jobs: Jobs, pool: Arc<SolverPool>, boot_id: String) -> io::Result<Self> {
         let draining = Arc::new(AtomicBool::new(false));
-        let bench = Bench {
+        let worker = WorkerThread {
             jobs: jobs.clone(),
             pool,
             boot_id,
@@ -54,7 +54,7 @@ impl Worker {
         };
         let thread = std::thread::Builder::new()
             .name("slewplan-worker".into())
-            .spawn(move || bench.run())?;
+            .spawn(move || worker.run())?;
         Ok(Self {
             jobs,
             draining,
@@ -62,7 +62,7 @@ impl Worker {
         })
     }
 
-    /// Claims nothing more and gives a running job back to the queue; returns when that is done.
+    /// Leases no more jobs and returns the running one to the queue; waits for both.
     pub(crate) async fn drain(self) {
         self.draining.store(true, Ordering::SeqCst);
         self.jobs.0.queued.notify_one();
@@ -80,8 +80,8 @@ impl Worker {
     }
 }
 
-/// What the thread works with.
-struct Bench {
+/// The state of the worker's thread.
+struct WorkerThread {
     jobs: Jobs,
     pool: Arc<SolverPool>,
     boot_id: String,
@@ -89,21 +89,21 @@ struct Bench {
     runtime: Handle,
 }
 
-impl Bench {
+impl WorkerThread {
     fn run(&self) {
         while !self.draining.load(Ordering::SeqCst) {
             match self.runtime.block_on(self.next()) {
-                Ok(Some(lease)) => self.contain(&lease),
+                Ok(Some(lease)) => self.work_contained(&lease),
                 Ok(None) => {}
                 Err(error) => {
-                    tracing::error!(%error, "no job can be claimed");
-                    std::thread::sleep(RETRY);
+                    tracing::error!(%error, "no job can be leased");
+                    retry_later();
                 }
             }
         }
     }
 
-    /// Waits for a job and leases it; `None` when it is time to look around.
+    /// Leases a job, or waits for a notification or the next look at the queue and returns `None`.
     async fn next(&self) -> Result<Option<Lease>, StoreError> {
         let now = now_us();
         let lease = self
@@ -112,14 +112,14 @@ impl Bench {
             .lease(&self.boot_id, lease_end(now), now)
             .await?;
         if lease.is_none() {
-            // A notification that came before this wait is kept for it.
+            // A notification from before this wait ends it at once.
             let _ = tokio::time::timeout(POLL, self.jobs.0.queued.notified()).await;
         }
         Ok(lease)
     }
 
-    /// Works on a job; whatever goes wrong, the thread goes on to the next.
-    fn contain(&self, lease: &Lease) {
+    /// Works on a job; after a panic the thread goes on to the next.
+    fn work_contained(&self, lease: &Lease) {
         if catch_unwind(AssertUnwindSafe(|| self.work(lease))).is_err() {
             self.conclude(&lease.job, &solve::broken());
         }
@@ -132,26 +132,26 @@ impl Bench {
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
         tracing::info!(targets = job.targets, "solve begins");
-        self.jobs.job_tally().begun(job);
+        self.jobs.metrics().begun(job);
         let begin = Instant::now();
         self.jobs.changed();
         let stop = StopSignal::new();
-        self.jobs.set_active(Some(Active {
+        self.jobs.set_active(Some(ActiveJob {
             id: job.id.clone(),
             stop: stop.clone(),
         }));
-        self.catch_up(job, &stop);
+        self.apply_earlier_requests(job, &stop);
         let (reporter, reports) = Reporter::new();
         let legs = self.jobs.legs(self.runtime.clone());
         let recording = record(self.jobs.clone(), job.clone(), legs.unwritten(), reports);
         let recorder = self.runtime.spawn(recording);
-        let heart = self
+        let prolonging = self
             .runtime
-            .spawn(beat(self.jobs.clone(), job.clone(), stop.clone()));
-        let heart = Attendant(heart.abort_handle());
+            .spawn(prolong(self.jobs.clone(), job.clone(), stop.clone()));
+        let prolonging = AbortOnDrop(prolonging.abort_handle());
         let segments = SegmentCache::new(self.jobs.store().clone(), &self.runtime, job.clone());
         let writing = self.runtime.spawn(segments.writing());
-        let writing = Attendant(writing.abort_handle());
+        let writing = AbortOnDrop(writing.abort_handle());
         let memory = MemoryGuard::watch(&self.runtime, self.jobs.memory_limit(), stop.clone());
         let context = JobContext {
             pool: &self.pool,
@@ -163,24 +163,24 @@ impl Bench {
         };
         let ended = solve::solve(&lease.scenario, &context);
         drop(memory);
-        // Legs are written before the end is told: whoever asks then finds them.
+        // Legs are stored before the end of the job is recorded, so that its observers find them.
         drop(legs);
         drop(reporter);
-        drop((heart, writing));
+        drop((prolonging, writing));
         if self.runtime.block_on(recorder).is_err() {
             tracing::error!("progress was not recorded to its end");
         }
         self.conclude(job, &ended);
         if segments.leaves_something() {
             self.runtime
-                .spawn(segments::forget(self.jobs.store().clone()));
+                .spawn(segments::delete_of_ended_jobs(self.jobs.store().clone()));
         }
         let solved_s = begin.elapsed().as_secs_f64();
-        self.jobs.job_tally().ended(&ended, solved_s);
+        self.jobs.metrics().ended(&ended, solved_s);
     }
 
-    /// Obeys requests that came between the lease and the moment when the signal was in place.
-    fn catch_up(&self, job: &JobRow, stop: &StopSignal) {
+    /// Applies requests that were recorded between the lease and the creation of the stop signal.
+    fn apply_earlier_requests(&self, job: &JobRow, stop: &StopSignal) {
         match self.runtime.block_on(self.jobs.store().job(&job.id)) {
             Ok(Some(job)) => {
                 if job.stop_requested_us.is_some() {
@@ -191,14 +191,14 @@ impl Bench {
                 }
             }
             Ok(None) => stop.cancel(),
-            Err(error) => tracing::warn!(%error, "requests of the past cannot be read"),
+            Err(error) => tracing::warn!(%error, "earlier requests cannot be read"),
         }
         if self.draining.load(Ordering::SeqCst) {
             stop.cancel();
         }
     }
 
-    /// Records the end; tries again until the database takes it or the lease is lost.
+    /// Records the end; tries again until it is recorded, the lease is lost or the service ends.
     fn conclude(&self, job: &JobRow, ended: &Ended) {
         let interrupted =
             self.draining.load(Ordering::SeqCst) && ended.state == JobState::Cancelled;
@@ -213,7 +213,7 @@ impl Bench {
             });
             match recorded {
                 Ok(true) => {
-                    tracing::info!(state = ended.state.as_str(), interrupted, "solve ended");
+                    tracing::info!(state = ended.state.into_str(), interrupted, "solve ended");
                     return;
                 }
                 Ok(false) => {
@@ -226,17 +226,17 @@ impl Bench {
                 }
                 Err(error) => {
                     tracing::error!(%error, "the end of the job cannot be recorded yet");
-                    std::thread::sleep(RETRY);
+                    retry_later();
                 }
             }
         }
     }
 }
 
-/// A task that attends to a job while this lives.
-struct Attendant(AbortHandle);
+/// Aborts a task when it is dropped.
+struct AbortOnDrop(AbortHandle);
 
-impl Drop for Attendant {
+impl Drop for AbortOnDrop {
     fn drop(&mut self) {
         self.0.abort();
     }
@@ -246,11 +246,11 @@ fn lease_end(now_us: i64) -> i64 {
     now_us.saturating_add(i64::try_from(LEASE.as_micros()).unwrap_or(i64::MAX))
 }
 
-/// Prolongs the lease of a lease; a lost lease is not worked on any longer.
-async fn beat(jobs: Jobs, lease: JobRow, stop: StopSignal) {
+/// Prolongs a lease at intervals; cancels the solve when the lease has been lost.
+async fn prolong(jobs: Jobs, lease: JobRow, stop: StopSignal) {
     loop {
-        tokio::time::sleep(BEAT).await;
-        match jobs.store().beat(&lease, lease_end(now_us())).await {
+        tokio::time::sleep(PROLONGATION).await;
+        match jobs.store().prolong(&lease, lease_end(now_us())).await {
             Ok(true) => {}
             Ok(false) => {
                 stop.cancel();
@@ -259,4 +259,10 @@ async fn beat(jobs: Jobs, lease: JobRow, stop: StopSignal) {
             Err(error) => tracing::warn!(job_id = lease.id, %error, "lease not prolonged"),
         }
     }
+}
+
+/// Blocks the worker's thread, which does nothing else.
+#[expect(clippy::disallowed_methods, reason = "blocks the worker's thread only")]
+fn retry_later() {
+    std::thread::sleep(RETRY);
 }

@@ -1,9 +1,9 @@
 //! Plans in the formats of other tools, one file each.
 //!
-//! A format knows the trajectory and the labels of its scenario, nothing of HTTP or the command
-//! line. All of them say the same rotation in other words: the quaternion that maps body vectors
-//! to reference vectors has the numbers of the one that turns the reference frame into the body
-//! frame, which is what CCSDS, STK and Basilisk ask for.
+//! Every format is written from the sampled trajectory and the labels of the scenario. The
+//! quaternion that maps body vectors to reference vectors has the components of the rotation from
+//! the reference frame to the body frame, which CCSDS, STK and Basilisk expect; no component is
+//! converted.
 
 use crate::base::clock;
 use slewplan_solver::checker::PropagatedMotion;
@@ -26,16 +26,16 @@ mod wheel_rpm;
 pub(crate) use form::Form;
 use sampling::Sampling;
 pub(crate) use sampling::Spacing;
-use trajectory::Trajectory;
+use trajectory::SampledFlight;
 
-/// Largest error of interpolation between two samples when nothing else is asked for, rad of
-/// attitude and rad/s of body rate: two arc seconds, what star trackers tell apart.
+/// Default maximum error of interpolation between two samples, rad of attitude and rad/s of body
+/// rate: two arc seconds, the resolution of star trackers.
 pub(crate) const TOLERANCE: f64 = 1e-5;
-/// Period of wheel speed commands when no other is asked for, s.
+/// Default period of wheel speed commands, s.
 pub(crate) const PERIOD_S: f64 = 0.1;
 
-/// What a plan can be written as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A format for other tools.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantArray)]
 pub(crate) enum Format {
     /// A table of everything, one row per sample.
     Csv,
@@ -54,17 +54,6 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// All formats.
-    pub(crate) const ALL: [Self; 7] = [
-        Self::Csv,
-        Self::AemKvn,
-        Self::AemXml,
-        Self::Basilisk,
-        Self::OpenMct,
-        Self::Stk,
-        Self::WheelRpm,
-    ];
-
     /// The stable name.
     pub(crate) const fn name(self) -> &'static str {
         match self {
@@ -78,7 +67,7 @@ impl Format {
         }
     }
 
-    /// What it is, in a line.
+    /// The description, in a line.
     pub(crate) const fn summary(self) -> &'static str {
         match self {
             Self::Csv => "The sampled trajectory with rates, wheel speeds and torques",
@@ -104,7 +93,7 @@ impl Format {
         }
     }
 
-    /// How the name of a file ends.
+    /// The extension of a file's name.
     pub(crate) const fn extension(self) -> &'static str {
         match self {
             Self::Csv => "csv",
@@ -118,14 +107,14 @@ impl Format {
     }
 }
 
-/// What can be chosen about an export.
+/// Options of an export.
 #[derive(Debug, Clone)]
-pub(crate) struct Options {
-    /// Where to sample; `None` takes the default of the format.
+pub(crate) struct ExportOptions {
+    /// Spacing of the samples; `None` selects the default of the format.
     pub(crate) spacing: Option<Spacing>,
-    /// Most samples that are written.
+    /// Maximum number of samples.
     pub(crate) most_samples: usize,
-    /// Whether attitudes come with body rates, where the format leaves the choice.
+    /// Whether to write body rates, where the format leaves the choice.
     pub(crate) rates: bool,
     /// Write commands of this wheel only, counted from 0.
     pub(crate) wheel: Option<usize>,
@@ -133,11 +122,11 @@ pub(crate) struct Options {
     pub(crate) object_name: Option<String>,
     /// International designator of the spacecraft, where the format has a place for it.
     pub(crate) object_id: Option<String>,
-    /// When the answer was made, microseconds since 1970.
+    /// Creation time, microseconds since 1970.
     pub(crate) created_us: i64,
 }
 
-impl Options {
+impl ExportOptions {
     /// The defaults, with at most this many samples.
     pub(crate) fn new(most_samples: usize) -> Self {
         Self {
@@ -152,16 +141,16 @@ impl Options {
     }
 }
 
-/// Why a plan cannot be written.
+/// Errors of an export.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ExportError {
-    /// The controls make no motion.
-    #[error("the plan cannot be flown: {0}")]
+    /// The controls do not define a motion.
+    #[error("the plan cannot be propagated: {0}")]
     NotFlown(String),
-    /// A choice that the format does not leave, or that asks for too much.
+    /// An option that the format does not have, or that exceeds a limit.
     #[error("{0}")]
     Choice(String),
-    /// A label of the scenario that the format cannot say.
+    /// A label of the scenario that the format cannot represent.
     #[error("{pointer} of the scenario: {what}")]
     Label {
         /// Its JSON pointer in the scenario.
@@ -169,20 +158,21 @@ pub(crate) enum ExportError {
         /// What is wrong with it.
         what: String,
     },
-    /// A number that must not be written.
+    /// A number that is not finite.
     #[error("a number of the trajectory is not finite")]
     NotFinite,
 }
 
-/// The flight of a scenario in a format.
+/// Writes the flight of a scenario in a format.
 ///
 /// # Errors
 ///
-/// What [`check`] finds, and what keeps the flight from being flown or sampled.
+/// The errors of [`check`], and those of propagating and sampling the flight.
 pub(crate) fn write(
     format: Format,
-    (scenario, flight): (&Scenario, &Flight),
-    options: &Options,
+    scenario: &Scenario,
+    flight: &Flight,
+    options: &ExportOptions,
 ) -> Result<String, ExportError> {
     check(format, scenario, options)?;
     let motion = || {
@@ -193,7 +183,7 @@ pub(crate) fn write(
         spacing,
         most: options.most_samples,
     };
-    let sampled = || Trajectory::of(flight, &motion()?, sampling);
+    let sampled = || SampledFlight::of(flight, &motion()?, sampling);
     match format {
         Format::Csv => Ok(csv::table(&sampled()?)),
         Format::AemKvn => Ok(aem::message(scenario, &sampled()?, options)?.kvn()),
@@ -205,15 +195,16 @@ pub(crate) fn write(
     }
 }
 
-/// Whether plans of a scenario can be written so, as far as that is known without a plan.
+/// Tests whether plans of a scenario can be written in a format, as far as that is known without a
+/// plan.
 ///
 /// # Errors
 ///
-/// A choice that the format does not leave, or a label of the scenario that it cannot say.
+/// An option that the format does not have, or a label of the scenario that it cannot represent.
 pub(crate) fn check(
     format: Format,
     scenario: &Scenario,
-    options: &Options,
+    options: &ExportOptions,
 ) -> Result<(), ExportError> {
     check_choices(format, options)?;
     match format {
@@ -225,8 +216,8 @@ pub(crate) fn check(
     }
 }
 
-/// Choices that a format does not leave are refused: whoever makes them expects something else.
-fn check_choices(format: Format, options: &Options) -> Result<(), ExportError> {
+/// Refuses options that a format does not have instead of ignoring them.
+fn check_choices(format: Format, options: &ExportOptions) -> Result<(), ExportError> {
     use Format::{AemKvn, AemXml, OpenMct, Stk, WheelRpm};
     let message = matches!(format, AemKvn | AemXml);
     let refused = [

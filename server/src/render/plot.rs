@@ -1,8 +1,7 @@
-//! Plans and other answers as pictures. Plain SVG, so that it needs no browser and no fonts and
-//! stays sharp in print.
+//! Plans and other answers as pictures: plain SVG, which needs no scripts and no embedded fonts.
 //!
-//! A plan is a sphere, its legs and timelines; a slew has timelines, and with a sweep a trade curve;
-//! studies of wheels have their diagrams, a flight in closed loop its timelines.
+//! A plan is drawn as a sphere, its legs and timelines; a slew as timelines, or with a sweep as a
+//! trade curve; studies of wheels as diagrams, a flight in closed loop as timelines.
 
 use slewplan_solver::model::scenario::Scenario;
 
@@ -27,13 +26,13 @@ mod written_comparison;
 mod written_flight;
 mod written_slews;
 
-use canvas::{Canvas, Frame, Ink};
+use canvas::{Canvas, Ink, PlotArea};
 pub(crate) use comparison::draw as comparison;
-pub(crate) use document::Document;
+pub(crate) use document::DrawableDocument;
 pub(crate) use envelopes::{WrittenEnvelopes, svg as envelopes};
 pub(crate) use flight::draw as flight;
 pub(crate) use slews::{Marks, single as slew, trade};
-pub(crate) use view::Boresight;
+pub(crate) use view::DrawnBoresight;
 pub(crate) use written::WrittenPlan;
 pub(crate) use written_comparison::WrittenComparison;
 pub(crate) use written_flight::WrittenFlight;
@@ -46,15 +45,15 @@ const UPPER: f64 = 400.0;
 const STRIP: f64 = 34.0;
 const BELOW_STRIP: f64 = 33.0;
 
-/// The picture of a plan. Its scenario adds what the plan does not tell: limits and keep-out cones.
+/// The picture of a plan. The scenario adds limits and keep-out cones, which a plan does not have.
 ///
 /// # Errors
 ///
-/// A sentence, when the scenario has another number of wheels.
+/// A message, when the scenario has another number of wheels.
 pub(crate) fn plan(
     plan: &WrittenPlan,
     scenario: Option<&Scenario>,
-    view: &Boresight,
+    view: &DrawnBoresight,
 ) -> Result<String, String> {
     let wheels = plan.wheels();
     let expected = scenario.map_or(wheels, |scenario| scenario.spacecraft().wheels().len());
@@ -68,7 +67,7 @@ pub(crate) fn plan(
     let name = scenario.and_then(Scenario::name).unwrap_or("Plan");
     let mut canvas = Canvas::new(WIDTH, height, &described(name, plan));
     head(&mut canvas, name, &summary(plan));
-    let globe = Frame {
+    let globe = PlotArea {
         left: MARGIN,
         top: HEAD,
         width: 430.0,
@@ -76,21 +75,21 @@ pub(crate) fn plan(
     };
     sphere::draw(&mut canvas, globe, plan, (scenario, view));
     let beside = globe.left + globe.width + 40.0;
-    let bars = Frame {
+    let bars = PlotArea {
         left: beside,
         top: HEAD,
         width: WIDTH - MARGIN - beside,
         height: UPPER,
     };
     legs::draw(&mut canvas, bars, plan);
-    let times = Frame {
+    let times = PlotArea {
         left: MARGIN + 60.0,
         top: lower,
         width: WIDTH - 2.0 * MARGIN - 60.0,
         height: height - lower,
     };
     timeline::strip(&mut canvas, times, plan, STRIP);
-    let below = Frame {
+    let below = PlotArea {
         top: lower + STRIP + BELOW_STRIP,
         ..times
     };
@@ -103,7 +102,7 @@ fn head(canvas: &mut Canvas, name: &str, summary: &str) {
     canvas.text(MARGIN, 68.0, Ink::QUIET, summary);
 }
 
-/// The plan in a line.
+/// The title of the picture: the plan in a line.
 fn summary(plan: &WrittenPlan) -> String {
     let mut parts = vec![
         format!("{:.2} s", plan.total_time_s),
@@ -118,7 +117,7 @@ fn summary(plan: &WrittenPlan) -> String {
     parts.join("  \u{b7}  ")
 }
 
-/// The same for those who cannot see the picture.
+/// The alternative text of the picture.
 fn described(name: &str, plan: &WrittenPlan) -> String {
     let order: Vec<&str> = plan.passages.iter().map(|p| p.target.as_str()).collect();
     format!("{name}: {}; order {}", summary(plan), order.join(" "))

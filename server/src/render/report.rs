@@ -1,12 +1,12 @@
-//! Answers as text for people.
+//! Answers as plain text.
 
 use slewplan_solver::model::plan::{Margins, Outcome, Verification};
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate};
 
+mod blocks;
 mod certification;
-mod figures;
 mod published;
 #[cfg(test)]
 pub(crate) mod sample;
@@ -21,13 +21,13 @@ pub(crate) fn outcome(outcome: &Outcome, doubts: &[Problem], scenario: &Scenario
             let warnings: Vec<Problem> = doubts.iter().chain(&plan.warnings).cloned().collect();
             let published = published::find(title)
                 .map_or_else(String::new, |known| known.comparison(plan, scenario));
-            summary::plan(title, plan) + &published + &figures::warnings(&warnings)
+            summary::plan(title, plan) + &published + &blocks::warnings(&warnings)
         }
         Outcome::Infeasible(reasons) => {
-            format!("{title}: infeasible, no plan can exist\n") + &figures::reasons(reasons)
+            format!("{title}: infeasible, no plan can exist\n") + &blocks::reasons(reasons)
         }
         Outcome::Failed(reasons) => {
-            format!("{title}: failed, no plan was found\n") + &figures::reasons(reasons)
+            format!("{title}: failed, no plan was found\n") + &blocks::reasons(reasons)
         }
         Outcome::StoppedEmpty => format!("{title}: stopped before a first plan was found\n"),
     }
@@ -39,10 +39,10 @@ pub(crate) fn verification(
     margins: &Margins,
     warnings: &[Problem],
 ) -> String {
-    figures::verification(found) + &figures::margins(margins) + &figures::warnings(warnings)
+    blocks::verification(found) + &blocks::margins(margins) + &blocks::warnings(warnings)
 }
 
-/// The text of a plan's claims and what became of them.
-pub(crate) fn certification(claims: &PlanCertificate, checked: &CheckedCertificate) -> String {
-    certification::claims(claims, checked)
+/// The text of the check of a plan's proved bounds.
+pub(crate) fn certification(certificate: &PlanCertificate, checked: &CheckedCertificate) -> String {
+    certification::certificate(certificate, checked)
 }

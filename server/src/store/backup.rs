@@ -1,6 +1,6 @@
 //! Copies of a database that is in use.
 
-use super::{PATIENCE, StoreError};
+use super::{BUSY_TIMEOUT, StoreError};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 use std::fs::File;
@@ -10,15 +10,16 @@ use std::sync::Arc;
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// How often what has been copied so far is brought to the disk.
-const PACE: Duration = Duration::from_millis(10);
+/// Interval between two syncs of the copy while it is written.
+const SYNC_INTERVAL: Duration = Duration::from_millis(10);
 
-/// Copies a database as it is at one moment. The copy appears complete, tested and on the disk, or
-/// not at all; the service can go on meanwhile.
+/// Copies a database as of one moment while the service runs. The copy appears under its name only
+/// when it is complete, synced and has passed the integrity check.
 ///
 /// # Errors
 ///
-/// When the database cannot be read, the copy cannot be written, or it is not a sound database.
+/// When the database cannot be read, the copy cannot be written, or the copy fails the integrity
+/// check.
 pub(crate) async fn backup(database: &Path, copy: &Path) -> Result<(), StoreError> {
     let failed = |source: io::Error| StoreError::Copy {
         path: copy.into(),
@@ -29,7 +30,7 @@ pub(crate) async fn backup(database: &Path, copy: &Path) -> Result<(), StoreErro
         _ => Path::new("."),
     };
     let partial = NamedTempFile::new_in(folder).map_err(failed)?;
-    let options = SqliteConnectOptions::new().busy_timeout(PATIENCE);
+    let options = SqliteConnectOptions::new().busy_timeout(BUSY_TIMEOUT);
     let mut source = options
         .clone()
         .filename(database)
@@ -43,7 +44,7 @@ pub(crate) async fn backup(database: &Path, copy: &Path) -> Result<(), StoreErro
     let written = partial.reopen().map_err(failed)?;
     tokio::select! {
         copied = copying => copied.map(drop)?,
-        error = bring_to_disk(written) => return Err(failed(error)),
+        error = sync_repeatedly(written) => return Err(failed(error)),
     }
     source.close().await?;
     let mut copied = options.filename(partial.path()).connect().await?;
@@ -61,12 +62,12 @@ pub(crate) async fn backup(database: &Path, copy: &Path) -> Result<(), StoreErro
         .map_err(failed)
 }
 
-/// Brings a file that is being written to the disk, piece by piece, until that fails. All of it at
-/// the end would hold up every other sync on the disk, those of the service before all.
-async fn bring_to_disk(file: File) -> io::Error {
+/// Syncs a file that is being written again and again, until a sync fails. One sync at the end
+/// would delay every other sync on the disk, those of the running service included.
+async fn sync_repeatedly(file: File) -> io::Error {
     let file = Arc::new(file);
     loop {
-        tokio::time::sleep(PACE).await;
+        tokio::time::sleep(SYNC_INTERVAL).await;
         let file = Arc::clone(&file);
         let synced = tokio::task::spawn_blocking(move || file.sync_data()).await;
         if let Err(error) = synced.unwrap_or_else(|error| Err(io::Error::other(error))) {

@@ -1,4 +1,4 @@
-//! How jobs end.
+//! The end of a job: final state, result and stable code.
 
 use super::{JobState, PackedPlan};
 use slewplan_solver::model::problem::Code;
@@ -8,45 +8,45 @@ use slewplan_solver::model::problem::Code;
 pub(crate) struct Ended {
     /// One of the final states.
     pub(crate) state: JobState,
-    /// The answer, when there is one: a plan, or why there is none.
+    /// The result document, if any: a plan, or the reasons why there is none.
     pub(crate) document: Option<PackedPlan>,
     /// Duration of the plan, s; `None` without one.
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
-    /// Why it ended without a plan.
+    /// Why the job ended without a plan.
     pub(crate) detail: Option<String>,
-    /// The same as a stable code.
+    /// The same reason as a stable code.
     pub(crate) code: Option<EndCode>,
-    /// Whether it ended before it was done: a better plan of an earlier attempt still counts.
+    /// Whether the solve was cut short: then a better plan of an earlier attempt is the result.
     pub(crate) early: bool,
 }
 
 /// Why a job ended without a plan, as a stable code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EndCode {
-    /// The scenario, or what the solver met with it.
+    /// A problem of the scenario or of its solve.
     Problem(Code),
-    /// An error of ours.
+    /// An error of the program.
     Internal,
     /// The process ended at every attempt.
     ProcessDied,
 }
 
 impl EndCode {
-    /// The codes that no input and no plan has, for the error index.
+    /// The codes that are not problems of an input, for the error index.
     pub(crate) const OWN: [Self; 2] = [Self::Internal, Self::ProcessDied];
 
     /// The stable text of the code.
-    pub(crate) const fn as_str(self) -> &'static str {
+    pub(crate) fn as_str(self) -> &'static str {
         match self {
-            Self::Problem(code) => code.as_str(),
+            Self::Problem(code) => code.into(),
             Self::Internal => "internal_error",
             Self::ProcessDied => "process_died",
         }
     }
 
-    /// What it says about the job, as a sentence.
+    /// The meaning of the code, as a sentence.
     pub(crate) fn meaning(self) -> &'static str {
         match self {
             Self::Problem(code) => code.meaning(),
@@ -56,7 +56,7 @@ impl EndCode {
     }
 
     /// What to do about it, as a sentence.
-    pub(crate) const fn remedy(self) -> &'static str {
+    pub(crate) fn remedy(self) -> &'static str {
         match self {
             Self::Problem(code) => code.remedy(),
             Self::Internal => "Report it with the scenario.",

@@ -1,4 +1,4 @@
-//! What can go wrong with the database.
+//! Errors of the store.
 
 use std::io;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub(crate) enum StoreError {
     Lock {
         /// The file that is locked.
         path: PathBuf,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A copy of the database cannot be written.
@@ -28,16 +28,16 @@ pub(crate) enum StoreError {
         /// What the operating system says.
         source: io::Error,
     },
-    /// An embedded SQLite that must not be used.
+    /// The embedded SQLite is too old to be used.
     #[error("SQLite {0} can corrupt its write-ahead log; at least 3.51.3 is needed")]
     OldSqlite(String),
-    /// A document that is no longer what was stored.
-    #[error("the stored {what} is not what was stored: the database file is damaged")]
+    /// A document does not match its stored hash.
+    #[error("the stored {what} does not match its hash: the database file is damaged")]
     Damaged {
         /// The document.
         what: &'static str,
     },
-    /// A row that this program never writes.
+    /// A row with contents that this program never writes.
     #[error("inconsistent row in {table}: {what}")]
     Inconsistent {
         /// The table.
@@ -50,7 +50,7 @@ pub(crate) enum StoreError {
 /// Primary result codes of SQLite.
 const BUSY: u32 = 5;
 const FULL: u32 = 13;
-/// Extended result codes of SQLite: a file or its folder could not be brought to the disk.
+/// Extended result codes of SQLite: the sync of a file or of its folder failed.
 const IOERR_FSYNC: u32 = 1034;
 const IOERR_DIR_FSYNC: u32 = 1290;
 
@@ -60,7 +60,7 @@ impl StoreError {
         self.primary_code() == Some(FULL)
     }
 
-    /// Whether waiting a little may help.
+    /// Whether the same operation may succeed a little later.
     pub(crate) fn is_busy(&self) -> bool {
         matches!(self, Self::Database(sqlx::Error::PoolTimedOut))
             || self.primary_code() == Some(BUSY)

@@ -1,10 +1,10 @@
-//! What happened to a job, in order.
+//! The events of jobs, numbered per job.
 
-use super::writing::Writing;
+use super::writing::WriteTransaction;
 use super::{JobRow, Store, StoreError};
 use sqlx::FromRow;
 
-/// Something that happened to a job.
+/// An event of a job.
 #[derive(Debug, Clone, FromRow)]
 pub(crate) struct EventRow {
     /// Counts from 1 within the job.
@@ -15,20 +15,20 @@ pub(crate) struct EventRow {
     pub(crate) data: String,
 }
 
-/// Writes how a job stands at a time (microseconds since 1970), as JSON: an event that is kept as it is.
-pub(crate) type TellJob = fn(&JobRow, i64) -> Result<String, StoreError>;
+/// Formats the state of a job at a time (microseconds since 1970) as the JSON of an event.
+pub(crate) type FormatEvent = fn(&JobRow, i64) -> Result<String, StoreError>;
 
-/// Most events that are read at once.
+/// Maximum number of events per read.
 const BATCH: i64 = 256;
 
-/// Appends an event that tells how a job stands now.
+/// Appends an event with the present state of a job.
 pub(super) async fn append(
-    transaction: &mut Writing,
+    transaction: &mut WriteTransaction,
     kind: &'static str,
     job: &JobRow,
     now_us: i64,
 ) -> Result<(), StoreError> {
-    let data = (transaction.tell)(job, now_us)?;
+    let data = (transaction.format_event)(job, now_us)?;
     sqlx::query(
         "INSERT INTO events (job, id, kind, data) \
          SELECT ?1, 1 + coalesce(max(id), 0), ?2, ?3 FROM events WHERE job = ?1",
@@ -42,7 +42,7 @@ pub(super) async fn append(
 }
 
 impl Store {
-    /// The next events of a job after one that is known.
+    /// The next events of a job after the event with the number `known`.
     pub(crate) async fn events_after(
         &self,
         job: i64,

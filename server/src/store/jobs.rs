@@ -1,9 +1,10 @@
-//! Jobs as their callers see them: submitted, read, asked to end, deleted.
+//! Jobs from the side of the API: submission, look-up, requests to stop or cancel, deletion.
 
 use super::rows::job_columns;
-use super::writing::Writing;
+use super::writing::WriteTransaction;
 use super::{Counts, JobRow, JobState, Store, StoreError, events, results};
 use sqlx::{FromRow, Row, SqliteConnection};
+use strum::VariantArray as _;
 
 /// A job to be queued.
 #[derive(Debug)]
@@ -12,7 +13,7 @@ pub(crate) struct Submission {
     pub(crate) id: String,
     /// Name of the scenario.
     pub(crate) name: Option<String>,
-    /// The scenario as JSON, complete in itself.
+    /// The scenario as JSON, with its spacecraft written out.
     pub(crate) scenario: Vec<u8>,
     /// Number of its targets.
     pub(crate) targets: i64,
@@ -31,7 +32,7 @@ pub(crate) struct QueueLimits {
     pub(crate) client: i64,
 }
 
-/// What became of a submission.
+/// The outcome of a submission.
 #[derive(Debug)]
 pub(crate) enum Submitted {
     /// Queued.
@@ -40,9 +41,9 @@ pub(crate) enum Submitted {
     Replayed(JobRow),
     /// Another request was submitted before under the same key.
     KeyReused,
-    /// Too many jobs wait already.
+    /// The queue is full.
     QueueFull,
-    /// Too many jobs of this client wait already.
+    /// The client has as many waiting jobs as it may have.
     QuotaExceeded,
 }
 
@@ -57,7 +58,7 @@ pub(crate) struct Listing {
     pub(crate) state: Option<JobState>,
     /// Only jobs of this name.
     pub(crate) name: Option<String>,
-    /// At most so many.
+    /// Maximum number of rows.
     pub(crate) limit: i64,
 }
 
@@ -79,22 +80,8 @@ impl Store {
                 Submitted::KeyReused
             });
         }
-        let waiting: i64 = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'")
-            .fetch_one(&mut *transaction)
-            .await?;
-        if waiting >= limits.all {
-            return Ok(Submitted::QueueFull);
-        }
-        if let Some(client) = &submission.client {
-            let own: i64 = sqlx::query_scalar(
-                "SELECT count(*) FROM jobs WHERE client = ? AND state = 'queued'",
-            )
-            .bind(client)
-            .fetch_one(&mut *transaction)
-            .await?;
-            if own >= limits.client {
-                return Ok(Submitted::QuotaExceeded);
-            }
+        if let Some(refusal) = refusal(&mut transaction, submission, limits).await? {
+            return Ok(refusal);
         }
         let row = sqlx::query(concat!(
             "INSERT INTO jobs (id, state, name, scenario, targets, client, submitted_us) \
@@ -127,19 +114,19 @@ impl Store {
         Ok(Submitted::New(job))
     }
 
-    /// Notes that a running job shall finish with the best so far; the job as it is then.
+    /// Records that a running job shall finish with its best plan so far. Returns the updated job.
     pub(crate) async fn request_stop(
         &self,
         id: &str,
         now_us: i64,
     ) -> Result<Option<JobRow>, StoreError> {
-        let note = "UPDATE jobs SET stop_requested_us = coalesce(stop_requested_us, ?) \
+        let update = "UPDATE jobs SET stop_requested_us = coalesce(stop_requested_us, ?) \
              WHERE id = ? AND state = 'running'";
-        noted(self.begin().await?, note, id, now_us).await
+        record_request(self.begin().await?, update, id, now_us).await
     }
 
-    /// Abandons a job: a queued one ends at once, a running one when its worker has noticed; the
-    /// job as it is then.
+    /// Cancels a job: a queued one ends at once, a running one when its worker has noticed. Returns
+    /// the updated job.
     pub(crate) async fn request_cancel(
         &self,
         id: &str,
@@ -158,15 +145,15 @@ impl Store {
         if let Some(row) = ended {
             let job = JobRow::of(&row)?;
             events::append(&mut transaction, "state", &job, now_us).await?;
-            // It may have been begun before.
-            results::forget(&mut transaction, job.sequence).await?;
+            // An earlier attempt may have left a plan.
+            results::delete_incumbent(&mut transaction, job.sequence).await?;
         }
-        let note = "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
+        let update = "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
              WHERE id = ? AND state = 'running'";
-        noted(transaction, note, id, now_us).await
+        record_request(transaction, update, id, now_us).await
     }
 
-    /// Deletes a job with all that belongs to it; `false` when there is none.
+    /// Deletes a job and everything that refers to it; `false` when there is no such job.
     pub(crate) async fn delete(&self, id: &str) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let done = sqlx::query("DELETE FROM jobs WHERE id = ?")
@@ -192,7 +179,7 @@ impl Store {
              ORDER BY sequence DESC LIMIT ?5"
         ))
         .bind(listing.before)
-        .bind(listing.state.map(JobState::as_str))
+        .bind(listing.state.map(|state| state.into_str()))
         .bind(&listing.name)
         .bind(&listing.client)
         .bind(listing.limit)
@@ -200,7 +187,7 @@ impl Store {
         .await?)
     }
 
-    /// Number of jobs that wait.
+    /// Number of queued jobs.
     pub(crate) async fn waiting(&self) -> Result<i64, StoreError> {
         let count = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'");
         Ok(count.fetch_one(&self.readers).await?)
@@ -212,8 +199,8 @@ impl Store {
             sqlx::query_as("SELECT state, count(*) FROM jobs GROUP BY state")
                 .fetch_all(&self.readers)
                 .await?;
-        let of = |state: JobState| rows.iter().find(|(text, _)| text == state.as_str());
-        Ok(JobState::ALL
+        let of = |state: JobState| rows.iter().find(|(text, _)| text == state.into_str());
+        Ok(JobState::VARIANTS
             .iter()
             .map(|&state| Counts {
                 state,
@@ -223,14 +210,37 @@ impl Store {
     }
 }
 
-/// Notes a request with a running job; the job as it is then.
-async fn noted(
-    mut transaction: Writing,
-    note: &'static str,
+/// Why a job cannot be queued now, if it cannot.
+async fn refusal(
+    connection: &mut SqliteConnection,
+    submission: &Submission,
+    limits: QueueLimits,
+) -> Result<Option<Submitted>, StoreError> {
+    let waiting: i64 = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'")
+        .fetch_one(&mut *connection)
+        .await?;
+    if waiting >= limits.all {
+        return Ok(Some(Submitted::QueueFull));
+    }
+    let Some(client) = &submission.client else {
+        return Ok(None);
+    };
+    let own: i64 =
+        sqlx::query_scalar("SELECT count(*) FROM jobs WHERE client = ? AND state = 'queued'")
+            .bind(client)
+            .fetch_one(connection)
+            .await?;
+    Ok((own >= limits.client).then_some(Submitted::QuotaExceeded))
+}
+
+/// Runs an update that records a request on a running job. Returns the updated job.
+async fn record_request(
+    mut transaction: WriteTransaction,
+    update: &'static str,
     id: &str,
     now_us: i64,
 ) -> Result<Option<JobRow>, StoreError> {
-    sqlx::query(note)
+    sqlx::query(update)
         .bind(now_us)
         .bind(id)
         .execute(&mut *transaction)

@@ -1,4 +1,4 @@
-//! Keys of clients, and whose job is whose.
+//! API keys of clients, and the ownership of jobs.
 
 use super::{Store, StoreError};
 use crate::base::access::Scopes;
@@ -7,22 +7,22 @@ use sqlx::FromRow;
 /// A key without its secret.
 #[derive(Debug, Clone, FromRow)]
 pub(crate) struct KeyRow {
-    /// Names the key.
+    /// Public identifier of the key.
     pub(crate) id: String,
-    /// For whom it acts.
+    /// The client that the key belongs to.
     pub(crate) client: String,
     #[sqlx(rename = "scopes")]
     scopes_text: String,
     /// When it was made.
     pub(crate) created_us: i64,
-    /// When it ends.
+    /// When it expires.
     pub(crate) expires_us: Option<i64>,
     /// When it was revoked.
     pub(crate) revoked_us: Option<i64>,
 }
 
 impl KeyRow {
-    /// What it opens.
+    /// The scopes that it grants.
     pub(crate) fn scopes(&self) -> Result<Scopes, StoreError> {
         let scopes = self.scopes_text.parse();
         scopes.map_err(|what| StoreError::Inconsistent {
@@ -31,7 +31,7 @@ impl KeyRow {
         })
     }
 
-    /// Whether it opens anything at a time.
+    /// Whether the key is valid at a time.
     pub(crate) fn is_valid(&self, now_us: i64) -> bool {
         self.revoked_us.is_none() && self.expires_us.is_none_or(|end| now_us < end)
     }
@@ -100,7 +100,7 @@ impl Store {
         .await?)
     }
 
-    /// Ends a key from now on; `false` when there is none of this name that still opens anything.
+    /// Revokes a key; `false` when no key of this name is still unrevoked.
     pub(crate) async fn revoke_key(&self, id: &str, now_us: i64) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let done =
@@ -113,7 +113,7 @@ impl Store {
         Ok(done.rows_affected() > 0)
     }
 
-    /// Whether a job is there and belongs to a client.
+    /// Whether a job exists and belongs to a client.
     pub(crate) async fn owns(&self, client: &str, job: &str) -> Result<bool, StoreError> {
         let owned: Option<bool> = sqlx::query_scalar("SELECT client IS ? FROM jobs WHERE id = ?")
             .bind(client)

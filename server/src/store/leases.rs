@@ -1,10 +1,11 @@
-//! The life of a job while a process works on it.
+//! Leases: the claims of worker processes on running jobs.
 //!
-//! A lease carries a number, its fence. Whatever a lease writes later is written only while it is
-//! still the newest one: a worker that was taken for dead cannot overwrite its successor.
+//! Every lease has a number, its fence, which grows with each lease of the job. Writes under a
+//! lease succeed only while its fence is the newest, so that a worker that was presumed dead cannot
+//! overwrite the work of its successor.
 
 use super::rows::job_columns;
-use super::writing::Writing;
+use super::writing::WriteTransaction;
 use super::{
     EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
 };
@@ -12,11 +13,11 @@ use sqlx::query::Query;
 use sqlx::sqlite::SqliteArguments;
 use sqlx::{Row, Sqlite};
 
-/// Attempts after which a job whose process dies each time is given up.
+/// Attempts after which a job whose process died at each of them becomes `dead`.
 const MAX_ATTEMPTS: i64 = 3;
 
-/// The bound of a job that is told of another one (`?5`, or none): it never falls, unless the plan
-/// of such a duration contradicts it.
+/// The lower bound of a job after the report of another one (`?5`, or null): the greater of the
+/// two, but no more than the duration of the plan.
 macro_rules! bound_beside {
     ($incumbent:literal) => {
         concat!(
@@ -27,28 +28,28 @@ macro_rules! bound_beside {
     };
 }
 
-/// A job that this process works on.
+/// The claim of this process on a running job.
 #[derive(Debug)]
 pub(crate) struct Lease {
-    /// The job as claimed.
+    /// The job when it was leased.
     pub(crate) job: JobRow,
     /// Its scenario as JSON.
     pub(crate) scenario: Vec<u8>,
 }
 
-/// What became of jobs whose process has died.
+/// Numbers of jobs taken from dead processes, by their new state.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Recovered {
     /// Queued again.
     pub(crate) queued: usize,
-    /// Had been cancelled.
+    /// Cancelled, as was requested before.
     pub(crate) cancelled: usize,
-    /// Given up.
+    /// Dead: no attempts left.
     pub(crate) dead: usize,
 }
 
 impl Store {
-    /// Claims the job that waits longest.
+    /// Leases the job that has waited longest; `None` when no job is queued.
     pub(crate) async fn lease(
         &self,
         boot_id: &str,
@@ -83,8 +84,8 @@ impl Store {
         Ok(Some(lease))
     }
 
-    /// Prolongs the lease of a lease; `false` when it has been lost.
-    pub(crate) async fn beat(
+    /// Prolongs a lease; `false` when it has been lost.
+    pub(crate) async fn prolong(
         &self,
         lease: &JobRow,
         lease_until_us: i64,
@@ -103,10 +104,10 @@ impl Store {
         Ok(done.rows_affected() > 0)
     }
 
-    /// Records progress with its event, and the plan of a better order if there is one; `false`
-    /// when the lease has been lost.
+    /// Records progress with its event, and a better plan if there is one; `false` when the lease
+    /// has been lost.
     ///
-    /// What an earlier attempt knew stays: incumbents never rise and bounds never fall.
+    /// Results of earlier attempts are kept: incumbents never rise and bounds never fall.
     pub(crate) async fn progress(
         &self,
         lease: &JobRow,
@@ -129,21 +130,22 @@ impl Store {
         .bind(progress.lower_bound_s)
         .bind(lease.sequence)
         .bind(lease.fence);
-        let Some(_) = changed(&mut transaction, update, "progress", now_us).await? else {
+        let Some(_) = update_leased(&mut transaction, update, "progress", now_us).await? else {
             return Ok(false);
         };
         if let Some(incumbent) = incumbent {
-            results::keep(&mut transaction, lease.sequence, incumbent).await?;
+            results::store_incumbent(&mut transaction, lease.sequence, incumbent).await?;
         }
         transaction.commit().await?;
         Ok(true)
     }
 
-    /// Records the end of a lease: state, result and event together; `false` when it has been lost.
+    /// Records the end of a leased job: state, result and event together; `false` when the lease
+    /// has been lost.
     ///
-    /// A cancellation that was acknowledged meanwhile wins. Of an end that came early, the better
-    /// plan of an earlier attempt is the result. An end without a plan takes nothing away: the best
-    /// plan so far can be read as before.
+    /// A cancellation acknowledged in the meantime takes precedence. If the solve was cut short, a
+    /// better plan of an earlier attempt becomes the result. If the job ends without a plan, its
+    /// best plan so far remains readable.
     pub(crate) async fn finish(
         &self,
         lease: &JobRow,
@@ -152,7 +154,7 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let kept = if ended.early {
-            results::better(&mut transaction, lease.sequence, ended).await?
+            results::better_incumbent(&mut transaction, lease.sequence, ended).await?
         } else {
             None
         };
@@ -167,7 +169,7 @@ impl Store {
              WHERE sequence = ?7 AND fence = ?8 AND state = 'running' RETURNING ",
             job_columns!()
         ))
-        .bind(ended.state.as_str())
+        .bind(ended.state.into_str())
         .bind(ended.code.map(EndCode::as_str))
         .bind(&ended.detail)
         .bind(ended.incumbent_s)
@@ -175,19 +177,19 @@ impl Store {
         .bind(now_us)
         .bind(lease.sequence)
         .bind(lease.fence);
-        let Some(job) = changed(&mut transaction, update, "state", now_us).await? else {
+        let Some(job) = update_leased(&mut transaction, update, "state", now_us).await? else {
             return Ok(false);
         };
         if job.state()? == JobState::Cancelled {
-            results::forget(&mut transaction, lease.sequence).await?;
+            results::delete_incumbent(&mut transaction, lease.sequence).await?;
         } else {
-            results::conclude(&mut transaction, lease.sequence, ended).await?;
+            results::store_result(&mut transaction, lease.sequence, ended).await?;
         }
         transaction.commit().await?;
         Ok(true)
     }
 
-    /// Gives a lease back unfinished; the attempt does not count.
+    /// Returns a leased job to the queue; the attempt does not count.
     pub(crate) async fn release(&self, lease: &JobRow, now_us: i64) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         let update = sqlx::query(concat!(
@@ -198,13 +200,13 @@ impl Store {
         ))
         .bind(lease.sequence)
         .bind(lease.fence);
-        let released = changed(&mut transaction, update, "state", now_us).await?;
+        let released = update_leased(&mut transaction, update, "state", now_us).await?;
         transaction.commit().await?;
         Ok(released.is_some())
     }
 
-    /// Takes running jobs from processes that are no more: of another boot, or with their lease
-    /// run out.
+    /// Takes running jobs from dead processes: those of another boot, and those whose lease has
+    /// expired.
     pub(crate) async fn recover(
         &self,
         boot_id: &str,
@@ -236,7 +238,7 @@ impl Store {
                 JobState::Queued => recovered.queued += 1,
                 JobState::Cancelled => {
                     recovered.cancelled += 1;
-                    results::forget(&mut transaction, job.sequence).await?;
+                    results::delete_incumbent(&mut transaction, job.sequence).await?;
                 }
                 _ => recovered.dead += 1,
             }
@@ -247,10 +249,10 @@ impl Store {
     }
 }
 
-/// Changes a job that is claimed, with the event that tells of it; the job as it is then, `None`
-/// when the lease has been lost.
-async fn changed(
-    transaction: &mut Writing,
+/// Updates a leased job and appends the event. Returns the updated job, `None` when the lease has
+/// been lost.
+async fn update_leased(
+    transaction: &mut WriteTransaction,
     update: Query<'_, Sqlite, SqliteArguments>,
     kind: &'static str,
     now_us: i64,

@@ -3,57 +3,31 @@
 mod upkeep;
 
 use super::{Store, StoreError};
-use serde::{Deserialize, Serialize};
+use slewplan_solver::model::motion::Motion;
+use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 use sqlx::{FromRow, Row, SqliteConnection};
+use std::str::FromStr;
 
-/// Legs of other versions of the solver are not found, replaced when they are solved again, and
-/// forgotten when the service starts.
+/// Legs of other versions of the solver are never found. They are replaced when they are solved
+/// again, and deleted when the service starts.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Far above the rounding of the product of two unit quaternions; as an angle less than 1e-6 rad.
+/// Tolerance on the scalar product of two unit quaternions: far above its rounding error, and less
+/// than 1e-6 rad as an angle.
 const ROUNDING: f64 = 1e-14;
 
-/// A leg to be remembered.
+/// A leg to be stored.
 #[derive(Debug, Clone)]
 pub(crate) struct NewLeg {
     /// Canonical text of its problem.
     pub(crate) identity: String,
-    /// Canonical text of the spacecraft.
-    pub(crate) spacecraft: String,
-    /// The kind of table for which it was solved.
-    pub(crate) kind: &'static str,
-    /// The turn from begin to end, scalar-last quaternion.
-    pub(crate) turn_xyzw: [f64; 4],
-    /// Total momentum in body axes at the begin, N m s.
-    pub(crate) momentum: [f64; 3],
-    /// Whether it can be flown backwards.
-    pub(crate) reversible: bool,
-    /// Minimum time, s.
-    pub(crate) duration_s: f64,
-    /// No slew with its conditions takes less, s, proved.
-    pub(crate) certified_lower_bound_s: Option<f64>,
-    /// Wall-clock time of the solve, s.
-    pub(crate) solve_time_s: f64,
-    /// How the solve ended.
-    pub(crate) status: String,
-    /// The motion.
-    pub(crate) trajectory: LegTrajectory,
+    /// The leg.
+    pub(crate) leg: StoredLeg,
 }
 
-/// The motion of a leg.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LegTrajectory {
-    /// Attitude at every node relative to the begin, scalar-last quaternions.
-    pub(crate) attitudes_xyzw: Vec<[f64; 4]>,
-    /// Momentum of every enabled wheel about its axis at every node, N m s.
-    pub(crate) wheel_momenta_nms: Vec<Vec<f64>>,
-    /// Time between nodes, s.
-    pub(crate) lengths_s: Vec<f64>,
-}
-
-/// A remembered leg without its motion.
+/// A stored leg without its motion.
 #[derive(Debug, Clone, FromRow)]
-pub(crate) struct LegRow {
+pub(crate) struct CachedLegRow {
     /// Order in which legs were stored.
     pub(crate) sequence: i64,
     /// SHA-256 of the identity, hex.
@@ -69,7 +43,7 @@ pub(crate) struct LegRow {
     momentum_x: f64,
     momentum_y: f64,
     momentum_z: f64,
-    /// Whether it can be flown backwards.
+    /// Whether the reversed motion is a solution too.
     pub(crate) reversible: bool,
     /// Minimum time, s.
     pub(crate) duration_s: f64,
@@ -85,7 +59,7 @@ pub(crate) struct LegRow {
     pub(crate) created_us: i64,
 }
 
-impl LegRow {
+impl CachedLegRow {
     /// The turn from begin to end, scalar-last quaternion.
     pub(crate) fn turn_xyzw(&self) -> [f64; 4] {
         [self.turn_x, self.turn_y, self.turn_z, self.turn_w]
@@ -94,6 +68,25 @@ impl LegRow {
     /// Total momentum in body axes at the begin, N m s.
     pub(crate) fn momentum(&self) -> [f64; 3] {
         [self.momentum_x, self.momentum_y, self.momentum_z]
+    }
+
+    /// The leg with what its row does not hold.
+    fn stored(self, spacecraft: String, motion: Motion) -> Result<StoredLeg, StoreError> {
+        Ok(StoredLeg {
+            spacecraft,
+            kind: LegKind::from_str(&self.kind).map_err(|_| StoreError::Inconsistent {
+                table: "legs",
+                what: format!("there is no kind {}", self.kind),
+            })?,
+            turn_xyzw: self.turn_xyzw(),
+            body_momentum_nms: self.momentum(),
+            reversible: self.reversible,
+            duration_s: self.duration_s,
+            certified_lower_bound_s: self.certified_lower_bound_s,
+            status: self.status,
+            solve_time_s: self.solve_time_s,
+            motion,
+        })
     }
 }
 
@@ -110,26 +103,23 @@ macro_rules! leg_columns {
 pub(crate) struct LegFilter {
     /// Only legs of this spacecraft.
     pub(crate) spacecraft: Option<String>,
-    /// Only legs whose turn is close to this one, or, when they can be flown backwards, to its
-    /// inverse: scalar-last quaternion and tolerance, rad.
+    /// Only legs whose rotation is close to this one, or, if reversible, to its inverse:
+    /// scalar-last quaternion and tolerance, rad.
     pub(crate) turn: Option<([f64; 4], f64)>,
     /// Only legs stored after this one.
     pub(crate) after: Option<i64>,
-    /// At most so many.
+    /// Maximum number of rows.
     pub(crate) limit: i64,
 }
 
-/// The key of a canonical text.
+/// The key of a leg or a spacecraft: SHA-256 of its canonical text, hex.
 pub(crate) fn key(identity: &str) -> String {
     crate::base::digest::hex(identity.as_bytes())
 }
 
 impl Store {
-    /// A leg that this version of the solver would solve the same.
-    pub(crate) async fn known_leg(
-        &self,
-        identity: &str,
-    ) -> Result<Option<(LegRow, String, LegTrajectory)>, StoreError> {
+    /// The stored leg of an identity, if this version of the solver solved it.
+    pub(crate) async fn known_leg(&self, identity: &str) -> Result<Option<StoredLeg>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT document, trajectory, ",
             leg_columns!(),
@@ -143,17 +133,14 @@ impl Store {
         .fetch_optional(&self.readers)
         .await?;
         row.map(|row| {
-            let trajectory = read_trajectory(row.try_get("trajectory")?)?;
-            Ok((
-                LegRow::from_row(&row)?,
-                row.try_get("document")?,
-                trajectory,
-            ))
+            let motion = read_motion(row.try_get("trajectory")?)?;
+            let spacecraft = row.try_get("document")?;
+            CachedLegRow::from_row(&row)?.stored(spacecraft, motion)
         })
         .transpose()
     }
 
-    /// Remembers legs, all of them or none; how many of them this version had not solved before.
+    /// Stores legs, all of them or none. Returns how many this version had not stored before.
     pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
         let mut new = 0;
@@ -168,7 +155,7 @@ impl Store {
     pub(crate) async fn leg(
         &self,
         key: &str,
-    ) -> Result<Option<(LegRow, LegTrajectory)>, StoreError> {
+    ) -> Result<Option<(CachedLegRow, Motion)>, StoreError> {
         let row = sqlx::query(concat!(
             "SELECT trajectory, ",
             leg_columns!(),
@@ -179,15 +166,15 @@ impl Store {
         .await?;
         row.map(|row| {
             Ok((
-                LegRow::from_row(&row)?,
-                read_trajectory(row.try_get("trajectory")?)?,
+                CachedLegRow::from_row(&row)?,
+                read_motion(row.try_get("trajectory")?)?,
             ))
         })
         .transpose()
     }
 
     /// Legs in the order in which they were stored.
-    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<LegRow>, StoreError> {
+    pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<CachedLegRow>, StoreError> {
         let ([x, y, z, w], tolerance) = filter.turn.unwrap_or_default();
         Ok(sqlx::query_as(concat!(
             "SELECT ",
@@ -213,7 +200,7 @@ impl Store {
         .await?)
     }
 
-    /// Number of remembered legs.
+    /// Number of stored legs.
     pub(crate) async fn leg_count(&self) -> Result<i64, StoreError> {
         Ok(sqlx::query_scalar("SELECT count(*) FROM legs")
             .fetch_one(&self.readers)
@@ -221,7 +208,7 @@ impl Store {
     }
 }
 
-fn read_trajectory(json: &[u8]) -> Result<LegTrajectory, StoreError> {
+fn read_motion(json: &[u8]) -> Result<Motion, StoreError> {
     serde_json::from_slice(json).map_err(|error| StoreError::Inconsistent {
         table: "legs",
         what: error.to_string(),
@@ -230,14 +217,13 @@ fn read_trajectory(json: &[u8]) -> Result<LegTrajectory, StoreError> {
 
 async fn put_leg(
     connection: &mut SqliteConnection,
-    leg: &NewLeg,
+    NewLeg { identity, leg }: &NewLeg,
     now_us: i64,
 ) -> Result<u64, StoreError> {
-    let trajectory =
-        serde_json::to_vec(&leg.trajectory).map_err(|error| StoreError::Inconsistent {
-            table: "legs",
-            what: error.to_string(),
-        })?;
+    let trajectory = serde_json::to_vec(&leg.motion).map_err(|error| StoreError::Inconsistent {
+        table: "legs",
+        what: error.to_string(),
+    })?;
     let spacecraft = key(&leg.spacecraft);
     sqlx::query("INSERT INTO leg_spacecraft (key, document) VALUES (?, ?) ON CONFLICT DO NOTHING")
         .bind(&spacecraft)
@@ -255,11 +241,11 @@ async fn put_leg(
          solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
          created_us = excluded.created_us WHERE solver_version <> excluded.solver_version",
     )
-    .bind(key(&leg.identity))
-    .bind(&leg.identity)
+    .bind(key(identity))
+    .bind(identity)
     .bind(spacecraft)
-    .bind(leg.kind);
-    for number in leg.turn_xyzw.into_iter().chain(leg.momentum) {
+    .bind(<&str>::from(leg.kind));
+    for number in leg.turn_xyzw.into_iter().chain(leg.body_momentum_nms) {
         query = query.bind(number);
     }
     let done = query

@@ -1,8 +1,8 @@
-//! Plans as they are kept: compressed, beside the hash of what they say.
+//! Plans as they are stored: compressed, with the hash of their JSON.
 //!
-//! The JSON of a plan is mostly digits, and compressed it takes less than half of its size. So the
-//! log grows slower while a copy is made, and the copy is made sooner. Plans are packed by those who
-//! write them, before a transaction keeps others from writing.
+//! The JSON of a plan is mostly digits and compresses to less than half of its size, which keeps
+//! the write-ahead log and backups small. Plans are compressed before the write transaction begins,
+//! so that it is short.
 
 use super::StoreError;
 use flate2::Compression;
@@ -11,20 +11,20 @@ use flate2::write::ZlibEncoder;
 use sqlx::FromRow;
 use std::io::{Read, Write};
 
-/// A plan, or why there is none, ready to be stored.
+/// The document of a plan, or of the reasons why there is none, ready to be stored.
 #[derive(Debug, Clone, PartialEq, FromRow)]
 pub(crate) struct PackedPlan {
-    /// The JSON, compressed or as it is.
+    /// The JSON, compressed or plain.
     #[sqlx(rename = "document")]
     pub(super) bytes: Vec<u8>,
-    /// Whether it is compressed. Plans of older versions are not.
+    /// Whether it is compressed. Plans stored by older versions are not.
     pub(super) packed: bool,
     /// SHA-256 of the JSON, hex.
     pub(super) digest: String,
 }
 
 impl PackedPlan {
-    /// Packs the JSON of a plan.
+    /// Compresses the JSON of a plan.
     pub(crate) fn of(json: &[u8]) -> Self {
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
         let written = encoder.write_all(json).and_then(|()| encoder.finish());
@@ -35,11 +35,11 @@ impl PackedPlan {
         }
     }
 
-    /// The JSON again.
+    /// The original JSON.
     ///
     /// # Errors
     ///
-    /// [`StoreError::Damaged`] when it is not what was stored.
+    /// [`StoreError::Damaged`] when it does not match its hash.
     pub(super) fn unpacked(self) -> Result<Vec<u8>, StoreError> {
         let json = if self.packed {
             inflated(&self.bytes).ok()
@@ -64,7 +64,7 @@ mod tests {
     const JSON: &str = r#"{"duration_s": 18.413264448308386}"#;
 
     #[test]
-    fn what_is_packed_is_the_same_again() {
+    fn packing_and_unpacking_are_inverse() {
         for text in [String::new(), JSON.into(), JSON.repeat(10_000)] {
             let packed = PackedPlan::of(text.as_bytes());
             assert_eq!(packed.unpacked().expect("intact"), text.as_bytes());
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn plans_of_older_versions_are_read() {
+    fn uncompressed_plans_of_older_versions_are_read() {
         let old = PackedPlan {
             bytes: JSON.into(),
             packed: false,
@@ -83,18 +83,18 @@ mod tests {
     }
 
     #[test]
-    fn no_damage_goes_unnoticed() {
+    fn damaged_plans_are_refused() {
         let sound = PackedPlan::of(JSON.as_bytes());
         for (place, bit) in (0..sound.bytes.len()).flat_map(|place| (0..8).map(move |b| (place, b)))
         {
             let mut damaged = sound.clone();
             damaged.bytes[place] ^= 1 << bit;
-            // Some bits mean nothing: what comes of it is the same, or not served.
+            // Some bits do not affect the content: either it is the same, or it is refused.
             if let Ok(json) = damaged.unpacked() {
                 assert_eq!(json, JSON.as_bytes());
             }
         }
-        // Whoever writes over a row may do it with a plan that unpacks.
+        // A row overwritten with another valid plan is refused as well.
         let other = PackedPlan::of(JSON.replace('8', "9").as_bytes());
         for exchanged in [
             PackedPlan {

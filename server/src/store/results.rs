@@ -1,26 +1,26 @@
-//! Plans: the best so far of jobs that go on or ended without one, and those that jobs ended with.
+//! Plans: the results of jobs, and the best plans so far (incumbents) of jobs without a result.
 //!
-//! The best so far is kept here rather than in memory: what was read once can be read again until
-//! something better replaces it, through a restart too. It is written together with the progress
-//! that tells of it, at most as often as that, and never by the solver's threads. It is a table of
-//! its own, so that a plan of an attempt that was cut off cannot pass for the end of a job.
+//! Incumbents are stored rather than held in memory, so that a plan that was read once can be read
+//! again after a restart until a better one replaces it. They are written together with the
+//! progress that reports them, and never by the solver's threads. They have a table of their own,
+//! so that the plan of an interrupted attempt cannot be mistaken for the result of a job.
 
 use super::{Ended, JobState, PackedPlan, Store, StoreError};
 use bytes::Bytes;
 use sqlx::{FromRow, Row, SqliteConnection};
 
-/// A plan that can be read.
+/// A stored plan.
 #[derive(Debug, Clone)]
 pub(crate) struct ResultRow {
     /// The plan as JSON.
     pub(crate) document: Bytes,
     /// SHA-256 of the document, hex.
     pub(crate) digest: String,
-    /// Whether the job ended with it.
+    /// Whether it is the result of the job, not an incumbent.
     pub(crate) is_final: bool,
 }
 
-/// The plan of a better order, found while a job goes on.
+/// A better plan, found while a job runs.
 #[derive(Debug, Clone)]
 pub(crate) struct NewIncumbent {
     /// The plan.
@@ -38,8 +38,8 @@ macro_rules! results_of_job {
     };
 }
 
-/// Keeps the plan of a running job unless one as good is kept already.
-pub(super) async fn keep(
+/// Stores the incumbent of a running job unless one at least as good is stored already.
+pub(super) async fn store_incumbent(
     connection: &mut SqliteConnection,
     job: i64,
     incumbent: &NewIncumbent,
@@ -62,8 +62,9 @@ pub(super) async fn keep(
     Ok(())
 }
 
-/// The kept plan as the end of a job, when it is better than what the job would end with.
-pub(super) async fn better(
+/// The stored incumbent as the end of a job, when it is better than the plan that the job would end
+/// with.
+pub(super) async fn better_incumbent(
     connection: &mut SqliteConnection,
     job: i64,
     ended: &Ended,
@@ -90,15 +91,15 @@ pub(super) async fn better(
     }))
 }
 
-/// Replaces the kept plan by the one that the job ends with in the same transaction. Reasons for
-/// which there is none replace no plan.
-pub(super) async fn conclude(
+/// Replaces the incumbent by the result of the job. A result without a plan does not replace an
+/// incumbent.
+pub(super) async fn store_result(
     connection: &mut SqliteConnection,
     job: i64,
     ended: &Ended,
 ) -> Result<(), StoreError> {
     if ended.incumbent_s.is_some() {
-        forget(connection, job).await?;
+        delete_incumbent(connection, job).await?;
     }
     if let Some(document) = &ended.document {
         sqlx::query(
@@ -115,8 +116,11 @@ pub(super) async fn conclude(
     Ok(())
 }
 
-/// Forgets the kept plan of a job that is abandoned, or ends with another.
-pub(super) async fn forget(connection: &mut SqliteConnection, job: i64) -> Result<(), StoreError> {
+/// Deletes the incumbent of a job that is cancelled or ends with another plan.
+pub(super) async fn delete_incumbent(
+    connection: &mut SqliteConnection,
+    job: i64,
+) -> Result<(), StoreError> {
     sqlx::query("DELETE FROM incumbents WHERE job = ?")
         .bind(job)
         .execute(connection)
@@ -134,8 +138,8 @@ impl Store {
         Ok(found)
     }
 
-    /// Where a job stands and its plan: the one that it ended with, or the best so far unless it
-    /// is abandoned; `None` when there is no such job.
+    /// The state of a job and its plan: its result, or the incumbent unless the job is cancelled.
+    /// `None` when there is no such job.
     pub(crate) async fn result(
         &self,
         id: &str,
@@ -165,12 +169,12 @@ impl Store {
         self.read_result(id).await
     }
 
-    /// The same with the plan from the disk, as it was stored, not as a damaged disk tells it.
+    /// The same with the plan read from the database and checked against its hash.
     async fn read_result(
         &self,
         id: &str,
     ) -> Result<Option<(JobState, Option<ResultRow>)>, StoreError> {
-        // One statement, so that state and plan are of one moment.
+        // One statement, so that state and plan belong to the same moment.
         let row = sqlx::query(concat!(
             "SELECT state, coalesce(r.document, i.document) AS document, \
              coalesce(r.packed, i.packed) AS packed, coalesce(r.digest, i.digest) AS digest, \

@@ -1,11 +1,11 @@
-//! Jobs that ended long ago are forgotten, with everything that belongs to them.
+//! Deletion of jobs that ended long ago, with everything that refers to them.
 
 use super::{Store, StoreError};
 
 impl Store {
-    /// Forgets jobs that ended before a time, at most so many, so that others can write in between;
-    /// how many they were.
-    pub(crate) async fn forget_ended(
+    /// Deletes at most `at_most` jobs that ended before a time. Returns their number. Small batches
+    /// let other writes come in between.
+    pub(crate) async fn delete_ended_jobs(
         &self,
         before_us: i64,
         at_most: i64,

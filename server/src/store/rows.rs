@@ -1,48 +1,48 @@
-//! What the tables hold, as types.
+//! Rows of the tables as types.
 
 use super::StoreError;
 use sqlx::FromRow;
 use sqlx::sqlite::SqliteRow;
-use std::str::FromStr;
 
-macro_rules! states {
-    ($($(#[$doc:meta])+ $name:ident = $text:literal,)+) => {
-        /// Where a job stands.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, utoipa::ToSchema)]
-        #[serde(rename_all = "lowercase")]
-        pub(crate) enum JobState {
-            $($(#[$doc])+ $name,)+
-        }
-
-        impl JobState {
-            /// All states.
-            pub(crate) const ALL: &'static [JobState] = &[$(JobState::$name,)+];
-
-            /// The stable text of the state.
-            pub(crate) const fn as_str(self) -> &'static str {
-                match self { $(Self::$name => $text,)+ }
-            }
-        }
-    };
+/// The state of a job.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    serde::Serialize,
+    utoipa::ToSchema,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase", const_into_str)]
+#[strum(parse_err_ty = String, parse_err_fn = unknown_state)]
+pub(crate) enum JobState {
+    /// Waits for its turn.
+    Queued,
+    /// Is being solved.
+    Running,
+    /// Ended with an optimal plan.
+    Succeeded,
+    /// Ended early with the best plan so far.
+    Stopped,
+    /// No plan can exist.
+    Infeasible,
+    /// No plan was found.
+    Failed,
+    /// Abandoned on request.
+    Cancelled,
+    /// Given up: its process died at every attempt.
+    Dead,
 }
 
-states! {
-    /// Waits for its turn.
-    Queued = "queued",
-    /// Is being solved.
-    Running = "running",
-    /// Ended with an optimal plan.
-    Succeeded = "succeeded",
-    /// Ended early with the best plan so far.
-    Stopped = "stopped",
-    /// No plan can exist.
-    Infeasible = "infeasible",
-    /// No plan was found.
-    Failed = "failed",
-    /// Abandoned on request.
-    Cancelled = "cancelled",
-    /// Given up: its process died at every attempt.
-    Dead = "dead",
+fn unknown_state(text: &str) -> String {
+    format!("{text:?} is not a state of a job")
 }
 
 impl JobState {
@@ -51,23 +51,12 @@ impl JobState {
         !matches!(self, Self::Queued | Self::Running)
     }
 
-    /// The state that a row holds.
+    /// The state in the text of a row.
     pub(super) fn stored(text: &str) -> Result<Self, StoreError> {
         text.parse().map_err(|what| StoreError::Inconsistent {
             table: "jobs",
             what,
         })
-    }
-}
-
-impl FromStr for JobState {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let found = Self::ALL.iter().find(|state| state.as_str() == text);
-        found
-            .copied()
-            .ok_or_else(|| format!("{text:?} is not a state of a job"))
     }
 }
 
@@ -84,7 +73,7 @@ pub(crate) struct JobRow {
     pub(crate) name: Option<String>,
     /// Number of targets.
     pub(crate) targets: i64,
-    /// What the solve is busy with.
+    /// Stage of the solve.
     pub(crate) stage: Option<String>,
     /// Steps of the stage that are done.
     pub(crate) done: Option<i64>,
@@ -94,17 +83,17 @@ pub(crate) struct JobRow {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
-    /// Why it ended without a plan.
+    /// Why the job ended without a plan.
     pub(crate) detail: Option<String>,
-    /// The same as a stable code.
+    /// The same reason as a stable code.
     pub(crate) code: Option<String>,
-    /// How often it has been begun.
+    /// Number of attempts so far.
     pub(crate) attempt: i64,
-    /// Number of its newest lease.
+    /// Number of its newest lease (fence).
     pub(crate) fence: i64,
-    /// When a stop was asked for.
+    /// When a stop was requested.
     pub(crate) stop_requested_us: Option<i64>,
-    /// When it was abandoned.
+    /// When its cancellation was requested.
     pub(crate) cancel_requested_us: Option<i64>,
     /// When it was submitted.
     pub(crate) submitted_us: i64,
@@ -125,7 +114,7 @@ macro_rules! job_columns {
 pub(super) use job_columns;
 
 impl JobRow {
-    /// Where the job stands.
+    /// The state of the job.
     pub(crate) fn state(&self) -> Result<JobState, StoreError> {
         JobState::stored(&self.state_text)
     }
@@ -138,7 +127,7 @@ impl JobRow {
 /// Progress of a running job.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProgressRow {
-    /// What the solve is busy with.
+    /// Stage of the solve.
     pub(crate) stage: &'static str,
     /// Steps of the stage that are done.
     pub(crate) done: i64,

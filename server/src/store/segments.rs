@@ -1,4 +1,4 @@
-//! What the search of a running job has solved of its tours.
+//! Segments of tours that the search of a running job has solved.
 
 use super::{JobRow, Store, StoreError};
 use sqlx::FromRow;
@@ -6,19 +6,19 @@ use sqlx::FromRow;
 /// Segments of other versions of the solver are not found.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A segment to be remembered, or remembered.
+/// A solved segment.
 #[derive(Debug, Clone, PartialEq, FromRow)]
 pub(crate) struct SegmentRow {
-    /// What the solver calls it within the job.
+    /// The solver's name of the segment, unique within the job.
     pub(crate) name: String,
-    /// Its intervals.
+    /// Number of its intervals.
     pub(crate) intervals: i64,
-    /// Its numbers, packed.
+    /// Its motion in binary form.
     pub(crate) motion: Vec<u8>,
 }
 
 impl Store {
-    /// What this version of the solver has solved of a job and would solve the same.
+    /// The segments of a job that this version of the solver has solved.
     pub(crate) async fn segments(&self, job: i64) -> Result<Vec<SegmentRow>, StoreError> {
         Ok(sqlx::query_as(
             "SELECT name, intervals, motion FROM segments WHERE job = ? AND solver_version = ?",
@@ -29,7 +29,7 @@ impl Store {
         .await?)
     }
 
-    /// Remembers segments of a lease, all of them or none; `false` when the lease has been lost.
+    /// Stores segments of a leased job, all of them or none; `false` when the lease has been lost.
     pub(crate) async fn put_segments(
         &self,
         lease: &JobRow,
@@ -63,9 +63,12 @@ impl Store {
         Ok(true)
     }
 
-    /// Forgets segments of jobs that have ended, at most so many, so that others can write in
-    /// between; how many they were.
-    pub(crate) async fn forget_segments(&self, at_most: i64) -> Result<u64, StoreError> {
+    /// Deletes at most `at_most` segments of jobs that have ended. Returns their number. Small
+    /// batches let other writes come in between.
+    pub(crate) async fn delete_segments_of_ended_jobs(
+        &self,
+        at_most: i64,
+    ) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
         let done = sqlx::query(
             "DELETE FROM segments WHERE sequence IN \

@@ -3,8 +3,8 @@
 use super::{Store, StoreError};
 use sqlx::FromRow;
 
-/// Versions that are kept of each name. No job needs them: its scenario has the spacecraft written
-/// out.
+/// Number of versions kept of each name. Jobs do not depend on them: their scenarios have the
+/// spacecraft written out.
 pub(super) const KEPT_VERSIONS: i64 = 100;
 
 /// A version of a stored spacecraft.
@@ -19,8 +19,8 @@ pub(crate) struct SpacecraftRow {
 }
 
 impl Store {
-    /// Stores a spacecraft as the newest version; the same document again is no new version. The
-    /// oldest beyond [`KEPT_VERSIONS`] are forgotten.
+    /// Stores a spacecraft as the newest version, unless the newest has the same document. Versions
+    /// older than the newest [`KEPT_VERSIONS`] are deleted.
     pub(crate) async fn put_spacecraft(
         &self,
         name: &str,
@@ -62,7 +62,7 @@ impl Store {
         })
     }
 
-    /// A version of a stored spacecraft, or the newest.
+    /// A stored spacecraft in a given version, or in its newest.
     pub(crate) async fn spacecraft(
         &self,
         name: &str,

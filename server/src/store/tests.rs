@@ -1,11 +1,11 @@
-//! What a lease that was lost must not do, what is kept for its successor, and what failures of
-//! the disk must not do.
+//! Leases, incumbents, segments and events over several attempts, and failures of the disk.
 
 mod bounds;
 mod ends;
 mod fence;
 mod queue;
 mod races;
+mod statements;
 
 use super::{
     Ended, JobRow, JobState, Lease, NewIncumbent, PackedPlan, ProgressRow, QueueLimits, ResultRow,
@@ -26,7 +26,7 @@ fn plan(total_time_s: f64) -> NewIncumbent {
     }
 }
 
-/// Whether a better plan of a lease was taken in.
+/// Records progress with a plan; whether the lease still held.
 async fn improve(store: &Store, lease: &JobRow, total_time_s: f64) -> bool {
     let progress = ProgressRow {
         stage: "search",
@@ -73,7 +73,7 @@ async fn submitted(store: &Store) {
 }
 
 async fn lease(store: &Store, boot_id: &str) -> Lease {
-    let lease = store.lease(boot_id, 1_000, 2).await.expect("claimed");
+    let lease = store.lease(boot_id, 1_000, 2).await.expect("leased");
     lease.expect("a job waits")
 }
 
@@ -82,15 +82,15 @@ async fn result(store: &Store) -> (JobState, Option<ResultRow>) {
     found.expect("the job is there")
 }
 
-/// An event that tells the state, and why it ended.
+/// An event with the state of the job and why it ended.
 fn state_of(job: &JobRow, _: i64) -> Result<String, StoreError> {
-    let (state, detail, code) = (job.state()?.as_str(), &job.detail, &job.code);
+    let (state, detail, code) = (job.state()?.into_str(), &job.detail, &job.code);
     let event = serde_json::json!({ "state": state, "detail": detail, "code": code });
     Ok(event.to_string())
 }
 
-/// Runs a scene on an empty database.
-fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
+/// Runs a test on an empty database.
+fn on_a_store<F: Future<Output = ()>>(test: impl FnOnce(Store) -> F) {
     let folder = tempfile::tempdir().expect("a folder");
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -98,12 +98,12 @@ fn on_a_store<F: Future<Output = ()>>(scene: impl FnOnce(Store) -> F) {
         .expect("a runtime");
     runtime.block_on(async {
         let path = folder.path().join("store.db");
-        scene(Store::open(&path, state_of).await.expect("opened")).await;
+        test(Store::open(&path, state_of).await.expect("opened")).await;
     });
 }
 
 #[test]
-fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
+fn a_lost_lease_stores_no_plan_and_ends_no_job() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lost = lease(&store, "first").await.job;
@@ -121,15 +121,15 @@ fn a_lost_claim_keeps_no_plan_and_ends_nothing() {
     });
 }
 
-/// Of each event its kind and the state that it tells.
-async fn told(store: &Store) -> Vec<String> {
+/// Kind and state of each event.
+async fn event_states(store: &Store) -> Vec<String> {
     let states = "SELECT kind || ' ' || (data ->> 'state') FROM events ORDER BY id";
     let states = sqlx::query_scalar(states).fetch_all(&store.readers).await;
     states.expect("read")
 }
 
 #[test]
-fn every_state_of_a_job_is_told() {
+fn every_change_of_state_has_an_event() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lost = lease(&store, "first").await.job;
@@ -139,30 +139,33 @@ fn every_state_of_a_job_is_told() {
         store.request_cancel(ID, 5).await.expect("cancelled");
         let recovered = store.recover("third", 6).await.expect("recovered");
         assert_eq!((recovered.queued, recovered.cancelled), (0, 1));
-        assert!(!store.beat(&lost, 9).await.expect("tried"));
+        assert!(!store.prolong(&lost, 9).await.expect("tried"));
         let expected = ["queued", "running", "queued", "running", "cancelled"];
         assert_eq!(
-            told(&store).await,
+            event_states(&store).await,
             expected.map(|state| format!("state {state}"))
         );
     });
 }
 
 #[test]
-fn what_is_cancelled_before_it_begins_is_told() {
+fn cancelling_a_queued_job_has_an_event() {
     on_a_store(|store| async move {
         submitted(&store).await;
         store.request_cancel(ID, 5).await.expect("cancelled");
-        assert_eq!(told(&store).await, ["state queued", "state cancelled"]);
+        assert_eq!(
+            event_states(&store).await,
+            ["state queued", "state cancelled"]
+        );
     });
 }
 
 #[test]
-fn a_beat_prolongs_the_lease_for_all_to_see() {
+fn prolonging_a_lease_is_stored() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
-        assert!(store.beat(&lease, 9_000).await.expect("tried"));
+        assert!(store.prolong(&lease, 9_000).await.expect("tried"));
         let lease = sqlx::query_scalar("SELECT lease_until_us FROM jobs");
         let lease: i64 = lease.fetch_one(&store.readers).await.expect("read");
         assert_eq!(lease, 9_000);
@@ -171,11 +174,11 @@ fn a_beat_prolongs_the_lease_for_all_to_see() {
 }
 
 #[test]
-fn the_log_is_folded_while_much_is_written() {
+fn the_wal_stays_small_under_continuous_writes() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
-        // Some 64 MB in all, none of which is worth keeping.
+        // About 64 MB in all; each write replaces the one before.
         for round in 0..64 {
             let segment = SegmentRow {
                 name: "piece 1 2 3".into(),
@@ -191,7 +194,7 @@ fn the_log_is_folded_while_much_is_written() {
 }
 
 #[test]
-fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
+fn the_best_plan_of_all_attempts_is_the_result_of_an_interrupted_search() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let first = lease(&store, "first").await.job;
@@ -217,7 +220,7 @@ fn the_best_of_all_attempts_counts_until_the_search_is_complete() {
 }
 
 #[test]
-fn an_abandoned_job_has_no_plan() {
+fn a_cancelled_job_has_no_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let first = lease(&store, "first").await.job;
@@ -231,7 +234,7 @@ fn an_abandoned_job_has_no_plan() {
 }
 
 #[test]
-fn what_was_solved_is_there_for_the_next_attempt_and_gone_after_the_last() {
+fn segments_are_kept_for_the_next_attempt_and_deleted_after_the_job() {
     let segment = SegmentRow {
         name: "piece 1 2 3".into(),
         intervals: 2,
@@ -253,18 +256,24 @@ fn what_was_solved_is_there_for_the_next_attempt_and_gone_after_the_last() {
         assert_eq!(found.expect("read"), kept);
         let other = store.segments(second.sequence + 1).await;
         assert_eq!(other.expect("read"), []);
-        assert_eq!(store.forget_segments(9).await.expect("tried"), 0);
+        assert_eq!(
+            store.delete_segments_of_ended_jobs(9).await.expect("tried"),
+            0
+        );
         let end = ended(JobState::Stopped, Some(plan(20.0)));
         assert!(store.finish(&second, &end, 4).await.expect("written"));
-        assert_eq!(store.forget_segments(9).await.expect("done"), 1);
+        assert_eq!(
+            store.delete_segments_of_ended_jobs(9).await.expect("done"),
+            1
+        );
         let left = store.segments(second.sequence).await;
         assert_eq!(left.expect("read"), []);
     });
 }
 
-/// That this setting has the effect, a test with a recorded disk shows.
+/// The effect of this setting is shown by a test with a recorded disk (tests/trust).
 #[test]
-fn every_connection_that_writes_waits_for_the_disk_with_its_commits() {
+fn every_writing_connection_syncs_its_commits() {
     on_a_store(|store| async move {
         const FULL: i64 = 2;
         for _ in 0..2 {
@@ -279,11 +288,11 @@ fn every_connection_that_writes_waits_for_the_disk_with_its_commits() {
 }
 
 #[test]
-fn a_full_disk_costs_only_what_is_written_while_it_is_full() {
+fn the_store_recovers_from_a_full_disk() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let big = "x".repeat(1 << 20);
-        // More often than there are connections: each failure poisons the one that it meets.
+        // More rounds than connections: each failure makes one connection unusable.
         for round in 0..3 {
             sqlx::query("PRAGMA max_page_count = 1")
                 .execute(&store.writer)
@@ -293,7 +302,7 @@ fn a_full_disk_costs_only_what_is_written_while_it_is_full() {
             let error = full.expect_err("there is no room");
             assert!(error.is_disk_full(), "{error}");
             store.job(ID).await.expect("read").expect("there");
-            // A new connection knows no limit.
+            // A new connection does not have the limit.
             let name = format!("small-{round}");
             let stored = store.put_spacecraft(&name, "{}", 3);
             stored.await.expect("the writer has recovered");
@@ -302,7 +311,7 @@ fn a_full_disk_costs_only_what_is_written_while_it_is_full() {
 }
 
 #[test]
-fn a_damaged_plan_is_noticed_and_not_served() {
+fn a_damaged_plan_is_detected_and_not_returned() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
@@ -318,15 +327,15 @@ fn a_damaged_plan_is_noticed_and_not_served() {
 }
 
 #[test]
-fn only_what_ended_before_is_forgotten() {
+fn only_jobs_that_ended_before_the_given_time_are_deleted() {
     on_a_store(|store| async move {
         submitted(&store).await;
-        assert_eq!(store.forget_ended(100, 9).await.expect("tried"), 0);
+        assert_eq!(store.delete_ended_jobs(100, 9).await.expect("tried"), 0);
         let lease = lease(&store, "first").await.job;
         let end = ended(JobState::Stopped, Some(plan(20.0)));
         assert!(store.finish(&lease, &end, 50).await.expect("written"));
-        assert_eq!(store.forget_ended(50, 9).await.expect("tried"), 0);
-        assert_eq!(store.forget_ended(51, 9).await.expect("done"), 1);
+        assert_eq!(store.delete_ended_jobs(50, 9).await.expect("tried"), 0);
+        assert_eq!(store.delete_ended_jobs(51, 9).await.expect("done"), 1);
         assert!(store.result(ID).await.expect("read").is_none());
     });
 }

@@ -1,43 +1,43 @@
-//! Folding the write-ahead log into the database.
+//! Checkpoints of the write-ahead log (WAL).
 //!
-//! SQLite would do so by itself after a commit, but keeps to itself when the disk fails to keep
-//! what is folded. Here a failed sync raises the same alarm as that of a commit.
+//! SQLite's automatic checkpoint after a commit does not report a failed sync. Here a failed sync
+//! raises the same alarm as that of a commit.
 
 use super::StoreError;
-use super::writing::Alarm;
+use super::writing::SyncAlarm;
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool, SqlitePoolOptions};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::Notify;
 
-/// Pages by which the log grows before it is folded, as many as SQLite's own choice: some 4 MB.
+/// Pages by which the WAL grows between two checkpoints, SQLite's own default: about 4 MB.
 const STEP: i64 = 1000;
-/// Pages in the log from which on writers wait, so that it can begin anew.
-const LONG: i64 = 2 * STEP;
-/// Pages from which on they wait after every write while somebody makes a copy, which keeps the log
-/// from beginning anew: some 32 MB.
-const TOO_LONG: i64 = 8 * STEP;
-/// How long they wait then, twice as long with each step: hardly at first, so that most copies are
-/// made before anybody notices, and half a second where the log has 64 MB.
-const PAUSE: Duration = Duration::from_millis(2);
-/// Steps after which the wait is long enough.
+/// Pages from which on a checkpoint blocks writers, so that the WAL can restart from its beginning.
+const RESTART_PAGES: i64 = 2 * STEP;
+/// Pages from which on writers are delayed while a backup keeps the WAL from restarting: about 32
+/// MB.
+const DELAY_PAGES: i64 = 8 * STEP;
+/// First delay of writers, doubled with each further step: negligible during most backups, half a
+/// second at a WAL of 64 MB.
+const FIRST_DELAY: Duration = Duration::from_millis(2);
+/// Number of steps after which the delay no longer grows.
 const MAX_STEPS: i64 = 8;
-/// Longest wait for readers before the log begins anew, while nobody can write. Who reads longer makes
-/// a copy.
+/// Longest wait for readers before the WAL restarts, while writers are blocked. Longer readers are
+/// assumed to be backups.
 const READERS: Duration = Duration::from_millis(50);
 
-/// Folds the log on a connection of its own, beside those who write and read.
+/// Checkpoints the WAL on a connection of its own.
 #[derive(Debug)]
-pub(super) struct Folding {
+pub(super) struct WalCheckpoint {
     /// One connection.
     own: SqlitePool,
     writer: SqlitePool,
-    /// Pages in the log when it was last folded.
-    folded_at: i64,
+    /// Pages in the WAL at the last checkpoint.
+    checkpointed_at: i64,
 }
 
-impl Folding {
-    /// Folding for a database that this writer writes.
+impl WalCheckpoint {
+    /// Checkpoints for a database with this writer.
     pub(super) fn new(options: SqliteConnectOptions, writer: SqlitePool) -> Self {
         let own = SqlitePoolOptions::new()
             .max_connections(1)
@@ -45,7 +45,7 @@ impl Folding {
         Self {
             own,
             writer,
-            folded_at: 0,
+            checkpointed_at: 0,
         }
     }
 
@@ -54,68 +54,73 @@ impl Folding {
         self.own.clone()
     }
 
-    /// Folds the log whenever it has grown, until the database is closed.
-    pub(super) async fn keep_small(mut self, alarm: Alarm, written: Arc<Notify>) {
+    /// Checkpoints whenever the WAL has grown enough, until the database is closed.
+    pub(super) async fn keep_small(mut self, alarm: SyncAlarm, written: Arc<Notify>) {
         loop {
-            match self.fold().await {
+            match self.checkpoint_if_grown().await {
                 Ok(()) => {}
                 Err(StoreError::Database(sqlx::Error::PoolClosed)) => return,
                 Err(error) => {
-                    let error = alarm.heed(error);
-                    // The log keeps everything, and the next write tries again.
-                    tracing::warn!(%error, "the log is not folded into the database");
+                    let error = alarm.check(error);
+                    // The WAL still has everything, and the next write triggers another attempt.
+                    tracing::warn!(%error, "the write-ahead log cannot be checkpointed");
                 }
             }
-            // A notification that came meanwhile is kept.
+            // A notification that arrived in the meantime is not lost.
             written.notified().await;
         }
     }
 
-    async fn fold(&mut self) -> Result<(), StoreError> {
-        let Log { pages, .. } = self.checkpoint("PRAGMA wal_checkpoint(NOOP)").await?;
-        if pages < self.folded_at {
-            // It has begun anew.
-            self.folded_at = 0;
+    async fn checkpoint_if_grown(&mut self) -> Result<(), StoreError> {
+        let WalSize { pages, .. } = self.checkpoint("PRAGMA wal_checkpoint(NOOP)").await?;
+        if pages < self.checkpointed_at {
+            // The WAL has restarted.
+            self.checkpointed_at = 0;
         }
-        if pages < self.folded_at + STEP && pages < TOO_LONG {
+        if pages < self.checkpointed_at + STEP && pages < DELAY_PAGES {
             return Ok(());
         }
-        // Most of the work, while others write.
-        let log = self.checkpoint("PRAGMA wal_checkpoint(PASSIVE)").await?;
-        // As long as others write, there is always something left, and the log never begins anew.
-        // The queue for the writer is fair: who writes more than can be folded waits. A copy keeps more
-        // from being folded than was written just now.
-        let copied = log.pages - log.folded >= STEP;
-        if copied && log.pages >= TOO_LONG {
+        // Does most of the work without blocking writers.
+        let wal = self.checkpoint("PRAGMA wal_checkpoint(PASSIVE)").await?;
+        // While writes continue, some pages always remain and the WAL never restarts; holding the
+        // writer stops them. The queue for the writer is fair. If more remains than was written
+        // just now, a reader is making a backup.
+        let backup = wal.pages - wal.checkpointed >= STEP;
+        if backup && wal.pages >= DELAY_PAGES {
             let _turn = self.writer.acquire().await?;
-            tokio::time::sleep(pause(log.pages)).await;
-        } else if !copied && log.pages >= LONG {
+            tokio::time::sleep(delay(wal.pages)).await;
+        } else if !backup && wal.pages >= RESTART_PAGES {
             let _turn = self.writer.acquire().await?;
             self.checkpoint("PRAGMA wal_checkpoint(RESTART)").await?;
         }
-        // After a failure too little is remembered, so that the next write tries again.
-        self.folded_at = log.pages;
+        // Set only after success, so that the next write tries again after a failure.
+        self.checkpointed_at = wal.pages;
         Ok(())
     }
 
-    /// The log after some kind of wal_checkpoint, which readers may keep from being complete.
-    async fn checkpoint(&self, kind: &'static str) -> Result<Log, StoreError> {
-        let (_, pages, folded): (i64, i64, i64) = sqlx::query_as(kind).fetch_one(&self.own).await?;
-        Ok(Log { pages, folded })
+    /// Runs a checkpoint pragma and returns the size of the WAL. Readers may keep the checkpoint
+    /// from being complete.
+    async fn checkpoint(&self, pragma: &'static str) -> Result<WalSize, StoreError> {
+        let (_, pages, checkpointed): (i64, i64, i64) =
+            sqlx::query_as(pragma).fetch_one(&self.own).await?;
+        Ok(WalSize {
+            pages,
+            checkpointed,
+        })
     }
 }
 
-/// How long writers wait while a copy is made and the log has so many pages.
-fn pause(pages: i64) -> Duration {
-    let steps = ((pages - TOO_LONG) / STEP).clamp(0, MAX_STEPS);
-    PAUSE * (1 << steps)
+/// The delay of writers during a backup, by the number of pages in the WAL.
+fn delay(pages: i64) -> Duration {
+    let steps = ((pages - DELAY_PAGES) / STEP).clamp(0, MAX_STEPS);
+    FIRST_DELAY * (1 << steps)
 }
 
-/// How long the log is, pages.
-struct Log {
+/// Size of the WAL, pages.
+struct WalSize {
     pages: i64,
-    /// Those of them that are in the database.
-    folded: i64,
+    /// Those of them that are in the database already.
+    checkpointed: i64,
 }
 
 #[cfg(test)]
@@ -123,11 +128,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_longer_the_log_the_longer_the_wait() {
+    fn the_delay_of_writers_grows_with_the_wal() {
         let megabytes = |count: i64| count * (1 << 20) / 4096;
-        assert_eq!(pause(megabytes(32)), PAUSE);
-        assert!(pause(megabytes(40)) <= Duration::from_millis(10));
-        assert!(pause(megabytes(64)) >= Duration::from_millis(500));
-        assert_eq!(pause(megabytes(6400)), pause(megabytes(65)));
+        assert_eq!(delay(megabytes(32)), FIRST_DELAY);
+        assert!(delay(megabytes(40)) <= Duration::from_millis(10));
+        assert!(delay(megabytes(64)) >= Duration::from_millis(500));
+        assert_eq!(delay(megabytes(6400)), delay(megabytes(65)));
     }
 }

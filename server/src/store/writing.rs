@@ -1,27 +1,28 @@
-//! Write transactions, and the alarm for a disk that does not keep what is written.
+//! Write transactions, and the alarm for failed syncs.
 
-use super::{Store, StoreError, TellJob};
+use super::{FormatEvent, Store, StoreError};
 use sqlx::{Sqlite, SqliteConnection, Transaction};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use tokio::sync::{Notify, watch};
 
-/// Told when the operating system could not bring a commit to the disk.
+/// Raised when the operating system failed to sync a commit to the disk.
 ///
 /// After a failed sync the kernel may have dropped the pages, and the next sync succeeds without
-/// them: nothing that this process writes can be trusted any more. It has to end; the next one
-/// reads the write-ahead log from the disk and believes only what its checksums confirm.
+/// them: later commits of this process could rest on lost pages. It has to end; the next process
+/// reads the write-ahead log from the disk and uses only the part that its checksums confirm.
 #[derive(Debug, Clone)]
-pub(super) struct Alarm(Arc<watch::Sender<bool>>);
+pub(super) struct SyncAlarm(Arc<watch::Sender<bool>>);
 
-impl Default for Alarm {
+impl Default for SyncAlarm {
     fn default() -> Self {
         Self(Arc::new(watch::Sender::new(false)))
     }
 }
 
-impl Alarm {
-    pub(super) fn heed(&self, error: StoreError) -> StoreError {
+impl SyncAlarm {
+    /// Raises the alarm if the error is a failed sync, and passes the error on.
+    pub(super) fn check(&self, error: StoreError) -> StoreError {
         if error.is_failed_sync() {
             self.0.send_replace(true);
         }
@@ -29,33 +30,33 @@ impl Alarm {
     }
 
     async fn raised(&self) {
-        // The sender lives as long as this.
+        // Cannot fail: the sender lives as long as `self`.
         let _ = self.0.subscribe().wait_for(|raised| *raised).await;
     }
 }
 
-/// A write transaction; what is not committed is rolled back.
+/// A write transaction; it is rolled back unless it is committed.
 #[derive(Debug)]
-pub(super) struct Writing {
+pub(super) struct WriteTransaction {
     transaction: Transaction<'static, Sqlite>,
-    /// Writes the events.
-    pub(super) tell: TellJob,
-    alarm: Alarm,
+    /// Formats the events.
+    pub(super) format_event: FormatEvent,
+    alarm: SyncAlarm,
     written: Arc<Notify>,
 }
 
-impl Writing {
-    /// Makes everything durable.
+impl WriteTransaction {
+    /// Commits and syncs the transaction.
     pub(super) async fn commit(self) -> Result<(), StoreError> {
         let alarm = self.alarm;
         let committed = self.transaction.commit().await;
-        committed.map_err(|error| alarm.heed(error.into()))?;
+        committed.map_err(|error| alarm.check(error.into()))?;
         self.written.notify_one();
         Ok(())
     }
 }
 
-impl Deref for Writing {
+impl Deref for WriteTransaction {
     type Target = SqliteConnection;
 
     fn deref(&self) -> &SqliteConnection {
@@ -63,25 +64,25 @@ impl Deref for Writing {
     }
 }
 
-impl DerefMut for Writing {
+impl DerefMut for WriteTransaction {
     fn deref_mut(&mut self) -> &mut SqliteConnection {
         &mut self.transaction
     }
 }
 
 impl Store {
-    /// Begins IMMEDIATE, so that nobody else can write in between.
-    pub(super) async fn begin(&self) -> Result<Writing, StoreError> {
+    /// Begins a transaction that holds the write lock from its begin.
+    pub(super) async fn begin(&self) -> Result<WriteTransaction, StoreError> {
         let begun = self.writer.begin_with("BEGIN IMMEDIATE").await;
-        Ok(Writing {
-            transaction: begun.map_err(|error| self.alarm.heed(error.into()))?,
-            tell: self.tell,
+        Ok(WriteTransaction {
+            transaction: begun.map_err(|error| self.alarm.check(error.into()))?,
+            format_event: self.format_event,
             alarm: self.alarm.clone(),
             written: Arc::clone(&self.written),
         })
     }
 
-    /// Waits until the disk has failed to keep a commit.
+    /// Waits until a sync has failed.
     pub(crate) async fn sync_failed(&self) {
         self.alarm.raised().await;
     }

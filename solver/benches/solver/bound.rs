@@ -1,4 +1,4 @@
-//! The proved kinematic bounds, on the 171 turns of experiment C in turn.
+//! The certified kinematic bounds, on the 171 turns of experiment C in turn.
 
 use divan::{Bencher, black_box};
 use nalgebra::Vector3;
@@ -7,7 +7,7 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_tests::experiment_c_spec;
 use slewplan_tests::solving::scenario_of;
 
-/// Relative tolerance of a query: as fine as anyone needs it beside legs within 0.05 %.
+/// Relative tolerance of a query: small beside the accuracy of solved legs, 0.05 %.
 const TOLERANCE: f64 = 1e-4;
 
 fn rates() -> Vector3<f64> {
@@ -33,17 +33,17 @@ fn turns() -> Vec<Attitude> {
         .collect()
 }
 
-/// The table of extremals that a spacecraft needs once.
+/// Construction of the table of extremals, once per spacecraft.
 #[divan::bench]
 fn table(bencher: Bencher) {
     let rates = rates();
     bencher.bench(|| RateBox::new(black_box(rates)));
 }
 
-/// One query of the table: the branch and bound over extremals alone.
+/// One query of the table: the branch and bound over extremals.
 #[divan::bench(sample_count = 171, sample_size = 1)]
 fn query(bencher: Bencher) {
-    let (table, turns) = (RateBox::new(rates()).expect("usual rates"), turns());
+    let (table, turns) = (RateBox::new(rates()).expect("ordinary rates"), turns());
     let mut next = turns.iter().cycle();
     bencher
         .with_inputs(|| next.next().copied())

@@ -5,7 +5,8 @@ use slewplan_solver::checker::verify;
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::solving::{plan_of, scenario_of};
 
-/// One flight of experiment A, seven legs: integration and tests alone, nothing is optimised.
+/// Verification of one flight of experiment A with seven legs: integration and checks, no
+/// optimization.
 #[divan::bench]
 fn experiment_a(bencher: Bencher) {
     let spec = experiment_a_spec();

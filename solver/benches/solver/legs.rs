@@ -11,7 +11,7 @@ use slewplan_tests::{experiment_c_spec, published_targets_spec};
 const PAIRS: usize = 19 * 18 / 2;
 const ALL: Shard = Shard { index: 0, of: 1 };
 
-/// One leg, flown both ways by one solve: what a leg costs when nothing is known.
+/// One leg with both directions from one solve, from a cold start.
 #[divan::bench(args = ["a", "n", "r"], sample_count = 50, sample_size = 1)]
 fn from_start(bencher: Bencher, target: &str) {
     let scenario = scenario_of(&published_targets_spec(&[target]));
@@ -20,7 +20,7 @@ fn from_start(bencher: Bencher, target: &str) {
     });
 }
 
-/// All pairs of experiment C, as items: equal legs share their solves.
+/// All pairs of experiment C, counted as items; equal legs share one solve.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn experiment_c(bencher: Bencher) {
     let mut spec = experiment_c_spec();

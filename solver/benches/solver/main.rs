@@ -1,7 +1,7 @@
-//! What the solver's work costs, part by part, on one thread: `cargo bench -p slewplan-solver`.
+//! Time of the solver's parts on one thread: `cargo bench -p slewplan-solver`.
 //!
-//! An argument keeps the benchmarks whose names contain it. All spacecraft are that of the published
-//! scheduling experiments.
+//! An argument selects the benchmarks whose names contain it. The spacecraft is always that of the
+//! published scheduling experiments.
 
 mod bound;
 mod checker;

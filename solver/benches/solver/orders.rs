@@ -1,4 +1,4 @@
-//! Tours in a fixed order: the multi-phase program, which has no search.
+//! Tours in a fixed order: the multi-phase program without a search.
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -7,14 +7,14 @@ use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::{AttitudeSpec, TargetSpec};
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
-use slewplan_solver::tour::planner::{BoundFrom, Run, fly_order};
+use slewplan_solver::tour::planner::{BoundFrom, Run, solve_order};
 use slewplan_tests::experiment_a_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Remembers legs, to set them apart from the program of the tour.
+/// A store of legs, to measure the program of the tour without them.
 #[derive(Default)]
 struct Memory(Mutex<HashMap<String, StoredLeg>>);
 
@@ -30,20 +30,20 @@ impl LegStore for Memory {
     }
 }
 
-/// What is there before a tour is flown.
+/// What is known or solved before a tour is solved.
 #[derive(Clone, Copy)]
 enum Given {
-    /// Nothing, and no leg is solved: one program from slews about the eigenaxis.
+    /// Nothing, and no leg is solved: one program from eigenaxis slews.
     ColdStart,
-    /// Nothing: legs are solved first.
+    /// Nothing; the legs are solved first.
     Nothing,
-    /// The legs.
+    /// The legs are stored.
     Legs,
 }
 
-/// Flies the targets of tours in the order in which they are listed, by one thread; the items counted
-/// are the phases.
-fn fly(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
+/// Measures the tours through the targets in the order in which they are listed, on one thread; the
+/// items counted are the phases.
+fn measure(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
     let effort = match given {
         Given::ColdStart => BoundFrom::Certificates,
         Given::Nothing | Given::Legs => BoundFrom::Legs,
@@ -54,27 +54,33 @@ fn fly(bencher: Bencher<'_, '_>, tours: &[Scenario], given: Given) {
             legs: &memory,
             ..run
         };
-        let fly = |tour: &Scenario, run| {
+        let solve = |tour: &Scenario, run| {
             let order: Vec<usize> = (0..tour.targets().len()).collect();
-            planned(fly_order(tour, &order, effort, run).expect("an order"))
+            planned(solve_order(tour, &order, effort, run).expect("an order"))
         };
-        let phases: usize = tours.iter().map(|tour| fly(tour, filling).legs.len()).sum();
+        let phases: usize = tours
+            .iter()
+            .map(|tour| solve(tour, filling).legs.len())
+            .sum();
         let run = match given {
             Given::ColdStart | Given::Nothing => run,
             Given::Legs => filling,
         };
-        bencher
-            .counter(ItemsCount::new(phases))
-            .bench_local(|| tours.iter().map(|tour| fly(tour, run)).collect::<Vec<_>>());
+        bencher.counter(ItemsCount::new(phases)).bench_local(|| {
+            tours
+                .iter()
+                .map(|tour| solve(tour, run))
+                .collect::<Vec<_>>()
+        });
     });
 }
 
-/// Phases of [`walk`].
+/// Number of phases of [`walk`].
 const WALK: usize = 100;
 
-/// One walk cut into tours of so many phases. At its targets only the z rate vanishes, and each is
-/// turned against the one before by 40 to 80 degrees about any axis: no tour falls into pieces, no leg
-/// is like another, and tours of every length have the same legs.
+/// A random walk cut into tours of so many phases. At its targets only the z rate vanishes, and
+/// each target is turned by 40 to 80 degrees about a random axis from the one before. So no tour
+/// falls into segments, no two legs are equal, and tours of every length have the same legs.
 fn walk(phases: usize) -> Vec<Scenario> {
     let mut generator = Generator::new(0);
     let mut attitude = Attitude::identity();
@@ -113,29 +119,30 @@ fn best_of_a() -> [Scenario; 1] {
 /// The best order of experiment A as one program from a cold start, with its verification.
 #[divan::bench(sample_count = 50, sample_size = 1)]
 fn experiment_a(bencher: Bencher) {
-    fly(bencher, &best_of_a(), Given::ColdStart);
+    measure(bencher, &best_of_a(), Given::ColdStart);
 }
 
-/// The same as the search flies it: legs first, then the program from two starts.
+/// The same as in the search: legs first, then the program from two initial guesses.
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn experiment_a_from_legs(bencher: Bencher) {
-    fly(bencher, &best_of_a(), Given::Nothing);
+    measure(bencher, &best_of_a(), Given::Nothing);
 }
 
 /// The same when its legs are known.
 #[divan::bench(sample_count = 20, sample_size = 1)]
 fn experiment_a_with_known_legs(bencher: Bencher) {
-    fly(bencher, &best_of_a(), Given::Legs);
+    measure(bencher, &best_of_a(), Given::Legs);
 }
 
-/// A hundred phases in tours of so many: the program's cost per phase is to stay the same.
+/// A hundred phases in tours of so many phases: the time per phase should not depend on their
+/// number.
 #[divan::bench(args = [10, 20, 50, 100], sample_count = 5, sample_size = 1)]
 fn phases(bencher: Bencher, in_a_tour: usize) {
-    fly(bencher, &walk(in_a_tour), Given::ColdStart);
+    measure(bencher, &walk(in_a_tour), Given::ColdStart);
 }
 
 /// The same with legs and two programs.
 #[divan::bench(args = [10, 20, 50, 100], sample_count = 3, sample_size = 1)]
 fn phases_from_legs(bencher: Bencher, in_a_tour: usize) {
-    fly(bencher, &walk(in_a_tour), Given::Nothing);
+    measure(bencher, &walk(in_a_tour), Given::Nothing);
 }

@@ -1,35 +1,34 @@
-//! Certified bounds: durations that no slew of a spacecraft undercuts, proved.
+//! Certified bounds: proved lower bounds on the durations of a spacecraft's slews.
 //!
-//! [`crate::bounds::kinematic`] bounds slews whose rates and accelerations stay in boxes. Here a
-//! spacecraft gets boxes that contain all that its wheels can do, and a leg gets what is known of
-//! the rates at its ends.
+//! [`crate::bounds::kinematic`] bounds slews whose rates and accelerations stay in boxes. This
+//! module computes, for a spacecraft, boxes that contain all reachable rates and accelerations and,
+//! for a leg, limits of the rates at its ends.
 //!
 //! # The boxes
 //!
-//! Without momentum `J w = -h_locked - sum a_i I_i W_i` and `J_eff w' = -A u` at every attitude: rates
-//! and accelerations are linear images of boxes of wheel speeds and torques. The greatest component
-//! along any direction is a linear program over a box, solved by taking every wheel at the limit
-//! that suits it ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), whatever the
-//! inertia and the axes. Limits of the rate's components and norm cut the rates further. So for every
-//! orthonormal frame fixed in the body there are boxes in its axes that nothing leaves. The rotation
-//! vector of a turn seen from the frame is the turn to make there. Body axes and the axes nearest to
-//! those of the wheels are tried: each is a proof, the larger bound counts.
+//! Without momentum `J w = -h_locked - sum a_i I_i W_i` and `J_eff w' = -A u` at every attitude:
+//! rates and accelerations are linear images of boxes of wheel speeds and torques. The largest
+//! component along any direction is a linear program over a box, whose solution has every wheel at
+//! one of its limits ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), for any
+//! inertia and any axes. Limits of the rate's components and norm reduce the rates further. So for
+//! every orthonormal frame fixed in the body there are boxes in its axes that no motion leaves. In
+//! these axes a turn has the components of its rotation vector in the frame. Body axes and the axes
+//! nearest to those of the wheels are tried; each gives a proved bound, and the larger one is used.
 //!
 //! # The ends
 //!
-//! A rate component that is stopped or prescribed is known at the end of a leg; one within bounds is
-//! at most as large as the larger of these (both are rounded up, [`SHARES`]); of one that is free
-//! nothing is known. Nothing else is used, so **the bound holds for the leg as part of any tour with
-//! the same conditions at its two ends**, and bounds of the legs of a tour add up. In a tour through
-//! targets with free components only its first and last legs begin or end at rest, so the ramps of
-//! these components are counted there and nowhere else.
+//! A rate component that is stopped or prescribed is known at the end of a leg; one within a range
+//! is limited by its larger end (both are rounded up, [`SHARES`]); a free one is not limited.
+//! Nothing else is used, so **the bound holds for the leg as part of any tour with the same
+//! conditions at its two ends**, and the bounds of the legs of a tour can be summed. In a tour
+//! through targets with free components only the first and last legs begin or end at rest, so the
+//! ramps of these components count in these legs only.
 //!
-//! # What is not bounded
+//! # Limitations
 //!
-//! Without limits of speed there is no box of rates, and then there is no bound. Stored momentum has
-//! boxes of its own ([`momentum`]). A turn whose
-//! quaternion has to arrive with a given sign is bounded as the rotation that it also is, which may
-//! be the shorter way round.
+//! Without limits of speed there is no box of rates and no bound. Stored momentum has boxes of its
+//! own ([`momentum`]). A turn whose quaternion has to arrive with a given sign is bounded as a
+//! rotation, which may be the shorter way round.
 
 mod momentum;
 
@@ -45,41 +44,42 @@ use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Relative accuracy of the least times: a tenth of what the ramps leave open.
+/// Relative accuracy of the least times: a tenth of the gap that the ramps leave.
 const TOLERANCE: f64 = 1e-4;
 
-/// Frames nearer to each other than this give one bound.
+/// Difference of two frames' axes below which they are treated as one.
 const SAME_AXES: f64 = 1e-6;
 
-/// Rates at the ends that are neither stopped nor free count as these shares of the spacecraft's
-/// largest rates, rounded up: so that few kinds of ends occur.
+/// End rates that are neither stopped nor free are rounded up to these shares of the spacecraft's
+/// largest rates, so that few combinations of end rates occur.
 const SHARES: [f64; 2] = [0.25, 0.5];
-/// Most kinds of ends whose boxes are kept, some 1 MB each; others are prepared again for every leg.
+/// Largest number of combinations of end rates whose boxes are cached, some 1 MB each; others are
+/// prepared again for every leg.
 const MAX_KINDS: usize = 64;
 
-/// Lower bounds on the slews of one spacecraft. What two ends of a kind have in common is prepared
-/// when it is first needed, and shared between threads.
+/// Lower bounds on the slews of one spacecraft. The boxes for a combination of end rates are
+/// prepared when they are first needed, and shared between threads.
 #[derive(Debug)]
 pub(crate) struct CertifiedBounds {
-    frames: Vec<Frame>,
-    /// With momentum, these are used instead.
+    frames: Vec<BodyFrame>,
+    /// Bounds with momentum, used in place of the frames.
     momentum: Option<MomentumBounds>,
-    prepared: Mutex<HashMap<Ends, Arc<[Option<SlewBound>]>>>,
+    prepared: Mutex<HashMap<EndKey, Arc<[Option<SlewBound>]>>>,
 }
 
-/// What no motion exceeds, seen from axes fixed in the body.
+/// Limits of all motions in axes fixed in the body.
 #[derive(Debug, Clone, Copy)]
-struct Frame {
+struct BodyFrame {
     /// Its axes as columns, in body axes.
     axes: Matrix3<f64>,
     limits: SlewLimits,
 }
 
-/// Bit patterns of what the rates do not exceed at begin and end, per body axis.
-type Ends = [[u64; 3]; 2];
+/// Bit patterns of the limits of the rates at begin and end, per body axis.
+type EndKey = [[u64; 3]; 2];
 
 impl CertifiedBounds {
-    /// The bounds of a spacecraft with its momentum.
+    /// The bounds of a spacecraft.
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
         let mut axes = vec![Matrix3::identity(), dynamics.wheel_axes()];
         if (axes[1] - axes[0]).amax() <= SAME_AXES {
@@ -91,7 +91,9 @@ impl CertifiedBounds {
         let frames = if momentum.is_some() {
             Vec::new()
         } else {
-            axes.iter().map(|axes| Frame::of(dynamics, *axes)).collect()
+            axes.iter()
+                .map(|axes| BodyFrame::of(dynamics, *axes))
+                .collect()
         };
         Self {
             frames,
@@ -100,9 +102,9 @@ impl CertifiedBounds {
         }
     }
 
-    /// A duration, s, that no slew between two waypoints undercuts, whatever happens before and
-    /// after it; `None` when nothing is proved. Conditions of the wheels are not used. The momentum,
-    /// N m s, is that of the spacecraft in the frame of the two attitudes.
+    /// Lower bound, s, on the duration of any slew between two waypoints, whatever comes before and
+    /// after it; `None` when nothing is proved. Wheel conditions are not used. The momentum, N m s,
+    /// is the total one in the frame of the two attitudes.
     pub(crate) fn leg(
         &self,
         from: &Waypoint,
@@ -110,7 +112,7 @@ impl CertifiedBounds {
         momentum: &Vector3<f64>,
     ) -> Option<f64> {
         let turn = from.attitude.turn_to(&to.attitude);
-        let ends = [most(from), most(to)];
+        let ends = [rate_limits(from), rate_limits(to)];
         if let Some(bounds) = &self.momentum {
             let held = [from, to].map(|end| end.attitude.to_body(*momentum));
             return bounds.leg(&turn, &held, &ends, TOLERANCE);
@@ -121,21 +123,22 @@ impl CertifiedBounds {
             .reduce(f64::max)
     }
 
-    /// The claim of [`Self::leg`] with all that a second proof needs, and the axes from which it is
-    /// seen; `None` where nothing is proved, and with momentum, for which there is no second proof.
+    /// The certificate of the bound [`Self::leg`] and the axes in which it is expressed; `None`
+    /// where nothing is proved, and with momentum, for which there is no verification.
     pub(crate) fn certificate(
         &self,
         from: &Waypoint,
         to: &Waypoint,
     ) -> Option<(Matrix3<f64>, Certificate)> {
         let turn = from.attitude.turn_to(&to.attitude);
-        let prepared = self.prepared_for([most(from), most(to)])?;
+        let prepared = self.prepared_for([rate_limits(from), rate_limits(to)])?;
         self.seen(&turn, &prepared)
             .map(|(axes, bound, turn)| (axes, bound.certificate(&[turn], TOLERANCE)))
             .max_by(|(_, a), (_, b)| a.duration_s.total_cmp(&b.duration_s))
     }
 
-    /// The axes of the frames that have a bound, with it and with a turn as it is seen from there.
+    /// The axes of the frames that have a bound, each with its bound and with the turn in these
+    /// axes.
     fn seen<'s>(
         &'s self,
         turn: &'s Attitude,
@@ -148,19 +151,19 @@ impl CertifiedBounds {
         })
     }
 
-    /// The bounds of all frames for ends with rates of these sizes at most, body axes.
+    /// The bounds of all frames for end rates within these limits, body axes.
     fn prepared_for(&self, ends: [Vector3<f64>; 2]) -> Option<Arc<[Option<SlewBound>]>> {
         let rates = self.frames.first()?.limits.rates_rad_s;
         Some(self.prepared(&ends.map(|end| end.zip_map(&rates, rounded_up))))
     }
 
     fn prepared(&self, ends: &[Vector3<f64>; 2]) -> Arc<[Option<SlewBound>]> {
-        let kind: Ends = ends.map(|end| end.map(f64::to_bits).into());
+        let kind: EndKey = ends.map(|end| end.map(f64::to_bits).into());
         let lock = || self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&kind) {
             return Arc::clone(known);
         }
-        // Not under the lock: two threads may prepare the same, with the same result.
+        // Computed without the lock: two threads may prepare the same, with the same result.
         let fresh: Arc<[_]> = self.frames.iter().map(|frame| frame.bound(ends)).collect();
         let mut known = lock();
         if known.len() < MAX_KINDS {
@@ -170,7 +173,7 @@ impl CertifiedBounds {
     }
 }
 
-impl Frame {
+impl BodyFrame {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>) -> Self {
         let rate = |axis: &Vector3<f64>| {
             dynamics
@@ -187,23 +190,23 @@ impl Frame {
         }
     }
 
-    /// Bounds on slews whose rates do not exceed these at begin and end, body axes.
+    /// Bounds on slews with end rates within these limits, body axes.
     fn bound(&self, ends: &[Vector3<f64>; 2]) -> Option<SlewBound> {
         let ends = EndRates {
-            begin_rad_s: self.seen(&ends[0]),
-            end_rad_s: self.seen(&ends[1]),
+            begin_rad_s: self.limits_in_axes(&ends[0]),
+            end_rad_s: self.limits_in_axes(&ends[1]),
         };
         SlewBound::new(self.limits, ends)
     }
 
-    /// What the components along the frame's axes are at most, from those along the body axes.
-    fn seen(&self, most: &Vector3<f64>) -> Vector3<f64> {
-        along(&self.axes, |axis| component(axis, most))
+    /// Limits of the components along the frame's axes, from limits along the body axes.
+    fn limits_in_axes(&self, limits: &Vector3<f64>) -> Vector3<f64> {
+        along(&self.axes, |axis| component(axis, limits))
     }
 }
 
-/// What the components of the rate do not exceed at a waypoint, rad/s; infinite where they are free.
-fn most(waypoint: &Waypoint) -> Vector3<f64> {
+/// Limits of the rate components at a waypoint, rad/s; infinite where they are free.
+fn rate_limits(waypoint: &Waypoint) -> Vector3<f64> {
     Vector3::from(waypoint.rate.map(|condition| match condition {
         RateCondition::Fixed(rate) => rate.abs(),
         RateCondition::Within(low, high) => f64::max(low.abs(), high.abs()),
@@ -211,7 +214,7 @@ fn most(waypoint: &Waypoint) -> Vector3<f64> {
     }))
 }
 
-/// A rate at an end, or what it is taken to be: never less.
+/// An end rate, rounded up to 0, to one of the [`SHARES`] of the largest rate, or to infinity.
 fn rounded_up(rate: f64, largest: f64) -> f64 {
     if rate == 0.0 {
         return 0.0;
@@ -220,20 +223,20 @@ fn rounded_up(rate: f64, largest: f64) -> f64 {
     steps.find(|step| rate <= *step).unwrap_or(f64::INFINITY)
 }
 
-/// Greatest component of the rate along a direction that its limits allow, rad/s.
+/// Largest component of the rate along a direction that the rate limits allow, rad/s.
 fn allowed_rate(dynamics: &Dynamics, direction: &Vector3<f64>) -> f64 {
     component(direction, &dynamics.max_rate).min(dynamics.max_rate_norm * direction.norm())
 }
 
-/// Greatest component along a direction of vectors whose components have these greatest sizes.
-fn component(direction: &Vector3<f64>, most: &Vector3<f64>) -> f64 {
-    let parts = direction.iter().zip(most);
-    // A component across the direction does not count, infinite or not.
-    parts.fold(0.0, |sum, (share, most)| {
+/// Largest component along a direction of vectors whose components have these largest sizes.
+fn component(direction: &Vector3<f64>, limits: &Vector3<f64>) -> f64 {
+    let parts = direction.iter().zip(limits);
+    // A component orthogonal to the direction does not contribute, even if it is infinite.
+    parts.fold(0.0, |sum, (share, limit)| {
         sum + if *share == 0.0 {
             0.0
         } else {
-            share.abs() * most
+            share.abs() * limit
         }
     })
 }

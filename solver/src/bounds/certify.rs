@@ -1,11 +1,11 @@
-//! A slow second proof of the bounds that [`crate::bounds::kinematic`] claims.
+//! Verification in interval arithmetic of the bounds of [`crate::bounds::kinematic`].
 //!
-//! [`check`] takes a [`Certificate`] and proves what it claims again, in intervals that are rounded
-//! outwards, with nothing of the fast search: another list of extremals, another way through them,
-//! another integral. It confirms, or says why not: a motion that is faster than claimed, or that no
-//! proof was found. A certificate comes from
-//! [`SlewBound::certificate`](crate::bounds::kinematic::ramps::SlewBound::certificate); whoever has a
-//! bound from elsewhere replaces the `duration_s` of one.
+//! [`verify`] proves the bound of a [`Certificate`] again, with outward rounding and without the
+//! code of the fast search: with its own list of extremals, its own enumeration, its own integral.
+//! It confirms the bound or says why not: there is a faster motion, or no proof was found. A
+//! certificate comes from
+//! [`SlewBound::certificate`](crate::bounds::kinematic::ramps::SlewBound::certificate); to verify a
+//! bound from elsewhere, replace the `duration_s` of one.
 //!
 //! ```
 //! use nalgebra::Vector3;
@@ -21,80 +21,82 @@
 //! let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
 //! let turn = Attitude::from_rotation_vector(Vector3::new(0.4, -0.9, 0.7));
 //! let mut certificate = bound.certificate(&[turn], 1e-4);
-//! assert_eq!(certify::check(&certificate), Ok(()));
+//! assert_eq!(certify::verify(&certificate), Ok(()));
 //! certificate.duration_s *= 1.001;
-//! assert!(matches!(certify::check(&certificate), Err(Rejection::Link { .. })));
+//! assert!(matches!(certify::verify(&certificate), Err(Rejection::Link { .. })));
 //! ```
 //!
 //! # What is proved
 //!
-//! 1. **Turns** ([`check_turn`]). A motion of least time exists and is one of the extremals that the
-//!    docs of [`crate::bounds::kinematic`] derive from Pontryagin's principle. Taken as given are from
-//!    there: the folded costate runs on a circle and is reflected where a component vanishes, so that
-//!    arcs between flips last equally long; it may rest on saddles only; all dwells can be moved to
-//!    the first visit of the saddle. With corners of length one, an arc longer than `pi` is no part
-//!    of a shortest motion, as the opposite corner makes its turn faster. That leaves
+//! 1. **Turns** ([`verify_turn`]). A motion of least time exists and is one of the extremals that
+//!    the docs of [`crate::bounds::kinematic`] derive from Pontryagin's principle. These facts are
+//!    taken from there: the folded costate runs on a circle and is reflected where a component
+//!    vanishes, so that arcs between flips have the same duration; it can rest on saddles only; all
+//!    dwells can be moved to the first visit of the saddle. With corners of length one, an arc
+//!    longer than `pi` is no part of a shortest motion, because the opposite corner makes its turn
+//!    faster. That leaves
 //!    * two arcs;
-//!    * arcs of one unknown duration `D <= pi` whose flips alternate between two axes, outer arcs no
-//!      longer than `D` (where one axis alone flips, arcs last longer than `pi`: the part of the
-//!      circle beyond the wall is less than half of it);
+//!    * arcs of one unknown duration `D <= pi` whose flips alternate between two axes, terminal
+//!      arcs no longer than `D` (where one axis alone flips, arcs last longer than `pi`: the part
+//!      of the circle beyond the wall is less than half of it);
 //!    * a dwell with arcs before and after it whose durations follow from the costate (`dwelling`).
 //!
-//!    All orders of axes and all octants are gone through, whether an extremal is like that or not:
-//!    each word is a motion within the box, so words too many do no harm. For each, the range of the
-//!    unknown is halved until every part is refuted: `c_0 . P c_f` is not what the target asks for,
-//!    or the outer arcs that close the word (`closing`) are negative, too long, or make the word take
-//!    the claimed time. Words of many flips are refuted together (`near_axis`).
+//!    All orders of axes and all octants are enumerated, whether they are extremals or not: each
+//!    sequence is a motion within the box, so superfluous ones do no harm. For each, the range of
+//!    the unknown is bisected until every part is refuted: `c_0 . P c_f` differs from the target's
+//!    value, or the terminal arcs that close the sequence (`terminal_arcs`) are negative, too long,
+//!    or make the sequence as long as the bound. Sequences of many flips are refuted together
+//!    (`near_axis`).
 //! 2. **The link** to the duration: `s(T)` is bounded from above (`link`).
 //!
-//! Within a part about the middle of a range of half-width `b`, interiors differ by Taylor's theorem,
-//! with the derivative at the middle in intervals and second derivatives of a product of turns of at
-//! most the square of the sum of its speeds `v`: `|f - f_m| <= |f_m'| b + v^2 b^2 / 2`, and the turn
-//! from the middle is at most `|velocity| b + v^2 b^2 / 2`.
+//! On a part of half-width `b` about its middle, the interior is enclosed by Taylor's theorem, with
+//! the derivative at the middle in intervals and, for a product of turns, a second derivative of at
+//! most the square of the sum of its speeds `v`: `|f - f_m| <= |f_m'| b + v^2 b^2 / 2`, and the
+//! turn from the middle is at most `|velocity| b + v^2 b^2 / 2`.
 //!
-//! Nearly equal rates are moved apart by raising them, by 4e-7 at most, which makes what is proved
-//! stronger; certificates leave 2e-6 of room.
+//! Nearly equal rates are separated by raising them, by 4e-7 at most, which makes the proved
+//! statement stronger; certificates leave a margin of 2e-6.
 
-mod closing;
 mod dwelling;
 mod interval;
 mod link;
 mod near_axis;
 mod prover;
 mod rates;
+mod sequence;
+mod terminal_arcs;
 #[cfg(test)]
 mod tests;
 mod turn;
-mod word;
 
-use crate::bounds::kinematic::certificate::{Certificate, ClaimedTurn};
+use crate::bounds::kinematic::certificate::{Certificate, CertifiedTurn};
 use interval::Interval;
 use nalgebra::Vector3;
 use prover::Prover;
 
-/// Why a claim was not confirmed.
+/// Why a bound was not confirmed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Rejection {
-    /// A motion within the box of rates is faster than a turn is claimed to be at least.
-    #[error("turn {turn} can be made in {time_s} s, less than is claimed")]
+    /// A motion within the box of rates is faster than the least time of a turn in the certificate.
+    #[error("turn {turn} can be made in {time_s} s, less than its least time in the certificate")]
     Faster {
-        /// The turn's place in the certificate.
+        /// Index of the turn in the certificate.
         turn: usize,
         /// Time of the motion, s.
         time_s: f64,
     },
-    /// The least times of the turns do not bound the duration as claimed.
+    /// The least times of the turns do not imply the bound on the duration.
     #[error("least times of {least_s} s in all bound no duration with s(T) = {needed_s} s")]
     Link {
         /// Sum of the turns' least times, s.
         least_s: f64,
-        /// What the duration needs it to be, s.
+        /// Sum that the bound on the duration requires, s.
         needed_s: f64,
     },
     /// Neither a proof nor a counterexample was found.
     #[error("not proved: {reason}")]
     NotProved {
-        /// What stood in the way.
+        /// Why the proof failed.
         reason: &'static str,
     },
     /// A number is not finite, or a limit not positive.
@@ -111,12 +113,12 @@ impl Rejection {
     }
 }
 
-/// Proves a certificate again.
+/// Verifies a certificate.
 ///
 /// # Errors
 ///
-/// The first [`Rejection`] that was met; the link is looked at first.
-pub fn check(certificate: &Certificate) -> Result<(), Rejection> {
+/// The first [`Rejection`]; the link is checked before the turns.
+pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
     let Certificate {
         limits,
         ends,
@@ -159,27 +161,28 @@ pub fn check(certificate: &Certificate) -> Result<(), Rejection> {
     Ok(())
 }
 
-/// Proves that no motion with `|w_i| <= box_i`, rad/s, makes a turn in less than the claimed time.
+/// Verifies that no motion with `|w_i| <= box_i`, rad/s, makes a turn in less than its certified
+/// time.
 ///
 /// # Errors
 ///
-/// A [`Rejection`] that says why it is not confirmed.
-pub fn check_turn(box_rad_s: &Vector3<f64>, claimed: &ClaimedTurn) -> Result<(), Rejection> {
+/// Why the time is not confirmed.
+pub fn verify_turn(box_rad_s: &Vector3<f64>, certified: &CertifiedTurn) -> Result<(), Rejection> {
     let Some(mut prover) = Prover::new(box_rad_s) else {
         return Err(Rejection::Malformed {
             what: "the box must be positive and finite",
         });
     };
-    if !claimed.least_s.is_finite() {
+    if !certified.least_s.is_finite() {
         return Err(Rejection::Malformed {
             what: "times must be finite",
         });
     }
-    prover.prove(&claimed.turn, claimed.least_s)
+    prover.prove(&certified.turn, certified.least_s)
 }
 
 impl Rejection {
-    /// The same, of the turn at a place of a certificate.
+    /// The same for the turn with an index.
     fn of_turn(self, turn: usize) -> Self {
         match self {
             Self::Faster { time_s, .. } => Self::Faster { turn, time_s },

@@ -1,7 +1,7 @@
-//! The equations of motion, written down a second time on purpose.
+//! The equations of motion, implemented a second time on purpose.
 //!
-//! Nothing here is shared with the code that plans, so that a mistake there cannot hide here.
-//! With the symbols of [`crate::model::spacecraft`] and the conventions of [`crate::model::attitude`]:
+//! Nothing is shared with the planning code, so that an error there does not occur here too. With
+//! the symbols of [`crate::model::spacecraft`] and the conventions of [`crate::model::attitude`]:
 //!
 //! ```text
 //! H_b      = J w + sum a_i I_i W_i                  (all wheels)
@@ -18,10 +18,10 @@ use crate::model::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
 
 /// Scalar-last quaternion components, sign included.
-pub(super) type Quaternion = [f64; 4];
+pub(super) type QuaternionComponents = [f64; 4];
 
 /// Hamilton's product `a (x) b`.
-pub(super) fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
+pub(super) fn product(a: &QuaternionComponents, b: &QuaternionComponents) -> QuaternionComponents {
     let [ax, ay, az, aw] = *a;
     let [bx, by, bz, bw] = *b;
     [
@@ -33,27 +33,27 @@ pub(super) fn product(a: &Quaternion, b: &Quaternion) -> Quaternion {
 }
 
 /// The inverse of a unit quaternion.
-pub(super) fn conjugate(q: &Quaternion) -> Quaternion {
+pub(super) fn conjugate(q: &QuaternionComponents) -> QuaternionComponents {
     [-q[0], -q[1], -q[2], q[3]]
 }
 
 /// A body vector seen in the reference frame: `q v q*`.
-pub(super) fn to_reference(q: &Quaternion, v: &Vector3<f64>) -> Vector3<f64> {
+pub(super) fn to_reference(q: &QuaternionComponents, v: &Vector3<f64>) -> Vector3<f64> {
     let p = product(&product(q, &[v.x, v.y, v.z, 0.0]), &conjugate(q));
     Vector3::new(p[0], p[1], p[2])
 }
 
 /// Length of a quaternion.
-pub(super) fn norm(q: &Quaternion) -> f64 {
+pub(super) fn norm(q: &QuaternionComponents) -> f64 {
     q.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// The state at one moment: quaternion, body rate (rad/s) and wheel speeds relative to the body
+/// The state at one time: quaternion, body rate (rad/s) and wheel speeds relative to the body
 /// (rad/s).
 #[derive(Debug, Clone)]
 pub(super) struct Snapshot {
     pub(super) time_s: f64,
-    pub(super) quaternion: Quaternion,
+    pub(super) quaternion: QuaternionComponents,
     pub(super) rate: Vector3<f64>,
     pub(super) wheel_speed: Vec<f64>,
 }
@@ -78,14 +78,14 @@ impl Snapshot {
     }
 }
 
-/// A wheel as the dynamics see it.
+/// Properties of a wheel in the equations of motion.
 #[derive(Debug, Clone)]
-pub(super) struct Rotor {
+pub(super) struct CheckedWheel {
     pub(super) axis: Vector3<f64>,
     pub(super) inertia: f64,
-    /// A wheel that is not driven keeps its speed relative to the body, or follows its law.
+    /// A wheel that is not driven keeps its speed relative to the body, or follows its speed law.
     pub(super) driven: bool,
-    /// The return rate, 1/s, and the speed, rad/s, of a law that the wheel follows.
+    /// Rate, 1/s, and speed, rad/s, of the wheel's speed law.
     pub(super) law: Option<(f64, f64)>,
 }
 
@@ -94,16 +94,16 @@ pub(super) struct Rotor {
 pub(super) struct Body {
     pub(super) inertia: Matrix3<f64>,
     pub(super) effective_inverse: Matrix3<f64>,
-    pub(super) rotors: Vec<Rotor>,
+    pub(super) rotors: Vec<CheckedWheel>,
 }
 
 impl Body {
     /// The body of a whole-spacecraft inertia (kg m²) and its wheels; a sentence when `J_eff` has no
     /// inverse.
     pub(super) fn new(inertia: &Matrix3<f64>, wheels: &[Wheel]) -> Result<Self, String> {
-        let rotors: Vec<Rotor> = wheels
+        let rotors: Vec<CheckedWheel> = wheels
             .iter()
-            .map(|wheel| Rotor {
+            .map(|wheel| CheckedWheel {
                 axis: wheel.axis,
                 inertia: wheel.inertia,
                 driven: wheel.enabled,
@@ -135,7 +135,7 @@ impl Body {
         momentum
     }
 
-    /// The sum of the parts of `H_b` by size, N m s: what its rounding is relative to.
+    /// Sum of the norms of the parts of `H_b`, N m s: the scale of its rounding error.
     pub(super) fn momentum_scale(&self, rate: &Vector3<f64>, wheel_speed: &[f64]) -> f64 {
         let wheels = self.rotors.iter().zip(wheel_speed);
         wheels.fold((self.inertia * rate).norm(), |sum, (rotor, speed)| {
@@ -143,7 +143,7 @@ impl Body {
         })
     }
 
-    /// What the motors do to the body, N m: `-sum a_i u_i`.
+    /// Reaction of the motors on the body, N m: `-sum a_i u_i`.
     pub(super) fn motor_torque(&self, torque: &[f64]) -> Vector3<f64> {
         let mut sum = Vector3::zeros();
         for (rotor, u) in self.rotors.iter().zip(torque) {
@@ -170,7 +170,8 @@ impl Body {
     pub(super) fn wheel_derivative(
         &self,
         wheel: usize,
-        (torque, speed): (f64, f64),
+        torque: f64,
+        speed: f64,
         rate_derivative: &Vector3<f64>,
     ) -> f64 {
         let rotor = &self.rotors[wheel];
@@ -182,15 +183,18 @@ impl Body {
     }
 }
 
-impl Rotor {
-    /// `W'`, rad/s², at a speed (rad/s), where a law says so.
+impl CheckedWheel {
+    /// `W'`, rad/s², at a speed (rad/s), of a wheel with a speed law.
     fn law_acceleration(&self, speed: f64) -> Option<f64> {
         self.law.map(|(rate, held)| -rate * (speed - held))
     }
 }
 
 /// `q'`, 1/s.
-pub(super) fn quaternion_derivative(q: &Quaternion, rate: &Vector3<f64>) -> Quaternion {
+pub(super) fn quaternion_derivative(
+    q: &QuaternionComponents,
+    rate: &Vector3<f64>,
+) -> QuaternionComponents {
     product(q, &[rate.x, rate.y, rate.z, 0.0]).map(|c| 0.5 * c)
 }
 
@@ -199,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_number_that_is_none_is_enough() {
+    fn a_state_with_one_number_that_is_not_finite_is_not_finite() {
         let whole = Snapshot {
             time_s: 0.0,
             quaternion: [0.0, 0.0, 0.0, 1.0],

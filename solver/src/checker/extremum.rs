@@ -1,13 +1,13 @@
-//! Points of a step at which a smooth quantity can be largest or smallest.
+//! Points of a step at which a smooth quantity can have its maximum or minimum.
 
-/// Iterations of the bracketed search; each at least keeps the bracket, most gain digits.
+/// Greatest number of iterations of the bracketed search.
 const MAX_ITERATIONS: usize = 60;
 
-/// Width of the bracket, relative to the grid interval, at which the search ends. The value at
-/// an extremum is then off by its square.
+/// Width of the bracket, relative to the grid interval, at which the search ends. The error of the
+/// value at an extremum is of the order of its square.
 const WIDTH: f64 = 1e-9;
 
-/// Shows every grid point and every extremum between grid points to `visit`, in order.
+/// Calls `visit` with every grid point and every extremum between grid points, in order.
 pub(super) fn critical_points(
     grid: &[f64],
     slope: impl Fn(f64) -> f64,
@@ -38,7 +38,7 @@ pub(super) fn root(
             break;
         }
         let inside = (a * value_b - b * value_a) / (value_b - value_a);
-        // Rounding, or slopes so small that their products vanish.
+        // Outside of the bracket by rounding, or because products of tiny values underflow.
         let next = if inside > a.min(b) && inside < a.max(b) {
             inside
         } else {
@@ -52,7 +52,7 @@ pub(super) fn root(
             value_a *= 0.5;
         }
         (b, value_b) = (next, value);
-        // The Illinois rule converges from one side; a tiny move is the end too.
+        // The bracket may shrink from one side only: a tiny change ends the search too.
         if (b - last).abs() <= enough {
             break;
         }
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_zeros_as_closely_in_long_and_short_intervals_and_soon() {
+    fn finds_zeros_to_the_same_relative_width_in_under_thirty_evaluations() {
         for length in [1e-6, 1.0, 1e6] {
             for share in [0.01, 0.37, 0.5, 0.999] {
                 let count = Cell::new(0);
@@ -99,8 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn stays_in_the_bracket_where_values_cannot_be_told_apart() {
-        // Subnormal values, and one of which only the sign is left.
+    fn stays_in_the_bracket_for_subnormal_values_and_for_a_step_function() {
         for scale in [1e-310, 1e-200] {
             let function = |s: f64| scale * (s - 0.3);
             let looked = |s: f64| {

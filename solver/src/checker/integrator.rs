@@ -1,9 +1,9 @@
-//! Adaptive integration over all control intervals, restarted at each of them.
+//! Adaptive integration over all control intervals, with a new step at the beginning of each.
 //!
 //! A step is a [Taylor expansion](super::series). Its length follows from the decay of the
-//! coefficients, and it is accepted only when the polynomials satisfy the equations of motion at
-//! its end, as evaluated by the plain [dynamics](super::dynamics): the recurrences that make the
-//! coefficients are thereby tested in every step.
+//! coefficients. It is accepted only when the polynomials satisfy the equations of motion at its end,
+//! evaluated directly by the [dynamics](super::dynamics): this tests the recurrences of the
+//! coefficients in every step.
 
 use super::NOT_COMPUTED;
 use super::dynamics::{Body, Snapshot, norm, to_reference};
@@ -12,25 +12,25 @@ use super::series::Expansion;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// Neglected terms relative to leading ones, per step. A few hundred steps then add up to less
-/// than 1e-12 rad, a hundredth of what the verification needs at most.
+/// Neglected terms relative to leading ones, per step. The errors of some hundred steps then add up to
+/// less than 1e-12 rad, far below the tolerances of the verification.
 pub(super) const STEP_TOLERANCE: f64 = 1e-15;
 
-/// Largest relative defect of an accepted step: well above rounding, and far below the error of
-/// a wrong recurrence or an underestimated tail.
+/// Largest relative defect of an accepted step: well above rounding, and far below the effect of a
+/// wrong recurrence or an underestimated remainder.
 const DEFECT_TOLERANCE: f64 = 1e-12;
 
-/// Steps, rejected ones included, beyond one per control interval. A day of slewing at
-/// 0.04 rad/s takes about a thousand, so that only absurd torques come here.
+/// Greatest number of steps, including rejected ones, beyond one per control interval. A day of slewing
+/// at 0.04 rad/s takes about a thousand, so that only absurd torques reach the limit.
 const MAX_EXTRA_STEPS: usize = 200_000;
 
 /// Points per full-length step at which slopes are compared. A full step spans about three
 /// radians of the fastest oscillation, so that two extrema cannot hide between two points.
 const GRID: f64 = 16.0;
 
-/// Torques from one moment to another, s.
+/// Torques from one time to another, s.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Interval<'a> {
+pub(super) struct TorqueSpan<'a> {
     pub(super) begin_s: f64,
     pub(super) end_s: f64,
     /// At the beginning, N m.
@@ -39,7 +39,7 @@ pub(super) struct Interval<'a> {
     pub(super) slope: &'a [f64],
 }
 
-impl Interval<'_> {
+impl TorqueSpan<'_> {
     /// The torques at a time, N m.
     pub(super) fn torque_at(&self, time_s: f64) -> Cow<'_, [f64]> {
         if self.slope.is_empty() {
@@ -53,40 +53,40 @@ impl Interval<'_> {
 
 /// An accepted step.
 #[derive(Debug)]
-pub(super) struct Step<'a> {
-    /// The motion in the time since the begin of the step.
+pub(super) struct IntegrationStep<'a> {
+    /// The motion as a function of the time since the beginning of the step.
     pub(super) motion: &'a Expansion,
-    /// Absolute begin, s.
+    /// Absolute time of the beginning, s.
     pub(super) begin_s: f64,
-    /// Absolute end, s.
+    /// Absolute time of the end, s.
     pub(super) end_s: f64,
-    /// Times since the begin at which to look, s, both ends included.
+    /// Times since the beginning at which quantities are evaluated, s, both ends included.
     pub(super) grid: &'a [f64],
     /// The torques of the interval to which the step belongs.
-    pub(super) interval: &'a Interval<'a>,
+    pub(super) interval: &'a TorqueSpan<'a>,
 }
 
-/// What is known after the flight.
+/// Statistics of a complete integration.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Propagation {
+pub(super) struct Integration {
     /// Accepted steps.
     pub(super) steps: usize,
     /// Largest change of the total momentum in the reference frame, relative to its parts.
     pub(super) momentum_drift: f64,
 }
 
-/// Integrates from a state over the intervals and shows every accepted step to `observe`.
+/// Integrates from a state over the intervals and calls `observe` with every accepted step.
 ///
 /// # Errors
 ///
 /// A sentence, when the step budget is used up or a number is no longer finite.
-pub(super) fn fly(
+pub(super) fn integrate(
     body: &Body,
     start: Snapshot,
-    intervals: &[Interval<'_>],
+    intervals: &[TorqueSpan<'_>],
     tolerance: f64,
-    mut observe: impl FnMut(&Step<'_>),
-) -> Result<Propagation, String> {
+    mut observe: impl FnMut(&IntegrationStep<'_>),
+) -> Result<Integration, String> {
     let mut state = start;
     let mut budget = MAX_EXTRA_STEPS;
     let mut ledger = Ledger::open(body, &state);
@@ -96,9 +96,9 @@ pub(super) fn fly(
         state.time_s = interval.begin_s;
         while state.time_s < interval.end_s {
             let torque = interval.torque_at(state.time_s);
-            let motion = Expansion::about(body, &state, (&torque, interval.slope));
+            let motion = Expansion::about(body, &state, &torque, interval.slope);
             let full = motion.step_length(tolerance);
-            let length = accept(body, &motion, (full, interval, state.time_s), &mut budget)?;
+            let length = accept(body, &motion, full, interval, state.time_s, &mut budget)?;
             let remaining = interval.end_s - state.time_s;
             let end_s = if length < remaining {
                 state.time_s + length
@@ -106,7 +106,7 @@ pub(super) fn fly(
                 interval.end_s
             };
             fill_grid(&mut grid, length, full);
-            observe(&Step {
+            observe(&IntegrationStep {
                 motion: &motion,
                 begin_s: state.time_s,
                 end_s,
@@ -120,11 +120,14 @@ pub(super) fn fly(
     Ok(ledger.close())
 }
 
-/// The length of the step that the defect allows, s.
+/// The length, s, of the step that begins at `now`, s: at most `full`, and halved until the defect is
+/// within its tolerance.
 fn accept(
     body: &Body,
     motion: &Expansion,
-    (full, interval, now): (f64, &Interval<'_>, f64),
+    full: f64,
+    interval: &TorqueSpan<'_>,
+    now: f64,
     budget: &mut usize,
 ) -> Result<f64, String> {
     let mut length = full.min(interval.end_s - now);
@@ -149,7 +152,8 @@ fn accept(
     }
 }
 
-/// Equal parts of a step, the finer the longer it is relative to what the series allows.
+/// Fills the grid with equal parts of a step; their number is in proportion to its length relative to
+/// the `full` one.
 fn fill_grid(grid: &mut Vec<f64>, length: f64, full: f64) {
     let wanted = (GRID * length / full).ceil().clamp(2.0, GRID);
     grid.clear();
@@ -168,7 +172,7 @@ fn normalised(mut state: Snapshot, time_s: f64) -> Snapshot {
     state
 }
 
-/// Book-keeping of the conserved momentum.
+/// Change of the conserved momentum along the integration.
 struct Ledger {
     initial: Vector3<f64>,
     scale: f64,
@@ -197,14 +201,14 @@ impl Ledger {
         self.steps += 1;
     }
 
-    fn close(self) -> Propagation {
-        // Numbers near the largest overflow in between; what cannot be told is no success.
+    fn close(self) -> Integration {
+        // Very large numbers overflow: a drift that cannot be computed must not pass.
         let momentum_drift = match self.drift / self.scale {
             _ if self.drift == 0.0 => 0.0,
             ratio if ratio.is_finite() => ratio,
             _ => NOT_COMPUTED,
         };
-        Propagation {
+        Integration {
             steps: self.steps,
             momentum_drift,
         }

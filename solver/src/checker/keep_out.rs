@@ -1,19 +1,19 @@
-//! Boresights in keep-out cones, searched along the whole flight.
+//! Boresights inside keep-out cones, along the whole flight.
 
-use super::dynamics::{Quaternion, to_reference};
+use super::dynamics::{QuaternionComponents, to_reference};
 use super::extremum::{critical_points, root};
-use super::integrator::Step;
+use super::integrator::IntegrationStep;
 use super::number_format::figure;
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::KeepOut;
 
-/// Depth, rad, below which touching a cone is no violation: what an attitude may be off by.
+/// Depth, rad, up to which a boresight inside a cone is no violation: the attitude tolerance.
 const TOUCH: f64 = super::ATTITUDE_TOLERANCE;
 
-/// Time spans that a message lists.
+/// Greatest number of time spans that a message lists.
 const MAX_SPANS: usize = 5;
 
-/// A stretch of time during which a boresight is inside a cone.
+/// A span of time during which a boresight is inside a cone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intrusion {
     /// Index of the cone in the scenario.
@@ -26,9 +26,9 @@ pub struct Intrusion {
     pub depth_rad: f64,
 }
 
-/// Watches one cone.
+/// Observer of one cone.
 #[derive(Debug)]
-pub(super) struct Watch<'a> {
+pub(super) struct ConeObserver<'a> {
     index: usize,
     cone: &'a KeepOut,
     /// Smallest angle between boresight and cone so far, rad.
@@ -38,10 +38,10 @@ pub(super) struct Watch<'a> {
     pub(super) intrusions: Vec<Intrusion>,
 }
 
-impl<'a> Watch<'a> {
-    /// Begins with the attitude at time zero.
-    pub(super) fn new(index: usize, cone: &'a KeepOut, start: &Quaternion) -> Self {
-        let mut watch = Self {
+impl<'a> ConeObserver<'a> {
+    /// An observer that has seen the attitude at time zero.
+    pub(super) fn new(index: usize, cone: &'a KeepOut, start: &QuaternionComponents) -> Self {
+        let mut observer = Self {
             index,
             cone,
             clearance: f64::INFINITY,
@@ -49,12 +49,12 @@ impl<'a> Watch<'a> {
             last_s: 0.0,
             intrusions: Vec::new(),
         };
-        let clearance = watch.clearance_at(start);
-        watch.note(clearance, 0.0, 0.0);
-        watch
+        let clearance = observer.clearance_at(start);
+        observer.note(clearance, 0.0, 0.0);
+        observer
     }
 
-    pub(super) fn observe(&mut self, step: &Step<'_>) {
+    pub(super) fn observe(&mut self, step: &IntegrationStep<'_>) {
         let cone = self.cone;
         // Derivative of the cosine of the angle between boresight and the cone's axis.
         let slope = |s: f64| {
@@ -75,7 +75,7 @@ impl<'a> Watch<'a> {
         });
     }
 
-    /// Takes note of the clearance at a time and of when the surface was crossed before it.
+    /// Records the clearance at a time, and the time at which the surface was crossed before it.
     fn note(&mut self, clearance: f64, time_s: f64, crossing_s: f64) {
         self.clearance = self.clearance.min(clearance);
         self.last_s = time_s;
@@ -101,7 +101,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Ends the watch; a warning when the cone was entered.
+    /// Ends the observation; a warning when the boresight was inside the cone.
     pub(super) fn finish(&mut self) -> Option<Problem> {
         self.leave(self.last_s);
         if self.intrusions.is_empty() {
@@ -130,7 +130,7 @@ impl<'a> Watch<'a> {
         ))
     }
 
-    fn clearance_at(&self, q: &Quaternion) -> f64 {
+    fn clearance_at(&self, q: &QuaternionComponents) -> f64 {
         let boresight = to_reference(q, &self.cone.axis);
         let sine = boresight.cross(&self.cone.direction).norm();
         sine.atan2(boresight.dot(&self.cone.direction)) - self.cone.half_angle

@@ -1,29 +1,29 @@
-//! One leg flown on its own: from any state, not from the start of a scenario.
+//! Verification of one leg, from any state instead of the start of a scenario.
 
-use super::dynamics::{Body, Quaternion, Snapshot, conjugate, product};
-use super::integrator::{STEP_TOLERANCE, fly};
-use super::limits::{self, Limits};
+use super::dynamics::{Body, QuaternionComponents, Snapshot, conjugate, product};
+use super::integrator::{STEP_TOLERANCE, integrate};
+use super::limits::{self, LimitObserver};
 use super::number_format::figure;
 use super::{ATTITUDE_TOLERANCE, RATE_TOLERANCE, timeline};
 use crate::model::plan::{Flight, State};
 use crate::model::scenario::Scenario;
 
-/// Where a leg is to end.
+/// The required end of a leg.
 #[derive(Debug, Clone)]
-pub(crate) struct Arrival {
-    /// Attitude as components; the sign is that with which the motion arrives.
-    pub(crate) quaternion: Quaternion,
+pub(crate) struct LegEnd {
+    /// Attitude as quaternion components, with the sign with which the motion arrives.
+    pub(crate) quaternion: QuaternionComponents,
     /// Body rate components that are required, rad/s.
     pub(crate) rate: [Option<f64>; 3],
 }
 
-/// What is wrong with a leg that begins in a state and flies the controls of a flight; empty when
-/// it arrives within the tolerances and keeps all limits of the scenario on the way.
+/// Faults of a leg that begins in a state and has the controls of a flight: empty when it arrives
+/// within the tolerances and keeps all limits of the scenario.
 pub(crate) fn leg_faults(
     scenario: &Scenario,
     begin: &State,
     flight: &Flight,
-    arrival: &Arrival,
+    arrival: &LegEnd,
 ) -> Vec<String> {
     let spacecraft = scenario.spacecraft();
     let intervals = match timeline::intervals(flight, spacecraft.wheels()) {
@@ -40,14 +40,14 @@ pub(crate) fn leg_faults(
         rate: begin.body_rate_rad_s,
         wheel_speed: begin.wheel_speed_rad_s.clone(),
     };
-    let mut limits = Limits::new(scenario);
+    let mut limits = LimitObserver::new(scenario);
     let mut end = start.clone();
-    let flown = fly(&body, start, &intervals, STEP_TOLERANCE, |step| {
+    let integration = integrate(&body, start, &intervals, STEP_TOLERANCE, |step| {
         limits.observe(step);
         end = step.motion.state(step.end_s - step.begin_s);
     });
     let mut faults = limits::torque(scenario, flight).1;
-    if let Err(sentence) = flown {
+    if let Err(sentence) = integration {
         faults.push(sentence);
         return faults;
     }
@@ -56,7 +56,7 @@ pub(crate) fn leg_faults(
     faults
 }
 
-fn misses(end: &Snapshot, arrival: &Arrival) -> Vec<String> {
+fn misses(end: &Snapshot, arrival: &LegEnd) -> Vec<String> {
     let mut faults = Vec::new();
     let between = product(&conjugate(&arrival.quaternion), &end.quaternion);
     let vector = between[..3].iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -97,7 +97,7 @@ mod tests {
                 wheel_torque_nm: vec![0.0; 3],
             }],
         };
-        let arrival = Arrival {
+        let arrival = LegEnd {
             quaternion: scenario.start().attitude.xyzw(),
             rate: [None; 3],
         };

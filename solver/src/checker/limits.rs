@@ -1,15 +1,15 @@
-//! Limits of torque, wheel speed and body rate, at every moment of the flight.
+//! Limits of torque, wheel speed and body rate along the whole flight.
 
 use super::extremum::critical_points;
-use super::integrator::Step;
+use super::integrator::IntegrationStep;
 use super::number_format::figure;
 use super::{LIMIT_TOLERANCE, NOT_COMPUTED};
 use crate::model::plan::Flight;
 use crate::model::scenario::Scenario;
 use crate::model::spacecraft::Spacecraft;
 
-/// Wheel speeds this small, relative to the wheel's limit or, without one, to the fastest wheel,
-/// have no sign: a wheel at rest would otherwise cross zero by rounding.
+/// Wheel speeds up to this share of the wheel's limit or, without one, of the fastest wheel's speed
+/// have no sign: otherwise a wheel at rest would cross zero by rounding.
 const ZERO_SPEED: f64 = 1e-6;
 
 /// The closest approach to a limit.
@@ -40,12 +40,12 @@ impl Peak {
     }
 }
 
-/// The excess over 1, or 0; finite even for limits that are almost nothing.
+/// The excess of a usage over 1, or 0; finite for any limit.
 pub(super) fn excess(usage: f64) -> f64 {
     (usage - 1.0).clamp(0.0, NOT_COMPUTED)
 }
 
-/// What is left of a hardware limit of which a plan may use the share `authority`.
+/// The margin to a hardware limit, for the usage of the share `authority` of it that a plan may use.
 pub(super) fn margin(usage: f64, authority: f64) -> f64 {
     (1.0 - usage * authority).max(-NOT_COMPUTED)
 }
@@ -76,18 +76,18 @@ pub(super) fn torque(scenario: &Scenario, flight: &Flight) -> (f64, Vec<String>)
     (worst, failures)
 }
 
-/// Watches wheel speeds and body rates along the flight.
+/// Observer of wheel speeds and body rates.
 #[derive(Debug)]
-pub(super) struct Limits<'a> {
+pub(super) struct LimitObserver<'a> {
     spacecraft: &'a Spacecraft,
     momentum_authority: f64,
     wheels: Vec<Peak>,
     axes: [Peak; 3],
     norm: Peak,
-    runs: Vec<Runs>,
+    runs: Vec<SignedRuns>,
 }
 
-impl<'a> Limits<'a> {
+impl<'a> LimitObserver<'a> {
     pub(super) fn new(scenario: &'a Scenario) -> Self {
         let spacecraft = scenario.spacecraft();
         let count = spacecraft.wheels().len();
@@ -97,16 +97,16 @@ impl<'a> Limits<'a> {
             wheels: vec![Peak::default(); count],
             axes: [Peak::default(); 3],
             norm: Peak::default(),
-            runs: vec![Runs::default(); count],
+            runs: vec![SignedRuns::default(); count],
         }
     }
 
-    pub(super) fn observe(&mut self, step: &Step<'_>) {
+    pub(super) fn observe(&mut self, step: &IntegrationStep<'_>) {
         self.observe_wheels(step);
         self.observe_rates(step);
     }
 
-    fn observe_wheels(&mut self, step: &Step<'_>) {
+    fn observe_wheels(&mut self, step: &IntegrationStep<'_>) {
         for (index, wheel) in self.spacecraft.enabled_wheels() {
             let allowed = wheel.max_speed * self.momentum_authority;
             let (peak, runs) = (&mut self.wheels[index], &mut self.runs[index]);
@@ -119,7 +119,7 @@ impl<'a> Limits<'a> {
         }
     }
 
-    fn observe_rates(&mut self, step: &Step<'_>) {
+    fn observe_rates(&mut self, step: &IntegrationStep<'_>) {
         let limits = self.spacecraft.max_rate();
         for (axis, peak) in self.axes.iter_mut().enumerate() {
             if limits[axis].is_finite() {
@@ -186,7 +186,7 @@ impl<'a> Limits<'a> {
 
     /// How often each wheel's speed changes its sign.
     pub(super) fn zero_crossings(&self) -> Vec<u32> {
-        let fastest = self.runs.iter().map(Runs::peak).fold(0.0, f64::max);
+        let fastest = self.runs.iter().map(SignedRuns::peak).fold(0.0, f64::max);
         self.runs
             .iter()
             .zip(self.spacecraft.wheels())
@@ -198,11 +198,11 @@ impl<'a> Limits<'a> {
     }
 }
 
-/// The signed peak of every stretch of one sign.
+/// The signed peaks of all runs of values with the same sign.
 #[derive(Debug, Clone, Default)]
-struct Runs(Vec<f64>);
+struct SignedRuns(Vec<f64>);
 
-impl Runs {
+impl SignedRuns {
     fn push(&mut self, value: f64) {
         match self.0.last_mut() {
             _ if value == 0.0 => {}
@@ -234,11 +234,11 @@ impl Runs {
 
 #[cfg(test)]
 mod tests {
-    use super::Runs;
+    use super::SignedRuns;
 
     #[test]
-    fn crossings_ignore_rounding_and_the_start_at_zero() {
-        let mut runs = Runs::default();
+    fn zero_crossings_by_rounding_and_a_start_at_zero_do_not_count() {
+        let mut runs = SignedRuns::default();
         for value in [0.0, 1.0, 3.0, -1e-12, 2.0, -2.0, 1e-13, -1.0, 0.0, 4.0] {
             runs.push(value);
         }

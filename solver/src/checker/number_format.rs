@@ -1,6 +1,6 @@
-//! Numbers in sentences.
+//! Format of numbers in messages.
 
-/// A number with six significant digits, in plain notation where that reads well.
+/// A number with six significant digits, or in scientific notation below 1e-4 and from 1e9 on.
 pub(super) fn figure(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude == 0.0 {
@@ -9,7 +9,7 @@ pub(super) fn figure(value: f64) -> String {
     if !(1e-4..1e9).contains(&magnitude) {
         return format!("{value:.3e}");
     }
-    // One of 0 to 9 by the range above.
+    // From 0 to 9, by the range above.
     let mut decimals = 5_usize;
     let mut bound = 10.0;
     while magnitude >= bound && decimals > 0 {

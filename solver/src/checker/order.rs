@@ -3,8 +3,8 @@
 use crate::model::plan::Flight;
 use crate::model::scenario::Scenario;
 
-/// Sentences about visits at the wrong place in the order. Targets that are not visited, or more
-/// than once, are somebody else's concern: their first visit counts.
+/// Sentences about visits at the wrong place in the order. Of several visits of a target the first
+/// counts; missing and repeated visits are reported in [`super::visits`].
 pub(super) fn misplaced(scenario: &Scenario, flight: &Flight) -> Vec<String> {
     let rules = scenario.order_rules();
     let targets = scenario.targets();

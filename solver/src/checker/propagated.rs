@@ -1,15 +1,15 @@
-//! A flight as a function of time, for whoever wants states between those of a plan.
+//! The motion of a flight as a function of time.
 
 use super::dynamics::{Body, Snapshot};
-use super::integrator::{STEP_TOLERANCE, fly};
+use super::integrator::{STEP_TOLERANCE, integrate};
 use super::series::Expansion;
 use super::{state, timeline};
 use crate::model::plan::{Flight, State};
 use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
 
-/// The integrated motion of a flight: the steps of the verification, kept as the polynomials that
-/// they are, so that a state between two steps is as accurate as one at a step.
+/// The integrated motion of a flight: the polynomials of the verification's steps, so that states
+/// between two steps are as accurate as those at steps.
 #[derive(Debug)]
 pub struct PropagatedMotion {
     steps: Vec<KeptStep>,
@@ -23,12 +23,12 @@ struct KeptStep {
 }
 
 impl PropagatedMotion {
-    /// Integrates a flight from the scenario's start. Limits and targets are not looked at.
+    /// Integrates a flight from the scenario's start, without testing limits and targets.
     ///
     /// # Errors
     ///
-    /// Sentences about what keeps the flight from being flown: controls that do not fit the wheels
-    /// or leave gaps, numbers that are not finite, a motion too fast to follow.
+    /// Sentences about why the flight cannot be propagated: controls that do not fit the wheels or
+    /// leave gaps, numbers that are not finite, a motion too fast for the integration.
     pub fn of(scenario: &Scenario, flight: &Flight) -> Result<Self, Vec<String>> {
         let spacecraft = scenario.spacecraft();
         let intervals = timeline::intervals(flight, spacecraft.wheels())?;
@@ -36,7 +36,7 @@ impl PropagatedMotion {
         let body = body.map_err(|sentence| vec![sentence])?;
         let start = Snapshot::at_start(scenario);
         let mut steps = Vec::new();
-        fly(&body, start, &intervals, STEP_TOLERANCE, |step| {
+        integrate(&body, start, &intervals, STEP_TOLERANCE, |step| {
             steps.push(KeptStep {
                 begin_s: step.begin_s,
                 end_s: step.end_s,
@@ -51,8 +51,8 @@ impl PropagatedMotion {
     }
 
     /// The state at a time, s; before the start that of the start, after the end that of the end.
-    /// The sign of the quaternion is continuous from the start's. `None` when it is no attitude,
-    /// which no flight ends in that [`PropagatedMotion::of`] accepts.
+    /// The sign of the quaternion is continuous from the start's. `None` when the quaternion is not
+    /// finite, which no flight that [`PropagatedMotion::of`] accepts leads to.
     #[must_use]
     pub fn state(&self, time_s: f64) -> Option<State> {
         let (step, since) = self.step_at(time_s)?;
@@ -63,8 +63,8 @@ impl PropagatedMotion {
         state(&snapshot)
     }
 
-    /// The angular acceleration in body axes, rad/s², at a time, s: where the torques switch, the
-    /// one from then on.
+    /// The angular acceleration in body axes, rad/s², at a time, s; where the torques switch, the one
+    /// after the switch.
     #[must_use]
     pub fn acceleration(&self, time_s: f64) -> Option<Vector3<f64>> {
         let (step, since) = self.step_at(time_s)?;

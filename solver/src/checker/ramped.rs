@@ -1,35 +1,35 @@
-//! Flights whose torques are linear in time, with wheels that follow laws of their own.
+//! Integration of torques that are linear in time, with wheels under speed laws and with friction.
 //!
-//! What a tour never has: the commands of a single slew may be held linearly, some wheels may
-//! return to a speed by themselves, and friction may take its share of a motor's torque.
+//! Tours have constant torques and ideal drives; the commands of a single slew may be linear in time,
+//! some of its wheels may follow a speed law, and motors may compensate friction.
 
 use super::dynamics::{Body, Snapshot};
-use super::integrator::{Interval, STEP_TOLERANCE, Step, fly};
-use super::limits::Limits;
+use super::integrator::{IntegrationStep, STEP_TOLERANCE, TorqueSpan, integrate};
+use super::limits::LimitObserver;
 use super::state;
 use crate::model::drive::Drive;
 use crate::model::plan::State;
 use crate::model::scenario::Scenario;
 
-/// Torques that change at a constant rate for a while.
+/// Torques that change linearly over a time.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Ramp {
-    /// Begin, s.
+pub(crate) struct TorqueRamp {
+    /// Time at the beginning, s.
     pub(crate) start_s: f64,
     /// Length, s.
     pub(crate) duration_s: f64,
-    /// Commanded torque on each wheel at the begin, N m.
+    /// Commanded torque of each wheel at the beginning, N m.
     pub(crate) begin_nm: Vec<f64>,
     /// The same at the end.
     pub(crate) end_nm: Vec<f64>,
 }
 
-/// What a flight of ramps turned out to be.
+/// The result of propagating ramps.
 #[derive(Debug, Clone)]
 pub(crate) struct RampedFlight {
-    /// States at the begin of every ramp that takes time, and at the end.
+    /// States at the beginning of every ramp of positive duration, and at the end.
     pub(crate) states: Vec<State>,
-    /// Largest share of its limit that a motor torque has.
+    /// Largest motor torque as a share of its limit.
     pub(crate) torque_usage: f64,
     /// Largest share of an allowed wheel speed, when any is limited.
     pub(crate) wheel_usage: Option<f64>,
@@ -37,19 +37,19 @@ pub(crate) struct RampedFlight {
     pub(crate) rate_usage: Option<f64>,
     /// Largest relative change of the total momentum: a measure of the integration.
     pub(crate) momentum_drift: f64,
-    /// What is wrong with wheel speeds and rates, in sentences.
+    /// Sentences about exceeded limits of wheel speeds and rates.
     pub(crate) failures: Vec<String>,
 }
 
-/// A short while of the flight: torques and speeds as functions of the time since its begin.
-pub(crate) struct Moment<'a> {
-    step: &'a Step<'a>,
+/// A part of an integration step: torques and speeds as functions of the time since its beginning.
+pub(crate) struct StepPart<'a> {
+    step: &'a IntegrationStep<'a>,
     since: f64,
     /// Length, s.
     pub(crate) length_s: f64,
 }
 
-impl Moment<'_> {
+impl StepPart<'_> {
     /// Commanded torque on a wheel, N m.
     pub(crate) fn torque(&self, wheel: usize, s: f64) -> f64 {
         let interval = self.step.interval;
@@ -61,19 +61,38 @@ impl Moment<'_> {
     pub(crate) fn speed(&self, wheel: usize, s: f64) -> f64 {
         self.step.motion.wheel_speed(wheel, self.since + s)
     }
+
+    /// Largest motor torque at both ends as a share of the allowed one; 0 without driven wheels.
+    fn torque_usage(&self, scenario: &Scenario, drives: &[Drive]) -> f64 {
+        let authority = scenario.options().torque_authority;
+        let mut usage = 0.0_f64;
+        for (index, wheel) in scenario.spacecraft().enabled_wheels() {
+            for s in [0.0, self.length_s] {
+                let (torque, speed) = (self.torque(index, s), self.speed(index, s));
+                let motor = drives[index].motor_torque(torque, speed);
+                let limit = if motor < 0.0 {
+                    wheel.min_torque
+                } else {
+                    wheel.max_torque
+                };
+                usage = usage.max(motor / (limit * authority));
+            }
+        }
+        usage
+    }
 }
 
-/// Integrates ramps from the scenario's start and shows the flight moment by moment; `drives` are
-/// those of all wheels.
+/// Integrates ramps from the scenario's start and calls `observe` with every part of every step;
+/// `drives` are those of all wheels.
 ///
 /// # Errors
 ///
-/// Sentences about what keeps the flight from being flown.
+/// A sentence about why the ramps cannot be propagated.
 pub(crate) fn propagate_ramps(
     scenario: &Scenario,
     drives: &[Drive],
-    ramps: &[Ramp],
-    mut observe: impl FnMut(&Moment<'_>),
+    ramps: &[TorqueRamp],
+    mut observe: impl FnMut(&StepPart<'_>),
 ) -> Result<RampedFlight, String> {
     let spacecraft = scenario.spacecraft();
     let mut body = Body::new(spacecraft.inertia(), spacecraft.wheels())?;
@@ -84,39 +103,27 @@ pub(crate) fn propagate_ramps(
     let intervals: Vec<_> = ramps
         .iter()
         .zip(&slopes)
-        .map(|(ramp, slope)| Interval {
+        .map(|(ramp, slope)| TorqueSpan {
             begin_s: ramp.start_s,
             end_s: ramp.start_s + ramp.duration_s,
             torque: &ramp.begin_nm,
             slope,
         })
         .collect();
-    let mut limits = Limits::new(scenario);
+    let mut limits = LimitObserver::new(scenario);
     let mut torque_usage = 0.0_f64;
-    let authority = scenario.options().torque_authority;
     let mut last = Snapshot::at_start(scenario);
     let mut states: Vec<State> = state(&last).into_iter().collect();
-    let flown = fly(&body, last.clone(), &intervals, STEP_TOLERANCE, |step| {
+    let integration = integrate(&body, last.clone(), &intervals, STEP_TOLERANCE, |step| {
         limits.observe(step);
         for pair in step.grid.windows(2) {
-            let moment = Moment {
+            let part = StepPart {
                 step,
                 since: pair[0],
                 length_s: pair[1] - pair[0],
             };
-            observe(&moment);
-            for (index, wheel) in spacecraft.enabled_wheels() {
-                for s in [0.0, moment.length_s] {
-                    let (torque, speed) = (moment.torque(index, s), moment.speed(index, s));
-                    let motor = drives[index].motor_torque(torque, speed);
-                    let limit = if motor < 0.0 {
-                        wheel.min_torque
-                    } else {
-                        wheel.max_torque
-                    };
-                    torque_usage = torque_usage.max(motor / (limit * authority));
-                }
-            }
+            observe(&part);
+            torque_usage = torque_usage.max(part.torque_usage(scenario, drives));
         }
         last = step.motion.state(step.end_s - step.begin_s);
         last.time_s = step.end_s;
@@ -129,13 +136,13 @@ pub(crate) fn propagate_ramps(
         torque_usage,
         wheel_usage: limits.wheel_usage(),
         rate_usage: limits.rate_usage(),
-        momentum_drift: flown.momentum_drift,
+        momentum_drift: integration.momentum_drift,
         failures: limits.failures(),
     })
 }
 
-/// Growth of the torques, N m/s.
-fn slope(ramp: &Ramp) -> Vec<f64> {
+/// Rate of change of the torques, N m/s.
+fn slope(ramp: &TorqueRamp) -> Vec<f64> {
     let pairs = ramp.begin_nm.iter().zip(&ramp.end_nm);
     pairs
         .map(|(begin, end)| {

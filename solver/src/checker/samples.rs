@@ -1,18 +1,18 @@
-//! When the flight is looked at, and the states seen then.
+//! Times at which states of a flight are reported, and the states there.
 
 use super::dynamics::Snapshot;
-use super::integrator::{Interval, Step};
+use super::integrator::{IntegrationStep, TorqueSpan};
 use super::visits::Visit;
 
-/// States per slew, at least.
-const PER_SLEW: f64 = 20.0;
+/// Least number of states per leg.
+const PER_LEG: f64 = 20.0;
 
-/// States per flight, at least, evenly spread.
+/// Least number of states per flight.
 const PER_FLIGHT: f64 = 500.0;
 
 /// Times, s, strictly increasing: every control boundary, every arrival and departure, and evenly
-/// between those so that no gap exceeds a 500th of the flight or a 20th of its slew.
-pub(super) fn times(intervals: &[Interval<'_>], visits: &[Visit<'_>], total_s: f64) -> Vec<f64> {
+/// between those so that no gap exceeds a 500th of the flight or a 20th of its leg.
+pub(super) fn times(intervals: &[TorqueSpan<'_>], visits: &[Visit<'_>], total_s: f64) -> Vec<f64> {
     let mut events: Vec<f64> = vec![0.0, total_s];
     events.extend(visits.iter().flat_map(|v| [v.arrival_s, v.departure_s]));
     sort(&mut events);
@@ -20,14 +20,14 @@ pub(super) fn times(intervals: &[Interval<'_>], visits: &[Visit<'_>], total_s: f
     knots.extend(&events);
     sort(&mut knots);
     let mut times = Vec::new();
-    let mut slew = 0;
+    let mut leg = 0;
     for pair in knots.windows(2) {
-        // Every event is a knot, so that a gap between knots lies inside one slew or rest.
-        while slew + 2 < events.len() && events[slew + 1] <= pair[0] {
-            slew += 1;
+        // Every event is a knot, so that a gap between knots lies inside one leg or stay.
+        while leg + 2 < events.len() && events[leg + 1] <= pair[0] {
+            leg += 1;
         }
-        let slew_length = events[slew + 1] - events[slew];
-        let spacing = (total_s / PER_FLIGHT).min(slew_length / PER_SLEW);
+        let leg_length = events[leg + 1] - events[leg];
+        let spacing = (total_s / PER_FLIGHT).min(leg_length / PER_LEG);
         divide(&mut times, pair[0], pair[1], spacing);
     }
     times.push(total_s);
@@ -39,16 +39,16 @@ fn sort(times: &mut Vec<f64>) {
     times.dedup();
 }
 
-/// Adds the begin and the inner points of equal parts of a gap.
+/// Adds the beginning and the inner points of equal parts of a gap.
 fn divide(times: &mut Vec<f64>, begin: f64, end: f64, spacing: f64) {
-    // Rounding of an even division must not cost another part.
+    // A quotient that exceeds a whole number only by rounding gives no further part.
     let parts = ((end - begin) / spacing - 1e-9)
         .ceil()
         .clamp(1.0, PER_FLIGHT + 1.0);
     let mut part = 0.0;
     while part < parts {
         let time = begin + (end - begin) * (part / parts);
-        // Times that rounding cannot tell apart are one.
+        // Equal times, by rounding, count once.
         if times.last().is_none_or(|last| time > *last) && time < end {
             times.push(time);
         }
@@ -72,12 +72,12 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    pub(super) fn observe(&mut self, step: &Step<'_>) {
+    pub(super) fn observe(&mut self, step: &IntegrationStep<'_>) {
         let length = step.grid.last().copied().unwrap_or_default();
         while let Some((&time, later)) = self.pending.split_first()
             && time <= step.end_s
         {
-            // At the end of a step its length, not a difference of absolute times.
+            // At the end of a step use its length: a difference of absolute times has rounding.
             let s = if time < step.end_s {
                 (time - step.begin_s).max(0.0)
             } else {

@@ -2,25 +2,25 @@
 //!
 //! The right-hand sides of the [dynamics](super::dynamics) are products of at most two unknowns,
 //! so the coefficients of any order follow from Cauchy products of the lower ones. The truncated
-//! series is at once the integration step and an interpolation that is as accurate as the step,
-//! which is what finding a peak between two steps needs.
+//! series is both the integration step and an interpolation of the same accuracy, in which peaks
+//! between two steps can be found.
 
-use super::dynamics::{Body, Quaternion, Snapshot, norm, quaternion_derivative};
+use super::dynamics::{Body, QuaternionComponents, Snapshot, norm, quaternion_derivative};
 use nalgebra::Vector3;
 
-/// Degree of the series. Around 20 the work per unit of time is least for double precision, and
-/// a step covers about three radians of the fastest oscillation.
+/// Degree of the series. In double precision the work per unit of time is least at about 20; a step then
+/// covers about three radians of the fastest oscillation.
 pub(super) const ORDER: usize = 20;
 const LEN: usize = ORDER + 1;
 
-/// How many of the last coefficients decide about the step: symmetric motions have vanishing
-/// coefficients at every second order or more.
+/// Number of last coefficients that determine the step length: of symmetric motions every second
+/// coefficient or more vanishes.
 const TAIL: usize = 4;
 
-/// The motion as polynomials in the time since the begin of the step, s.
+/// The motion as polynomials in the time since the beginning of the step, s.
 #[derive(Debug, Clone)]
 pub(super) struct Expansion {
-    quaternion: [Quaternion; LEN],
+    quaternion: [QuaternionComponents; LEN],
     rate: [Vector3<f64>; LEN],
     wheel: Vec<[f64; LEN]>,
 }
@@ -28,7 +28,7 @@ pub(super) struct Expansion {
 impl Expansion {
     /// Expands the motion about a state under motor torques: those at the state, N m, and their
     /// growth, N m/s, empty when they are constant.
-    pub(super) fn about(body: &Body, state: &Snapshot, drive: (&[f64], &[f64])) -> Self {
+    pub(super) fn about(body: &Body, state: &Snapshot, torque: &[f64], growth: &[f64]) -> Self {
         let mut series = Self {
             quaternion: [[0.0; 4]; LEN],
             rate: [Vector3::zeros(); LEN],
@@ -42,7 +42,7 @@ impl Expansion {
         let mut momentum = [Vector3::zeros(); LEN];
         for k in 0..ORDER {
             momentum[k] = series.momentum_coefficient(body, k);
-            series.append(body, drive, &momentum, k);
+            series.append(body, torque, growth, &momentum, k);
         }
         series
     }
@@ -59,7 +59,8 @@ impl Expansion {
     fn append(
         &mut self,
         body: &Body,
-        (torque, growth): (&[f64], &[f64]),
+        torque: &[f64],
+        growth: &[f64],
         momentum: &[Vector3<f64>; LEN],
         k: usize,
     ) {
@@ -96,21 +97,21 @@ impl Expansion {
     /// The longest step, s, whose first neglected terms are below `tolerance` relative to the
     /// leading ones; infinite when nothing moves.
     pub(super) fn step_length(&self, tolerance: f64) -> f64 {
-        // The wheel speeds need no test: beyond the linear term they repeat the body rate.
+        // Wheel speeds are not tested: beyond the linear term they are combinations of the body rate.
         let quaternion = longest(&self.quaternion.map(|c| norm(&c)), tolerance);
         let rate = longest(&self.rate.map(|c| c.norm()), tolerance);
         quaternion.min(rate)
     }
 
-    /// How badly the polynomials fail the equations of motion at time `s` into the step: the
-    /// error that would grow over the step, relative to the size of the terms.
+    /// Defect of the polynomials in the equations of motion at time `s` into the step, multiplied by `s`
+    /// and relative to the size of the terms.
     pub(super) fn defect(&self, body: &Body, torque: &[f64], s: f64) -> f64 {
         let state = self.state(s);
         let rate_derivative = body.rate_derivative(&state, torque);
         let turn = quaternion_derivative(&state.quaternion, &state.rate);
-        let turn_defect: Quaternion =
+        let turn_defect: QuaternionComponents =
             std::array::from_fn(|c| slope(s, |k| self.quaternion[k][c]) - turn[c]);
-        // Torques that cancel each other leave their rounding behind, hence their share.
+        // Torques that cancel each other leave rounding errors, so that the scale includes their size.
         let push: f64 = body
             .rotors
             .iter()
@@ -122,7 +123,7 @@ impl Expansion {
         let mut worst = (norm(&turn_defect) * s).max(ratio(rate_defect * s, rate_scale));
         for (i, wheel) in self.wheel.iter().enumerate() {
             let expected =
-                body.wheel_derivative(i, (torque[i], state.wheel_speed[i]), &rate_derivative);
+                body.wheel_derivative(i, torque[i], state.wheel_speed[i], &rate_derivative);
             let drive = (torque[i] / body.rotors[i].inertia).abs() * s;
             let scale = value(s, |k| wheel[k].abs()) + drive;
             worst = worst.max(ratio((self.wheel_slope(i, s) - expected).abs() * s, scale));
@@ -148,7 +149,7 @@ impl Expansion {
     }
 
     /// The quaternion at time `s` into the step.
-    pub(super) fn quaternion(&self, s: f64) -> Quaternion {
+    pub(super) fn quaternion(&self, s: f64) -> QuaternionComponents {
         std::array::from_fn(|c| value(s, |k| self.quaternion[k][c]))
     }
 

@@ -1,26 +1,26 @@
 //! The controls of a flight as a gapless sequence of intervals.
 
 use super::TIME_TOLERANCE;
-use super::integrator::Interval;
+use super::integrator::TorqueSpan;
 use super::number_format::figure;
 use crate::model::plan::{Control, Flight};
 use crate::model::spacecraft::Wheel;
 
-/// Sentences of one kind that are worth reading; a wrong file tends to be wrong everywhere.
+/// Greatest number of sentences about controls; further defects are only counted.
 const MAX_SENTENCES: usize = 10;
 
 /// The control intervals from 0 to the total time.
 ///
-/// What is flown is from one `start_s` to the next: differences to `duration_s` below the
-/// tolerance are the rounding of text.
+/// An interval lasts from one `start_s` to the next; a difference from `duration_s` within the tolerance
+/// is rounding of written numbers.
 ///
 /// # Errors
 ///
-/// Sentences about everything that keeps the flight from being flown at all.
+/// Sentences about every defect of the controls with which the flight cannot be propagated.
 pub(super) fn intervals<'a>(
     flight: &'a Flight,
     wheels: &[Wheel],
-) -> Result<Vec<Interval<'a>>, Vec<String>> {
+) -> Result<Vec<TorqueSpan<'a>>, Vec<String>> {
     let total = flight.total_time_s;
     if !total.is_finite() || total < 0.0 {
         return Err(vec![format!(
@@ -48,7 +48,7 @@ pub(super) fn intervals<'a>(
     }
 }
 
-/// What is wrong with the numbers of one interval.
+/// A sentence about the first defect in the numbers of one control.
 fn numbers(index: usize, control: &Control, wheels: &[Wheel]) -> Option<String> {
     let torque = &control.wheel_torque_nm;
     if !control.start_s.is_finite() || !control.duration_s.is_finite() {
@@ -80,7 +80,7 @@ fn numbers(index: usize, control: &Control, wheels: &[Wheel]) -> Option<String> 
     ))
 }
 
-/// Where the intervals do not tile the flight.
+/// Sentences about gaps and overlaps of the controls.
 fn gaps(flight: &Flight) -> Vec<String> {
     let total = flight.total_time_s;
     let slack = TIME_TOLERANCE * total;
@@ -112,7 +112,7 @@ fn gaps(flight: &Flight) -> Vec<String> {
     defects
 }
 
-fn tiles(flight: &Flight) -> Vec<Interval<'_>> {
+fn tiles(flight: &Flight) -> Vec<TorqueSpan<'_>> {
     let total = flight.total_time_s;
     let starts = flight.controls.iter().map(|control| control.start_s);
     let mut begin_s = 0.0;
@@ -121,9 +121,9 @@ fn tiles(flight: &Flight) -> Vec<Interval<'_>> {
         .chain([total])
         .zip(&flight.controls)
         .map(|(next, control)| {
-            // Rounding may order the ends of an interval of no length the other way round.
+            // By rounding an interval of length zero may end before it begins.
             let end_s = next.clamp(begin_s, total);
-            let interval = Interval {
+            let interval = TorqueSpan {
                 begin_s,
                 end_s,
                 torque: &control.wheel_torque_nm,

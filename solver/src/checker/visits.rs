@@ -1,7 +1,7 @@
-//! Whether every target is visited once, as and when required, and the end reached.
+//! Whether every target is visited once, with the required state and stay, and the end is reached.
 
-use super::dynamics::{Quaternion, Snapshot, conjugate, norm, product};
-use super::integrator::Interval;
+use super::dynamics::{QuaternionComponents, Snapshot, conjugate, norm, product};
+use super::integrator::TorqueSpan;
 use super::number_format::figure;
 use super::order::misplaced;
 use super::{
@@ -21,7 +21,7 @@ pub(super) struct Visit<'a> {
     pub(super) departure_s: f64,
 }
 
-/// What the visits and the end were missed by.
+/// Errors at visits and at the end.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Misses {
     pub(super) attitude_rad: f64,
@@ -31,12 +31,12 @@ pub(super) struct Misses {
     pub(super) failures: Vec<String>,
 }
 
-/// The visits of a flight, with sentences about those that are missing, unknown, or at times that
-/// cannot be. Times within rounding of a control boundary are moved onto it.
+/// The visits of a flight, with sentences about missing and unknown ones, and about impossible times.
+/// Times within rounding of a control boundary are moved onto it.
 pub(super) fn book<'a>(
     scenario: &'a Scenario,
     flight: &Flight,
-    intervals: &[Interval<'_>],
+    intervals: &[TorqueSpan<'_>],
 ) -> (Vec<Visit<'a>>, Vec<String>) {
     let mut failures = Vec::new();
     let mut visits = Vec::new();
@@ -47,7 +47,7 @@ pub(super) fn book<'a>(
             failures.push(format!("the passage of '{name}' belongs to no target"));
             continue;
         };
-        if let Some(reason) = impossible(passage, target, (earliest, flight.total_time_s)) {
+        if let Some(reason) = impossible(passage, target, earliest, flight.total_time_s) {
             failures.push(format!("target '{name}' {reason}"));
         }
         let times = [passage.time_s, passage.departure_s];
@@ -57,7 +57,7 @@ pub(super) fn book<'a>(
             visits.push(Visit {
                 target,
                 arrival_s,
-                // Rounding may order the ends of a stay of no length the other way round.
+                // By rounding a stay of length zero may end before it begins.
                 departure_s: departure_s.max(arrival_s),
             });
         }
@@ -79,8 +79,9 @@ pub(super) fn book<'a>(
     (visits, failures)
 }
 
-/// Why a passage cannot happen at its times.
-fn impossible(passage: &Passage, target: &Target, (earliest, total): (f64, f64)) -> Option<String> {
+/// Why a passage is impossible at its times, in a flight of `total` seconds that left the target before
+/// at `earliest`.
+fn impossible(passage: &Passage, target: &Target, earliest: f64, total: f64) -> Option<String> {
     let (arrival, departure) = (passage.time_s, passage.departure_s);
     let slack = TIME_TOLERANCE * total;
     let stay = target.settle + target.dwell;
@@ -122,7 +123,7 @@ fn loose_end(scenario: &Scenario, flight: &Flight) -> Option<String> {
     })
 }
 
-fn snapped(time: f64, flight: &Flight, intervals: &[Interval<'_>]) -> f64 {
+fn snapped(time: f64, flight: &Flight, intervals: &[TorqueSpan<'_>]) -> f64 {
     let after = intervals.partition_point(|interval| interval.begin_s < time);
     let boundary = |index: usize| intervals.get(index).map(|interval| interval.begin_s);
     let near = |boundary: &f64| (boundary - time).abs() <= SNAP * flight.total_time_s;
@@ -136,7 +137,7 @@ fn snapped(time: f64, flight: &Flight, intervals: &[Interval<'_>]) -> f64 {
     onto.unwrap_or(time).max(0.0).min(flight.total_time_s)
 }
 
-/// Tests all visits and the end against the flown states, which are in order of time.
+/// Tests all visits and the end against the propagated states, which are in order of time.
 pub(super) fn inspect(scenario: &Scenario, visits: &[Visit<'_>], states: &[Snapshot]) -> Misses {
     let mut misses = Misses::default();
     for visit in visits {
@@ -167,7 +168,7 @@ impl Misses {
         self.record(&format!("target '{}'", target.id), turn, rate);
     }
 
-    /// Of a stay of which there is no state nothing is known, least of all that it is right.
+    /// A stay without any state cannot be tested and counts as failed.
     fn unseen(&mut self, visit: &Visit<'_>) {
         self.attitude_rad = NOT_COMPUTED;
         self.rate_rad_s = NOT_COMPUTED;
@@ -230,19 +231,19 @@ impl Misses {
 pub(super) fn driven_rests(
     scenario: &Scenario,
     visits: &[Visit<'_>],
-    intervals: &[Interval<'_>],
+    intervals: &[TorqueSpan<'_>],
 ) -> Vec<String> {
     let total = intervals.last().map_or(0.0, |interval| interval.end_s);
     let slack = TIME_TOLERANCE * total;
     let wheels = scenario.spacecraft().wheels();
-    let driven = |interval: &&Interval<'_>| {
+    let driven = |interval: &&TorqueSpan<'_>| {
         interval.torque.iter().zip(wheels).any(|(torque, wheel)| {
             let largest = wheel.max_torque.max(-wheel.min_torque);
             torque.abs() > REST_TORQUE_TOLERANCE * largest
         })
     };
     let culprit = |visit: &Visit<'_>| {
-        let during = |interval: &&Interval<'_>| {
+        let during = |interval: &&TorqueSpan<'_>| {
             interval.end_s.min(visit.departure_s) - interval.begin_s.max(visit.arrival_s) > slack
         };
         let culprit = intervals.iter().filter(during).find(driven)?;
@@ -255,9 +256,13 @@ pub(super) fn driven_rests(
     visits.iter().filter_map(culprit).collect()
 }
 
-/// Angle of the turn between two unit quaternions, rad. When the sign matters it is measured
-/// along the quaternion sphere, so that the opposite sign is a full turn away.
-fn attitude_error(q: &Quaternion, goal: &Quaternion, equivalence: AttitudeEquivalence) -> f64 {
+/// Angle of the turn between two unit quaternions, rad. With [`AttitudeEquivalence::Quaternion`] the
+/// opposite sign is a full turn away.
+fn attitude_error(
+    q: &QuaternionComponents,
+    goal: &QuaternionComponents,
+    equivalence: AttitudeEquivalence,
+) -> f64 {
     let turn = product(&conjugate(goal), q);
     let sine = norm(&[turn[0], turn[1], turn[2], 0.0]);
     let cosine = match equivalence {

@@ -58,13 +58,13 @@ pub(crate) struct TurnDerivatives {
     pub(crate) middle: [Vector3<f64>; INPUTS],
 }
 
-/// Difference between two turns, the second with half the step, at which the second is exact: its
-/// error is a sixty-fourth of that.
+/// A turn counts as exact when halving the step changes it by less than this: the error of the
+/// finer one is a sixty-fourth of the change.
 const EXACT: f64 = 1e-9;
 /// Halvings of the step on the way there.
 const MAX_HALVINGS: usize = 5;
 
-/// The turn over an interval without discretisation error, as far as that matters anywhere.
+/// The turn over an interval with a discretisation error far below all tolerances.
 pub(crate) fn exact_turn(
     inertia_inverse: Matrix3<f64>,
     with_momentum: bool,
@@ -104,7 +104,8 @@ pub(crate) enum TurnMap {
 }
 
 impl TurnMap {
-    /// The map to iterate with; `inertia_inverse` is that of `J_eff` in matching units.
+    /// The map that solves begin with; `inertia_inverse` is the inverse of `J_eff` in matching
+    /// units.
     pub(crate) fn fast(inertia_inverse: Matrix3<f64>, with_momentum: bool) -> Self {
         if with_momentum {
             Self::Taylor(inertia_inverse)
@@ -149,8 +150,8 @@ impl TurnMap {
         }
     }
 
-    /// The turn with derivatives, and with momentum those of the rate in the middle; the second ones
-    /// weighted by `mu` and `pull`.
+    /// The turn with derivatives, and with momentum those of the rate in the middle; the second
+    /// ones weighted by `mu` and `pull`.
     pub(crate) fn derivatives(
         &self,
         z: &TurnInputs,

@@ -1,190 +1,66 @@
-//! The multi-phase problem: fly through waypoints in a fixed order in minimum time.
+//! The multi-phase problem: the minimum-time motion through waypoints in a fixed order.
 //!
-//! A leg is the case of two waypoints, a tour that of many. Rate components and wheel momenta that
-//! a waypoint leaves free are continuous across it, which couples neighbouring legs.
+//! Two waypoints make a leg, many a tour. Rate components and wheel momenta that a waypoint leaves
+//! free are continuous across it, which couples neighbouring legs.
 
 mod between_nodes;
 mod extended;
+mod passes;
 mod rolling;
+mod solution;
 #[cfg(test)]
 mod tests;
 
 use crate::leg::profile::Profile;
-use crate::leg::transcription::{ControlPenalty, MIN_TURN, Reserves, Scales, Transcription};
+use crate::leg::transcription::{MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{InteriorPoint, Interruption, Iterate, NlpStatus, Settings};
+use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
+use crate::run::stop::StopReason;
 use between_nodes::excess_between_nodes;
 pub(crate) use between_nodes::{excess_inside, keeps_limits_inside};
-pub(crate) use extended::fly_on;
+pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
-pub(crate) use rolling::fly_rolling;
+use passes::{POLISHING, Pass, from_a_guess};
+pub(crate) use rolling::solve_rolling;
+pub(crate) use solution::LegSolution;
 
-/// A program to solve on the way to another.
-struct Phase {
-    settings: Settings,
-    /// Weights of the penalty that draws the controls to those at the phase's beginning.
-    penalty: ControlPenalty,
-}
-
-/// Which limits are active and roughly where the switches are, then where exactly. A strong penalty
-/// on lengths halves the iterations but costs up to 0.15 % of the duration; a weaker one, drawn to
-/// the lengths of the first phase, costs 0.02 % at most (measured on 171 legs).
-const FROM_A_GUESS: [Phase; 2] = [
-    ROUGHLY,
-    Phase {
-        settings: Settings {
-            initial_barrier: 1e-3,
-            ..Settings::COLD
-        },
-        penalty: ControlPenalty::of_lengths(0.02),
-    },
-];
-/// The same with momentum under a rate limit: there are more intervals than switches, so a torque
-/// may move from one to its neighbour at no cost. Penalties that settle it save a third of the
-/// iterations for less than 1e-5 of the duration (measured on 40 slews with rate limits).
-const ALONG_LIMITS: [Phase; 2] = [
-    ROUGHLY,
-    Phase {
-        settings: Settings {
-            initial_barrier: 1e-3,
-            tolerance: 5e-6,
-            ..Settings::COLD
-        },
-        penalty: ControlPenalty {
-            length: 0.05,
-            change: 0.01,
-        },
-    },
-];
-const ROUGHLY: Phase = Phase {
-    settings: Settings {
-        tolerance: 1e-2,
-        feasibility: 1e-3,
-        ..Settings::COLD
-    },
-    penalty: ControlPenalty::of_lengths(0.1),
-};
-/// From the primal solution of almost the same program.
-const POLISHING: [Phase; 1] = [Phase {
-    settings: Settings {
-        tolerance: 1e-9,
-        initial_barrier: 1e-4,
-        initial_slack: 1e-4,
-        ..Settings::COLD
-    },
-    penalty: ControlPenalty::of_lengths(1e-3),
-}];
-/// Most rounds of the proximal point method, and the relative gain that ends it.
+/// Limit of the rounds of the proximal point method, and the relative gain that ends it.
 const POLISH_ROUNDS: usize = 6;
 const POLISHED: f64 = 1e-8;
 
-/// Rounds of correcting the turns and raising the reserves at limits.
+/// Limit of the rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 12;
-/// Rounds that keep a reserve only where a limit was exceeded, and the relative excess from which on
-/// they do; smaller ones are taken off everywhere, which costs half of them in duration.
-const LOCAL_ROUNDS: usize = 6;
+/// Rounds that raise reserves only where a limit was exceeded, and the relative excess above which
+/// they do. Smaller excesses become reserves everywhere, which costs half of them in duration.
+pub(crate) const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
-/// Reserve per excess: a little more than is missing, since the motion moves when it is tightened.
-const RESERVE_FACTOR: f64 = 1.1;
+/// Reserve per excess: above one, since the motion changes when limits are tightened.
+pub(crate) const RESERVE_FACTOR: f64 = 1.1;
 /// Relative excess up to which the multipliers are near those of the tightened program, and the
-/// barrier parameter to go on with.
+/// barrier parameter of a warm start from them.
 pub(crate) const NEAR_EXCESS: f64 = 1e-2;
 pub(crate) const NEAR_BARRIER: f64 = 1e-5;
-/// Angle, rad, by which a flight may miss its end as the optimiser sees it; the checker's tolerance
-/// is hundreds of times this.
-const MISS_TOLERANCE: f64 = 3e-9;
-/// A miss, rad, that asks for better derivatives too.
-const LARGE_MISS: f64 = 1e-3;
-/// Relative excess over a limit between nodes that is not worth another round; the checker's
-/// tolerance is ten times this.
-const LIMIT_TOLERANCE: f64 = 1e-7;
+/// Angle, rad, by which the exact turns of a solution may miss its end; the checker's tolerance is
+/// hundreds of times this.
+pub(crate) const MISS_TOLERANCE: f64 = 3e-9;
+/// A miss, rad, above which the turn map's derivatives are too inaccurate as well.
+pub(crate) const LARGE_MISS: f64 = 1e-3;
+/// Relative excess over a limit between nodes that is accepted; the checker's tolerance is ten
+/// times this.
+pub(crate) const LIMIT_TOLERANCE: f64 = 1e-7;
 
-/// A solved flight.
-#[derive(Debug, Clone)]
-pub(crate) struct LegSolution {
-    /// How the NLP ended.
-    pub(crate) status: NlpStatus,
-    /// The motion; of use only when converged.
-    pub(crate) profile: Profile,
-    /// Intervals of each of its legs.
-    pub(crate) intervals: Vec<usize>,
-    /// Interior-point iterations.
-    pub(crate) iterations: usize,
-    /// Largest violation of any condition at the end, scaled.
-    pub(crate) infeasibility: f64,
-    /// Costates of the wheel momenta, s per N m s, at every waypoint between two legs: what the legs
-    /// before it save per momentum with which it is passed, and what the legs after it lose.
-    pub(crate) costates: Vec<DVector<f64>>,
-}
-
-impl LegSolution {
-    /// A flight of which not even a guess is known.
-    pub(crate) fn nowhere() -> Self {
-        Self {
-            status: NlpStatus::IterationLimit,
-            profile: Profile::empty(),
-            intervals: Vec::new(),
-            iterations: 0,
-            infeasibility: f64::MAX,
-            costates: Vec::new(),
-        }
-    }
-
-    /// The flight backwards, which is one where momenta and torques admit it.
-    pub(crate) fn reversed(&self) -> Self {
-        Self {
-            profile: self.profile.reversed(),
-            intervals: self.intervals.iter().rev().copied().collect(),
-            // What was saved is lost, but the momenta have changed their sign too.
-            costates: self.costates.iter().rev().cloned().collect(),
-            ..*self
-        }
-    }
-
-    /// Duration, s, where there is a motion that flies.
-    pub(crate) fn duration(&self) -> Option<f64> {
-        let flies = matches!(self.status, NlpStatus::Converged | NlpStatus::Constructed);
-        flies.then(|| self.profile.duration())
-    }
-
-    /// Duration, s, when the NLP converged: none is faster, if that was solved globally.
-    pub(crate) fn least_duration(&self) -> Option<f64> {
-        (self.status == NlpStatus::Converged).then(|| self.profile.duration())
-    }
-
-    /// Whether it beats another flight: converged ones beat all others, ties go to the other.
-    pub(crate) fn improves(&self, other: &LegSolution) -> bool {
-        match (self.duration(), other.duration()) {
-            (Some(new), Some(old)) => new < old * (1.0 - SAME_DURATION),
-            (Some(_), None) => true,
-            (None, _) => false,
-        }
-    }
-}
-
-/// Relative difference below which two durations are the same.
-const SAME_DURATION: f64 = 1e-9;
-
-/// Flies through waypoints from a guess whose nodes are split into legs by `intervals`.
-pub(crate) fn fly(
+/// Solves for the motion through waypoints, from a guess whose nodes are split into legs by
+/// `intervals`.
+pub(crate) fn solve_through(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
-    Flight::new(dynamics, waypoints, intervals, guess).solve(from_a_guess(dynamics), stop)
-}
-
-/// The phases that lead from a guess to a solution.
-fn from_a_guess(dynamics: &Dynamics) -> &'static [Phase] {
-    if dynamics.straying() > 0.0 {
-        &ALONG_LIMITS
-    } else {
-        &FROM_A_GUESS
-    }
+    MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(from_a_guess(dynamics), stop)
 }
 
 /// Frees a solution of the penalty on uneven interval lengths and solves it more exactly.
@@ -195,31 +71,32 @@ pub(crate) fn polish(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
-    mut flown: LegSolution,
-    stop: &dyn Fn() -> Option<Interruption>,
+    mut solution: LegSolution,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     for _ in 0..POLISH_ROUNDS {
-        let Some(before) = flown.least_duration() else {
+        let Some(before) = solution.least_duration() else {
             break;
         };
+        let guess = &solution.profile;
         let next =
-            Flight::new(dynamics, waypoints, intervals, &flown.profile).solve(&POLISHING, stop);
+            MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(&POLISHING, stop);
         let Some(after) = next.duration() else {
             break;
         };
         if after > before {
             break;
         }
-        flown = next;
+        solution = next;
         if before - after <= POLISHED * before {
             break;
         }
     }
-    flown
+    solution
 }
 
-/// A flight on the way to its solution.
-struct Flight<'a> {
+/// A motion through waypoints on the way to its solution.
+struct MultiphaseSolve<'a> {
     dynamics: &'a Dynamics,
     scales: Scales,
     chain: Transcription,
@@ -227,10 +104,10 @@ struct Flight<'a> {
     iterate: Iterate,
     /// Interval that ends at each waypoint between two legs.
     arrivals: Vec<usize>,
-    flown: LegSolution,
+    solution: LegSolution,
 }
 
-impl<'a> Flight<'a> {
+impl<'a> MultiphaseSolve<'a> {
     fn new(
         dynamics: &'a Dynamics,
         waypoints: &[Waypoint],
@@ -248,7 +125,7 @@ impl<'a> Flight<'a> {
             chain,
             iterate: scaled(guess, &scales),
             arrivals: arrivals(intervals),
-            flown: LegSolution {
+            solution: LegSolution {
                 status: NlpStatus::IterationLimit,
                 profile: guess.clone(),
                 intervals: intervals.to_vec(),
@@ -259,18 +136,19 @@ impl<'a> Flight<'a> {
         }
     }
 
-    /// Solves one phase after the other, and the last one until its solution can be flown.
-    fn solve(mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
-        if !self.passes(phases, stop) {
-            return self.flown;
+    /// Runs the passes, and then corrects turns and reserves until the exact motion arrives and
+    /// keeps its limits between nodes too.
+    fn run(mut self, passes: &[Pass], stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
+        if !self.run_passes(passes, stop) {
+            return self.solution;
         }
-        let mut reserves = Reserves::none(self.dynamics, self.flown.profile.intervals());
+        let mut reserves = Reserves::none(self.dynamics, self.solution.profile.intervals());
         for round in 0..MAX_ROUNDS {
             let missed = self.chain.correct(&self.iterate);
-            let excesses = excess_between_nodes(self.dynamics, &self.flown.profile);
+            let excesses = excess_between_nodes(self.dynamics, &self.solution.profile);
             let excess = excesses.iter().copied().fold(0.0, f64::max);
             if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
-                return self.flown;
+                return self.solution;
             }
             if missed > LARGE_MISS {
                 self.chain.refine(&self.iterate);
@@ -284,15 +162,15 @@ impl<'a> Flight<'a> {
                 self.tighten(&reserves, excess);
             }
             if !self.converges(stop) {
-                return self.flown;
+                return self.solution;
             }
         }
-        // Converged at the nodes, and yet not to be flown: more rounds would be needed.
-        self.flown.status = NlpStatus::IterationLimit;
-        self.flown
+        // Converged at the nodes, but the exact motion still misses its end or exceeds a limit.
+        self.solution.status = NlpStatus::IterationLimit;
+        self.solution
     }
 
-    /// Keeps reserves that answer an excess from now on.
+    /// Sets reserves raised for an excess, and the start of the next solve.
     fn tighten(&mut self, reserves: &Reserves, excess: f64) {
         self.chain.keep(reserves);
         let settings = &mut self.engine.settings;
@@ -300,23 +178,23 @@ impl<'a> Flight<'a> {
             settings.initial_barrier = NEAR_BARRIER;
             self.iterate.recentre(NEAR_BARRIER);
         } else {
-            // Slacks belong to the old limits: begin again from the primal point alone.
+            // Slacks and multipliers belong to the old limits: a cold start from the primal point.
             settings.initial_barrier = Settings::COLD.initial_barrier;
-            self.iterate = scaled(&self.flown.profile, &self.scales);
+            self.iterate = scaled(&self.solution.profile, &self.scales);
         }
     }
 
-    /// Solves one phase after the other; whether all converge.
-    fn passes(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) -> bool {
-        phases.iter().all(|phase| {
-            self.chain.draw_controls_to(&self.iterate, phase.penalty);
-            self.engine.settings = phase.settings;
+    /// Runs one pass after the other; whether all converge.
+    fn run_passes(&mut self, passes: &[Pass], stop: &dyn Fn() -> Option<StopReason>) -> bool {
+        passes.iter().all(|pass| {
+            self.chain.draw_controls_to(&self.iterate, pass.penalty);
+            self.engine.settings = pass.settings;
             self.converges(stop)
         })
     }
 
-    /// Multipliers of the links that end between two legs: were each of the two to have its own copy
-    /// of the state, these would be what makes the copies equal.
+    /// Multipliers of the links that end between two legs. They are the multipliers of the
+    /// condition that two copies of the state there, one for each leg, are equal.
     fn costates(&self) -> Vec<DVector<f64>> {
         let states = 3 + self.dynamics.wheel_count();
         let unit = self.scales.time / self.scales.momentum;
@@ -327,14 +205,14 @@ impl<'a> Flight<'a> {
         self.arrivals.iter().map(of_momenta).collect()
     }
 
-    /// Runs the engine from where the flight is; whether it converges.
-    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
+    /// Runs the engine from the current iterate; whether it converges.
+    fn converges(&mut self, stop: &dyn Fn() -> Option<StopReason>) -> bool {
         let report = self.engine.solve(&self.chain, &mut self.iterate, stop);
-        self.flown = LegSolution {
+        self.solution = LegSolution {
             status: report.status,
             profile: physical(&self.iterate, &self.scales, self.dynamics.wheel_count()),
-            intervals: std::mem::take(&mut self.flown.intervals),
-            iterations: self.flown.iterations + report.iterations,
+            intervals: std::mem::take(&mut self.solution.intervals),
+            iterations: self.solution.iterations + report.iterations,
             infeasibility: report.infeasibility,
             costates: self.costates(),
         };
@@ -352,8 +230,8 @@ fn arrivals(intervals: &[usize]) -> Vec<usize> {
     ends.collect()
 }
 
-/// The middle one of the legs' turns, rad, or of what takes as long as the changes that their ends
-/// ask for; legs on which nothing happens do not count.
+/// The median of the legs' turns, rad, where the changes between a leg's ends count as the turn
+/// that takes as long; legs without turn or change do not count.
 fn typical_angle(dynamics: &Dynamics, waypoints: &[Waypoint]) -> f64 {
     let mut angles: Vec<f64> = waypoints
         .windows(2)

@@ -1,11 +1,12 @@
-//! A motion as the optimiser sees it: states at nodes and the time between them.
+//! The discretised motion of the optimiser: states at nodes and the time between them.
 
 use crate::model::attitude::Attitude;
+use crate::model::motion::Motion;
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// A piecewise motion with constant torque between nodes; also used as a starting guess, and then
-/// neither flyable nor within limits.
+/// A motion with constant torque between nodes. As a starting guess it need neither satisfy the
+/// dynamics nor keep the limits.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Profile {
     /// Attitude at every node, continuous in sign.
@@ -60,7 +61,7 @@ impl Profile {
         }
     }
 
-    /// No motion at all, in no time.
+    /// No motion: the same state at every node, and intervals of no length.
     pub(crate) fn zero_length(attitude: Attitude, wheels: DVector<f64>, intervals: usize) -> Self {
         Self {
             attitudes: vec![attitude; intervals + 1],
@@ -80,12 +81,40 @@ impl Profile {
             .splice(node..node, std::iter::repeat_n(0.0, intervals));
     }
 
-    /// The motion flown backwards: wheel momenta change sign, torques do not.
+    /// The motion reversed in time: wheel momenta change sign, torques do not.
     pub(crate) fn reversed(&self) -> Self {
         Self {
             attitudes: self.attitudes.iter().rev().copied().collect(),
             wheels: self.wheels.iter().rev().map(|h| -h).collect(),
             lengths: self.lengths.iter().rev().copied().collect(),
         }
+    }
+}
+
+impl From<&Profile> for Motion {
+    fn from(profile: &Profile) -> Self {
+        let momenta = profile.wheels.iter();
+        Self {
+            attitudes_xyzw: profile.attitudes.iter().map(Attitude::xyzw).collect(),
+            wheel_momenta_nms: momenta.map(|h| h.as_slice().to_vec()).collect(),
+            lengths_s: profile.lengths.clone(),
+        }
+    }
+}
+
+impl Profile {
+    /// The motion of these numbers, bit for bit; `None` unless there is one unit quaternion and one
+    /// vector of momenta a node.
+    pub(crate) fn from_motion(motion: Motion) -> Option<Self> {
+        let attitudes = motion.attitudes_xyzw.into_iter();
+        let attitudes: Option<Vec<_>> = attitudes.map(Attitude::from_unit_xyzw).collect();
+        let wheels = motion.wheel_momenta_nms.into_iter();
+        let profile = Self {
+            attitudes: attitudes?,
+            wheels: wheels.map(DVector::from_vec).collect(),
+            lengths: motion.lengths_s,
+        };
+        let nodes = profile.intervals() + 1;
+        (profile.attitudes.len() == nodes && profile.wheels.len() == nodes).then_some(profile)
     }
 }

@@ -1,4 +1,4 @@
-//! One slew between two waypoints: guesses, solves, the best of them.
+//! One leg between two waypoints: guesses, solves, the best solution.
 
 pub(crate) mod arrival;
 mod centred;
@@ -11,12 +11,13 @@ mod steered;
 mod tests;
 pub(crate) mod zero_length;
 
-use crate::leg::multiphase::{LegSolution, fly, polish};
+use crate::leg::multiphase::{LegSolution, polish, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
-use crate::nlp::{Interruption, NlpStatus};
+use crate::nlp::NlpStatus;
+use crate::run::stop::StopReason;
 use arrival::Arrival;
 use eigenaxis::{EigenaxisSlew, Perturbation};
 use extremal::KinematicExtremals;
@@ -26,12 +27,13 @@ use starts::Starts;
 use steered::steered;
 use zero_length::zero_length;
 
-/// How much longer than the slew about the eigenaxis a flight may take before that is preferred.
+/// Relative excess over the duration of the eigenaxis slew above which that slew replaces a
+/// solution.
 const EIGENAXIS_TOLERANCE: f64 = 1e-6;
 /// Relative difference below which wheel momenta are the same.
 const SAME_MOMENTUM: f64 = 1e-9;
 
-/// A slew between two waypoints.
+/// A leg between two waypoints.
 #[derive(Clone, Copy)]
 pub(crate) struct LegProblem<'a> {
     /// The spacecraft with its momentum.
@@ -44,106 +46,109 @@ pub(crate) struct LegProblem<'a> {
     pub(crate) arrival: Arrival,
     /// Null-space momentum of the wheels in the guesses, N m s.
     pub(crate) null: &'a DVector<f64>,
-    /// Guesses for its spacecraft.
+    /// Kinematic extremals of its spacecraft, for guesses.
     pub(crate) extremals: &'a KinematicExtremals,
     /// How finely it is solved.
     pub(crate) resolution: Resolution,
 }
 
-/// The best solution of a slew.
+/// The best solution of a leg, and how many programs it took.
 #[derive(Debug, Clone)]
 pub(crate) struct LegOutcome {
-    /// The best converged flight, or one that tells why there is none.
-    pub(crate) flown: LegSolution,
+    /// The best converged solution, or one whose status says why there is none.
+    pub(crate) solution: LegSolution,
     /// NLPs solved.
     pub(crate) solves: u64,
 }
 
-/// Solves a slew from one guess after the other, until its duration is so close to a bound from
-/// below, s, that no other is worth its time.
+/// Solves a leg from one guess after the other, until its duration is so close to a lower bound, s,
+/// that another guess is not worth its time.
 pub(crate) fn solve(
-    slew: &LegProblem<'_>,
+    leg: &LegProblem<'_>,
     bound: Option<f64>,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegOutcome {
-    if let Some(flown) = zero_length(slew) {
-        return LegOutcome { flown, solves: 0 };
+    if let Some(solution) = zero_length(leg) {
+        return LegOutcome {
+            solution,
+            solves: 0,
+        };
     }
-    let (mut flown, mut solves) = Starts::new(slew, bound, stop).best();
+    let (mut solution, mut solves) = Starts::new(leg, bound, stop).best();
     if stop().is_none()
-        && let Some(better) = slew.eigenaxis_at_worst(&flown, stop)
+        && let Some(better) = leg.no_slower_than_eigenaxis(&solution, stop)
     {
-        flown = better;
+        solution = better;
         solves += 1;
     }
-    if flown.duration().is_none()
-        && stop() != Some(Interruption::Cancelled)
-        && let Some(constructed) = slew.constructed()
+    if solution.duration().is_none()
+        && matches!(stop(), None | Some(StopReason::TimeLimit))
+        && let Some(constructed) = leg.constructed()
     {
-        flown = constructed;
-        if flown.profile.intervals() > 0 {
-            let improved = slew.fly_in(&flown.intervals, &flown.profile, stop);
+        solution = constructed;
+        if solution.profile.intervals() > 0 {
+            let improved = leg.solve_with(&solution.intervals, &solution.profile, stop);
             solves += 1;
-            if improved.improves(&flown) {
-                flown = improved;
+            if improved.improves(&solution) {
+                solution = improved;
             }
         }
     }
-    if slew.resolution.polished {
-        let waypoints = slew.waypoints(&flown.profile);
-        let intervals = flown.intervals.clone();
-        flown = polish(slew.dynamics, &waypoints, &intervals, flown, stop);
+    if leg.resolution.polished {
+        let waypoints = leg.waypoints(&solution.profile);
+        let intervals = solution.intervals.clone();
+        solution = polish(leg.dynamics, &waypoints, &intervals, solution, stop);
     }
-    LegOutcome { flown, solves }
+    LegOutcome { solution, solves }
 }
 
 impl LegProblem<'_> {
-    /// Intervals of the slew.
+    /// Intervals of the leg.
     pub(crate) fn intervals(&self) -> usize {
         let turn = self.arrival.turn(&self.from.attitude, &self.to.attitude);
         self.resolution.intervals_of(self.dynamics, turn)
     }
 
-    /// A flight that no program has made shorter: slowly about the eigenaxis. `None` where the wheels
-    /// cannot hold the momentum along the way.
+    /// A solution constructed without a program: slowly about the eigenaxis. `None` where the
+    /// wheels cannot hold the momentum along the way.
     pub(crate) fn constructed(&self) -> Option<LegSolution> {
         steered(self)
     }
 
-    /// Flies from a guess.
-    fn fly(&self, guess: &Profile, stop: &dyn Fn() -> Option<Interruption>) -> LegSolution {
-        self.fly_in(&[self.intervals()], guess, stop)
+    /// Solves from a guess with the leg's own intervals.
+    fn solve_from(&self, guess: &Profile, stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
+        self.solve_with(&[self.intervals()], guess, stop)
     }
 
-    /// Flies from a guess of so many intervals.
-    fn fly_in(
+    /// Solves from a guess of so many intervals.
+    fn solve_with(
         &self,
         intervals: &[usize],
         guess: &Profile,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> LegSolution {
         let waypoints = self.waypoints(guess);
-        fly(self.dynamics, &waypoints, intervals, guess, stop)
+        solve_through(self.dynamics, &waypoints, intervals, guess, stop)
     }
 
-    /// A flight that takes no longer than the slew about the eigenaxis, where that can be flown and
-    /// another flight is slower than it: from the exact slew, or the slew itself.
-    fn eigenaxis_at_worst(
+    /// A solution that takes no longer than the eigenaxis slew, where that keeps all limits and the
+    /// present solution is slower: solved from the eigenaxis slew, or that slew itself.
+    fn no_slower_than_eigenaxis(
         &self,
-        flown: &LegSolution,
-        stop: &dyn Fn() -> Option<Interruption>,
+        present: &LegSolution,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> Option<LegSolution> {
         let eigenaxis = self.eigenaxis();
         let allowed = eigenaxis.course.duration() * (1.0 + EIGENAXIS_TOLERANCE);
-        let fast = |flown: &LegSolution| flown.duration().is_some_and(|time| time <= allowed);
-        if fast(flown) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
+        let fast = |found: &LegSolution| found.duration().is_some_and(|time| time <= allowed);
+        if fast(present) || !eigenaxis.flyable || !self.begins_and_ends_at_rest() {
             return None;
         }
         let exact = eigenaxis.exact(self.dynamics, self.intervals());
-        let solved = self.fly(&exact, stop);
+        let solved = self.solve_from(&exact, stop);
         if fast(&solved) || self.dynamics.has_momentum() {
-            // With momentum its torque is not piecewise constant.
-            return solved.improves(flown).then_some(solved);
+            // With momentum the torque of the eigenaxis slew is not piecewise constant.
+            return solved.improves(present).then_some(solved);
         }
         Some(LegSolution {
             status: NlpStatus::Converged,
@@ -177,7 +182,7 @@ impl LegProblem<'_> {
         })
     }
 
-    /// Both ends, the second with the sign at which a motion arrives.
+    /// Both ends, the second with the quaternion sign at which a motion arrives.
     fn waypoints(&self, motion: &Profile) -> [Waypoint; 2] {
         let mut to = self.to.clone();
         if let Some(last) = motion.attitudes.last() {
@@ -191,21 +196,21 @@ impl LegProblem<'_> {
         self.extremals.guess(self)
     }
 
-    /// A guess from the slew about the eigenaxis, perturbed_eigenaxis to one side.
+    /// A guess from the eigenaxis slew, perturbed to one side.
     pub(crate) fn perturbed_eigenaxis(&self, side: Perturbation) -> Profile {
         let intervals = self.intervals();
         let slew = self.eigenaxis().lasting(self.least_duration());
         slew.guess(self.dynamics, intervals, side)
     }
 
-    /// No guess is shorter, s: what the ends ask for beside the turn takes its time, and even where
-    /// nothing is asked for a guess has to take some.
+    /// Least duration of a guess, s: long enough to change the rates and momenta of one end into
+    /// those of the other, and above zero in any case.
     fn least_duration(&self) -> f64 {
         let change = self.from.change_time(self.to, self.dynamics);
         change.max(self.dynamics.least_duration())
     }
 
-    /// The slew about the eigenaxis, the short way round unless the sign says otherwise.
+    /// The eigenaxis slew of the leg, the short way round unless the quaternion sign decides.
     pub(crate) fn eigenaxis(&self) -> EigenaxisSlew {
         let from = &self.from.attitude;
         let target = self.arrival.signed(&self.to.attitude, from);

@@ -1,8 +1,8 @@
-//! From continuous slews through waypoints to a chain-structured nonlinear program.
+//! From continuous motions through waypoints to a chain-structured nonlinear program.
 //!
-//! A flight visits waypoints `0 .. L`; each leg between two of them has intervals of constant
-//! torque whose lengths are unknowns, so that switches fall where they belong and the result can
-//! be flown exactly. Variables of interval `k` (scaled, see [`Scales`]):
+//! A motion passes waypoints `0 .. L`; each leg between two of them has intervals of constant
+//! torque whose lengths are unknowns, so that nodes lie on the switches and the torques can be
+//! commanded exactly. Variables of interval `k` (scaled, see [`Scales`]):
 //!
 //! | symbol | meaning |
 //! |---|---|
@@ -13,12 +13,13 @@
 //!
 //! With `m` instead of torque all links and limits but the attitude's are linear:
 //! `h_{k+1} = h_k + m_k`, `min_torque tau <= m <= max_torque tau` (which implies `tau >= 0`), and
-//! an interval may shrink to nothing without any variable losing its meaning. Speed and rate
-//! limits hold at nodes; between nodes `h` is linear, so without total momentum they hold there
-//! too. With it rate limits hold in the middle of intervals as well ([`middle`]), and what is found
-//! between nodes tightens all limits ([`Reserves`]).
+//! an interval may shrink to nothing without any variable losing its meaning. Speed and rate limits
+//! hold at nodes; between nodes `h` is linear, so without total momentum they hold there too. With
+//! it rate limits hold in the middle of intervals as well ([`middle`]), and excesses found between
+//! nodes tighten all limits ([`Reserves`]).
 //!
-//! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of [`crate::leg::kinematics`].
+//! The attitude link is `2 vec(q_{k+1}* q_k p_k) = 0` with the turn `p_k` of
+//! [`crate::leg::kinematics`].
 
 mod attitude_link;
 mod demands;
@@ -47,10 +48,10 @@ use nalgebra::Vector3;
 use nodes::Node;
 use rows::LimitRow;
 
-/// The engine holds what the table above lists for as many wheels as a spacecraft may have.
+/// The largest compiled size of the engine holds the states and controls of [`MAX_ENABLED`] wheels.
 const _: () = assert!(3 + MAX_ENABLED <= MAX_STATES && MAX_ENABLED < MAX_CONTROLS);
 
-/// Weights of a penalty on controls, half of the square of how far they are from given ones.
+/// Weights of a penalty on controls: half of the square of their distance from given ones.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ControlPenalty {
     /// On the lengths of intervals.
@@ -72,13 +73,13 @@ impl ControlPenalty {
 /// The quaternion of no turn.
 const NO_TURN: Quat = [0.0, 0.0, 0.0, 1.0];
 
-/// A flight through waypoints as a nonlinear program.
+/// A motion through waypoints as a nonlinear program.
 #[derive(Debug, Clone)]
 pub(crate) struct Transcription {
     dynamics: Dynamics,
     scales: Scales,
     turn_map: TurnMap,
-    /// What the turn map misses on each interval, see [`Transcription::correct`].
+    /// Fixed turns that make the turn map exact on each interval, see [`Transcription::correct`].
     corrections: Vec<Quat>,
     /// `ts Ji h_locked` and `ts hs Ji A`: the wheels' share of the scaled rate is
     /// `-(offset + gain h)`.
@@ -86,9 +87,9 @@ pub(crate) struct Transcription {
     rate_gain: Vec<Vector3<f64>>,
     /// Greatest and least `m` per unit of `tau`.
     momentum_per_time: Vec<(f64, f64)>,
-    /// Controls, scaled, to which a penalty draws those of the intervals, and its weights. Where torque
-    /// does not change from one interval to the next the cost is flat in the node between them; the
-    /// penalty settles it.
+    /// Scaled controls to which a penalty draws those of the intervals, and its weights. Where
+    /// torque does not change from one interval to the next the cost does not depend on the node
+    /// between them; the penalty makes the solution unique.
     reference_controls: Vec<f64>,
     penalty: ControlPenalty,
     /// Limits that hold at every node whose state is not fixed.
@@ -153,23 +154,23 @@ impl Transcription {
         transcription
     }
 
-    /// Keeps reserves from speed and rate limits from now on.
+    /// Sets the reserves from speed and rate limits.
     pub(crate) fn keep(&mut self, reserves: &Reserves) {
         self.reserves.clone_from(reserves);
     }
 
-    /// Draws the controls to those of an iterate from now on.
+    /// Sets the penalty that draws the controls to those of an iterate.
     pub(crate) fn draw_controls_to(&mut self, iterate: &Iterate, penalty: ControlPenalty) {
         self.reference_controls.clone_from(&iterate.controls);
         self.penalty = penalty;
     }
 
-    /// Makes the turn map exact where an iterate is: a fixed turn `e_k = p_k* p_exact` follows the
-    /// map's turn `p_k` on every interval from now on. Returns the sum of the angles, rad, by which
-    /// the corrections change: how far the iterate misses its end.
+    /// Makes the turn map exact at an iterate: a fixed turn `e_k = p_k* p_exact` follows the map's
+    /// turn `p_k` on every interval. Returns the sum of the angles, rad, by which the corrections
+    /// change: how far the iterate misses its end.
     ///
-    /// The solution of a corrected program flies to where it should; that its derivatives are still
-    /// those of the map moves the optimum by a share of the square of the map's error.
+    /// The solution of a corrected program ends where it should. Its derivatives are still those of
+    /// the map, which moves the optimum by a share of the square of the map's error.
     pub(crate) fn correct(&mut self, iterate: &Iterate) -> f64 {
         let (points, controls) = (self.point_len(), self.control_dim());
         let inverse = self.dynamics.inertia_inverse;
@@ -188,7 +189,7 @@ impl Transcription {
         missed
     }
 
-    /// The same of one interval whose exact turn is known. Returns the angle, rad.
+    /// Corrects one interval whose exact turn is known. Returns the angle, rad.
     pub(crate) fn correct_turn(&mut self, link: &Link<'_>, exact: &Quat) -> f64 {
         let turn = self.turn_map.turn(&self.turn_inputs(link));
         let correction = product(&conjugate(&turn), exact);
@@ -197,13 +198,13 @@ impl Transcription {
         2.0 * imaginary(&change).norm()
     }
 
-    /// Goes on with a finer map of the turn from now on.
+    /// Switches to a finer map of the turn.
     pub(crate) fn use_finer_map(&mut self) {
         self.turn_map = self.turn_map.finer(self.dynamics.inertia_inverse);
     }
 
-    /// Goes on with a finer map of the turn, when the one in use is too far from the truth for its
-    /// derivatives to lead there.
+    /// Switches to a finer map of the turn and corrects it: for iterates at which the derivatives
+    /// of the map in use are too inaccurate.
     pub(crate) fn refine(&mut self, iterate: &Iterate) {
         self.use_finer_map();
         self.correct(iterate);
@@ -213,7 +214,7 @@ impl Transcription {
         self.dynamics.wheel_count()
     }
 
-    /// `offset + gain h`: minus the scaled rate that the wheels make.
+    /// `offset + gain h`: minus the wheels' share of the scaled rate.
     fn wheel_rate(&self, wheels: &[f64]) -> Vector3<f64> {
         let mut rate = self.rate_offset;
         for (gain, h) in self.rate_gain.iter().zip(wheels) {
@@ -254,12 +255,12 @@ impl Transcription {
         })
     }
 
-    /// What the wheel momenta at a node cost, scaled.
-    fn price_of(&self, link: &Link<'_>) -> f64 {
-        let prices = self.nodes[link.node].prices.iter();
-        prices
+    /// Cost of the wheel momenta at a node, scaled.
+    fn cost_of_momenta(&self, link: &Link<'_>) -> f64 {
+        let costates = self.nodes[link.node].costates.iter();
+        costates
             .zip(&link.point[4..])
-            .map(|(price, h)| price * h)
+            .map(|(costate, h)| costate * h)
             .sum()
     }
 
@@ -299,7 +300,8 @@ impl Transcription {
         count
     }
 
-    /// Writes their derivatives by so many directions of a state; returns how many inequalities.
+    /// Writes the derivatives of the conditions on a state by so many of its directions; returns
+    /// how many inequalities.
     pub(crate) fn write_state_derivatives(
         &self,
         link: &Link<'_>,
@@ -385,7 +387,7 @@ impl Chain for Transcription {
 
     fn values(&self, link: &Link<'_>, out: &mut LinkValues) {
         let count = self.write_state_values(link.node, (link.point, Drift::default()), out);
-        out.cost = self.price_of(link);
+        out.cost = self.cost_of_momenta(link);
         if link.has_interval() {
             out.cost += link.control[self.wheels()];
             for (weight, away) in self.away_from_reference(link) {
@@ -410,7 +412,7 @@ impl Chain for Transcription {
         let node = &self.nodes[link.node];
         let still = (Drift::default(), self.state_dim());
         let count = self.write_state_derivatives(link, still, duals, out);
-        out.gradient[3..][..node.prices.len()].copy_from_slice(&node.prices);
+        out.gradient[3..][..node.costates.len()].copy_from_slice(&node.costates);
         if !link.has_interval() {
             return;
         }

@@ -1,6 +1,6 @@
-//! The fastest course of one angle from rest to rest within a rate and an acceleration.
+//! The fastest motion about one axis from rest to rest within a rate and an acceleration.
 //!
-//! It accelerates, coasts at the greatest rate if it gets there, and brakes:
+//! It accelerates, coasts at the greatest rate if it reaches that, and brakes:
 //!
 //! ```text
 //!   T = angle / w + w / w'    where the rate w is reached, else    T = 2 sqrt(angle / w')
@@ -34,7 +34,7 @@ impl BangCoastBang {
         }
     }
 
-    /// One over an angle, which may be zero, that takes this long without a coast.
+    /// The one without a coast over an angle, which may be zero, in a given time.
     #[must_use]
     pub fn lasting(angle: f64, duration: f64) -> Self {
         Self {
@@ -97,7 +97,7 @@ impl BangCoastBang {
         }
     }
 
-    /// When a share (in [0, 1]) of the angle is left, s.
+    /// The time at which a share (in [0, 1]) of the angle is left, s.
     #[must_use]
     pub fn time_with_left(&self, share: f64) -> f64 {
         let left = self.angle * share;

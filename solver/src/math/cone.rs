@@ -2,12 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Squared sine of an angle, and its like for three directions, below which they count as dependent.
+/// Squared sine of the angle between two directions, or the corresponding determinant of three,
+/// below which they count as dependent.
 const INDEPENDENT: f64 = 1e-18;
 
-/// The point nearest to another one among the sums of directions with factors that are not negative.
+/// The point nearest to another one among the sums of directions with factors that are not
+/// negative.
 ///
-/// It is a sum of at most three of them (Carathéodory), so that all choices are tried: there are as
+/// It is a sum of at most three of them (Carathéodory), so all choices are tried: there are only as
 /// many directions as a spacecraft has wheels.
 pub(crate) fn nearest(directions: &[Vector3<f64>], point: &Vector3<f64>) -> Vector3<f64> {
     let mut best = Vector3::zeros();
@@ -64,7 +66,7 @@ mod tests {
     use crate::math::random::SplitMix;
 
     #[test]
-    fn what_is_left_is_at_an_angle_to_all_directions_and_square_to_the_nearest_point() {
+    fn the_nearest_point_meets_the_conditions_of_moreau() {
         let mut random = SplitMix::new(7);
         let mut draw = || Vector3::from_fn(|_, _| random.normal());
         let mut kinds = [0; 3];
@@ -76,7 +78,7 @@ mod tests {
             let point = draw();
             let found = nearest(&directions, &point);
             let left = point - found;
-            // These two make it the nearest point of a convex cone (Moreau).
+            // These two characterise the nearest point of a convex cone (Moreau).
             assert!(directions.iter().all(|d| d.dot(&left) <= 1e-12), "{trial}");
             assert!(found.dot(&left).abs() <= 1e-12, "{trial}");
             kinds[if found == point {

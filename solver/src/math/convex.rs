@@ -1,13 +1,13 @@
 //! Small dense linear and quadratic programs, solved by an interior point method.
 //!
-//! The only file that names the solver behind it, so that it can be exchanged here.
+//! The only file that names clarabel, the solver behind it.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 use nalgebra::{DMatrix, DVector};
 
-/// Relative and absolute accuracy asked of the solver: tight, since the programs are tiny.
+/// Relative and absolute accuracy of the solver: tight, since the programs are tiny.
 const TOLERANCE: f64 = 1e-10;
 
 /// Minimise `1/2 x . quadratic x + cost . x` subject to `equal x = equal_to` and
@@ -35,7 +35,7 @@ pub(crate) enum Ending {
     Solved(Minimum),
     /// Proved to have no feasible point.
     Infeasible,
-    /// Neither, with the solver's word for it.
+    /// Neither, with the solver's status.
     Failed(String),
 }
 
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn contradictions_are_proved() {
+    fn contradictory_conditions_are_proved_infeasible() {
         assert_eq!(segment(0.25, 0.5).minimise(), Ending::Infeasible);
     }
 

@@ -12,12 +12,13 @@ impl SplitMix {
         Self(seed)
     }
 
-    /// The generator of one member of a family: neighbours share nothing, and none needs another.
+    /// The generator of one member of a family; its numbers are independent of those of other
+    /// members.
     pub(crate) fn member(family: u64, member: u64) -> Self {
         Self::new(Self::new(Self::new(family).draw().wrapping_add(member)).draw())
     }
 
-    /// A generator of its own, so that what it draws shifts no number of this one.
+    /// An independent generator; its draws do not advance this one.
     pub(crate) fn split(&mut self) -> Self {
         Self::new(self.draw())
     }
@@ -31,7 +32,7 @@ impl SplitMix {
         z ^ (z >> 31)
     }
 
-    /// One of the numbers below a count that is not zero.
+    /// An index below a count that is not zero.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         usize::try_from(self.draw() % count as u64).unwrap_or(0)
     }

@@ -1,10 +1,11 @@
-//! Rounding of what tells problems apart, so that the last digits of a caller's conversions do not.
+//! Rounding of the numbers that identify a problem, so that the last digits of a caller's unit
+//! conversions do not matter.
 
 /// Numbers are rounded to this many units of their scale: far below every tolerance and far above
 /// the rounding of conversions.
 const RESOLUTION: f64 = 1e13;
 
-/// A number without its last digits; its scale is a size that is usual beside it.
+/// A number rounded relative to a scale, the typical size of numbers like it.
 pub(crate) fn rounded(number: f64, scale: f64) -> f64 {
     if scale == 0.0 {
         return number;
@@ -20,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn last_digits_are_lost_and_others_are_not() {
+    fn only_the_last_digits_are_rounded() {
         for scale in [1e-20, 0.3, 1.0, 7e8] {
             for share in [0.0, 0.1, -0.7, 1.0] {
                 let number = share * scale;

@@ -8,9 +8,9 @@
 //!   are the body axes seen in the reference frame.
 //! * Kinematics `q' = 1/2 q (x) [w, 0]` with the body rate `w` in body axes, rad/s.
 //! * A rotation vector `r` in body axes perturbs on the right: `q exp(r)`.
-//! * `q` and `-q` are the same attitude; code that cares for the sign says so.
+//! * `q` and `-q` are the same attitude; code for which the sign matters says so.
 //!
-//! Everything else in the crate cites this block.
+//! The rest of the crate cites this block.
 
 mod forms;
 
@@ -20,7 +20,7 @@ use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 #[derive(Debug, Clone, Copy)]
 pub struct Attitude(UnitQuaternion<f64>);
 
-/// Equal components: unlike nalgebra's, this comparison tells `q` from `-q`.
+/// Equality of components: unlike in nalgebra, `q` and `-q` are different.
 impl PartialEq for Attitude {
     fn eq(&self, other: &Self) -> bool {
         self.0.coords == other.0.coords
@@ -120,7 +120,7 @@ impl Attitude {
         }
     }
 
-    /// Geodesic angle between two attitudes, rad, in `[0, pi]`; blind to signs.
+    /// Geodesic angle between two attitudes, rad, in `[0, pi]`, whatever their signs.
     #[must_use]
     pub fn angle_to(&self, other: &Self) -> f64 {
         self.nearest_sign(other).signed_turn_to(other).norm()
@@ -134,7 +134,7 @@ impl Attitude {
         let vector = relative.imag();
         let length = vector.norm();
         if length == 0.0 {
-            // Either no turn, or a full one about an axis that nothing fixes.
+            // No turn, or a full one, whose axis is arbitrary.
             return if relative.w >= 0.0 {
                 Vector3::zeros()
             } else {

@@ -1,4 +1,4 @@
-//! How wheels are driven: friction, motor, and speed laws of their own.
+//! The drives of wheels: friction, motor, and speed laws that replace commands.
 //!
 //! With `u` the torque that changes a wheel's momentum and `W` its speed relative to the body, the
 //! motor has to give
@@ -8,8 +8,8 @@
 //!   P = (R / k^2) M^2 + M W                   (energy thesis, equation 1.15, with c = 0)
 //! ```
 //!
-//! with viscous and Coulomb friction `v`, `c`, winding resistance `R` and torque constant `k`. Of
-//! `P` the supply pays `max(P, 0) / efficiency + quiescent`: nothing is fed back (equation 1.16).
+//! with viscous and Coulomb friction `v`, `c`, winding resistance `R` and torque constant `k`. The
+//! supply gives `max(P, 0) / efficiency + quiescent`: nothing is fed back (equation 1.16).
 
 use crate::model::findings::Findings;
 use crate::model::input::{input_object, optional, required};
@@ -23,12 +23,12 @@ input_object! {
         pub viscous_friction_nms: Option<f64> = optional().at_least(0.0).means(0.0),
         /// Coulomb friction `c`.
         pub coulomb_friction_nm: Option<f64> = optional().at_least(0.0).means(0.0),
-        /// Whether an inner loop makes up for friction: the torque limits are then the motor's. Without
-        /// it a commanded torque is the motor's, and friction comes off it.
+        /// Whether an inner loop compensates friction: the torque limits are then the motor's. Without it
+        /// a commanded torque is the motor's, and friction is subtracted from it.
         pub friction_compensated: Option<bool> = optional().means(true),
-        /// What the motor consumes.
+        /// The motor, for its power consumption.
         pub motor: Option<MotorSpec> = optional(),
-        /// The wheel follows this by itself and is not commanded.
+        /// A speed law that the wheel follows instead of commands.
         pub speed_law: Option<SpeedLawSpec> = optional(),
     }
 }
@@ -42,7 +42,7 @@ input_object! {
         pub torque_constant_nm_a: f64 = required().above(0.0),
         /// Share of the supplied power that reaches the motor.
         pub efficiency: Option<f64> = optional().above(0.0).at_most(1.0).means(1.0),
-        /// What the electronics take without any torque.
+        /// Power of the electronics without torque.
         pub quiescent_power_w: Option<f64> = optional().at_least(0.0).means(0.0),
     }
 }
@@ -81,7 +81,7 @@ pub struct Motor {
     pub torque_constant: f64,
     /// Share of the supplied power that reaches the motor, above zero and at most one.
     pub efficiency: f64,
-    /// What the electronics take without any torque, W.
+    /// Power of the electronics without torque, W.
     pub quiescent_power: f64,
 }
 
@@ -95,7 +95,7 @@ pub struct SpeedLaw {
 }
 
 impl Drive {
-    /// Without friction, and with nothing known of its motor.
+    /// A drive without friction, whose motor is unknown.
     pub const IDEAL: Self = Self {
         viscous_friction: 0.0,
         coulomb_friction: 0.0,
@@ -126,7 +126,8 @@ impl Drive {
                 "give one drive for each wheel, in the order of the wheels, or none at all",
             );
         }
-        // Read one by one first: collecting straight into an option would stop at the first fault.
+        // All are read before they are collected: collecting into an option stops at the first
+        // fault.
         let drives: Vec<_> = specs
             .iter()
             .enumerate()
@@ -155,7 +156,7 @@ impl Drive {
         })
     }
 
-    /// What friction takes at a speed (rad/s), N m, with the sign of the speed.
+    /// Friction torque at a speed (rad/s), N m, with the sign of the speed.
     #[must_use]
     pub fn friction(&self, speed: f64) -> f64 {
         let coulomb = if speed == 0.0 {
@@ -166,8 +167,8 @@ impl Drive {
         self.viscous_friction * speed + coulomb
     }
 
-    /// What the motor has to give, N m, for a commanded torque at a speed (rad/s): friction too,
-    /// where an inner loop makes up for it.
+    /// Motor torque, N m, for a commanded torque at a speed (rad/s): friction is added where an
+    /// inner loop compensates it.
     #[must_use]
     pub fn motor_torque(&self, commanded: f64, speed: f64) -> f64 {
         if self.friction_compensated {
@@ -216,7 +217,7 @@ impl Motor {
         self.resistance * current * current + motor_torque * speed
     }
 
-    /// What the supply gives for it, W: nothing is fed back.
+    /// Power of the supply for it, W: nothing is fed back.
     #[must_use]
     pub fn bill(&self, motor_torque: f64, speed: f64) -> f64 {
         self.power(motor_torque, speed).max(0.0) / self.efficiency + self.quiescent_power
@@ -267,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_braking_motor_is_neither_paid_nor_billed() {
+    fn a_braking_motor_takes_no_power_from_the_supply() {
         let motor = Motor {
             resistance: 0.343,
             torque_constant: 0.0705,

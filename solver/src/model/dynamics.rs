@@ -8,11 +8,13 @@
 //! ```
 //!
 //! The state is `(q, h)`: three plus `K` numbers, of which `h` is a plain integral of the torque.
-//! Speed limits become limits on `h_i / I_i - a_i . w`. Shares of the limits that the plan may not
-//! use are taken off here, so nothing downstream knows of them.
+//! Speed limits become limits on `h_i / I_i - a_i . w`. Torque and speed limits are multiplied here
+//! by the shares that a plan may use ([`Authority`]), and nowhere else.
 
 use crate::model::attitude::Attitude;
-use crate::model::scenario::Scenario;
+use crate::model::scenario::Start;
+use crate::model::spacecraft::Spacecraft;
+use crate::model::spec::OptionsSpec;
 use crate::model::wheel_axes::greatest_share;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
@@ -33,7 +35,26 @@ pub(crate) struct Actuator {
     pub(crate) max_speed: f64,
 }
 
-/// The dynamics of one scenario's spacecraft with its momentum.
+/// Shares of the wheels' limits that a plan may use, in `(0, 1]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Authority {
+    /// Of every torque limit.
+    pub(crate) torque: f64,
+    /// Of every speed limit.
+    pub(crate) momentum: f64,
+}
+
+impl Authority {
+    /// The shares that options of a solve allow.
+    pub(crate) fn of(options: &OptionsSpec) -> Self {
+        Self {
+            torque: options.torque_authority,
+            momentum: options.momentum_authority,
+        }
+    }
+}
+
+/// The dynamics of one spacecraft with its momentum.
 #[derive(Debug, Clone)]
 pub(crate) struct Dynamics {
     /// The enabled wheels.
@@ -60,36 +81,34 @@ pub(crate) struct Dynamics {
     pub(crate) max_rate_norm: f64,
 }
 
-/// Total momentum below this fraction of what the wheels turn over counts as zero, so that
-/// rounding in the caller's numbers does not cost the simpler dynamics.
+/// Total momentum below this fraction of the sum of its terms counts as zero, so that rounding in
+/// the caller's numbers does not prevent the simpler dynamics.
 const NEGLIGIBLE_MOMENTUM: f64 = 1e-13;
 
-/// What a quantity of directions in the body is along each of three axes, given as columns.
+/// A function of directions in the body, evaluated along each of three axes, given as columns.
 pub(crate) fn along(axes: &Matrix3<f64>, quantity: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
     Vector3::from_fn(|i, _| quantity(&axes.column(i).into_owned()))
 }
 
 impl Dynamics {
-    /// The dynamics of a scenario.
-    pub(crate) fn of(scenario: &Scenario) -> Self {
-        let spacecraft = scenario.spacecraft();
-        let options = scenario.options();
+    /// The dynamics of a spacecraft with the momentum of a state, within the shares of its limits
+    /// that a plan may use.
+    pub(crate) fn of(spacecraft: &Spacecraft, start: &Start, authority: Authority) -> Self {
         let actuators: Vec<Actuator> = spacecraft
             .enabled_wheels()
             .map(|(index, wheel)| Actuator {
                 index,
                 axis: wheel.axis,
                 inertia: wheel.inertia,
-                min_torque: wheel.min_torque * options.torque_authority,
-                max_torque: wheel.max_torque * options.torque_authority,
-                max_speed: wheel.max_speed * options.momentum_authority,
+                min_torque: wheel.min_torque * authority.torque,
+                max_torque: wheel.max_torque * authority.torque,
+                max_speed: wheel.max_speed * authority.momentum,
             })
             .collect();
         let columns: Vec<_> = actuators.iter().map(|wheel| wheel.axis).collect();
         let axes = Matrix3xX::from_columns(&columns);
         let axes_inverse = spacecraft.axes_inverse().clone();
         let null_space = null_space(&axes, &axes_inverse);
-        let start = scenario.start();
         let spins = spacecraft.wheels().iter().zip(&start.wheel_speed);
         let (mut locked_momentum, mut turnover) = (Vector3::zeros(), 0.0);
         for (wheel, speed) in spins {
@@ -100,7 +119,7 @@ impl Dynamics {
             }
         }
         turnover += (spacecraft.inertia() * start.rate).norm();
-        let mut momentum = scenario.momentum();
+        let mut momentum = start.momentum(spacecraft);
         if momentum.norm() <= NEGLIGIBLE_MOMENTUM * turnover {
             momentum = Vector3::zeros();
         }
@@ -129,7 +148,7 @@ impl Dynamics {
         self.momentum != Vector3::zeros()
     }
 
-    /// The middle of the eigenvalues of `J^-1`, 1/(kg m²): what a sphere nearest to the body has.
+    /// The middle between the extreme eigenvalues of `J^-1`, 1/(kg m²).
     pub(crate) fn mean_inverse_inertia(&self) -> f64 {
         let values = self.locked_inertia_inverse.symmetric_eigenvalues();
         0.5 * (values.min() + values.max())
@@ -138,7 +157,7 @@ impl Dynamics {
     /// Greatest component of the body rate along a direction in body axes, rad/s times its length,
     /// that wheel speeds within their limits allow at any attitude, to either side:
     /// `J w = R(q)^T H - h_locked - sum a_i I_i W_i` with `J = J_eff + sum I_i a_i a_i^T`, so
-    /// `d . w` is largest with every wheel at the limit of the sign that suits it.
+    /// `d . w` is largest with every wheel at the limit of the sign that increases it.
     pub(crate) fn reachable_rate(&self, direction: &Vector3<f64>) -> f64 {
         self.reachable_relative_rate(direction, 0.0)
     }
@@ -151,7 +170,7 @@ impl Dynamics {
         let turned = (lever - direction * share).norm() * self.momentum.norm();
         self.actuators.iter().fold(held + turned, |sum, wheel| {
             let share = lever.dot(&wheel.axis).abs() * wheel.inertia;
-            // A wheel without a limit that does not turn an axis leaves it alone.
+            // Zero times an infinite speed limit would be NaN.
             sum + if share > 0.0 {
                 share * wheel.max_speed
             } else {
@@ -160,10 +179,11 @@ impl Dynamics {
         })
     }
 
-    /// Greatest component along a direction in body axes of `(J_eff^-1 - share) (w x R^T H)`, rad/s²
-    /// times its length: the acceleration that momentum makes, relative to axes that turn with a
-    /// share of it. By the rules of triple products it is at most `|H| |(J_eff^-1 d - share d) x w|`,
-    /// convex in `w`, so at most its largest value at a corner of the box of rates.
+    /// Greatest component along a direction in body axes of `(J_eff^-1 - share) (w x R^T H)`,
+    /// rad/s² times its length: the acceleration by the stored momentum, relative to axes that turn
+    /// with a share of it. By the rules of triple products it is at most
+    /// `|H| |(J_eff^-1 d - share d) x w|`, convex in `w`, so at most its largest value at a corner
+    /// of the box of rates.
     pub(crate) fn gyroscopic_acceleration(&self, direction: &Vector3<f64>, share: f64) -> f64 {
         let lever = self.inertia_inverse.tr_mul(direction) - direction * share;
         if !self.has_momentum() || lever == Vector3::zeros() {
@@ -209,8 +229,8 @@ impl Dynamics {
     }
 
     /// Greatest component of the acceleration along a direction in body axes, rad/s² times its
-    /// length, that wheel torques within their limits make without momentum, to either side:
-    /// `J_eff w' = -A u`, so every torque is at the limit that suits it.
+    /// length, by wheel torques within their limits without momentum, to either side:
+    /// `J_eff w' = -A u`, so every torque is at the limit of the sign that increases it.
     pub(crate) fn reachable_acceleration(&self, direction: &Vector3<f64>) -> f64 {
         let lever = self.inertia_inverse.tr_mul(direction);
         let (back, forth) = self
@@ -224,8 +244,8 @@ impl Dynamics {
         f64::max(back, forth)
     }
 
-    /// Orthonormal axes, as columns, along which rates are limited most independently: the body
-    /// axes when their rates have limits, else those of [`Self::wheel_axes`].
+    /// Orthonormal axes, as columns, for boxes of rates: the body axes when their rates have
+    /// limits, else those of [`Self::wheel_axes`].
     pub(crate) fn natural_axes(&self) -> Matrix3<f64> {
         if self.max_rate.iter().any(|limit| limit.is_finite()) {
             Matrix3::identity()
@@ -235,7 +255,7 @@ impl Dynamics {
     }
 
     /// Orthonormal axes, as columns, nearest to the axes of the three wheels that span the largest
-    /// volume: they turn with the spacecraft and not with its description.
+    /// volume. They do not depend on the choice of body axes.
     pub(crate) fn wheel_axes(&self) -> Matrix3<f64> {
         let (mut widest, mut largest) = (Matrix3::identity(), 0.0);
         for (i, first) in self.actuators.iter().enumerate() {
@@ -244,7 +264,7 @@ impl Dynamics {
                     let axes = [first, second, third].map(|wheel| wheel.axis.normalize());
                     let triple = Matrix3::from_columns(&axes);
                     let volume = triple.determinant().abs();
-                    // The first of equal ones, however they were rounded.
+                    // The first of triples whose volumes are equal up to rounding.
                     if volume > largest + 1e-6 {
                         (widest, largest) = (triple, volume);
                     }
@@ -269,7 +289,7 @@ impl Dynamics {
         self.inertia_inverse * body
     }
 
-    /// What the wheels must hold in sum, N m s, at an attitude and body rate.
+    /// Sum of the wheel momenta, N m s, at an attitude and body rate.
     pub(crate) fn demanded(&self, attitude: &Attitude, rate: &Vector3<f64>) -> Vector3<f64> {
         attitude.to_body(self.momentum) - self.locked_momentum - self.inertia * rate
     }
@@ -316,8 +336,8 @@ impl Dynamics {
             .chain(std::iter::once(rate.norm() / self.max_rate_norm))
     }
 
-    /// Greatest share of its limit that any wheel speed or body rate has; infinite never, 0 when
-    /// nothing is limited.
+    /// Greatest share of its limit that any wheel speed or body rate has; 0 when nothing is
+    /// limited, never infinite.
     pub(crate) fn speed_usage(&self, rate: &Vector3<f64>, wheels: &DVector<f64>) -> f64 {
         self.limit_shares(rate, wheels)
             .fold(0.0, |worst, share| worst.max(share.abs()))

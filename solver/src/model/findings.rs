@@ -1,7 +1,7 @@
-//! Gathering everything that is wrong with a description, instead of stopping at the first fault.
+//! Collects all problems of a description, instead of stopping at the first one.
 //!
-//! A reader takes the findings by mutable reference, notes what it dislikes and returns `None` for
-//! a value that it cannot use, so that one fault neither hides nor invents another.
+//! A reader takes the findings by mutable reference, adds problems and returns `None` for a value
+//! that it cannot use, so that one fault neither hides nor causes another.
 
 use crate::model::problem::{Code, Faults, MAX_KEPT, Problem};
 use nalgebra::{Matrix3, Vector3};
@@ -14,7 +14,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Notes a reason to refuse the description.
+    /// Adds a reason to refuse the description.
     pub fn refuse(
         &mut self,
         pointer: impl Into<String>,
@@ -28,7 +28,7 @@ impl Findings {
         }
     }
 
-    /// Notes a doubt that does not stand in the way.
+    /// Adds a warning, which does not refuse the description.
     pub fn warn(
         &mut self,
         pointer: impl Into<String>,
@@ -42,19 +42,27 @@ impl Findings {
         }
     }
 
-    /// Takes over the problems that another reader has found.
+    /// Adds the problems that another reader has found.
     pub fn include(&mut self, problems: Vec<Problem>) {
         self.problems.extend(problems);
     }
 
     /// The value with its warnings, or all the problems.
     ///
-    /// Whoever returns `None` has noted why, so the two always agree.
+    /// A reader that returns `None` has added the reason, so there is a value or a problem.
+    ///
+    /// # Errors
+    ///
+    /// The problems, when there are any.
     pub fn conclude<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Vec<Problem>> {
         self.judge(value).map_err(|faults| faults.problems)
     }
 
     /// The value with its warnings, or all the problems with all the warnings.
+    ///
+    /// # Errors
+    ///
+    /// The problems and warnings, when there are any problems.
     pub fn judge<T>(self, value: Option<T>) -> Result<(T, Vec<Problem>), Faults> {
         match value {
             Some(value) if self.problems.is_empty() => Ok((value, self.warnings)),
@@ -71,7 +79,7 @@ impl Findings {
         }
     }
 
-    /// Whether a list has at most so many entries, beyond which it is not read at all.
+    /// Whether a list has at most so many entries; longer ones are not read.
     pub fn at_most(&mut self, pointer: &str, entries: usize, most: usize) -> bool {
         if entries > most {
             self.include(vec![Problem::too_long(pointer, entries, most)]);
@@ -172,6 +180,7 @@ impl Findings {
 }
 
 /// Unit vector along a non-zero vector of any representable length.
+#[must_use]
 pub fn unit(vector: Vector3<f64>) -> Vector3<f64> {
     // Scaled first, since the squares of very long or very short vectors leave the number range.
     (vector / vector.amax()).normalize()

@@ -1,15 +1,15 @@
-//! Which orders may be flown: targets with a fixed place, and targets that come after others.
+//! Rules for the order: targets with a fixed place, and targets that come after others.
 //!
 //! # Deciding whether a beginning can be completed
 //!
-//! Every place of an order is a unit of time and every target a job of that length: the place `p`
-//! releases its target at `p` and wants it done by `p + 1`, and `j` after `i` is a precedence. On
-//! one machine such jobs are scheduled by earliest due date, and if that schedule is late there is
-//! none that is not (Jackson 1955 for the rule; Lageweg, Lenstra and Rinnooy Kan 1976 for releases
-//! and precedences of unit jobs), provided that due dates have been drawn forward along the
-//! precedences, `due(i) <= due(j) - 1`. Releases need not be drawn along: a job whose predecessors
-//! are done has been released in that sense too. There are as many places as targets, so a place
-//! that stays empty also ends in delay. The answer is exact and comes with an order.
+//! Every place of an order is a unit of time and every target a job of that length: a target with
+//! the fixed place `p` has the release date `p` and the due date `p + 1`, and `j` after `i` is a
+//! precedence. On one machine such jobs are scheduled by earliest due date, and if that schedule is
+//! late every schedule is (Jackson 1955 for the rule; Lageweg, Lenstra and Rinnooy Kan 1976 for
+//! releases and precedences of unit jobs), provided that due dates satisfy `due(i) <= due(j) - 1`
+//! along the precedences. Release dates need no such correction: a job is scheduled only after its
+//! predecessors. There are as many places as targets, so a place that stays empty also makes a job
+//! late. The answer is exact and comes with an order.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -25,21 +25,21 @@ pub struct OrderRules {
     successors: Vec<Vec<usize>>,
     /// The target of every place, where it is fixed.
     holders: Vec<Option<usize>>,
-    /// Every target is among the first so many, or no order keeps the rules.
+    /// Due date of every target: it is among the first so many in every order that keeps the rules.
     due: Vec<usize>,
 }
 
 /// Why a beginning has no completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum DeadEnd {
-    /// This target ought to be among the first `due`, and there is no room for it.
+    /// This target has to be among the first `due`, and all of these places are taken.
     Overdue {
         /// Index of the target.
         target: usize,
-        /// How many places there are for it.
+        /// The number of places that it may take, from the first one.
         due: usize,
     },
-    /// Whatever comes before, no target may take this zero-based place.
+    /// No target may take this zero-based place, whatever comes before.
     Empty(usize),
 }
 
@@ -90,7 +90,7 @@ impl OrderRules {
         self
     }
 
-    /// Successors first; targets on a cycle, which are never admitted anyway, are left out.
+    /// Targets with successors first; those on a cycle, which no order admits, are left out.
     fn draw_due_dates_forward(&mut self) {
         let mut open: Vec<usize> = self.successors.iter().map(Vec::len).collect();
         let mut ready: Vec<usize> = (0..open.len())
@@ -112,7 +112,7 @@ impl OrderRules {
     #[must_use]
     pub fn is_free(&self) -> bool {
         let targets = self.due.len();
-        // The last place is due no sooner than any, and yet it is one.
+        // The last place has the latest due date, but it is a fixed place all the same.
         self.positions.iter().all(Option::is_none)
             && self.due.iter().all(|due| *due == targets)
             && self.predecessors.iter().all(Vec::is_empty)
@@ -166,7 +166,7 @@ impl OrderRules {
                 .or_else(|| match self.holders[place] {
                     Some(holder) => (awaited[holder] == 0).then_some(holder),
                     None => loop {
-                        // What the prefix has visited is still in the heap.
+                        // Targets of the prefix are still in the heap.
                         let Reverse((_, target)) = ready.pop()?;
                         if !visited[target] {
                             break Some(target);
@@ -188,7 +188,7 @@ impl OrderRules {
         Ok(order)
     }
 
-    /// Why nothing can take a place.
+    /// Why no target can take a place.
     fn dead_end(&self, place: usize, visited: &[bool]) -> DeadEnd {
         let earliest = |target: usize| self.positions[target].unwrap_or(0).max(place);
         let overdue = (0..visited.len())

@@ -28,7 +28,8 @@ pub enum Optimality {
 }
 
 /// What a lower bound rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum LowerBoundKind {
     /// Relaxed multi-phase NLPs, assumed to be solved globally.
     NlpRelaxation,
@@ -36,18 +37,6 @@ pub enum LowerBoundKind {
     PairTable,
     /// Proved bounds of the rate-limited kinematics.
     Certified,
-}
-
-impl LowerBoundKind {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::NlpRelaxation => "nlp_relaxation",
-            Self::PairTable => "pair_table",
-            Self::Certified => "certified",
-        }
-    }
 }
 
 /// A complete answer.
@@ -63,31 +52,31 @@ pub struct Plan {
     pub relative_gap: f64,
     /// What the bound rests on.
     pub lower_bound_kind: LowerBoundKind,
-    /// No plan is shorter than this, s, in any order that the scenario admits (of a plan whose order was given:
-    /// in that order), proved: the shortest sum of the certified bounds of its legs with settle and
-    /// dwell. `None` where no slew is bounded.
+    /// Proved: no plan is shorter than this, s, in any order that the scenario admits (in the given
+    /// order, where one was given). It is the shortest sum of the certified bounds of legs with
+    /// settle and dwell. `None` where no leg is bounded.
     pub certified_lower_bound_s: Option<f64>,
     /// The next best orders.
     pub alternatives: Vec<Alternative>,
-    /// One entry per slew.
+    /// One entry per leg.
     pub legs: Vec<Leg>,
-    /// The flight itself.
+    /// The motion: passages and torques.
     pub flight: Flight,
     /// Sampled states, at every control boundary at least.
     pub states: Vec<State>,
-    /// What is left of every limit.
+    /// The margins of all limits.
     pub margins: Margins,
     /// The independent re-integration.
     pub verification: Verification,
-    /// How much work it was.
+    /// Statistics of the solve.
     pub statistics: Statistics,
-    /// What the caller should know, keep-out violations for one.
+    /// Warnings, for example of keep-out violations.
     pub warnings: Vec<Problem>,
 }
 
 impl Plan {
-    /// The largest share of a leg's duration that its certified bound leaves open: how much of it a
-    /// better local minimum might save. One where a leg has no bound; `None` without slews.
+    /// The largest relative distance between a leg's duration and its certified bound: what a
+    /// better local minimum might save. One where a leg has no bound; `None` without legs.
     #[must_use]
     pub fn largest_open_share(&self) -> Option<f64> {
         let slews = self.legs.iter().filter(|leg| leg.duration_s > 0.0);
@@ -99,18 +88,18 @@ impl Plan {
     }
 }
 
-/// The part of a plan that can be flown and checked: when to be where, and the torques.
+/// The part of a plan that is commanded and checked: times of the passages, and torques.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {
     /// Duration, s.
     pub total_time_s: f64,
-    /// The visits in order of time.
+    /// The passages in order of time.
     pub passages: Vec<Passage>,
     /// Wheel torques; the intervals tile `[0, total_time_s]`.
     pub controls: Vec<Control>,
 }
 
-/// A visit to a target.
+/// The passage of a target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passage {
     /// Identifier of the target.
@@ -141,7 +130,7 @@ pub struct Alternative {
     pub total_time_s: f64,
 }
 
-/// One slew of a plan.
+/// One leg of a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leg {
     /// Where it begins: `start` or a target's identifier.
@@ -152,15 +141,14 @@ pub struct Leg {
     pub start_s: f64,
     /// Length without settle and dwell, s.
     pub duration_s: f64,
-    /// No slew takes less, s, between these two places under the conditions that the scenario sets
-    /// there, proved, as part of whatever tour: rates that the plan chose are not used. `None` where
-    /// nothing is proved.
+    /// Proved: no leg between these two places under the scenario's conditions takes less, s, in
+    /// any tour. Rates that the plan chose are not used. `None` where nothing is proved.
     pub certified_lower_bound_s: Option<f64>,
-    /// Time of the rest-to-rest slew about the eigenaxis, s, when that slew can be flown.
+    /// Time of the rest-to-rest eigenaxis slew, s, when that slew keeps all limits.
     pub eigenaxis_duration_s: Option<f64>,
-    /// Least time of the slew from rest to rest between the same attitudes, s: what the slew would
-    /// take if it stood alone. `None` when it was not solved, as in plans of searches that were
-    /// stopped or go on.
+    /// Minimum time of the leg from rest to rest between the same attitudes, s: its duration if it
+    /// stood alone. `None` when it was not solved, as in plans of searches that were stopped or go
+    /// on.
     pub rest_to_rest_duration_s: Option<f64>,
     /// How the NLP that shaped this leg ended.
     pub solver_status: String,
@@ -179,7 +167,7 @@ pub struct State {
     pub wheel_speed_rad_s: Vec<f64>,
 }
 
-/// What is left of every limit: 0 is at the limit, 1 is unused.
+/// Relative margins of all limits: 0 is at the limit, 1 is unused.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Margins {
     /// Smallest relative margin of the wheel torques.
@@ -215,7 +203,7 @@ pub struct Verification {
     pub failures: Vec<String>,
 }
 
-/// How much work a solve was, and how it went; never part of a comparison between plans.
+/// Work and progress of a solve; never part of a comparison between plans.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Statistics {
     /// Wall-clock time, s.
@@ -224,11 +212,11 @@ pub struct Statistics {
     pub nodes_explored: u64,
     /// NLPs solved, all starts counted.
     pub nlp_solves: u64,
-    /// The same by kind.
+    /// NLPs solved, by kind.
     pub nlp_solves_by_kind: NlpSolves,
-    /// What became of the nodes of the search.
+    /// Nodes of the search, by their fate.
     pub search: SearchWork,
-    /// Every plan that was better than those before, and last the one that was returned.
+    /// Every plan that was better than those before it; the last one is the plan returned.
     pub history: Vec<Milestone>,
     /// Legs solved.
     pub legs_solved: u64,
@@ -238,21 +226,22 @@ pub struct Statistics {
     pub threads: usize,
 }
 
-/// NLPs solved, all starts counted, by what they were solved for.
+/// NLPs solved, all starts counted, by purpose.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NlpSolves {
-    /// Single slews.
+    /// Single legs.
     pub legs: u64,
-    /// Several slews at once, coupled where rates are free: beginnings of orders and whole ones.
+    /// Segments: several legs in one program, coupled where rates are free, of prefixes and whole
+    /// orders.
     pub segments: u64,
 }
 
-/// What became of the nodes of the search.
+/// Nodes of the search, by their fate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchWork {
-    /// Beginnings of orders evaluated.
+    /// Prefixes of orders evaluated.
     pub prefixes: u64,
-    /// Beginnings whose evaluation did not converge.
+    /// Prefixes whose evaluation did not converge.
     pub prefixes_unresolved: u64,
     /// Whole orders evaluated.
     pub tours: u64,
@@ -264,7 +253,7 @@ pub struct SearchWork {
     pub pruned_by_prefix: u64,
     /// Nodes pruned when a better order was found.
     pub pruned_by_incumbent: u64,
-    /// Nodes dropped for want of memory.
+    /// Nodes dropped because memory was short.
     pub dropped_for_memory: u64,
 }
 

@@ -1,10 +1,11 @@
-//! What can be wrong with an input, said so that a caller can act on it.
+//! Problems of an input, with what the caller can do about them.
 
 use std::fmt;
+use strum::EnumMessage as _;
 
-/// Most problems of one input that are kept: more help nobody, and each takes memory.
+/// Limit of the reported problems of one input, for memory.
 pub const MAX_KEPT: usize = 1000;
-/// Most names that a hint lists, and most characters of each.
+/// Limits of the names that a hint lists, and of the characters of each.
 const NAMES_IN_A_HINT: usize = 10;
 const CHARACTERS_OF_A_NAME: usize = 40;
 
@@ -48,14 +49,14 @@ impl Problem {
         )
     }
 
-    /// The same of a document that is a part of another, at this pointer there.
+    /// The problem in a document that contains this one at a pointer.
     #[must_use]
     pub fn under(mut self, place: &str) -> Self {
         self.pointer.insert_str(0, place);
         self
     }
 
-    /// All problems of such a document.
+    /// All problems in a document that contains theirs at a pointer.
     #[must_use]
     pub fn all_under(place: &str, problems: Vec<Self>) -> Vec<Self> {
         let moved = |problem: Self| problem.under(place);
@@ -68,7 +69,7 @@ impl Problem {
 pub struct Faults {
     /// Why it is refused.
     pub problems: Vec<Problem>,
-    /// What is doubtful, but would not stand in the way.
+    /// Warnings, which alone would not refuse it.
     pub warnings: Vec<Problem>,
 }
 
@@ -87,7 +88,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The first of many names in quotation marks for a hint, which stays short whatever they are.
+/// The first of many names, in quotation marks and shortened, for a hint of limited length.
 pub(crate) fn quoted<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     let more = names.len().saturating_sub(NAMES_IN_A_HINT);
     let quote = |name: &str| match name.char_indices().nth(CHARACTERS_OF_A_NAME) {
@@ -101,191 +102,210 @@ pub(crate) fn quoted<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> Strin
     listed.join(", ")
 }
 
-macro_rules! codes {
-    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
-        /// Stable codes of problems; the text form never changes its meaning.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        #[non_exhaustive]
-        pub enum Code {
-            $($(#[doc = $doc])+ $name,)+
-        }
-
-        impl Code {
-            /// All codes, for the error index.
-            pub const ALL: &'static [Code] = &[$(Code::$name,)+];
-
-            /// The stable text of the code.
-            #[must_use]
-            pub const fn as_str(self) -> &'static str {
-                match self { $(Code::$name => $text,)+ }
-            }
-
-            /// What it says about an input, as a sentence.
-            #[must_use]
-            pub fn meaning(self) -> &'static str {
-                match self { $(Code::$name => concat!($($doc),+).trim(),)+ }
-            }
-
-            /// What to do about it, as a sentence.
-            #[must_use]
-            pub const fn remedy(self) -> &'static str {
-                match self { $(Code::$name => $remedy,)+ }
-            }
-        }
-    };
-}
-
-codes! {
+/// Stable codes of problems; the text form never changes its meaning.
+///
+/// The documentation of a code is its meaning in the error index, and its message the remedy there.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    strum::Display,
+    strum::EnumMessage,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "snake_case")]
+#[non_exhaustive]
+pub enum Code {
     /// The document is not valid JSON.
-    MalformedJson = "malformed_json",
-        "Correct the syntax at the line and column of the message.";
+    #[strum(message = "Correct the syntax at the line and column of the message.")]
+    MalformedJson,
     /// A required field is missing.
-    MissingField = "missing_field",
-        "Add the field.";
+    #[strum(message = "Add the field.")]
+    MissingField,
     /// A field that the schema does not know.
-    UnknownField = "unknown_field",
-        "Correct its name or remove it; unknown fields are refused so that a misspelt limit is not \
-         silently none.";
+    #[strum(
+        message = "Correct its name or remove it; unknown fields are refused so that a \
+        misspelt limit is not silently none."
+    )]
+    UnknownField,
     /// The same key twice in one object.
-    DuplicateField = "duplicate_field",
-        "Keep the one that is meant.";
+    #[strum(message = "Keep the one that is meant.")]
+    DuplicateField,
     /// A value of the wrong JSON type or shape.
-    WrongType = "wrong_type",
-        "Write the value in the form that the message asks for.";
+    #[strum(message = "Write the value in the form that the message asks for.")]
+    WrongType,
     /// A text outside the allowed choices.
-    UnknownChoice = "unknown_choice",
-        "Take one of the choices of the hint.";
+    #[strum(message = "Take one of the choices of the hint.")]
+    UnknownChoice,
     /// A number that is not finite.
-    NotFinite = "not_finite",
-        "Write a finite number, or null where no limit is meant.";
+    #[strum(message = "Write a finite number, or null where no limit is meant.")]
+    NotFinite,
     /// A number outside its range.
-    OutOfRange = "out_of_range",
-        "Take a number of the range in the message; look for a wrong unit.";
+    #[strum(message = "Take a number of the range in the message; look for a wrong unit.")]
+    OutOfRange,
     /// An array whose length does not match.
-    WrongLength = "wrong_length",
-        "Write as many entries as the message asks for; lists of wheels have the order of \
-         `wheels`.";
+    #[strum(
+        message = "Write as many entries as the message asks for; lists of wheels have the \
+        order of `wheels`."
+    )]
+    WrongLength,
     /// An attitude given in no form or in more than one.
-    AttitudeForm = "attitude_form",
-        "Give exactly one of quaternion, roll_pitch_yaw_deg, mrp, matrix, or ra_dec_roll_deg \
-         together with boresight.";
+    #[strum(
+        message = "Give exactly one of quaternion, roll_pitch_yaw_deg, mrp, matrix, or \
+        ra_dec_roll_deg together with boresight."
+    )]
+    AttitudeForm,
     /// A quaternion whose norm is too far from one.
-    QuaternionNorm = "quaternion_norm",
-        "Normalise the quaternion; look for a wrong order of its components.";
+    #[strum(message = "Normalise the quaternion; look for a wrong order of its components.")]
+    QuaternionNorm,
     /// A quaternion or matrix that was off by little and has been normalised (warning).
-    AttitudeNormalized = "attitude_normalized",
-        "Write more digits, if the attitude is to be met as written.";
+    #[strum(message = "Write more digits, if the attitude is to be met as written.")]
+    AttitudeNormalized,
     /// A matrix that is not a rotation.
-    MatrixNotRotation = "matrix_not_rotation",
-        "Write the body axes in the reference frame as orthonormal columns, right-handed.";
+    #[strum(
+        message = "Write the body axes in the reference frame as orthonormal columns, \
+        right-handed."
+    )]
+    MatrixNotRotation,
     /// An attitude form that has no quaternion sign where the sign matters.
-    SignUndefined = "sign_undefined",
-        "Write the attitude as a quaternion, or set attitude_equivalence to rotation.";
+    #[strum(
+        message = "Write the attitude as a quaternion, or set attitude_equivalence to \
+        rotation."
+    )]
+    SignUndefined,
     /// A direction of zero length.
-    ZeroDirection = "zero_direction",
-        "Give a direction of any length but zero.";
+    #[strum(message = "Give a direction of any length but zero.")]
+    ZeroDirection,
     /// An inertia matrix that is not symmetric.
-    InertiaNotSymmetric = "inertia_not_symmetric",
-        "Write the same product of inertia on both sides of the diagonal.";
+    #[strum(message = "Write the same product of inertia on both sides of the diagonal.")]
+    InertiaNotSymmetric,
     /// An inertia matrix that is not positive definite.
-    InertiaNotPositive = "inertia_not_positive",
-        "Look for a wrong sign of the products of inertia, or a wrong unit.";
+    #[strum(message = "Look for a wrong sign of the products of inertia, or a wrong unit.")]
+    InertiaNotPositive,
     /// Principal moments of inertia that no rigid body has.
-    InertiaTriangle = "inertia_triangle",
-        "Look for a wrong unit: no principal moment exceeds the sum of the other two.";
+    #[strum(
+        message = "Look for a wrong unit: no principal moment exceeds the sum of the other \
+        two."
+    )]
+    InertiaTriangle,
     /// Wheels whose own inertia exceeds what the body has about their axes.
-    WheelInertiaExceedsBody = "wheel_inertia_exceeds_body",
-        "Give the inertia of the whole spacecraft with its wheels locked, and that of the wheels \
-         about their own axes.";
+    #[strum(
+        message = "Give the inertia of the whole spacecraft with its wheels locked, and that \
+        of the wheels about their own axes."
+    )]
+    WheelInertiaExceedsBody,
     /// Fewer than three enabled wheels.
-    TooFewWheels = "too_few_wheels",
-        "Enable at least three wheels.";
+    #[strum(message = "Enable at least three wheels.")]
+    TooFewWheels,
     /// More enabled wheels than the solver is built for.
-    TooManyWheels = "too_many_wheels",
-        "Disable wheels.";
+    #[strum(message = "Disable wheels.")]
+    TooManyWheels,
     /// Enabled wheel axes that do not span space.
-    WheelAxesCoplanar = "wheel_axes_coplanar",
-        "Enable wheels whose axes are not in one plane.";
+    #[strum(message = "Enable wheels whose axes are not in one plane.")]
+    WheelAxesCoplanar,
     /// Torque limits that do not enclose zero.
-    TorqueLimits = "torque_limits",
-        "Write min_torque_nm below zero and max_torque_nm above.";
+    #[strum(message = "Write min_torque_nm below zero and max_torque_nm above.")]
+    TorqueLimits,
     /// A wheel speed beyond its limit.
-    WheelSpeedLimit = "wheel_speed_limit",
-        "Lower the speed, or raise the limit or momentum_authority.";
+    #[strum(message = "Lower the speed, or raise the limit or momentum_authority.")]
+    WheelSpeedLimit,
     /// A body rate beyond its limit.
-    BodyRateLimit = "body_rate_limit",
-        "Lower the rate or raise the limit.";
+    #[strum(message = "Lower the rate or raise the limit.")]
+    BodyRateLimit,
     /// Lower bound above the upper bound.
-    EmptyRange = "empty_range",
-        "Exchange the bounds, or remove one.";
+    #[strum(message = "Exchange the bounds, or remove one.")]
+    EmptyRange,
     /// Two things with the same identifier.
-    DuplicateId = "duplicate_id",
-        "Give every one a name of its own.";
+    #[strum(message = "Give every one a name of its own.")]
+    DuplicateId,
     /// A name that refers to nothing.
-    UnknownReference = "unknown_reference",
-        "Correct the name, or define what it stands for.";
+    #[strum(message = "Correct the name, or define what it stands for.")]
+    UnknownReference,
     /// Fields that exclude each other.
-    ConflictingFields = "conflicting_fields",
-        "Make the fields agree, or keep one of them.";
+    #[strum(message = "Make the fields agree, or keep one of them.")]
+    ConflictingFields,
     /// A place in the order that another target has already.
-    PositionTaken = "position_taken",
-        "Give every position to one target.";
+    #[strum(message = "Give every position to one target.")]
+    PositionTaken,
     /// Targets that come after each other in a circle.
-    OrderCycle = "order_cycle",
-        "Remove one of the demands of the circle.";
+    #[strum(message = "Remove one of the demands of the circle.")]
+    OrderCycle,
     /// Positions and precedences of targets that no order keeps together.
-    OrderInfeasible = "order_infeasible",
-        "Relax the positions or the precedences that the message names.";
+    #[strum(message = "Relax the positions or the precedences that the message names.")]
+    OrderInfeasible,
     /// Wheel speeds at the end that contradict the conserved angular momentum.
-    EndMomentumInconsistent = "end_momentum_inconsistent",
-        "Leave the wheel speeds at the end out, or compute them from the momentum of the start.";
+    #[strum(
+        message = "Leave the wheel speeds at the end out, or compute them from the momentum of \
+        the start."
+    )]
+    EndMomentumInconsistent,
     /// The wheels cannot hold the stored momentum at a required rest.
-    MomentumExceedsEnvelope = "momentum_exceeds_envelope",
-        "Unload momentum first, raise momentum_authority, enable more wheels, or leave a rate \
-         component free.";
-    /// A slew for which no flyable solution was found.
-    SlewNotSolved = "slew_not_solved",
-        "Check that the wheels can hold the stored momentum along the way, or relax the conditions \
-         at the ends.";
+    #[strum(
+        message = "Unload momentum first, raise momentum_authority, enable more wheels, or \
+        leave a rate component free."
+    )]
+    MomentumExceedsEnvelope,
+    /// A leg for which no solution was found that meets all conditions.
+    #[strum(
+        message = "Check that the wheels can hold the stored momentum along the way, or relax \
+        the conditions at the ends."
+    )]
+    SlewNotSolved,
     /// The solve was stopped, by its time limit or on request, before there was a first plan.
-    StoppedWithoutPlan = "stopped_without_plan",
-        "Allow more time, or plan fewer targets at once.";
+    #[strum(message = "Allow more time, or plan fewer targets at once.")]
+    StoppedWithoutPlan,
     /// The solve needed more memory than a job of the service may take before there was a first plan.
-    MemoryLimit = "memory_limit",
-        "Plan fewer targets at once, or raise --job-memory of the service.";
+    #[strum(message = "Plan fewer targets at once, or raise --job-memory of the service.")]
+    MemoryLimit,
     /// The finished plan failed its independent verification.
-    VerificationFailed = "verification_failed",
-        "Report it with the scenario: the plan is not one to fly.";
-    /// An order was flown faster than a lower bound had allowed, so that some relaxed problem ended
-    /// in a local minimum and the bounds are doubtful (warning).
-    BoundContradicted = "bound_contradicted",
-        "Take the bound as doubtful; the plan itself is verified.";
+    #[strum(message = "Report it with the scenario, and do not use the plan.")]
+    VerificationFailed,
+    /// An order takes less time than a lower bound allowed: the bounds are doubtful (warning).
+    #[strum(message = "Take the bound as doubtful; the plan itself is verified.")]
+    BoundContradicted,
     /// A boresight enters a keep-out cone (warning).
-    KeepOutViolated = "keep_out_violated",
-        "Look at time and depth, and move targets or demand another order if the plan cannot be \
-         flown so.";
+    #[strum(
+        message = "Look at time and depth, and move targets or demand another order if the \
+        plan cannot be flown so."
+    )]
+    KeepOutViolated,
     /// A file of another version of the program.
-    VersionMismatch = "version_mismatch",
-        "Make the file again with this version.";
+    #[strum(message = "Make the file again with this version.")]
+    VersionMismatch,
     /// A part of another table of legs than the parts before it.
-    ShardMismatch = "shard_mismatch",
-        "Join only files of slewplan legs that differ in --shard alone.";
-    /// A part of a table of legs that is there twice.
-    ShardRepeated = "shard_repeated",
-        "Name every part once.";
-    /// A part of a table of legs that is not there.
-    ShardMissing = "shard_missing",
-        "Solve the part that the message names.";
+    #[strum(message = "Join only files of slewplan legs that differ in --shard alone.")]
+    ShardMismatch,
+    /// A part of a table of legs that is given twice.
+    #[strum(message = "Name every part once.")]
+    ShardRepeated,
+    /// A part of a table of legs that is missing.
+    #[strum(message = "Solve the part that the message names.")]
+    ShardMissing,
     /// A table of legs, or a part of one, that lacks legs.
-    TableIncomplete = "table_incomplete",
-        "Solve the part again and let it end.";
-    /// A leg that does not fly as its problem demands, or is slower than the slew about the eigenaxis.
-    LegRefused = "leg_refused",
-        "Solve it again with slewplan legs.";
+    #[strum(message = "Solve the part again and let it end.")]
+    TableIncomplete,
+    /// A leg that does not meet its conditions when it is propagated, or is slower than the
+    /// eigenaxis slew.
+    #[strum(message = "Solve it again with slewplan legs.")]
+    LegRefused,
 }
 
-impl fmt::Display for Code {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
+impl Code {
+    /// What it says about an input, as a sentence.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        self.get_documentation().unwrap_or_default()
+    }
+
+    /// What to do about it, as a sentence.
+    #[must_use]
+    pub fn remedy(self) -> &'static str {
+        self.get_message().unwrap_or_default()
     }
 }

@@ -16,8 +16,8 @@ pub(crate) fn direction(random: &mut SplitMix) -> Vector3<f64> {
     Vector3::from_fn(|_, _| random.normal()).normalize()
 }
 
-/// A spacecraft with three to six wheels on any axes, of which one may be locked and turn; torques
-/// that differ by their sign, limits of every kind, momentum or none.
+/// A spacecraft with three to six wheels on any axes, of which one may be locked while spinning;
+/// torque limits that depend on the sign, limits of every kind, momentum or none.
 pub(crate) fn spacecraft(random: &mut SplitMix, momentum: bool) -> Scenario {
     for _ in 0..1000 {
         let count = 3 + random.below(4);

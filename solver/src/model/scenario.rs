@@ -1,8 +1,8 @@
 //! A planning problem, valid by construction.
 //!
 //! [`Scenario::try_new`] reads the parts in the order of the document, each in a file of its own,
-//! and goes on after a fault: what a part needs from an earlier one is either optional or taken
-//! from the description, so that one run lists everything that is wrong.
+//! and continues after a fault. A part that depends on an earlier one takes it as optional, or
+//! reads the description instead, so that one run lists all problems.
 
 mod keep_out;
 mod limits;
@@ -23,10 +23,10 @@ use crate::model::spec::{OptionsSpec, ScenarioSpec};
 use limits::Limits;
 use nalgebra::Vector3;
 
-/// What a rate component must satisfy at a visit.
+/// The condition on a rate component at a passage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RateCondition {
-    /// Only the spacecraft's own limits.
+    /// None but the spacecraft's own limits.
     Free,
     /// Exactly this value, rad/s.
     Fixed(f64),
@@ -56,7 +56,15 @@ pub struct Start {
     pub wheel_speed: Vec<f64>,
 }
 
-/// What must hold at the end of the tour.
+impl Start {
+    /// Total angular momentum of a spacecraft in this state, in the reference frame, N m s.
+    pub(crate) fn momentum(&self, spacecraft: &Spacecraft) -> Vector3<f64> {
+        let in_body = spacecraft.body_momentum(self.rate, &self.wheel_speed);
+        self.attitude.to_reference(in_body)
+    }
+}
+
+/// The conditions at the end of the tour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct End {
     /// Attitude, sign as given.
@@ -121,7 +129,7 @@ impl Scenario {
         Self::examine(spec).map_err(|faults| faults.problems)
     }
 
-    /// Validates a description like [`Scenario::try_new`], and has all warnings also of one that is
+    /// Validates a description like [`Scenario::try_new`], and returns the warnings also when it is
     /// refused.
     ///
     /// # Errors
@@ -224,7 +232,7 @@ impl Scenario {
         &self.targets
     }
 
-    /// Which orders of the targets, by their indices, may be flown: at least one.
+    /// Rules for the order of the targets, by their indices; at least one order keeps them.
     #[must_use]
     pub fn order_rules(&self) -> &OrderRules {
         &self.order_rules
@@ -245,23 +253,17 @@ impl Scenario {
     /// Total angular momentum in the reference frame, N m s: a constant of the motion.
     #[must_use]
     pub fn momentum(&self) -> Vector3<f64> {
-        momentum_at(&self.spacecraft, &self.start)
+        self.start.momentum(&self.spacecraft)
     }
 }
 
-/// A valid scenario with what the caller should know about it.
+/// A valid scenario with its warnings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Validated {
     /// The scenario.
     pub scenario: Scenario,
-    /// Doubts that do not stand in the way.
+    /// Warnings, which do not refuse it.
     pub warnings: Vec<Problem>,
-}
-
-/// Total angular momentum of a start in the reference frame, N m s.
-fn momentum_at(spacecraft: &Spacecraft, start: &Start) -> Vector3<f64> {
-    let in_body = spacecraft.body_momentum(start.rate, &start.wheel_speed);
-    start.attitude.to_reference(in_body)
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ use crate::model::spec::{BoresightSpec, SpacecraftSpec};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use std::collections::HashSet;
 
-/// Most boresights of a spacecraft.
+/// Limit of the boresights of a spacecraft.
 pub const MAX_BORESIGHTS: usize = 100;
 
 /// A valid wheel.
@@ -83,7 +83,7 @@ impl Spacecraft {
             .map(|(spacecraft, _)| spacecraft)
     }
 
-    /// As [`Spacecraft::try_new`], for a reader of something larger.
+    /// Like [`Spacecraft::try_new`], for a reader of a larger description.
     pub fn read(spec: &SpacecraftSpec, pointer: &str, findings: &mut Findings) -> Option<Self> {
         let inertia_pointer = format!("{pointer}/inertia_kg_m2");
         let inertia = inertia::read(&spec.inertia_kg_m2, &inertia_pointer, findings);
@@ -225,7 +225,7 @@ fn boresights(
         return None;
     }
     let mut names = HashSet::new();
-    // Read one by one first: collecting straight into an option would stop at the first fault.
+    // All are read before they are collected: collecting into an option stops at the first fault.
     let read: Vec<_> = specs
         .iter()
         .enumerate()

@@ -1,6 +1,6 @@
-//! What a caller may write: plain, unvalidated descriptions with units in the field names.
+//! Descriptions as a caller writes them: plain, unvalidated, with units in the field names.
 //!
-//! Every value here may be nonsense. [`crate::model::scenario::Scenario::try_new`] turns a
+//! Every value may be invalid. [`crate::model::scenario::Scenario::try_new`] turns a
 //! [`ScenarioSpec`] into a scenario that is valid by construction, or lists all that is wrong.
 //! Optional fields are `None` when the caller left them out or wrote `null`. Each declaration is also
 //! that of the JSON document and of its description, see [`crate::model::input`].
@@ -36,7 +36,8 @@ input_object! {
         pub start: StateSpec = required_or(StateSpec::default()),
         /// State at the end of the tour; finish at the last target without it.
         pub end: Option<StateSpec> = optional(),
-        /// Visited each once, in any order that keeps their `position` and `after`.
+        /// Visited once each, in an order that keeps their `position` and `after`; their sequence here does
+        /// not matter.
         pub targets: Vec<TargetSpec> as UpTo<MAX_TARGETS, TargetSpec> = required_or(Vec::new()),
         /// Cones in which a boresight must not point.
         pub keep_out: Vec<KeepOutSpec> as UpTo<MAX_CONES, KeepOutSpec> = or(Vec::new()),
@@ -100,9 +101,9 @@ input_object! {
 input_object! {
     /// Options of a solve.
     pub struct OptionsSpec as "Options" {
-        /// How closely durations come to the minimum.
+        /// Accuracy of the durations.
         pub accuracy: Accuracy = or(Accuracy::default()),
-        /// Whether q and -q are the same place to be.
+        /// Whether q and -q are the same attitude.
         pub attitude_equivalence: AttitudeEquivalence = or(AttitudeEquivalence::default()),
         /// Wall-clock limit; 60 without it, none with `null`.
         pub time_limit_s: Option<f64> = nullable(60.0).above(0.0).at_most(1e9),
@@ -110,7 +111,7 @@ input_object! {
         pub node_limit: Option<u64> = optional().at_least(1.0),
         /// Gap at which the search may stop.
         pub relative_gap: f64 = or(0.0).at_least(0.0).below(1.0),
-        /// How many further orders to prove and list.
+        /// Number of further orders to prove and list.
         pub alternatives: usize = or(1).at_most(100.0).format("int32"),
         /// Share of every torque limit that the plan may use.
         pub torque_authority: f64 = or(1.0).above(0.0).at_most(1.0),
@@ -128,7 +129,7 @@ impl Default for OptionsSpec {
 }
 
 input_choice! {
-    /// Whether q and -q are the same place to be.
+    /// Whether q and -q are the same attitude.
     pub enum AttitudeEquivalence as "Equivalence" {
         /// Attitudes are rotations: q and -q are the same.
         Rotation = "rotation",
@@ -138,12 +139,12 @@ input_choice! {
 }
 
 input_choice! {
-    /// How closely durations come to the minimum over all torque histories.
+    /// Distance of durations from the minimum over all torque histories.
     pub enum Accuracy as "Accuracy" {
         /// Within 0.05 % of the converged minimum.
         Standard = "standard",
-        /// Twice the intervals and no bias on their lengths; durations repeat to 1e-6 relative whatever
-        /// the units and axes in which the problem is stated, at several times the work.
+        /// Twice the intervals, no penalty on their lengths: durations agree to 1e-6 relative between
+        /// different units and axes of the same problem. Several times slower.
         Tight = "tight",
     }
 }

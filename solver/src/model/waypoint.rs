@@ -1,14 +1,14 @@
-//! A place that a motion passes through, and what must hold there.
+//! An attitude that a motion passes, and the conditions that hold there.
 
 use super::attitude::Attitude;
 use super::dynamics::Dynamics;
 use super::scenario::RateCondition;
 use nalgebra::DVector;
 
-/// What the wheel momenta must satisfy at a waypoint.
+/// The condition on the wheel momenta at a waypoint.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum WheelCondition {
-    /// Only the limits.
+    /// None but the limits.
     Free,
     /// These null-space components, N m s.
     NullSpace(DVector<f64>),
@@ -16,7 +16,7 @@ pub(crate) enum WheelCondition {
     Fixed(DVector<f64>),
 }
 
-/// A place to pass through.
+/// An attitude to pass, with conditions.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Waypoint {
     /// The attitude with the sign that the continuous quaternion has there.
@@ -25,12 +25,14 @@ pub(crate) struct Waypoint {
     pub(crate) rate: [RateCondition; 3],
     /// Condition of the wheels.
     pub(crate) wheels: WheelCondition,
-    /// What the wheel momenta cost here, s per N m s of each enabled wheel; nothing without.
-    pub(crate) price: Option<DVector<f64>>,
+    /// Cost of the wheel momenta here, s per N m s of each enabled wheel, `None` for no cost.
+    /// Costates of a longer motion make legs that are solved alone add up to it (Lagrangian
+    /// bounds).
+    pub(crate) costates: Option<DVector<f64>>,
 }
 
 impl Waypoint {
-    /// Whether conditions leave nothing free.
+    /// Whether the conditions fix rates and wheel momenta.
     pub(crate) fn is_fixed(&self, dynamics: &Dynamics) -> bool {
         let rates_fixed = self
             .rate
@@ -43,13 +45,13 @@ impl Waypoint {
         }
     }
 
-    /// The same place, passed with these wheel momenta, N m s, and so with the rates that they mean.
+    /// The waypoint with these wheel momenta, N m s, which fix its rates too.
     pub(crate) fn passed_with(&self, wheels: &DVector<f64>) -> Self {
         Self {
             attitude: self.attitude,
             rate: [RateCondition::Free; 3],
             wheels: WheelCondition::Fixed(wheels.clone()),
-            price: None,
+            costates: None,
         }
     }
 }

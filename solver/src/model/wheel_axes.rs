@@ -1,8 +1,9 @@
-//! Axes of wheels: whether they span space, and how a vector is shared out among them.
+//! Axes of wheels: whether they span space, and the pseudo-inverse that allocates a vector to them.
 //!
-//! The pseudo-inverse `A^+` of the axes as columns, as they are given, is computed in one place. Of
-//! all amounts that make a vector it gives those with the least sum of squares, so it is not that of
-//! the unit axes with its rows divided by lengths: of two parallel wheels the longer one gets more.
+//! The pseudo-inverse `A^+` has the axes, as they are given, as columns of `A`. Of all amounts that
+//! add up to a vector it gives those with the least sum of squares. It differs from that of the
+//! unit axes with rows divided by lengths: of two parallel wheels the one with the longer axis gets
+//! more.
 
 use crate::model::findings::{Findings, unit};
 use crate::model::problem::Code;
@@ -11,11 +12,11 @@ use std::ops::RangeInclusive;
 
 /// Smallest over largest singular value of the unit axes below which they lie in a plane.
 const COPLANARITY_THRESHOLD: f64 = 1e-6;
-/// Lengths of axes that enter as they are given. What the wheels need for a motion grows with the
+/// Allowed lengths of axes that are not normalised. Wheel momenta and torques grow with the
 /// reciprocal: far outside, squares of momenta and durations would leave the number range.
 const LENGTHS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// An axis that enters as it is given: not zero, and of a sensible length.
+/// Reads an axis that is not normalised: not zero, and within the allowed lengths.
 pub(crate) fn read(
     pointer: &str,
     values: [f64; 3],
@@ -42,7 +43,7 @@ pub(crate) fn read(
 /// Smallest and largest singular value of the unit axes.
 pub(crate) fn singular_values(axes: &[Vector3<f64>]) -> (f64, f64) {
     let units: Vec<_> = axes.iter().map(|axis| unit(*axis)).collect();
-    // Columns of zeros, where there are fewer than three, leave a singular value of zero.
+    // Fewer than three axes are padded with columns of zeros, so that a singular value is zero.
     let columns = units.len().max(3);
     let matrix = DMatrix::from_fn(3, columns, |i, j| units.get(j).map_or(0.0, |unit| unit[i]));
     let values = matrix.singular_values();
@@ -51,9 +52,10 @@ pub(crate) fn singular_values(axes: &[Vector3<f64>]) -> (f64, f64) {
 
 /// `A^+`, K x 3, of axes that are not zero; `None` when they lie in a plane.
 ///
-/// With `A P = Q R` by columns in order of what they add, the rows of `R = D R'` are of very
-/// different size when the axes are, but `R'`, divided by the pivots, is always well conditioned:
-/// `A^+ = P R'^T (R' R'^T)^-1 D^-1 Q^T`, where `A^T (A A^T)^-1` would square the lengths.
+/// With `A P = Q R`, columns in order of the length that they add, the rows of `R = D R'` are of
+/// very different size when the axes are, but `R'`, divided by the pivots, is always well
+/// conditioned: `A^+ = P R'^T (R' R'^T)^-1 D^-1 Q^T`, where `A^T (A A^T)^-1` would square the
+/// lengths.
 pub(crate) fn pseudo_inverse(axes: &[Vector3<f64>]) -> Option<DMatrix<f64>> {
     let (least, greatest) = singular_values(axes);
     if least < COPLANARITY_THRESHOLD * greatest || greatest == 0.0 {
@@ -82,8 +84,8 @@ pub(crate) fn pseudo_inverse(axes: &[Vector3<f64>]) -> Option<DMatrix<f64>> {
     Some(DMatrix::from_fn(axes.len(), 3, |i, j| inverse[(i, j)]))
 }
 
-/// Greatest share that any amount has of its limit, of pairs of a least and a greatest one; at most
-/// one within the limits.
+/// Greatest ratio of an amount to its limit, given as pairs of a least and a greatest amount; at
+/// most one within the limits.
 pub(crate) fn greatest_share<'a>(
     limits: impl Iterator<Item = (f64, f64)>,
     amounts: impl IntoIterator<Item = &'a f64>,
@@ -117,7 +119,7 @@ fn first_longest(vectors: &[Vector3<f64>]) -> Option<(f64, usize)> {
     longest
 }
 
-/// The unit vector that is left of one that is all but perpendicular to a base. Twice is enough.
+/// A unit vector that is nearly perpendicular to a base, made exactly so. Two projections suffice.
 fn perpendicular(mut vector: Vector3<f64>, base: &[Vector3<f64>]) -> Vector3<f64> {
     for _ in 0..2 {
         for other in base {
@@ -144,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pseudo_inverse_is_the_one_there_is() {
+    fn the_pseudo_inverse_meets_the_conditions_of_penrose() {
         let mut random = SplitMix::new(1);
         for count in [3, 4, 5, 17] {
             for spread in [0.0, 1.0, 3.0] {
@@ -190,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn of_parallel_wheels_the_longer_one_gets_more() {
+    fn of_parallel_wheels_the_one_with_the_longer_axis_gets_more() {
         let axes = [Vector3::x(), Vector3::x() * 2.0, Vector3::y(), Vector3::z()];
         let inverse = pseudo_inverse(&axes).expect("they span space");
         // x = (1, 2) / 5 makes 1 with the least sum of squares.
@@ -207,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn absurd_lengths_are_refused() {
+    fn lengths_outside_the_range_are_refused() {
         for (length, accepted) in [
             (1.0, true),
             (1e-2, true),

@@ -1,8 +1,10 @@
 //! How far an iterate is from the optimality conditions.
 
+use super::barrier::BarrierProblem;
 use super::dense::{add_transpose_mul, axpy};
-use super::interior_point::InteriorPoint;
 use super::iterate::Iterate;
+use super::riccati::{MAX_CONTROLS, MAX_STATES};
+use super::settings::Settings;
 
 /// Multipliers above this average scale the optimality error down.
 const MULTIPLIER_SCALE: f64 = 100.0;
@@ -12,43 +14,31 @@ const MULTIPLIER_SCALE: f64 = 100.0;
 pub(super) struct Residuals {
     stationarity: f64,
     /// Largest gap, equality or slack error.
-    pub(super) feasibility: f64,
+    feasibility: f64,
     /// Least and greatest product of slack and multiplier.
     products: (f64, f64),
     z_scale: f64,
 }
 
 impl Residuals {
-    /// The error of the barrier problem with parameter `mu`.
-    pub(super) fn of_barrier(&self, mu: f64) -> f64 {
-        self.optimality(mu).max(self.feasibility)
-    }
-
-    /// The error of stationarity and complementarity.
-    pub(super) fn optimality(&self, mu: f64) -> f64 {
-        let (least, greatest) = self.products;
-        let complementarity = (greatest - mu).max(mu - least).max(0.0);
-        self.stationarity.max(complementarity / self.z_scale)
-    }
-}
-
-impl InteriorPoint {
-    /// Measures the optimality conditions where the models have been evaluated.
-    pub(super) fn residuals(&mut self, iterate: &Iterate) -> Residuals {
-        let n = self.layout.states;
-        let mut found = Residuals::default();
+    /// Measures the conditions at the iterate of which the problem holds the models.
+    pub(super) fn of(problem: &BarrierProblem, iterate: &Iterate) -> Self {
+        let layout = &problem.layout;
+        let n = layout.states;
+        let mut found = Self::default();
         let mut products = (f64::INFINITY, f64::NEG_INFINITY);
-        for (node, model) in self.models.iter().enumerate() {
-            let residual = &mut self.residual[..model.vars];
-            let duals = iterate.multipliers(&self.layout, node);
+        let mut stationarity = [0.0; MAX_STATES + MAX_CONTROLS];
+        for (node, model) in problem.models.iter().enumerate() {
+            let residual = &mut stationarity[..model.vars];
+            let duals = iterate.multipliers(layout, node);
             residual.copy_from_slice(&model.gradient);
             add_transpose_mul(&model.link_jacobian, model.vars, duals.gap, residual);
             add_transpose_mul(&model.equality_jacobian, n, duals.equality, residual);
             if node > 0 {
-                let arriving = &iterate.lambda[self.layout.link(node - 1)];
+                let arriving = &iterate.lambda[layout.link(node - 1)];
                 axpy(-1.0, arriving, &mut residual[..n]);
             }
-            let slack = &iterate.slack[self.layout.inequality(node)];
+            let slack = &iterate.slack[layout.inequality(node)];
             for (i, (&z, &s)) in duals.inequality.iter().zip(slack).enumerate() {
                 axpy(-z, model.inequality_row(i), residual);
                 found.feasibility = found
@@ -59,21 +49,69 @@ impl InteriorPoint {
             found.stationarity = max_abs(residual, found.stationarity);
             found.feasibility = found.feasibility.max(model.values.defect_max());
         }
-        let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
-        let z_sum: f64 = iterate.z.iter().sum();
-        let others = iterate.lambda.iter().chain(&iterate.nu);
-        let all = others.map(|v| v.abs()).sum::<f64>() + z_sum;
-        let count = iterate.lambda.len() + iterate.nu.len() + iterate.z.len();
-        found.stationarity /= (mean(all, count) / MULTIPLIER_SCALE).max(1.0);
-        found.z_scale = (mean(z_sum, iterate.z.len()) / MULTIPLIER_SCALE).max(1.0);
+        found.scale_by_multipliers(iterate);
         if iterate.z.is_empty() {
             products = (0.0, 0.0);
         }
         found.products = products;
         found
     }
+
+    /// Divides the errors by the average size of the multipliers, where that is large.
+    fn scale_by_multipliers(&mut self, iterate: &Iterate) {
+        let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
+        let z_sum: f64 = iterate.z.iter().sum();
+        let others = iterate.lambda.iter().chain(&iterate.nu);
+        let all = others.map(|v| v.abs()).sum::<f64>() + z_sum;
+        let count = iterate.lambda.len() + iterate.nu.len() + iterate.z.len();
+        self.stationarity /= (mean(all, count) / MULTIPLIER_SCALE).max(1.0);
+        self.z_scale = (mean(z_sum, iterate.z.len()) / MULTIPLIER_SCALE).max(1.0);
+    }
+
+    /// Whether the conditions hold within the tolerances.
+    pub(super) fn are_within(&self, settings: &Settings) -> bool {
+        self.optimality(0.0) <= settings.tolerance && self.feasibility <= settings.feasibility
+    }
+
+    /// The error of the barrier problem with parameter `mu`.
+    pub(super) fn of_barrier(&self, mu: f64) -> f64 {
+        self.optimality(mu).max(self.feasibility)
+    }
+
+    /// The error of stationarity and complementarity.
+    fn optimality(&self, mu: f64) -> f64 {
+        let (least, greatest) = self.products;
+        let complementarity = (greatest - mu).max(mu - least).max(0.0);
+        self.stationarity.max(complementarity / self.z_scale)
+    }
 }
 
 fn max_abs(values: &[f64], least: f64) -> f64 {
     values.iter().fold(least, |worst, v| worst.max(v.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_of_slack_and_multiplier_are_compared_with_the_barrier_parameter() {
+        let residuals = Residuals {
+            stationarity: 1e-6,
+            feasibility: 1e-3,
+            products: (1e-4, 3e-4),
+            z_scale: 2.0,
+        };
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-15;
+        assert!(close(residuals.optimality(0.0), 1.5e-4));
+        assert!(close(residuals.optimality(2e-4), 0.5e-4));
+        assert!(close(residuals.of_barrier(2e-4), 1e-3));
+        let settings = |feasibility| Settings {
+            tolerance: 1.6e-4,
+            feasibility,
+            ..Settings::COLD
+        };
+        assert!(residuals.are_within(&settings(1e-3)));
+        assert!(!residuals.are_within(&settings(1e-4)));
+    }
 }

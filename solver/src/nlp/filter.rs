@@ -6,15 +6,16 @@ use super::merit::Merit;
 const GAMMA_THETA: f64 = 1e-5;
 /// Fraction of the infeasibility by which the barrier cost must improve on a filter entry.
 const GAMMA_PHI: f64 = 1e-5;
-/// Largest infeasibility that is ever admitted, as a multiple of that at the filter's reset and
-/// absolute: near a solution a better cost is not worth much of it.
-const RANGE: f64 = 1e4;
-const MIN_RANGE: f64 = 1e-2;
+/// Largest infeasibility that is ever admitted, as a multiple of that at the filter's reset, and
+/// the least such bound (absolute).
+const MAX_THETA_FACTOR: f64 = 1e4;
+const MIN_MAX_THETA: f64 = 1e-2;
 /// Sufficient decrease (Armijo) of the barrier cost.
 const ETA: f64 = 1e-4;
 
-/// Barrier costs closer than this, relative, and infeasibilities below it are rounding. The last
-/// steps only settle the multipliers; judged by their noise they would be cut to nothing.
+/// Relative differences of barrier costs and absolute infeasibilities below these are rounding. The
+/// last steps change little but the multipliers; judged by rounding they would be shortened to
+/// nothing.
 const PHI_NOISE: f64 = 1e-11;
 const THETA_NOISE: f64 = 1e-12;
 
@@ -47,11 +48,11 @@ impl Filter {
     /// Empties the filter and sets its scales from a point's infeasibility.
     pub(super) fn reset(&mut self, theta: f64) {
         self.entries.clear();
-        self.theta_max = (RANGE * theta).max(MIN_RANGE);
+        self.theta_max = (MAX_THETA_FACTOR * theta).max(MIN_MAX_THETA);
         self.theta_min = 1e-4 * theta.max(1.0);
     }
 
-    /// Whether the filter itself lets a point pass.
+    /// Whether no entry of the filter forbids a point.
     pub(super) fn admits(&self, point: Merit) -> bool {
         point.theta <= self.theta_max && self.entries.iter().all(|entry| improves(point, *entry))
     }
@@ -105,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dominated_point_is_refused_and_a_trade_is_not() {
+    fn a_dominated_point_is_refused_and_one_better_in_theta_or_phi_is_admitted() {
         let mut filter = Filter::default();
         filter.reset(1.0);
         filter.add(merit(1.0, 1.0));
@@ -131,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn feasible_points_must_descend() {
+    fn from_a_feasible_point_the_cost_must_decrease() {
         let mut filter = Filter::default();
         filter.reset(1.0);
         let here = merit(1e-9, 1.0);

@@ -32,8 +32,41 @@ pub(crate) struct Layout {
 }
 
 impl Iterate {
-    /// Moves slacks and multipliers of active and inactive inequalities so far apart from zero that
-    /// their products are no less than a barrier parameter: from a solution to a start near it.
+    /// An iterate with given primal values and neutral multipliers.
+    pub(crate) fn cold(points: Vec<f64>, controls: Vec<f64>) -> Self {
+        Self {
+            points,
+            controls,
+            ..Self::default()
+        }
+    }
+
+    /// The link that begins at a node.
+    pub(crate) fn link<'a>(&'a self, layout: &Layout, node: usize) -> Link<'a> {
+        let next = if node < layout.intervals {
+            layout.point(node + 1)
+        } else {
+            0..0
+        };
+        Link {
+            node,
+            point: &self.points[layout.point(node)],
+            control: &self.controls[layout.control(node)],
+            next: &self.points[next],
+        }
+    }
+
+    /// The multipliers of the link that begins at a node.
+    pub(crate) fn multipliers<'a>(&'a self, layout: &Layout, node: usize) -> LinkMultipliers<'a> {
+        LinkMultipliers {
+            gap: &self.lambda[layout.link(node)],
+            equality: &self.nu[layout.equality(node)],
+            inequality: &self.z[layout.inequality(node)],
+        }
+    }
+
+    /// Raises the smaller of every slack and its multiplier until their product is no less than a
+    /// barrier parameter, so that a solution becomes an interior start near it.
     pub(crate) fn recentre(&mut self, barrier: f64) {
         for (slack, z) in self.slack.iter_mut().zip(&mut self.z) {
             if *slack * *z < barrier {
@@ -64,6 +97,21 @@ impl Layout {
     /// Numbers in all points.
     pub(crate) fn all_points(&self) -> usize {
         (self.intervals + 1) * self.point_len
+    }
+
+    /// Numbers in the tangent steps of all points.
+    pub(crate) fn all_states(&self) -> usize {
+        (self.intervals + 1) * self.states
+    }
+
+    /// Number of all controls.
+    pub(crate) fn all_controls(&self) -> usize {
+        self.intervals * self.controls
+    }
+
+    /// Number of all link multipliers.
+    pub(crate) fn all_links(&self) -> usize {
+        self.intervals * self.states
     }
 
     /// Number of all inequalities.
@@ -115,39 +163,4 @@ fn running_sum(counts: impl Iterator<Item = usize>) -> Vec<usize> {
         starts.push(starts[starts.len() - 1] + count);
     }
     starts
-}
-
-impl Iterate {
-    /// An iterate with given primal values and neutral multipliers.
-    pub(crate) fn cold(points: Vec<f64>, controls: Vec<f64>) -> Self {
-        Self {
-            points,
-            controls,
-            ..Self::default()
-        }
-    }
-
-    /// The link that begins at a node.
-    pub(crate) fn link<'a>(&'a self, layout: &Layout, node: usize) -> Link<'a> {
-        let next = if node < layout.intervals {
-            layout.point(node + 1)
-        } else {
-            0..0
-        };
-        Link {
-            node,
-            point: &self.points[layout.point(node)],
-            control: &self.controls[layout.control(node)],
-            next: &self.points[next],
-        }
-    }
-
-    /// The multipliers of the link that begins at a node.
-    pub(crate) fn multipliers<'a>(&'a self, layout: &Layout, node: usize) -> LinkMultipliers<'a> {
-        LinkMultipliers {
-            gap: &self.lambda[layout.link(node)],
-            equality: &self.nu[layout.equality(node)],
-            inequality: &self.z[layout.inequality(node)],
-        }
-    }
 }

@@ -1,26 +1,40 @@
 //! The way along a Newton step: as far as the filter accepts.
 
+use super::barrier::BarrierProblem;
 use super::chain::Chain;
-use super::dense::dot;
-use super::filter::Acceptance;
-use super::interior_point::InteriorPoint;
+use super::filter::{Acceptance, Filter};
+use super::interruption::Interruptible;
 use super::iterate::Iterate;
 use super::merit::Merit;
-use super::settings::Interruption;
+use super::newton::Newton;
+use super::status::NlpStatus;
+use super::trial::Trial;
+use std::ops::ControlFlow;
 
 /// Largest fraction of the way to the boundary of slacks and multipliers that a step may go.
-const TO_BOUNDARY: f64 = 0.99;
+pub(super) const TO_BOUNDARY: f64 = 0.99;
 /// Bounds of the ratio between `z` and `mu / s`.
 const KAPPA_SIGMA: f64 = 1e10;
 /// Halvings of the step length before restoration.
 const MAX_BACKTRACKS: usize = 24;
-/// Second-order corrections of a step, and the decrease of infeasibility that earns another one.
+/// Second-order corrections of a step.
 const MAX_CORRECTIONS: usize = 2;
+/// Another correction is tried when one reduces the infeasibility to this fraction or less.
 const CORRECTION_GAIN: f64 = 0.99;
+
+/// One search along the Newton step of an iterate.
+pub(super) struct LineSearch<'a, C> {
+    pub(super) caller: &'a Interruptible<'a, C>,
+    pub(super) problem: &'a BarrierProblem,
+    pub(super) newton: &'a mut Newton,
+    pub(super) trial: &'a mut Trial,
+    pub(super) filter: &'a mut Filter,
+    pub(super) iterate: &'a mut Iterate,
+}
 
 /// What a trial is judged against.
 #[derive(Clone, Copy)]
-struct Here {
+struct Reference {
     merit: Merit,
     /// Derivative of the barrier cost along the step.
     slope: f64,
@@ -28,185 +42,111 @@ struct Here {
     longest: f64,
 }
 
-impl InteriorPoint {
-    /// Goes along the step until the filter accepts; false when it never does, or stopped.
-    pub(super) fn line_search<C: Chain>(
-        &mut self,
-        chain: &C,
-        iterate: &mut Iterate,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> bool {
-        let longest = to_boundary(&iterate.slack, &self.slack_step, self.fraction());
-        let here = Here {
-            merit: self.merit_of_models(&iterate.slack),
-            slope: self.slope(iterate),
+impl<C: Chain> LineSearch<'_, C> {
+    /// Goes along the step until the filter accepts a trial; false when it accepts none. Breaks
+    /// when the caller stops the solve.
+    pub(super) fn run(mut self) -> ControlFlow<NlpStatus, bool> {
+        let longest = self.longest_step();
+        let here = Reference {
+            merit: self.problem.merit(&self.iterate.slack),
+            slope: self.newton.slope(self.problem, self.iterate),
             longest,
         };
         let mut alpha = longest;
         for attempt in 0..MAX_BACKTRACKS {
-            let trial = self.trial_merit(chain, iterate, alpha);
-            if self.accepts(iterate, here, trial, alpha) {
-                self.regularisation.stepped(alpha / longest);
-                return true;
+            let trial = self.measure(alpha);
+            if self.accepts(here, trial, alpha) {
+                self.newton.was_taken(alpha / longest);
+                return ControlFlow::Continue(true);
             }
-            if stop().is_some() {
-                return false;
-            }
+            self.caller.check()?;
             if attempt == 0
                 && let Some(trial) = trial
                 && trial.theta >= here.merit.theta
-                && self.corrected(chain, iterate, here, trial.theta, stop)
             {
-                self.regularisation.stepped(1.0);
-                return true;
-            }
-            if stop().is_some() {
-                return false;
+                if self.accepts_corrected(here, trial.theta)? {
+                    self.newton.was_taken(1.0);
+                    return ControlFlow::Continue(true);
+                }
+                self.caller.check()?;
             }
             alpha *= 0.5;
         }
-        false
+        ControlFlow::Continue(false)
     }
 
-    /// Second-order correction: full steps that the curvature of the links has thrown off are bent
-    /// back to feasibility, which the filter would otherwise cut short (the Maratos effect).
+    /// Second-order corrections: the curvature of the links makes full steps infeasible, and the
+    /// filter would cut them short (the Maratos effect). Corrected steps return to feasibility.
     /// Leaves the step as it was when the filter does not accept a corrected one either.
-    fn corrected<C: Chain>(
+    fn accepts_corrected(
         &mut self,
-        chain: &C,
-        iterate: &mut Iterate,
-        here: Here,
+        here: Reference,
         mut theta: f64,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> bool {
-        std::mem::swap(&mut self.step, &mut self.uncorrected);
+    ) -> ControlFlow<NlpStatus, bool> {
+        self.newton.swap_uncorrected();
         let mut alpha = here.longest;
         for _ in 0..MAX_CORRECTIONS {
-            self.correct_residuals(alpha);
-            self.solve_system(iterate);
-            alpha = to_boundary(&iterate.slack, &self.slack_step, self.fraction());
-            let trial = self.trial_merit(chain, iterate, alpha);
-            if self.accepts(iterate, here, trial, alpha) {
-                return true;
+            let missed = (&*self.trial, alpha);
+            self.newton.correct(self.problem, self.iterate, missed);
+            alpha = self.longest_step();
+            let trial = self.measure(alpha);
+            if self.accepts(here, trial, alpha) {
+                return ControlFlow::Continue(true);
             }
             match trial {
-                Some(trial) if trial.theta < CORRECTION_GAIN * theta && stop().is_none() => {
-                    theta = trial.theta;
-                }
+                Some(trial) if trial.theta < CORRECTION_GAIN * theta => theta = trial.theta,
                 _ => break,
             }
+            self.caller.check()?;
         }
-        std::mem::swap(&mut self.step, &mut self.uncorrected);
-        self.fill_residuals(iterate);
-        self.inequality_steps(iterate);
-        false
-    }
-
-    /// Adds what the trial at a step length has missed to the residuals.
-    fn correct_residuals(&mut self, alpha: f64) {
-        let add = |residuals: &mut [f64], missed: &[f64]| {
-            for (residual, missed) in residuals.iter_mut().zip(missed) {
-                *residual = alpha * *residual + missed;
-            }
-        };
-        for (node, values) in self.trial_values.iter().enumerate() {
-            add(&mut self.rhs.gap[self.layout.link(node)], &values.gap);
-            let equalities = self.layout.equality(node);
-            add(&mut self.rhs.equality[equalities], &values.equality);
-            for (i, index) in self.layout.inequality(node).enumerate() {
-                let missed = values.inequality[i] - self.trial.slack[index];
-                let residual = &mut self.rhs.slack[index];
-                *residual = alpha * *residual + missed;
-            }
-        }
+        self.newton.swap_uncorrected();
+        ControlFlow::Continue(false)
     }
 
     /// Takes the trial point when the filter accepts it.
-    fn accepts(
-        &mut self,
-        iterate: &mut Iterate,
-        here: Here,
-        trial: Option<Merit>,
-        alpha: f64,
-    ) -> bool {
+    fn accepts(&mut self, here: Reference, trial: Option<Merit>, alpha: f64) -> bool {
         let verdict =
             trial.and_then(|trial| self.filter.judge(here.merit, trial, here.slope, alpha));
         if verdict == Some(Acceptance::Progress) {
             self.filter.add(here.merit);
         }
         if verdict.is_some() {
-            self.accept(iterate, alpha);
+            self.take(alpha);
         }
         verdict.is_some()
     }
 
+    fn measure(&mut self, alpha: f64) -> Option<Merit> {
+        let step = (self.newton.step(), alpha);
+        let chain = self.caller.chain;
+        self.trial.measure(chain, self.problem, self.iterate, step)
+    }
+
+    fn longest_step(&self) -> f64 {
+        let step = self.newton.step();
+        to_boundary(&self.iterate.slack, &step.slack, self.fraction())
+    }
+
     fn fraction(&self) -> f64 {
-        TO_BOUNDARY.max(1.0 - self.mu)
-    }
-
-    /// Derivative of the barrier cost along the step.
-    fn slope(&self, iterate: &Iterate) -> f64 {
-        let mut slope = 0.0;
-        for (node, model) in self.models.iter().enumerate() {
-            let (by_state, by_control) = model.gradient.split_at(self.layout.states);
-            slope += dot(by_state, &self.step.states[self.layout.state(node)]);
-            slope += dot(by_control, &self.step.controls[self.layout.control(node)]);
-        }
-        let steps = self.slack_step.iter().zip(&iterate.slack);
-        slope - self.mu * steps.map(|(ds, s)| ds / s).sum::<f64>()
-    }
-
-    /// Moves the trial point along the step and measures it; `None` when it is not finite.
-    pub(super) fn trial_merit<C: Chain>(
-        &mut self,
-        chain: &C,
-        iterate: &Iterate,
-        alpha: f64,
-    ) -> Option<Merit> {
-        for (out, step) in self.trial_step.iter_mut().zip(&self.step.states) {
-            *out = alpha * step;
-        }
-        for node in 0..=self.layout.intervals {
-            let range = self.layout.point(node);
-            chain.retract(
-                &iterate.points[range.clone()],
-                &self.trial_step[self.layout.state(node)],
-                &mut self.trial.points[range],
-            );
-        }
-        let (controls, slack) = (&mut self.trial.controls, &mut self.trial.slack);
-        advance(&iterate.controls, &self.step.controls, alpha, controls);
-        advance(&iterate.slack, &self.slack_step, alpha, slack);
-        for (node, values) in self.trial_values.iter_mut().enumerate() {
-            chain.values(&self.trial.link(&self.layout, node), values);
-            if !values.is_finite() {
-                return None;
-            }
-        }
-        Some(self.merit_of_values(&self.trial.slack))
+        TO_BOUNDARY.max(1.0 - self.problem.mu)
     }
 
     /// Takes the trial point and moves the multipliers.
-    fn accept(&mut self, iterate: &mut Iterate, alpha: f64) {
-        self.take_trial(iterate);
-        toward(&mut iterate.lambda, &self.step.lambda, alpha);
-        toward(&mut iterate.nu, &self.step.nu, alpha);
-        let dual = to_boundary(&iterate.z, &self.z_step, self.fraction());
-        for ((z, step), s) in iterate.z.iter_mut().zip(&self.z_step).zip(&iterate.slack) {
-            let central = self.mu / s;
+    fn take(&mut self, alpha: f64) {
+        self.trial.take(self.iterate);
+        let (fraction, mu) = (self.fraction(), self.problem.mu);
+        let (iterate, step) = (&mut *self.iterate, self.newton.step());
+        move_towards(&mut iterate.lambda, &step.lambda, alpha);
+        move_towards(&mut iterate.nu, &step.nu, alpha);
+        let dual = to_boundary(&iterate.z, &step.z, fraction);
+        for ((z, step), s) in iterate.z.iter_mut().zip(&step.z).zip(&iterate.slack) {
+            let central = mu / s;
             *z = (*z + dual * step).clamp(central / KAPPA_SIGMA, central * KAPPA_SIGMA);
         }
     }
-
-    /// Makes the trial point the current one.
-    pub(super) fn take_trial(&mut self, iterate: &mut Iterate) {
-        std::mem::swap(&mut iterate.points, &mut self.trial.points);
-        std::mem::swap(&mut iterate.controls, &mut self.trial.controls);
-        std::mem::swap(&mut iterate.slack, &mut self.trial.slack);
-    }
 }
 
-/// Longest step length in `(0, 1]` that keeps positive values at a fraction of their distance
+/// Longest step length in `(0, 1]` that takes no positive value farther than a fraction of its way
 /// to zero.
 pub(super) fn to_boundary(values: &[f64], steps: &[f64], fraction: f64) -> f64 {
     values.iter().zip(steps).fold(1.0, |alpha, (value, step)| {
@@ -218,14 +158,19 @@ pub(super) fn to_boundary(values: &[f64], steps: &[f64], fraction: f64) -> f64 {
     })
 }
 
-fn advance(from: &[f64], step: &[f64], alpha: f64, to: &mut [f64]) {
-    for ((out, value), step) in to.iter_mut().zip(from).zip(step) {
-        *out = value + alpha * step;
+fn move_towards(values: &mut [f64], target: &[f64], alpha: f64) {
+    for (value, target) in values.iter_mut().zip(target) {
+        *value += alpha * (target - *value);
     }
 }
 
-fn toward(values: &mut [f64], target: &[f64], alpha: f64) {
-    for (value, target) in values.iter_mut().zip(target) {
-        *value += alpha * (target - *value);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_step_keeps_a_share_of_every_positive_value() {
+        assert!((to_boundary(&[1.0, 2.0], &[-4.0, -1.0], 0.8) - 0.2).abs() < 1e-15);
+        assert!((to_boundary(&[1.0, 2.0], &[-0.5, 3.0], 0.8) - 1.0).abs() < 1e-15);
     }
 }

@@ -1,48 +1,159 @@
 //! The Newton step of the barrier problem, inequalities condensed.
 
+use super::barrier::BarrierProblem;
+use super::breakdown;
 use super::dense::{axpy, dot};
-use super::interior_point::InteriorPoint;
-use super::iterate::Iterate;
-use super::settings::Interruption;
+use super::interruption::Interruptible;
+use super::iterate::{Iterate, Layout};
+use super::regularisation::Regularisation;
+use super::riccati::{NewtonSystem, RightHandSide, Step, system_for};
+use super::status::NlpStatus;
+use super::trial::Trial;
+use std::ops::ControlFlow;
 
-impl InteriorPoint {
-    /// Computes the Newton step; false when no regularisation makes the system convex, or stopped.
-    pub(super) fn newton_step(
+/// Weight of the proximity to the current point in steps towards feasibility.
+const DAMPING: f64 = 1e-4;
+
+/// The Newton system with its right-hand side and its last step.
+pub(super) struct Newton {
+    system: Box<dyn NewtonSystem>,
+    regularisation: Regularisation,
+    rhs: RightHandSide,
+    /// Weights of the condensed inequalities, `z / s` in Newton steps.
+    sigma: Vec<f64>,
+    step: Step,
+    /// The step before its second-order correction.
+    uncorrected: Step,
+}
+
+impl Newton {
+    /// Storage for the steps of a chain.
+    pub(super) fn of(layout: &Layout) -> Self {
+        let step = Step::zeros(layout);
+        Self {
+            system: system_for(layout),
+            regularisation: Regularisation::default(),
+            rhs: RightHandSide::zeros(layout),
+            sigma: vec![0.0; layout.all_inequalities()],
+            uncorrected: step.clone(),
+            step,
+        }
+    }
+
+    /// Resets the regularisation for another solve.
+    pub(super) fn restart(&mut self) {
+        self.regularisation = Regularisation::default();
+    }
+
+    /// The last step.
+    pub(super) fn step(&self) -> &Step {
+        &self.step
+    }
+
+    /// Computes the step at an iterate; breaks when no regularisation makes the system convex, or
+    /// when the caller stops the solve.
+    pub(super) fn compute<C>(
         &mut self,
+        caller: &Interruptible<'_, C>,
+        problem: &BarrierProblem,
         iterate: &Iterate,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> bool {
+    ) -> ControlFlow<NlpStatus> {
         for ((sigma, z), s) in self.sigma.iter_mut().zip(&iterate.z).zip(&iterate.slack) {
             *sigma = z / s;
         }
         let mut delta = self.regularisation.first();
-        while let Err(stage) = self.system.factor(&self.models, &self.sigma, delta, true) {
-            self.failed_stage = stage;
-            match self.regularisation.next(delta) {
-                Some(next) if stop().is_none() => delta = next,
-                _ => return false,
-            }
+        while let Err(stage) = self
+            .system
+            .factor(&problem.models, &self.sigma, delta, true)
+        {
+            let Some(next) = self.regularisation.next(delta) else {
+                return ControlFlow::Break(breakdown::of_system(&problem.models, stage));
+            };
+            caller.check()?;
+            delta = next;
         }
         self.regularisation.succeeded(delta);
-        self.fill_residuals(iterate);
-        self.solve_system(iterate);
+        self.fill_residuals(problem, iterate);
+        self.solve(problem, iterate);
+        ControlFlow::Continue(())
+    }
+
+    /// Computes a step towards feasibility: the system without cost and without Lagrangian
+    /// curvature, with a small multiple of the identity instead. False when it is not convex.
+    pub(super) fn compute_towards_feasibility(
+        &mut self,
+        problem: &BarrierProblem,
+        iterate: &Iterate,
+    ) -> bool {
+        for (sigma, s) in self.sigma.iter_mut().zip(&iterate.slack) {
+            *sigma = problem.mu / (s * s);
+        }
+        let factored = self
+            .system
+            .factor(&problem.models, &self.sigma, DAMPING, false);
+        if factored.is_err() {
+            return false;
+        }
+        self.fill_residuals(problem, iterate);
+        self.fill_gradient(problem, iterate, 0.0);
+        self.step.nu.fill(0.0);
+        self.system
+            .solve(&problem.models, &self.rhs, &mut self.step);
+        self.fill_inequality_steps(problem, iterate);
         true
     }
 
-    /// Solves the factorised system for the residuals on the right-hand side.
-    pub(super) fn solve_system(&mut self, iterate: &Iterate) {
-        self.fill_gradient(iterate, 1.0);
-        self.step.nu.copy_from_slice(&iterate.nu);
-        self.system.solve(&self.models, &self.rhs, &mut self.step);
-        self.inequality_steps(iterate);
+    /// Computes a second-order correction: the step that also removes what a trial at `alpha` along
+    /// the last one has left of the residuals, with the same factors.
+    pub(super) fn correct(
+        &mut self,
+        problem: &BarrierProblem,
+        iterate: &Iterate,
+        (trial, alpha): (&Trial, f64),
+    ) {
+        self.add_residuals_of(&problem.layout, trial, alpha);
+        self.solve(problem, iterate);
     }
 
-    /// Residuals of links, equalities and slacks at the current point.
-    pub(super) fn fill_residuals(&mut self, iterate: &Iterate) {
-        for (node, model) in self.models.iter().enumerate() {
-            let rows = self.layout.inequality(node);
-            self.rhs.gap[self.layout.link(node)].copy_from_slice(&model.values.gap);
-            self.rhs.equality[self.layout.equality(node)].copy_from_slice(&model.values.equality);
+    /// Puts the step aside while corrections of it are tried, or back when none serves.
+    pub(super) fn swap_uncorrected(&mut self) {
+        std::mem::swap(&mut self.step, &mut self.uncorrected);
+    }
+
+    /// Adapts the regularisation to the share of the longest possible step that was taken.
+    pub(super) fn was_taken(&mut self, share: f64) {
+        self.regularisation.stepped(share);
+    }
+
+    /// Derivative of the barrier cost along the step.
+    pub(super) fn slope(&self, problem: &BarrierProblem, iterate: &Iterate) -> f64 {
+        let layout = &problem.layout;
+        let mut slope = 0.0;
+        for (node, model) in problem.models.iter().enumerate() {
+            let (by_state, by_control) = model.gradient.split_at(layout.states);
+            slope += dot(by_state, &self.step.states[layout.state(node)]);
+            slope += dot(by_control, &self.step.controls[layout.control(node)]);
+        }
+        let steps = self.step.slack.iter().zip(&iterate.slack);
+        slope - problem.mu * steps.map(|(ds, s)| ds / s).sum::<f64>()
+    }
+
+    /// Solves the factorised system for the residuals on the right-hand side.
+    fn solve(&mut self, problem: &BarrierProblem, iterate: &Iterate) {
+        self.fill_gradient(problem, iterate, 1.0);
+        self.step.nu.copy_from_slice(&iterate.nu);
+        self.system
+            .solve(&problem.models, &self.rhs, &mut self.step);
+        self.fill_inequality_steps(problem, iterate);
+    }
+
+    /// Residuals of links, equalities and slacks at the iterate.
+    fn fill_residuals(&mut self, problem: &BarrierProblem, iterate: &Iterate) {
+        let layout = &problem.layout;
+        for (node, model) in problem.models.iter().enumerate() {
+            let rows = layout.inequality(node);
+            self.rhs.gap[layout.link(node)].copy_from_slice(&model.values.gap);
+            self.rhs.equality[layout.equality(node)].copy_from_slice(&model.values.equality);
             let slack = iterate.slack[rows.clone()].iter();
             let values = model.values.inequality.iter().zip(slack);
             for (out, (g, s)) in self.rhs.slack[rows].iter_mut().zip(values) {
@@ -51,12 +162,31 @@ impl InteriorPoint {
         }
     }
 
-    /// Gradient of the condensed system; `cost_weight` is zero in restoration.
-    pub(super) fn fill_gradient(&mut self, iterate: &Iterate, cost_weight: f64) {
-        let n = self.layout.states;
-        for (node, model) in self.models.iter().enumerate() {
-            let states = &mut self.rhs.states[self.layout.state(node)];
-            let controls = &mut self.rhs.controls[self.layout.control(node)];
+    /// Adds the residuals at a trial to the share of them that a step to there leaves.
+    fn add_residuals_of(&mut self, layout: &Layout, trial: &Trial, alpha: f64) {
+        let add = |residuals: &mut [f64], missed: &[f64]| {
+            for (residual, missed) in residuals.iter_mut().zip(missed) {
+                *residual = alpha * *residual + missed;
+            }
+        };
+        for (node, values) in trial.values().iter().enumerate() {
+            add(&mut self.rhs.gap[layout.link(node)], &values.gap);
+            let equalities = layout.equality(node);
+            add(&mut self.rhs.equality[equalities], &values.equality);
+            for (index, missed) in trial.slack_errors(layout, node) {
+                let residual = &mut self.rhs.slack[index];
+                *residual = alpha * *residual + missed;
+            }
+        }
+    }
+
+    /// Gradient of the condensed system; `cost_weight` is zero towards feasibility.
+    fn fill_gradient(&mut self, problem: &BarrierProblem, iterate: &Iterate, cost_weight: f64) {
+        let layout = &problem.layout;
+        let n = layout.states;
+        for (node, model) in problem.models.iter().enumerate() {
+            let states = &mut self.rhs.states[layout.state(node)];
+            let controls = &mut self.rhs.controls[layout.control(node)];
             let (by_state, by_control) = model.gradient.split_at(n);
             for (out, value) in states.iter_mut().zip(by_state) {
                 *out = cost_weight * value;
@@ -64,9 +194,9 @@ impl InteriorPoint {
             for (out, value) in controls.iter_mut().zip(by_control) {
                 *out = cost_weight * value;
             }
-            for (i, index) in self.layout.inequality(node).enumerate() {
+            for (i, index) in layout.inequality(node).enumerate() {
                 let pull =
-                    self.mu / iterate.slack[index] - self.sigma[index] * self.rhs.slack[index];
+                    problem.mu / iterate.slack[index] - self.sigma[index] * self.rhs.slack[index];
                 let (by_state, by_control) = model.inequality_row(i).split_at(n);
                 axpy(-pull, by_state, states);
                 axpy(-pull, by_control, controls);
@@ -75,18 +205,19 @@ impl InteriorPoint {
     }
 
     /// Steps of slacks and their multipliers that belong to the primal step.
-    pub(super) fn inequality_steps(&mut self, iterate: &Iterate) {
-        let n = self.layout.states;
-        for (node, model) in self.models.iter().enumerate() {
-            let state = &self.step.states[self.layout.state(node)];
-            let control = &self.step.controls[self.layout.control(node)];
-            for (i, index) in self.layout.inequality(node).enumerate() {
+    fn fill_inequality_steps(&mut self, problem: &BarrierProblem, iterate: &Iterate) {
+        let layout = &problem.layout;
+        let n = layout.states;
+        for (node, model) in problem.models.iter().enumerate() {
+            let state = &self.step.states[layout.state(node)];
+            let control = &self.step.controls[layout.control(node)];
+            for (i, index) in layout.inequality(node).enumerate() {
                 let (by_state, by_control) = model.inequality_row(i).split_at(n);
                 let moved = dot(by_state, state) + dot(by_control, control);
                 let (s, z) = (iterate.slack[index], iterate.z[index]);
                 let slack_step = moved + self.rhs.slack[index];
-                self.slack_step[index] = slack_step;
-                self.z_step[index] = (self.mu - z * slack_step) / s - z;
+                self.step.slack[index] = slack_step;
+                self.step.z[index] = (problem.mu - z * slack_step) / s - z;
             }
         }
     }

@@ -17,18 +17,19 @@
 //!
 //! Blocks have a handful of rows, where loops of unknown length cost several times their
 //! arithmetic. The sweeps are therefore compiled for fixed sizes, and a chain uses the smallest
-//! that holds its states and controls; the rows to spare are the identity's.
+//! size that holds its states and controls; surplus rows are those of the identity.
 
 mod stage;
 
+use super::chain::LinkModel;
 use super::iterate::Layout;
-use super::model::LinkModel;
 use stage::{Matrix, Stage, dot, padded, solve_lower, solve_upper};
 
 /// Proximal weight of node equalities. Smaller converges in fewer sweeps, larger loses fewer
 /// digits in the sums `M + C^T C / rho`.
 const RHO: f64 = 1e-6;
-/// Most vector sweeps for one step; each shrinks the equality residual by orders of magnitude.
+/// Limit of the vector sweeps for one step; each shrinks the equality residual by orders of
+/// magnitude.
 const MAX_SWEEPS: usize = 6;
 /// Equality residual at which the sweeps end (absolute, scaled variables).
 const SWEEP_TOLERANCE: f64 = 1e-13;
@@ -48,7 +49,8 @@ pub(super) struct RightHandSide {
     pub(super) slack: Vec<f64>,
 }
 
-/// A Newton step: primal steps and the new multipliers of links and equalities.
+/// A Newton step: primal steps, the new multipliers of links and equalities, and the steps of the
+/// condensed slacks and their multipliers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Step {
     /// `dx_k`.
@@ -59,6 +61,37 @@ pub(super) struct Step {
     pub(super) lambda: Vec<f64>,
     /// New equality multipliers.
     pub(super) nu: Vec<f64>,
+    /// `ds_k`.
+    pub(super) slack: Vec<f64>,
+    /// `dz_k`.
+    pub(super) z: Vec<f64>,
+}
+
+impl RightHandSide {
+    /// Storage for a chain.
+    pub(super) fn zeros(layout: &Layout) -> Self {
+        Self {
+            states: vec![0.0; layout.all_states()],
+            controls: vec![0.0; layout.all_controls()],
+            gap: vec![0.0; layout.all_links()],
+            equality: vec![0.0; layout.all_equalities()],
+            slack: vec![0.0; layout.all_inequalities()],
+        }
+    }
+}
+
+impl Step {
+    /// Storage for a chain.
+    pub(super) fn zeros(layout: &Layout) -> Self {
+        Self {
+            states: vec![0.0; layout.all_states()],
+            controls: vec![0.0; layout.all_controls()],
+            lambda: vec![0.0; layout.all_links()],
+            nu: vec![0.0; layout.all_equalities()],
+            slack: vec![0.0; layout.all_inequalities()],
+            z: vec![0.0; layout.all_inequalities()],
+        }
+    }
 }
 
 /// A Newton system with its factors.
@@ -77,7 +110,8 @@ pub(super) trait NewtonSystem: Send {
         hessian: bool,
     ) -> Result<(), usize>;
 
-    /// Solves for a step; `step.nu` holds the current multipliers of the equalities on entry.
+    /// Solves for a step but for its slacks and their multipliers; `step.nu` holds the current
+    /// multipliers of the equalities on entry.
     fn solve(&mut self, models: &[LinkModel], rhs: &RightHandSide, step: &mut Step);
 }
 

@@ -3,7 +3,7 @@
 //! Sequential quadratic programming: the conditions are linearised at the current point, the
 //! Lagrangian is replaced by its second-order model, and the quadratic program that results
 //! (assembled without regard to its structure, see [`subproblem`]) is solved by a general solver.
-//! Steps are shortened until the exact penalty function
+//! A step is shortened until the exact penalty function
 //!
 //! ```text
 //!   f + rho (sum |gap| + sum |e| + sum max(0, -g))
@@ -24,19 +24,20 @@ use nalgebra::DVector;
 use std::collections::VecDeque;
 use subproblem::{Linearisation, Stepped};
 
-/// Penalty functions of the last points that a new one is compared with.
+/// Number of the last points whose penalty functions a new one is compared with.
 const MEMORY: usize = 5;
-/// Share of the predicted decrease that is asked for.
+/// Sufficient decrease as a share of the predicted one.
 const SUFFICIENT: f64 = 1e-4;
 /// Halvings of a step before the model is given more curvature instead.
 const MAX_BACKTRACKS: usize = 12;
 /// The penalty is this much larger than the largest multiplier.
 const ABOVE_MULTIPLIERS: f64 = 1.5;
-/// Added curvature after a step that led nowhere: the least, its growth and its decay.
+/// Curvature added after a step that was shortened a lot or refused: the least, its growth and
+/// decay.
 const DAMPING_FIRST: f64 = 1e-4;
 const DAMPING_GROWTH: f64 = 4.0;
 const DAMPING_DECAY: f64 = 0.25;
-/// Steps shortened to this or less call for more curvature.
+/// Steps shortened to this fraction or less increase the added curvature.
 const SHORT: f64 = 0.25;
 const DAMPING_MAX: f64 = 1e6;
 
@@ -148,7 +149,8 @@ impl<'a, C: Chain> SequentialQuadratic<'a, C> {
         }
     }
 
-    /// Goes along a step as far as the penalty function allows; false when it does not.
+    /// Goes along a step as far as the penalty function allows; returns how far, `None` for not at
+    /// all.
     fn advance(
         &mut self,
         iterate: &mut Iterate,
@@ -225,7 +227,7 @@ impl<'a, C: Chain> SequentialQuadratic<'a, C> {
             let below: f64 = values.inequality.iter().map(|g| (-g).max(0.0)).sum();
             total += values.cost + self.penalty * (values.defect_norm() + below);
         }
-        // A point where something is not finite is never better.
+        // A point with a value that is not finite is never better.
         if total.is_finite() {
             total
         } else {

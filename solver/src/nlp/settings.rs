@@ -1,20 +1,21 @@
-//! Settings and endings of the interior point.
+//! Settings of the interior point.
 
-use std::fmt;
+use super::status::NlpStatus;
+use std::ops::ControlFlow;
 
 /// Tolerances and limits; all in the problem's own scaled variables.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
-    /// Largest error of stationarity and complementarity (absolute; the scaled variables are of
-    /// order one, and so is a minimum's share that this can cost).
+    /// Largest error of stationarity and complementarity. Absolute: scaled variables are of order
+    /// one, and the cost exceeds its minimum by about this much.
     pub(crate) tolerance: f64,
     /// Largest gap, equality or slack error.
     pub(crate) feasibility: f64,
-    /// Barrier parameter to begin with.
+    /// Barrier parameter of the first iteration.
     pub(crate) initial_barrier: f64,
-    /// Smallest slack of an inequality to begin with.
+    /// Smallest slack of an inequality in the first iteration.
     pub(crate) initial_slack: f64,
-    /// Iterations before giving up.
+    /// Limit of the iterations, those of restoration included.
     pub(crate) max_iterations: usize,
 }
 
@@ -27,130 +28,13 @@ impl Settings {
         initial_slack: 3e-2,
         max_iterations: 200,
     };
-}
 
-/// How a solve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum NlpStatus {
-    /// A local minimum within the tolerance.
-    Converged,
-    /// No minimum was found; what there is satisfies all conditions.
-    Constructed,
-    /// No further progress towards feasibility: probably there is none nearby.
-    InfeasibleSuspected,
-    /// Out of iterations.
-    IterationLimit,
-    /// The time is up.
-    TimeLimit,
-    /// The caller asked for an end.
-    Cancelled,
-    /// A number stopped being finite, or no step was possible.
-    NumericalError(Breakdown),
-}
-
-/// Why a solve is to end before its time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Interruption {
-    /// The time is up.
-    TimeLimit,
-    /// The caller asked for it.
-    Cancelled,
-}
-
-/// Where the numbers broke down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Breakdown {
-    /// Index of the node with its interval.
-    pub(crate) stage: usize,
-    /// What broke down there.
-    pub(crate) quantity: Quantity,
-}
-
-/// What can break down at a stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Quantity {
-    /// The cost is not finite.
-    Cost,
-    /// The gap to the next node is not finite.
-    Gap,
-    /// An equality is not finite.
-    Equality,
-    /// An inequality is not finite.
-    Inequality,
-    /// A derivative is not finite.
-    Derivative,
-    /// No regularisation makes the curvature positive.
-    Curvature,
-    /// The step is the longest there, and no part of it makes progress.
-    Step,
-    /// The solution does not fly there when it is integrated by other means.
-    Flight,
-}
-
-impl NlpStatus {
-    /// The stable text of the status.
-    pub(crate) const fn as_str(self) -> &'static str {
-        match self {
-            Self::Converged => "converged",
-            Self::Constructed => "constructed",
-            Self::InfeasibleSuspected => "infeasible_suspected",
-            Self::IterationLimit => "iteration_limit",
-            Self::TimeLimit => "time_limit",
-            Self::Cancelled => "cancelled",
-            Self::NumericalError(_) => "numerical_error",
+    /// Counts an iteration; breaks when there are no more.
+    pub(super) fn count(&self, iterations: &mut usize) -> ControlFlow<NlpStatus> {
+        if *iterations >= self.max_iterations {
+            return ControlFlow::Break(NlpStatus::IterationLimit);
         }
+        *iterations += 1;
+        ControlFlow::Continue(())
     }
-
-    /// Whether the solve was ended from outside.
-    pub(crate) const fn is_interrupted(self) -> bool {
-        matches!(self, Self::TimeLimit | Self::Cancelled)
-    }
-}
-
-impl From<Interruption> for NlpStatus {
-    fn from(interruption: Interruption) -> Self {
-        match interruption {
-            Interruption::TimeLimit => Self::TimeLimit,
-            Interruption::Cancelled => Self::Cancelled,
-        }
-    }
-}
-
-/// The stable text, with where the numbers broke down.
-impl fmt::Display for NlpStatus {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())?;
-        match self {
-            Self::NumericalError(Breakdown { stage, quantity }) => {
-                write!(f, " ({} of stage {stage})", quantity.as_str())
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-impl Quantity {
-    const fn as_str(self) -> &'static str {
-        match self {
-            Self::Cost => "cost",
-            Self::Gap => "gap",
-            Self::Equality => "equality",
-            Self::Inequality => "inequality",
-            Self::Derivative => "derivative",
-            Self::Curvature => "curvature",
-            Self::Step => "step",
-            Self::Flight => "flight",
-        }
-    }
-}
-
-/// What a solve did.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NlpReport {
-    /// How it ended.
-    pub(crate) status: NlpStatus,
-    /// Iterations, restoration included.
-    pub(crate) iterations: usize,
-    /// Largest gap, equality or inequality violation at the end.
-    pub(crate) infeasibility: f64,
 }

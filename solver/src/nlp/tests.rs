@@ -161,7 +161,7 @@ fn minimum_time_coasts_at_a_speed_limit() {
     };
     let (status, iterate) = cart.solve();
     assert_eq!(status, NlpStatus::Converged);
-    // Ramps of half a second each, and the way in between at half the speed.
+    // Ramps of half a second each, and a coast at half the speed in between.
     assert!(
         (total_time(&iterate) - 2.5).abs() < 1e-4,
         "{}",
@@ -170,7 +170,7 @@ fn minimum_time_coasts_at_a_speed_limit() {
 }
 
 #[test]
-fn a_goal_out_of_reach_is_said_to_be_suspect() {
+fn a_goal_out_of_reach_is_suspected_to_be_infeasible() {
     // Ten seconds per interval at a tenth of the speed: one metre and no more.
     let cart = Cart {
         intervals: 1,

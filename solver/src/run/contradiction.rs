@@ -1,30 +1,29 @@
-//! What cannot be if every part of the program is right.
+//! Contradictions between solutions and proofs, which only a defect of the program can cause.
 //!
-//! A certified bound holds for every flight. One that was flown faster, beyond what the tolerances of
-//! a flight explain, says that a proof is none: then no answer may rest on it. The same of a stored
-//! leg that does not fly as it says.
+//! A certified bound holds for every motion. A solution that is faster by more than its tolerances
+//! allow refutes the proof: then no answer may rest on it. A stored leg that does not meet its
+//! conditions when it is propagated is a contradiction too.
 
 use std::fmt;
 
-/// Relative excess of a bound over a flown time that the tolerances of limits explain.
+/// Relative excess of a bound over a duration that the tolerances of limits allow.
 const TOLERANCE: f64 = 1e-5;
-/// Angle, rad, by which flights of the optimiser miss their targets at most.
+/// Largest angle, rad, by which solutions of the optimiser miss their targets.
 const MISS: f64 = 1e-8;
 
-/// Something flown that contradicts something claimed, with what is needed to repeat it.
+/// A contradiction, with what is needed to reproduce it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contradiction {
-    /// A leg was flown in less than its certified bound.
+    /// A leg takes less than its certified bound.
     Leg {
-        /// What tells the leg from all others: spacecraft, momentum, turn and conditions.
+        /// Identity of the leg: spacecraft, momentum, turn and conditions.
         identity: String,
         /// The bound, s.
         bound_s: f64,
-        /// What the flight takes, s.
-        flown_s: f64,
+        /// The duration of the solution, s.
+        duration_s: f64,
     },
-    /// A tour was flown in less than the certified bound of all tours, or a leg of it in less than
-    /// its own.
+    /// A tour takes less than the certified bound of all tours, or a leg of it less than its own.
     Tour {
         /// The places in the order in which they were visited.
         route: Vec<String>,
@@ -32,14 +31,14 @@ pub enum Contradiction {
         leg: Option<[String; 2]>,
         /// The bound, s.
         bound_s: f64,
-        /// What the flight takes, s.
-        flown_s: f64,
+        /// The duration of the solution, s.
+        duration_s: f64,
     },
-    /// A stored leg does not fly as it says.
+    /// A stored leg does not meet its conditions when it is propagated.
     StoredLeg {
-        /// What tells the leg from all others.
+        /// Identity of the leg.
         identity: String,
-        /// What is wrong with its flight.
+        /// The conditions that it does not meet.
         faults: Vec<String>,
     },
 }
@@ -50,16 +49,16 @@ impl fmt::Display for Contradiction {
             Self::Leg {
                 identity,
                 bound_s,
-                flown_s,
+                duration_s,
             } => write!(
                 f,
-                "a leg with a certified bound of {bound_s} s was flown in {flown_s} s: {identity}"
+                "a leg with a certified bound of {bound_s} s takes {duration_s} s: {identity}"
             ),
             Self::Tour {
                 route,
                 leg,
                 bound_s,
-                flown_s,
+                duration_s,
             } => {
                 let what = leg.as_ref().map_or_else(
                     || "the tour".to_owned(),
@@ -68,21 +67,20 @@ impl fmt::Display for Contradiction {
                 let route = route.join(", ");
                 write!(
                     f,
-                    "{what} {route} has a certified bound of {bound_s} s and was flown in \
-                     {flown_s} s"
+                    "{what} {route} has a certified bound of {bound_s} s and takes {duration_s} s"
                 )
             }
             Self::StoredLeg { identity, faults } => write!(
                 f,
-                "a stored leg does not fly as it says ({}): {identity}",
+                "a stored leg does not meet its conditions ({}): {identity}",
                 faults.join("; ")
             ),
         }
     }
 }
 
-/// What of a bound of a leg, s, the tolerances of its flight may take off: targets are missed by a
-/// little, which counts where the turn, rad, is small.
+/// By how much a leg may undercut its bound, s, within the tolerances. Targets are missed by a
+/// small angle, which matters where the turn, rad, is small.
 pub(crate) fn slack(bound_s: f64, turn: f64) -> f64 {
     let missed = if turn > MISS { MISS / turn } else { 1.0 };
     bound_s * (TOLERANCE + missed).min(1.0)
@@ -93,18 +91,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn small_turns_have_more_slack_and_none_has_all() {
+    fn smaller_turns_have_more_slack_but_never_more_than_the_bound() {
         assert!((slack(100.0, 1.0) - 1e-3).abs() < 2e-6);
         assert!(slack(1.0, 1e-6) > 0.01 && slack(1.0, 1e-6) < 0.011);
         assert!((slack(3.0, 0.0) - 3.0).abs() < 1e-15);
     }
 
     #[test]
-    fn all_that_is_needed_to_repeat_it_is_told() {
+    fn messages_contain_what_is_needed_to_reproduce() {
         let leg = Contradiction::Leg {
             identity: "leg-1;7".into(),
             bound_s: 2.5,
-            flown_s: 2.25,
+            duration_s: 2.25,
         };
         let text = leg.to_string();
         assert!(
@@ -117,7 +115,7 @@ mod tests {
             route: vec!["start".into(), "b".into(), "a".into()],
             leg: Some(["start".into(), "b".into()]),
             bound_s: 2.5,
-            flown_s: 2.25,
+            duration_s: 2.25,
         };
         let text = tour.to_string();
         assert!(

@@ -1,4 +1,4 @@
-//! Our own worker pool; the global rayon pool is never used.
+//! The worker pool; the global rayon pool is never used.
 
 use std::num::NonZeroUsize;
 
@@ -21,7 +21,8 @@ impl SolverPool {
         Self::prepared(threads, || {})
     }
 
-    /// Starts the workers, each of which first prepares itself; `None` takes one per available core.
+    /// Starts the workers, each of which calls `prepare` first; `None` takes one per available
+    /// core.
     ///
     /// # Errors
     ///

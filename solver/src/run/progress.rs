@@ -3,8 +3,9 @@
 use crate::model::plan::Plan;
 use crate::run::contradiction::Contradiction;
 
-/// What a solve is busy with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The stage of a solve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Stage {
     /// Solving the table of leg times.
     Legs,
@@ -14,22 +15,10 @@ pub enum Stage {
     Verify,
 }
 
-impl Stage {
-    /// The stable text of the stage.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Legs => "legs",
-            Self::Search => "search",
-            Self::Verify => "verify",
-        }
-    }
-}
-
 /// A snapshot of a running solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// What is being done.
+    /// The present stage.
     pub stage: Stage,
     /// Steps of the stage that are done.
     pub done: u64,
@@ -54,19 +43,19 @@ impl Progress {
 
 /// Receives progress from any worker thread.
 pub trait Observer: Sync {
-    /// Called at every step worth showing; must return quickly.
+    /// Called at every step of a stage; must return quickly.
     fn progress(&self, progress: Progress);
 
-    /// Called whenever a better order has been found and the search goes on: its plan, verified,
-    /// `feasible`, with the bound of that moment. The progress that tells of it comes after. The
-    /// search waits meanwhile: must return quickly.
+    /// Called whenever the search has found a better order and goes on, before the progress that
+    /// reports it. The plan is verified and `feasible`, with the bound of that moment. The search
+    /// waits: must return quickly.
     fn incumbent(&self, plan: &Plan) {
         let _ = plan;
     }
 
-    /// Called when something was flown that contradicts a certified bound or a stored leg: a defect of
-    /// the planner, after which its answer claims less. Under debug assertions, as in tests, it is a
-    /// panic for whoever does not listen.
+    /// Called when a solution contradicts a certified bound or a stored leg: a defect of the
+    /// planner, whose answer then claims less. This default panics under debug assertions, as in
+    /// tests.
     fn contradicted(&self, contradiction: &Contradiction) {
         debug_assert!(false, "{contradiction}");
     }

@@ -70,7 +70,7 @@ impl StopSignal {
         }
     }
 
-    /// Whether nobody wants an answer any more, not even the best so far.
+    /// Whether the solve is cancelled: not even the best answer so far is wanted.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.flag.load(Ordering::Relaxed) == CANCELLED

@@ -1,4 +1,4 @@
-//! From a torque on the body to torques of the wheels.
+//! Allocation of a torque on the body to the wheels.
 
 use crate::math::cone;
 use crate::model::drive::Drive;
@@ -6,15 +6,15 @@ use crate::model::spacecraft::Wheel;
 use crate::model::wheel_axes::pseudo_inverse;
 use nalgebra::Vector3;
 
-/// The pseudo-inverse of the wheel axes: of all torques of the wheels that make a torque on the
-/// body it gives those with the least sum of squares (RW/CMG thesis, equation 158).
+/// The pseudo-inverse of the wheel axes. Of all wheel torques with the same torque on the body it gives
+/// those with the least sum of squares (RW/CMG thesis, equation 158).
 #[derive(Debug, Clone)]
-pub(super) struct Allocation {
+pub(super) struct TorqueAllocation {
     /// Rows of `A^T (A A^T)^-1`, one per wheel; zero for wheels that take no commands.
     rows: Vec<Vector3<f64>>,
 }
 
-impl Allocation {
+impl TorqueAllocation {
     /// `None` when the wheels that take commands do not span space.
     pub(super) fn new(wheels: &[Wheel], drives: &[Drive]) -> Option<Self> {
         let commanded =
@@ -36,13 +36,13 @@ impl Allocation {
         })
     }
 
-    /// Torque of a wheel, N m, for a torque on the body, N m, which feels the opposite.
+    /// Torque of a wheel, N m, for a torque on the body, N m: the body gets the reaction.
     pub(super) fn wheel_torque(&self, wheel: usize, on_body: &Vector3<f64>) -> f64 {
         -self.rows[wheel].dot(on_body)
     }
 
-    /// The nearest to a change of what the wheels are to do together, N m, that asks no wheel for more
-    /// of what it was `missing`, of any unit and with its sign.
+    /// The change of the torque on the body, N m, nearest to `change` that demands no more of any wheel
+    /// at a limit. Of `missing`, one entry per wheel, only zero or the sign counts.
     pub(super) fn relieved(&self, change: &Vector3<f64>, missing: &[f64]) -> Vector3<f64> {
         let wheels = self.rows.iter().zip(missing);
         let at_limits =
@@ -50,7 +50,7 @@ impl Allocation {
         let asking: Vec<_> = at_limits
             .map(|(row, missing)| row * missing.signum())
             .collect();
-        // What is left of the nearest point of a cone is the nearest point of its polar cone (Moreau).
+        // A point minus its projection on a cone is its projection on the polar cone (Moreau).
         change - cone::nearest(&asking, change)
     }
 }
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wheels_make_the_torque_with_the_least_effort() {
+    fn allocated_torques_add_up_without_a_null_space_component() {
         let wheels = [
             wheel([0.8, 0.0, 0.6], true),
             wheel([0.0, 0.8, 0.6], true),
@@ -79,7 +79,7 @@ mod tests {
             wheel([0.0, -0.8, 0.6], true),
             wheel([1.0, 0.0, 0.0], false),
         ];
-        let allocation = Allocation::new(&wheels, &[Drive::IDEAL; 5]).unwrap();
+        let allocation = TorqueAllocation::new(&wheels, &[Drive::IDEAL; 5]).unwrap();
         let wanted = Vector3::new(0.3, -0.2, 0.5);
         let torques: Vec<f64> = (0..5)
             .map(|wheel| allocation.wheel_torque(wheel, &wanted))
@@ -92,19 +92,19 @@ mod tests {
     }
 
     #[test]
-    fn what_is_relieved_asks_no_wheel_at_a_limit_for_more() {
+    fn a_relieved_change_demands_no_more_of_wheels_at_limits() {
         let wheels = [
             wheel([0.8, 0.0, 0.6], true),
             wheel([0.0, 0.8, 0.6], true),
             wheel([-0.8, 0.0, 0.6], true),
             wheel([0.0, -0.8, 0.6], true),
         ];
-        let allocation = Allocation::new(&wheels, &[Drive::IDEAL; 4]).unwrap();
+        let allocation = TorqueAllocation::new(&wheels, &[Drive::IDEAL; 4]).unwrap();
         let change = Vector3::new(0.3, -0.2, 0.5);
         let more = |change: &Vector3<f64>, wheel| -allocation.wheel_torque(wheel, change);
         let relieved = |missing: [f64; 4]| allocation.relieved(&change, &missing);
         assert_eq!(relieved([0.0; 4]), change);
-        // The first wheel is asked for more of one sign and less of the other.
+        // The change demands more torque of the first wheel, so that only one sign of its limit matters.
         assert!(more(&change, 0) > 0.0);
         assert_eq!(relieved([-1e-3, 0.0, 0.0, 0.0]), change);
         let one = relieved([1e-3, 0.0, 0.0, 0.0]);
@@ -123,6 +123,6 @@ mod tests {
             wheel([0.0, 1.0, 0.0], true),
             wheel([1.0, 1.0, 0.0], true),
         ];
-        assert!(Allocation::new(&wheels, &[Drive::IDEAL; 3]).is_none());
+        assert!(TorqueAllocation::new(&wheels, &[Drive::IDEAL; 3]).is_none());
     }
 }

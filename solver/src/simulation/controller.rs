@@ -13,66 +13,66 @@
 //!   e_I  = t_s sum of (e_w + k_p e_R) over the samples before      BIROS (24)
 //! ```
 //!
-//! While a wheel is at a limit of torque or speed an integral of what it cannot take away grows in
-//! vain and has to be undone afterwards: it *winds up*. The remedy is conditional integration (Astrom
-//! and Hagglund, PID Controllers, 1995, section 3.5; Visioli, IEE Proc. Control Theory Appl. 150,
-//! 2003), here with a direction: with `b_i` the rows of the pseudo-inverse and `s_i` the sign of what
-//! wheel `i` could not give since the last sample, a term `d = k_I t_s (e_w + k_p e_R)` of the integral
-//! changes the demands on the wheels by `b_i . d`. What is added is the nearest to it that asks no
-//! wheel at a limit for more,
+//! While a wheel is at a limit of torque or speed, the integral of an error that the wheel cannot reduce
+//! keeps growing and has to decay afterwards: it *winds up*. The remedy is conditional integration
+//! (Astrom and Hagglund, PID Controllers, 1995, section 3.5; Visioli, IEE Proc. Control Theory Appl.
+//! 150, 2003), here by direction. With `b_i` the rows of the pseudo-inverse and `s_i` the sign of the
+//! torque that wheel `i` could not give since the last sample, a term `d = k_I t_s (e_w + k_p e_R)` of
+//! the integral changes the demands on the wheels by `b_i . d`. The term added instead is the nearest
+//! one that demands no more of a wheel at a limit,
 //!
 //! ```text
 //!   minimise |d' - d|   subject to   s_i b_i . d' <= 0    for all wheels at a limit
 //! ```
 //!
-//! so that the integral still learns about the axes that have torque left, and is free to unwind.
+//! so that the integral still grows about axes with torque left, and may always decay.
 //!
-//! The thesis writes `w x J w` where the momentum of the wheels is dealt with elsewhere. Here `H_b`
-//! is that of body and wheels, and what the plan's torques already contain is left out: `H_d` is the
-//! plan's momentum.
+//! The thesis has `w x J w` and treats the momentum of the wheels separately. Here `H_b` is the momentum
+//! of body and wheels, and the gyroscopic torque `w_d x H_d` that the plan's torques contain is
+//! subtracted, with `H_d` the plan's momentum.
 
-use super::settings::{Law, Settings};
+use super::settings::{ControlLaw, SimulationSettings};
 use crate::model::attitude::Attitude;
 use crate::model::spacecraft::Spacecraft;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 
-/// What the controller is to bring about at a moment.
+/// The state that the controller follows at one time.
 #[derive(Debug, Clone)]
 pub(super) struct Desired {
     pub(super) attitude: Attitude,
-    /// Body axes of that attitude, rad/s.
+    /// Body rate in the body axes of that attitude, rad/s.
     pub(super) rate: Vector3<f64>,
-    /// `w_d x H_d`: the gyroscopic torque that the torques fed forward make up for, N m.
+    /// `w_d x H_d`: the gyroscopic torque that the feed-forward compensates, N m.
     pub(super) gyroscopic: Vector3<f64>,
 }
 
-/// What the sensors say.
+/// Measurements of the sensors.
 #[derive(Debug, Clone)]
 pub(super) struct Measured<'a> {
     pub(super) attitude: Attitude,
     pub(super) rate: Vector3<f64>,
-    /// One per wheel, rad/s.
+    /// Speed of each wheel, rad/s.
     pub(super) wheel_speed: &'a [f64],
-    /// What each wheel was asked for beyond its limits since the last sample, N m s.
+    /// Integral of each wheel's commanded torque beyond its limits since the last sample, N m s.
     pub(super) missing: &'a [f64],
 }
 
 /// A control law with its memory.
 #[derive(Debug)]
-pub(super) struct Controller<'a> {
-    settings: &'a Settings,
+pub(super) struct FeedbackController<'a> {
+    settings: &'a SimulationSettings,
     spacecraft: &'a Spacecraft,
     /// `k_I e_I`, N m.
     integral: Vector3<f64>,
-    /// What comes to it from the last sample, N m.
+    /// The term of the last sample, not yet added, N m.
     pending: Vector3<f64>,
-    /// Torques that are not yet applied, N m, oldest first.
+    /// Body torques that are delayed, N m, oldest first.
     late: VecDeque<Vector3<f64>>,
 }
 
-impl<'a> Controller<'a> {
-    pub(super) fn new(settings: &'a Settings, spacecraft: &'a Spacecraft) -> Self {
+impl<'a> FeedbackController<'a> {
+    pub(super) fn new(settings: &'a SimulationSettings, spacecraft: &'a Spacecraft) -> Self {
         Self {
             settings,
             spacecraft,
@@ -82,7 +82,7 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// Torques of the wheels, N m, that feedback adds from a sample on, written over `torque`.
+    /// Writes the feedback torque of each wheel from this sample on, N m, to `torque`.
     pub(super) fn sample(
         &mut self,
         measured: &Measured<'_>,
@@ -90,11 +90,11 @@ impl<'a> Controller<'a> {
         torque: &mut [f64],
     ) {
         let (body_torque, allocation) = match &self.settings.law {
-            Law::Open => {
+            ControlLaw::Open => {
                 torque.fill(0.0);
                 return;
             }
-            Law::Quaternion {
+            ControlLaw::Quaternion {
                 gains,
                 gyroscopic,
                 allocation,
@@ -110,7 +110,7 @@ impl<'a> Controller<'a> {
                 }
                 (body_torque, allocation)
             }
-            Law::Pid {
+            ControlLaw::Pid {
                 gains,
                 anti_windup,
                 allocation,
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_those_of_the_matrices() {
+    fn errors_agree_with_their_definition_by_rotation_matrices() {
         let desired = Desired {
             attitude: Attitude::from_xyzw([0.1, -0.5, 0.5, 0.7]).unwrap(),
             rate: Vector3::new(0.01, -0.03, 0.02),

@@ -1,37 +1,37 @@
-//! One truth out of all that the errors allow.
+//! Drawing a true spacecraft and an initial state.
 
-use super::settings::{Errors, Settings};
-use super::truth::{Rotor, State, Truth, effective_inertia};
+use super::settings::{ErrorModel, SimulationSettings};
+use super::truth::{TrueSpacecraft, TrueState, TrueWheel, effective_inertia};
 use crate::math::random::SplitMix;
 use crate::model::attitude::Attitude;
 use crate::model::scenario::Scenario;
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
-/// Draws of an inertia at full size, and those after them, each half as large as the one before:
-/// near a plate or a rod most matrices belong to no body.
+/// Number of draws of an inertia with the full deviation, and of further draws with half the deviation of
+/// the one before: near a plate or a rod most perturbed matrices are the inertia of no body.
 const FULL_DRAWS: i32 = 20;
 const SHRINKING_DRAWS: i32 = 40;
-/// Excess over the triangle inequality, relative, that a flat plate has by rounding.
+/// Relative excess over the triangle inequality that counts as rounding, as of a flat plate.
 const TRIANGLE_TOLERANCE: f64 = 1e-6;
 
-/// What is drawn for one flight.
+/// True spacecraft, initial state and sensor noise of one simulated flight.
 #[derive(Debug)]
-pub(super) struct Drawn {
-    pub(super) truth: Truth,
-    pub(super) start: State,
+pub(super) struct DrawnFlight {
+    pub(super) truth: TrueSpacecraft,
+    pub(super) start: TrueState,
     pub(super) noise: SplitMix,
 }
 
-/// The truth of a flight: the same for a seed and a number, whatever else is flown.
+/// Draws for one flight; the result depends on seed and number only.
 pub(super) fn draw(
     scenario: &Scenario,
-    settings: &Settings,
-    nominal: &Truth,
+    settings: &SimulationSettings,
+    nominal: &TrueSpacecraft,
     number: u64,
-) -> Drawn {
+) -> DrawnFlight {
     let errors = &settings.errors;
     let mut random = SplitMix::member(settings.seed, number);
-    // Generators of their own: how often one is asked changes nothing for the others.
+    // Separate generators, so that the number of draws of one does not affect the others.
     let (mut body, mut friction) = (random.split(), random.split());
     let (mut initial, noise) = (random.split(), random.split());
     let (inertia, mut rotors) = any_body(scenario, errors, &nominal.rotors, &mut body);
@@ -41,7 +41,7 @@ pub(super) fn draw(
         rotor.coulomb *= share;
     }
     let begin = scenario.start();
-    let truth = Truth::new(&inertia, rotors, &begin.wheel_speed, errors.disturbance)
+    let truth = TrueSpacecraft::new(&inertia, rotors, &begin.wheel_speed, errors.disturbance)
         .unwrap_or_else(|| nominal.clone());
     let off = normals(&mut initial) * errors.initial_attitude;
     let start = truth.state(
@@ -49,7 +49,7 @@ pub(super) fn draw(
         begin.rate,
         &begin.wheel_speed,
     );
-    Drawn {
+    DrawnFlight {
         truth,
         start,
         noise,
@@ -62,24 +62,24 @@ pub(super) fn normals(random: &mut SplitMix) -> Vector3<f64> {
     Vector3::new(x, y, z)
 }
 
-/// Scalar-last components as nalgebra has them.
+/// An attitude as nalgebra's quaternion.
 pub(super) fn quaternion(attitude: &Attitude) -> Quaternion<f64> {
     let [x, y, z, w] = attitude.xyzw();
     Quaternion::new(w, x, y, z)
 }
 
-/// Inertia and wheel axes that a body can have.
+/// Perturbed inertia and wheels that are physically possible; the nominal ones if no draw is.
 fn any_body(
     scenario: &Scenario,
-    errors: &Errors,
-    nominal: &[Rotor],
+    errors: &ErrorModel,
+    nominal: &[TrueWheel],
     random: &mut SplitMix,
-) -> (Matrix3<f64>, Vec<Rotor>) {
+) -> (Matrix3<f64>, Vec<TrueWheel>) {
     let inertia = scenario.spacecraft().inertia();
     for draw in 0..FULL_DRAWS + SHRINKING_DRAWS {
         let size = 0.5_f64.powi((draw - FULL_DRAWS + 1).max(0));
         let candidate = perturbed(inertia, size * errors.inertia, random);
-        let rotors: Vec<Rotor> = nominal
+        let rotors: Vec<TrueWheel> = nominal
             .iter()
             .map(|rotor| tilted(rotor, size * errors.alignment, random))
             .collect();
@@ -90,9 +90,9 @@ fn any_body(
     (*inertia, nominal.to_vec())
 }
 
-/// `S (1 + E) S` with `S^2` the inertia and `E` symmetric: normal on the diagonal, on the off-diagonal
-/// smaller by the square root of two, so that no axes are preferred and the inertia about every axis
-/// has the same relative deviation.
+/// `S (1 + E) S` with `S^2` the inertia and `E` symmetric and normal, off the diagonal with a deviation
+/// smaller by the square root of two. Its distribution is the same in all axes, so that the moment of
+/// inertia about every axis has the same relative deviation.
 fn perturbed(inertia: &Matrix3<f64>, deviation: f64, random: &mut SplitMix) -> Matrix3<f64> {
     let mut error = Matrix3::zeros();
     for row in 0..3 {
@@ -109,14 +109,14 @@ fn perturbed(inertia: &Matrix3<f64>, deviation: f64, random: &mut SplitMix) -> M
     inertia + root * error * root
 }
 
-/// A wheel whose axis is tilted by small angles about two axes across it; its length stays.
-fn tilted(rotor: &Rotor, deviation: f64, random: &mut SplitMix) -> Rotor {
+/// A wheel whose axis is tilted by small angles about two perpendicular axes, at unchanged length.
+fn tilted(rotor: &TrueWheel, deviation: f64, random: &mut SplitMix) -> TrueWheel {
     let (first, second) = (random.normal(), random.normal());
     let across = rotor.axis.cross(&Vector3::ith(rotor.axis.iamin(), 1.0));
     let along = rotor.axis.norm();
     let (a, b) = (across.normalize(), rotor.axis.cross(&across).normalize());
     let off = rotor.axis + (a * first + b * second) * (along * deviation);
-    Rotor {
+    TrueWheel {
         axis: off * (along / off.norm()),
         ..rotor.clone()
     }
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_about_every_axis_deviate_alike() {
+    fn moments_of_inertia_about_all_axes_have_the_same_relative_deviation() {
         let inertia = Matrix3::new(6.63, 0.3, -0.2, 0.3, 8.9, 0.1, -0.2, 0.1, 9.63);
         let mut random = SplitMix::new(3);
         let axes = [
@@ -162,8 +162,8 @@ mod tests {
     }
 
     #[test]
-    fn tilts_turn_an_axis_and_keep_its_length() {
-        let rotor = Rotor {
+    fn tilted_axes_have_the_given_deviation_and_unchanged_length() {
+        let rotor = TrueWheel {
             axis: Vector3::new(0.5, 0.5, 0.5),
             inertia: 1e-3,
             viscous: 0.0,

@@ -1,4 +1,4 @@
-//! Gains of the control laws from what one wants of small errors.
+//! Gains of the control laws, given directly or by the poles of small errors.
 
 use super::spec::{GainsSpec, PidGainsSpec};
 use crate::model::findings::Findings;
@@ -10,15 +10,15 @@ const SETTLING_TIME_CONSTANTS: f64 = 4.0;
 /// Gains `k`, `c` of quaternion feedback `-k J q_e - c J w_e`, with `q_e` the vector part of the
 /// error quaternion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gains {
+pub struct QuaternionGains {
     /// `k`, 1/s².
     pub attitude: f64,
     /// `c`, 1/s.
     pub rate: f64,
 }
 
-impl Gains {
-    /// Gains with which a small error of attitude has a natural frequency, rad/s, and a damping.
+impl QuaternionGains {
+    /// Gains for a natural frequency, rad/s, and a damping ratio of small attitude errors.
     ///
     /// The vector part of a quaternion is half the angle, so that `k = 2 w_n^2`.
     #[must_use]
@@ -32,8 +32,9 @@ impl Gains {
     /// The published gains of a settling time, s, and a damping (RW/CMG thesis, equations 39 and
     /// 42): `w_n = 4 / (damping time)`, `k = w_n^2`, `c = 2 damping w_n`.
     ///
-    /// They take the vector part of the quaternion for the angle, of which it is half: the natural
-    /// frequency of a small error is `w_n / sqrt(2)`, its damping `sqrt(2)` of the one asked for.
+    /// The published equations take the vector part of the quaternion for the angle, of which it is
+    /// half: the natural frequency of a small error is `w_n / sqrt(2)`, its damping ratio `sqrt(2)`
+    /// times the given one.
     #[must_use]
     pub fn from_settling_time(settling_time: f64, damping: f64) -> Self {
         let frequency = SETTLING_TIME_CONSTANTS / (damping * settling_time);
@@ -80,9 +81,9 @@ impl Gains {
 }
 
 /// Gains of the geometric PID, `-k_R e_R - k_w e_w - k_I e_I` with `e_I` the integral of
-/// `e_w + k_p e_R` (BIROS equations 23 and 24); matrices, to suit the inertia about every axis.
+/// `e_w + k_p e_R` (BIROS equations 23 and 24); matrices, in proportion to the inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PidGains {
+pub(super) struct GeometricPidGains {
     /// `k_R`, N m.
     pub(super) attitude: Matrix3<f64>,
     /// `k_w`, N m s.
@@ -93,13 +94,13 @@ pub(super) struct PidGains {
     pub(super) attitude_weight: f64,
 }
 
-impl PidGains {
-    /// Gains with which a small error of attitude has the poles of
+impl GeometricPidGains {
+    /// Gains for which small attitude errors have the poles of
     /// `(s + p) (s^2 + 2 z w s + w^2)`.
     ///
     /// The error obeys `s^3 + k_w s^2 + (k_R + k_I) s + k_I k_p` per unit of inertia. One of the four
-    /// gains is free: `k_R = w^2` makes the proportional part that of `p = 0`.
-    fn from_poles(inertia: &Matrix3<f64>, (w, z, p): (f64, f64, f64)) -> Self {
+    /// gains is free: `k_R = w^2` is the proportional gain for `p = 0`.
+    fn from_poles(inertia: &Matrix3<f64>, w: f64, z: f64, p: f64) -> Self {
         Self {
             attitude: inertia * (w * w),
             rate: inertia * (2.0 * z * w + p),
@@ -125,7 +126,7 @@ impl PidGains {
                 let damping = findings.positive(&format!("{pointer}/damping"), damping);
                 let integral =
                     findings.not_negative(&format!("{pointer}/integral_rad_s"), integral_rad_s);
-                Some(Self::from_poles(inertia, (bandwidth?, damping?, integral?)))
+                Some(Self::from_poles(inertia, bandwidth?, damping?, integral?))
             }
             PidGainsSpec::Given {
                 attitude_nm,
@@ -156,7 +157,7 @@ mod tests {
 
     #[test]
     fn the_published_settling_time_gives_the_published_gains() {
-        let gains = Gains::from_settling_time(0.1, 0.9);
+        let gains = QuaternionGains::from_settling_time(0.1, 0.9);
         // Published as 1.97e3 (cut off, not rounded) and 80.
         assert!((gains.attitude - 1975.3).abs() < 0.05, "{gains:?}");
         assert!((gains.rate - 80.0).abs() < 1e-12, "{gains:?}");
@@ -165,7 +166,7 @@ mod tests {
     #[test]
     fn poles_and_gains_of_the_pid_agree() {
         let (w, z, p) = (0.3, 0.8, 0.05);
-        let gains = PidGains::from_poles(&Matrix3::identity(), (w, z, p));
+        let gains = GeometricPidGains::from_poles(&Matrix3::identity(), w, z, p);
         let (r, i) = (gains.attitude.m11, gains.integral.m11);
         assert!((gains.rate.m11 - (2.0 * z * w + p)).abs() < 1e-15);
         assert!((r + i - (w * w + 2.0 * z * w * p)).abs() < 1e-15);

@@ -1,20 +1,20 @@
-//! Many flights of one plan, and what they have in common.
+//! Many simulated flights of one plan, and statistics over them.
 
 use super::Simulation;
 use super::outcome::{SimulatedFlight, TrackingError};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 
-/// Values that so many of the flights do not exceed (nearest rank).
+/// Percentiles over the flights, by nearest rank.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Percentiles {
-    /// Half of them.
+    /// 50th percentile.
     pub p50: f64,
-    /// 90 of 100.
+    /// 90th percentile.
     pub p90: f64,
-    /// 99 of 100.
+    /// 99th percentile.
     pub p99: f64,
-    /// All of them.
+    /// Greatest value.
     pub max: f64,
 }
 
@@ -44,12 +44,12 @@ pub struct SaturationSpread {
     pub speed_max: f64,
 }
 
-/// What the flights of a Monte-Carlo run have in common.
+/// Statistics over the flights of a Monte-Carlo run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
-    /// Flights that were flown; fewer than asked for when stopped.
+    /// Number of flights that were simulated; fewer than asked for when stopped.
     pub runs: usize,
-    /// Flights that were asked for.
+    /// Number of flights that were asked for.
     pub runs_asked: usize,
     /// Attitude error up to which a flight is a success, rad.
     pub tolerance_rad: f64,
@@ -63,7 +63,7 @@ pub struct Spread {
     pub end_rate_rad_s: Percentiles,
     /// Attitude errors at the end of the plan, before the time to settle, rad.
     pub plan_end_attitude_rad: Percentiles,
-    /// Largest attitude errors on the way, rad.
+    /// Largest attitude errors at any sample, rad.
     pub peak_attitude_rad: Percentiles,
     /// Errors at the arrivals, in order of the plan.
     pub passages: Vec<PassageSpread>,
@@ -72,20 +72,20 @@ pub struct Spread {
 }
 
 impl Simulation<'_> {
-    /// Flies as many times as the description says, and sums up. The flights are those of
-    /// [`Simulation::fly`] with the numbers from 0 on, for any number of threads; when the signal is
-    /// given, those that have been flown to their end by then.
+    /// Simulates the number of flights that the description asks for. The flights are those of
+    /// [`Simulation::simulate`] with the numbers from 0 on, for any number of threads. When the stop
+    /// signal is set, only flights that are complete by then count.
     #[must_use]
     pub fn monte_carlo(&self, pool: &SolverPool, stop: &StopSignal) -> Spread {
         let numbers: Vec<u64> = (0..self.settings.runs as u64).collect();
-        let flown = pool.map(&numbers, |&number| {
-            self.fly(number, None, &|| stop.is_set())
+        let simulated = pool.map(&numbers, |&number| {
+            self.simulate(number, None, &|| stop.is_set())
         });
-        let flown: Vec<SimulatedFlight> = flown.into_iter().flatten().collect();
-        self.spread(&flown)
+        let simulated: Vec<SimulatedFlight> = simulated.into_iter().flatten().collect();
+        self.spread(&simulated)
     }
 
-    fn spread(&self, flown: &[SimulatedFlight]) -> Spread {
+    fn spread(&self, simulated: &[SimulatedFlight]) -> Spread {
         let tolerance = self.settings.tolerance;
         let within = |error: &TrackingError| error.attitude_rad <= tolerance;
         let arrivals = |flight: &&SimulatedFlight| {
@@ -93,42 +93,45 @@ impl Simulation<'_> {
             passages.all(|passage| within(&passage.error))
         };
         Spread {
-            runs: flown.len(),
+            runs: simulated.len(),
             runs_asked: self.settings.runs,
             tolerance_rad: tolerance,
-            share_within: share(flown, |flight| within(&flight.end)),
-            share_within_at_passages: share(flown, |flight| arrivals(&flight)),
-            end_attitude_rad: percentiles(flown, |flight| flight.end.attitude_rad),
-            end_rate_rad_s: percentiles(flown, |flight| flight.end.rate_rad_s),
-            plan_end_attitude_rad: percentiles(flown, |flight| flight.plan_end.attitude_rad),
-            peak_attitude_rad: percentiles(flown, |flight| flight.peak.attitude_rad),
-            passages: self.passages(flown),
+            share_within: share(simulated, |flight| within(&flight.end)),
+            share_within_at_passages: share(simulated, |flight| arrivals(&flight)),
+            end_attitude_rad: percentiles(simulated, |flight| flight.end.attitude_rad),
+            end_rate_rad_s: percentiles(simulated, |flight| flight.end.rate_rad_s),
+            plan_end_attitude_rad: percentiles(simulated, |flight| flight.plan_end.attitude_rad),
+            peak_attitude_rad: percentiles(simulated, |flight| flight.peak.attitude_rad),
+            passages: self.passages(simulated),
             saturation: (0..self.scenario.spacecraft().wheels().len())
-                .map(|wheel| saturation(flown, wheel))
+                .map(|wheel| saturation(simulated, wheel))
                 .collect(),
         }
     }
 
-    fn passages(&self, flown: &[SimulatedFlight]) -> Vec<PassageSpread> {
+    fn passages(&self, simulated: &[SimulatedFlight]) -> Vec<PassageSpread> {
         let passages = self.flight.passages.iter().enumerate();
         passages
             .map(|(index, passage)| PassageSpread {
                 target: passage.target.clone(),
                 time_s: passage.time_s,
-                attitude_rad: percentiles(flown, |f| f.passages[index].error.attitude_rad),
-                rate_rad_s: percentiles(flown, |f| f.passages[index].error.rate_rad_s),
+                attitude_rad: percentiles(simulated, |f| f.passages[index].error.attitude_rad),
+                rate_rad_s: percentiles(simulated, |f| f.passages[index].error.rate_rad_s),
             })
             .collect()
     }
 }
 
-fn share(flown: &[SimulatedFlight], good: impl Fn(&SimulatedFlight) -> bool) -> f64 {
-    let count = flown.iter().filter(|flight| good(flight)).count();
-    count as f64 / flown.len().max(1) as f64
+fn share(simulated: &[SimulatedFlight], good: impl Fn(&SimulatedFlight) -> bool) -> f64 {
+    let count = simulated.iter().filter(|flight| good(flight)).count();
+    count as f64 / simulated.len().max(1) as f64
 }
 
-fn percentiles(flown: &[SimulatedFlight], value: impl Fn(&SimulatedFlight) -> f64) -> Percentiles {
-    Percentiles::of(flown.iter().map(value).collect())
+fn percentiles(
+    simulated: &[SimulatedFlight],
+    value: impl Fn(&SimulatedFlight) -> f64,
+) -> Percentiles {
+    Percentiles::of(simulated.iter().map(value).collect())
 }
 
 impl Percentiles {
@@ -148,10 +151,10 @@ impl Percentiles {
     }
 }
 
-fn saturation(flown: &[SimulatedFlight], wheel: usize) -> SaturationSpread {
-    let count = flown.len().max(1) as f64;
+fn saturation(simulated: &[SimulatedFlight], wheel: usize) -> SaturationSpread {
+    let count = simulated.len().max(1) as f64;
     let mut spread = SaturationSpread::default();
-    for saturation in flown.iter().map(|flight| flight.saturation[wheel]) {
+    for saturation in simulated.iter().map(|flight| flight.saturation[wheel]) {
         spread.torque_mean += saturation.torque / count;
         spread.speed_mean += saturation.speed / count;
         spread.torque_max = spread.torque_max.max(saturation.torque);
@@ -165,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn percentiles_are_values_of_the_nearest_rank() {
+    fn percentiles_are_the_values_of_nearest_rank() {
         let values: Vec<f64> = (1..=200).rev().map(f64::from).collect();
         let found = Percentiles::of(values);
         let expected = Percentiles {

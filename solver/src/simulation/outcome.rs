@@ -1,16 +1,16 @@
-//! What a simulated flight shows, and how it is noted on the way.
+//! The result of a simulated flight, and its recording.
 
 use super::controller::Desired;
-use super::course::{Course, Event};
-use super::wheel_loop::Cycle;
+use super::sampled_plan::{MarkEvent, SampledPlan};
+use super::wheel_loop::MotorCycle;
 use crate::checker::NOT_COMPUTED;
 use crate::model::attitude::Attitude;
 use crate::model::plan::Flight;
 use nalgebra::Vector3;
 
-/// How far the spacecraft is from where it should be.
+/// Difference of the true state from a desired one.
 ///
-/// A flight whose numbers left what can be computed has [`NOT_COMPUTED`] from then on.
+/// Once the motion is not finite any more, both errors are [`NOT_COMPUTED`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackingError {
     /// Angle between the attitudes, rad.
@@ -30,7 +30,7 @@ pub struct PassageError {
     pub error: TrackingError,
 }
 
-/// Share of the flight during which a wheel was at a limit and should have gone beyond.
+/// Share of the flight during which a wheel was commanded beyond a limit.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Saturation {
     /// The motor's torque.
@@ -39,7 +39,7 @@ pub struct Saturation {
     pub speed: f64,
 }
 
-/// A state on the way, for a plot.
+/// A state during the flight, for plots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedState {
     /// Time, s.
@@ -50,12 +50,12 @@ pub struct SimulatedState {
     pub body_rate_rad_s: Vector3<f64>,
     /// True wheel speeds relative to the body, rad/s.
     pub wheel_speed_rad_s: Vec<f64>,
-    /// Commanded torques of the wheels from here on, feed-forward and feedback, N m; before the
-    /// limits.
+    /// Commanded torques of the wheels from this time on, feed-forward and feedback, before the limits,
+    /// N m.
     pub wheel_torque_nm: Vec<f64>,
-    /// Whether each wheel met its limit of torque on the way to the next state that is kept.
+    /// Whether each wheel reached its torque limit before the next state that is kept.
     pub torque_limited: Vec<bool>,
-    /// The same for its limit of speed.
+    /// The same for the speed limit.
     pub speed_limited: Vec<bool>,
     /// Error against what the controller follows.
     pub error: TrackingError,
@@ -100,15 +100,15 @@ impl TrackingError {
     }
 }
 
-/// Notes on the way.
+/// Recorder of a simulated flight.
 #[derive(Debug)]
-pub(super) struct Log {
+pub(super) struct FlightLog {
     flight: SimulatedFlight,
     seconds: f64,
     next_mark: usize,
 }
 
-impl Log {
+impl FlightLog {
     pub(super) fn open(flight: &Flight, wheels: usize) -> Self {
         let passages = flight.passages.iter().map(|passage| PassageError {
             target: passage.target.clone(),
@@ -133,20 +133,20 @@ impl Log {
         }
     }
 
-    /// Notes a sample.
+    /// Records the error at a sample.
     pub(super) fn sample(&mut self, error: TrackingError) {
         let peak = &mut self.flight.peak;
         peak.attitude_rad = peak.attitude_rad.max(error.attitude_rad);
         peak.rate_rad_s = peak.rate_rad_s.max(error.rate_rad_s);
     }
 
-    /// Keeps a state for a plot.
+    /// Records a state.
     pub(super) fn keep(&mut self, state: SimulatedState) {
         self.flight.states.push(state);
     }
 
-    /// Notes what a wheel met during a time, s.
-    pub(super) fn wheel(&mut self, wheel: usize, cycle: &Cycle, seconds: f64) {
+    /// Records which limits a wheel reached during a time, s.
+    pub(super) fn wheel(&mut self, wheel: usize, cycle: &MotorCycle, seconds: f64) {
         let saturation = &mut self.flight.saturation[wheel];
         saturation.torque += if cycle.torque_limited { seconds } else { 0.0 };
         saturation.speed += if cycle.speed_limited { seconds } else { 0.0 };
@@ -156,23 +156,23 @@ impl Log {
         }
     }
 
-    /// Notes that a time has passed, and the errors at the marks that have been reached.
+    /// Records that a time, s, has been reached, and the errors at the marks up to it.
     pub(super) fn reach(
         &mut self,
-        course: &Course,
+        sampled_plan: &SampledPlan,
         time_s: f64,
         state: Option<(&Attitude, &Vector3<f64>)>,
     ) {
         self.seconds = time_s;
-        let reached = |mark: &&super::course::Mark| mark.time_s <= time_s;
-        while let Some(mark) = course.marks.get(self.next_mark).filter(reached) {
+        let reached = |mark: &&super::sampled_plan::ErrorMark| mark.time_s <= time_s;
+        while let Some(mark) = sampled_plan.marks.get(self.next_mark).filter(reached) {
             let error = state.map_or(TrackingError::UNKNOWN, |(attitude, rate)| {
                 TrackingError::of(attitude, rate, &mark.planned)
             });
             match mark.event {
-                Event::Arrival(index) => self.flight.passages[index].error = error,
-                Event::PlanEnd => self.flight.plan_end = error,
-                Event::End => {
+                MarkEvent::Arrival(index) => self.flight.passages[index].error = error,
+                MarkEvent::PlanEnd => self.flight.plan_end = error,
+                MarkEvent::End => {
                     self.flight.end = error;
                     self.sample(error);
                 }
@@ -181,7 +181,7 @@ impl Log {
         }
     }
 
-    /// Notes that nothing more can be computed.
+    /// Records that the motion is not finite any more.
     pub(super) fn break_off(&mut self) {
         self.flight.peak = TrackingError::UNKNOWN;
     }

@@ -1,49 +1,50 @@
 //! Valid settings of a simulated flight.
 
-use super::allocation::Allocation;
-use super::gains::{Gains, PidGains};
-use super::spec::{ControllerSpec, ErrorsSpec, FeedForward, SimulationSpec};
+use super::allocation::TorqueAllocation;
+use super::gains::{GeometricPidGains, QuaternionGains};
+use super::spec::{ControllerSpec, ErrorsSpec, FeedForwardMode, SimulationSpec};
 use crate::model::drive::Drive;
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
 use crate::model::spacecraft::Spacecraft;
 use nalgebra::Vector3;
+use std::ops::RangeInclusive;
 
 /// Rate of the on-board computer, 1/s, where none is given.
 const ON_BOARD_RATE: f64 = 10.0;
-/// Rate of the loop at the wheels, 1/s, where none is given (BIROS, section 3.1).
+/// Rate of the wheel loop, 1/s, where none is given (BIROS, section 3.1).
 const WHEEL_LOOP_RATE: f64 = 100.0;
 /// Longest step of the integration, s, where none is given.
 const MAX_STEP: f64 = 0.01;
-/// Success is pointing within this, degrees, where no tolerance is given.
+/// Attitude error, degrees, up to which a flight is a success where no tolerance is given.
 const TOLERANCE_DEG: f64 = 0.1;
-/// Flights of a Monte-Carlo run where no number is given, and at most.
+/// Number of flights of a Monte-Carlo run where none is given, and the greatest number.
 const RUNS: usize = 1000;
 const MAX_RUNS: usize = 100_000;
-/// Rates between which computers and loops are, 1/s.
+/// Least and greatest rate of on-board computer and wheel loop, 1/s.
 const RATES: (f64, f64) = (1e-3, 1e4);
-/// Most samples by which feedback can be late.
+/// Greatest delay of feedback, in samples.
 const MAX_DELAY: usize = 100;
-/// Longest time of control after the end, s.
+/// Longest time to settle after the end of the plan, s.
 const MAX_SETTLING: f64 = 1e6;
 
-/// How a plan is flown.
+/// Valid settings of simulated flights.
 #[derive(Debug, Clone)]
-pub(super) struct Settings {
-    pub(super) law: Law,
-    /// Whether the end is commanded at once, instead of the plan.
+pub(super) struct SimulationSettings {
+    pub(super) law: ControlLaw,
+    /// Whether the final attitude is commanded at once instead of the plan.
     pub(super) step_input: bool,
-    pub(super) feed_forward: FeedForward,
+    pub(super) feed_forward: FeedForwardMode,
     /// Time between two samples of the on-board computer, s.
     pub(super) sample_s: f64,
-    /// Cycles of the loop at the wheels per sample.
+    /// Cycles of the wheel loop per sample.
     pub(super) cycles: usize,
     pub(super) delay: usize,
     pub(super) settle_s: f64,
     pub(super) max_step_s: f64,
-    /// As believed, one per wheel.
+    /// Nominal drives, one per wheel.
     pub(super) drives: Vec<Drive>,
-    pub(super) errors: Errors,
+    pub(super) errors: ErrorModel,
     pub(super) seed: u64,
     pub(super) runs: usize,
     /// rad.
@@ -52,26 +53,26 @@ pub(super) struct Settings {
 
 /// A valid control law.
 #[derive(Debug, Clone)]
-pub(super) enum Law {
+pub(super) enum ControlLaw {
     /// No feedback.
     Open,
     /// Quaternion feedback.
     Quaternion {
-        gains: Gains,
+        gains: QuaternionGains,
         gyroscopic: bool,
-        allocation: Allocation,
+        allocation: TorqueAllocation,
     },
     /// The geometric PID.
     Pid {
-        gains: Box<PidGains>,
+        gains: Box<GeometricPidGains>,
         anti_windup: bool,
-        allocation: Allocation,
+        allocation: TorqueAllocation,
     },
 }
 
-/// Standard deviations, and the constant torque.
+/// Standard deviations of the errors, and the constant external torque.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Errors {
+pub(super) struct ErrorModel {
     /// Share.
     pub(super) inertia: f64,
     /// rad.
@@ -88,17 +89,16 @@ pub(super) struct Errors {
     pub(super) disturbance: Vector3<f64>,
 }
 
-impl SimulationSpec {
-    /// All that is wrong with it for a spacecraft; pointers begin with `pointer`.
-    #[must_use]
-    pub fn problems(&self, spacecraft: &Spacecraft, pointer: &str) -> Vec<Problem> {
-        let mut findings = Findings::default();
-        let settings = Settings::read(self, spacecraft, pointer, &mut findings);
-        findings.conclude(settings).err().unwrap_or_default()
-    }
+/// All problems of a description for a spacecraft, as far as they do not depend on the plan; JSON
+/// pointers begin with `pointer`.
+#[must_use]
+pub fn check(spec: &SimulationSpec, spacecraft: &Spacecraft, pointer: &str) -> Vec<Problem> {
+    let mut findings = Findings::default();
+    let settings = SimulationSettings::read(spec, spacecraft, pointer, &mut findings);
+    findings.conclude(settings).err().unwrap_or_default()
 }
 
-impl Settings {
+impl SimulationSettings {
     pub(super) fn read(
         spec: &SimulationSpec,
         spacecraft: &Spacecraft,
@@ -119,6 +119,49 @@ impl Settings {
             pointer,
             findings,
         );
+        let timing = Timing::read(spec, pointer, findings);
+        let errors = ErrorModel::read(&spec.errors, &format!("{pointer}/errors"), findings);
+        let runs = count(
+            "runs",
+            spec.runs.unwrap_or(RUNS),
+            1..=MAX_RUNS,
+            pointer,
+            findings,
+        );
+        let tolerance = findings.positive(
+            &format!("{pointer}/tolerance_deg"),
+            spec.tolerance_deg.unwrap_or(TOLERANCE_DEG),
+        );
+        let timing = timing?;
+        Some(Self {
+            law: law?,
+            step_input: matches!(spec.controller, ControllerSpec::StepInput { .. }),
+            feed_forward: spec.feed_forward.unwrap_or_default(),
+            sample_s: timing.sample_s,
+            cycles: timing.cycles,
+            delay: timing.delay,
+            settle_s: timing.settle_s,
+            max_step_s: timing.max_step_s,
+            drives: drives?,
+            errors: errors?,
+            seed: spec.seed.unwrap_or(0),
+            runs: runs?,
+            tolerance: tolerance?.to_radians(),
+        })
+    }
+}
+
+/// Times and rates of the settings.
+struct Timing {
+    sample_s: f64,
+    cycles: usize,
+    delay: usize,
+    settle_s: f64,
+    max_step_s: f64,
+}
+
+impl Timing {
+    fn read(spec: &SimulationSpec, pointer: &str, findings: &mut Findings) -> Option<Self> {
         let rate = rate(
             "on_board_rate_hz",
             spec.on_board_rate_hz.unwrap_or(ON_BOARD_RATE),
@@ -129,7 +172,7 @@ impl Settings {
         let delay = count(
             "delay_samples",
             spec.delay_samples.unwrap_or(0),
-            (0, MAX_DELAY),
+            0..=MAX_DELAY,
             pointer,
             findings,
         );
@@ -140,32 +183,12 @@ impl Settings {
             &format!("{pointer}/max_step_s"),
             spec.max_step_s.unwrap_or(MAX_STEP),
         );
-        let errors = Errors::read(&spec.errors, &format!("{pointer}/errors"), findings);
-        let runs = count(
-            "runs",
-            spec.runs.unwrap_or(RUNS),
-            (1, MAX_RUNS),
-            pointer,
-            findings,
-        );
-        let tolerance = findings.positive(
-            &format!("{pointer}/tolerance_deg"),
-            spec.tolerance_deg.unwrap_or(TOLERANCE_DEG),
-        );
         Some(Self {
-            law: law?,
-            step_input: matches!(spec.controller, ControllerSpec::StepInput { .. }),
-            feed_forward: spec.feed_forward.unwrap_or_default(),
             sample_s: 1.0 / rate?,
             cycles: cycles?,
             delay: delay?,
             settle_s: settle?,
             max_step_s: step?,
-            drives: drives?,
-            errors: errors?,
-            seed: spec.seed.unwrap_or(0),
-            runs: runs?,
-            tolerance: tolerance?.to_radians(),
         })
     }
 }
@@ -176,36 +199,36 @@ fn law(
     drives: Option<&[Drive]>,
     pointer: &str,
     findings: &mut Findings,
-) -> Option<Law> {
+) -> Option<ControlLaw> {
     let at = format!("{pointer}/controller/gains");
     let allocation = |findings: &mut Findings| {
-        let allocation = Allocation::new(spacecraft.wheels(), drives?);
+        let allocation = TorqueAllocation::new(spacecraft.wheels(), drives?);
         if allocation.is_none() {
             findings.refuse(
                 format!("{pointer}/drives"),
                 Code::WheelAxesCoplanar,
                 "the wheels that take commands cannot make a torque about every axis",
-                "let at least three wheels without a speed law span space, or fly without feedback",
+                "enable three wheels without a speed law whose axes span space, or use no feedback",
             );
         }
         allocation
     };
     match spec {
-        ControllerSpec::FeedForward => Some(Law::Open),
+        ControllerSpec::FeedForward => Some(ControlLaw::Open),
         ControllerSpec::Quaternion { gains, gyroscopic }
         | ControllerSpec::StepInput { gains, gyroscopic } => {
-            let gains = Gains::read(gains, &at, findings);
+            let gains = QuaternionGains::read(gains, &at, findings);
             let allocation = allocation(findings);
-            Some(Law::Quaternion {
+            Some(ControlLaw::Quaternion {
                 gains: gains?,
                 gyroscopic: *gyroscopic,
                 allocation: allocation?,
             })
         }
         ControllerSpec::GeometricPid { gains, anti_windup } => {
-            let gains = PidGains::read(gains, spacecraft.inertia(), &at, findings);
+            let gains = GeometricPidGains::read(gains, spacecraft.inertia(), &at, findings);
             let allocation = allocation(findings);
-            Some(Law::Pid {
+            Some(ControlLaw::Pid {
                 gains: Box::new(gains?),
                 anti_windup: *anti_windup,
                 allocation: allocation?,
@@ -214,7 +237,7 @@ fn law(
     }
 }
 
-impl Errors {
+impl ErrorModel {
     fn read(spec: &ErrorsSpec, pointer: &str, findings: &mut Findings) -> Option<Self> {
         let mut deviation = |name: &str, value: Option<f64>, most: f64| {
             let value =
@@ -263,7 +286,7 @@ fn rate(name: &str, value: f64, pointer: &str, findings: &mut Findings) -> Optio
     None
 }
 
-/// Cycles at the wheels per sample of the computer: the loop is at least as fast as asked for.
+/// Cycles of the wheel loop per sample of the on-board computer, rounded up.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -285,24 +308,25 @@ fn cycles(
             format!("{pointer}/{name}"),
             Code::OutOfRange,
             format!(
-                "the loop at the wheels runs at {loop_rate} Hz, the on-board computer at {on_board} Hz"
+                "the wheel loop runs at {loop_rate} Hz, the on-board computer at {on_board} Hz"
             ),
-            "let the loop at the wheels be at least as fast as the on-board computer",
+            "make the wheel loop at least as fast as the on-board computer",
         );
         return None;
     }
-    // Not one more cycle because of rounding.
+    // A ratio that exceeds a whole number only by rounding is not rounded up.
     Some((loop_rate / on_board - 1e-9).ceil().max(1.0) as usize)
 }
 
 fn count(
     name: &str,
     value: usize,
-    (least, most): (usize, usize),
+    allowed: RangeInclusive<usize>,
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<usize> {
-    if (least..=most).contains(&value) {
+    let (least, most) = (*allowed.start(), *allowed.end());
+    if allowed.contains(&value) {
         return Some(value);
     }
     findings.refuse(

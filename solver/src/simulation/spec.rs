@@ -1,20 +1,19 @@
-//! What a caller may write about a simulated flight: plain, unvalidated descriptions.
+//! Descriptions of simulated flights as a caller gives them, not yet validated.
 
 use crate::model::drive::DriveSpec;
 use crate::model::input::{input_choice, input_object, input_union, optional, or, required};
 
 input_object! {
-    /// A flight in closed loop, many times over.
+    /// How a plan is simulated in closed loop, and with which errors.
     #[derive(Default)]
     pub struct SimulationSpec as "Simulation" {
         /// Quaternion feedback of 0.1 rad/s without it.
         pub controller: ControllerSpec = or(ControllerSpec::default()),
         /// How the plan's torques, which switch at any time, become commands; `averaged` without it.
-        pub feed_forward: Option<FeedForward> = optional(),
+        pub feed_forward: Option<FeedForwardMode> = optional(),
         /// Samples of the on-board computer per second. Its commands are held in between.
         pub on_board_rate_hz: Option<f64> = optional().above(0.0).means(10.0),
-        /// Cycles of the loop at the wheels per second: the next whole multiple of the on-board rate is
-        /// used.
+        /// Cycles of the wheel loop per second; rounded up to a whole multiple of the on-board rate.
         pub wheel_loop_rate_hz: Option<f64> = optional().above(0.0).means(100.0),
         /// Samples after which feedback is applied; 1 is `u_FB(k + 1)` of BIROS equation 23.
         pub delay_samples: Option<usize> = optional().format("int32").means(0_u64),
@@ -22,10 +21,10 @@ input_object! {
         pub settle_s: Option<f64> = optional().at_least(0.0).means(0.0),
         /// Longest step of the integration.
         pub max_step_s: Option<f64> = optional().above(0.0).means(0.01),
-        /// What the drives are believed to be, one for each wheel; ideal ones without it. The laws of
-        /// wheels that follow one are part of it; such wheels take no commands.
+        /// Nominal drives, one for each wheel; ideal ones without it. They include speed laws; wheels with
+        /// a speed law take no commands.
         pub drives: Vec<DriveSpec> = or(Vec::new()),
-        /// How the truth differs from what is believed.
+        /// Errors of the true spacecraft relative to the nominal one.
         pub errors: ErrorsSpec = or(ErrorsSpec::default()),
         /// Seed of everything random.
         pub seed: Option<u64> = optional().means(0_u64),
@@ -37,12 +36,12 @@ input_object! {
 }
 
 input_choice! {
-    /// How the torques of a plan, which switch at any time, become commands.
-    pub enum FeedForward as "FeedForward" {
-        /// Each on-board sample commands their mean over the time for which it is held: the rate is the
-        /// plan's at every sample, the attitude lags by a few microradians at a switch.
+    /// How the torques of a plan, which may switch at any time, become commands.
+    pub enum FeedForwardMode as "FeedForward" {
+        /// Each on-board sample commands their mean until the next sample: body rates at samples are those
+        /// of the plan, the attitude differs by some microradians after a switch.
         Averaged = "averaged",
-        /// The wheels have a table of them and switch at their times; only feedback is sampled.
+        /// The wheels switch at the plan's times, from a stored table; only feedback is sampled.
         TimeTagged = "time_tagged",
     }
 }
@@ -55,8 +54,8 @@ input_union! {
         /// The plan's torques and quaternion feedback (RW/CMG thesis, equations 157 and 158):
         /// `-k J q_e - c J w_e`.
         Quaternion = "quaternion" {
-            /// Whether the torque `w x H` that turns the momentum of body and wheels with the body is
-            /// made up for, as far as the plan's torques do not contain it.
+            /// Whether the gyroscopic torque `w x H` of body and wheels is compensated, as far as the
+            /// plan's torques do not contain it.
             gyroscopic: bool = or(false),
             /// `k` and `c`.
             gains: GainsSpec = required(),
@@ -64,7 +63,7 @@ input_union! {
         /// The final attitude commanded at once, at rest, without the plan's torques (thesis, equation
         /// 28): what a slew without a plan does, for comparison.
         StepInput = "step_input" {
-            /// Whether the torque `w x H` is made up for.
+            /// Whether the gyroscopic torque `w x H` is compensated.
             gyroscopic: bool = or(false),
             /// `k` and `c`.
             gains: GainsSpec = required(),
@@ -73,8 +72,8 @@ input_union! {
         GeometricPid = "geometric_pid" {
             /// Its gains.
             gains: PidGainsSpec = required(),
-            /// Whether the integral leaves out what would ask more of a wheel that is at a limit; without
-            /// that, as published, it winds up.
+            /// Whether the integral stops in directions that demand more of a wheel at a limit. Without
+            /// it, as published, the integral winds up.
             anti_windup: bool = or(true),
         },
     }
@@ -84,8 +83,8 @@ input_union! {
 const DEFAULT_DAMPING: f64 = 0.7;
 
 impl Default for ControllerSpec {
-    /// Quaternion feedback of 0.1 rad/s. Without the gyroscopic term: along a plan it makes up for
-    /// little, and for the wrong momentum as far as the inertia is.
+    /// Quaternion feedback with a bandwidth of 0.1 rad/s, without the gyroscopic term: along a plan it
+    /// compensates little, and with the momentum of the nominal inertia.
     fn default() -> Self {
         Self::Quaternion {
             gains: GainsSpec::Bandwidth {
@@ -101,21 +100,21 @@ input_union! {
     /// Gains of quaternion feedback `-k J q_e - c J w_e`.
     #[derive(Copy)]
     pub enum GainsSpec as "Gains" {
-        /// By the natural frequency and damping that small errors of attitude have.
+        /// By the natural frequency and damping ratio of small attitude errors.
         Bandwidth = "bandwidth" {
             /// Natural frequency.
             bandwidth_rad_s: f64 = required().above(0.0),
             /// Damping ratio.
             damping: f64 = or(DEFAULT_DAMPING).above(0.0),
         },
-        /// By settling time and damping as published (thesis, equations 39, 42 and 171).
+        /// By settling time and damping ratio as published (thesis, equations 39, 42 and 171).
         SettlingTime = "settling_time" {
             /// Settling time to 2 %.
             settling_time_s: f64 = required().above(0.0),
             /// Damping ratio.
             damping: f64 = or(DEFAULT_DAMPING).above(0.0),
         },
-        /// As they are.
+        /// Directly.
         Given = "given" {
             /// `k`, 1/s².
             attitude_per_s2: f64 = required(),
@@ -129,16 +128,16 @@ input_union! {
     /// Gains of the geometric PID.
     #[derive(Copy)]
     pub enum PidGainsSpec as "PidGains" {
-        /// By the poles that small errors of attitude have: a pair and a real one.
+        /// By the poles of small attitude errors: a conjugate pair and a real pole.
         Bandwidth = "bandwidth" {
-            /// The real pole, with which an offset decays; 0 for none and no integral term.
+            /// The real pole, at which an offset decays; 0 for no integral term.
             integral_rad_s: f64 = or(0.0).at_least(0.0),
             /// Natural frequency of the pair.
             bandwidth_rad_s: f64 = required().above(0.0),
             /// Damping ratio of the pair.
             damping: f64 = or(DEFAULT_DAMPING).above(0.0),
         },
-        /// As they are in BIROS equations 23 and 24.
+        /// Directly, as in BIROS equations 23 and 24.
         Given = "given" {
             /// `k_R`, N m.
             attitude_nm: f64 = required(),
@@ -153,8 +152,8 @@ input_union! {
 }
 
 input_object! {
-    /// How the truth differs from what is believed; not at all without it. What is drawn has a normal
-    /// distribution with mean zero.
+    /// Errors of the true spacecraft relative to the nominal one. All are zero by default; random ones
+    /// have a normal distribution with mean zero.
     #[derive(Default)]
     pub struct ErrorsSpec as "SimulationErrors" {
         /// Three standard deviations of the inertia about any axis, as a share of it.
@@ -166,9 +165,9 @@ input_object! {
         pub friction_3_sigma: Option<f64> = optional().at_least(0.0),
         /// Three standard deviations of the initial attitude about each body axis.
         pub initial_attitude_3_sigma_rad: Option<f64> = optional().at_least(0.0),
-        /// Standard deviation of a measured attitude about each body axis, new at every sample.
+        /// Standard deviation of the measured attitude about each body axis, drawn at every sample.
         pub attitude_noise_rad: Option<f64> = optional().at_least(0.0),
-        /// Standard deviation of a measured body rate about each body axis, new at every sample.
+        /// Standard deviation of the measured body rate about each body axis, drawn at every sample.
         pub rate_noise_rad_s: Option<f64> = optional().at_least(0.0),
         /// Constant external torque in body axes.
         pub disturbance_torque_nm: Option<[f64; 3]> = optional(),

@@ -1,9 +1,9 @@
-//! Flights against closed forms, plans and each other.
+//! Simulated flights against closed forms, plans and each other.
 
 mod build;
 mod control;
-mod flying;
 mod random;
 mod stopping;
+mod truth;
 mod validation;
 mod winding;

@@ -1,4 +1,4 @@
-//! The body that is really flown: equations of motion with friction and an external torque.
+//! The true spacecraft: equations of motion with friction and an external torque.
 //!
 //! With the symbols of [`crate::model::spacecraft`], motor torques `M_i`, friction coefficients `v_i`, `c_i`
 //! and an external torque `d` in body axes:
@@ -11,16 +11,16 @@
 //! q'       = 1/2 q (x) [w, 0]
 //! ```
 //!
-//! `s` is the sign, but rises in proportion within a band of speed that one step could cross, so
-//! that a wheel comes to rest instead of chattering. Steps are those of the classical Runge-Kutta
-//! method of fourth order. The momenta of the wheels about their axes stand for their speeds: their
-//! sum with the body's is conserved to rounding and to the order of the method.
+//! `s` is the sign function, made linear within a band of speeds that one step could cross, so that a
+//! wheel comes to rest instead of chattering. The integrator is the classical Runge-Kutta method of
+//! fourth order. The states of the wheels are momenta about their axes instead of speeds, so that the
+//! total momentum is conserved to rounding and to the order of the method.
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
-/// A wheel as it really is.
+/// A wheel with its true axis and friction.
 #[derive(Debug, Clone)]
-pub(super) struct Rotor {
+pub(super) struct TrueWheel {
     pub(super) axis: Vector3<f64>,
     pub(super) inertia: f64,
     /// N m s.
@@ -33,10 +33,10 @@ pub(super) struct Rotor {
     pub(super) driven: bool,
 }
 
-/// Share of a band that Coulomb friction crosses in one step.
+/// Share of the band by which Coulomb friction changes the speed in one step.
 const BAND_PER_STEP: f64 = 0.25;
 
-impl Rotor {
+impl TrueWheel {
     /// The band for steps of this length, s.
     pub(super) fn band(coulomb: f64, inertia: f64, step: f64) -> f64 {
         coulomb * step / (BAND_PER_STEP * inertia)
@@ -53,44 +53,44 @@ impl Rotor {
     }
 }
 
-/// A rigid body with wheels, as it really is.
+/// A rigid body with wheels, with its true properties.
 #[derive(Debug, Clone)]
-pub(super) struct Truth {
+pub(super) struct TrueSpacecraft {
     effective: Matrix3<f64>,
     effective_inverse: Matrix3<f64>,
     /// Momentum of the locked wheels relative to the body, body axes, N m s.
     locked: Vector3<f64>,
-    pub(super) rotors: Vec<Rotor>,
+    pub(super) rotors: Vec<TrueWheel>,
     disturbance: Vector3<f64>,
 }
 
-/// The state at one moment.
+/// The state at one time.
 #[derive(Debug, Clone)]
-pub(super) struct State {
+pub(super) struct TrueState {
     pub(super) attitude: Quaternion<f64>,
     /// Body axes, rad/s.
     pub(super) rate: Vector3<f64>,
-    /// `h_i`, N m s; of a locked wheel its part relative to the body.
+    /// `h_i`, N m s; of a locked wheel only the part from its speed relative to the body.
     pub(super) momentum: Vec<f64>,
 }
 
-/// Derivatives of a state, and a state on the way.
+/// Storage of the integrator: the derivatives of its four stages, and a state at which they are taken.
 #[derive(Debug, Clone)]
-pub(super) struct Scratch {
-    probe: State,
-    slopes: [Slope; 4],
+pub(super) struct IntegratorScratch {
+    probe: TrueState,
+    slopes: [StateDerivative; 4],
 }
 
 #[derive(Debug, Clone)]
-struct Slope {
+struct StateDerivative {
     attitude: Quaternion<f64>,
     rate: Vector3<f64>,
     momentum: Vec<f64>,
 }
 
-impl Scratch {
-    pub(super) fn new(state: &State) -> Self {
-        let slope = Slope {
+impl IntegratorScratch {
+    pub(super) fn new(state: &TrueState) -> Self {
+        let slope = StateDerivative {
             attitude: Quaternion::default(),
             rate: Vector3::zeros(),
             momentum: vec![0.0; state.momentum.len()],
@@ -103,19 +103,19 @@ impl Scratch {
 }
 
 /// `J_eff` of a body.
-pub(super) fn effective_inertia(inertia: &Matrix3<f64>, rotors: &[Rotor]) -> Matrix3<f64> {
+pub(super) fn effective_inertia(inertia: &Matrix3<f64>, rotors: &[TrueWheel]) -> Matrix3<f64> {
     let driven = rotors.iter().filter(|rotor| rotor.driven);
     driven.fold(*inertia, |rest, rotor| {
         rest - rotor.axis * rotor.axis.transpose() * rotor.inertia
     })
 }
 
-impl Truth {
+impl TrueSpacecraft {
     /// A body with the inertia of the whole (kg m²), speeds at which wheels that are not driven are
     /// locked (rad/s, one per wheel) and an external torque (N m). `None` when `J_eff` has no inverse.
     pub(super) fn new(
         inertia: &Matrix3<f64>,
-        rotors: Vec<Rotor>,
+        rotors: Vec<TrueWheel>,
         speed: &[f64],
         disturbance: Vector3<f64>,
     ) -> Option<Self> {
@@ -142,7 +142,7 @@ impl Truth {
         attitude: Quaternion<f64>,
         rate: Vector3<f64>,
         speed: &[f64],
-    ) -> State {
+    ) -> TrueState {
         let momentum = self.rotors.iter().zip(speed).map(|(rotor, speed)| {
             let with_body = if rotor.driven {
                 rotor.axis.dot(&rate)
@@ -151,7 +151,7 @@ impl Truth {
             };
             rotor.inertia * (speed + with_body)
         });
-        State {
+        TrueState {
             attitude,
             rate,
             momentum: momentum.collect(),
@@ -159,7 +159,7 @@ impl Truth {
     }
 
     /// Speed of a wheel relative to the body, rad/s.
-    pub(super) fn speed(&self, state: &State, wheel: usize) -> f64 {
+    pub(super) fn speed(&self, state: &TrueState, wheel: usize) -> f64 {
         let rotor = &self.rotors[wheel];
         let absolute = state.momentum[wheel] / rotor.inertia;
         if rotor.driven {
@@ -170,7 +170,7 @@ impl Truth {
     }
 
     /// Total angular momentum in body axes, N m s.
-    pub(super) fn body_momentum(&self, state: &State) -> Vector3<f64> {
+    pub(super) fn body_momentum(&self, state: &TrueState) -> Vector3<f64> {
         let wheels = self.rotors.iter().zip(&state.momentum);
         let driven = wheels.filter(|(rotor, _)| rotor.driven);
         driven.fold(
@@ -179,21 +179,28 @@ impl Truth {
         )
     }
 
-    /// Advances a state by so many steps of a length, s, with constant motor torques, N m.
+    /// Advances a state by a number of steps of length `step`, s, with constant motor torques, N m.
     pub(super) fn advance(
         &self,
-        state: &mut State,
+        state: &mut TrueState,
         motor: &[f64],
-        (step, steps): (f64, usize),
-        scratch: &mut Scratch,
+        step: f64,
+        steps: usize,
+        scratch: &mut IntegratorScratch,
     ) {
         for _ in 0..steps {
             self.step(state, motor, step, scratch);
         }
     }
 
-    fn step(&self, state: &mut State, motor: &[f64], step: f64, scratch: &mut Scratch) {
-        let Scratch { probe, slopes } = scratch;
+    fn step(
+        &self,
+        state: &mut TrueState,
+        motor: &[f64],
+        step: f64,
+        scratch: &mut IntegratorScratch,
+    ) {
+        let IntegratorScratch { probe, slopes } = scratch;
         self.slope(state, motor, &mut slopes[0]);
         for (stage, share) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
             let (before, rest) = slopes.split_at_mut(stage);
@@ -222,7 +229,7 @@ impl Truth {
         state.attitude /= state.attitude.norm();
     }
 
-    fn slope(&self, state: &State, motor: &[f64], slope: &mut Slope) {
+    fn slope(&self, state: &TrueState, motor: &[f64], slope: &mut StateDerivative) {
         let mut torque = self.disturbance - state.rate.cross(&self.body_momentum(state));
         for (wheel, rotor) in self.rotors.iter().enumerate().filter(|(_, r)| r.driven) {
             let h = state.momentum[wheel];

@@ -1,35 +1,41 @@
-//! The loop at the wheels, faster than the on-board computer: from commands to motor torques.
+//! The wheel loop, faster than the on-board computer: from commands to motor torques.
 //!
-//! Once per cycle a drive looks at its wheel's speed and sets the motor's torque for the cycle
+//! Once per cycle a drive measures its wheel's speed and sets the motor's torque for the cycle
 //! (BIROS, equations 14 and 15):
 //!
 //! ```text
-//!   M = u + v W + c sign(W)          friction compensated, with the coefficients that are believed
+//!   M = u + v W + c sign(W)          friction compensated, with nominal coefficients
 //!   M = u                            not compensated
-//!   u = -I rate (W - speed)          of a wheel that follows a law, in place of a command
+//!   u = -I rate (W - speed)          of a wheel with a speed law, in place of a command
 //! ```
 //!
-//! It then takes from `M` what would carry the wheel beyond its speed limit by the end of the
-//! cycle, and at last what is beyond the motor's torque.
+//! It then reduces `M` so that the wheel does not exceed its speed limit by the end of the cycle, and
+//! limits it to the motor's torque.
 
 use crate::checker::LIMIT_TOLERANCE;
 use crate::model::drive::Drive;
 use crate::model::spacecraft::Wheel;
 
-/// What a motor does in a cycle, and which limits it met.
+/// A motor's torque in a cycle, and which limits were reached.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cycle {
+pub(super) struct MotorCycle {
     /// N m.
     pub(super) motor_torque: f64,
     pub(super) torque_limited: bool,
     pub(super) speed_limited: bool,
-    /// What was asked for beyond the motor's torque, N m; zero where no limit was met.
+    /// Demanded torque minus the motor's, N m; zero where no limit was reached.
     pub(super) missing: f64,
 }
 
 /// Sets the torque of a wheel's motor for a cycle of this length, s, from a command (N m) and the
 /// wheel's speed (rad/s).
-pub(super) fn cycle(wheel: &Wheel, drive: &Drive, command: f64, speed: f64, length: f64) -> Cycle {
+pub(super) fn cycle(
+    wheel: &Wheel,
+    drive: &Drive,
+    command: f64,
+    speed: f64,
+    length: f64,
+) -> MotorCycle {
     let wanted = drive.speed_law.map_or(command, |law| {
         -wheel.inertia * law.rate * (speed - law.speed)
     });
@@ -39,7 +45,7 @@ pub(super) fn cycle(wheel: &Wheel, drive: &Drive, command: f64, speed: f64, leng
     } else {
         wanted
     };
-    // Plans may exceed a limit by rounding, which is no saturation.
+    // An excess over a limit by rounding, as plans may have, is not saturation.
     let rounding = LIMIT_TOLERANCE * wheel.max_torque.max(-wheel.min_torque);
     let most_speed = wheel.max_speed * (1.0 + LIMIT_TOLERANCE);
     let most = wheel.inertia * (most_speed - speed) / length + friction;
@@ -48,7 +54,7 @@ pub(super) fn cycle(wheel: &Wheel, drive: &Drive, command: f64, speed: f64, leng
     let motor_torque = slow_enough.min(wheel.max_torque).max(wheel.min_torque);
     let torque_limited = (motor_torque - slow_enough).abs() > rounding;
     let speed_limited = (slow_enough - demand).abs() > rounding;
-    Cycle {
+    MotorCycle {
         motor_torque,
         torque_limited,
         speed_limited,
@@ -60,7 +66,7 @@ pub(super) fn cycle(wheel: &Wheel, drive: &Drive, command: f64, speed: f64, leng
     }
 }
 
-/// Torques that the on-board computer may command to a wheel, N m.
+/// A commanded torque within the wheel's limits, N m, and whether it was limited.
 pub(super) fn commandable(wheel: &Wheel, torque: f64) -> (f64, bool) {
     let limited = torque.min(wheel.max_torque).max(wheel.min_torque);
     let rounding = LIMIT_TOLERANCE * wheel.max_torque.max(-wheel.min_torque);
@@ -88,7 +94,7 @@ mod tests {
     };
 
     #[test]
-    fn friction_is_added_and_counts_against_the_motor() {
+    fn compensated_friction_is_added_to_the_motor_torque_and_limited_with_it() {
         let free = cycle(&WHEEL, &RUBBING, 0.05, 50.0, 0.01);
         assert!((free.motor_torque - 0.057).abs() < 1e-15);
         assert!(!free.torque_limited && !free.speed_limited);
@@ -103,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_arrives_at_its_speed_limit_and_stays() {
+    fn a_wheel_is_driven_to_its_speed_limit_and_not_beyond() {
         let near = cycle(&WHEEL, &Drive::IDEAL, 0.1, 99.9, 0.01);
         assert!((near.motor_torque - 0.01).abs() < 2e-5, "{near:?}");
         assert!(near.speed_limited && !near.torque_limited);
@@ -114,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_does_backwards_what_it_does_forwards() {
+    fn the_wheel_loop_is_symmetric_in_the_sign_of_command_and_speed() {
         for (command, speed) in [
             (0.05, 50.0),
             (0.099, 50.0),
@@ -144,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_with_a_law_takes_no_commands() {
+    fn a_wheel_with_a_speed_law_ignores_commands() {
         let held = Drive {
             speed_law: Some(SpeedLaw {
                 rate: 0.5,

@@ -1,23 +1,26 @@
-//! Solutions of one program from one guess after the other.
+//! Solutions of one program from several guesses.
 
+use super::found_solution::FoundSolution;
 use super::motion::SlewMotion;
-use super::solving::{Solved, Task};
-use super::{Found, Plain, Slew, propagated, starts};
-use crate::nlp::Interruption;
+use super::program_choice::ProgramChoice;
+use super::solving::{ProgramSolution, ProgramTask};
+use super::validated::Slew;
+use super::{propagation, starts};
+use crate::run::stop::StopReason;
 
-/// Shares of effort in the objectives of a continuation to the fastest motion.
+/// Weights of effort, as shares of the weight of time, in a continuation to the fastest motion.
 const EFFORT_SHARES: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 /// Solves one program: from a neighbour, or from the best of the usual guesses.
-pub(super) fn direct(
+pub(super) fn solve_program(
     slew: &Slew,
-    plain: &Plain,
+    choice: &ProgramChoice,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> FoundSolution {
     let mut attempts = Attempts {
         slew,
-        plain,
+        choice,
         stop,
         best: None,
         starts: 0,
@@ -26,7 +29,7 @@ pub(super) fn direct(
     if !neighbour.is_some_and(|guess| attempts.converges_from(guess)) {
         attempts.try_usual_guesses();
     }
-    Found {
+    FoundSolution {
         solved: attempts.best.expect("there is always a guess"),
         starts: attempts.starts,
         iterations: attempts.iterations,
@@ -35,24 +38,26 @@ pub(super) fn direct(
     }
 }
 
-/// The best solution so far, and what it took.
+/// The best solution so far, and how many guesses and iterations have been used.
 struct Attempts<'a> {
     slew: &'a Slew,
-    plain: &'a Plain,
-    stop: &'a dyn Fn() -> Option<Interruption>,
-    best: Option<Solved>,
+    choice: &'a ProgramChoice,
+    stop: &'a dyn Fn() -> Option<StopReason>,
+    best: Option<ProgramSolution>,
     starts: usize,
     iterations: usize,
 }
 
 impl Attempts<'_> {
-    /// Solves the program from a guess; whether it converges.
+    /// Solves the program from a guess; returns whether the solve converged.
     fn converges_from(&mut self, guess: &SlewMotion) -> bool {
-        let plain = self.plain;
-        let mut solved = self.solve(plain, guess);
-        if plain.cost_weights.bills() && plain.cost_weights.budget.is_none() {
-            // The program's own bill is low by a different amount for every motion.
-            solved.cost = propagated::fly(self.slew, &solved.motion).energies.bill_j;
+        let choice = self.choice;
+        let mut solved = self.solve(choice, guess);
+        if choice.cost_weights.uses_bill() && choice.cost_weights.budget.is_none() {
+            // The program underestimates the bill by a different amount for every motion.
+            solved.cost = propagation::propagate(self.slew, &solved.motion)
+                .energies
+                .bill_j;
         }
         let converged = solved.converged();
         if self.best.as_ref().is_none_or(|best| solved.improves(best)) {
@@ -62,14 +67,14 @@ impl Attempts<'_> {
     }
 
     /// Solves this program, or one that leads to it, from a guess.
-    fn solve(&mut self, plain: &Plain, guess: &SlewMotion) -> Solved {
-        let task = Task {
+    fn solve(&mut self, choice: &ProgramChoice, guess: &SlewMotion) -> ProgramSolution {
+        let task = ProgramTask {
             vehicle: self.slew.vehicle(),
             ends: self.slew.ends_towards(guess),
-            shape: plain.shape.clone(),
-            cost_weights: plain.cost_weights,
+            shape: choice.shape.clone(),
+            cost_weights: choice.cost_weights,
         };
-        let solved = task.solve(&plain.meshed(guess, self.slew), self.stop);
+        let solved = task.solve(&choice.guess_on_nodes(guess, self.slew), self.stop);
         self.starts += 1;
         self.iterations += solved.iterations;
         solved
@@ -77,10 +82,10 @@ impl Attempts<'_> {
 
     fn try_usual_guesses(&mut self) {
         let Self {
-            slew, plain, stop, ..
+            slew, choice, stop, ..
         } = *self;
         let mut guesses: Vec<_> = self.optimum_of_proxy().into_iter().collect();
-        guesses.extend(starts::of(slew, plain.cost_weights, stop));
+        guesses.extend(starts::of(slew, choice.cost_weights, stop));
         let mut converged = false;
         for guess in &guesses {
             converged |= self.converges_from(guess);
@@ -88,28 +93,28 @@ impl Attempts<'_> {
                 return;
             }
         }
-        if !converged && plain.cost_weights.hurries() {
+        if !converged && choice.cost_weights.is_time_only() {
             self.continue_in_effort(&guesses[0]);
         }
     }
 
-    /// The motion that the smooth proxy of a bill leads to.
+    /// The optimum of the smooth proxy, as a guess for a program that minimises the bill.
     fn optimum_of_proxy(&mut self) -> Option<SlewMotion> {
-        let proxy = self.plain.proxy(self.slew)?;
-        let found = direct(self.slew, &proxy, None, self.stop);
+        let proxy = self.choice.proxy(self.slew)?;
+        let found = solve_program(self.slew, &proxy, None, self.stop);
         self.starts += found.starts;
         self.iterations += found.iterations;
         found.solved.converged().then_some(found.solved.motion)
     }
 
     /// Continuation in the weight of effort (Allgower and Georg, Introduction to Numerical
-    /// Continuation Methods, 2003): where only time counts, some torques may make no difference, and
-    /// effort tells them apart. The last program that converges takes longer than the fastest motion
-    /// by its share of effort at most.
+    /// Continuation Methods, 2003). In minimum time some torques may not affect the cost; with a weight
+    /// on effort the optimum is unique. The duration of the last program that converges exceeds the
+    /// minimum by its share of effort at most.
     fn continue_in_effort(&mut self, guess: &SlewMotion) {
-        let mut last: Option<Solved> = None;
+        let mut last: Option<ProgramSolution> = None;
         for share in EFFORT_SHARES {
-            let weighted = self.plain.with_effort(self.slew, share, guess);
+            let weighted = self.choice.with_effort(self.slew, share, guess);
             let from = last.as_ref().map_or(guess, |last| &last.motion);
             let solved = self.solve(&weighted, from);
             if !solved.converged() {
@@ -121,7 +126,7 @@ impl Attempts<'_> {
             && !self.converges_from(&last.motion)
         {
             let cost = last.motion.duration();
-            self.best = Some(Solved { cost, ..last });
+            self.best = Some(ProgramSolution { cost, ..last });
         }
     }
 }

@@ -1,16 +1,18 @@
-//! Whether objective, command and conditions of a slew are valid and go with its wheels.
+//! Validation of a slew's objective, command and conditions against its wheels and drives.
 
-use super::request::{Command, FinalWheels, Hold, Measure, Objective, SlewSpec, WheelAllocation};
+use super::spec::{
+    EnergyMeasure, FinalWheels, Objective, SampleHold, SlewSpec, TorqueCommand, WheelAllocation,
+};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::nlp::{MAX_CONTROLS, MAX_STATES};
 
-/// Most intervals of a slew.
+/// Greatest number of intervals of a slew.
 pub(super) const MAX_INTERVALS: usize = 2000;
-/// Relative error of a duration as a multiple of the sampling period that is rounding.
+/// Relative deviation of a duration from a multiple of the sampling period that counts as rounding.
 const MULTIPLE_TOLERANCE: f64 = 1e-9;
 
-/// Checks all choices; `false` after a fault.
+/// Checks everything; `false` when anything was refused.
 pub(super) fn check(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let checks = [
         check_objective(&spec.objective, findings),
@@ -45,14 +47,14 @@ fn check_objective(objective: &Objective, findings: &mut Findings) -> bool {
     }
 }
 
-fn check_command(command: &Command, findings: &mut Findings) -> bool {
+fn check_command(command: &TorqueCommand, findings: &mut Findings) -> bool {
     match *command {
-        Command::Sampled { period_s, .. } => {
+        TorqueCommand::Sampled { period_s, .. } => {
             findings.positive("/command/period_s", period_s).is_some()
         }
-        Command::Free { intervals }
-        | Command::Uniform { intervals }
-        | Command::Smooth { intervals } => {
+        TorqueCommand::Free { intervals }
+        | TorqueCommand::Uniform { intervals }
+        | TorqueCommand::Smooth { intervals } => {
             let valid = (2..=MAX_INTERVALS).contains(&intervals);
             if !valid {
                 findings.refuse(
@@ -67,14 +69,15 @@ fn check_command(command: &Command, findings: &mut Findings) -> bool {
     }
 }
 
-/// A prescribed duration must be a multiple of the period, and not of too many of them.
+/// A prescribed duration must be a multiple of the sampling period, with at least 2 and at most
+/// [`MAX_INTERVALS`] samples.
 pub(super) fn check_multiple(
     objective: &Objective,
-    command: &Command,
+    command: &TorqueCommand,
     pointer: &str,
     findings: &mut Findings,
 ) -> bool {
-    let (Objective::Energy { duration_s, .. }, Command::Sampled { period_s, .. }) =
+    let (Objective::Energy { duration_s, .. }, TorqueCommand::Sampled { period_s, .. }) =
         (objective, command)
     else {
         return true;
@@ -93,7 +96,7 @@ pub(super) fn check_multiple(
     valid
 }
 
-/// Energy needs the motors of all commanded wheels.
+/// Objectives with energy need the motor of every commanded wheel.
 fn check_motors(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let needed = matches!(
         spec.objective,
@@ -116,7 +119,7 @@ fn check_motors(spec: &SlewSpec, findings: &mut Findings) -> bool {
     known
 }
 
-/// The engine is built for so many variables per interval.
+/// The number of variables per interval must not exceed that of the interior-point solver.
 fn check_size(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let lawful = |i: usize| {
         spec.drives
@@ -130,18 +133,18 @@ fn check_size(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let billed = matches!(
         spec.objective,
         Objective::Energy {
-            measure: Measure::Bill,
+            measure: EnergyMeasure::Bill,
             ..
         } | Objective::MinimumTimeAtEnergy {
-            measure: Measure::Bill,
+            measure: EnergyMeasure::Bill,
             ..
         }
     );
     let ramps = matches!(
         spec.command,
-        Command::Smooth { .. }
-            | Command::Sampled {
-                hold: Hold::Linear,
+        TorqueCommand::Smooth { .. }
+            | TorqueCommand::Sampled {
+                hold: SampleHold::Linear,
                 ..
             }
     );
@@ -184,7 +187,7 @@ fn check_final_wheels(spec: &SlewSpec, findings: &mut Findings) -> bool {
     !moving
 }
 
-/// Whether a speed law moves any wheel.
+/// Whether a speed law changes the speed of any wheel.
 fn drifts(spec: &SlewSpec) -> bool {
     let start = spec.start.wheel_speed_rad_s.as_deref().unwrap_or(&[]);
     spec.drives.iter().enumerate().any(|(i, drive)| {
@@ -195,7 +198,7 @@ fn drifts(spec: &SlewSpec) -> bool {
     })
 }
 
-/// A wheel that is out of order follows no law.
+/// A disabled wheel must not have a speed law.
 fn check_laws(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let mut valid = true;
     for (i, wheel) in spec.spacecraft.wheels.iter().enumerate() {
@@ -216,7 +219,8 @@ fn check_laws(spec: &SlewSpec, findings: &mut Findings) -> bool {
     valid
 }
 
-/// The pseudo-inverse leaves null-space momentum alone, so nothing is left to choose at the end.
+/// With the pseudo-inverse the null-space momentum stays constant, so that speeds at the end must not be
+/// given.
 fn check_allocation(spec: &SlewSpec, findings: &mut Findings) -> bool {
     let valid = spec.allocation == WheelAllocation::Free || spec.final_wheels != FinalWheels::Given;
     if !valid {

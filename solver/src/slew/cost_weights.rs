@@ -1,13 +1,13 @@
-//! What a program minimises and what it is held to: every objective is a choice of these.
+//! Weights of a program's cost, and its limits on duration and energy; they stand for all objectives.
 //!
 //! ```text
 //!   minimise    a T + b integral u'u dt + c E
 //!   subject to  T = given,  E <= given        (where they are)
 //! ```
 //!
-//! with `E` the integral of the wheels' power or of what the supply gives for it.
+//! with `E` the energy of the motors in the measure of the weights.
 
-use super::Measure;
+use super::spec::EnergyMeasure;
 
 /// Weights and prescriptions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,10 +19,10 @@ pub(super) struct CostWeights {
     /// `c`, s/J when the others are seconds.
     pub(super) energy: f64,
     /// How energy is counted.
-    pub(super) measure: Measure,
+    pub(super) measure: EnergyMeasure,
     /// The duration, s.
     pub(super) duration: Option<f64>,
-    /// The most energy, J.
+    /// The limit on the energy, J.
     pub(super) budget: Option<f64>,
 }
 
@@ -32,13 +32,13 @@ impl CostWeights {
         time: 1.0,
         effort: 0.0,
         energy: 0.0,
-        measure: Measure::Proxy,
+        measure: EnergyMeasure::Proxy,
         duration: None,
         budget: None,
     };
 
-    /// Least energy in a time, s.
-    pub(super) fn energy_in(duration: f64, measure: Measure) -> Self {
+    /// Minimum energy in a duration, s.
+    pub(super) fn energy_in(duration: f64, measure: EnergyMeasure) -> Self {
         Self {
             time: 0.0,
             energy: 1.0,
@@ -48,26 +48,26 @@ impl CostWeights {
         }
     }
 
-    /// What of the motor's energy counts as the objective's: the bill is at the supply.
-    pub(super) fn share(&self, efficiency: f64) -> f64 {
+    /// Energy in the measure per energy at the motor: the bill is counted at the supply.
+    pub(super) fn supply_factor(&self, efficiency: f64) -> f64 {
         match self.measure {
-            Measure::Proxy => 1.0,
-            Measure::Bill => efficiency.recip(),
+            EnergyMeasure::Proxy => 1.0,
+            EnergyMeasure::Bill => efficiency.recip(),
         }
     }
 
-    /// Whether only time counts.
-    pub(super) fn hurries(&self) -> bool {
+    /// Whether the cost is the duration alone.
+    pub(super) fn is_time_only(&self) -> bool {
         self.effort == 0.0 && !self.uses_energy()
     }
 
-    /// Whether energy matters.
+    /// Whether energy is in the cost or limited.
     pub(super) fn uses_energy(&self) -> bool {
         self.energy > 0.0 || self.budget.is_some()
     }
 
-    /// Whether only what the supply gives counts, never what a braking wheel would return.
-    pub(super) fn bills(&self) -> bool {
-        self.uses_energy() && self.measure == Measure::Bill
+    /// Whether energy is counted as the bill: drawn from the supply, nothing returned by braking.
+    pub(super) fn uses_bill(&self) -> bool {
+        self.uses_energy() && self.measure == EnergyMeasure::Bill
     }
 }

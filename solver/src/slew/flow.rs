@@ -1,79 +1,20 @@
-//! What happens on an interval, exactly: the turn, the momenta, the locked wheels that follow a
-//! law of their own, and the limits in between.
-//!
-//! A wheel under a speed law is no control. Relative to the body its speed is a known function of
-//! time, `W(t) = speed + (W(0) - speed) exp(-rate t)`, so it is a locked wheel whose momentum
-//! drifts. The program has a clock for it among its states.
+//! The motion between nodes, integrated from the torques: turns, momenta and excesses over limits.
 
 use super::motion::SlewMotion;
+use super::vehicle::Vehicle;
 use crate::leg::kinematics::exact_flow;
 use crate::leg::multiphase::excess_inside;
 use crate::math::quaternion::{Quat, rotate_back};
 use crate::model::attitude::Attitude;
-use crate::model::drive::{Drive, SpeedLaw};
-use crate::model::dynamics::Dynamics;
 use nalgebra::{DVector, Vector3};
 
-/// Parts of an interval at whose ends the limits are looked at. Between them a parabola finds the peak;
-/// where torque is a ramp, eighths miss one near a node by 2e-5 of a rate limit.
+/// Parts of an interval at whose ends the limits are evaluated; between them a parabola finds the
+/// peak. With linear torque, 8 parts miss a peak near a node by 2e-5 of a rate limit.
 const SAMPLES: usize = 32;
 
-/// A wheel that follows a law.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Follower {
-    /// `a I`, kg m².
-    spin: Vector3<f64>,
-    law: SpeedLaw,
-    /// Speed at the start, rad/s.
-    start: f64,
-}
-
-/// All wheels that follow laws.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Followers(Vec<Follower>);
-
-impl Followers {
-    /// Adds a wheel of axis times inertia `spin` that starts at a speed, rad/s.
-    pub(super) fn add(&mut self, spin: Vector3<f64>, law: SpeedLaw, start: f64) {
-        self.0.push(Follower { spin, law, start });
-    }
-
-    /// Change of the locked momentum since the start, N m s, and its first two derivatives by time.
-    pub(super) fn drift(&self, time: f64) -> [Vector3<f64>; 3] {
-        let mut drift = [Vector3::zeros(); 3];
-        for Follower { spin, law, start } in &self.0 {
-            let excess = spin * (start - law.speed);
-            let left = (-law.rate * time).exp();
-            drift[0] += excess * (-law.rate * time).exp_m1();
-            drift[1] -= excess * (law.rate * left);
-            drift[2] += excess * (law.rate * law.rate * left);
-        }
-        drift
-    }
-
-    /// Whether any wheel's speed changes.
-    pub(super) fn move_at_all(&self) -> bool {
-        self.0
-            .iter()
-            .any(|f| f.law.rate > 0.0 && (f.start - f.law.speed).abs() > 0.0)
-    }
-}
-
-/// A spacecraft with everything that turns on it.
+/// The motion at one time.
 #[derive(Debug, Clone)]
-pub(super) struct Vehicle {
-    pub(super) dynamics: Dynamics,
-    /// Drives of the commanded wheels.
-    pub(super) drives: Vec<Drive>,
-    pub(super) followers: Followers,
-    /// What the commanded wheels' momenta keep in the null space of their axes, N m s, where the
-    /// pseudo-inverse shares torques out; none where torques are free of each other.
-    pub(super) kept: Option<DVector<f64>>,
-}
-
-/// The motion at a moment.
-#[derive(Debug, Clone)]
-pub(super) struct Sample {
+pub(super) struct MotionSample {
     /// Body rate, rad/s.
     pub(super) rate: Vector3<f64>,
     /// Total momentum in body axes, N m s.
@@ -84,32 +25,51 @@ pub(super) struct Sample {
     pub(super) speeds: Vec<f64>,
     /// Their commanded torques, N m.
     pub(super) torques: DVector<f64>,
-    /// By how much the momentum of wheels with laws of their own changes, body axes, N m.
+    /// Rate of change of the momentum of the speed-law wheels, body axes, N m.
     pub(super) drift_rate: Vector3<f64>,
 }
 
+/// Relative excesses over limits between nodes.
+pub(super) struct Excesses {
+    /// Over the limits of [`Dynamics::limit_shares`](crate::model::dynamics::Dynamics::limit_shares),
+    /// interval by interval, where the peak inside is larger than at both ends.
+    pub(super) shares: Vec<f64>,
+    /// Over the motor torques, one per interval.
+    pub(super) torques: Vec<f64>,
+}
+
+impl Excesses {
+    /// The greatest of all; zero where no limit is exceeded.
+    pub(super) fn greatest(&self) -> f64 {
+        let all = self.shares.iter().chain(&self.torques);
+        all.copied().fold(0.0, f64::max)
+    }
+}
+
 impl Vehicle {
-    /// Wheel momenta on an interval at a share `s` of it, N m s.
+    /// Wheel momenta at the share `s` of an interval, N m s.
     fn momenta(motion: &SlewMotion, k: usize, s: f64) -> DVector<f64> {
         let length = motion.lengths[k];
         let (begin, end) = (&motion.begin[k], &motion.end[k]);
         &motion.momenta[k] + begin * (length * (s - 0.5 * s * s)) + end * (length * 0.5 * s * s)
     }
 
-    /// Body rate, rad/s, with `momentum` that in body axes, N m s.
+    /// Body rate, rad/s, at a time, s, for the total momentum in body axes and the wheels' momenta, N m s.
     fn rate(&self, momentum: &Vector3<f64>, wheels: &DVector<f64>, time: f64) -> Vector3<f64> {
         let dynamics = &self.dynamics;
-        let held = dynamics.locked_momentum + self.followers.drift(time)[0];
+        let held = dynamics.locked_momentum + self.speed_law_wheels.drift(time)[0];
         dynamics.inertia_inverse * (momentum - held - &dynamics.axes * wheels)
     }
 
-    /// The turn over a part of an interval that begins at a time, s, in an attitude.
+    /// The turn over the part of an interval from one share of its length to another; the interval
+    /// begins at `time`, s, the part in the attitude `q`.
     fn turn(
         &self,
         motion: &SlewMotion,
         k: usize,
         time: f64,
-        (from, to, q): (f64, f64, &Attitude),
+        [from, to]: [f64; 2],
+        q: &Attitude,
     ) -> Quat {
         let length = motion.lengths[k];
         let momentum = q.to_body(self.dynamics.momentum);
@@ -125,24 +85,25 @@ impl Vehicle {
     pub(super) fn turns(&self, motion: &SlewMotion) -> Vec<Quat> {
         let times = motion.times();
         (0..motion.lengths.len())
-            .map(|k| self.turn(motion, k, times[k], (0.0, 1.0, &motion.attitudes[k])))
+            .map(|k| self.turn(motion, k, times[k], [0.0, 1.0], &motion.attitudes[k]))
             .collect()
     }
 
-    /// The motion at the ends of equal parts of an interval, the first and the last included.
+    /// The motion at both ends of an interval and between its equal parts; the interval begins at
+    /// `begin`, s.
     pub(super) fn samples(
         &self,
         motion: &SlewMotion,
         k: usize,
         begin: f64,
         parts: usize,
-    ) -> Vec<Sample> {
+    ) -> Vec<MotionSample> {
         let at = |i: usize| i as f64 / parts as f64;
         let mut attitude = motion.attitudes[k];
         let mut samples = Vec::with_capacity(parts + 1);
         for i in 0..=parts {
             if i > 0 {
-                let turn = self.turn(motion, k, begin, (at(i - 1), at(i), &attitude));
+                let turn = self.turn(motion, k, begin, [at(i - 1), at(i)], &attitude);
                 attitude =
                     Attitude::from_xyzw(turn).map_or(attitude, |turn| attitude.then_in_body(&turn));
             }
@@ -152,10 +113,10 @@ impl Vehicle {
             let rate = self.rate(&stored, &momenta, begin + motion.lengths[k] * s);
             let actuators = self.dynamics.actuators.iter().zip(momenta.iter());
             let speeds = actuators.map(|(wheel, h)| h / wheel.inertia - wheel.axis.dot(&rate));
-            samples.push(Sample {
+            samples.push(MotionSample {
                 speeds: speeds.collect(),
                 torques: &motion.begin[k] * (1.0 - s) + &motion.end[k] * s,
-                drift_rate: self.followers.drift(begin + motion.lengths[k] * s)[1],
+                drift_rate: self.speed_law_wheels.drift(begin + motion.lengths[k] * s)[1],
                 stored,
                 rate,
                 momenta,
@@ -164,9 +125,8 @@ impl Vehicle {
         samples
     }
 
-    /// Relative excess inside every interval over the limits of [`Dynamics::limit_shares`], where it
-    /// is larger than at both ends, and over the motor torques.
-    pub(super) fn excesses(&self, motion: &SlewMotion) -> (Vec<f64>, Vec<f64>) {
+    /// The excesses over limits inside the intervals of a motion.
+    pub(super) fn excesses(&self, motion: &SlewMotion) -> Excesses {
         let times = motion.times();
         let (mut shares, mut torques) = (Vec::new(), Vec::new());
         for k in 0..motion.lengths.len() {
@@ -182,11 +142,11 @@ impl Vehicle {
             let motors: Vec<f64> = samples.iter().map(|at| self.motor_usage(at)).collect();
             torques.push(excess_inside(&motors));
         }
-        (shares, torques)
+        Excesses { shares, torques }
     }
 
-    /// The greatest share of its limit that any motor torque has.
-    fn motor_usage(&self, at: &Sample) -> f64 {
+    /// The greatest motor torque as a share of its limit.
+    fn motor_usage(&self, at: &MotionSample) -> f64 {
         let motors = self.drives.iter().zip(at.torques.iter()).zip(&at.speeds);
         let torques = motors.map(|((drive, torque), speed)| drive.motor_torque(*torque, *speed));
         self.dynamics

@@ -1,12 +1,12 @@
 //! Numbers that carry their first and second derivatives by a few features.
 //!
-//! A term of the program (the power of a wheel over an interval, say) depends on at most
-//! [`FEATURES`] quantities that are linear in the program's variables. Written in jets, its formula
-//! is its own analytic first and second derivative, to rounding.
+//! A term of the program, for example the energy of a wheel over an interval, depends on at most
+//! [`FEATURES`] quantities that are linear in the program's variables. Evaluated in jets, its formula
+//! gives the first and second derivatives too, exact to rounding.
 
 use std::ops::{Add, Mul, Sub};
 
-/// Most features of a term.
+/// Number of features of a term.
 pub(super) const FEATURES: usize = 6;
 
 /// A value with gradient and Hessian by the features.

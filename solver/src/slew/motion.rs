@@ -1,11 +1,8 @@
-//! A motion in physical units, and its way into and out of the program's variables.
+//! The motion of a slew in physical units, and the same motion on other nodes.
 
-use super::program::Program;
-use super::shape::{Course, Lengths};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
-use crate::nlp::{Chain, Iterate, Layout};
 use nalgebra::DVector;
 
 /// States at nodes and the torques between them, of the commanded wheels.
@@ -24,7 +21,7 @@ pub(super) struct SlewMotion {
 }
 
 impl SlewMotion {
-    /// A motion under constant torques.
+    /// The motion of a profile, whose torques are constant on intervals.
     pub(super) fn of_profile(profile: &Profile) -> Self {
         let torques: Vec<_> = profile
             .wheels
@@ -61,9 +58,9 @@ impl SlewMotion {
         std::iter::once(0.0).chain(ends).collect()
     }
 
-    /// About the same motion in another time: rates shrink as the time grows. Between the nodes of
-    /// the result torque is constant.
-    pub(super) fn lasting(&self, duration: f64, dynamics: &Dynamics) -> Self {
+    /// The same attitudes in another duration, s, with rates scaled accordingly. Torques of the result
+    /// are constant between nodes.
+    pub(super) fn stretched_to(&self, duration: f64, dynamics: &Dynamics) -> Self {
         let factor = duration / self.duration();
         let slower = self.attitudes.iter().zip(&self.momenta).map(|(q, h)| {
             let rate = dynamics.rate(q, h) / factor;
@@ -77,7 +74,7 @@ impl SlewMotion {
     }
 
     /// The same attitudes and rates with these null-space momenta, N m s.
-    pub(super) fn keeping(&self, null: &DVector<f64>, dynamics: &Dynamics) -> Self {
+    pub(super) fn with_null_space(&self, null: &DVector<f64>, dynamics: &Dynamics) -> Self {
         let states = self.attitudes.iter().zip(&self.momenta);
         let wheels = states.map(|(q, h)| dynamics.wheels_at(q, &dynamics.rate(q, h), null));
         Self::of_profile(&Profile {
@@ -87,7 +84,7 @@ impl SlewMotion {
         })
     }
 
-    /// The motion seen at other nodes, given by the lengths between them, s.
+    /// The motion interpolated at other nodes, given by the lengths between them, s.
     pub(super) fn on_mesh(&self, lengths: &[f64]) -> Self {
         let times = self.times();
         let mut time = 0.0;
@@ -113,12 +110,12 @@ impl SlewMotion {
         Self::of_profile(&profile)
     }
 
-    /// As many equal intervals.
+    /// The motion interpolated on a number of equal intervals.
     pub(super) fn on_equal_mesh(&self, intervals: usize) -> Self {
         self.on_mesh(&vec![self.duration() / intervals as f64; intervals])
     }
 
-    /// The motion on intervals that cut those of this one, the longest first.
+    /// The motion on at least as many intervals, made by cutting its own, the longest first.
     pub(super) fn on_finer_mesh(&self, intervals: usize) -> Self {
         let mut parts = vec![1_usize; self.lengths.len()];
         for _ in self.lengths.len()..intervals {
@@ -136,108 +133,12 @@ impl SlewMotion {
         self.on_mesh(&lengths)
     }
 
-    /// The torque at a node: the mean of those beside it.
-    fn node_torque(&self, node: usize) -> DVector<f64> {
+    /// The torque at a node: the mean of those before and after it, N m.
+    pub(super) fn node_torque(&self, node: usize) -> DVector<f64> {
         match (node.checked_sub(1), self.begin.get(node)) {
             (Some(before), Some(after)) => (&self.end[before] + after) * 0.5,
             (Some(before), None) => self.end[before].clone(),
             (None, _) => self.begin[0].clone(),
         }
-    }
-
-    /// An iterate of a program with as many intervals, without multipliers.
-    pub(super) fn iterate(&self, program: &Program) -> Iterate {
-        let (shape, scales) = (&program.shape, &program.scales);
-        let torque = scales.momentum / scales.time;
-        let intervals = self.lengths.len();
-        let mean = self.duration() / intervals as f64;
-        let mut iterate = Iterate::cold(Vec::new(), Vec::new());
-        for (node, (attitude, momenta)) in self.attitudes.iter().zip(&self.momenta).enumerate() {
-            let points = &mut iterate.points;
-            points.extend_from_slice(&attitude.xyzw());
-            points.extend(momenta.iter().map(|h| h / scales.momentum));
-            if shape.course == Course::Ramps {
-                points.extend(self.node_torque(node).iter().map(|u| u / torque));
-            }
-            if shape.lengths == Lengths::Shared {
-                points.push(mean / scales.time);
-            }
-            if shape.clock {
-                let passed: f64 = self.lengths[..node].iter().sum();
-                points.push(passed / scales.time);
-            }
-            if shape.account {
-                points.push(0.0);
-            }
-        }
-        for k in 0..intervals {
-            let controls = &mut iterate.controls;
-            match shape.course {
-                Course::Steps => {
-                    let change = &self.momenta[k + 1] - &self.momenta[k];
-                    controls.extend(change.iter().map(|m| m / scales.momentum));
-                }
-                Course::Ramps => {
-                    controls.extend(self.node_torque(k + 1).iter().map(|u| u / torque));
-                }
-            }
-            if shape.lengths == Lengths::Own {
-                controls.push(self.lengths[k] / scales.time);
-            }
-            if shape.slacks {
-                controls.extend(std::iter::repeat_n(0.0, shape.wheels));
-            }
-        }
-        program.fill_energies(&mut iterate);
-        iterate
-    }
-
-    /// The motion of an iterate.
-    pub(super) fn of_iterate(iterate: &Iterate, program: &Program) -> Self {
-        let layout = Layout::of(program);
-        let (shape, scales) = (&program.shape, &program.scales);
-        let (wheels, torque) = (shape.wheels, scales.momentum / scales.time);
-        let mut motion = Self {
-            attitudes: Vec::new(),
-            momenta: Vec::new(),
-            lengths: Vec::new(),
-            begin: Vec::new(),
-            end: Vec::new(),
-        };
-        for node in 0..=program.intervals() {
-            let link = iterate.link(&layout, node);
-            let point = link.point;
-            // Retraction keeps quaternions at unit length.
-            let attitude = Attitude::from_xyzw([point[0], point[1], point[2], point[3]]);
-            motion
-                .attitudes
-                .push(attitude.unwrap_or_else(Attitude::identity));
-            let momenta = DVector::from_column_slice(&point[4..4 + wheels]);
-            motion.momenta.push(momenta * scales.momentum);
-            if !link.has_interval() {
-                break;
-            }
-            let length = program.length(&link) * scales.time;
-            let control = DVector::from_column_slice(&link.control[..wheels]);
-            let (begin, end) = match shape.course {
-                Course::Steps => {
-                    let constant = if length > 0.0 {
-                        control * (scales.momentum / length)
-                    } else {
-                        DVector::zeros(wheels)
-                    };
-                    (constant.clone(), constant)
-                }
-                Course::Ramps => {
-                    let at = 1 + shape.torque_at();
-                    let begin = DVector::from_column_slice(&point[at..at + wheels]);
-                    (begin * torque, control * torque)
-                }
-            };
-            motion.lengths.push(length.max(0.0));
-            motion.begin.push(begin);
-            motion.end.push(end);
-        }
-        motion
     }
 }

@@ -1,105 +1,122 @@
-//! The nonlinear program of a slew: a [`Transcription`] with other courses of torque, other
-//! lengths and other costs around it.
+//! The nonlinear program of a slew: a [`Transcription`] extended by linear torques, shared or given
+//! interval lengths, and costs of effort and energy.
 //!
-//! The transcription is used for what it knows: the conditions on states at nodes, and the attitude
-//! link of an interval, a function of `(q, h, m, tau)`. Here those become functions of the
-//! program's own variables ([`Shape`]) and derivatives are pulled back. A linear torque bends the
-//! momenta; the link then gets momenta that are moved by the mean of the bulge, which makes the
-//! integral of the rate exact, and the rest is left to the corrections of the turns.
+//! The transcription gives the conditions on states at nodes and the attitude link of an interval, a
+//! function of `(q, h, m, tau)`. Here these become functions of the program's own variables
+//! ([`ProgramShape`]), with derivatives by the chain rule. Under a linear torque the momenta are
+//! quadratic in time. The link then gets momenta shifted by their mean distance from the straight
+//! line, which makes the integral of the rate exact; the corrections of the turns take the rest.
 
 mod allocation;
 mod chain;
 mod listing;
+mod variables;
 
 use super::cost_weights::CostWeights;
-use super::flow::{Followers, Vehicle};
 use super::jet::Jet;
-use super::shape::{Course, Lengths, Shape};
-use super::terms::{BEGIN, DrivenWheel, END, LENGTH, SPEED, TURN, TURN_END, WheelState};
+use super::shape::{IntervalLengths, ProgramShape, TorqueCourse};
+use super::terms::{
+    DrivenWheel, LENGTH, SPEED, SPEED_CHANGE, SPEED_CHANGE_END, TORQUE_BEGIN, TORQUE_END,
+    WheelState,
+};
+use super::vehicle::{SpeedLawWheels, Vehicle};
 use crate::leg::transcription::{Drift, Row, Scales, Transcription};
 use crate::math::quaternion::Quat;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{Chain, Iterate, Layout, Link};
-use allocation::Kept;
+use crate::nlp::Link;
+use allocation::PinnedNullSpace;
 use nalgebra::DMatrix;
 
-/// Weight of the penalty that draws interval lengths together, and to which lengths.
+/// The penalty `weight / 2 (length - given)^2` on the scaled length of every interval.
 #[derive(Debug, Clone)]
 pub(super) struct LengthPenalty {
     pub(super) weight: f64,
     pub(super) lengths: Vec<f64>,
 }
 
-/// Units of what is neither state nor control.
+/// Units of the quantities that are neither state nor control.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Units {
-    /// Of the cost, in that of the cost_weights.
+pub(super) struct ProgramUnits {
+    /// Unit of the cost, in the unit of [`CostWeights`].
     pub(super) cost: f64,
-    /// Of energies, J.
+    /// Unit of energies, J.
     pub(super) energy: f64,
 }
 
-/// The program.
+/// The data of a program besides the vehicle.
+pub(super) struct ProgramSetup<'a> {
+    /// Conditions at the beginning and the end of the slew.
+    pub(super) waypoints: &'a [Waypoint; 2],
+    pub(super) intervals: usize,
+    pub(super) shape: ProgramShape,
+    pub(super) cost_weights: CostWeights,
+    pub(super) scales: Scales,
+    pub(super) units: ProgramUnits,
+}
+
+/// The program of one slew, to be solved as a [`Chain`](crate::nlp::Chain).
 #[derive(Debug, Clone)]
 pub(super) struct Program {
     pub(super) base: Transcription,
-    pub(super) shape: Shape,
+    pub(super) shape: ProgramShape,
     pub(super) scales: Scales,
-    pub(super) units: Units,
+    pub(super) units: ProgramUnits,
     pub(super) cost_weights: CostWeights,
     wheels: Vec<DrivenWheel>,
     /// Speed of each wheel in a state, rad/s.
     speeds: Vec<Row>,
     /// Speed of wheel `i` per momentum of wheel `j` and unit of time, 1/(kg m²).
     speed_per_momentum: DMatrix<f64>,
-    /// Share of the supplied power that reaches each motor.
+    /// Efficiency of each motor's supply: power at the motor over power drawn.
     efficiency: Vec<f64>,
-    /// What the electronics of all motors take, W.
+    /// Quiescent power of all motors' electronics together, W.
     quiescent_power: f64,
     pub(super) penalty: LengthPenalty,
-    /// Wheels whose momentum is a function of the clock.
-    followers: Followers,
-    /// Momenta of the enabled wheels, scaled, that do the same to the body as a momentum, per N m s.
+    /// Wheels under a speed law, whose momentum is a function of the clock.
+    speed_law_wheels: SpeedLawWheels,
+    /// Momenta of the enabled wheels, scaled, with the same effect on the body as a momentum of 1 N m s.
     equivalent: DMatrix<f64>,
-    /// Reserve kept from the torque limits on every interval, relative.
+    /// Reserve kept from the torque limits at every node, relative to the limit.
     pub(super) torque_reserve: Vec<f64>,
-    /// What the momenta keep where the pseudo-inverse shares torques out.
-    kept: Option<Kept>,
+    /// The null-space momentum, where the pseudo-inverse allocates torques.
+    pinned_null_space: Option<PinnedNullSpace>,
 }
 
-/// Where a term belongs.
+/// The function of the program that a term is added to.
 #[derive(Debug, Clone, Copy)]
-enum Place {
+enum TermTarget {
     Cost,
     Gap(usize),
     Inequality(usize),
 }
 
-/// A term with the derivatives of its features.
-struct Term<'a> {
-    place: Place,
+/// A term of one wheel with its derivatives by the wheel's features.
+struct WheelTerm<'a> {
+    place: TermTarget,
     jet: Jet,
     wheel: usize,
     link: &'a Link<'a>,
 }
 
-/// A function of a few variables to second order: gradient and Hessian by index.
+/// Gradient and Hessian of a function of a few variables, as `(index, value)` and `(row, column,
+/// value)` of the lower triangle.
 #[derive(Default)]
-struct Local {
+struct SparseDerivatives {
     gradient: Vec<(usize, f64)>,
     hessian: Vec<(usize, usize, f64)>,
 }
 
 impl Program {
-    /// A slew between two waypoints.
-    pub(super) fn new(
-        vehicle: &Vehicle,
-        scales: Scales,
-        waypoints: &[Waypoint; 2],
-        intervals: usize,
-        shape: Shape,
-        (cost_weights, units): (CostWeights, Units),
-    ) -> Self {
+    /// The program of a slew of a vehicle.
+    pub(super) fn new(vehicle: &Vehicle, setup: ProgramSetup<'_>) -> Self {
+        let ProgramSetup {
+            waypoints,
+            intervals,
+            shape,
+            cost_weights,
+            scales,
+            units,
+        } = setup;
         let (dynamics, drives) = (&vehicle.dynamics, &vehicle.drives);
         let base = Transcription::new(dynamics, scales, waypoints, &[intervals]);
         let actuators = &dynamics.actuators;
@@ -135,10 +152,10 @@ impl Program {
                 weight: 0.0,
                 lengths: vec![1.0; intervals],
             },
-            followers: vehicle.followers.clone(),
+            speed_law_wheels: vehicle.speed_law_wheels.clone(),
             equivalent: &dynamics.axes_inverse / scales.momentum,
             torque_reserve: vec![0.0; intervals + 1],
-            kept: vehicle.kept.as_ref().map(|momenta| Kept {
+            pinned_null_space: vehicle.pinned_null.as_ref().map(|momenta| PinnedNullSpace {
                 null_space: dynamics.null_space.clone(),
                 momenta: momenta / scales.momentum,
             }),
@@ -150,26 +167,29 @@ impl Program {
         }
     }
 
-    /// What the locked wheels have taken of the momentum at a point.
+    /// Momentum that the wheels under a speed law have taken up at a point.
     fn drift(&self, point: &[f64]) -> Drift {
         self.drift_after(point, 0.0)
     }
 
-    /// The same a while later, of which the clock is part, scaled.
+    /// The same after a further time `length`, scaled, on the clock of the point.
     fn drift_after(&self, point: &[f64], length: f64) -> Drift {
         let clock = self.shape.clock_at();
-        if !self.followers.move_at_all() {
+        if !self.speed_law_wheels.any_drift() {
             return Drift::default();
         }
         let unit = self.scales.time;
-        let [taken, slope, bend] = self.followers.drift((point[1 + clock] + length) * unit);
+        let [taken, slope, bend] = self
+            .speed_law_wheels
+            .drift((point[1 + clock] + length) * unit);
         Drift {
             taken: [taken, slope * unit, bend * (unit * unit)],
             clock: Some(clock),
         }
     }
 
-    /// Makes the turn of one interval exact; the angle, rad, by which the correction changes.
+    /// Corrects the attitude link so that it gives the exact turn of one interval; returns the angle,
+    /// rad, by which the correction changes.
     pub(super) fn correct_turn(&mut self, link: &Link<'_>, exact: &Quat) -> f64 {
         let base = self.base_link(link);
         let wheels = self.shape.wheels;
@@ -177,7 +197,7 @@ impl Program {
         self.base.correct_turn(&link, exact)
     }
 
-    /// What the penalty on lengths costs on an interval.
+    /// The penalty on the length of an interval, scaled.
     pub(super) fn penalty_of(&self, link: &Link<'_>) -> f64 {
         if link.has_interval() && self.draws_lengths() {
             0.5 * self.penalty.weight * self.stray(link).powi(2)
@@ -186,53 +206,9 @@ impl Program {
         }
     }
 
-    /// What the motion of an iterate takes, J, braking never counted against it.
-    pub(super) fn energy_of(&self, iterate: &Iterate) -> f64 {
-        let layout = Layout::of(self);
-        let energy = |link: &Link<'_>| -> f64 {
-            let wheels = self.wheels.iter().enumerate();
-            let energies = wheels.map(|(i, w)| w.energy(&self.wheel_state(i, link)).value);
-            energies.map(|energy| energy.max(0.0)).sum()
-        };
-        (0..self.base.intervals())
-            .map(|node| energy(&iterate.link(&layout, node)))
-            .sum()
-    }
-
-    /// Fills the slacks and the account of an iterate with what its motion takes.
-    pub(super) fn fill_energies(&self, iterate: &mut Iterate) {
-        if !self.cost_weights.uses_energy() {
-            return;
-        }
-        let layout = Layout::of(self);
-        let mut spent = 0.0;
-        for node in 0..self.base.intervals() {
-            let link = iterate.link(&layout, node);
-            let energies: Vec<f64> = (0..self.shape.wheels)
-                .map(|i| self.wheels[i].energy(&self.wheel_state(i, &link)).value)
-                .collect();
-            let length = self.length(&link) * self.scales.time;
-            if self.shape.slacks {
-                let at = layout.control(node).start + self.shape.slack_at();
-                for (i, energy) in energies.iter().enumerate() {
-                    iterate.controls[at + i] = energy.max(0.0) / self.units.energy;
-                }
-                let prices = energies.iter().zip(&self.efficiency);
-                spent += self.quiescent_power * length;
-                spent += prices.map(|(e, share)| e.max(0.0) / share).sum::<f64>();
-            } else {
-                spent += energies.iter().sum::<f64>();
-            }
-            if self.shape.account {
-                let at = layout.point(node + 1).start + 1 + self.shape.account_at();
-                iterate.points[at] = spent / self.units.energy;
-            }
-        }
-    }
-
     /// Whether any term divides by the length of an interval.
     fn divides_by_length(&self) -> bool {
-        self.shape.course == Course::Steps
+        self.shape.course == TorqueCourse::Steps
             && (self.cost_weights.effort > 0.0 || self.cost_weights.uses_energy())
     }
 
@@ -243,13 +219,13 @@ impl Program {
     /// Length of an interval, scaled.
     pub(super) fn length(&self, link: &Link<'_>) -> f64 {
         match &self.shape.lengths {
-            Lengths::Own => link.control[self.shape.wheels],
-            Lengths::Shared => link.point[1 + self.shape.shared_at()],
-            Lengths::Given(lengths) => lengths[link.node] / self.scales.time,
+            IntervalLengths::Free => link.control[self.shape.wheels],
+            IntervalLengths::Shared => link.point[1 + self.shape.shared_at()],
+            IntervalLengths::Given(lengths) => lengths[link.node] / self.scales.time,
         }
     }
 
-    /// The features of a wheel; at the last node those of the node alone.
+    /// The features of a wheel on an interval; at the last node only those of the node.
     fn wheel_state(&self, wheel: usize, link: &Link<'_>) -> WheelState {
         let (shape, unit) = (&self.shape, self.torque_unit());
         let view = self.base.view(link.point, self.drift(link.point));
@@ -264,20 +240,21 @@ impl Program {
                 .sum::<f64>()
         };
         let torques = &link.point[1 + shape.torque_at()..];
-        if shape.course == Course::Ramps {
-            features[BEGIN] = torques[wheel] * unit;
+        if shape.course == TorqueCourse::Ramps {
+            features[TORQUE_BEGIN] = torques[wheel] * unit;
         }
         if link.has_interval() {
             features[LENGTH] = self.length(link) * self.scales.time;
             match shape.course {
-                Course::Steps => {
-                    features[BEGIN] = link.control[wheel] * self.scales.momentum;
-                    features[TURN] = sum(&link.control[..shape.wheels], self.scales.momentum);
+                TorqueCourse::Steps => {
+                    features[TORQUE_BEGIN] = link.control[wheel] * self.scales.momentum;
+                    features[SPEED_CHANGE] =
+                        sum(&link.control[..shape.wheels], self.scales.momentum);
                 }
-                Course::Ramps => {
-                    features[END] = link.control[wheel] * unit;
-                    features[TURN] = sum(&torques[..shape.wheels], unit);
-                    features[TURN_END] = sum(&link.control[..shape.wheels], unit);
+                TorqueCourse::Ramps => {
+                    features[TORQUE_END] = link.control[wheel] * unit;
+                    features[SPEED_CHANGE] = sum(&torques[..shape.wheels], unit);
+                    features[SPEED_CHANGE_END] = sum(&link.control[..shape.wheels], unit);
                 }
             }
         }
@@ -287,7 +264,7 @@ impl Program {
         }
     }
 
-    /// Derivatives of a wheel's features by the variables, state and controls, sparse.
+    /// Derivatives of a wheel's feature by the variables, counted over state and controls.
     fn feature_gradient(&self, wheel: usize, feature: usize, link: &Link<'_>) -> Vec<(usize, f64)> {
         let (shape, unit) = (&self.shape, self.torque_unit());
         let (torques, controls) = (shape.torque_at(), shape.states());
@@ -305,12 +282,12 @@ impl Program {
                 let entries = row.into_iter().enumerate();
                 entries.filter(|(_, slope)| *slope != 0.0).collect()
             }
-            (TURN, Course::Steps) => coupled(controls, self.scales.momentum),
-            (TURN, Course::Ramps) => coupled(torques, unit),
-            (TURN_END, Course::Ramps) => coupled(controls, unit),
-            (BEGIN, Course::Steps) => vec![(controls + wheel, self.scales.momentum)],
-            (BEGIN, Course::Ramps) => vec![(torques + wheel, unit)],
-            (END, Course::Ramps) => vec![(controls + wheel, unit)],
+            (SPEED_CHANGE, TorqueCourse::Steps) => coupled(controls, self.scales.momentum),
+            (SPEED_CHANGE, TorqueCourse::Ramps) => coupled(torques, unit),
+            (SPEED_CHANGE_END, TorqueCourse::Ramps) => coupled(controls, unit),
+            (TORQUE_BEGIN, TorqueCourse::Steps) => vec![(controls + wheel, self.scales.momentum)],
+            (TORQUE_BEGIN, TorqueCourse::Ramps) => vec![(torques + wheel, unit)],
+            (TORQUE_END, TorqueCourse::Ramps) => vec![(controls + wheel, unit)],
             (LENGTH, _) => self
                 .shape
                 .length_variable()
@@ -321,13 +298,13 @@ impl Program {
         }
     }
 
-    /// A jet as a function of the variables.
-    fn local(&self, wheel: usize, jet: &Jet, link: &Link<'_>) -> Local {
+    /// Derivatives of a jet by the program's variables.
+    fn local(&self, wheel: usize, jet: &Jet, link: &Link<'_>) -> SparseDerivatives {
         let used: Vec<_> = (0..super::jet::FEATURES)
             .filter(|&f| jet.gradient[f] != 0.0 || jet.hessian[f].iter().any(|h| *h != 0.0))
             .map(|f| (f, self.feature_gradient(wheel, f, link)))
             .collect();
-        let mut local = Local::default();
+        let mut local = SparseDerivatives::default();
         for (f, by_f) in &used {
             local
                 .gradient

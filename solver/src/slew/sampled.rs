@@ -1,35 +1,41 @@
-//! Commands held on the samples of a clock, in BIROS's three steps.
+//! Torques held on the samples of a clock, in the three steps of BIROS.
 //!
-//! First the minimum in continuous time; then its duration is rounded up to the clock, and torque
-//! held linearly; then it is held constant, from the motion before. Where no motion is found in so
-//! many samples, one more is allowed. In its fixed time a slew for time alone takes the least
-//! effort.
+//! First the minimum in continuous time is solved. Its duration is then rounded up to the clock, and
+//! the slew is solved with torques linear between samples; from that motion it is solved with torques
+//! constant between samples. Where no motion is found in that number of samples, one sample is added.
+//! Once the duration is fixed, a slew in minimum time minimises effort.
 
+use super::attempts::solve_program;
 use super::choices::MAX_INTERVALS;
+use super::continuous;
 use super::cost_weights::CostWeights;
+use super::found_solution::FoundSolution;
 use super::motion::SlewMotion;
-use super::propagated::{self, effort};
-use super::shape::{Course, Lengths};
-use super::{Found, Hold, Objective, Plain, Slew, direct, in_continuous_time};
-use crate::nlp::Interruption;
+use super::program_choice::ProgramChoice;
+use super::propagation::{self, effort};
+use super::shape::{IntervalLengths, TorqueCourse};
+use super::spec::{Objective, SampleHold};
+use super::validated::Slew;
+use crate::run::stop::StopReason;
 
 /// Samples allowed beyond those of the continuous minimum.
 const MAX_EXTRA: usize = 12;
-/// Share of a sample by which a duration may exceed a multiple of it as rounding.
+/// Excess of a duration over a whole number of samples, in samples, that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// Solves a sampled slew.
 pub(super) fn solve(
     slew: &Slew,
-    (period, hold): (f64, Hold),
+    period: f64,
+    hold: SampleHold,
     neighbour: Option<&SlewMotion>,
-    stop: &dyn Fn() -> Option<Interruption>,
-) -> Found {
-    let mut continuous = in_continuous_time(slew, neighbour, stop);
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> FoundSolution {
+    let mut continuous = continuous::solve(slew, neighbour, stop);
     if !continuous.solved.converged() || stop().is_some() {
         return continuous;
     }
-    let clock = Clock {
+    let clock = SampleClock {
         slew,
         period,
         hold,
@@ -44,7 +50,7 @@ pub(super) fn solve(
         ));
         return continuous;
     }
-    let mut best: Option<Found> = None;
+    let mut best: Option<FoundSolution> = None;
     let mut last = None;
     for samples in clock.candidates(least) {
         let found = clock.hold(samples, &continuous.solved.motion);
@@ -70,7 +76,7 @@ pub(super) fn solve(
     found
 }
 
-/// A whole number as a count; more than any program has intervals counts as one too many.
+/// A whole number as a count, cut off just above the greatest number of intervals.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -80,22 +86,22 @@ fn whole(number: f64) -> usize {
     number.clamp(0.0, (MAX_INTERVALS + 1) as f64) as usize
 }
 
-/// A slew on a clock.
-struct Clock<'a> {
+/// A slew whose torques are held on the samples of a clock.
+struct SampleClock<'a> {
     slew: &'a Slew,
     period: f64,
-    hold: Hold,
-    stop: &'a dyn Fn() -> Option<Interruption>,
+    hold: SampleHold,
+    stop: &'a dyn Fn() -> Option<StopReason>,
 }
 
-impl Clock<'_> {
-    /// Numbers of samples to try, given the least that the continuous minimum admits.
+impl SampleClock<'_> {
+    /// Numbers of samples to try; `least` is that of the continuous minimum.
     fn candidates(&self, least: usize) -> Vec<usize> {
         match self.slew.objective() {
             Objective::Energy { duration_s, .. } => {
                 vec![whole((duration_s / self.period).round())]
             }
-            // Time weighs against effort, so that the shorter side of the optimum counts too.
+            // The optimum duration lies between two numbers of samples: try the smaller one too.
             Objective::TimeAndEffort { .. } => {
                 (least.saturating_sub(1).max(2)..=least + MAX_EXTRA).collect()
             }
@@ -103,7 +109,7 @@ impl Clock<'_> {
         }
     }
 
-    /// What is minimised once the number of samples is fixed.
+    /// The cost of a program with a fixed duration, s.
     fn cost_weights(&self, duration: f64) -> CostWeights {
         match self.slew.objective() {
             Objective::MinimumTime => CostWeights {
@@ -123,47 +129,48 @@ impl Clock<'_> {
         }
     }
 
-    /// The optimum in so many samples: held linearly, and from there held constant.
-    fn hold(&self, samples: usize, guess: &SlewMotion) -> Found {
+    /// The optimum in a number of samples: with linear torques, and from there with constant ones.
+    fn hold(&self, samples: usize, guess: &SlewMotion) -> FoundSolution {
         let duration = samples as f64 * self.period;
         let cost_weights = self.cost_weights(duration);
-        let solve = |course: Course, guess: &SlewMotion| {
-            let lengths = Lengths::Given(vec![self.period; samples]);
-            let plain = Plain {
+        let solve = |course: TorqueCourse, guess: &SlewMotion| {
+            let lengths = IntervalLengths::Given(vec![self.period; samples]);
+            let choice = ProgramChoice {
                 shape: self.slew.shape(course, lengths, &cost_weights),
-                lasting: Some(duration),
+                guess_duration: Some(duration),
                 intervals: samples,
                 cost_weights,
             };
-            direct(self.slew, &plain, Some(guess), self.stop)
+            solve_program(self.slew, &choice, Some(guess), self.stop)
         };
-        let linear = solve(Course::Ramps, guess);
-        if self.hold == Hold::Linear {
+        let linear = solve(TorqueCourse::Ramps, guess);
+        if self.hold == SampleHold::Linear {
             return linear;
         }
-        // Torque that may jump needs less time than one that may not: no motion of the second kind
-        // says nothing about the first.
+        // Constant torques may jump at samples and so need less time than continuous linear ones: they
+        // can have a solution where the latter have none.
         let guess = if linear.solved.converged() {
             &linear.solved.motion
         } else {
             guess
         };
-        solve(Course::Steps, guess).after(&linear)
+        solve(TorqueCourse::Steps, guess).after(&linear)
     }
 
     /// Whether a solution answers the slew.
-    fn is_answer(&self, found: &Found) -> bool {
+    fn is_answer(&self, found: &FoundSolution) -> bool {
         found.solved.converged()
             && match self.slew.objective() {
                 Objective::MinimumTimeAtEnergy { energy_j, .. } => {
-                    let flown = propagated::fly(self.slew, &found.solved.motion);
-                    flown.energies.bill_j <= energy_j
+                    let propagated = propagation::propagate(self.slew, &found.solved.motion);
+                    propagated.energies.bill_j <= energy_j
                 }
                 _ => true,
             }
     }
 
-    fn value(&self, found: &Found) -> f64 {
+    /// The objective of a solution among those of different durations.
+    fn value(&self, found: &FoundSolution) -> f64 {
         let motion = &found.solved.motion;
         match self.slew.objective() {
             Objective::TimeAndEffort { weight } => motion.duration() + weight * effort(motion),

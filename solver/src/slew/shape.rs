@@ -6,64 +6,65 @@
 //! | torques `u` at the node | torque is linear on intervals |
 //! | length of the intervals | all intervals have the same unknown length |
 //! | clock | the duration is prescribed and lengths are unknown, or a speed law moves a wheel |
-//! | account | the energy is prescribed |
+//! | energy account: what has been used since the start | the energy is limited |
 //!
 //! | part of the controls | when |
 //! |---|---|
 //! | change of the momenta `m`, or the torques `v` at the interval's end | always |
 //! | length | every interval has a length of its own |
-//! | what the supply gives to each wheel | nothing is fed back |
+//! | slacks: energy at each motor, at least 0 | the bill is counted, braking returns nothing |
 
-/// How torque runs over an interval.
+/// Torque as a function of time within an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Course {
+pub(super) enum TorqueCourse {
     /// Constant.
     Steps,
     /// Linear, and continuous from one interval to the next.
     Ramps,
 }
 
-/// What is known of the lengths of intervals.
+/// Whether the lengths of the intervals are unknowns.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Lengths {
-    /// Each is an unknown of its own.
-    Own,
-    /// All are the same unknown.
+pub(super) enum IntervalLengths {
+    /// Each length is an unknown.
+    Free,
+    /// One unknown is the length of all intervals.
     Shared,
-    /// They are given, s.
+    /// The lengths are given, s.
     Given(Vec<f64>),
 }
 
 /// The variables of an interval and its first node.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct ProgramShape {
     pub(super) wheels: usize,
-    pub(super) course: Course,
-    pub(super) lengths: Lengths,
+    pub(super) course: TorqueCourse,
+    pub(super) lengths: IntervalLengths,
     pub(super) clock: bool,
-    pub(super) account: bool,
+    pub(super) energy_account: bool,
     pub(super) slacks: bool,
 }
 
-impl Shape {
+impl ProgramShape {
+    /// Number of torques in a state.
     fn ramps(&self) -> usize {
         match self.course {
-            Course::Steps => 0,
-            Course::Ramps => self.wheels,
+            TorqueCourse::Steps => 0,
+            TorqueCourse::Ramps => self.wheels,
         }
     }
 
     fn shared(&self) -> usize {
-        usize::from(self.lengths == Lengths::Shared)
+        usize::from(self.lengths == IntervalLengths::Shared)
     }
 
     fn own(&self) -> usize {
-        usize::from(self.lengths == Lengths::Own)
+        usize::from(self.lengths == IntervalLengths::Free)
     }
 
     /// Dimension of a state's tangent space; a point has one number more.
     pub(super) fn states(&self) -> usize {
-        self.account_at() + usize::from(self.account)
+        self.energy_account_at() + usize::from(self.energy_account)
     }
 
     /// Number of controls.
@@ -71,37 +72,37 @@ impl Shape {
         self.wheels * (1 + usize::from(self.slacks)) + self.own()
     }
 
-    /// First torque of a state.
+    /// Index of the first torque in a state.
     pub(super) fn torque_at(&self) -> usize {
         3 + self.wheels
     }
 
-    /// The shared length in a state.
+    /// Index of the shared length in a state.
     pub(super) fn shared_at(&self) -> usize {
         self.torque_at() + self.ramps()
     }
 
-    /// The clock in a state.
+    /// Index of the clock in a state.
     pub(super) fn clock_at(&self) -> usize {
         self.shared_at() + self.shared()
     }
 
-    /// The account in a state.
-    pub(super) fn account_at(&self) -> usize {
+    /// Index of the energy account in a state.
+    pub(super) fn energy_account_at(&self) -> usize {
         self.clock_at() + usize::from(self.clock)
     }
 
-    /// The first slack among the controls.
+    /// Index of the first slack among the controls.
     pub(super) fn slack_at(&self) -> usize {
         self.wheels + self.own()
     }
 
-    /// The variable that is an interval's length, counted over states and controls.
+    /// Index of an interval's length, counted over states and controls; `None` where it is given.
     pub(super) fn length_variable(&self) -> Option<usize> {
         match self.lengths {
-            Lengths::Own => Some(self.states() + self.wheels),
-            Lengths::Shared => Some(self.shared_at()),
-            Lengths::Given(_) => None,
+            IntervalLengths::Free => Some(self.states() + self.wheels),
+            IntervalLengths::Shared => Some(self.shared_at()),
+            IntervalLengths::Given(_) => None,
         }
     }
 }

@@ -1,27 +1,30 @@
-//! From a guess to a motion that flies: solve, correct the turns, keep reserves, solve again.
+//! From a guess to a motion that keeps its limits between nodes too: solve, correct the turns, raise
+//! the reserves at limits, solve again.
 
 use super::cost_weights::CostWeights;
-use super::flow::Vehicle;
+use super::flow::Excesses;
 use super::motion::SlewMotion;
-use super::program::{LengthPenalty, Program, Units};
-use super::shape::{Lengths, Shape};
+use super::program::{LengthPenalty, Program, ProgramSetup, ProgramUnits};
+use super::shape::{IntervalLengths, ProgramShape};
+use super::vehicle::Vehicle;
 use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
 use crate::leg::transcription::{Reserves, Scales};
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{
-    Chain, InteriorPoint, Interruption, Iterate, Layout, NlpReport, NlpStatus, Settings, values_of,
+    Chain, InteriorPoint, Iterate, Layout, NlpReport, NlpStatus, Settings, values_of,
 };
+use crate::run::stop::StopReason;
 
-/// A program to solve on the way to another.
-struct Phase {
+/// Settings of one solve in a sequence of solves of the same program.
+struct SolvePhase {
     settings: Settings,
     length_penalty: f64,
 }
 
-/// Where interval lengths are unknown: which limits are active and roughly where the switches are,
-/// then where exactly, as for the legs of a tour.
-const WITH_LENGTHS: [Phase; 2] = [
-    Phase {
+/// With unknown interval lengths: a first solve finds which limits are active and about where the
+/// torques switch, a second finds the switching times, as for the legs of a tour.
+const WITH_LENGTHS: [SolvePhase; 2] = [
+    SolvePhase {
         settings: Settings {
             tolerance: 1e-2,
             feasibility: 1e-3,
@@ -29,7 +32,7 @@ const WITH_LENGTHS: [Phase; 2] = [
         },
         length_penalty: 0.1,
     },
-    Phase {
+    SolvePhase {
         settings: Settings {
             initial_barrier: 1e-3,
             max_iterations: 400,
@@ -38,8 +41,9 @@ const WITH_LENGTHS: [Phase; 2] = [
         length_penalty: 1e-3,
     },
 ];
-/// The same with momentum, from the fastest motion: the first phase would lead far away from it.
-const NEARBY: [Phase; 1] = [Phase {
+/// The same with stored momentum, from the fastest motion as the guess: the first phase above would
+/// lead far away from it.
+const NEARBY: [SolvePhase; 1] = [SolvePhase {
     settings: Settings {
         initial_barrier: 3e-5,
         initial_slack: 3e-5,
@@ -48,15 +52,15 @@ const NEARBY: [Phase; 1] = [Phase {
     },
     length_penalty: 0.02,
 }];
-const WITHOUT_LENGTHS: [Phase; 1] = [Phase {
+const WITHOUT_LENGTHS: [SolvePhase; 1] = [SolvePhase {
     settings: Settings {
         max_iterations: 400,
         ..Settings::COLD
     },
     length_penalty: 0.0,
 }];
-/// From a solution to one whose multipliers are evidence.
-const POLISHING: Phase = Phase {
+/// From a solution to one with accurate multipliers, for [`super::evidence`].
+const POLISHING: SolvePhase = SolvePhase {
     settings: Settings {
         tolerance: 1e-8,
         initial_barrier: 1e-5,
@@ -66,42 +70,42 @@ const POLISHING: Phase = Phase {
     },
     length_penalty: 1e-3,
 };
-/// Rounds of polishing: each turns the penalty on lengths to those of the last (the proximal point
-/// method), so that its share in the multipliers fades.
+/// Rounds of polishing. Each centres the penalty on the lengths of the round before (the proximal
+/// point method), so that its contribution to the multipliers vanishes.
 const POLISH_ROUNDS: usize = 4;
-/// The penalty on lengths where energy is billed: the program would stretch the intervals on which
-/// power changes its sign, because it lets the signs cancel there.
+/// The penalty on lengths where the bill is minimised. Within an interval positive and negative power
+/// cancel in the program, so that without it intervals with a change of sign would grow.
 const BILLED_PENALTY: f64 = 0.1;
-/// Rounds of correcting the turns and raising the reserves at limits.
+/// Greatest number of rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 15;
-/// Rounds that keep a reserve only where a limit was exceeded; then everywhere.
+/// Rounds that raise a reserve only where a limit was exceeded; later rounds raise all.
 const LOCAL_ROUNDS: usize = 6;
-/// Reserve per excess: a little more than is missing.
+/// Reserve per excess; above 1 so that a round does not end just beyond the limit.
 const RESERVE_FACTOR: f64 = 1.1;
-/// Angle, rad, by which a flight may miss its end as the optimiser sees it.
+/// Greatest sum of the turns' errors, rad, that needs no further round.
 const MISS_TOLERANCE: f64 = 3e-9;
-/// A miss, rad, that asks for better derivatives too.
+/// Sum of the turns' errors, rad, above which the attitude map is refined too.
 const LARGE_MISS: f64 = 1e-3;
-/// Relative excess over a limit between nodes that is not worth another round.
+/// Relative excess over a limit between nodes that needs no further round.
 const LIMIT_TOLERANCE: f64 = 1e-7;
-/// The cost of a guess in the unit of the program's cost.
+/// Scaled cost of a guess: sets the unit of the program's cost.
 const COST_OF_GUESS: f64 = 5.0;
 
-/// One program to solve.
+/// A program to be built and solved.
 #[derive(Clone)]
-pub(super) struct Task<'a> {
+pub(super) struct ProgramTask<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) ends: [Waypoint; 2],
-    pub(super) shape: Shape,
+    pub(super) shape: ProgramShape,
     pub(super) cost_weights: CostWeights,
 }
 
-/// What came of it.
+/// A solved program, whatever its status.
 #[derive(Debug, Clone)]
-pub(super) struct Solved {
+pub(super) struct ProgramSolution {
     pub(super) status: NlpStatus,
     pub(super) motion: SlewMotion,
-    /// `a T + b integral u'u + c E` as the program counts it.
+    /// `a T + b integral u'u + c E` as the program evaluates it.
     pub(super) cost: f64,
     pub(super) iterations: usize,
     /// The program with its corrections, and the iterate with its multipliers.
@@ -109,21 +113,21 @@ pub(super) struct Solved {
     pub(super) iterate: Iterate,
 }
 
-impl Solved {
-    /// Whether it ended in a local minimum.
+impl ProgramSolution {
+    /// Whether the solve ended in a local minimum.
     pub(super) fn converged(&self) -> bool {
         self.status == NlpStatus::Converged
     }
 
-    /// The same solution with multipliers to more digits, where they can be had.
+    /// The same solution with more accurate multipliers, as far as further solves converge.
     pub(super) fn polished(
         &self,
         vehicle: &Vehicle,
-        stop: &dyn Fn() -> Option<Interruption>,
+        stop: &dyn Fn() -> Option<StopReason>,
     ) -> Self {
         let mut best = self.clone();
         for _ in 0..POLISH_ROUNDS {
-            let mut run = Run {
+            let mut run = SolveLoop {
                 engine: InteriorPoint::new(&best.program, POLISHING.settings),
                 solved: best.clone(),
                 vehicle,
@@ -139,20 +143,20 @@ impl Solved {
         best
     }
 
-    /// Whether it beats another.
+    /// Whether this converged at a lower cost than another, or the other did not converge.
     pub(super) fn improves(&self, other: &Self) -> bool {
         self.converged() && (!other.converged() || self.cost < other.cost)
     }
 }
 
-impl Task<'_> {
+impl ProgramTask<'_> {
     /// Solves from a guess with as many intervals as the program is to have.
     pub(super) fn solve(
         &self,
         guess: &SlewMotion,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Solved {
-        let own = self.shape.lengths == Lengths::Own;
+        stop: &dyn Fn() -> Option<StopReason>,
+    ) -> ProgramSolution {
+        let own = self.shape.lengths == IntervalLengths::Free;
         if !own {
             return self.solve_in(&WITHOUT_LENGTHS, guess, stop);
         }
@@ -167,19 +171,19 @@ impl Task<'_> {
 
     fn solve_in(
         &self,
-        phases: &[Phase],
+        phases: &[SolvePhase],
         guess: &SlewMotion,
-        stop: &dyn Fn() -> Option<Interruption>,
-    ) -> Solved {
+        stop: &dyn Fn() -> Option<StopReason>,
+    ) -> ProgramSolution {
         let program = self.program(guess);
-        let mut run = Run {
+        let mut run = SolveLoop {
             engine: InteriorPoint::new(&program, Settings::COLD),
-            solved: Solved {
+            solved: ProgramSolution {
                 status: NlpStatus::IterationLimit,
                 motion: guess.clone(),
                 cost: f64::INFINITY,
                 iterations: 0,
-                iterate: guess.iterate(&program),
+                iterate: program.iterate_at(guess),
                 program,
             },
             vehicle: self.vehicle,
@@ -195,19 +199,20 @@ impl Task<'_> {
             .signed_turn_to(&self.ends[1].attitude)
             .norm();
         let scales = Scales::for_legs(dynamics, angle, guess.duration());
-        let units = Units {
+        let units = ProgramUnits {
             cost: scales.time,
             energy: 1.0,
         };
-        let mut program = Program::new(
-            self.vehicle,
+        let setup = ProgramSetup {
+            waypoints: &self.ends,
+            intervals: guess.lengths.len(),
+            shape: self.shape.clone(),
+            cost_weights: self.cost_weights,
             scales,
-            &self.ends,
-            guess.lengths.len(),
-            self.shape.clone(),
-            (self.cost_weights, units),
-        );
-        let energy = program.energy_of(&guess.iterate(&program));
+            units,
+        };
+        let mut program = Program::new(self.vehicle, setup);
+        let energy = program.energy_of(&program.iterate_at(guess));
         let wheels = dynamics.wheel_count() as f64;
         if energy > 0.0 {
             program.units.energy = energy / wheels;
@@ -229,17 +234,17 @@ impl Task<'_> {
     }
 }
 
-/// A task on the way to its solution.
-struct Run<'a> {
+/// The loop of solves, corrections and reserves.
+struct SolveLoop<'a> {
     vehicle: &'a Vehicle,
     engine: InteriorPoint,
-    solved: Solved,
+    solved: ProgramSolution,
 }
 
-impl Run<'_> {
-    fn pass(&mut self, phases: &[Phase], stop: &dyn Fn() -> Option<Interruption>) {
+impl SolveLoop<'_> {
+    fn pass(&mut self, phases: &[SolvePhase], stop: &dyn Fn() -> Option<StopReason>) {
         for phase in phases {
-            let penalty = if self.solved.program.cost_weights.bills() {
+            let penalty = if self.solved.program.cost_weights.uses_bill() {
                 BILLED_PENALTY
             } else {
                 phase.length_penalty
@@ -254,8 +259,8 @@ impl Run<'_> {
         let mut reserves = Reserves::none(&self.vehicle.dynamics, intervals);
         for round in 0..MAX_ROUNDS {
             let missed = self.correct();
-            let (shares, torques) = self.vehicle.excesses(&self.solved.motion);
-            let excess = shares.iter().chain(&torques).copied().fold(0.0, f64::max);
+            let excesses = self.vehicle.excesses(&self.solved.motion);
+            let excess = excesses.greatest();
             if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
                 return;
             }
@@ -264,7 +269,7 @@ impl Run<'_> {
                 self.correct();
             }
             if excess > LIMIT_TOLERANCE {
-                self.keep_reserves(round, &mut reserves, (&shares, &torques));
+                self.keep_reserves(round, &mut reserves, &excesses);
             }
             if !self.converges(stop) {
                 return;
@@ -282,9 +287,9 @@ impl Run<'_> {
         self.solved.program.penalty = LengthPenalty { weight, lengths };
     }
 
-    /// Makes turns exact where the iterate is; the angle, rad, by which it missed.
+    /// Corrects the turns at the iterate; returns the sum of their errors, rad.
     fn correct(&mut self) -> f64 {
-        let Solved {
+        let ProgramSolution {
             program,
             iterate,
             motion,
@@ -302,7 +307,7 @@ impl Run<'_> {
         &mut self,
         round: usize,
         reserves: &mut Reserves,
-        (shares, torques): (&[f64], &[f64]),
+        Excesses { shares, torques }: &Excesses,
     ) {
         let program = &mut self.solved.program;
         let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max) * RESERVE_FACTOR;
@@ -327,13 +332,13 @@ impl Run<'_> {
             self.solved.iterate.recentre(NEAR_BARRIER);
             self.engine.settings.initial_barrier = NEAR_BARRIER;
         } else {
-            // Slacks belong to the old limits.
+            // The iterate's slacks are those of the limits without the new reserves.
             self.forget_multipliers();
             self.engine.settings.initial_barrier = Settings::COLD.initial_barrier;
         }
     }
 
-    /// Begins again from the primal point alone.
+    /// Drops slacks and multipliers and keeps the primal point.
     fn forget_multipliers(&mut self) {
         let iterate = &mut self.solved.iterate;
         *iterate = Iterate::cold(
@@ -342,21 +347,21 @@ impl Run<'_> {
         );
     }
 
-    /// Runs the engine from where the run is; whether it converges.
-    fn converges(&mut self, stop: &dyn Fn() -> Option<Interruption>) -> bool {
+    /// Solves from the current iterate; returns whether the solve converged.
+    fn converges(&mut self, stop: &dyn Fn() -> Option<StopReason>) -> bool {
         let solved = &mut self.solved;
         let report: NlpReport = self
             .engine
             .solve(&solved.program, &mut solved.iterate, stop);
         solved.status = report.status;
         solved.iterations += report.iterations;
-        solved.motion = SlewMotion::of_iterate(&solved.iterate, &solved.program);
+        solved.motion = solved.program.motion_of(&solved.iterate);
         solved.cost = cost(&solved.program, &solved.iterate);
         solved.converged()
     }
 }
 
-/// The cost of an iterate without penalties, in the unit of the cost_weights.
+/// The cost of an iterate without penalties, in the unit of [`CostWeights`].
 fn cost(program: &Program, iterate: &Iterate) -> f64 {
     let (layout, mut values) = (Layout::of(program), values_of(program));
     let mut sum = 0.0;

@@ -1,301 +1,276 @@
-//! Slews that are valid by construction.
+//! A slew as a caller describes it: plain, unvalidated.
 
-use super::choices;
-use super::cost_weights::CostWeights;
-use super::flow::{Followers, Vehicle};
-use super::motion::SlewMotion;
-use super::request::{Command, FinalWheels, Objective, SlewSpec, Sweep, WheelAllocation};
-use super::shape::{Course, Lengths, Shape};
-use crate::leg::solve::arrival::Arrival;
-use crate::model::attitude::Attitude;
-use crate::model::drive::Drive;
-use crate::model::dynamics::Dynamics;
-use crate::model::findings::Findings;
-use crate::model::problem::{Code, Problem};
-use crate::model::scenario::{RateCondition, Scenario};
-use crate::model::spec::{AttitudeEquivalence, OptionsSpec, ScenarioSpec};
-use crate::model::waypoint::{Waypoint, WheelCondition};
-use nalgebra::{DVector, Vector3};
+use crate::model::drive::DriveSpec;
+use crate::model::input::{
+    self, InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_choice, input_object,
+    input_union, nullable, optional, or, required, required_elsewhere, required_or,
+};
+use crate::model::problem::Code;
+use crate::model::spec::{AttitudeEquivalence, SpacecraftOrReference, SpacecraftSpec, StateSpec};
 
-/// A valid slew.
-#[derive(Debug, Clone)]
-pub struct Slew {
-    scenario: Scenario,
-    drives: Vec<Drive>,
-    vehicle: Vehicle,
-    ends: [Waypoint; 2],
-    start_momenta: DVector<f64>,
-    arrival: Arrival,
-    objective: Objective,
-    command: Command,
-}
+/// Number of intervals of a command that gives none.
+pub const DEFAULT_INTERVALS: usize = 24;
+/// Greatest number of points of a sweep.
+pub const MAX_POINTS: usize = 200;
 
-/// A valid slew with what the caller should know about it.
-#[derive(Debug, Clone)]
-pub struct Validated {
-    /// The slew.
-    pub slew: Slew,
-    /// Doubts that do not stand in the way.
-    pub warnings: Vec<Problem>,
-}
-
-impl Slew {
-    /// Validates a description and collects every problem. Pointers are those of the fields:
-    /// `/spacecraft`, `/drives`, `/start`, `/end`, `/objective`, `/command`, `/allocation`, `/options`.
-    ///
-    /// # Errors
-    ///
-    /// All problems at once.
-    pub fn try_new(spec: &SlewSpec) -> Result<Validated, Vec<Problem>> {
-        let mut problems = Vec::new();
-        let scenario = Scenario::try_new(&scenario_spec(spec));
-        let wheels = spec.spacecraft.wheels.len();
-        let drives = Drive::read_all(&spec.drives, wheels, "/drives");
-        let mut findings = Findings::default();
-        let choices = choices::check(spec, &mut findings);
-        if let Err(found) = findings.conclude(choices.then_some(())) {
-            problems.extend(found);
-        }
-        let scenario = scenario.map_err(|found| problems.splice(0..0, found).for_each(drop));
-        let drives = drives.map_err(|found| problems.extend(found));
-        let (Ok(scenario), Ok(drives), true) = (scenario, drives, problems.is_empty()) else {
-            return Err(problems);
-        };
-        Ok(Validated {
-            slew: Self::assemble(spec, scenario.scenario, drives),
-            warnings: scenario.warnings,
-        })
-    }
-
-    fn assemble(spec: &SlewSpec, scenario: Scenario, drives: Vec<Drive>) -> Self {
-        let dynamics = Dynamics::of(&scenario);
-        let start = scenario.start();
-        let mut followers = Followers::default();
-        let wheels = scenario.spacecraft().wheels().iter();
-        for ((wheel, drive), speed) in wheels.zip(&drives).zip(&start.wheel_speed) {
-            if let Some(law) = drive.speed_law {
-                followers.add(wheel.axis * wheel.inertia, law, *speed);
-            }
-        }
-        let start_momenta = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
-        let begin = Waypoint {
-            attitude: start.attitude,
-            rate: fixed(&start.rate),
-            wheels: WheelCondition::Fixed(start_momenta.clone()),
-            price: None,
-        };
-        let arrival = match spec.options.attitude_equivalence {
-            AttitudeEquivalence::Rotation => Arrival::Rotation,
-            AttitudeEquivalence::Quaternion => Arrival::Quaternion,
-        };
-        let target = scenario.end().map_or(start.attitude, |end| end.attitude);
-        let rate = scenario.end().map_or(start.rate, |end| end.rate);
-        let speeds = scenario.end().and_then(|end| end.wheel_speed.clone());
-        let null = dynamics.null_component(&start_momenta);
-        let kept = (spec.allocation == WheelAllocation::PseudoInverse).then(|| null.clone());
-        let wheels = match (spec.final_wheels, speeds) {
-            (FinalWheels::Given, Some(speeds)) => {
-                WheelCondition::Fixed(dynamics.wheels_of_speeds(&rate, &speeds))
-            }
-            (FinalWheels::NullSpaceOfStart, _) => WheelCondition::NullSpace(null),
-            _ if kept.is_some() => WheelCondition::NullSpace(null),
-            _ => WheelCondition::Free,
-        };
-        let end = Waypoint {
-            attitude: arrival.signed(&target, &start.attitude),
-            rate: fixed(&rate),
-            wheels,
-            price: None,
-        };
-        let commanded = dynamics.actuators.iter().map(|wheel| drives[wheel.index]);
-        Self {
-            vehicle: Vehicle {
-                drives: commanded.collect(),
-                dynamics,
-                followers,
-                kept,
-            },
-            ends: [begin, end],
-            start_momenta,
-            arrival,
-            objective: spec.objective,
-            command: spec.command,
-            scenario,
-            drives,
-        }
-    }
-
-    /// What is minimised.
-    #[must_use]
-    pub fn objective(&self) -> Objective {
-        self.objective
-    }
-
-    /// What can be commanded.
-    #[must_use]
-    pub fn command(&self) -> Command {
-        self.command
-    }
-
-    /// How torque is shared out among the wheels.
-    #[must_use]
-    pub fn allocation(&self) -> WheelAllocation {
-        match self.vehicle.kept {
-            Some(_) => WheelAllocation::PseudoInverse,
-            None => WheelAllocation::Free,
-        }
-    }
-
-    /// The spacecraft with start and end, as a scenario without targets.
-    #[must_use]
-    pub fn scenario(&self) -> &Scenario {
-        &self.scenario
-    }
-
-    /// The drives of all wheels.
-    #[must_use]
-    pub fn all_drives(&self) -> &[Drive] {
-        &self.drives
-    }
-
-    pub(super) fn vehicle(&self) -> &Vehicle {
-        &self.vehicle
-    }
-
-    pub(super) fn arrival(&self) -> Arrival {
-        self.arrival
-    }
-
-    /// Momenta of the commanded wheels at the start, N m s.
-    pub(super) fn start_momenta(&self) -> &DVector<f64> {
-        &self.start_momenta
-    }
-
-    pub(super) fn ends(&self) -> &[Waypoint; 2] {
-        &self.ends
-    }
-
-    /// Both ends, the second with the sign at which a motion arrives.
-    pub(super) fn ends_towards(&self, motion: &SlewMotion) -> [Waypoint; 2] {
-        let mut ends = self.ends.clone();
-        if let Some(last) = motion.attitudes.last() {
-            ends[1].attitude = self.arrival.signed(&ends[1].attitude, last);
-        }
-        ends
-    }
-
-    /// Angle between an attitude and the wanted one, rad.
-    pub(super) fn missed_by(&self, attitude: &Attitude) -> f64 {
-        self.arrival.turn(attitude, &self.ends[1].attitude)
-    }
-
-    /// The program's cost weights in continuous time.
-    pub(super) fn cost_weights(&self) -> CostWeights {
-        match self.objective {
-            Objective::MinimumTime => CostWeights::TIME,
-            Objective::TimeAndEffort { weight } => CostWeights {
-                effort: weight,
-                ..CostWeights::TIME
-            },
-            Objective::Energy {
-                duration_s,
-                measure,
-            } => CostWeights::energy_in(duration_s, measure),
-            Objective::MinimumTimeAtEnergy { energy_j, measure } => CostWeights {
-                measure,
-                budget: Some(energy_j),
-                ..CostWeights::TIME
-            },
-        }
-    }
-
-    /// The variables of a program for it.
-    pub(super) fn shape(&self, course: Course, lengths: Lengths, of: &CostWeights) -> Shape {
-        Shape {
-            wheels: self.vehicle.dynamics.wheel_count(),
-            course,
-            clock: self.vehicle.followers.move_at_all()
-                || of.duration.is_some() && lengths == Lengths::Own,
-            lengths,
-            account: of.budget.is_some(),
-            slacks: of.bills(),
-        }
-    }
-
-    /// The same slew at every point of a sweep.
-    pub(super) fn along(&self, sweep: &Sweep) -> Result<Vec<Self>, Vec<Problem>> {
-        let mut findings = Findings::default();
-        let (values, field) = (sweep.values(), sweep.name());
-        let points: Vec<_> = values
-            .iter()
-            .enumerate()
-            .map(|(i, value)| {
-                let pointer = format!("/sweep/{field}/{i}");
-                let value = findings.positive(&pointer, *value)?;
-                let objective = match (sweep, self.objective) {
-                    (Sweep::Durations(_), Objective::Energy { measure, .. }) => {
-                        Some(Objective::Energy {
-                            duration_s: value,
-                            measure,
-                        })
-                    }
-                    (Sweep::Weights(_), Objective::TimeAndEffort { .. }) => {
-                        Some(Objective::TimeAndEffort { weight: value })
-                    }
-                    (Sweep::Energies(_), Objective::MinimumTimeAtEnergy { measure, .. }) => {
-                        Some(Objective::MinimumTimeAtEnergy {
-                            energy_j: value,
-                            measure,
-                        })
-                    }
-                    _ => None,
-                };
-                if objective.is_none() {
-                    findings.refuse(
-                        "/sweep",
-                        Code::ConflictingFields,
-                        format!("the objective has no {field} to sweep"),
-                        "sweep durations of energy, weights of effort, or energies of time",
-                    );
-                }
-                let objective = objective?;
-                choices::check_multiple(&objective, &self.command, &pointer, &mut findings).then(
-                    || Self {
-                        objective,
-                        ..self.clone()
-                    },
-                )
-            })
-            .collect();
-        let points = points.into_iter().collect();
-        findings.conclude(points).map(|(points, _)| points)
+input_object! {
+    /// One slew, or the same along a sweep. Numbers are SI with the unit in the field name.
+    #[derive(Default)]
+    pub struct SlewSpec as "SlewBody" {
+        /// Free text.
+        pub name: Option<String> = optional(),
+        /// Values for which the slew is solved one after the other; the objective's own is not used.
+        pub sweep: Option<Sweep> = optional(),
+        /// The spacecraft.
+        pub spacecraft: SpacecraftSpec as SpacecraftOrReference
+            = required_or(SpacecraftSpec::substitute()),
+        /// One for each wheel, in the order of the wheels; ideal drives without it.
+        pub drives: Vec<DriveSpec> = or(Vec::new()),
+        /// State at the start.
+        pub start: StateSpec = required_or(StateSpec::default()),
+        /// State at the end; its wheel speeds count with `final_wheels` `given` only.
+        pub end: StateSpec = required_or(StateSpec::default()),
+        /// Condition on the wheels at the end; `free` without it.
+        pub final_wheels: FinalWheels = or(FinalWheels::default()),
+        /// What is minimised; `minimum_time` without it.
+        pub objective: Objective = or(Objective::default()),
+        /// What can be commanded; constant torques on 24 intervals of any length without it.
+        pub command: TorqueCommand = or(TorqueCommand::default()),
+        /// How torque is allocated to the wheels; `free` without it.
+        pub allocation: WheelAllocation = or(WheelAllocation::default()),
+        /// Options of the solve.
+        pub options: SlewOptionsSpec = or(SlewOptionsSpec::default()),
+        /// Whether costates, Hamiltonian and switching functions are wanted; not with a sweep.
+        pub evidence: bool = or(false),
     }
 }
 
-fn fixed(rate: &Vector3<f64>) -> [RateCondition; 3] {
-    [0, 1, 2].map(|axis| RateCondition::Fixed(rate[axis]))
+input_object! {
+    /// Options of a slew.
+    pub struct SlewOptionsSpec as "SlewOptions" {
+        /// Whether q and -q are the same attitude.
+        pub attitude_equivalence: AttitudeEquivalence = or(AttitudeEquivalence::default()),
+        /// Share of every torque limit that may be used.
+        pub torque_authority: f64 = or(1.0).above(0.0).at_most(1.0),
+        /// Share of every wheel speed limit that may be used.
+        pub momentum_authority: f64 = or(1.0).above(0.0).at_most(1.0),
+        /// Wall-clock limit; 60 without it, none but the service's own with `null`.
+        pub time_limit_s: Option<f64> = nullable(60.0).above(0.0).at_most(1e9),
+    }
 }
 
-/// The slew as a scenario without targets; wheels with a law of their own are no actuators.
-fn scenario_spec(spec: &SlewSpec) -> ScenarioSpec {
-    let mut spacecraft = spec.spacecraft.clone();
-    for (wheel, drive) in spacecraft.wheels.iter_mut().zip(&spec.drives) {
-        wheel.enabled &= drive.speed_law.is_none();
+impl Default for SlewOptionsSpec {
+    fn default() -> Self {
+        input::left_out::<Self>()
     }
-    let mut end = spec.end.clone();
-    if spec.final_wheels != FinalWheels::Given {
-        end.wheel_speed_rad_s = None;
-    }
-    ScenarioSpec {
-        spacecraft,
-        start: spec.start.clone(),
-        end: Some(end),
-        options: OptionsSpec {
-            attitude_equivalence: spec.options.attitude_equivalence,
-            torque_authority: spec.options.torque_authority,
-            momentum_authority: spec.options.momentum_authority,
-            ..OptionsSpec::default()
+}
+
+input_union! {
+    /// What is minimised. Along a sweep the value of the objective itself may be left out.
+    #[derive(Copy)]
+    pub enum Objective as "SlewObjective" {
+        /// The duration.
+        MinimumTime = "minimum_time",
+        /// Duration plus weight times the integral of the squared torques.
+        TimeAndEffort = "time_and_effort" {
+            /// s per (N m)² s; not a number where it is left to a sweep.
+            weight: f64 = required_elsewhere(f64::NAN).at_least(0.0),
         },
-        ..ScenarioSpec::default()
+        /// The motors' energy in a given time.
+        Energy = "energy" {
+            /// How energy is counted; `bill` without it.
+            measure: EnergyMeasure = or(EnergyMeasure::default()),
+            /// The time; not a number where it is left to a sweep.
+            duration_s: f64 = required_elsewhere(f64::NAN).above(0.0),
+        },
+        /// The duration with no more than a given bill. By the measure `bill` over all motions; by
+        /// `proxy` over the motions that minimise the proxy in their time, as the energy thesis has it.
+        MinimumTimeAtEnergy = "minimum_time_at_energy" {
+            /// What the motions minimise; `bill` without it.
+            measure: EnergyMeasure = or(EnergyMeasure::default()),
+            /// The bill; not a number where it is left to a sweep.
+            energy_j: f64 = required_elsewhere(f64::NAN).above(0.0),
+        },
+    }
+}
+
+#[expect(
+    clippy::derivable_impls,
+    reason = "a declaration has no attributes on variants"
+)]
+impl Default for Objective {
+    fn default() -> Self {
+        Self::MinimumTime
+    }
+}
+
+input_choice! {
+    /// How energy is counted.
+    pub enum EnergyMeasure as "Measure" {
+        /// The energy drawn from the supply: braking returns nothing.
+        Bill = "bill",
+        /// The integral of the power, which is smooth but counts what a braking wheel returns.
+        Proxy = "proxy",
+    }
+}
+
+input_union! {
+    /// Which torques can be commanded.
+    #[derive(Copy)]
+    pub enum TorqueCommand as "SlewCommand" {
+        /// Constant on intervals of any length; more of them where momentum turns under a rate limit.
+        Free = "free" {
+            /// Their number.
+            intervals: usize = or(DEFAULT_INTERVALS).at_least(2.0).format("int32"),
+        },
+        /// Constant on intervals of equal length.
+        Uniform = "uniform" {
+            /// Their number.
+            intervals: usize = or(DEFAULT_INTERVALS).at_least(2.0).format("int32"),
+        },
+        /// Continuous, linear on intervals of equal length.
+        Smooth = "smooth" {
+            /// Their number.
+            intervals: usize = or(DEFAULT_INTERVALS).at_least(2.0).format("int32"),
+        },
+        /// Held on the samples of a clock; the duration is a multiple of the period.
+        Sampled = "sampled" {
+            /// How torque is held; `constant` without it.
+            hold: SampleHold = or(SampleHold::default()),
+            /// The period.
+            period_s: f64 = required().above(0.0),
+        },
+    }
+}
+
+impl Default for TorqueCommand {
+    fn default() -> Self {
+        Self::Free {
+            intervals: DEFAULT_INTERVALS,
+        }
+    }
+}
+
+input_choice! {
+    /// Torque as a function of time between two samples.
+    pub enum SampleHold as "Hold" {
+        /// Constant.
+        Constant = "constant",
+        /// Linear, and continuous across samples.
+        Linear = "linear",
+    }
+}
+
+input_choice! {
+    /// Condition on the wheels at the end.
+    pub enum FinalWheels as "FinalWheels" {
+        /// None besides conservation of momentum at the final attitude and rate.
+        Free = "free",
+        /// The speeds of the end's state.
+        Given = "given",
+        /// The null-space momentum of the start.
+        NullSpaceOfStart = "null_space_of_start",
+    }
+}
+
+input_choice! {
+    /// How torque on the body is allocated to the wheels.
+    pub enum WheelAllocation as "SlewAllocation" {
+        /// Every wheel's torque is chosen by itself, within its limits.
+        Free = "free",
+        /// By the pseudo-inverse of the wheel axes, as in most flight software: `u = A^+ A u`.
+        /// Null-space momentum stays that of the start, and less than the full envelope can be reached;
+        /// not with `given` final wheels.
+        PseudoInverse = "pseudo_inverse",
+    }
+}
+
+/// Values of one quantity of the objective, in the order in which they are solved.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sweep {
+    /// Durations, s, of [`Objective::Energy`].
+    Durations(Vec<f64>),
+    /// Weights of [`Objective::TimeAndEffort`].
+    Weights(Vec<f64>),
+    /// Energies, J, of [`Objective::MinimumTimeAtEnergy`].
+    Energies(Vec<f64>),
+}
+
+impl Sweep {
+    /// The members of a document of which one is the list.
+    const NAMES: [&'static str; 3] = ["durations_s", "weights", "energies_j"];
+
+    /// Name of the member that is the list.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Durations(_) => Self::NAMES[0],
+            Self::Weights(_) => Self::NAMES[1],
+            Self::Energies(_) => Self::NAMES[2],
+        }
+    }
+
+    /// The values in their order.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        let (Self::Durations(values) | Self::Weights(values) | Self::Energies(values)) = self;
+        values
+    }
+}
+
+/// Exactly one list, of at most [`MAX_POINTS`] values.
+impl InputForm for Sweep {
+    type Value = Self;
+
+    fn read<P: InputPlace>(place: &P) -> Option<Self> {
+        if !place.is_object(Some(&Self::NAMES)) {
+            return None;
+        }
+        let list = |name| {
+            let given = place.member(name).filter(|list| !list.is_null())?;
+            Some(Vec::<f64>::read(&given))
+        };
+        let lists = Self::NAMES.map(list);
+        let given = lists.iter().flatten().count();
+        if given != 1 {
+            place.report(
+                Code::ConflictingFields,
+                format!("{given} lists are given"),
+                "give exactly one of durations_s, weights and energies_j",
+            );
+            return None;
+        }
+        let [durations, weights, energies] = lists.map(Option::flatten);
+        let sweep = durations
+            .map(Self::Durations)
+            .or_else(|| weights.map(Self::Weights))
+            .or_else(|| energies.map(Self::Energies))?;
+        let count = sweep.values().len();
+        if !(1..=MAX_POINTS).contains(&count) {
+            place.report(
+                Code::WrongLength,
+                format!("the sweep has {count} values"),
+                format!("give 1 to {MAX_POINTS} values"),
+            );
+            return None;
+        }
+        Some(sweep)
+    }
+
+    fn schema() -> Schema {
+        Schema::Named(NamedSchema {
+            name: "Sweep",
+            doc: "Exactly one list.",
+            schema: || {
+                let rule = optional().min_length(1).max_length(MAX_POINTS);
+                let [durations, weights, energies] = Self::NAMES;
+                let list = |name, doc| MemberSchema::of::<Option<Vec<f64>>>(name, doc, &rule);
+                Schema::Object(vec![
+                    list(durations, "Of the objective `energy`."),
+                    list(weights, "Of the objective `time_and_effort`."),
+                    list(energies, "Of the objective `minimum_time_at_energy`."),
+                ])
+            },
+        })
     }
 }

@@ -1,20 +1,20 @@
-//! Guesses for a slew: the fastest motion, and slews about the eigenaxis perturbed_eigenaxis to either side.
+//! Guesses for a slew: the fastest motion, and eigenaxis slews perturbed to either side.
 
-use super::Slew;
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
+use super::validated::Slew;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{self, LegProblem, Resolution};
 use crate::model::spec::Accuracy;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
-/// The guesses, best first: minimum time has one, since the fastest motion is itself the best of
-/// several; what is smooth, or may not use all torques, may have more than one minimum.
+/// The guesses, best first. For minimum time the fastest motion is enough, since it is itself the best
+/// of several solutions; other objectives may have several local minima.
 pub(super) fn of(
     slew: &Slew,
     cost_weights: CostWeights,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> Vec<SlewMotion> {
     let vehicle = slew.vehicle();
     let dynamics = &vehicle.dynamics;
@@ -29,15 +29,15 @@ pub(super) fn of(
         extremals: &KinematicExtremals::of(dynamics),
         resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
-    let fastest = solve::solve(&problem, None, stop).flown;
+    let fastest = solve::solve(&problem, None, stop).solution;
     let converged = fastest.duration().is_some();
     let fastest = SlewMotion::of_profile(&fastest.profile);
-    let mut guesses = vec![match &vehicle.kept {
-        Some(null) => fastest.keeping(null, dynamics),
+    let mut guesses = vec![match &vehicle.pinned_null {
+        Some(null) => fastest.with_null_space(null, dynamics),
         None => fastest,
     }];
-    // Where the pseudo-inverse shares torques out, the fastest motion is another problem's.
-    if !converged || !cost_weights.hurries() || vehicle.kept.is_some() {
+    // The fastest motion uses torques that the pseudo-inverse cannot give.
+    if !converged || !cost_weights.is_time_only() || vehicle.pinned_null.is_some() {
         let perturbed_eigenaxis = [Perturbation::Far, Perturbation::Near]
             .map(|side| SlewMotion::of_profile(&problem.perturbed_eigenaxis(side)));
         guesses.extend(perturbed_eigenaxis);
@@ -46,14 +46,13 @@ pub(super) fn of(
 }
 
 impl Slew {
-    /// Intervals that resolve a motion in minimum time.
+    /// Number of intervals for a motion in continuous time where the caller gives none.
     pub(super) fn usual_intervals(&self) -> usize {
         let resolution = Resolution::of(Accuracy::Standard, &self.vehicle().dynamics);
         resolution.intervals + self.intervals_of_fastest()
     }
 
-    /// Intervals of the fastest motion, which needs more of them where stored momentum turns under
-    /// a rate limit.
+    /// Number of intervals of the fastest motion; stored momentum under a rate limit asks for more.
     pub(super) fn intervals_of_fastest(&self) -> usize {
         let dynamics = &self.vehicle().dynamics;
         let [from, to] = self.ends();

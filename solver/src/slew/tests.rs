@@ -1,4 +1,4 @@
-//! Slews with published answers, and the derivatives of their programs.
+//! Slews with published results, combinations without any, and the derivatives of their programs.
 
 mod allocation;
 mod craft;

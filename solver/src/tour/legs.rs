@@ -10,6 +10,7 @@
 //! Beside them, the segments of one scenario's tours, which mean nothing to others.
 
 use crate::model::input::input_choice;
+use crate::model::motion::Motion;
 
 input_choice! {
     /// Which boundary conditions a tabulated leg has.
@@ -45,12 +46,8 @@ pub struct StoredLeg {
     pub status: String,
     /// Wall-clock time of the solve with all its starts, s.
     pub solve_time_s: f64,
-    /// Attitude at every node relative to the begin, scalar-last quaternions.
-    pub attitudes_xyzw: Vec<[f64; 4]>,
-    /// Momentum of every enabled wheel about its axis at every node, N m s.
-    pub wheel_momenta_nms: Vec<Vec<f64>>,
-    /// Time between nodes, s; the torque there is the change of momentum over it.
-    pub lengths_s: Vec<f64>,
+    /// The motion, with attitudes relative to the begin.
+    pub motion: Motion,
 }
 
 /// Remembers legs by their identity.
@@ -67,12 +64,8 @@ pub trait LegStore: Sync {
 /// The flight through several places in a row, solved as one program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoredSegment {
-    /// Attitude at every node, scalar-last quaternions.
-    pub attitudes_xyzw: Vec<[f64; 4]>,
-    /// Momentum of every enabled wheel about its axis at every node, N m s.
-    pub wheel_momenta_nms: Vec<Vec<f64>>,
-    /// Time between nodes, s.
-    pub lengths_s: Vec<f64>,
+    /// The motion.
+    pub motion: Motion,
     /// Costates of the momenta at every place between two of its legs, s per N m s.
     pub costates_s_per_nms: Vec<Vec<f64>>,
 }

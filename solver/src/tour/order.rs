@@ -2,11 +2,11 @@
 //!
 //! # Problem
 //!
-//! A tour leaves the start, visits each of n targets once and, where one is prescribed, goes on to
-//! an end. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left
-//! free at a target couple the slews before and after it, so `T` is no sum over pairs. Wanted are
+//! A tour leaves the start, visits each of n targets once and, where an end is prescribed, goes on
+//! to it. The duration `T(order)` of a whole order comes from an expensive evaluation: rates left
+//! free at a target couple the legs before and after it, so `T` is not a sum over pairs. Wanted are
 //! the order of least duration among those that [`OrderRules`] admit, the next best `k` orders, and
-//! a bound on what was not looked at.
+//! a lower bound on all orders that were not evaluated.
 //!
 //! # Bounds
 //!
@@ -20,29 +20,32 @@
 //!   path in the pair table ([`completion`]: dynamic programming over subsets, or the spanning tree
 //!   relaxation of it when there are many targets).
 //!
-//! Hence `head(p) + rest(l, R)` is a lower bound of every completion of `p`. So is the parent's
-//! bound, whose completions include those of `p`; the node takes the greater, and bounds never
-//! fall on the way down. Where [`OrderRules`] restrict the orders, only prefixes that an admitted
-//! order begins with are opened. What may follow depends on the set of the visited alone, not on
-//! their order, so that the dynamic program takes the rules in and remains exact; the spanning tree
-//! ignores them, and the least over more paths is a bound all the same. A node enters the frontier with the bound that costs nothing (the
-//! parent's head plus one pair bound) and pays for its own evaluation only when it is taken out.
+//! Hence `head(p) + rest(l, R)` is a lower bound on every completion of `p`. So is the parent's
+//! bound, because the parent's completions include those of `p`; a node takes the greater of the
+//! two, and bounds never fall on the way down the tree. Where [`OrderRules`] restrict the orders,
+//! only prefixes of admitted orders are opened. Which targets may come next depends on the set of
+//! visited targets and not on their order, so the dynamic program takes the rules into account and
+//! remains exact. The spanning tree ignores the rules; the minimum over more paths is still a lower
+//! bound. A node enters the frontier with the bound that needs no evaluation (the parent's head
+//! plus one pair bound); its own evaluation is made only when it is taken out.
 //!
-//! Where legs couple and a search goes on, better bounds of what comes after are asked for, and where
-//! that is not enough, bounds of whole orders that begin with a prefix ([`triple_bounds`], [`lagrangian`]).
+//! Where legs couple, a longer search computes tighter bounds on what comes after a prefix
+//! ([`triple_bounds`]) and then bounds on all orders with a prefix ([`lagrangian`]).
 //!
 //! # Symmetry
 //!
-//! Where every order takes as long backwards, the orders that visit one target in the first half are
-//! half of all, and one of every order and its reverse is among them. The search then keeps to these,
-//! in its dynamic program too, and lists both of each pair. The target is the one nearest to the
-//! start: good orders visit it early or late, and the late ones are given up at the root.
+//! Where every order takes as long as its reverse, it is enough to search the orders that visit one
+//! chosen target in the first half: they contain one of every order and its reverse. The dynamic
+//! program is restricted in the same way, and both orders of each pair are listed. The chosen
+//! target is the one nearest to the start: good orders visit it early or late, and the late ones
+//! are excluded at the root.
 //!
-//! # Honesty
+//! # Validity of the bound
 //!
-//! Every order is at every moment in exactly one of these: flown, below a node of the frontier, in
-//! flight, or given up (pruned, not resolved, or dropped for memory). The reported bound is the
-//! least over the flown durations and the bounds of all the others.
+//! At every moment each order belongs to exactly one of these sets: evaluated, below a node of the
+//! frontier, under evaluation, or given up (pruned, unresolved, or dropped for memory). The
+//! reported bound is the minimum over the durations of the evaluated orders and the bounds of all
+//! others.
 //!
 //! # Determinism
 //!
@@ -97,18 +100,19 @@ pub enum Evaluation {
 /// Answer of [`TourModel::tour`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TourEvaluation {
-    /// The order can be flown in this time, s.
-    LegSolution(f64),
+    /// Duration of the tour in this order, s.
+    Solved(f64),
     /// The evaluation did not converge; the order may or may not be good.
     Unresolved,
     /// The evaluation was interrupted by the stop signal.
     Stopped,
 }
 
-/// What a unit more of each quantity of the state in which a target is passed is worth, s.
-pub type Price = Vec<f64>;
+/// Costate at the passage of a target: derivative of the tour's duration with respect to each
+/// component of the state in which the target is passed, s per unit of the component.
+pub type PassageCostate = Vec<f64>;
 
-/// All that the search knows of slews.
+/// All that the search knows of legs and tours.
 ///
 /// Durations are in seconds, finite and not negative. Equal questions must get equal answers,
 /// whichever thread asks.
@@ -119,23 +123,23 @@ pub trait TourModel: Sync {
     /// Whether the tour goes on to a prescribed end after the last target.
     fn has_end(&self) -> bool;
 
-    /// Which orders may be flown: at least one. The model is asked for no other.
+    /// Which orders are admitted: at least one. The search evaluates no other.
     fn rules(&self) -> &OrderRules;
 
-    /// Whether every order is admitted and takes as long backwards, so that one of the two will do.
+    /// Whether every order is admitted and takes as long as its reverse.
     fn is_symmetric(&self) -> bool {
         false
     }
 
     /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
-    /// dwelling at `to` are included. Cheap: the search asks once for every pair. A value that is
-    /// not finite says that nothing is known and is read as 0.
+    /// dwelling at `to` are included. Called once for every pair. A value that is not finite means
+    /// that no bound is known and is read as 0.
     fn pair_bound(&self, from: Place, to: Place) -> f64;
 
     /// Lower bound, s, of the time from the start to leaving the last target of a prefix, in any
-    /// tour that begins with it: the last target has its own conditions only. Expensive. The
-    /// prefix has at least two targets and lacks at least two: the pair bound of the first leg is
-    /// taken to be all that can be said of one target, and with one left the order is flown.
+    /// tour that begins with it: the last target has its own conditions only. Expensive. The prefix
+    /// has at least two targets and lacks at least two: for one target the pair bound is used, and
+    /// with one target left the whole order is evaluated.
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation;
 
     /// Lower bound, s, of the time from leaving the first place of a path to leaving its last, in
@@ -144,56 +148,56 @@ pub trait TourModel: Sync {
     /// start only comes first and a prescribed end only last.
     fn path_bound(&self, path: &[Place]) -> Evaluation;
 
-    /// Whether the slews before and after a target influence each other. Where they do not,
-    /// the bound of a path is the sum of those of its parts and is not asked for.
+    /// Whether the legs before and after a target couple. Where they do not, the bound of a path is
+    /// the sum of those of its parts and is not asked for.
     fn couples(&self, via: usize) -> bool;
 
-    /// Flies a whole order, to the end where there is one. Expensive.
+    /// Solves the tour of a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
 
-    /// Costates of the flight of a whole order at each of its targets with a leg after it: what the
-    /// state there saves the slews before it, at the margin, and costs those after it. `None` where
-    /// the order does not resolve or the model knows no states. In a symmetric model those backwards
-    /// are the same.
-    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
+    /// Costates of the tour of a whole order at each of its targets that a leg leaves: by how much
+    /// the state there shortens the legs before it, to first order, and lengthens those after it.
+    /// `None` where the order does not resolve or the model has no states. In a symmetric model the
+    /// reverse order has the same costates.
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         let _ = order;
         None
     }
 
-    /// Lower bound, s, of the time from leaving one place to leaving the other, plus what the state
-    /// in which it is reached costs by the second price, less what that in which the first is left
-    /// costs by the first; where there is no price, no more than the time. In any tour with this leg.
+    /// Lower bound, s, over all tours with this leg, of the time from leaving one place to leaving
+    /// the other, minus the first costate times the state in which the first place is left, plus
+    /// the second costate times the state in which the other is reached. A missing costate is zero.
     /// Expensive.
-    fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
-        let _ = prices;
+    fn lagrangian_leg(&self, leg: [Place; 2], costates: [Option<&[f64]>; 2]) -> Evaluation {
+        let _ = costates;
         Evaluation::Value(self.pair_bound(leg[0], leg[1]))
     }
 }
 
-/// Told how a search goes, between its rounds.
+/// Receives reports of a search between its rounds.
 pub trait SearchObserver: Sync {
-    /// How it stands.
+    /// The state of the search.
     fn progress(&self, progress: Progress);
 
-    /// A better order than all before has been flown, and the search goes on. Comes before the
-    /// progress that tells its duration, at most once in a round.
+    /// A better order than all before was found, and the search goes on. Called at most once in a
+    /// round, before the progress with its duration.
     fn improved(&self, incumbent: &Incumbent<'_>);
 }
 
-/// The best of a search that goes on.
+/// The best orders of a running search.
 #[derive(Debug, Clone, Copy)]
 pub struct Incumbent<'a> {
     /// The best order.
-    pub best: &'a FlownOrder,
+    pub best: &'a SolvedOrder,
     /// The next best orders.
-    pub alternatives: &'a [FlownOrder],
+    pub alternatives: &'a [SolvedOrder],
     /// No order lasts less, s, provided that the model's bounds are admissible.
     pub lower_bound_s: f64,
     /// The work so far.
     pub statistics: SearchStatistics,
 }
 
-/// What to search for, and how long.
+/// What to search for, and when to end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// How many orders to prove and list besides the best.
@@ -203,8 +207,8 @@ pub struct SearchSettings {
     pub relative_gap: f64,
     /// Nodes to explore at most; `None` is unlimited.
     pub node_limit: Option<u64>,
-    /// Memory for open nodes, bytes, roughly. Beyond it the nodes of the largest bounds are
-    /// dropped; their bounds stay in the result, which is then incomplete.
+    /// Approximate memory for open nodes, bytes. Beyond it the nodes with the largest bounds are
+    /// dropped; their bounds remain part of the result, which is then incomplete.
     pub frontier_bytes: usize,
 }
 
@@ -221,7 +225,7 @@ impl Default for SearchSettings {
 
 /// An order with its duration.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FlownOrder {
+pub struct SolvedOrder {
     /// Indices of the targets in visiting order.
     pub order: Vec<usize>,
     /// Duration of the tour, s.
@@ -239,10 +243,10 @@ pub enum SearchEnd {
     Stopped(StopReason),
 }
 
-/// How much work a search was, and where it was saved.
+/// Counts of the work of a search.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SearchStatistics {
-    /// Nodes explored: evaluated prefixes and flown leaves of the tree.
+    /// Nodes explored: evaluated prefixes and evaluated leaves of the tree.
     pub nodes_explored: u64,
     /// Prefixes evaluated.
     pub prefixes: u64,
@@ -258,10 +262,10 @@ pub struct SearchStatistics {
     pub pruned_by_prefix: u64,
     /// Open nodes pruned when a better order was found.
     pub pruned_by_incumbent: u64,
-    /// Nodes dropped for want of memory.
+    /// Nodes dropped because memory was full.
     pub dropped: u64,
-    /// Orders flown in less than a bound had allowed: the model's bounds are then not admissible,
-    /// for instance because a relaxed problem was solved to a local minimum only.
+    /// Orders whose duration is below one of their bounds: the model's bounds are then not
+    /// admissible, for instance because a relaxed problem was solved to a local minimum only.
     pub bounds_contradicted: u64,
 }
 
@@ -269,22 +273,22 @@ pub struct SearchStatistics {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchResult {
     /// The best order found.
-    pub best: Option<FlownOrder>,
+    pub best: Option<SolvedOrder>,
     /// The next best orders found, at most as many as asked for.
-    pub alternatives: Vec<FlownOrder>,
+    pub alternatives: Vec<SolvedOrder>,
     /// No order lasts less, s, provided that the model's bounds are admissible.
     pub lower_bound_s: f64,
-    /// Whether the tree was exhausted within the gap: best and alternatives are proven.
+    /// Whether the tree was exhausted within the gap, so that best and alternatives are proven.
     pub complete: bool,
     /// Why the search ended.
     pub end: SearchEnd,
-    /// How much work it was.
+    /// Counts of its work.
     pub statistics: SearchStatistics,
 }
 
 impl SearchResult {
-    /// Whether the best order is proven within a relative gap. This can hold while the
-    /// alternatives are still open, that is while the search is not complete.
+    /// Whether the best order is proven within a relative gap. This can hold while the alternatives
+    /// are not proven, that is while the search is not complete.
     #[must_use]
     pub fn best_is_proven(&self, relative_gap: f64) -> bool {
         self.best.as_ref().is_some_and(|best| {

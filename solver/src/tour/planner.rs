@@ -1,67 +1,68 @@
 //! From a scenario to a verified plan.
 
+mod additive_tours;
 mod assemble;
 mod canonical;
 mod certificate;
-mod certified;
-mod conclude;
-mod extent;
-mod first;
+mod first_tour;
 mod fixed_order;
 mod from_store;
+mod guesses;
+mod history;
 mod imported;
 mod lagrangian;
 mod legs;
 mod memory;
 mod places;
-mod segments;
-mod starts;
-mod summed;
+mod plan_builder;
+mod segment_key;
+mod solved_segments;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod torques;
+mod tour_bound;
 mod tours;
 mod verified;
-mod work;
 
 use crate::model::plan::Outcome;
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::Scenario;
-use crate::nlp::Interruption;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
-use crate::run::stop::{StopReason, StopSignal};
+use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
-use crate::tour::order::{FlownOrder, Place, SearchSettings, exhaustive, search};
+use crate::tour::order::{Place, SearchSettings, SolvedOrder, exhaustive, search};
 use crate::wheels::envelope::{OutsideEnvelope, momentum_problems, outside_envelope};
-use certified::tour_bound;
-use conclude::PlanBuilder;
-use first::{first_order, first_tour};
+use first_tour::{first_order, first_tour};
 use legs::LegSolver;
 use places::Places;
+use plan_builder::PlanBuilder;
 use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
+use tour_bound::tour_bound;
 use tours::Tours;
 
 pub use certificate::{
-    CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict, certify_plan,
+    CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict,
+    verify_certificate,
 };
-pub use fixed_order::{BoundFrom, OrderError, fly_order};
-pub use imported::{ImportedLeg, LegCheck};
+pub use fixed_order::{BoundFrom, OrderError, solve_order};
+pub use imported::LegCheck;
 pub use memory::memory_estimate;
 
 /// What a solve needs from its surroundings.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
-    /// Where the work is done.
+    /// Threads that do the work.
     pub pool: &'a SolverPool,
-    /// Polled for reasons to stop.
+    /// Polled while solving; ends the work when it is set.
     pub stop: &'a StopSignal,
-    /// Told about progress.
+    /// Receives progress, incumbents and contradictions.
     pub observer: &'a dyn Observer,
-    /// Asked for legs before they are solved, and told about solved ones.
+    /// Consulted before a leg is solved; receives solved legs.
     pub legs: &'a dyn LegStore,
-    /// Asked for segments of this scenario's tours before they are solved, and told about solved
-    /// ones.
+    /// Consulted before a segment of this scenario's tours is solved; receives solved segments.
     pub segments: &'a dyn SegmentStore,
 }
 
@@ -76,11 +77,12 @@ pub struct LegRow {
     pub kind: LegKind,
     /// Minimum time, s, when solved; never of [`LegKind::Certified`].
     pub duration_s: Option<f64>,
-    /// No slew under the conditions takes less, s, proved; `None` where nothing is.
+    /// Certified lower bound on the duration of any slew under these conditions, s; `None` where no
+    /// bound is proved.
     pub certified_lower_bound_s: Option<f64>,
     /// Wall-clock time of the solve with all starts, refinement and verification, s.
     pub solve_time_s: f64,
-    /// How the solve ended (`converged`, ...); of [`LegKind::Certified`] whether there is a bound
+    /// How the solve ended (`converged`, ...); for [`LegKind::Certified`] whether there is a bound
     /// (`proved`, `none`).
     pub status: String,
 }
@@ -94,10 +96,11 @@ pub struct Shard {
     pub of: usize,
 }
 
-/// Up to so many targets the certified bounds of all legs take less time than a first tour.
-const FEW: usize = 40;
+/// Number of targets up to which the certified bounds of all legs are computed before the first
+/// tour; with more targets they take longer than the first tour and come after it.
+const MAX_TARGETS_BOUNDED_FIRST: usize = 40;
 
-/// Solves a scenario: order, torques, bound, verification.
+/// Solves a scenario: order, torques, lower bound and verification.
 #[must_use]
 pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let begin = Instant::now();
@@ -110,51 +113,45 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let pairs = tour_pairs(&places);
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
-    let mut conclusions = PlanBuilder::new(&tours, run, begin);
-    solver.tell_begin();
-    let prove = || {
+    let mut builder = PlanBuilder::new(&tours, run, begin);
+    solver.report_begin();
+    let certify = || {
         let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
         let certified = tour_bound(&places, &bounds, run.pool, &stop);
-        tours.prove(bounds);
+        tours.set_certified_bounds(bounds);
         certified
     };
     let order = first_order(&tours, &stop);
     if let Some(order) = order.clone()
         && places.dynamics.has_momentum()
     {
-        // With momentum a first tour may take its time, or find no end.
-        conclusions.construct(order);
+        // With momentum the program of a first tour may take long or fail.
+        builder.construct(order);
     }
-    // Whichever is sooner done.
-    let few = scenario.targets().len() <= FEW;
-    if few {
-        conclusions.prove(prove());
+    let bounds_first = scenario.targets().len() <= MAX_TARGETS_BOUNDED_FIRST;
+    if bounds_first {
+        builder.set_certified_bound(certify());
     }
     let first = order.and_then(|order| first_tour(&tours, order));
     if let Some(first) = &first {
-        conclusions.announce(first);
-        solver.tell(Some(first.duration_s), conclusions.proved());
+        builder.announce(first);
+        solver.report_bounds(Some(first.duration_s), builder.certified_bound());
     }
-    if !few {
-        conclusions.prove(prove());
+    if !bounds_first {
+        builder.set_certified_bound(certify());
     }
-    solver.tell(None, conclusions.proved());
-    tours.know(solver.table(LegKind::LowerBound, &pairs));
-    let settings = SearchSettings {
-        alternatives: scenario.options().alternatives,
-        relative_gap: scenario.options().relative_gap,
-        node_limit: scenario.options().node_limit,
-        ..SearchSettings::default()
-    };
+    solver.report_bounds(None, builder.certified_bound());
+    tours.set_free_legs(solver.table(LegKind::LowerBound, &pairs));
     let known: Vec<_> = first.into_iter().collect();
-    let found = search(&tours, &known, &settings, run.pool, &stop, &conclusions);
+    let settings = search_settings(scenario);
+    let found = search(&tours, &known, &settings, run.pool, &stop, &builder);
     match &found.best {
         Some(best) => {
-            conclusions.compare_with_rest(best);
-            conclusions.outcome(best, &found)
+            builder.compare_with_rest(best);
+            builder.outcome(best, &found)
         }
-        None => conclusions
-            .constructed(found.statistics)
+        None => builder
+            .constructed_outcome(found.statistics)
             .unwrap_or_else(|| {
                 if stop.is_set() {
                     Outcome::StoppedEmpty
@@ -165,25 +162,35 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
 }
 
-/// Flies every order of the targets and lists them, best first: the answer that the search of
-/// [`solve`] must find with less work.
+/// What the options of a scenario ask of the search.
+fn search_settings(scenario: &Scenario) -> SearchSettings {
+    SearchSettings {
+        alternatives: scenario.options().alternatives,
+        relative_gap: scenario.options().relative_gap,
+        node_limit: scenario.options().node_limit,
+        ..SearchSettings::default()
+    }
+}
+
+/// Solves the tour of every order of the targets and lists the orders, shortest tour first: the
+/// reference for the search of [`solve`].
 ///
-/// For a handful of targets only. Orders that do not converge, or are not reached before the stop
-/// signal, are left out.
+/// For a handful of targets only. Orders whose tour does not converge, or that are not reached
+/// before the stop signal, are left out.
 #[must_use]
-pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<FlownOrder> {
+pub fn every_order(scenario: &Scenario, run: Run<'_>) -> Vec<SolvedOrder> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
-    // As many alternatives as there are orders; of more than twenty targets nobody sees the last.
+    // As many alternatives as there are orders; the factorial saturates beyond twenty targets.
     let orders = (1..=scenario.targets().len()).fold(1, usize::saturating_mul);
     exhaustive(&tours, orders, run.pool)
 }
 
-/// Solves all legs between start, targets and end, both directions listed.
+/// Solves all legs between start, targets and end; both directions of a pair are listed.
 ///
-/// When stopped early the table holds what was finished and the flag is false.
+/// The flag says whether the table is complete: a stopped solve returns the legs finished so far.
 #[must_use]
 pub fn leg_table(
     scenario: &Scenario,
@@ -211,10 +218,10 @@ pub fn leg_table(
                 from: places.name(*from),
                 to: places.name(*to),
                 kind,
-                duration_s: leg.flown.duration(),
+                duration_s: leg.solution.duration(),
                 certified_lower_bound_s: leg.certified,
                 solve_time_s: leg.solve_time,
-                status: leg.flown.status.as_str().into(),
+                status: leg.solution.status.into_str().into(),
             })
         };
         pairs.iter().filter_map(row).collect()
@@ -223,8 +230,8 @@ pub fn leg_table(
     (rows, complete)
 }
 
-/// What is proved of the legs between pairs of places at full rest, without solving any; `None` for
-/// those that the stop signal prevents.
+/// Certified bounds on the legs between pairs of places at full rest; no leg is solved. `None` for
+/// pairs that were not reached before the stop signal.
 ///
 /// The places must be those of the scenario.
 #[must_use]
@@ -238,7 +245,7 @@ pub fn certified_legs(
     certified_rows(&LegSolver::new(&places, run, &stop), pairs)
 }
 
-/// The rows of a table without any program.
+/// The rows of a table of certified bounds.
 fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Option<LegRow>> {
     let kind = LegKind::Certified;
     let legs = solver.certified_legs(kind, pairs);
@@ -256,14 +263,14 @@ fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Optio
     legs.map(|(pair, leg)| Some(row((pair, leg?)))).collect()
 }
 
-/// What can be said against a valid scenario before it is solved: rests that the wheels cannot
-/// hold, for example.
+/// Problems of a valid scenario that are found without solving it: for example a required rest
+/// whose momentum the wheels cannot hold.
 #[must_use]
 pub fn feasibility_problems(scenario: &Scenario) -> Vec<Problem> {
     momentum_problems(scenario)
 }
 
-/// The stop signal with the scenario's own time limit.
+/// The stop signal with the scenario's own time limit added.
 fn limited(scenario: &Scenario, stop: &StopSignal) -> StopSignal {
     match scenario.options().time_limit_s {
         Some(limit) => stop.with_time_limit(Duration::from_secs_f64(limit)),
@@ -271,16 +278,7 @@ fn limited(scenario: &Scenario, stop: &StopSignal) -> StopSignal {
     }
 }
 
-/// What a stop signal means to a solve under way: whoever wants the best answer so far no longer
-/// wants this one.
-fn interruption(stop: &StopSignal) -> Option<Interruption> {
-    stop.reason().map(|reason| match reason {
-        StopReason::TimeLimit => Interruption::TimeLimit,
-        StopReason::Requested | StopReason::Cancelled => Interruption::Cancelled,
-    })
-}
-
-/// All ordered pairs of places, in the order of a table.
+/// All ordered pairs of different places, in the order of a table's rows.
 fn all_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
     let all = places.all();
     all.iter()
@@ -289,7 +287,7 @@ fn all_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
         .collect()
 }
 
-/// The ordered pairs that a tour may fly.
+/// The ordered pairs of places that can be a leg of a tour.
 fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
     let all = places.all();
     let alone = places.scenario.targets().is_empty();
@@ -300,24 +298,24 @@ fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
         .collect()
 }
 
-/// Why no order could be flown: the legs that found no solution.
+/// Problems for a scenario no order of which has a solution: the legs that were not solved.
 fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
     let all = tours.places.all();
     let mut problems: Vec<_> = all
         .iter()
         .flat_map(|from| all.iter().map(move |to| (*from, *to)))
         .filter_map(|(from, to)| {
-            let leg = &tours.free()?.get(from, to)?.leg;
-            leg.flown.duration().is_none().then(|| {
-                let reason = outside(tours, from, to).map(|outside| format!("; {outside}"));
+            let leg = &tours.free_legs()?.get(from, to)?.leg;
+            leg.solution.duration().is_none().then(|| {
+                let reason = outside_on_turn(tours, from, to).map(|place| format!("; {place}"));
                 let message = format!(
                     "the slew from {} to {} ended with status {} after {} iterations, its \
                      conditions violated by {:.1e} (scaled){}",
                     tours.places.name(from),
                     tours.places.name(to),
-                    leg.flown.status,
-                    leg.flown.iterations,
-                    leg.flown.infeasibility,
+                    leg.solution.status,
+                    leg.solution.iterations,
+                    leg.solution.infeasibility,
                     reason.unwrap_or_default(),
                 );
                 Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)
@@ -336,8 +334,9 @@ fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
     problems
 }
 
-/// Where on the turn between two places the momentum lies outside the envelope of the wheels.
-fn outside(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
+/// The point of the eigenaxis turn between two places at which the momentum lies outside the
+/// envelope of the wheels, if there is one.
+fn outside_on_turn(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
     let places = &tours.places;
     let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);
     let turn = from.signed_turn_to(&places.arrival.signed(&to, &from));

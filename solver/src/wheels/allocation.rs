@@ -1,13 +1,13 @@
-//! Sharing out a torque or a momentum of the body among the wheels.
+//! Allocation of a torque or a momentum to the wheels.
 //!
 //! With more than three wheels `A x = y` has many solutions (see [`crate::wheels::array`]). Three are
 //! common:
 //!
 //! * the pseudo-inverse `x = A^+ y`, of the least sum of squares (RW/CMG thesis, equation 87);
 //! * the same in proportion, when a wheel would exceed its limit: all amounts are divided by the
-//!   largest load, so that the direction is kept (equation 93);
-//! * the least load: the wheel nearest to its limit is as far from it as can be, by a linear program.
-//!   It reaches everything in the full envelope, the pseudo-inverse does not.
+//!   largest load, which keeps the direction (equation 93);
+//! * the least load: a linear program minimises the largest share of a limit. It reaches the whole
+//!   full envelope, the pseudo-inverse does not.
 //!
 //! In the thesis's example (equations 90 to 94) the pyramid's wheels could give `(1, 1, -1, 1)`, and
 //! the pseudo-inverse in proportion gives two thirds of that.
@@ -16,16 +16,16 @@ use crate::math::convex::{ConvexProgram, Ending};
 use crate::wheels::array::WheelArray;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// What each wheel does of a demand.
+/// The amounts of a demand that each wheel takes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Allocation {
+pub struct DemandAllocation {
     /// One amount per wheel of the spacecraft, in the unit of the demand; zero for locked wheels.
     pub wheels: Vec<f64>,
-    /// The largest share of its limit that a wheel needs; the wheels cannot do it beyond 1.
+    /// The largest share of a wheel's limit; above 1 the demand is outside of the limits.
     pub load: f64,
 }
 
-impl Allocation {
+impl DemandAllocation {
     fn of(array: &WheelArray, amounts: &DVector<f64>) -> Self {
         Self {
             wheels: array.spread(amounts),
@@ -33,7 +33,7 @@ impl Allocation {
         }
     }
 
-    /// The allocation within the limits: as it is, or all of it less in proportion.
+    /// The allocation within the limits: unchanged, or with all amounts reduced in proportion.
     #[must_use]
     pub fn in_proportion(&self) -> Self {
         let excess = self.load.max(1.0);
@@ -48,17 +48,17 @@ impl Allocation {
 ///
 /// `demand` is `y`, body axes, in the unit of the array's limits.
 #[must_use]
-pub fn pseudo_inverse(array: &WheelArray, demand: &Vector3<f64>) -> Allocation {
+pub fn pseudo_inverse(array: &WheelArray, demand: &Vector3<f64>) -> DemandAllocation {
     let demand = DVector::from_column_slice(demand.as_slice());
-    Allocation::of(array, &(array.pseudo_inverse() * demand))
+    DemandAllocation::of(array, &(array.pseudo_inverse() * demand))
 }
 
 /// The allocation of the least load.
 ///
 /// `demand` is `y`, body axes, in the unit of the array's limits. `None` when the linear program
-/// could not be solved, which says nothing about the wheels.
+/// could not be solved for numerical reasons.
 #[must_use]
-pub fn least_load(array: &WheelArray, demand: &Vector3<f64>) -> Option<Allocation> {
+pub fn least_load(array: &WheelArray, demand: &Vector3<f64>) -> Option<DemandAllocation> {
     let scale = demand.amax();
     if scale == 0.0 {
         return Some(pseudo_inverse(array, demand));
@@ -72,7 +72,7 @@ pub fn least_load(array: &WheelArray, demand: &Vector3<f64>) -> Option<Allocatio
         .map(|range| [weakest / range.most, -weakest / range.least])
         .collect();
     let shares = least_loaded(&array.axes(), &weights, *demand / scale)?;
-    Some(Allocation::of(array, &(shares * scale)))
+    Some(DemandAllocation::of(array, &(shares * scale)))
 }
 
 /// Amounts along axes (columns, 3 x K) that sum to a demand with the least largest weighted size;
@@ -106,7 +106,7 @@ pub(crate) fn least_loaded(
     match program.minimise() {
         Ending::Solved(minimum) => {
             let amounts = minimum.unknowns.rows(0, count).into_owned();
-            // The equations hold to solver accuracy only; the least correction makes them exact.
+            // The equations hold to solver accuracy only; the correction of least norm makes them exact.
             let residual = &program.equal_to - axes * &amounts;
             let correction = axes.clone().svd(true, true).solve(&residual, f64::EPSILON);
             Some(amounts + correction.ok()?)
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn the_loads_are_the_shares_of_the_envelopes() {
+    fn loads_of_both_allocations_are_the_shares_of_their_envelopes() {
         let (s, c) = (0.6, 0.8);
         let axes = [
             [s, 0.0, c],
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_shared_out_as_nothing() {
+    fn a_demand_of_zero_is_allocated_as_zeros() {
         let best = least_load(&pyramid(), &Vector3::zeros()).unwrap();
         assert_eq!(best.wheels, [0.0; 4]);
         assert!(best.load.total_cmp(&0.0).is_eq());

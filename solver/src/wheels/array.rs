@@ -1,29 +1,31 @@
-//! Arrays of wheels, and the envelopes of what they can do together.
+//! Arrays of wheels, and their envelopes of torque and momentum.
 //!
-//! Every wheel `i` gives any amount between two limits along its axis, torque in N m or momentum in
-//! N m s, and the array gives the sum (RW/CMG thesis, equation 86):
+//! Every wheel `i` can take any amount between two limits along its axis, torque in N m or momentum in
+//! N m s, and the array takes the sum (RW/CMG thesis, equation 86):
 //!
 //! ```text
 //!   y = A x,      least_i <= x_i <= most_i,      A: axes as columns, 3 x K
 //! ```
 //!
-//! The set of all `y`, in body axes, is a zonotope: the *full* envelope. Shared out by the
-//! pseudo-inverse, `x = A^+ y` (equation 87), the limits leave the smaller set
-//! `{y : least <= A^+ y <= most}`: the *pseudo-inverse-limited* envelope. Both are computed exactly,
-//! facet by facet ([`Polytope`]); nothing is sampled.
+//! The set of all `y`, in body axes, is a zonotope: the *full* envelope. Allocated by the
+//! pseudo-inverse, `x = A^+ y` (equation 87), only the smaller set `{y : least <= A^+ y <= most}` is
+//! within the limits: the *pseudo-inverse-limited* envelope. Both are computed exactly, facet by facet
+//! ([`Polytope`]), without sampling.
 //!
-//! Amounts are what the wheels take up; the body gets the opposite. With equal limits to both sides
-//! that is the same set. Locked wheels have no part in it.
+//! Amounts are those of the wheels; the body gets the opposite, which for limits of equal size in both
+//! directions is the same set. Locked wheels do not contribute.
 
 mod half_spaces;
 mod mean_radius;
 mod of_spacecraft;
 mod polytope;
+mod size;
 mod zonotope;
 
 pub use of_spacecraft::authority_problems;
 pub use of_spacecraft::{EnvelopedArray, SpacecraftEnvelopes};
-pub use polytope::{Facet, Figures, Polytope};
+pub use polytope::{Facet, Polytope};
+pub use size::PolytopeSize;
 
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
@@ -31,7 +33,7 @@ use crate::model::spacecraft::{Spacecraft, Wheel};
 use crate::model::wheel_axes;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// What one wheel can give.
+/// Axis and limits of one wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WheelRange {
     /// `a_i`: axis in body axes, of unit length or any other of the same order.
@@ -43,7 +45,7 @@ pub struct WheelRange {
 }
 
 impl WheelRange {
-    /// A range that reaches equally far to both sides.
+    /// A range with limits of equal size in both directions.
     #[must_use]
     pub fn symmetric(axis: Vector3<f64>, most: f64) -> Self {
         Self {
@@ -54,7 +56,7 @@ impl WheelRange {
     }
 }
 
-/// The wheels of an array with what each can give, valid by construction.
+/// The wheels of an array with their limits, valid by construction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WheelArray {
     ranges: Vec<WheelRange>,
@@ -69,9 +71,9 @@ pub struct WheelArray {
 /// The two envelopes of an array.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Envelopes {
-    /// What the wheels can give.
+    /// The full envelope.
     pub full: Polytope,
-    /// What they give when the pseudo-inverse shares it out.
+    /// The pseudo-inverse-limited envelope.
     pub pseudo_inverse: Polytope,
 }
 
@@ -84,7 +86,7 @@ impl WheelArray {
     /// that do not span space.
     pub fn try_new(ranges: &[WheelRange], pointer: &str) -> Result<Self, Vec<Problem>> {
         let mut findings = Findings::default();
-        // One by one first, so that no fault hides another.
+        // All ranges are checked before any result is used, so that every problem is found.
         let valid: Vec<bool> = ranges
             .iter()
             .enumerate()
@@ -130,8 +132,8 @@ impl WheelArray {
     ///
     /// # Errors
     ///
-    /// An authority that is not in (0, 1], or every enabled wheel without a speed limit: the envelope
-    /// would have no end. Pointers are those of a scenario.
+    /// An authority that is not in (0, 1], or one problem per enabled wheel without a speed limit: the
+    /// envelope would be unbounded. Pointers are those of a scenario.
     pub fn momentum(spacecraft: &Spacecraft, authority: f64) -> Result<Self, Vec<Problem>> {
         check_authority("/options/momentum_authority", authority)?;
         let unlimited: Vec<_> = spacecraft
@@ -167,7 +169,7 @@ impl WheelArray {
         }
     }
 
-    /// What each wheel of the array can give.
+    /// Axis and limits of each wheel of the array.
     #[must_use]
     pub fn ranges(&self) -> &[WheelRange] {
         &self.ranges
@@ -210,7 +212,7 @@ impl WheelArray {
         all
     }
 
-    /// Greatest share of its limit that any wheel of the array has; at most one within the limits.
+    /// Greatest amount of a wheel as a share of its limit; at most one within the limits.
     pub(crate) fn load(&self, amounts: &DVector<f64>) -> f64 {
         let limits = self.ranges.iter();
         wheel_axes::greatest_share(limits.map(|range| (range.least, range.most)), amounts)

@@ -1,8 +1,8 @@
-//! Whether the wheels can hold the stored angular momentum where the body must have a given rate.
+//! Whether the wheels can hold the stored angular momentum where the body has a prescribed rate.
 //!
 //! At an attitude with body rate `w` the enabled wheels have to carry
-//! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels share this in many
-//! ways; the best is the one whose most loaded wheel is loaded least, which a linear program finds.
+//! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels can do so in many ways; a
+//! linear program finds the one with the least load of the most loaded wheel.
 
 mod turn;
 
@@ -14,22 +14,23 @@ use crate::model::spacecraft::{Spacecraft, Wheel};
 use crate::wheels::allocation;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Excess over the usable speed that the accuracy of the linear program explains, relative.
+/// Relative excess over the usable speed within the accuracy of the linear program.
 const LOAD_TOLERANCE: f64 = 1e-6;
-/// Weight of a wheel without a speed limit beside limited ones: it takes what it can.
+/// Weight of a wheel without a speed limit beside limited ones: so small that it takes most of the
+/// demand.
 const UNLIMITED_WEIGHT: f64 = 1e-6;
 
 /// Wheel speeds that carry a momentum.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hold {
+pub struct MomentumHold {
     /// Speeds relative to the body, rad/s, one per wheel; locked wheels keep theirs.
     pub wheel_speed: Vec<f64>,
-    /// Largest speed of an enabled wheel relative to its usable limit; beyond 1 the wheels cannot
-    /// hold the momentum.
+    /// Largest speed of an enabled wheel relative to its usable limit; above 1 the wheels cannot hold
+    /// the momentum.
     pub load: f64,
 }
 
-impl Hold {
+impl MomentumHold {
     /// Whether every wheel stays within its usable speed.
     #[must_use]
     pub fn fits(&self) -> bool {
@@ -42,7 +43,7 @@ impl Hold {
 /// `momentum` is what all wheels together must carry in body axes, N m s: at rest, the total
 /// angular momentum. `authority` is the usable share of every speed limit, `locked_speed` holds the
 /// speeds of disabled wheels, rad/s, one entry per wheel (those of enabled wheels are not read).
-/// `None` when the linear program could not be solved, which says nothing about the wheels.
+/// `None` when the linear program could not be solved for numerical reasons.
 ///
 /// # Panics
 ///
@@ -53,7 +54,7 @@ pub fn hold_momentum(
     authority: f64,
     locked_speed: &[f64],
     momentum: Vector3<f64>,
-) -> Option<Hold> {
+) -> Option<MomentumHold> {
     let mut wheel_speed = vec![0.0; spacecraft.wheels().len()];
     let mut demand = momentum;
     for (i, wheel) in spacecraft
@@ -67,7 +68,7 @@ pub fn hold_momentum(
     }
     let scale = demand.amax();
     if scale == 0.0 {
-        return Some(Hold {
+        return Some(MomentumHold {
             wheel_speed,
             load: 0.0,
         });
@@ -79,18 +80,18 @@ pub fn hold_momentum(
         wheel_speed[i] = share * scale / wheel.inertia;
         load = load.max(wheel_speed[i].abs() / (wheel.max_speed * authority));
     }
-    Some(Hold { wheel_speed, load })
+    Some(MomentumHold { wheel_speed, load })
 }
 
 /// Momenta of the wheels about their axes that sum to `demand` with the least largest load.
 fn least_loaded(wheels: &[(usize, &Wheel)], demand: Vector3<f64>) -> Option<DVector<f64>> {
     let axes = DMatrix::from_fn(3, wheels.len(), |row, column| wheels[column].1.axis[row]);
-    // Speeds are limited alike to both sides.
+    // Speed limits are the same in both directions.
     let weights: Vec<_> = weights(wheels).into_iter().map(|w| [w, w]).collect();
     allocation::least_loaded(&axes, &weights, demand)
 }
 
-/// Inverse capacity of each wheel, the largest being 1; the authority shares out equally.
+/// Inverse capacity of each wheel, the largest being 1; the authority scales all alike.
 fn weights(wheels: &[(usize, &Wheel)]) -> Vec<f64> {
     let capacity = |wheel: &Wheel| wheel.inertia * wheel.max_speed;
     let least = wheels
@@ -107,9 +108,10 @@ fn weights(wheels: &[(usize, &Wheel)]) -> Vec<f64> {
         .collect()
 }
 
-/// Targets, and the end, at which the wheels cannot hold the conserved momentum.
+/// Problems of targets, and of the end, at which the wheels cannot hold the conserved momentum.
 ///
-/// Only places with a fully prescribed rate are judged: a free rate component can carry momentum.
+/// Only those with a fully prescribed rate are tested: with a free rate component the body can carry
+/// momentum.
 #[must_use]
 pub fn momentum_problems(scenario: &Scenario) -> Vec<Problem> {
     let targets = scenario
@@ -121,7 +123,7 @@ pub fn momentum_problems(scenario: &Scenario) -> Vec<Problem> {
             let total = target.attitude.to_body(scenario.momentum());
             problem(scenario, total, rate, &format!("/targets/{i}"))
         });
-    // Wheel speeds given at the end have been checked when the scenario was made.
+    // Wheel speeds given at the end are validated with the scenario.
     let end = scenario
         .end()
         .filter(|end| end.wheel_speed.is_none())

@@ -1,8 +1,7 @@
-//! How much of the wheels a plan should leave to feedback.
+//! What share of the wheels a plan should leave to feedback.
 //!
-//! The more of torque and speed a plan uses, the faster it is, and the less is left to make up for
-//! what is not as believed. The study plans a scenario anew for each pair of shares and flies every
-//! plan with the same errors: the table from which a planner chooses.
+//! The more torque and speed a plan uses, the shorter it is, and the less is left to compensate errors.
+//! The study solves a scenario for each pair of shares and simulates every plan with the same errors.
 
 use slewplan_solver::model::findings::Findings;
 use slewplan_solver::model::input::{UpTo, input_object, or, required, required_or};
@@ -10,10 +9,10 @@ use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::simulation::{Simulation, SimulationSpec, Spread};
+use slewplan_solver::simulation::{self, Simulation, SimulationSpec, Spread};
 use slewplan_solver::tour::planner::{Run, solve};
 
-/// Most pairs of shares of one study: each is a plan and as many flights as asked for.
+/// Greatest number of pairs of shares of one study: each takes a plan and a Monte-Carlo run.
 pub const MAX_AUTHORITIES: usize = 200;
 
 input_object! {
@@ -33,7 +32,7 @@ input_object! {
     pub struct AuthorityStudySpec as "AuthorityStudy" {
         /// What is planned; the shares in its options do not matter.
         pub scenario: ScenarioSpec = required_or(ScenarioSpec::default()),
-        /// How every plan is flown.
+        /// How every plan is simulated.
         pub simulation: SimulationSpec = or(SimulationSpec::default()),
         /// The pairs of shares to compare.
         pub authorities: Vec<Authorities> as UpTo<MAX_AUTHORITIES, Authorities>
@@ -46,31 +45,31 @@ input_object! {
 pub struct AuthorityRow {
     /// The shares.
     pub authorities: Authorities,
-    /// What they lead to.
+    /// The result with these shares.
     pub outcome: RowOutcome,
 }
 
-/// What a pair of shares leads to.
+/// The result with a pair of shares.
 #[derive(Debug, Clone)]
 pub enum RowOutcome {
-    /// A plan, flown.
-    Flown {
+    /// A plan and its simulated flights.
+    Simulated {
         /// Duration of the plan, s.
         total_time_s: f64,
         /// What is known about its optimality.
         optimality: Optimality,
         /// The visited targets in order.
         sequence: Vec<String>,
-        /// What its flights have in common.
+        /// Statistics over its simulated flights.
         spread: Box<Spread>,
     },
-    /// No plan, for these reasons: the scenario is not valid with these shares, or has no plan.
+    /// The scenario is not valid with these shares, or has no plan, for these reasons.
     NoPlan(Vec<Problem>),
     /// Stopped before a first plan was found.
     Stopped,
 }
 
-/// Plans a scenario for each pair of shares and flies the plans.
+/// Solves a scenario for each pair of shares and simulates the plans.
 ///
 /// # Errors
 ///
@@ -88,11 +87,11 @@ pub fn study(
     let at = format!("{pointer}/simulation");
     let problems = given
         .as_ref()
-        .map(|given| spec.simulation.problems(given.scenario.spacecraft(), &at));
-    let is_flyable = problems.as_ref().is_some_and(Vec::is_empty);
+        .map(|given| simulation::check(&spec.simulation, given.scenario.spacecraft(), &at));
+    let is_valid = problems.as_ref().is_some_and(Vec::is_empty);
     findings.include(problems.unwrap_or_default());
     let rows = check_shares(&spec.authorities, pointer, &mut findings);
-    findings.conclude((rows && is_flyable).then_some(()))?;
+    findings.conclude((rows && is_valid).then_some(()))?;
     let rows = spec.authorities.iter().map(|&authorities| AuthorityRow {
         authorities,
         outcome: row(spec, authorities, &at, run),
@@ -150,13 +149,13 @@ fn row(
         Err(problems) => return RowOutcome::NoPlan(problems),
     };
     match solve(&scenario, run) {
-        Outcome::Planned(plan) => fly(&scenario, *plan, &study.simulation, pointer, run),
+        Outcome::Planned(plan) => simulate(&scenario, *plan, &study.simulation, pointer, run),
         Outcome::Infeasible(problems) | Outcome::Failed(problems) => RowOutcome::NoPlan(problems),
         Outcome::StoppedEmpty => RowOutcome::Stopped,
     }
 }
 
-fn fly(
+fn simulate(
     scenario: &Scenario,
     plan: Plan,
     simulation: &SimulationSpec,
@@ -164,7 +163,7 @@ fn fly(
     run: Run<'_>,
 ) -> RowOutcome {
     match Simulation::try_new(scenario, &plan.flight, simulation, pointer) {
-        Ok(simulation) => RowOutcome::Flown {
+        Ok(simulation) => RowOutcome::Simulated {
             total_time_s: plan.total_time_s,
             optimality: plan.optimality,
             spread: Box::new(simulation.monte_carlo(run.pool, run.stop)),
@@ -215,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_study_lists_all_that_is_wrong_with_it() {
+    fn all_problems_of_a_study_are_found() {
         let mut scenario = spec();
         scenario.targets[0].id = String::new();
         let shares = |torque_authority, momentum_authority| Authorities {

@@ -1,14 +1,13 @@
-//! Reaction wheels and control moment gyroscopes on the market, and the laws fitted to them.
+//! Catalogue of reaction wheels and control moment gyroscopes, and power laws fitted to it.
 //!
-//! The tables are those of the RW/CMG thesis (appendix B, tables 7 to 9), which took them from
-//! manufacturers' data sheets and papers. In its text every column has as many entries as there are
-//! models, so all 61 wheels and 16 gyroscopes could be read: none is left out ([`LEFT_OUT`]). Devices
-//! that the thesis lists twice stand here twice, as they do in its fit.
+//! The tables are those of the RW/CMG thesis (appendix B, tables 7 to 9), from manufacturers' data
+//! sheets and papers. All 61 wheels and 16 gyroscopes are here ([`LEFT_OUT`] is zero). Devices that the
+//! thesis lists twice are listed twice here too, as they count in its fit.
 //!
-//! A law `y = a x^b` is the straight line of least squares in logarithms. For wheels that gives the
-//! published law of torque (equation 269) in all its digits. For gyroscopes the table gives
-//! `0.995 h^1.019` where the thesis prints `1.0967 h^1.0019` (equation 268): its figure 77 also has
-//! points of another publication that are not in the table.
+//! A law `y = a x^b` is the least-squares line in logarithms. For wheels this gives the published law of
+//! torque (equation 269) in all printed digits. For gyroscopes the table gives `0.995 h^1.019`, the
+//! thesis prints `1.0967 h^1.0019` (equation 268): its figure 77 also has points of another publication
+//! that are not in the table.
 
 mod table;
 
@@ -16,15 +15,15 @@ pub use table::{GYROSCOPES, WHEELS};
 
 use slewplan_solver::model::input::{input_object, required};
 
-/// Rows of the published tables that could not be read.
+/// Number of rows of the published tables that are missing here.
 pub const LEFT_OUT: usize = 0;
 
 /// A device of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Device {
-    /// Who makes it.
+    /// Manufacturer.
     pub manufacturer: &'static str,
-    /// Its model.
+    /// Model.
     pub model: &'static str,
     /// Mass, kg.
     pub mass_kg: f64,
@@ -97,7 +96,7 @@ impl PowerLaw {
         self.factor * x.powf(self.exponent)
     }
 
-    /// This law of what another law gives.
+    /// The composition of this law with an inner one: `y = self(inner(x))`.
     #[must_use]
     pub fn of(&self, inner: &Self) -> Self {
         Self {
@@ -115,7 +114,7 @@ impl PowerLaw {
         }
     }
 
-    /// Where this law and another give the same; `None` for equal exponents.
+    /// The `x` at which this law and another have the same value; `None` for equal exponents.
     #[must_use]
     pub fn crossing(&self, other: &Self) -> Option<f64> {
         let power = other.exponent - self.exponent;
@@ -128,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_law_is_found_again_in_its_points() {
+    fn a_fit_to_points_of_a_law_gives_that_law() {
         let law = PowerLaw {
             factor: 0.3,
             exponent: -1.7,

@@ -1,21 +1,22 @@
 //! Clusters of single-gimbal control moment gyroscopes: momentum map and singular states.
 //!
-//! Rotor `i` has a momentum of one unit across its gimbal axis `g_i`, turned by the gimbal angle
-//! `d_i` from a direction `s_i` towards `t_i = g_i x s_i`:
+//! Rotor `i` has a momentum of one unit perpendicular to its gimbal axis `g_i`, turned by the gimbal
+//! angle `d_i` from a direction `s_i` towards `t_i = g_i x s_i`:
 //!
 //! ```text
 //!   h(d) = sum cos d_i s_i + sin d_i t_i,        dh / dd_i = g_i x h_i
 //! ```
 //!
-//! A state is singular when all `dh / dd_i` are across one direction `u`: no torque along `u` can be
-//! made. Then every `h_i` lies in the plane of `g_i` and `u` (RW/CMG thesis, equations 256 to 260):
+//! A state is singular when all `dh / dd_i` are perpendicular to one direction `u`: no torque along `u`
+//! is possible. Then every `h_i` lies in the plane of `g_i` and `u` (RW/CMG thesis, equations 256 to
+//! 260):
 //!
 //! ```text
 //!   h_i = e_i (g_i x u) x g_i / |g_i x u|,       e_i = +-1
 //! ```
 //!
-//! so the singular momenta are surfaces over the sphere of directions, one per pattern of signs; the
-//! opposite pattern is the same surface. With equal signs it is the outer one, where the momentum
+//! so that the singular momenta are surfaces over the sphere of directions, one per pattern of signs;
+//! the opposite pattern gives the same surface. Equal signs give the outer surface, where the momentum
 //! along `u` is largest. The others are internal.
 //!
 //! # Which internal states can be passed
@@ -23,16 +24,16 @@
 //! Null motion, `sum dh/dd_i dd_i = 0`, changes the momentum along `u` in second order by
 //! `-1/2 sum e_i |g_i x u| dd_i^2`. If this form is definite on the null space, no null motion leaves
 //! the singular state: it is *elliptic* and impassable. If it is indefinite, null motion can: the
-//! state is *hyperbolic*. The eigenvalues of the form decide here ([`SingularState::passability`]).
+//! state is *hyperbolic*. Here the eigenvalues of the form decide ([`SingularState::passability`]).
 //!
-//! # What the thesis says, and what is found here, for its pyramid
+//! # Differences from the thesis, for its pyramid
 //!
-//! The thesis takes all states with one sign reversed for elliptic and reads 1.0069 h as the least
-//! momentum among them, the radius of its guaranteed sphere. That number is the least of the 20 x 20
-//! grid on which spheres are commonly drawn: towards the gimbal axes the surfaces come as near as
-//! 1.0 h exactly ([`CmgCluster::least_with_one_reversed`]), as the thesis's own reference has it. And
-//! the states there are hyperbolic by the eigenvalues: truly elliptic ones begin at
-//! `2 / sqrt(3) = 1.1547` h ([`CmgCluster::least_elliptic`]).
+//! The thesis takes all states with one sign reversed for elliptic and gives 1.0069 h as the least
+//! momentum among them, the radius of its guaranteed sphere. That number is the least over a 20 x 20
+//! grid of directions. Near the gimbal axes the momenta tend to 1.0 h
+//! ([`CmgCluster::least_with_one_reversed`]), as in the thesis's own reference. By the eigenvalues the
+//! states there are hyperbolic; elliptic ones begin at `2 / sqrt(3) = 1.1547` h
+//! ([`CmgCluster::least_elliptic`]).
 
 mod extremes;
 
@@ -46,7 +47,8 @@ const ALONG: f64 = 1e-9;
 /// Eigenvalue below which a second-order form is not definite.
 const DEFINITE: f64 = 1e-9;
 
-/// Most circles of latitude of a singular surface: 80,000 states, some 12 MB for four gyroscopes.
+/// Greatest number of circles of latitude of a singular surface: 80,000 states, some 12 MB for four
+/// gyroscopes.
 pub const MAX_SURFACE_ROWS: usize = 200;
 
 /// A rotor with its gimbal.
@@ -64,10 +66,11 @@ pub struct CmgCluster {
     gimbals: Vec<Gimbal>,
 }
 
-/// What null motion can do about a singular state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Whether null motion can leave a singular state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Passability {
-    /// On the outer surface: there is no more momentum in that direction.
+    /// On the outer surface: the momentum in that direction is the greatest.
     External,
     /// Internal and impassable.
     Elliptic,
@@ -75,19 +78,7 @@ pub enum Passability {
     Hyperbolic,
 }
 
-impl Passability {
-    /// The stable text of the kind.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::External => "external",
-            Self::Elliptic => "elliptic",
-            Self::Hyperbolic => "hyperbolic",
-        }
-    }
-}
-
-/// A state in which no torque along one direction can be made.
+/// A state in which no torque along one direction is possible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SingularState {
     /// `u`: the direction without torque, unit, body axes.
@@ -96,7 +87,7 @@ pub struct SingularState {
     pub momentum: Vector3<f64>,
     /// Gimbal angles, rad.
     pub angles: Vec<f64>,
-    /// What null motion can do about it.
+    /// Whether null motion can leave it.
     pub passability: Passability,
 }
 
@@ -181,7 +172,7 @@ impl CmgCluster {
     }
 
     /// The singular state of a unit direction and a pattern of signs, one per gyroscope. `None` when
-    /// the direction is along a gimbal axis: then that rotor is free to point anywhere ([`Rim`]).
+    /// the direction is along a gimbal axis: then every gimbal angle of that rotor is singular ([`Rim`]).
     #[must_use]
     pub fn singular_state(
         &self,
@@ -209,7 +200,8 @@ impl CmgCluster {
         })
     }
 
-    /// By the second-order form with the given diagonal on the null space of the Jacobian.
+    /// Passability by the eigenvalues of the second-order form with the given diagonal, restricted to the
+    /// null space of the Jacobian.
     fn passability(&self, angles: &[f64], along: &[f64]) -> Passability {
         if along.iter().all(|x| *x > 0.0) || along.iter().all(|x| *x < 0.0) {
             return Passability::External;
@@ -217,7 +209,7 @@ impl CmgCluster {
         let count = self.count();
         let jacobian = self.jacobian(angles);
         let gram = jacobian.tr_mul(&jacobian).symmetric_eigen();
-        // All columns are across one direction: the null space has at least two dimensions less.
+        // All columns are perpendicular to one direction: the rank is at most two.
         let null = gram.eigenvalues.iter().enumerate();
         let null: Vec<_> = null
             .filter(|(_, value)| **value < DEFINITE)
@@ -233,9 +225,8 @@ impl CmgCluster {
         }
     }
 
-    /// The singular surface of a pattern of signs over a grid with so many circles of latitude, the
-    /// poles left out, and twice as many meridians. More than [`MAX_SURFACE_ROWS`] count as these;
-    /// the surface says how many it has.
+    /// The singular surface of a pattern of signs over a grid with `rows` circles of latitude, without
+    /// the poles, and twice as many meridians. `rows` is limited to [`MAX_SURFACE_ROWS`].
     #[must_use]
     pub fn singular_surface(&self, signs: &[bool], rows: usize) -> SingularSurface {
         let rows = rows.min(MAX_SURFACE_ROWS);

@@ -1,18 +1,18 @@
-//! Reaction wheels against control moment gyroscopes: who turns a spacecraft faster, and from which
-//! angle on (RW/CMG thesis, chapter VII).
+//! Reaction wheels against control moment gyroscopes: from which angle on wheels turn a spacecraft
+//! faster (RW/CMG thesis, chapter VII).
 //!
-//! Four pyramids of devices of the same momentum `h` turn the same spacecraft, sized so that wheels
-//! with eigenaxis control just reach a required rate (equation 272). A pyramid counts with a sphere:
-//! its body momentum and torque are multiples of a device's ([`Radii`]; equations 270 and 271), the
-//! torque of a device follows from its momentum by a law fitted to the catalogue ([`crate::catalogue`]).
-//! A slew is bang-coast-bang within rate and acceleration:
+//! Four pyramids of devices of the same momentum `h` turn the same spacecraft, whose inertia is such
+//! that wheels with eigenaxis control just reach a required rate (equation 272). The envelope of a
+//! pyramid is represented by a sphere: body momentum and torque are multiples of a device's ([`Radii`];
+//! equations 270 and 271). The torque of a device follows from its momentum by a law fitted to the
+//! catalogue ([`crate::catalogue`]). A slew is bang-coast-bang within rate and acceleration:
 //!
 //! ```text
 //!   J = r_eigenaxis h / w_required,     w = r h / J,     w' = r_torque tau(h) / J
 //! ```
 //!
-//! Gyroscopes accelerate faster, wheels hold more momentum and coast faster; so wheels win beyond
-//! some angle, the *advantage angle*.
+//! Gyroscopes accelerate faster, wheels hold more momentum and coast faster, so that wheels are faster
+//! beyond some angle, the *advantage angle*.
 //!
 //! # Published and computed advantage angles
 //!
@@ -22,20 +22,20 @@
 //! | 0.01 | time-optimal | 24.1 | 25.5 | 24.9 |
 //! | 0.01 | eigenaxis | 30.3 | 31.8 | 30.5 |
 //!
-//! The thesis's own radii and laws, put into its own trapezoid, give the computed angles. The
-//! published ones were read off simulated slews (its figures 80 and 82), and its simulation ends a
-//! trapezoid when 0.999 of the angle is turned (as it says of figure 71). That cuts off the end of
-//! the slow last ramp, which is longer for wheels than for gyroscopes: the last column, from
-//! [`Advantage::with_cut_off_rad`]. It explains most of the difference for the eigenaxis and about
-//! half of it for the time-optimal slews; what remains, 3 to 4 %, the text does not explain.
+//! The computed angles follow from the thesis's own radii, laws and trapezoid. The published ones were
+//! read off simulated slews (its figures 80 and 82), and its simulation ends a trapezoid when 0.999 of
+//! the angle is turned (as stated for figure 71). This cuts off the end of the last ramp, which is
+//! longer for wheels than for gyroscopes: the last column, from [`Advantage::with_cut_off_rad`]. It
+//! explains most of the difference for the eigenaxis and about half of it for the time-optimal slews;
+//! the rest, 3 to 4 %, is unexplained.
 
 mod mass;
 mod radii;
 mod study;
 
 pub use mass::{MassPoint, MassStudy};
-pub use radii::{Control, Radii, Radius};
-pub use study::{AdvantageCurve, MarketFit, PyramidEnvelopes, SingularStates, Study};
+pub use radii::{PyramidControl, Radii, Radius};
+pub use study::{AdvantageCurve, CatalogueFit, ComparisonStudy, PyramidEnvelopes, SingularStates};
 
 use crate::catalogue::{GYROSCOPES, PowerLaw, WHEELS};
 use slewplan_solver::math::bang_coast_bang::BangCoastBang;
@@ -45,11 +45,11 @@ use slewplan_solver::model::input::{
 };
 use slewplan_solver::model::problem::{Code, Problem};
 
-/// Share of the angle that the thesis's simulated slews leave out at their end.
+/// Share of the angle that remains when the thesis's simulated slews end.
 pub const CUT_OFF: f64 = 0.001;
-/// Halvings of the interval of an advantage angle: to rounding.
+/// Bisections for an advantage angle: enough for rounding accuracy.
 const BISECTIONS: usize = 60;
-/// Most entries of a list in a request.
+/// Greatest number of entries of a list in a request.
 const MAX_ENTRIES: usize = 10_000;
 
 /// A published advantage angle.
@@ -58,7 +58,7 @@ pub struct PublishedAngle {
     /// Momentum of a device, N m s.
     pub momentum_nms: f64,
     /// Control of the wheels.
-    pub control: Control,
+    pub control: PyramidControl,
     /// The angle, degrees.
     pub angle_deg: f64,
 }
@@ -67,17 +67,17 @@ pub struct PublishedAngle {
 pub const PUBLISHED_ANGLES: [PublishedAngle; 3] = [
     PublishedAngle {
         momentum_nms: 0.1,
-        control: Control::Optimal,
+        control: PyramidControl::Optimal,
         angle_deg: 77.0,
     },
     PublishedAngle {
         momentum_nms: 0.01,
-        control: Control::Optimal,
+        control: PyramidControl::Optimal,
         angle_deg: 24.1,
     },
     PublishedAngle {
         momentum_nms: 0.01,
-        control: Control::Eigenaxis,
+        control: PyramidControl::Eigenaxis,
         angle_deg: 30.3,
     },
 ];
@@ -131,7 +131,7 @@ impl Laws {
         gyroscope: PowerLaw::PUBLISHED_GYROSCOPE,
     };
 
-    /// Fitted to the thesis's tables. `None` never, for these tables.
+    /// Fitted to the thesis's tables; always `Some` for these tables.
     #[must_use]
     pub fn of_the_tables() -> Option<Self> {
         let torque = |devices| PowerLaw::of_devices(devices, |d| d.momentum_nms, |d| d.torque_nm);
@@ -141,27 +141,28 @@ impl Laws {
         })
     }
 
-    fn of(&self, control: Control) -> PowerLaw {
+    fn of(&self, control: PyramidControl) -> PowerLaw {
         match control {
-            Control::Gyroscopes => self.gyroscope,
+            PyramidControl::Gyroscopes => self.gyroscope,
             _ => self.wheel,
         }
     }
 }
 
-/// Most entries of a list in a document.
+/// Greatest number of entries of a list in a document.
 const MAX_LISTED: usize = 1000;
-/// Most circles of latitude of the singular surfaces in an answer: eight surfaces of some 300 kB.
+/// Greatest number of circles of latitude of the singular surfaces in an answer: eight surfaces of some
+/// 300 kB.
 pub const MAX_ROWS: usize = 40;
 
 input_object! {
     /// Wheels against control moment gyroscopes. What is left out is as in the published study.
-    pub struct ComparisonSpec as "ComparisonStudy" {
+    pub struct ComparisonStudySpec as "ComparisonStudy" {
         /// Momenta of a device; 1, 0.1 and 0.01 without it.
         pub momenta_nms: Vec<f64> as UpTo<MAX_LISTED, f64>
             = or(vec![1.0, 0.1, 0.01]).min_length(1),
         /// Angles of the slews that are compared; every degree to a half turn without it.
-        pub angles_rad: Vec<f64> as UpTo<MAX_LISTED, f64> = or(usual_angles_rad()).min_length(1),
+        pub angles_rad: Vec<f64> as UpTo<MAX_LISTED, f64> = or(default_angles_rad()).min_length(1),
         /// Rate that sizes the spacecraft: wheels with eigenaxis control just reach it. 3 deg/s without
         /// it.
         pub required_rate_rad_s: f64 = or(3.0_f64.to_radians()).at_least(1e-9).at_most(1e9),
@@ -169,35 +170,35 @@ input_object! {
         pub radii: Radii = or(Radii::PUBLISHED),
         /// Torque of a device over its momentum; as published without it.
         pub laws: Laws = or(Laws::PUBLISHED),
-        /// Momenta of a device at which advantage angles are told; 0.001 to 10 without it.
+        /// Momenta of a device at which the advantage angle is computed; 0.001 to 10 without it.
         pub curve_momenta_nms: Vec<f64> as UpTo<MAX_LISTED, f64>
-            = or(study::usual_curve_momenta_nms()).min_length(1),
+            = or(study::default_curve_momenta_nms()).min_length(1),
         /// Masses of a device at which arrays are compared; 0.1 to 100 without it.
         pub device_masses_kg: Vec<f64> as UpTo<MAX_LISTED, f64>
-            = or(study::usual_device_masses_kg()).min_length(1),
+            = or(study::default_device_masses_kg()).min_length(1),
         /// Circles of latitude of the singular surfaces.
         pub surface_rows: usize
             = or(study::SURFACE_ROWS).at_least(1.0).at_most(MAX_ROWS as f64).format("int32"),
     }
 }
 
-impl Default for ComparisonSpec {
-    /// The thesis's.
+impl Default for ComparisonStudySpec {
+    /// The thesis's comparison: 1, 0.1 and 0.01 N m s, every degree to a half turn, 3 deg/s.
     fn default() -> Self {
         input::left_out::<Self>()
     }
 }
 
-fn usual_angles_rad() -> Vec<f64> {
+fn default_angles_rad() -> Vec<f64> {
     let degrees = 1..=180;
     degrees.map(|angle| f64::from(angle).to_radians()).collect()
 }
 
-/// How agile a spacecraft is under one control.
+/// Rate and acceleration of a spacecraft with one kind of control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agility {
     /// The control.
-    pub control: Control,
+    pub control: PyramidControl,
     /// Body momentum, N m s.
     pub momentum_nms: f64,
     /// Body torque, N m.
@@ -215,8 +216,8 @@ impl Agility {
         BangCoastBang::fastest(angle, self.acceleration_rad_s2, self.rate_rad_s)
     }
 
-    /// The angle, rad, beyond which this control is faster than another; slews count as ended with a
-    /// share of their angle (below a half) left. Zero when it always is, `None` when it never is.
+    /// The angle, rad, beyond which this control is faster than another, where slews end with the share
+    /// `left` (below a half) of their angle left. Zero when it always is faster, `None` when it never is.
     #[must_use]
     pub fn advantage_over(&self, other: &Self, left: f64) -> Option<f64> {
         if self.rate_rad_s <= other.rate_rad_s {
@@ -225,8 +226,8 @@ impl Agility {
         if self.acceleration_rad_s2 >= other.acceleration_rad_s2 {
             return Some(0.0);
         }
-        // A trapezoid takes at most angle / rate + rate / acceleration, and at least angle / rate:
-        // beyond this angle the lead is certain.
+        // A trapezoid takes at least angle / rate and at most angle / rate + rate / acceleration: beyond
+        // this angle this control is faster.
         let slower = 1.0 / other.rate_rad_s - 1.0 / self.rate_rad_s;
         let (mut behind, mut ahead) = (0.0, self.rate_rad_s / self.acceleration_rad_s2 / slower);
         for _ in 0..BISECTIONS {
@@ -241,22 +242,22 @@ impl Agility {
     }
 }
 
-/// From which angle on wheels are faster than gyroscopes.
+/// The angle beyond which wheels are faster than gyroscopes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advantage {
     /// Control of the wheels.
-    pub control: Control,
-    /// The angle, rad; it may exceed the half turn that is the largest slew. `None` when never.
+    pub control: PyramidControl,
+    /// The angle, rad, which may exceed a half turn, the largest slew. `None` when wheels never are.
     pub angle_rad: Option<f64>,
     /// The angle, rad, when slews end with [`CUT_OFF`] of their angle left, as in the thesis.
     pub with_cut_off_rad: Option<f64>,
 }
 
-/// Durations of slews under one control.
+/// Durations of slews with one kind of control.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Durations {
     /// The control.
-    pub control: Control,
+    pub control: PyramidControl,
     /// One duration per angle of the request, s.
     pub durations_s: Vec<f64>,
 }
@@ -268,7 +269,7 @@ pub struct SizeComparison {
     pub momentum_nms: f64,
     /// Inertia of the spacecraft, kg m².
     pub inertia_kg_m2: f64,
-    /// One entry per control, in the order of [`Control::ALL`].
+    /// One entry per control, in the order of [`PyramidControl::ALL`].
     pub agilities: Vec<Agility>,
     /// One entry per control.
     pub slews: Vec<Durations>,
@@ -279,8 +280,8 @@ pub struct SizeComparison {
 /// A whole comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What was asked for.
-    pub spec: ComparisonSpec,
+    /// The request.
+    pub spec: ComparisonStudySpec,
     /// One entry per momentum.
     pub sizes: Vec<SizeComparison>,
 }
@@ -291,7 +292,7 @@ impl Comparison {
     /// # Errors
     ///
     /// All problems of the request at once.
-    pub fn of(spec: ComparisonSpec) -> Result<Self, Vec<Problem>> {
+    pub fn of(spec: ComparisonStudySpec) -> Result<Self, Vec<Problem>> {
         let mut findings = Findings::default();
         for (name, values) in [
             ("momenta_nms", &spec.momenta_nms),
@@ -314,9 +315,10 @@ impl Comparison {
     }
 }
 
-fn size(spec: &ComparisonSpec, momentum: f64) -> SizeComparison {
-    let inertia = spec.radii.of(Control::Eigenaxis).momentum * momentum / spec.required_rate_rad_s;
-    let agilities = Control::ALL.map(|control| {
+fn size(spec: &ComparisonStudySpec, momentum: f64) -> SizeComparison {
+    let inertia =
+        spec.radii.of(PyramidControl::Eigenaxis).momentum * momentum / spec.required_rate_rad_s;
+    let agilities = PyramidControl::ALL.map(|control| {
         let radius = spec.radii.of(control);
         let momentum_nms = radius.momentum * momentum;
         let torque_nm = radius.torque * spec.laws.of(control).at(momentum);

@@ -1,16 +1,16 @@
-//! Slews about the eigenaxis from rest to rest: what everyday attitude control does.
+//! Slews about the eigenaxis from rest to rest, the usual kind of attitude control.
 //!
-//! The body accelerates about the fixed axis `e` of the whole turn, coasts, and brakes. Without
-//! stored momentum the gyroscopic terms vanish, and along the way
+//! The body accelerates about the fixed axis `e` of the whole turn, coasts, and brakes. Without stored
+//! momentum the gyroscopic terms vanish, and during the slew
 //!
 //! ```text
 //!   A h = -J e w,      A u = -J_eff e w'            (h, u: momenta and torques of the wheels)
 //! ```
 //!
-//! so the rate is limited by how far the momentum envelope reaches along `J e`, the acceleration by
-//! how far the torque envelope reaches along `J_eff e`. How much of an envelope may be used depends
-//! on how demands are shared out and on what is promised in every direction ([`Limit`]; RW/CMG
-//! thesis, chapter IV, sections E to G).
+//! so that the rate is limited by the reach of the momentum envelope along `J e`, the acceleration by
+//! the reach of the torque envelope along `J_eff e`. Which envelope counts depends on the allocation,
+//! and on whether only the sphere inside it is used ([`EnvelopeLimit`]; RW/CMG thesis, chapter IV,
+//! sections E to G).
 //!
 //! ```text
 //!   T = angle / w + w / w'    where the rate is reached, else    T = 2 sqrt(angle / w')
@@ -22,21 +22,21 @@ use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::spacecraft::Spacecraft;
 use slewplan_solver::wheels::array::{Envelopes, Polytope, SpacecraftEnvelopes};
 
-/// How much of its wheels a slew about the eigenaxis may use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Limit {
-    /// The sphere inside the pseudo-inverse envelope: the same in every direction, by the simplest
-    /// allocation.
+/// The set of momenta and torques within which a slew about the eigenaxis stays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+pub enum EnvelopeLimit {
+    /// The sphere inside the pseudo-inverse envelope.
     PseudoInverseSphere,
     /// The pseudo-inverse envelope.
     PseudoInverse,
-    /// The sphere inside the full envelope: the same in every direction, by the best allocation.
+    /// The sphere inside the full envelope.
     FullSphere,
     /// The full envelope.
     Full,
 }
 
-impl Limit {
+impl EnvelopeLimit {
     /// All of them.
     pub const ALL: [Self; 4] = [
         Self::PseudoInverseSphere,
@@ -45,20 +45,9 @@ impl Limit {
         Self::Full,
     ];
 
-    /// The stable text of the limit.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::PseudoInverseSphere => "pseudo_inverse_sphere",
-            Self::PseudoInverse => "pseudo_inverse",
-            Self::FullSphere => "full_sphere",
-            Self::Full => "full",
-        }
-    }
-
-    /// How far along a demand of one unit of motion a multiple of it may go.
+    /// Greatest multiple of a demand within the limit.
     fn multiple(self, envelopes: &Envelopes, demand: &Vector3<f64>) -> f64 {
-        let sphere = |polytope: &Polytope| polytope.figures().inscribed_radius / demand.norm();
+        let sphere = |polytope: &Polytope| polytope.size().inscribed_radius / demand.norm();
         match self {
             Self::PseudoInverseSphere => sphere(&envelopes.pseudo_inverse),
             Self::PseudoInverse => 1.0 / envelopes.pseudo_inverse.share(demand),
@@ -70,21 +59,21 @@ impl Limit {
 
 /// A slew about the eigenaxis under one limit.
 #[derive(Debug, Clone, Copy)]
-pub struct EigenaxisSlew {
-    /// How much of the wheels it uses.
-    pub limit: Limit,
+pub struct EigenaxisBaseline {
+    /// The limit on its momenta and torques.
+    pub limit: EnvelopeLimit,
     /// Its axis, unit, body axes.
     pub axis: Vector3<f64>,
-    /// Its course in time.
+    /// Rate and duration of its phases.
     pub course: BangCoastBang,
-    /// What the wheels hold at the greatest rate, `A h`, body axes, N m s.
+    /// Sum of the wheels' momenta at the greatest rate, `A h`, body axes, N m s.
     pub peak_momentum: Vector3<f64>,
-    /// What the wheels take up while the body accelerates, `A u`, body axes, N m; the opposite when
+    /// Sum of the wheels' torques while the body accelerates, `A u`, body axes, N m; the opposite while
     /// it brakes.
     pub ramp_torque: Vector3<f64>,
 }
 
-/// What limits slews of a spacecraft without stored momentum.
+/// Slews about the eigenaxis of a spacecraft without stored momentum.
 #[derive(Debug, Clone)]
 pub struct Baselines {
     spacecraft: Spacecraft,
@@ -92,8 +81,8 @@ pub struct Baselines {
 }
 
 impl Baselines {
-    /// Those of a spacecraft with the usable shares of its torque and speed limits. With a wheel of
-    /// unlimited speed the array's momentum is taken as unlimited too.
+    /// For a spacecraft and the usable shares of its torque and speed limits. With a wheel without a
+    /// speed limit the momentum is unlimited too.
     ///
     /// # Errors
     ///
@@ -116,15 +105,15 @@ impl Baselines {
     }
 
     /// The fastest slew by a rotation vector (axis times angle, body axes, rad) under each limit.
-    /// `None` for no turn at all.
+    /// `None` for a turn of zero angle.
     #[must_use]
-    pub fn slews(&self, turn: &Vector3<f64>) -> Option<[EigenaxisSlew; 4]> {
+    pub fn slews(&self, turn: &Vector3<f64>) -> Option<[EigenaxisBaseline; 4]> {
         let axis = turn.try_normalize(0.0)?;
-        Some(Limit::ALL.map(|limit| self.slew(axis, turn.norm(), limit)))
+        Some(EnvelopeLimit::ALL.map(|limit| self.slew(axis, turn.norm(), limit)))
     }
 
-    fn slew(&self, axis: Vector3<f64>, angle: f64, limit: Limit) -> EigenaxisSlew {
-        // What the wheels hold and take up per unit of rate and of acceleration.
+    fn slew(&self, axis: Vector3<f64>, angle: f64, limit: EnvelopeLimit) -> EigenaxisBaseline {
+        // Sums of the wheels' momenta and torques per unit of rate and acceleration.
         let held = -(self.spacecraft.inertia() * axis);
         let taken = -(self.spacecraft.effective_inertia() * axis);
         let momentum = self.envelopes.momentum.as_ref();
@@ -136,12 +125,12 @@ impl Baselines {
             .unwrap_or(f64::INFINITY)
             .min(per_axis.min())
             .min(self.spacecraft.max_rate_norm());
-        // Uneven torque limits: both ramps are as steep as the flatter one has to be.
+        // With uneven torque limits both ramps have the smaller acceleration.
         let torque = &self.envelopes.torque.envelopes;
         let speeding = limit.multiple(torque, &taken);
         let braking = limit.multiple(torque, &-taken);
         let course = BangCoastBang::fastest(angle, speeding.min(braking), rate);
-        EigenaxisSlew {
+        EigenaxisBaseline {
             limit,
             axis,
             course,
@@ -190,7 +179,7 @@ mod tests {
         }
     }
 
-    fn slews(spec: &SpacecraftSpec, turn: Vector3<f64>) -> [EigenaxisSlew; 4] {
+    fn slews(spec: &SpacecraftSpec, turn: Vector3<f64>) -> [EigenaxisBaseline; 4] {
         let spacecraft = Spacecraft::try_new(spec, "").unwrap();
         Baselines::of(&spacecraft, 1.0, 1.0)
             .unwrap()
@@ -256,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn more_of_the_wheels_is_never_slower() {
+    fn a_larger_limit_never_gives_a_longer_slew() {
         for turn in [[1.0, 0.0, 0.0], [0.2, -0.7, 1.3], [0.0, 0.0, 0.01]] {
             let [sphere, simple, full_sphere, full] =
                 slews(&thesis(), Vector3::from(turn)).map(|slew| slew.course.duration());
@@ -267,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn no_turn_has_no_axis_and_shares_lie_between_zero_and_one() {
+    fn a_zero_turn_has_no_slew_and_authorities_must_be_in_zero_to_one() {
         let spacecraft = Spacecraft::try_new(&thesis(), "").unwrap();
         let baselines = Baselines::of(&spacecraft, 1.0, 1.0).unwrap();
         assert!(baselines.slews(&Vector3::zeros()).is_none());
@@ -280,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn wheels_without_a_speed_limit_leave_the_rate_to_the_body() {
+    fn without_a_wheel_speed_limit_the_body_rate_limit_counts() {
         let mut spec = thesis();
         spec.wheels[2].max_speed_rad_s = None;
         let turn = Vector3::new(3.0, 0.0, 0.0);

@@ -1,12 +1,12 @@
-//! Where a slew goes within the envelopes of its wheels.
+//! Paths of slews within the envelopes of the wheels.
 //!
-//! The RW/CMG thesis draws the momentum and the torque of a slew inside the envelopes (figures 71
-//! to 76): a slew about the eigenaxis stays on one ray, a time-optimal one runs along edges and from
-//! vertex to vertex. Here are the same paths as data: what the wheels together hold and take up, in
-//! body axes, and the shares of the full and of the pseudo-inverse-limited envelope that this is.
-//! A share of the latter above 1 is what no pseudo-inverse could have shared out.
+//! The RW/CMG thesis draws the momentum and the torque of a slew inside the envelopes (figures 71 to
+//! 76): a slew about the eigenaxis stays on one ray, a time-optimal one runs along edges and from
+//! vertex to vertex. Here the same paths are data: the sums of the wheels' momenta and torques in body
+//! axes, as shares of the full and of the pseudo-inverse-limited envelope. A share of the latter above
+//! 1 is beyond the reach of the pseudo-inverse.
 
-use crate::eigenaxis::EigenaxisSlew;
+use crate::eigenaxis::EigenaxisBaseline;
 use nalgebra::Vector3;
 use slewplan_solver::model::plan::{Control, State};
 use slewplan_solver::model::spacecraft::Spacecraft;
@@ -15,7 +15,7 @@ use slewplan_solver::wheels::array::{EnvelopedArray, SpacecraftEnvelopes};
 /// A vector within the envelopes of an array.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnvelopePoint {
-    /// What the wheels together hold (N m s) or take up (N m), body axes; the body has the opposite.
+    /// Sum of the wheels' momenta (N m s) or torques (N m), body axes; the body has the opposite.
     pub vector: Vector3<f64>,
     /// Share of the full envelope: 1 on its surface.
     pub full_share: f64,
@@ -35,7 +35,7 @@ pub struct MomentumSample {
 /// Torque on one interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueStep {
-    /// Begin of the interval, s.
+    /// Beginning of the interval, s.
     pub start_s: f64,
     /// Length of the interval, s.
     pub duration_s: f64,
@@ -43,18 +43,18 @@ pub struct TorqueStep {
     pub torque: EnvelopePoint,
 }
 
-/// The way of a slew through the envelopes of its wheels.
+/// The path of a slew within the envelopes of its wheels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopePath {
-    /// The momentum, in order of time; empty where it has no envelope.
+    /// The momentum, in order of time; empty when the momentum envelope is unbounded.
     pub momentum: Vec<MomentumSample>,
     /// The torque, in order of time.
     pub torque: Vec<TorqueStep>,
 }
 
 impl EnvelopePath {
-    /// The way of a flight: its states and its controls, with one speed or torque per wheel of the
-    /// spacecraft whose envelopes these are.
+    /// The path of a flight, given by its states and controls with one speed or torque per wheel of the
+    /// spacecraft to which the envelopes belong.
     ///
     /// # Panics
     ///
@@ -92,10 +92,10 @@ impl EnvelopePath {
         }
     }
 
-    /// The way of a slew about the eigenaxis from rest to rest: its corners, since it is straight
-    /// between them.
+    /// The path of a slew about the eigenaxis from rest to rest: its corners, between which it is
+    /// straight.
     #[must_use]
-    pub fn of_eigenaxis_slew(envelopes: &SpacecraftEnvelopes, slew: &EigenaxisSlew) -> Self {
+    pub fn of_eigenaxis_slew(envelopes: &SpacecraftEnvelopes, slew: &EigenaxisBaseline) -> Self {
         let (duration, ramp) = (slew.course.duration(), slew.course.ramp());
         let corners = [
             (0.0, 0.0),
@@ -138,7 +138,7 @@ fn point(within: &EnvelopedArray, vector: Vector3<f64>) -> EnvelopePoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::eigenaxis::{Baselines, Limit};
+    use crate::eigenaxis::{Baselines, EnvelopeLimit};
     use slewplan_solver::model::attitude::Attitude;
     use slewplan_solver::model::spec::{SpacecraftSpec, WheelSpec};
 
@@ -180,14 +180,14 @@ mod tests {
     }
 
     #[test]
-    fn a_minor_vertex_is_beyond_the_pseudo_inverse() {
+    fn the_share_of_a_minor_vertex_exceeds_one_for_the_pseudo_inverse() {
         let spacecraft = pyramid();
         let envelopes = SpacecraftEnvelopes::of(&spacecraft, 1.0, 1.0).unwrap();
         let state = State {
             time_s: 2.0,
             attitude: Attitude::identity(),
             body_rate_rad_s: Vector3::zeros(),
-            // The locked wheel's speed has no part in it.
+            // The speed of the locked wheel does not count.
             wheel_speed_rad_s: vec![100.0, 77.0, 100.0, -100.0, 100.0],
         };
         let control = Control {
@@ -201,14 +201,14 @@ mod tests {
         assert_shares(&path.momentum[0].momentum, 1.0, 1.5);
         // On the pyramid's axis both envelopes have the same vertex.
         assert_shares(&path.torque[0].torque, 0.5, 0.5);
-        let reach = |of: &EnvelopedArray| of.envelopes.full.figures().greatest_radius;
+        let reach = |of: &EnvelopedArray| of.envelopes.full.size().greatest_radius;
         let momentum = envelopes.momentum.unwrap();
         assert!((reach(&momentum) - 4.0 * C).abs() < 1e-12);
         assert!((reach(&envelopes.torque) - 0.4 * C).abs() < 1e-12);
     }
 
     #[test]
-    fn slews_about_the_eigenaxis_go_to_the_surface_that_limits_them() {
+    fn slews_about_the_eigenaxis_reach_the_surface_of_the_envelope_that_limits_them() {
         let spacecraft = pyramid();
         let turn = Vector3::new(1.2, 0.5, -0.8);
         let baselines = Baselines::of(&spacecraft, 1.0, 1.0).unwrap();
@@ -216,15 +216,15 @@ mod tests {
             let path = EnvelopePath::of_eigenaxis_slew(baselines.envelopes(), &slew);
             let (momentum, torque) = (&path.momentum[1].momentum, &path.torque[0].torque);
             match slew.limit {
-                Limit::PseudoInverse => {
+                EnvelopeLimit::PseudoInverse => {
                     assert!((momentum.pseudo_inverse_share - 1.0).abs() < 1e-12);
                     assert!((torque.pseudo_inverse_share - 1.0).abs() < 1e-12);
                 }
-                Limit::Full => {
+                EnvelopeLimit::Full => {
                     assert!((momentum.full_share - 1.0).abs() < 1e-12);
                     assert!((torque.full_share - 1.0).abs() < 1e-12);
                 }
-                Limit::PseudoInverseSphere | Limit::FullSphere => {
+                EnvelopeLimit::PseudoInverseSphere | EnvelopeLimit::FullSphere => {
                     assert!(momentum.full_share < 1.0 && torque.full_share < 1.0);
                 }
             }

@@ -1,11 +1,11 @@
-//! What the wheels of a spacecraft can do together: envelopes, slews within them, demands shared out.
+//! Envelopes of a spacecraft's wheels, slews within them, and the allocation of demands.
 //!
 //! For every turn from rest to rest, without stored momentum, the study has the slews about the
-//! eigenaxis under each [limit](crate::eigenaxis::Limit) and, on request, the fastest ones, once with
-//! torques free of each other and once with those that the pseudo-inverse shares out; all with
-//! their ways through the envelopes (RW/CMG thesis, figures 71 to 76).
+//! eigenaxis under each [limit](crate::eigenaxis::EnvelopeLimit) and, on request, the fastest ones, with
+//! every torque chosen by itself and with torques allocated by the pseudo-inverse; all with their
+//! paths within the envelopes (RW/CMG thesis, figures 71 to 76).
 
-use crate::eigenaxis::{Baselines, EigenaxisSlew};
+use crate::eigenaxis::{Baselines, EigenaxisBaseline};
 use crate::envelope_path::EnvelopePath;
 use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;
@@ -22,14 +22,14 @@ use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::{
     self, FinalWheels, Slew, SlewOptionsSpec, SlewOutcome, SlewSpec, WheelAllocation,
 };
-use slewplan_solver::wheels::allocation::{self, Allocation};
+use slewplan_solver::wheels::allocation::{self, DemandAllocation};
 use slewplan_solver::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
 
-/// Most turns of a study, each with two optimisations at most.
+/// Greatest number of turns of a study, each with two optimisations at most.
 pub const MAX_TURNS: usize = 100;
-/// Most demands of a study, each with a linear program.
+/// Greatest number of demands of a study, each with a linear program.
 pub const MAX_DEMANDS: usize = 1000;
-/// Turns below this angle, rad, are rounding.
+/// Turns below this angle, rad, count as none.
 const MIN_ANGLE: f64 = 1e-9;
 
 input_object! {
@@ -44,7 +44,7 @@ input_object! {
             = required_or(SpacecraftSpec::substitute()),
         /// From rest to rest, the shorter way round.
         pub turns: Vec<PairSpec> as UpTo<MAX_TURNS, PairSpec> = or(Vec::new()),
-        /// Torques that the wheels are to take up together, body axes; the body gets the opposite.
+        /// Sums of the wheels' torques, body axes; the body gets the opposite.
         pub demands_nm: Vec<[f64; 3]> as UpTo<MAX_DEMANDS, [f64; 3]> = or(Vec::new()),
         /// Whether the turns are wanted in minimum time too.
         pub time_optimal: bool = or(false),
@@ -72,19 +72,19 @@ impl Default for EnvelopeOptionsSpec {
 pub struct EnvelopeStudy {
     spacecraft: Spacecraft,
     baselines: Baselines,
-    turns: Vec<Turn>,
+    turns: Vec<StudiedTurn>,
     demands: Vec<Vector3<f64>>,
 }
 
 #[derive(Debug, Clone)]
-struct Turn {
+struct StudiedTurn {
     /// Axis times angle, body axes, rad.
     vector: Vector3<f64>,
     /// The slews to optimise.
     slews: Vec<Slew>,
 }
 
-/// What a study finds.
+/// The results of a study.
 #[derive(Debug, Clone)]
 pub struct EnvelopeReport {
     /// The envelopes with the usable shares of the limits.
@@ -98,7 +98,7 @@ pub struct EnvelopeReport {
 }
 
 impl EnvelopeReport {
-    /// Number of slews in minimum time that were tried and not found.
+    /// Number of slews in minimum time that were not solved.
     #[must_use]
     pub fn unsolved(&self) -> usize {
         let tried = self.turns.iter().flat_map(|turn| &turn.time_optimal);
@@ -106,42 +106,42 @@ impl EnvelopeReport {
     }
 }
 
-/// A turn in all its ways.
+/// The slews of one turn.
 #[derive(Debug, Clone)]
 pub struct TurnReport {
     /// Axis times angle, body axes, rad.
     pub vector: Vector3<f64>,
-    /// About the eigenaxis, in the order of [`crate::eigenaxis::Limit::ALL`].
-    pub eigenaxis: Vec<(EigenaxisSlew, EnvelopePath)>,
-    /// The fastest ones that were asked for and reached.
+    /// About the eigenaxis, in the order of [`crate::eigenaxis::EnvelopeLimit::ALL`].
+    pub eigenaxis: Vec<(EigenaxisBaseline, EnvelopePath)>,
+    /// The fastest slews that were asked for, as far as they were tried before a stop.
     pub time_optimal: Vec<TimeOptimalSlew>,
 }
 
 /// A slew in minimum time; null-space momentum is zero at both ends.
 #[derive(Debug, Clone)]
 pub struct TimeOptimalSlew {
-    /// How torque is shared out.
+    /// How torque is allocated.
     pub allocation: WheelAllocation,
-    /// How the program ended: `converged`, or why not.
+    /// Status of the program: `converged`, or why it did not converge.
     pub status: String,
-    /// Duration, s, and the way through the envelopes; none when no slew was found that flies.
+    /// Duration, s, and path within the envelopes; `None` when no verified slew was found.
     pub found: Option<(f64, EnvelopePath)>,
 }
 
-/// A demand, shared out in both ways.
+/// A demand and its two allocations.
 #[derive(Debug, Clone)]
 pub struct DemandReport {
     /// The demand, N m.
     pub torque: Vector3<f64>,
     /// By the pseudo-inverse.
-    pub pseudo_inverse: Allocation,
-    /// With the least load; none when the linear program could not be solved.
-    pub least_load: Option<Allocation>,
+    pub pseudo_inverse: DemandAllocation,
+    /// With the least load; `None` when the linear program could not be solved.
+    pub least_load: Option<DemandAllocation>,
 }
 
 impl EnvelopeStudy {
-    /// Validates a description, with what the caller should know about it. Pointers are those of the
-    /// fields: `/spacecraft`, `/options`, `/turns`, `/demands_nm`.
+    /// Validates a description and returns warnings with the study. Pointers are those of the fields:
+    /// `/spacecraft`, `/options`, `/turns`, `/demands_nm`.
     ///
     /// # Errors
     ///
@@ -191,7 +191,7 @@ impl EnvelopeStudy {
             } else {
                 Vec::new()
             };
-            Ok(Turn { vector, slews })
+            Ok(StudiedTurn { vector, slews })
         });
         let study = Self {
             turns: turns.collect::<Result<_, Vec<Problem>>>()?,
@@ -202,7 +202,7 @@ impl EnvelopeStudy {
         Ok((study, warnings))
     }
 
-    /// Conducts the study; what the stop signal cuts short is left out.
+    /// Conducts the study; slews that the stop signal interrupts are left out.
     #[must_use]
     pub fn conduct(&self, pool: &SolverPool, stop: &StopSignal) -> EnvelopeReport {
         let torque = &self.baselines.envelopes().torque.array;
@@ -219,7 +219,7 @@ impl EnvelopeStudy {
         }
     }
 
-    fn turn(&self, turn: &Turn, stop: &StopSignal) -> TurnReport {
+    fn turn(&self, turn: &StudiedTurn, stop: &StopSignal) -> TurnReport {
         let envelopes = self.baselines.envelopes();
         let slews = self.baselines.slews(&turn.vector).into_iter().flatten();
         let mut time_optimal = Vec::new();
@@ -228,7 +228,7 @@ impl EnvelopeStudy {
                 break;
             }
             let outcome = slew::solve(slew, stop);
-            // What was interrupted says nothing.
+            // An interrupted solve has no result.
             if stop.is_set() && !outcome.solved {
                 break;
             }
@@ -251,7 +251,7 @@ impl EnvelopeStudy {
 
     fn path_of(&self, outcome: &SlewOutcome) -> EnvelopePath {
         // Torques on intervals of free length are constant.
-        let pieces = outcome.flown.pieces.iter().map(|piece| Control {
+        let pieces = outcome.propagated.pieces.iter().map(|piece| Control {
             start_s: piece.start_s,
             duration_s: piece.duration_s,
             wheel_torque_nm: piece.torque_begin_nm.clone(),
@@ -259,13 +259,14 @@ impl EnvelopeStudy {
         EnvelopePath::of_flight(
             self.baselines.envelopes(),
             &self.spacecraft,
-            &outcome.flown.states,
+            &outcome.propagated.states,
             &pieces.collect::<Vec<_>>(),
         )
     }
 }
 
-/// What leaves the range of numbers: finite limits have volumes, durations and loads that are not.
+/// Problems with results that overflow: finite limits can have volumes, durations or loads that are not
+/// finite.
 fn beyond_numbers(
     baselines: &Baselines,
     turns: &[Vector3<f64>],
@@ -281,7 +282,7 @@ fn beyond_numbers(
         [full, pseudo_inverse]
     });
     let sound = polytopes.all(|polytope| {
-        let figures = polytope.figures();
+        let figures = polytope.size();
         figures.volume.is_normal() && figures.mean_radius.is_normal()
     });
     let problem = |pointer: String, what: &str| {
@@ -289,7 +290,7 @@ fn beyond_numbers(
         Problem::new(pointer, Code::OutOfRange, what, hint)
     };
     if !sound {
-        let what = "the envelope of the wheels is beyond the range of numbers";
+        let what = "the size of the wheels' envelope overflows";
         return vec![problem("/spacecraft/wheels".to_owned(), what)];
     }
     let slow = turns.iter().enumerate().filter(|(_, turn)| {
@@ -298,7 +299,7 @@ fn beyond_numbers(
         !durations.all(f64::is_normal)
     });
     let slow = slow.map(|(i, _)| {
-        let what = "the turn about the eigenaxis takes a time beyond the range of numbers";
+        let what = "the duration of the turn about the eigenaxis overflows";
         problem(format!("/turns/{i}"), what)
     });
     let torque = &envelopes.torque.array;
@@ -307,13 +308,13 @@ fn beyond_numbers(
         .enumerate()
         .filter(|(_, demand)| !is_finite(&allocation::pseudo_inverse(torque, demand)));
     let heavy = heavy.map(|(i, _)| {
-        let what = "the torque asks for shares of the wheels beyond the range of numbers";
+        let what = "the allocation of the torque to the wheels overflows";
         problem(format!("/demands_nm/{i}"), what)
     });
     slow.chain(heavy).collect()
 }
 
-fn is_finite(allocation: &Allocation) -> bool {
+fn is_finite(allocation: &DemandAllocation) -> bool {
     allocation.load.is_finite() && allocation.wheels.iter().all(|wheel| wheel.is_finite())
 }
 
@@ -338,7 +339,7 @@ fn read_turn(spec: &PairSpec, pointer: &str, findings: &mut Findings) -> Option<
     Some(vector)
 }
 
-/// The slews that are to be optimised for a valid turn.
+/// The slews to optimise for a valid turn.
 fn fastest(spec: &EnvelopeStudySpec, turn: &PairSpec) -> Result<Vec<Slew>, Vec<Problem>> {
     let at = |attitude: &AttitudeSpec| StateSpec {
         attitude: attitude.clone(),

@@ -1,4 +1,4 @@
-//! One flight of a plan in closed loop, for the command line and the service alike.
+//! One simulated flight of a plan.
 
 use slewplan_solver::model::plan::{self, Flight, Optimality};
 use slewplan_solver::model::problem::{Code, Problem};
@@ -6,81 +6,81 @@ use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::simulation::{SimulatedFlight, Simulation, SimulationSpec};
 use slewplan_solver::tour::planner::{self, Run};
 
-/// States that are kept when nothing is said about it, and at most.
+/// Number of states that are kept by default, and the greatest number.
 const DEFAULT_STATES: usize = 2_000;
 const MAX_STATES: usize = 10_000;
 
-/// A valid request for a flight.
+/// A valid request for a simulated flight.
 #[derive(Debug)]
 pub struct FlightStudy {
-    /// What is flown.
+    /// The scenario of the plan.
     pub scenario: Scenario,
-    /// The plan; made for the flight when there is none.
+    /// The plan; the scenario is solved when there is none.
     pub plan: Option<Flight>,
-    /// How it is flown.
+    /// How the plan is simulated.
     pub simulation: SimulationSpec,
-    /// Which of the flights of the seed: other numbers draw other errors.
+    /// Number of the flight: for the same seed other numbers draw other errors.
     pub number: u64,
-    /// Every so many samples a state is wanted.
+    /// A state is kept every this many samples of the on-board computer.
     pub keep_every: Option<usize>,
-    /// Doubts that do not stand in the way.
+    /// Remarks that do not keep the flight from being simulated.
     pub warnings: Vec<Problem>,
 }
 
-/// What came of a request.
+/// The outcome of a request.
 #[derive(Debug)]
-pub enum Outcome {
-    /// A flight.
-    Flown(Box<FlownOnce>),
-    /// No plan to fly, for these reasons.
+pub enum FlightStudyOutcome {
+    /// A plan and its simulated flight.
+    Simulated(Box<SimulatedPlan>),
+    /// The scenario has no plan, for these reasons.
     NoPlan(Vec<Problem>),
-    /// Stopped before there was a plan, or cancelled before it was flown.
+    /// Stopped before there was a plan, or cancelled before the simulation was complete.
     Stopped,
 }
 
-/// A plan and its flight.
+/// A plan and its simulated flight.
 #[derive(Debug)]
-pub struct FlownOnce {
-    /// The plan; with its optimality when it was made for the flight.
+pub struct SimulatedPlan {
+    /// The plan.
     pub plan: Flight,
-    /// Of a plan that was made for the flight.
+    /// Optimality of a plan that was solved for this request.
     pub optimality: Option<Optimality>,
-    /// The flight.
+    /// The simulated flight.
     pub simulated: SimulatedFlight,
-    /// Every so many samples of the on-board computer a state was kept.
+    /// A state was kept every this many samples of the on-board computer.
     pub keep_every: usize,
     /// Time between samples of the on-board computer, s.
     pub sample_s: f64,
-    /// How long it was flown, s.
+    /// Duration of the simulation, s.
     pub flight_time_s: f64,
-    /// Error up to which an attitude counts as reached, rad.
+    /// Greatest attitude error that counts as a success, rad.
     pub tolerance_rad: f64,
 }
 
-/// Plans, unless a plan is given, and flies once.
+/// Solves the scenario, unless a plan is given, and simulates one flight.
 ///
 /// # Errors
 ///
-/// Problems that are only known of with the plan.
-pub fn fly(study: &FlightStudy, run: Run<'_>) -> Result<Outcome, Vec<Problem>> {
+/// Problems of the simulation that depend on the plan.
+pub fn simulate(study: &FlightStudy, run: Run<'_>) -> Result<FlightStudyOutcome, Vec<Problem>> {
     let (plan, optimality) = match &study.plan {
         Some(flight) => (flight.clone(), None),
         None => match planner::solve(&study.scenario, run) {
             plan::Outcome::Planned(plan) => (plan.flight, Some(plan.optimality)),
             plan::Outcome::Infeasible(reasons) | plan::Outcome::Failed(reasons) => {
-                return Ok(Outcome::NoPlan(reasons));
+                return Ok(FlightStudyOutcome::NoPlan(reasons));
             }
-            plan::Outcome::StoppedEmpty => return Ok(Outcome::Stopped),
+            plan::Outcome::StoppedEmpty => return Ok(FlightStudyOutcome::Stopped),
         },
     };
     let simulation = Simulation::try_new(&study.scenario, &plan, &study.simulation, "/simulation")?;
     let keep_every = keep_every(study, simulation.samples())?;
-    // Whoever wants the best so far wants this flight: half of it would be worth nothing.
+    // A stop asks for the best result so far, so that only cancelling ends the simulation.
     let cancelled = || run.stop.is_cancelled();
-    let Some(simulated) = simulation.fly(study.number, Some(keep_every), &cancelled) else {
-        return Ok(Outcome::Stopped);
+    let Some(simulated) = simulation.simulate(study.number, Some(keep_every), &cancelled) else {
+        return Ok(FlightStudyOutcome::Stopped);
     };
-    Ok(Outcome::Flown(Box::new(FlownOnce {
+    Ok(FlightStudyOutcome::Simulated(Box::new(SimulatedPlan {
         keep_every,
         simulated,
         sample_s: simulation.sample_s(),
@@ -91,7 +91,7 @@ pub fn fly(study: &FlightStudy, run: Run<'_>) -> Result<Outcome, Vec<Problem>> {
     })))
 }
 
-/// Which samples are kept: as asked for, or so many that a picture does not need more.
+/// Number of samples per state that is kept: as asked for, or so that [`DEFAULT_STATES`] are kept.
 fn keep_every(study: &FlightStudy, samples: usize) -> Result<usize, Vec<Problem>> {
     let Some(asked) = study.keep_every else {
         return Ok(samples.div_ceil(DEFAULT_STATES).max(1));

@@ -18,7 +18,7 @@ use slewplan_solver::run::progress::{Observer, Progress};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::NoStore;
 use slewplan_solver::tour::planner::{self, Run};
-use slewplan_tests::schedules::{Rates, Region, schedule};
+use slewplan_tests::schedules::{RateConditions, Region, schedule};
 use slewplan_tests::solving::pool;
 use std::ops::Range;
 use std::str::FromStr;
@@ -29,11 +29,11 @@ use std::time::Instant;
 const SEEDS: Range<u64> = 1..4;
 const EXACT_SIZES: [usize; 9] = [4, 6, 8, 10, 12, 14, 16, 18, 20];
 const ANYTIME_SIZES: [usize; 4] = [25, 50, 100, 200];
-const FAMILIES: [(Region, Rates); 4] = [
-    (Region::Sphere, Rates::AllZero),
-    (Region::Strip, Rates::AllZero),
-    (Region::Sphere, Rates::ZeroAboutZ),
-    (Region::Strip, Rates::ZeroAboutZ),
+const FAMILIES: [(Region, RateConditions); 4] = [
+    (Region::Sphere, RateConditions::AllZero),
+    (Region::Strip, RateConditions::AllZero),
+    (Region::Sphere, RateConditions::ZeroAboutZ),
+    (Region::Strip, RateConditions::ZeroAboutZ),
 ];
 
 /// Columns of the measurements.
@@ -80,7 +80,7 @@ fn number<T: FromStr>(text: &str) -> T {
 /// What is measured.
 struct Case<'a> {
     mode: &'a str,
-    family: (Region, Rates),
+    family: (Region, RateConditions),
     targets: usize,
     seed: u64,
     limit_s: f64,
@@ -154,7 +154,7 @@ fn described(plan: &Plan) -> String {
         plan.total_time_s,
         plan.lower_bound_s,
         plan.relative_gap,
-        plan.lower_bound_kind.as_str(),
+        plan.lower_bound_kind,
         plan.statistics.nodes_explored,
         plan.statistics.nlp_solves
     )

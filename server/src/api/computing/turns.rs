@@ -1,41 +1,42 @@
-//! Turns: how much of one sort of work is done at once.
+//! Turns: a limit on concurrent work of one kind.
 
 use super::super::error::{ApiError, ErrorCode};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-/// The right to do work; the next one has it when this is dropped.
-pub(super) type Turn = OwnedSemaphorePermit;
+/// The permission to do work; passes to the next request when it is dropped.
+pub(super) type WorkTurn = OwnedSemaphorePermit;
 
-/// The turns of one sort of work.
+/// The turns of one kind of work.
 pub(in crate::api) struct Turns {
     free: Arc<Semaphore>,
-    patience: Duration,
-    others: &'static str,
+    longest_wait: Duration,
+    refusal: &'static str,
 }
 
 impl Turns {
-    /// So many at once; who has waited so long is told what the others do.
-    pub(super) fn new(at_once: usize, patience: Duration, others: &'static str) -> Self {
+    /// Turns for `at_once` pieces of work; requests that have waited too long are refused with a
+    /// detail.
+    pub(super) fn new(at_once: usize, longest_wait: Duration, refusal: &'static str) -> Self {
         Self {
             free: Arc::new(Semaphore::new(at_once)),
-            patience,
-            others,
+            longest_wait,
+            refusal,
         }
     }
 
-    /// Waits for a turn, in the order of coming.
-    pub(super) async fn take(&self) -> Result<Turn, ApiError> {
+    /// Waits for a turn; requests get them in the order of their arrival.
+    pub(super) async fn take(&self) -> Result<WorkTurn, ApiError> {
         let turn = Arc::clone(&self.free).acquire_owned();
-        match tokio::time::timeout(self.patience, turn).await {
+        match tokio::time::timeout(self.longest_wait, turn).await {
             Ok(Ok(turn)) => Ok(turn),
-            // Nobody closes the semaphore.
-            Ok(Err(_)) | Err(_) => Err(ApiError::new(ErrorCode::Busy, self.others)),
+            // The semaphore is never closed.
+            Ok(Err(_)) | Err(_) => Err(ApiError::new(ErrorCode::Busy, self.refusal)),
         }
     }
 
-    /// How many may begin now.
+    /// Number of free turns.
     #[cfg(test)]
     pub(super) fn free(&self) -> usize {
         self.free.available_permits()

@@ -1,6 +1,6 @@
-//! Bodies on their way: requests that have to arrive in time, answers whose end is noticed.
+//! Bodies of requests with time limits, and bodies of answers that report their end.
 
-use super::connection_limit::Place;
+use super::connection_limit::ConnectionState;
 use axum::body::{Body, Bytes, HttpBody};
 use hyper::body::{Frame, Incoming, SizeHint};
 use std::error::Error;
@@ -9,7 +9,7 @@ use std::task::{Context, Poll, ready};
 use std::time::Duration;
 use tokio::time::{Instant, Sleep, sleep};
 
-/// Longest time for a body to arrive, and longest pause within it.
+/// Longest time until a body has arrived, and longest pause within it.
 const WHOLE: Duration = Duration::from_secs(30);
 const PAUSE: Duration = Duration::from_secs(5);
 
@@ -19,22 +19,22 @@ const PAUSE: Duration = Duration::from_secs(5);
 pub(crate) struct TooSlow;
 
 /// The body of a request.
-pub(super) struct Arriving {
+pub(super) struct TimedRequestBody {
     body: Incoming,
-    place: Place,
-    /// Rings at the end of a pause or of the whole time, whichever is earlier.
-    alarm: Pin<Box<Sleep>>,
+    state: ConnectionState,
+    /// The deadline: the end of the longest pause or of the whole time, whichever is earlier.
+    deadline: Pin<Box<Sleep>>,
     latest: Instant,
 }
 
-impl Arriving {
-    /// A body that is to arrive at a place.
-    pub(super) fn new(body: Incoming, place: Place) -> Self {
+impl TimedRequestBody {
+    /// A body that arrives on a connection.
+    pub(super) fn new(body: Incoming, state: ConnectionState) -> Self {
         let arriving = Self {
-            alarm: Box::pin(sleep(PAUSE)),
+            deadline: Box::pin(sleep(PAUSE)),
             latest: Instant::now() + WHOLE,
             body,
-            place,
+            state,
         };
         arriving.notice_end();
         arriving
@@ -42,12 +42,12 @@ impl Arriving {
 
     fn notice_end(&self) {
         if self.body.is_end_stream() {
-            self.place.has_request();
+            self.state.has_request();
         }
     }
 }
 
-impl HttpBody for Arriving {
+impl HttpBody for TimedRequestBody {
     type Data = Bytes;
     type Error = Box<dyn Error + Send + Sync>;
 
@@ -57,15 +57,15 @@ impl HttpBody for Arriving {
     ) -> Poll<Option<Result<Frame<Bytes>, Self::Error>>> {
         if let Poll::Ready(frame) = Pin::new(&mut self.body).poll_frame(context) {
             let next = (Instant::now() + PAUSE).min(self.latest);
-            self.alarm.as_mut().reset(next);
+            self.deadline.as_mut().reset(next);
             if frame.is_none() {
-                self.place.has_request();
+                self.state.has_request();
             } else {
                 self.notice_end();
             }
             return Poll::Ready(frame.map(|frame| frame.map_err(Into::into)));
         }
-        ready!(self.alarm.as_mut().poll(context));
+        ready!(self.deadline.as_mut().poll(context));
         Poll::Ready(Some(Err(TooSlow.into())))
     }
 
@@ -79,25 +79,25 @@ impl HttpBody for Arriving {
 }
 
 /// The body of an answer.
-pub(super) struct Answer {
+pub(super) struct ResponseBody {
     body: Body,
-    place: Place,
+    state: ConnectionState,
 }
 
-impl Answer {
-    /// A body that is sent from a place.
-    pub(super) fn new(body: Body, place: Place) -> Self {
-        Self { body, place }
+impl ResponseBody {
+    /// A body that is sent on a connection.
+    pub(super) fn new(body: Body, state: ConnectionState) -> Self {
+        Self { body, state }
     }
 }
 
-impl Drop for Answer {
+impl Drop for ResponseBody {
     fn drop(&mut self) {
-        self.place.has_answer();
+        self.state.has_answer();
     }
 }
 
-impl HttpBody for Answer {
+impl HttpBody for ResponseBody {
     type Data = Bytes;
     type Error = axum::Error;
 

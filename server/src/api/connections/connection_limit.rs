@@ -1,4 +1,4 @@
-//! Who is connected, and who leaves when it is full.
+//! The limit on connections, and the eviction of idle ones.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -6,36 +6,36 @@ use std::time::Duration;
 use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout};
 
-/// Time after which somebody is asked to leave again, if nobody did.
-const ASK_AGAIN: Duration = Duration::from_millis(50);
+/// Time after which another connection is evicted, if none has closed.
+const EVICTION_RETRY: Duration = Duration::from_millis(50);
 
-/// All connections.
+/// Limits the number of connections.
 #[derive(Debug)]
-pub(super) struct Roster {
-    seats: Arc<Semaphore>,
-    most: u32,
-    taken: Arc<Mutex<Taken>>,
+pub(super) struct ConnectionLimit {
+    permits: Arc<Semaphore>,
+    max: u32,
+    open: Arc<Mutex<OpenConnections>>,
 }
 
 #[derive(Debug, Default)]
-struct Taken {
-    places: BTreeMap<u64, Place>,
+struct OpenConnections {
+    states: BTreeMap<u64, ConnectionState>,
     next: u64,
 }
 
-/// What a connection is doing.
+/// Whether a connection waits for a request.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
-    /// Since when a request is waited for; nothing while one is answered.
+pub(super) struct ConnectionState {
+    /// Since when the connection has waited for a request; `None` while one is answered.
     waiting: Arc<Mutex<Option<Instant>>>,
-    leave: Arc<Notify>,
+    eviction: Arc<Notify>,
 }
 
-impl Place {
+impl ConnectionState {
     fn new() -> Self {
         Self {
             waiting: Arc::new(Mutex::new(Some(Instant::now()))),
-            leave: Arc::default(),
+            eviction: Arc::default(),
         }
     }
 
@@ -43,108 +43,109 @@ impl Place {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A request is here to its last byte.
+    /// A request has arrived completely.
     pub(super) fn has_request(&self) {
         *self.waiting() = None;
     }
 
-    /// Its answer has been given.
+    /// Its answer has been sent.
     pub(super) fn has_answer(&self) {
         *self.waiting() = Some(Instant::now());
     }
 }
 
-/// The right to be connected; given back with the value.
+/// The permission to hold one connection; returned when it is dropped.
 #[derive(Debug)]
-pub(super) struct Seat {
+pub(super) struct ConnectionPermit {
     number: u64,
-    place: Place,
-    taken: Arc<Mutex<Taken>>,
+    state: ConnectionState,
+    open: Arc<Mutex<OpenConnections>>,
     _permit: OwnedSemaphorePermit,
 }
 
-impl Roster {
-    /// Room for so many.
-    pub(super) fn new(most: usize) -> Self {
+impl ConnectionLimit {
+    /// A limit of `max` connections.
+    pub(super) fn new(max: usize) -> Self {
         Self {
-            seats: Arc::new(Semaphore::new(most)),
-            most: u32::try_from(most).unwrap_or(u32::MAX),
-            taken: Arc::default(),
+            permits: Arc::new(Semaphore::new(max)),
+            max: u32::try_from(max).unwrap_or(u32::MAX),
+            open: Arc::default(),
         }
     }
 
-    /// A seat. When there is none, whoever keeps the service waiting longest is asked to leave; when
-    /// all requests are being answered, this waits.
-    pub(super) async fn seat(&self) -> Seat {
+    /// Takes a permit. When there is none, the connection that has waited longest for a request is
+    /// evicted; when all are being answered, this waits.
+    pub(super) async fn permit(&self) -> ConnectionPermit {
         let permit = loop {
-            if self.seats.available_permits() == 0 {
-                self.make_room();
+            if self.permits.available_permits() == 0 {
+                self.evict_longest_waiting();
             }
-            let permit = Arc::clone(&self.seats).acquire_owned();
-            // Asked again, because whoever was asked may have begun to work meanwhile.
-            if let Ok(Ok(permit)) = timeout(ASK_AGAIN, permit).await {
+            let permit = Arc::clone(&self.permits).acquire_owned();
+            // Evicts again, because the chosen connection may have received a request in the
+            // meantime.
+            if let Ok(Ok(permit)) = timeout(EVICTION_RETRY, permit).await {
                 break permit;
             }
         };
-        let place = Place::new();
-        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        let number = taken.next;
-        taken.next += 1;
-        taken.places.insert(number, place.clone());
-        Seat {
+        let state = ConnectionState::new();
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = open.next;
+        open.next += 1;
+        open.states.insert(number, state.clone());
+        ConnectionPermit {
             number,
-            place,
-            taken: Arc::clone(&self.taken),
+            state,
+            open: Arc::clone(&self.open),
             _permit: permit,
         }
     }
 
-    fn make_room(&self) {
-        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        let since = |place: &Place| *place.waiting();
-        let longest = taken
-            .places
+    fn evict_longest_waiting(&self) {
+        let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        let since = |state: &ConnectionState| *state.waiting();
+        let longest = open
+            .states
             .values()
-            .filter_map(|place| Some((since(place)?, place)))
+            .filter_map(|state| Some((since(state)?, state)))
             .min_by_key(|(since, _)| *since);
-        if let Some((_, place)) = longest {
-            place.leave.notify_one();
+        if let Some((_, state)) = longest {
+            state.eviction.notify_one();
         }
     }
 
-    /// Waits until nobody is connected.
+    /// Waits until all connections are closed.
     pub(super) async fn emptied(&self) {
-        let all = self.seats.acquire_many(self.most).await;
+        let all = self.permits.acquire_many(self.max).await;
         drop(all);
     }
 }
 
-impl Seat {
-    /// Somebody has come, and is waited for from now on.
+impl ConnectionPermit {
+    /// The connection is established and waits for its first request.
     pub(super) fn begin(&self) {
-        self.place.has_answer();
+        self.state.has_answer();
     }
 
     /// What the connection is doing.
-    pub(super) fn place(&self) -> Place {
-        self.place.clone()
+    pub(super) fn state(&self) -> ConnectionState {
+        self.state.clone()
     }
 
-    /// Waits until somebody needs the seat more.
-    pub(super) async fn asked_to_leave(&self) {
+    /// Waits until the connection is evicted.
+    pub(super) async fn evicted(&self) {
         loop {
-            self.place.leave.notified().await;
-            if self.place.waiting().is_some() {
+            self.state.eviction.notified().await;
+            if self.state.waiting().is_some() {
                 return;
             }
         }
     }
 }
 
-impl Drop for Seat {
+impl Drop for ConnectionPermit {
     fn drop(&mut self) {
-        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        taken.places.remove(&self.number);
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.states.remove(&self.number);
     }
 }
 
@@ -153,21 +154,21 @@ mod tests {
     use super::*;
 
     #[tokio::test(start_paused = true)]
-    async fn the_longest_waiting_leaves_and_the_answered_stay() {
-        let connection_limit = Roster::new(3);
-        let mut seats = Vec::new();
+    async fn the_longest_waiting_connection_is_evicted() {
+        let connection_limit = ConnectionLimit::new(3);
+        let mut permits = Vec::new();
         for _ in 0..3 {
-            seats.push(connection_limit.seat().await);
+            permits.push(connection_limit.permit().await);
             tokio::time::advance(Duration::from_secs(1)).await;
         }
-        // Whoever sits on the first came last: it has waited least.
-        seats[0].begin();
-        seats[1].place().has_request();
+        // The first connection begins again, so that it has waited least.
+        permits[0].begin();
+        permits[1].state().has_request();
         let leaves = async {
-            seats[2].asked_to_leave().await;
-            seats.pop();
+            permits[2].evicted().await;
+            permits.pop();
         };
-        let (newcomer, ()) = tokio::join!(connection_limit.seat(), leaves);
+        let (newcomer, ()) = tokio::join!(connection_limit.permit(), leaves);
         assert_eq!(newcomer.number, 3);
     }
 }

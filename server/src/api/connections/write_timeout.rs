@@ -1,4 +1,4 @@
-//! A stream to a client who has to read what was asked for.
+//! A time limit on writes to clients that do not read.
 
 use std::io;
 use std::pin::Pin;
@@ -7,17 +7,17 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::{Sleep, sleep};
 
-/// Longest time in which a client takes nothing of an answer.
+/// Longest time without progress of a write.
 const STALL: Duration = Duration::from_secs(30);
 
-/// A stream that breaks when nothing can be written for too long.
-pub(super) struct Steady<S> {
+/// A stream that fails when nothing can be written for [`STALL`].
+pub(super) struct WriteTimeout<S> {
     stream: S,
     stalled: Option<Pin<Box<Sleep>>>,
 }
 
-impl<S> Steady<S> {
-    /// Watches over a stream.
+impl<S> WriteTimeout<S> {
+    /// Wraps a stream.
     pub(super) fn new(stream: S) -> Self {
         Self {
             stream,
@@ -42,7 +42,7 @@ impl<S> Steady<S> {
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for Steady<S> {
+impl<S: AsyncRead + Unpin> AsyncRead for WriteTimeout<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -52,7 +52,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Steady<S> {
     }
 }
 
-impl<S: AsyncWrite + Unpin> AsyncWrite for Steady<S> {
+impl<S: AsyncWrite + Unpin> AsyncWrite for WriteTimeout<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -92,9 +92,9 @@ mod tests {
     use tokio::io::{AsyncReadExt, AsyncWriteExt, duplex};
 
     #[tokio::test(start_paused = true)]
-    async fn who_reads_slowly_gets_everything_and_who_does_not_read_is_cut_off() {
+    async fn slow_readers_are_served_and_stalled_ones_are_cut_off() {
         let (near, mut far) = duplex(4);
-        let mut write_timeout = Steady::new(near);
+        let mut write_timeout = WriteTimeout::new(near);
         let reader = tokio::spawn(async move {
             let mut read = [0; 8];
             for byte in &mut read {

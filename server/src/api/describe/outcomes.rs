@@ -1,13 +1,13 @@
 //! Errors that many routes can answer with.
 
-use super::super::error::{ErrorDocument, PROBLEM_JSON};
+use super::super::error::{PROBLEM_JSON, ProblemDetails};
 use std::collections::BTreeMap;
 use utoipa::openapi::{ContentBuilder, Ref, RefOr, Response, ResponseBuilder};
 use utoipa::{IntoResponses, ToSchema};
 
 fn problems(list: &[(&str, &str)]) -> BTreeMap<String, RefOr<Response>> {
     let response = |text: &str| {
-        let schema = Ref::from_schema_name(ErrorDocument::name());
+        let schema = Ref::from_schema_name(ProblemDetails::name());
         ResponseBuilder::new()
             .description(text)
             .content(

@@ -2,7 +2,7 @@
 
 use super::super::App;
 use super::super::describe::{ParameterErrors, ServerErrors};
-use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::extract::{self, Parameters};
 use crate::documents::stored_legs::{StoredLegDocument, StoredLegListDocument};
 use crate::store::LegFilter;
@@ -15,40 +15,39 @@ use utoipa::IntoParams;
 
 const DEFAULT_LIMIT: u16 = 50;
 const MAX_LIMIT: u16 = 200;
-/// What remains of an attitude that was written with six digits, degrees.
+/// Default tolerance: the rounding of attitudes written with six digits, degrees.
 const DEFAULT_TOLERANCE_DEG: f64 = 1e-3;
 
-/// What to list.
+/// Filter and page of the list.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
+pub(in crate::api) struct LegListQuery {
     /// Only legs of the spacecraft with this key.
     #[param(pattern = "^[0-9a-f]{64}$")]
     spacecraft_key: Option<String>,
-    /// Only legs that lead to this attitude, a quaternion `x,y,z,w`. A leg is stored without the
-    /// place where it was flown, so what counts is the relative attitude: the turn to here from
-    /// `from`. A leg that is `reversible` is found from either side.
+    /// Only legs that lead to this attitude, a quaternion `x,y,z,w`. Legs are stored without
+    /// absolute attitudes, so that only the relative attitude counts: the rotation from `from` to
+    /// this one. A `reversible` leg is found from either side.
     #[param(
         example = "0.130526,0,0,0.991445",
         pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
     )]
     attitude: Option<String>,
-    /// Only legs that lead from this attitude, a quaternion `x,y,z,w`. Of `from` and `attitude`
-    /// the one that is left out is the identity.
+    /// Only legs that lead from this attitude, a quaternion `x,y,z,w`. If one of `from` and
+    /// `attitude` is left out, it is the identity.
     #[param(
         example = "0,0,0,1",
         pattern = "^-?[0-9]+([.][0-9]+)?(,-?[0-9]+([.][0-9]+)?){3}$"
     )]
     from: Option<String>,
-    /// Largest angle, degrees, between the relative attitude that is asked for and the `turn` of a
-    /// leg.
+    /// Maximum angle, degrees, between the requested relative attitude and the `turn` of a leg.
     #[param(minimum = 0, maximum = 180, default = 0.001)]
     tolerance_deg: Option<f64>,
     /// Where the page begins: `next_cursor` of the page before.
     #[param(pattern = "^[0-9]{1,9}$")]
     cursor: Option<String>,
-    /// Most legs of the page.
+    /// Maximum number of legs of the page.
     #[param(minimum = 1, maximum = 200, default = 50)]
     limit: Option<u16>,
 }
@@ -56,17 +55,17 @@ pub(in crate::api) struct Query {
 /// List cached legs in the order in which they were stored
 #[utoipa::path(
     get, path = "/v1/legs", tag = "legs", operation_id = "list_legs",
-    params(Query),
+    params(LegListQuery),
     responses(
         (status = 200, description = "A page of legs", body = StoredLegListDocument),
         (status = 422, description = "The attitude has no direction",
-            body = ErrorDocument<'static>, content_type = "application/problem+json"),
+            body = ProblemDetails<'static>, content_type = "application/problem+json"),
         ParameterErrors, ServerErrors,
     ),
 )]
 pub(in crate::api) async fn handler(
     State(app): State<App>,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<LegListQuery>,
 ) -> Result<Json<StoredLegListDocument>, ApiError> {
     let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
     if !(1..=MAX_LIMIT).contains(&limit) {
@@ -111,7 +110,7 @@ fn wrong(detail: impl Into<String>) -> ApiError {
     ApiError::new(ErrorCode::InvalidParameter, detail)
 }
 
-/// The relative attitude that is asked for, if one is.
+/// The requested relative attitude, if any.
 fn turn(from: Option<&str>, to: Option<&str>) -> Result<Option<[f64; 4]>, ApiError> {
     if from.is_none() && to.is_none() {
         return Ok(None);
@@ -123,7 +122,7 @@ fn turn(from: Option<&str>, to: Option<&str>) -> Result<Option<[f64; 4]>, ApiErr
     Ok(Some(from.turn_to(&to).xyzw()))
 }
 
-/// A quaternion of any length but zero.
+/// Reads a quaternion of any norm but zero.
 fn quaternion(name: &str, text: &str) -> Result<Attitude, ApiError> {
     let parts: Option<Vec<f64>> = text
         .split(',')
@@ -134,7 +133,7 @@ fn quaternion(name: &str, text: &str) -> Result<Attitude, ApiError> {
         xyzw.ok_or_else(|| wrong(format!("{name} is a quaternion x,y,z,w of four numbers")))?;
     Attitude::from_xyzw(xyzw).ok_or_else(|| {
         ApiError::input(vec![Problem::new(
-            // A parameter has no place in a document; its name stands for one.
+            // The name of the parameter takes the place of a pointer.
             format!("/{name}"),
             Code::ZeroDirection,
             format!("{text} has no direction: its length is zero or not finite"),

@@ -5,7 +5,7 @@ use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::JsonBody;
 use super::super::{App, computing, stored};
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents::leg_query::{
     self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
 };
@@ -21,16 +21,16 @@ use slewplan_solver::tour::planner::{self, LegRow, Run, Shard};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 
-/// Most legs of one query: the full matrix of 32 attitudes.
+/// Maximum number of legs of one query: the full matrix of 32 attitudes.
 pub(in crate::api) const MAX_PAIRS: usize = 1000;
 /// With a start and two targets, the fourth of six pairs leads from the first target to the second.
 const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 
-/// Ask for leg times
+/// Query leg times
 ///
-/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with what
-/// is known; `compute` solves what is not, for at most a minute. Legs of the kind `certified`
-/// are only computed, without solving any slew, and not stored.
+/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with the
+/// cached legs; `compute` also solves the missing ones, for at most a minute. Legs of the kind
+/// `certified` are only computed, without solving any slew, and not stored.
 #[utoipa::path(
     post, path = "/v1/legs/query", tag = "legs", operation_id = "query_legs",
     request_body(content = LegQueryBody, examples(
@@ -61,7 +61,7 @@ pub(in crate::api) async fn handler(
         let stop = StopSignal::new();
         stop.request();
         let answers =
-            computing::at_once(&app, (stop, computing::LONGEST), work(&app, query, false)).await;
+            computing::at_once(&app, stop, computing::LONGEST, work(&app, query, false)).await;
         return answers.map(Json);
     }
     computing::in_turn(&app, computing::LONGEST, work(&app, query, true))
@@ -79,7 +79,7 @@ fn work(
     let pool = Arc::clone(if compute { &app.0.pool } else { &app.0.lookups });
     move |stop| {
         let answers = answers(&query, &pool, stop, &cache);
-        // Written before the answer names their keys.
+        // Stores new legs before the answer names their keys.
         drop(cache);
         answers
     }
@@ -102,13 +102,14 @@ fn answers(
         .iter()
         .find_map(|(_, spacecraft)| spacecraft.clone());
     LegAnswersDocument {
-        kind: query.kind.as_str(),
+        kind: query.kind.into(),
         spacecraft_key,
         legs: answered.into_iter().map(|(leg, _)| leg).collect(),
     }
 }
 
-/// The answers for certified legs, in one go: they share what is prepared for the spacecraft.
+/// The answers for certified legs, computed together because they share the preparation of the
+/// spacecraft.
 fn certified(
     query: &LegQuery,
     pool: &SolverPool,
@@ -122,7 +123,7 @@ fn certified(
     let run = Run {
         pool,
         stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     };
@@ -142,19 +143,19 @@ fn answer(
     stop: &StopSignal,
     cache: &dyn LegStore,
 ) -> (LegAnswerDocument, Option<String>) {
-    let witness = Witness {
+    let store = ObservedStore {
         cache,
         seen: Mutex::default(),
     };
     let run = Run {
         pool,
         stop,
-        observer: &Unwatched,
-        legs: &witness,
+        observer: &ContradictionObserver,
+        legs: &store,
         segments: &NoStore,
     };
     let (rows, _) = planner::leg_table(&pair.scenario, kind, BETWEEN_TARGETS, run);
-    let seen = witness
+    let seen = store
         .seen
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
@@ -188,8 +189,8 @@ fn document(
     }
 }
 
-/// Notes which leg the solver asked for.
-struct Witness<'a> {
+/// A leg store that records the leg that the solver read or wrote.
+struct ObservedStore<'a> {
     cache: &'a dyn LegStore,
     seen: Mutex<Option<Seen>>,
 }
@@ -200,7 +201,7 @@ struct Seen {
     found: bool,
 }
 
-impl Witness<'_> {
+impl ObservedStore<'_> {
     fn note(&self, identity: &str, leg: &StoredLeg, found: bool) {
         let seen = Seen {
             key: leg_key(identity),
@@ -211,7 +212,7 @@ impl Witness<'_> {
     }
 }
 
-impl LegStore for Witness<'_> {
+impl LegStore for ObservedStore<'_> {
     fn get(&self, identity: &str) -> Option<StoredLeg> {
         let leg = self.cache.get(identity)?;
         self.note(identity, &leg, true);

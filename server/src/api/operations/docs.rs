@@ -2,17 +2,19 @@
 
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::header_text;
-use super::super::{respond, router};
+use super::super::respond;
 use crate::base::digest;
 use crate::store::EndCode;
+use axum::Extension;
 use axum::body::Bytes;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use slewplan_solver::model::problem::Code;
 use std::fmt::Write;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
+use strum::VariantArray as _;
 
-/// A text of this build with its tag.
+/// A constant text with its entity tag.
 struct Page {
     form: &'static str,
     tag: String,
@@ -35,14 +37,24 @@ impl Page {
     }
 }
 
-static OPENAPI: LazyLock<Page> = LazyLock::new(|| Page::new("application/yaml", router::openapi()));
+/// The description of the interface. The router, which lists the routes, provides it.
+#[derive(Clone)]
+pub(in crate::api) struct OpenApiPage(Arc<Page>);
+
+impl OpenApiPage {
+    /// The page of a description as YAML.
+    pub(in crate::api) fn new(yaml: String) -> Self {
+        Self(Arc::new(Page::new("application/yaml", yaml)))
+    }
+}
+
 static ERRORS: LazyLock<Page> = LazyLock::new(|| Page::new("text/html; charset=utf-8", index()));
 
 /// Read this description
 #[utoipa::path(
     get, path = "/openapi.yaml", tag = "operations", operation_id = "get_openapi",
     params(("If-None-Match" = Option<String>, Header,
-        description = "Entity tags that are known already")),
+        description = "Entity tags of cached contents")),
     responses(
         (status = 200, description = "OpenAPI 3.1", body = serde_json::Value,
             content_type = "application/yaml",
@@ -50,15 +62,18 @@ static ERRORS: LazyLock<Page> = LazyLock::new(|| Page::new("text/html; charset=u
         (status = 304, description = "Not changed"),
     ),
 )]
-pub(in crate::api) async fn openapi(headers: HeaderMap) -> Result<Response, ApiError> {
-    OPENAPI.answer(&headers)
+pub(in crate::api) async fn openapi(
+    Extension(description): Extension<OpenApiPage>,
+    headers: HeaderMap,
+) -> Result<Response, ApiError> {
+    description.0.answer(&headers)
 }
 
 /// Read the index of errors
 #[utoipa::path(
     get, path = "/docs/errors", tag = "operations", operation_id = "get_error_index",
     params(("If-None-Match" = Option<String>, Header,
-        description = "Entity tags that are known already")),
+        description = "Entity tags of cached contents")),
     responses(
         (status = 200, description = "Every code and what it means", body = String,
             content_type = "text/html",
@@ -70,7 +85,7 @@ pub(in crate::api) async fn errors(headers: HeaderMap) -> Result<Response, ApiEr
     ERRORS.answer(&headers)
 }
 
-/// Enough to read the tables by; nothing is loaded.
+/// Inline styles of the page, which loads nothing.
 const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;\
     padding:0 1rem;color-scheme:light dark}table{border-collapse:collapse;width:100%}\
     th,td{text-align:left;vertical-align:top;padding:.35rem .75rem .35rem 0;\
@@ -104,7 +119,7 @@ fn index() -> String {
         "</table><h2 id=\"inputs\">Problems of inputs</h2>\
          <table><tr><th>Code<th>Meaning<th>What to do",
     );
-    for code in Code::ALL {
+    for code in Code::VARIANTS {
         let (meaning, remedy) = (code.meaning(), code.remedy());
         let _ = write!(
             page,

@@ -1,9 +1,9 @@
 //! `GET /health/live` and `GET /health/ready`.
 
-use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::{App, describe};
 use crate::base::clock::now_us;
-use crate::base::contradictions::Unwatched;
+use crate::base::contradictions::ContradictionObserver;
 use crate::documents;
 use axum::Json;
 use axum::extract::State;
@@ -17,50 +17,52 @@ use std::time::{Duration, Instant};
 use tokio::sync::Mutex;
 use utoipa::ToSchema;
 
-/// The service is well.
+/// A positive answer of a health check.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Health)]
-pub(in crate::api) struct Document {
+pub(in crate::api) struct HealthDocument {
     /// Always `ok`.
     status: &'static str,
 }
 
-/// Time after which it is worth asking again, s.
+/// `Retry-After` of a negative answer, s.
 const RETRY_S: u32 = 5;
 
-/// Whether the process answers; touches nothing else
+/// Check that the process answers, and nothing else
 #[utoipa::path(
     get, path = "/health/live", tag = "operations", operation_id = "get_live",
-    responses((status = 200, description = "It does", body = Document)),
+    responses((status = 200, description = "The process answers", body = HealthDocument)),
 )]
-pub(in crate::api) async fn live() -> Json<Document> {
-    Json(Document { status: "ok" })
+pub(in crate::api) async fn live() -> Json<HealthDocument> {
+    Json(HealthDocument { status: "ok" })
 }
 
-/// How long an answer about the database and the solver holds: however often somebody asks, they
-/// are not tried more often than that.
+/// Time for which an answer is cached, so that frequent checks do not load the database and the
+/// solver.
 const FRESH: Duration = Duration::from_secs(1);
-/// Longest time for the trial of the solver, which takes milliseconds.
+/// Time limit of the trial solve, which normally takes milliseconds.
 const MAX_SOLVE: Duration = Duration::from_secs(5);
 
-/// The newest answer of the database and the solver, and since when it holds: why they cannot be
-/// used, if they cannot. Who asks meanwhile waits for it.
+/// The newest answer, with its time: why database or solver cannot be used, if they cannot.
+/// Concurrent checks wait for it.
 pub(in crate::api) type Readiness = Mutex<Option<(Instant, Result<(), &'static str>)>>;
 
-/// Whether the service can take work: the database can be written, a small leg is solved, and the
-/// queue has room
+/// Check that the service can take work: the database is writable, a small leg can be solved, and
+/// the queue has room
 #[utoipa::path(
     get, path = "/health/ready", tag = "operations", operation_id = "get_ready",
     responses(
-        (status = 200, description = "It can", body = Document),
-        (status = 503, description = "It cannot", body = ErrorDocument<'static>,
+        (status = 200, description = "The service can take work", body = HealthDocument),
+        (status = 503, description = "The service cannot take work", body = ProblemDetails<'static>,
             content_type = "application/problem+json"),
     ),
 )]
-pub(in crate::api) async fn ready(State(app): State<App>) -> Result<Json<Document>, ApiError> {
+pub(in crate::api) async fn ready(
+    State(app): State<App>,
+) -> Result<Json<HealthDocument>, ApiError> {
     let not_ready = |why: &str| ApiError::new(ErrorCode::NotReady, why).retry_after(RETRY_S);
     if app.shutdown().has_begun() {
-        return Err(not_ready("the service is about to end"));
+        return Err(not_ready("the service is shutting down"));
     }
     let mut newest = app.0.readiness.lock().await;
     let known = newest.filter(|(since, _)| since.elapsed() < FRESH);
@@ -70,7 +72,7 @@ pub(in crate::api) async fn ready(State(app): State<App>) -> Result<Json<Documen
     };
     drop(newest);
     answer.map_err(not_ready)?;
-    Ok(Json(Document { status: "ok" }))
+    Ok(Json(HealthDocument { status: "ok" }))
 }
 
 async fn examine(app: &App) -> Result<(), &'static str> {
@@ -94,7 +96,7 @@ async fn examine(app: &App) -> Result<(), &'static str> {
     }
 }
 
-/// Solves a small leg without remembering it.
+/// Whether a small leg can be solved; it is not cached.
 fn solves(pool: &SolverPool) -> bool {
     let scenario = describe::two_targets().to_string();
     let Ok(valid) = documents::scenario::read(scenario.as_bytes(), None) else {
@@ -104,13 +106,13 @@ fn solves(pool: &SolverPool) -> bool {
     let run = Run {
         pool,
         stop: &stop,
-        observer: &Unwatched,
+        observer: &ContradictionObserver,
         legs: &NoStore,
         segments: &NoStore,
     };
     let first = Shard {
         index: 0,
-        // Of more parts than there are legs: one leg.
+        // With more shards than legs, a shard has one leg.
         of: usize::MAX,
     };
     let (rows, _) = planner::leg_table(&valid.scenario, LegKind::RestToRest, first, run);

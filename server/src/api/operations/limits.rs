@@ -1,4 +1,4 @@
-//! `GET /v1/limits`: what a request may ask for at most.
+//! `GET /v1/limits`: the limits on requests.
 
 use super::super::App;
 use super::super::{computing, legs::query, plans::create};
@@ -7,25 +7,25 @@ use axum::extract::State;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What a request may ask for at most.
+/// Limits on requests.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Limits)]
-pub(in crate::api) struct Document {
-    /// Largest body, bytes.
+pub(in crate::api) struct LimitsDocument {
+    /// Maximum size of a body, bytes.
     max_body_bytes: usize,
-    /// Most values in a body, those in lists and objects included, and names of members.
+    /// Maximum number of values in a body, nested ones included, and names of members.
     max_body_values: usize,
-    /// Most targets of a scenario.
+    /// Maximum number of targets of a scenario.
     max_targets: usize,
-    /// Memory that one job may take, bytes.
+    /// Memory limit of one job, bytes.
     job_memory_bytes: u64,
-    /// Most jobs that wait.
+    /// Maximum number of queued jobs.
     queue_limit: i64,
-    /// Most jobs of one client that wait, where keys are asked for.
+    /// Maximum number of queued jobs of one client, where keys are required.
     client_queue_limit: i64,
     /// Longest `Prefer: wait`, s.
     max_wait_s: u64,
-    /// Most legs of a query.
+    /// Maximum number of legs of a query.
     max_leg_pairs: usize,
     /// Longest time that a query for legs may compute, s.
     max_leg_query_s: u64,
@@ -36,10 +36,10 @@ pub(in crate::api) struct Document {
 /// Read the limits of this service
 #[utoipa::path(
     get, path = "/v1/limits", tag = "operations", operation_id = "get_limits",
-    responses((status = 200, description = "The limits", body = Document)),
+    responses((status = 200, description = "The limits", body = LimitsDocument)),
 )]
-pub(in crate::api) async fn handler(State(app): State<App>) -> Json<Document> {
-    Json(Document {
+pub(in crate::api) async fn handler(State(app): State<App>) -> Json<LimitsDocument> {
+    Json(LimitsDocument {
         max_body_bytes: app.limits().body_bytes,
         max_body_values: app.limits().body_values(),
         max_targets: app.limits().targets,

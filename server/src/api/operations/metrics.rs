@@ -1,18 +1,18 @@
-//! `GET /metrics`: figures in the text form of Prometheus.
+//! `GET /metrics`: metrics in the text format of Prometheus.
 
 use super::super::App;
 use super::super::describe::ServerErrors;
 use super::super::error::ApiError;
 use crate::base::contradictions;
-use crate::base::metrics::{head, sample};
+use crate::base::metrics::{Scrape, TEXT_FORMAT};
 use axum::extract::State;
 use axum::http::{HeaderName, header};
 
-/// Read the figures for Prometheus
+/// Read the metrics for Prometheus
 #[utoipa::path(
     get, path = "/metrics", tag = "operations", operation_id = "get_metrics",
     responses(
-        (status = 200, description = "The figures", body = String,
+        (status = 200, description = "The metrics", body = String,
             content_type = "text/plain"),
         ServerErrors,
     ),
@@ -20,64 +20,38 @@ use axum::http::{HeaderName, header};
 pub(in crate::api) async fn handler(
     State(app): State<App>,
 ) -> Result<([(HeaderName, &'static str); 1], String), ApiError> {
-    let mut text = String::new();
-    let counts = app.store().counts().await?;
-    head(&mut text, "slewplan_jobs", "gauge", "Jobs in every state.");
-    for count in counts {
-        let labels = format!("state=\"{}\"", count.state.as_str());
-        sample(&mut text, "slewplan_jobs", &labels, count.jobs);
-    }
-    let legs = app.store().leg_count().await?;
-    head(
-        &mut text,
+    let scrape = Scrape::default();
+    let jobs = app.store().counts().await?;
+    scrape.gauge(
+        "slewplan_jobs",
+        "Jobs in every state.",
+        ["state"],
+        jobs.iter()
+            .map(|count| ([count.state.into_str()], count.jobs)),
+    );
+    scrape.gauge(
         "slewplan_cached_legs",
-        "gauge",
         "Legs in the database.",
+        [],
+        [([], app.store().leg_count().await?)],
     );
-    sample(&mut text, "slewplan_cached_legs", "", legs);
-    let tally = app.jobs().tally();
-    let name = "slewplan_leg_lookups_total";
-    head(
-        &mut text,
-        name,
-        "counter",
-        "Legs that the solver looked up.",
-    );
-    sample(&mut text, name, "outcome=\"hit\"", tally.hits());
-    sample(&mut text, name, "outcome=\"miss\"", tally.misses());
-    let name = "slewplan_contradictions_total";
-    head(
-        &mut text,
-        name,
-        "counter",
-        "Flights that contradicted a certified bound or a stored leg: defects of the planner.",
-    );
-    sample(&mut text, name, "", contradictions::count());
-    let name = "slewplan_database_bytes";
-    head(
-        &mut text,
-        name,
-        "gauge",
+    scrape.add(contradictions::counter());
+    scrape.gauge(
+        "slewplan_database_bytes",
         "Size of the files of the database.",
+        ["file"],
+        app.store()
+            .sizes()
+            .map(|(file, bytes)| ([file], bytes.try_into().unwrap_or(i64::MAX))),
     );
-    for (file, bytes) in app.store().sizes() {
-        sample(&mut text, name, &format!("file=\"{file}\""), bytes);
-    }
-    let name = "slewplan_event_streams_free";
-    head(
-        &mut text,
-        name,
-        "gauge",
+    let free = app.0.streams.available_permits();
+    scrape.gauge(
+        "slewplan_event_streams_free",
         "Streams of events that can still be opened.",
+        [],
+        [([], free.try_into().unwrap_or(i64::MAX))],
     );
-    sample(&mut text, name, "", app.0.streams.available_permits());
-    app.jobs().job_tally().write(&mut text);
-    app.0.metrics.write(&mut text);
-    Ok((
-        [(
-            header::CONTENT_TYPE,
-            "text/plain; version=0.0.4; charset=utf-8",
-        )],
-        text,
-    ))
+    app.jobs().metrics().report(&scrape);
+    app.0.metrics.report(&scrape);
+    Ok(([(header::CONTENT_TYPE, TEXT_FORMAT)], scrape.text()))
 }

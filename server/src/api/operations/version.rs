@@ -1,13 +1,13 @@
-//! `GET /v1/version`: which program answers.
+//! `GET /v1/version`: name and version of the program.
 
 use axum::Json;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// Which program answers.
+/// Name and version of the program.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Version)]
-pub(in crate::api) struct Document {
+pub(in crate::api) struct VersionDocument {
     /// Always `slewplan`.
     name: &'static str,
     /// Version of program and solver.
@@ -19,10 +19,10 @@ pub(in crate::api) struct Document {
 /// Read the version
 #[utoipa::path(
     get, path = "/v1/version", tag = "operations", operation_id = "get_version",
-    responses((status = 200, description = "The version", body = Document)),
+    responses((status = 200, description = "The version", body = VersionDocument)),
 )]
-pub(in crate::api) async fn handler() -> Json<Document> {
-    Json(Document {
+pub(in crate::api) async fn handler() -> Json<VersionDocument> {
+    Json(VersionDocument {
         name: "slewplan",
         version: env!("CARGO_PKG_VERSION"),
         api: "v1",

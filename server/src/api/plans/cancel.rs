@@ -1,4 +1,4 @@
-//! `POST /v1/plans/{id}/cancel`: abandon a job.
+//! `POST /v1/plans/{id}/cancel`: cancels a job.
 
 use super::super::App;
 use super::super::describe::{Conflict, NotFound, ServerErrors};
@@ -11,7 +11,7 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 
-/// Abandon a queued or running job
+/// Cancel a queued or running job
 ///
 /// Answers when the job has ended, or after two seconds with 202 when it has not.
 #[utoipa::path(

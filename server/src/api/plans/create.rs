@@ -1,4 +1,4 @@
-//! `POST /v1/plans`: a scenario becomes a job.
+//! `POST /v1/plans`: submits a scenario as a job.
 
 use super::super::App;
 use super::super::access::Caller;
@@ -31,8 +31,8 @@ const MAX_KEY: usize = 255;
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
-    /// Only say what is wrong or doubtful; nothing is queued.
+pub(in crate::api) struct SubmissionQuery {
+    /// Validate the scenario only; nothing is queued.
     #[serde(default)]
     validate_only: bool,
 }
@@ -45,7 +45,7 @@ pub(in crate::api) struct Query {
 #[utoipa::path(
     post, path = "/v1/plans", tag = "plans", operation_id = "create_plan",
     params(
-        Query,
+        SubmissionQuery,
         ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
             pattern = "^[!-~]+$",
             description = "The same request under the same key makes one job"),
@@ -59,8 +59,7 @@ pub(in crate::api) struct Query {
             value = json!(super::super::describe::experiment_a()))),
     )),
     responses(
-        (status = 200, description = "The finished plan, the job that ended without one, or what \
-            validation says", body = inline(Finished)),
+        (status = 200, description = "The finished plan, the job that ended without one, or the findings of the validation", body = inline(Finished)),
         (status = 202, description = "The job, queued or already running",
             body = JobDocument,
             headers(("Location" = String, description = "Address of the job")),
@@ -86,7 +85,7 @@ pub(in crate::api) struct Query {
 pub(in crate::api) async fn handler(
     State(app): State<App>,
     caller: Caller,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<SubmissionQuery>,
     headers: HeaderMap,
     body: JsonBody,
 ) -> Result<Response, ApiError> {
@@ -127,8 +126,8 @@ pub(in crate::api) async fn handler(
     Ok(response)
 }
 
-/// Refuses cheaply while the queue is full; whoever gets past this may still come too late. A key may
-/// stand for a job that is there already.
+/// Refuses a submission early while the queue is full; the store checks again. Not for requests
+/// with an idempotency key, which may belong to an existing job.
 async fn check_room(app: &App) -> Result<(), ApiError> {
     if app.store().waiting().await? < app.jobs().queue_limits().all {
         return Ok(());
@@ -138,11 +137,11 @@ async fn check_room(app: &App) -> Result<(), ApiError> {
 
 fn queue_full(app: &App) -> ApiError {
     let limit = app.jobs().queue_limits().all;
-    let detail = format!("{limit} jobs wait already (queue_limit)");
+    let detail = format!("{limit} jobs are queued already (queue_limit)");
     ApiError::new(ErrorCode::QueueFull, detail)
 }
 
-/// What a finished request answers.
+/// The answer of a finished request.
 #[derive(serde::Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "only describes the answer")]
@@ -165,7 +164,7 @@ fn validation(valid: &Validated) -> Result<Response, ApiError> {
 
 async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), ApiError> {
     if app.shutdown().has_begun() {
-        let detail = "the service is about to end";
+        let detail = "the service is shutting down";
         return Err(ApiError::new(ErrorCode::NotReady, detail));
     }
     match app.jobs().submit(submission).await? {
@@ -181,13 +180,14 @@ async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), Ap
         Submitted::QueueFull => Err(queue_full(app)),
         Submitted::QuotaExceeded => {
             let limit = app.jobs().queue_limits().client;
-            let detail = format!("{limit} jobs of this client wait already (client_queue_limit)");
+            let detail =
+                format!("{limit} jobs of this client are queued already (client_queue_limit)");
             Err(ApiError::new(ErrorCode::QuotaExceeded, detail))
         }
     }
 }
 
-/// The plan when it is ready in time, the job otherwise.
+/// The plan if it is ready in time, else the job.
 async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
     let Some(patience) = wait else {
         return Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job));
@@ -197,8 +197,8 @@ async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Respon
     let result = found.and_then(|(_, plan)| plan);
     Ok(match result.filter(|result| result.is_final) {
         Some(result) => located(super::result::json(&result), &job),
-        // Without a plan nothing more may come: a job that was cancelled, for one.
-        None => located(super::standing(&job)?, &job),
+        // A final job without a plan, such as a cancelled one, gets none later.
+        None => located(super::ended_or_accepted(&job)?, &job),
     })
 }
 
@@ -222,7 +222,7 @@ fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, ApiError> {
     Ok(Some(key.to_owned()))
 }
 
-/// The wait of `Prefer: wait=N`. Preferences that are not understood are ignored, as RFC 7240 says.
+/// The wait of `Prefer: wait=N`. Unknown preferences are ignored (RFC 7240).
 fn wait(headers: &HeaderMap) -> Option<Duration> {
     let preferences = headers
         .get_all("prefer")

@@ -1,4 +1,4 @@
-//! `DELETE /v1/plans/{id}`: a job and all that belongs to it.
+//! `DELETE /v1/plans/{id}`: deletes a job with its result and events.
 
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};

@@ -1,4 +1,4 @@
-//! `GET /v1/plans/{id}/events`: what happens to a job, as it happens.
+//! `GET /v1/plans/{id}/events`: the events of a job as server-sent events.
 
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
@@ -18,31 +18,30 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, watch};
 use tokio::time::Instant;
 
-/// Longest life of a stream.
-const LIFE: Duration = Duration::from_hours(1);
-/// Longest wait, when the service ends, for the job to be given back.
-const FAREWELL: Duration = Duration::from_secs(2);
-/// Time after which a client shall connect again.
-const AGAIN: Duration = Duration::from_secs(2);
+/// Maximum duration of a stream.
+const MAX_DURATION: Duration = Duration::from_hours(1);
+/// Longest wait at a shutdown until the running job is back in the queue.
+const SHUTDOWN_WAIT: Duration = Duration::from_secs(2);
+/// Time after which clients reconnect.
+const RECONNECT: Duration = Duration::from_secs(2);
 
 /// Follow a job
 ///
-/// Server-sent events with ids that count from 1. Every event carries state, incumbent and bound.
-/// A stream ends after the last event of a job; one that broke is resumed with `Last-Event-ID`.
-/// Where nothing is left to tell of a job that has ended, the answer is 204, which keeps an
-/// `EventSource` from coming again. When the service ends, and after an hour, a stream ends with
-/// `closing`, which has no id: connect again.
+/// Server-sent events with ids that count from 1. Every event has state, incumbent and bound. A
+/// stream ends after the last event of a job; a broken one is resumed with `Last-Event-ID`. If the
+/// job has ended and there are no further events, the answer is 204, which keeps an `EventSource`
+/// from reconnecting. When the service ends, and after an hour, a stream ends with `closing`, which
+/// has no id: connect again.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/events", tag = "plans", operation_id = "follow_plan",
     params(
         ("id" = String, Path, format = "uuid", description = "Identifier of the job"),
         ("Last-Event-ID" = Option<String>, Header,
-            description = "The last event that is known"),
+            description = "Identifier of the last event received"),
     ),
     responses(
-        (status = 200, description = "The events", body = Frame, content_type = "text/event-stream"),
-        (status = 204, description = "The job has ended, and there is no event after the last that \
-            is known"),
+        (status = 200, description = "The events", body = EventFrame, content_type = "text/event-stream"),
+        (status = 204, description = "The job has ended, and there is no event after the last one received"),
         NotFound, ServerErrors,
     ),
 )]
@@ -51,7 +50,7 @@ pub(in crate::api) async fn handler(
     Named(id): Named,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
-    // An id that is none of ours is taken for none: the caller then sees everything.
+    // An invalid id counts as none: the caller then receives all events.
     let known = headers
         .get("last-event-id")
         .and_then(|id| id.to_str().ok()?.trim().parse::<u32>().ok())
@@ -69,11 +68,11 @@ pub(in crate::api) async fn handler(
         shutdown: app.shutdown().clone(),
         app,
         read: VecDeque::new(),
-        until: Instant::now() + LIFE,
+        until: Instant::now() + MAX_DURATION,
         closed: false,
         _place: place,
     };
-    // Nobody follows a job that is gone since.
+    // The job may have been deleted in the meantime.
     let state = tail.fetch().await?;
     let state = state.ok_or_else(|| ApiError::not_found("plan", &tail.id))?;
     if state.is_final() && tail.read.is_empty() {
@@ -86,8 +85,8 @@ pub(in crate::api) async fn handler(
 /// One server-sent event.
 #[derive(serde::Serialize, utoipa::ToSchema)]
 #[schema(as = EventFrame)]
-struct Frame {
-    /// Counts from 1 within the job; `closing` has none.
+struct EventFrame {
+    /// Counts from 1 within the job; absent for `closing`.
     id: Option<String>,
     /// `state` when the state has changed, `progress` otherwise, or `closing`.
     event: String,
@@ -95,7 +94,7 @@ struct Frame {
     data: String,
 }
 
-/// Reads the events of a job as they come.
+/// The stream of the events of a job.
 struct Tail {
     app: App,
     id: String,
@@ -104,7 +103,7 @@ struct Tail {
     shutdown: Shutdown,
     known: i64,
     read: VecDeque<EventRow>,
-    /// When the stream ends if the job does not.
+    /// When the stream ends unless the job ends before.
     until: Instant,
     closed: bool,
     _place: OwnedSemaphorePermit,
@@ -132,22 +131,23 @@ impl Tail {
             if state.is_final() {
                 return None;
             }
-            // A running job is about to be given back: that is worth telling.
+            // During a shutdown the stream goes on until a running job is back in the queue, to
+            // report that.
             let given_back = self.shutdown.has_begun() && state == JobState::Queued;
             if given_back || self.until <= Instant::now() {
                 self.closed = true;
-                let event = Event::default().event("closing").retry(AGAIN).data("");
+                let event = Event::default().event("closing").retry(RECONNECT).data("");
                 return Some((Ok(event), self));
             }
             self.wait().await;
         }
     }
 
-    /// Waits for a reason to look again.
+    /// Waits for a change of a job, the shutdown or the end of the stream.
     async fn wait(&mut self) {
         let ending = self.shutdown.has_begun();
         if ending {
-            self.until = self.until.min(Instant::now() + FAREWELL);
+            self.until = self.until.min(Instant::now() + SHUTDOWN_WAIT);
         }
         tokio::select! {
             _ = self.changes.changed() => {}
@@ -156,9 +156,9 @@ impl Tail {
         }
     }
 
-    /// Reads what is new, and where the job stood before that; `None` when it is gone.
+    /// Reads new events, and the state of the job before them; `None` when the job is gone.
     async fn fetch(&mut self) -> Result<Option<JobState>, StoreError> {
-        // The state first: the last event is there before anybody can see the last state.
+        // The state is read first: the last event is stored together with the final state.
         let Some(job) = self.app.store().job(&self.id).await? else {
             return Ok(None);
         };

@@ -23,7 +23,7 @@ pub(super) fn described() -> ObjectBuilder {
         .enum_values(Some(Form::ALL.map(Form::name)))
 }
 
-/// The form that `Accept` likes best, the first among equals; `None` when it likes none.
+/// The form that `Accept` prefers, the first among equals; `None` when it accepts none.
 pub(super) fn accepted(headers: &HeaderMap) -> Option<Form> {
     let mut ranges = headers
         .get_all(header::ACCEPT)
@@ -36,7 +36,7 @@ pub(super) fn accepted(headers: &HeaderMap) -> Option<Form> {
         return Some(Form::Json);
     }
     let ranges: Vec<(String, f64)> = ranges.collect();
-    let liking = |form: Form| {
+    let weight = |form: Form| {
         let name = form.media_type();
         let group = format!("{}/*", name.split('/').next().unwrap_or(""));
         // The most specific range that matches decides.
@@ -47,8 +47,8 @@ pub(super) fn accepted(headers: &HeaderMap) -> Option<Form> {
     };
     Form::ALL
         .into_iter()
-        .map(|form| (form, liking(form)))
-        .filter(|(_, liking)| *liking > 0.0)
+        .map(|form| (form, weight(form)))
+        .filter(|(_, weight)| *weight > 0.0)
         .reduce(|best, next| if next.1 > best.1 { next } else { best })
         .map(|(form, _)| form)
 }
@@ -69,7 +69,7 @@ mod tests {
     use axum::http::HeaderValue;
 
     #[test]
-    fn the_form_that_is_liked_best_is_chosen() {
+    fn the_preferred_form_is_chosen() {
         let csv = Some(Form::Export(Format::Csv));
         let cases = [
             ("*/*", Some(Form::Json)),

@@ -1,4 +1,4 @@
-//! `GET /v1/plans/{id}`: how a job stands.
+//! `GET /v1/plans/{id}`: a job.
 
 use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};

@@ -15,11 +15,11 @@ use utoipa::IntoParams;
 const DEFAULT_LIMIT: u16 = 50;
 const MAX_LIMIT: u16 = 200;
 
-/// What to list.
+/// Filter and page of the list.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
+pub(in crate::api) struct JobListQuery {
     /// Only jobs in this state.
     #[param(inline, value_type = Option<JobState>)]
     state: Option<String>,
@@ -28,7 +28,7 @@ pub(in crate::api) struct Query {
     /// Where the page begins: `next_cursor` of the page before.
     #[param(pattern = "^[0-9]{1,9}$")]
     cursor: Option<String>,
-    /// Most jobs of the page.
+    /// Maximum number of jobs of the page.
     #[param(minimum = 1, maximum = 200, default = 50)]
     limit: Option<u16>,
 }
@@ -36,7 +36,7 @@ pub(in crate::api) struct Query {
 /// List jobs, the newest first
 #[utoipa::path(
     get, path = "/v1/plans", tag = "plans", operation_id = "list_plans",
-    params(Query),
+    params(JobListQuery),
     responses(
         (status = 200, description = "A page of jobs", body = JobListDocument),
         ParameterErrors, ServerErrors,
@@ -45,7 +45,7 @@ pub(in crate::api) struct Query {
 pub(in crate::api) async fn handler(
     State(app): State<App>,
     caller: Caller,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<JobListQuery>,
 ) -> Result<Json<JobListDocument>, ApiError> {
     let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
     let limit = query.limit.unwrap_or(DEFAULT_LIMIT);

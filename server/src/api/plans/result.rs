@@ -1,14 +1,14 @@
-//! `GET /v1/plans/{id}/result`: the plan.
+//! `GET /v1/plans/{id}/result`: the plan of a job.
 
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
-use super::super::error::{ApiError, ErrorCode, ErrorDocument};
+use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::extract::{Named, Parameters, header_text};
 use super::super::{App, computing, respond};
 use super::forms::{self, accepted};
 use crate::base::digest;
 use crate::documents;
 use crate::documents::plan::PlanDocument;
-use crate::render::export::{self, ExportError, Form, Format, Options, Spacing};
+use crate::render::export::{self, ExportError, ExportOptions, Form, Format, Spacing};
 use crate::store::{JobState, ResultRow};
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
@@ -17,16 +17,16 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
-/// Time after which a first plan is worth asking for again, s.
+/// `Retry-After` of a job without a plan, s.
 const RETRY_S: u32 = 1;
-/// Most samples of an answer: some 80 MB of XML.
+/// Maximum number of samples of an answer: about 80 MB of XML.
 const MAX_SAMPLES: usize = 200_000;
 
 /// Parameters of a result.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
+pub(in crate::api) struct ResultQuery {
     /// Form of the result; without it `Accept` decides.
     #[param(schema_with = forms::described)]
     format: Option<Form>,
@@ -48,8 +48,8 @@ pub(in crate::api) struct Query {
     object_id: Option<String>,
 }
 
-impl Query {
-    fn options(&self) -> Result<Options, ApiError> {
+impl ResultQuery {
+    fn options(&self) -> Result<ExportOptions, ApiError> {
         let wrong = |name: &str, what: &str| {
             ApiError::new(ErrorCode::InvalidParameter, format!("{name}: {what}"))
         };
@@ -68,13 +68,13 @@ impl Query {
             }
             (None, None) => None,
         };
-        Ok(Options {
+        Ok(ExportOptions {
             spacing,
             rates: self.rates.unwrap_or(true),
             wheel: self.wheel.map(|wheel| wheel as usize),
             object_name: self.object_name.clone(),
             object_id: self.object_id.clone(),
-            ..Options::new(MAX_SAMPLES)
+            ..ExportOptions::new(MAX_SAMPLES)
         })
     }
 
@@ -90,18 +90,18 @@ impl Query {
 
 /// Read the plan of a job: the final one, or the best so far
 ///
-/// While a job goes on this is the best plan that it has found: complete, verified, `feasible`,
-/// with the bound of the moment when it was found (the job has the newest). Every better plan has
-/// another `ETag`, and so has the one that the job ends with. `Job-State` tells whether it has
-/// ended. After a restart of the service the best plan so far stays until there is a better one,
-/// and so it does when the job ends without one (`failed`, `dead`): its `detail` and `code` say why.
+/// While a job runs this is the best plan that it has found: complete, verified, `feasible`, with
+/// the bound of the moment when it was found (the job has the newest). Every better plan has
+/// another `ETag`, and so has the final one. `Job-State` is the state of the job. The best plan so
+/// far survives a restart of the service until there is a better one. It stays when the job ends
+/// without a plan (`failed`, `dead`), whose `detail` and `code` give the reason.
 ///
-/// In the formats of other tools the flight is sampled; all choices but `format` are for these.
+/// Exports to other tools sample the flight; all parameters but `format` are for these.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/result", tag = "plans", operation_id = "get_result",
     params(
         ("id" = String, Path, format = "uuid", description = "Identifier of the job"),
-        Query,
+        ResultQuery,
         ("If-None-Match" = Option<String>, Header,
             description = "Entity tags that are known already"),
     ),
@@ -126,10 +126,10 @@ impl Query {
             )),
         (status = 304, description = "Not changed"),
         (status = 406, description = "No accepted form, or one that cannot say what the scenario's \
-            epoch, time system or frame is", body = ErrorDocument<'static>,
+            epoch, time system or frame is", body = ProblemDetails<'static>,
             content_type = "application/problem+json"),
         (status = 409, description = "No plan yet (`result_not_ready`), or none at all (`no_result`)",
-            body = ErrorDocument<'static>, content_type = "application/problem+json",
+            body = ProblemDetails<'static>, content_type = "application/problem+json",
             headers(("Retry-After" = u32, description = "When to come again, s, if no plan yet"))),
         ParameterErrors, NotFound, ServerErrors,
     ),
@@ -137,7 +137,7 @@ impl Query {
 pub(in crate::api) async fn handler(
     State(app): State<App>,
     Named(id): Named,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<ResultQuery>,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
     let found = app.store().result(&id).await?;
@@ -153,7 +153,7 @@ pub(in crate::api) async fn handler(
     }
     let Some(result) = result else {
         return Err(if state.is_final() {
-            let detail = format!("the job ended {}", state.as_str());
+            let detail = format!("the job ended {}", state.into_str());
             ApiError::new(ErrorCode::NoResult, detail)
         } else {
             let detail = "no plan has been found so far; follow the events";
@@ -168,16 +168,14 @@ pub(in crate::api) async fn handler(
     let mut response = match (respond::unless_made(known, &tag), form) {
         (Some(unchanged), _) => unchanged,
         (None, Form::Json) => json(&result),
-        (None, Form::Export(format)) => {
-            exported(&app, (&id, &tag), &result, (format, options)).await?
-        }
+        (None, Form::Export(format)) => exported(&app, &id, &tag, &result, format, options).await?,
     };
-    let state = HeaderValue::from_static(state.as_str());
+    let state = HeaderValue::from_static(state.into_str());
     response.headers_mut().insert(JOB_STATE, state);
     Ok(response)
 }
 
-/// The plan as it was stored.
+/// The stored plan.
 pub(super) fn json(result: &ResultRow) -> Response {
     respond::tagged("application/json", &result.digest, result.document.clone())
 }
@@ -185,23 +183,26 @@ pub(super) fn json(result: &ResultRow) -> Response {
 /// The plan in the format of another tool.
 async fn exported(
     app: &App,
-    (id, tag): (&str, &str),
+    id: &str,
+    tag: &str,
     result: &ResultRow,
-    (format, options): (Format, Options),
+    format: Format,
+    options: ExportOptions,
 ) -> Result<Response, ApiError> {
     let found = app.store().scenario(id).await?;
     let (scenario, created_us) = found.ok_or_else(|| ApiError::not_found("plan", id))?;
-    // Not when this is asked for: the same plan has the same bytes, as its tag says.
-    let options = Options {
+    // The time of the submission rather than of the request, so that the same plan has the same
+    // bytes and tag.
+    let options = ExportOptions {
         created_us,
         ..options
     };
     let document = result.document.clone();
-    // Integrating a long flight takes long.
-    let work = move || write(format, (&scenario, &document), &options);
-    let text = computing::flown(&app.0.flying, work).await??;
+    // On other threads, because a long flight takes long to integrate.
+    let work = move || write(format, &scenario, &document, &options);
+    let text = computing::integrated(&app.0.integrating, work).await??;
     let kind = format.media_type();
-    // What is XML or JSON says so itself.
+    // XML and JSON need no charset parameter.
     let kind = match format {
         Format::AemXml | Format::OpenMct => kind.to_owned(),
         _ => format!("{kind}; charset=utf-8"),
@@ -215,8 +216,8 @@ async fn exported(
     Ok(response)
 }
 
-/// All that an export depends on besides the plan, for its tag.
-fn choices(format: Format, options: &Options) -> String {
+/// Everything that an export depends on besides the plan, for its tag.
+fn choices(format: Format, options: &ExportOptions) -> String {
     let said = format!(
         "{:?}",
         (
@@ -232,8 +233,9 @@ fn choices(format: Format, options: &Options) -> String {
 
 fn write(
     format: Format,
-    (scenario, plan): (&[u8], &[u8]),
-    options: &Options,
+    scenario: &[u8],
+    plan: &[u8],
+    options: &ExportOptions,
 ) -> Result<String, ApiError> {
     let valid = documents::scenario::read(scenario, None).map_err(|error| unreadable(&error))?;
     let scenario = &valid.scenario;
@@ -243,7 +245,7 @@ fn write(
         let detail = "there is no plan and so no trajectory; see the JSON";
         return Err(ApiError::new(ErrorCode::NoResult, detail));
     };
-    export::write(format, (scenario, &flight), options).map_err(|error| match error {
+    export::write(format, scenario, &flight, options).map_err(|error| match error {
         ExportError::Choice(what) => ApiError::new(ErrorCode::InvalidParameter, what),
         ExportError::Label { .. } => ApiError::new(ErrorCode::NotAcceptable, error.to_string()),
         ExportError::NotFlown(_) | ExportError::NotFinite => unreadable(&error),

@@ -1,4 +1,4 @@
-//! `GET /v1/plans/{id}/scenario`: what a job plans.
+//! `GET /v1/plans/{id}/scenario`: the scenario of a job.
 
 use super::super::App;
 use super::super::describe::{NotFound, Scenario, ServerErrors};
@@ -12,7 +12,7 @@ use axum::response::Response;
 
 /// Read the scenario of a job
 ///
-/// As it was submitted; a spacecraft that it referred to is written out.
+/// The scenario as submitted, with a stored spacecraft written out.
 #[utoipa::path(
     get, path = "/v1/plans/{id}/scenario", tag = "plans", operation_id = "get_scenario",
     params(

@@ -1,4 +1,4 @@
-//! `POST /v1/plans/{id}/stop`: finish with the best plan so far.
+//! `POST /v1/plans/{id}/stop`: finishes a job with its best plan so far.
 
 use super::super::App;
 use super::super::describe::{Conflict, NotFound, ServerErrors};
@@ -34,7 +34,7 @@ pub(in crate::api) async fn handler(
             let detail = "there is no plan to stop with; cancel or delete the job instead";
             return Err(ApiError::new(ErrorCode::NotRunning, detail));
         }
-        // Asked for again, or too late to matter: the caller has what it wants.
+        // Stopped before, or finished: the caller has the result that it asked for.
         JobState::Stopped | JobState::Succeeded => return respond::job(StatusCode::OK, &job),
         ended => return Err(super::has_ended(ended)),
     }

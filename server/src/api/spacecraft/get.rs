@@ -15,7 +15,7 @@ use utoipa::IntoParams;
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub(in crate::api) struct Query {
+pub(in crate::api) struct SpacecraftQuery {
     /// The version; the newest without it.
     #[param(minimum = 1)]
     version: Option<u32>,
@@ -27,7 +27,7 @@ pub(in crate::api) struct Query {
     params(
         ("name" = String, Path, pattern = "^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$",
             description = "Name under which it was stored"),
-        Query,
+        SpacecraftQuery,
     ),
     responses(
         (status = 200, description = "The spacecraft", body = StoredSpacecraft),
@@ -38,7 +38,7 @@ pub(in crate::api) async fn handler(
     State(app): State<App>,
     caller: Caller,
     Named(name): Named,
-    Parameters(query): Parameters<Query>,
+    Parameters(query): Parameters<SpacecraftQuery>,
 ) -> Result<Json<StoredSpacecraft>, ApiError> {
     if query.version == Some(0) {
         return Err(ApiError::new(

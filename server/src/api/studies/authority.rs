@@ -1,4 +1,4 @@
-//! `POST /v1/studies/authority`: how much of the wheels a plan should leave to feedback.
+//! `POST /v1/studies/authority`: shares of torque and wheel speed compared by closed-loop simulation.
 
 use super::super::access::Caller;
 use super::super::describe::{self, AuthorityBody, BodyErrors, ServerErrors};
@@ -15,9 +15,9 @@ use std::sync::Arc;
 
 /// Compare shares of torque and wheel speed
 ///
-/// For each pair of shares the scenario is planned with them, and the plan flown many times in closed
-/// loop, with inertia, alignment, friction, sensors and disturbances as uncertain as given. What is
-/// not done within a minute is left out, and `complete` is false.
+/// For each pair of shares the scenario is planned, and the plan is simulated many times in closed
+/// loop with uncertain inertia, alignment, friction, sensors and disturbances. Pairs not finished
+/// within a minute are left out, and `complete` is false.
 #[utoipa::path(
     post, path = "/v1/studies/authority", tag = "studies", operation_id = "study_authority",
     request_body(content = AuthorityBody, example = json!(describe::authority_study())),
@@ -34,7 +34,7 @@ pub(in crate::api) async fn handler(
 ) -> Result<Response, ApiError> {
     let node = with_scenario(&app, &caller, body.node).await?;
     let study = authority::read_node(&node).map_err(ApiError::input)?;
-    // One plan at a time is made, all of them of the same targets.
+    // Plans are made one at a time, all of the same targets.
     if let Ok(valid) = study.scenario() {
         admission::check_memory(&app, &valid)?;
     }

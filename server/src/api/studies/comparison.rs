@@ -1,4 +1,4 @@
-//! `POST /v1/studies/comparison`: wheels against gyroscopes.
+//! `POST /v1/studies/comparison`: reaction wheels and control moment gyroscopes compared.
 
 use super::super::describe::{self, BodyErrors, ComparisonBody, ServerErrors};
 use super::super::error::{ApiError, ErrorCode};
@@ -8,14 +8,14 @@ use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
 use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_studies::comparison::{ComparisonSpec, Study};
+use slewplan_studies::comparison::{ComparisonStudy, ComparisonStudySpec};
 
 /// Compare reaction wheels with control moment gyroscopes
 ///
-/// Pyramids of four devices of the same momentum turn the same spacecraft: who is faster, and from
-/// which angle on. With every table that the answer rests on: envelopes, singular surfaces, devices
-/// and the laws fitted to them, momentum and torque over mass. Whatever is left out of the request
-/// is as in the published study; `{}` repeats it.
+/// Pyramids of four devices of the same momentum turn the same spacecraft: the answer says which is
+/// faster, and from which angle on. It has every table that this rests on: envelopes, singular
+/// surfaces, devices and the laws fitted to them, momentum and torque over mass. Values left out of
+/// the request are those of the published study, so that `{}` repeats it.
 #[utoipa::path(
     post, path = "/v1/studies/comparison", tag = "studies", operation_id = "study_comparison",
     request_body(content = ComparisonBody, example = json!(describe::comparison_study())),
@@ -34,8 +34,8 @@ pub(in crate::api) async fn handler(
     Ok(respond::json(json))
 }
 
-fn answer(spec: ComparisonSpec) -> Result<Vec<u8>, ApiError> {
-    let study = Study::of(spec).map_err(ApiError::input)?;
+fn answer(spec: ComparisonStudySpec) -> Result<Vec<u8>, ApiError> {
+    let study = ComparisonStudy::of(spec).map_err(ApiError::input)?;
     let missing = || ApiError::new(ErrorCode::Internal, "the comparison cannot be made");
     let study = study.ok_or_else(missing)?;
     respond::written(&ComparisonAnswerDocument::new(&study), "comparison")

@@ -1,4 +1,4 @@
-//! `POST /v1/studies/envelopes`: what the wheels can do together.
+//! `POST /v1/studies/envelopes`: torque and momentum envelopes of wheels, and slews within them.
 
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, EnvelopeBody, ServerErrors};
@@ -15,9 +15,9 @@ use std::sync::Arc;
 /// Envelopes of the wheels, and slews within them
 ///
 /// The envelopes of torque and momentum, full and limited by the pseudo-inverse; for each turn the
-/// slews about the eigenaxis under each limit and, with `time_optimal`, the fastest ones, with their
-/// ways through the envelopes; and demands shared out among the wheels. What is not done within a
-/// minute is left out, and `complete` is false.
+/// slews about the eigenaxis under each limit and, with `time_optimal`, the fastest ones, with
+/// their paths in the envelopes; and demands allocated to the wheels. Results not finished within a
+/// minute are left out, and `complete` is false.
 #[utoipa::path(
     post, path = "/v1/studies/envelopes", tag = "studies", operation_id = "study_envelopes",
     request_body(content = EnvelopeBody, example = json!(describe::envelope_study())),

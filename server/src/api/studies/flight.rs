@@ -1,4 +1,4 @@
-//! `POST /v1/studies/flight`: a plan flown once in closed loop.
+//! `POST /v1/studies/flight`: a plan simulated once in closed loop.
 
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, FlightBody, ServerErrors};
@@ -11,14 +11,14 @@ use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_studies::flight::{FlightStudy, fly};
+use slewplan_studies::flight::{FlightStudy, simulate};
 use std::sync::Arc;
 
-/// Fly a plan once in closed loop
+/// Simulate a plan once in closed loop
 ///
-/// The plan that is given, or else one that is made for it, with inertia, alignment, friction, sensors
-/// and disturbances off by what the seed and the number of the flight draw. The answer has errors,
-/// commanded torques and limits that were met over time. A plan has a minute to be found.
+/// Simulates the given plan, or one made for the scenario within a minute. Errors of inertia,
+/// alignment, friction, sensors and disturbances are drawn from the seed and the number of the
+/// flight. The answer has errors, commanded torques and active limits over time.
 #[utoipa::path(
     post, path = "/v1/studies/flight", tag = "studies", operation_id = "study_flight",
     request_body(content = FlightBody, example = json!(describe::flight_study())),
@@ -45,6 +45,6 @@ pub(in crate::api) async fn handler(
 }
 
 fn answer(study: &FlightStudy, pool: &SolverPool, stop: &StopSignal) -> Result<Vec<u8>, ApiError> {
-    let flown = fly(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
-    respond::written(&FlightAnswerDocument::new(study, &flown), "flight")
+    let outcome = simulate(study, quiet_run(pool, stop)).map_err(ApiError::input)?;
+    respond::written(&FlightAnswerDocument::new(study, &outcome), "flight")
 }

@@ -1,4 +1,4 @@
-//! `slewplan legs --merge`: the files of parts become the file of the whole.
+//! `slewplan legs --merge`: merges the files of shards.
 
 use super::super::failure::Failure;
 use super::super::input;
@@ -7,7 +7,7 @@ use crate::documents::legs::LegTable;
 use crate::documents::shards;
 use std::path::{Path, PathBuf};
 
-/// The whole table of the parts in some files.
+/// The whole table of the shards in some files.
 pub(super) fn table(files: &[PathBuf]) -> Result<LegTable, Failure> {
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     input::one_stream_at_most(&paths)?;

@@ -1,21 +1,20 @@
-//! Notes the motions of the legs of a run.
+//! Records the motions of the legs of a run.
 
 use crate::documents::legs::KeyedLeg;
 use crate::store::leg_key;
 use slewplan_solver::tour::legs::{LegStore, StoredLeg};
-use slewplan_solver::tour::planner::ImportedLeg;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// A store of legs that notes what comes out of it and what goes into it.
+/// A leg store that records the legs read from and written to another.
 pub(super) struct Recorder<'a> {
     legs: &'a dyn LegStore,
-    /// By their keys, in the order in which a file has them.
-    seen: Mutex<BTreeMap<String, ImportedLeg>>,
+    /// By their keys, which is the order of a file.
+    seen: Mutex<BTreeMap<String, KeyedLeg>>,
 }
 
 impl<'a> Recorder<'a> {
-    /// Notes what another store sees.
+    /// Records the legs of another store.
     pub(super) fn new(legs: &'a dyn LegStore) -> Self {
         Self {
             legs,
@@ -23,24 +22,22 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// What it has seen.
+    /// The recorded legs.
     pub(super) fn into_motions(self) -> Vec<KeyedLeg> {
         let seen = self.seen.into_inner();
         let seen = seen.unwrap_or_else(PoisonError::into_inner);
-        seen.into_iter()
-            .map(|(key, leg)| KeyedLeg { key, leg })
-            .collect()
+        seen.into_values().collect()
     }
 
     fn note(&self, identity: &str, leg: &StoredLeg) {
-        let motion = ImportedLeg {
-            attitudes_xyzw: leg.attitudes_xyzw.clone(),
-            wheel_momenta_nms: leg.wheel_momenta_nms.clone(),
-            lengths_s: leg.lengths_s.clone(),
+        let key = leg_key(identity);
+        let known = KeyedLeg {
+            key: key.clone(),
+            motion: leg.motion.clone(),
             solve_time_s: leg.solve_time_s,
         };
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.insert(leg_key(identity), motion);
+        seen.insert(key, known);
     }
 }
 

@@ -1,23 +1,23 @@
-//! `slewplan study authority`: which shares of torque and speed a plan should leave to feedback.
+//! `slewplan study authority`: compares shares of torque and speed that a plan leaves to feedback.
 
-use super::given::Given;
+use super::given::StudyFiles;
 use super::planning::Planning;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::documents::study::authority::{self, AuthorityAnswerDocument};
 
-/// What `study authority` takes.
+/// Arguments of `study authority`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct AuthorityStudyArguments {
     #[command(flatten)]
-    given: Given,
+    given: StudyFiles,
     #[command(flatten)]
     planning: Planning,
 }
 
-/// Plans and flies for every pair of shares and writes the answer.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Plans and simulates for every pair of shares and writes the answer.
+pub(super) fn run(arguments: &AuthorityStudyArguments) -> Result<Exit, Failure> {
     let given = &arguments.given;
     let (destination, study) = given.open(authority::read)?;
     let (rows, _) = arguments.planning.conduct(|run| study.conduct(run))?;

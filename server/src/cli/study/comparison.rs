@@ -1,27 +1,27 @@
-//! `slewplan study comparison`: wheels against gyroscopes.
+//! `slewplan study comparison`: compares reaction wheels with control moment gyroscopes.
 
 use crate::cli::failure::Failure;
 use crate::cli::output::{self, Destination};
 use crate::cli::{Exit, input};
 use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
-use slewplan_studies::comparison::{ComparisonSpec, Study};
+use slewplan_studies::comparison::{ComparisonStudy, ComparisonStudySpec};
 use std::path::PathBuf;
 
-/// What `study comparison` takes.
+/// Arguments of `study comparison`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
-    /// What differs from the published study, - for standard input [default: nothing]
+pub(super) struct ComparisonStudyArguments {
+    /// Differences from the published study, - for standard input [default: none]
     study: Option<PathBuf>,
     /// Write the answer to this file instead of standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 }
 
-/// Compares and writes the answer.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Runs the study and writes the answer.
+pub(super) fn run(arguments: &ComparisonStudyArguments) -> Result<Exit, Failure> {
     let destination = Destination::open(&arguments.output)?;
     let spec = arguments.study.as_deref().map_or_else(
-        || Ok(ComparisonSpec::default()),
+        || Ok(ComparisonStudySpec::default()),
         |path| {
             comparison::read(&input::read(path)?).map_err(|problems| Failure::Invalid {
                 name: input::name(path),
@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             })
         },
     )?;
-    let study = Study::of(spec).map_err(|problems| Failure::Invalid {
+    let study = ComparisonStudy::of(spec).map_err(|problems| Failure::Invalid {
         name: name(arguments),
         problems,
     })?;
@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Complete)
 }
 
-fn name(arguments: &Arguments) -> String {
+fn name(arguments: &ComparisonStudyArguments) -> String {
     let path = arguments.study.as_deref();
     path.map_or_else(|| "the study".to_owned(), input::name)
 }

@@ -1,6 +1,6 @@
-//! `slewplan study envelopes`: what the wheels can do together.
+//! `slewplan study envelopes`: envelopes of wheels and slews within them.
 
-use super::given::Given;
+use super::given::StudyFiles;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -9,17 +9,17 @@ use crate::cli::solve::{Threads, start_pool};
 use crate::documents::study::envelopes::{self, EnvelopeAnswerDocument};
 use slewplan_solver::run::stop::StopSignal;
 
-/// What `study envelopes` takes.
+/// Arguments of `study envelopes`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct EnvelopesStudyArguments {
     #[command(flatten)]
-    given: Given,
+    given: StudyFiles,
     #[command(flatten)]
     threads: Threads,
 }
 
-/// Conducts the study and writes the answer.
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// Runs the study and writes the answer.
+pub(super) fn run(arguments: &EnvelopesStudyArguments) -> Result<Exit, Failure> {
     let (destination, request) = arguments.given.open(envelopes::read)?;
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();

@@ -1,4 +1,4 @@
-//! The document of a study, and where the answer goes.
+//! Input and output of a study.
 
 use crate::cli::failure::Failure;
 use crate::cli::input;
@@ -6,9 +6,9 @@ use crate::cli::output::Destination;
 use slewplan_solver::model::problem::Problem;
 use std::path::PathBuf;
 
-/// What is read and what is written.
+/// Arguments for input and output.
 #[derive(Debug, clap::Args)]
-pub(super) struct Given {
+pub(super) struct StudyFiles {
     /// The document of the study, - for standard input
     study: PathBuf,
     /// Write the answer to this file instead of standard output
@@ -16,8 +16,8 @@ pub(super) struct Given {
     output: PathBuf,
 }
 
-impl Given {
-    /// The output, which is opened before anything is computed, and the document as `read`.
+impl StudyFiles {
+    /// Opens the output, before anything is computed, and reads the document with `read`.
     pub(super) fn open<T>(
         &self,
         read: impl FnOnce(&[u8]) -> Result<T, Vec<Problem>>,
@@ -28,7 +28,7 @@ impl Given {
         Ok((destination, study))
     }
 
-    /// What is wrong with the document.
+    /// The error for problems of the document.
     pub(super) fn invalid(&self, problems: Vec<Problem>) -> Failure {
         Failure::Invalid {
             name: input::name(&self.study),

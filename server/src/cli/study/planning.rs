@@ -1,4 +1,4 @@
-//! Planning as a part of a study.
+//! Planning within a study.
 
 use crate::cli::failure::Failure;
 use crate::cli::progress::{self, ProgressMode};
@@ -8,7 +8,7 @@ use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::NoStore;
 use slewplan_solver::tour::planner::Run;
 
-/// How planning is done and shown.
+/// Arguments for planning and its progress.
 #[derive(Debug, clap::Args)]
 pub(super) struct Planning {
     #[command(flatten)]
@@ -19,7 +19,7 @@ pub(super) struct Planning {
 }
 
 impl Planning {
-    /// What the work came to, which signals stop, and the signal that did.
+    /// Runs the work, which signals stop. Returns its result and the signals received.
     pub(super) fn conduct<T>(
         &self,
         work: impl FnOnce(Run<'_>) -> T,
@@ -27,7 +27,7 @@ impl Planning {
         let pool = start_pool(&self.threads)?;
         let stop = StopSignal::new();
         let received = signals::listen(&stop).map_err(Failure::Signals)?;
-        // Its bar is gone when it is dropped here, before anything is written.
+        // Dropped here, so that the progress bar is removed before anything is written.
         let observer = progress::observer(self.progress);
         let done = work(Run {
             pool: &pool,

@@ -10,10 +10,11 @@ use slewplan_solver::model::input::{
     InputForm, InputPlace, NamedSchema, Schema, Unread, input_object, optional, required,
     required_elsewhere,
 };
+use slewplan_solver::model::motion::Motion;
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::tour::legs::LegKind;
-use slewplan_solver::tour::planner::{ImportedLeg, LegRow, Shard};
+use slewplan_solver::tour::planner::{LegRow, Shard};
 
 const KEY_DIGITS: usize = 64;
 const KEY_PATTERN: &str = "^[0-9a-f]{64}$";
@@ -152,12 +153,12 @@ impl From<LegMotionSpec> for KeyedLeg {
     fn from(motion: LegMotionSpec) -> Self {
         Self {
             key: motion.key,
-            leg: ImportedLeg {
+            motion: Motion {
                 attitudes_xyzw: motion.attitudes_xyzw,
                 wheel_momenta_nms: motion.wheel_momenta_nms,
                 lengths_s: motion.lengths_s,
-                solve_time_s: motion.solve_time_s,
             },
+            solve_time_s: motion.solve_time_s,
         }
     }
 }
@@ -183,7 +184,7 @@ impl InputForm for FlownKind {
                 let Schema::Choice(mut kinds) = (kind.schema)() else {
                     unreachable!("it is a choice")
                 };
-                kinds.retain(|(name, _)| *name != LegKind::Certified.as_str());
+                kinds.retain(|(name, _)| *name != <&str>::from(LegKind::Certified));
                 Schema::Choice(kinds)
             },
         })

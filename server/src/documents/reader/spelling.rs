@@ -1,4 +1,4 @@
-//! What a misspelt name was probably meant to be.
+//! Hints for unknown names: the known names, the most similar one first.
 
 /// A hint that lists the known names, the likely one first.
 pub(super) fn hint(written: &str, known: &[&str]) -> String {
@@ -10,18 +10,18 @@ pub(super) fn hint(written: &str, known: &[&str]) -> String {
 }
 
 fn likely<'a>(written: &str, known: &[&'a str]) -> Option<&'a str> {
-    // A unit that was forgotten is the usual mistake: `max_torque` for `max_torque_nm`.
+    // The usual mistake is a missing unit: `max_torque` for `max_torque_nm`.
     let without_unit = known
         .iter()
         .find(|name| written.len() >= 3 && name.starts_with(written));
-    // Comparing takes the product of the lengths; no misspelling is that long.
+    // The distance takes time proportional to the product of the lengths; the cap bounds it.
     if written.len() > 64 {
         return None;
     }
     let nearest = || {
         known
             .iter()
-            .map(|name| (edit_distance(written, name), name))
+            .map(|name| (strsim::levenshtein(written, name), name))
             .filter(|(distance, name)| *distance <= name.len().max(6) / 3)
             .min()
             .map(|(_, name)| name)
@@ -29,35 +29,12 @@ fn likely<'a>(written: &str, known: &[&'a str]) -> Option<&'a str> {
     without_unit.or_else(nearest).copied()
 }
 
-/// Number of characters to insert, delete or replace.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn distances_count_single_edits() {
-        assert_eq!(edit_distance("kitten", "sitting"), 3);
-        assert_eq!(edit_distance("", "abc"), 3);
-        assert_eq!(edit_distance("axis", "axis"), 0);
-    }
-
-    #[test]
-    fn a_forgotten_unit_and_a_slip_are_recognised_but_nothing_far() {
+    fn missing_units_and_small_misspellings_are_recognised() {
         let known = ["axis", "inertia_kg_m2", "max_torque_nm"];
         assert_eq!(likely("inertia", &known), Some("inertia_kg_m2"));
         assert_eq!(likely("axes", &known), Some("axis"));

@@ -8,7 +8,7 @@ use serde::Serialize;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::slew::evidence::{Evidence, IntervalEvidence};
 use slewplan_solver::slew::{
-    Energies, Objective, Piece, PropagatedSlew, SlewOutcome, Sweep, WheelAllocation,
+    MotorEnergies, Objective, PropagatedSlew, SlewOutcome, Sweep, TorquePiece, WheelAllocation,
 };
 use utoipa::ToSchema;
 
@@ -165,9 +165,9 @@ impl<'a> SlewDocument<'a> {
         swept: Option<f64>,
         (outcome, evidence): &'a (SlewOutcome, Option<Evidence>),
     ) -> Self {
-        let flown = &outcome.flown;
+        let propagated = &outcome.propagated;
         let motors = request.slew.all_drives().iter();
-        let Energies { proxy_j, bill_j } = flown.energies;
+        let MotorEnergies { proxy_j, bill_j } = propagated.energies;
         let known = motors.clone().any(|drive| drive.motor.is_some());
         let energy = |value: f64| known.then_some(Number(value));
         Self {
@@ -186,10 +186,10 @@ impl<'a> SlewDocument<'a> {
             energy_proxy_j: energy(proxy_j),
             energy_bill_j: energy(bill_j),
             continuous_time_s: outcome.continuous_time_s.map(Number),
-            flight: flown.into(),
+            flight: propagated.into(),
             trajectory: SlewTrajectoryDocument {
-                controls: flown.pieces.iter().map(RampDocument::from).collect(),
-                states: flown.states.iter().map(StateDocument::from).collect(),
+                controls: propagated.pieces.iter().map(RampDocument::from).collect(),
+                states: propagated.states.iter().map(StateDocument::from).collect(),
             },
             evidence: evidence.as_ref().map(EvidenceDocument::from),
             starts: outcome.starts,
@@ -199,21 +199,21 @@ impl<'a> SlewDocument<'a> {
 }
 
 impl<'a> From<&'a PropagatedSlew> for FlightDocument<'a> {
-    fn from(flown: &'a PropagatedSlew) -> Self {
+    fn from(propagated: &'a PropagatedSlew) -> Self {
         Self {
-            attitude_error_rad: Number(flown.attitude_error_rad),
-            rate_error_rad_s: Number(flown.rate_error_rad_s),
-            wheel_speed_error_rad_s: Number(flown.wheel_speed_error_rad_s),
-            torque_excess: Number(flown.torque_excess),
-            wheel_speed_excess: Number(flown.wheel_speed_excess),
-            rate_excess: Number(flown.rate_excess),
-            failures: &flown.failures,
+            attitude_error_rad: Number(propagated.attitude_error_rad),
+            rate_error_rad_s: Number(propagated.rate_error_rad_s),
+            wheel_speed_error_rad_s: Number(propagated.wheel_speed_error_rad_s),
+            torque_excess: Number(propagated.torque_excess),
+            wheel_speed_excess: Number(propagated.wheel_speed_excess),
+            rate_excess: Number(propagated.rate_excess),
+            failures: &propagated.failures,
         }
     }
 }
 
-impl From<&Piece> for RampDocument {
-    fn from(piece: &Piece) -> Self {
+impl From<&TorquePiece> for RampDocument {
+    fn from(piece: &TorquePiece) -> Self {
         Self {
             start_s: Number(piece.start_s),
             duration_s: Number(piece.duration_s),

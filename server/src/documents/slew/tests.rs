@@ -1,7 +1,7 @@
 //! What is read of a slew, and what is refused.
 
 use super::*;
-use slewplan_solver::slew::{Command, DEFAULT_INTERVALS};
+use slewplan_solver::slew::{DEFAULT_INTERVALS, TorqueCommand};
 
 const CRAFT: &str = r#""spacecraft": {"inertia_kg_m2": [[6.63, 0, 0], [0, 8.9, 0], [0, 0, 9.63]],
     "wheels": [
@@ -24,7 +24,7 @@ fn reading(rest: &str) -> Result<SlewRequest, Vec<(String, Code)>> {
 fn what_is_left_out_has_its_usual_value() {
     let request = reading("").unwrap();
     assert_eq!(request.slew.objective(), Objective::MinimumTime);
-    let free = Command::Free {
+    let free = TorqueCommand::Free {
         intervals: DEFAULT_INTERVALS,
     };
     assert_eq!(request.slew.command(), free);

@@ -114,7 +114,7 @@ impl<'a> AuthorityAnswerDocument<'a> {
 
 fn is_complete(rows: &[AuthorityRow]) -> bool {
     rows.iter().all(|row| match &row.outcome {
-        RowOutcome::Flown { spread, .. } => spread.runs == spread.runs_asked,
+        RowOutcome::Simulated { spread, .. } => spread.runs == spread.runs_asked,
         RowOutcome::NoPlan(_) => true,
         RowOutcome::Stopped => false,
     })
@@ -133,7 +133,7 @@ impl<'a> From<&'a AuthorityRow> for RowDocument<'a> {
             reasons: Vec::new(),
         };
         match &row.outcome {
-            RowOutcome::Flown {
+            RowOutcome::Simulated {
                 total_time_s,
                 optimality,
                 sequence,

@@ -8,14 +8,14 @@ use crate::documents::document::{self, Node};
 use crate::documents::reader::{Cursor, Sink};
 use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::{Code, Problem};
-use slewplan_studies::comparison::{ComparisonSpec, MAX_ROWS};
+use slewplan_studies::comparison::{ComparisonStudySpec, MAX_ROWS};
 
 /// Reads a comparison.
 ///
 /// # Errors
 ///
 /// Everything that is wrong with its shape.
-pub(crate) fn read(bytes: &[u8]) -> Result<ComparisonSpec, Vec<Problem>> {
+pub(crate) fn read(bytes: &[u8]) -> Result<ComparisonStudySpec, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
     read_node(&node)
 }
@@ -25,10 +25,10 @@ pub(crate) fn read(bytes: &[u8]) -> Result<ComparisonSpec, Vec<Problem>> {
 /// # Errors
 ///
 /// Everything that is wrong with its shape.
-pub(crate) fn read_node(node: &Node) -> Result<ComparisonSpec, Vec<Problem>> {
+pub(crate) fn read_node(node: &Node) -> Result<ComparisonStudySpec, Vec<Problem>> {
     let sink = Sink::default();
     let root = Cursor::root(node, &sink);
-    let spec = ComparisonSpec::read(&root);
+    let spec = ComparisonStudySpec::read(&root);
     if let Some(spec) = &spec {
         check_rows(spec.surface_rows, &root);
     }
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn nothing_given_is_the_study_of_the_thesis() {
-        assert_eq!(read(b"{}").unwrap(), ComparisonSpec::default());
+        assert_eq!(read(b"{}").unwrap(), ComparisonStudySpec::default());
     }
 
     #[test]

@@ -1,36 +1,41 @@
-//! The remembered legs of a service stay within bounds.
+//! Keeps the number of cached legs within its limit.
 
 use crate::store::{Store, StoreError};
 use std::time::Duration;
 
-/// How often legs are counted.
+/// Interval between two counts of the legs.
 const ROUND: Duration = Duration::from_mins(1);
-/// Legs that are forgotten in one go, and the pause for other writers after that.
+/// Legs deleted per transaction, and the pause for other writers after it.
 const BATCH: u64 = 100;
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Forgets what no solve can find any more, and from then on for ever the legs that were stored
-/// first while there are more than so many.
+/// Deletes legs of other versions, which no solve can find; then, without end, the oldest legs
+/// beyond a maximum number.
 pub(crate) async fn keep_within(store: Store, most: u64) {
-    tell("legs of other versions", forget_foreign(&store).await);
+    log(
+        "legs of other versions",
+        delete_other_versions(&store).await,
+    );
     loop {
-        tell("legs beyond --leg-cache", keep_newest(&store, most).await);
+        log("legs beyond --leg-cache", keep_newest(&store, most).await);
         tokio::time::sleep(ROUND).await;
     }
 }
 
-fn tell(what: &str, forgotten: Result<u64, StoreError>) {
-    match forgotten {
+fn log(what: &str, deleted: Result<u64, StoreError>) {
+    match deleted {
         Ok(0) => {}
-        Ok(legs) => tracing::info!(legs, "{what} were forgotten"),
-        Err(error) => tracing::warn!(%error, "{what} cannot be forgotten"),
+        Ok(legs) => tracing::info!(legs, "{what} were deleted"),
+        Err(error) => tracing::warn!(%error, "{what} cannot be deleted"),
     }
 }
 
-async fn forget_foreign(store: &Store) -> Result<u64, StoreError> {
+async fn delete_other_versions(store: &Store) -> Result<u64, StoreError> {
     let mut all = 0;
     loop {
-        let legs = store.forget_foreign_legs(BATCH.cast_signed()).await?;
+        let legs = store
+            .delete_legs_of_other_versions(BATCH.cast_signed())
+            .await?;
         all += legs;
         if legs < BATCH {
             return Ok(all);
@@ -45,7 +50,7 @@ async fn keep_newest(store: &Store, most: u64) -> Result<u64, StoreError> {
     let mut left = surplus;
     while left > 0 {
         let legs = store
-            .forget_oldest_legs(left.min(BATCH).cast_signed())
+            .delete_oldest_legs(left.min(BATCH).cast_signed())
             .await?;
         if legs == 0 {
             break;

@@ -7,9 +7,9 @@
 //! is linear, so that it never reaches across a switch; readers that use the angular velocities
 //! come closer to the motion than that.
 
-use super::calendar::{self, Moment, NO_EPOCH};
-use super::trajectory::{Kind, Sample, Segment, Trajectory};
-use super::{ExportError, Options};
+use super::calendar::{self, CalendarTime, NO_EPOCH};
+use super::trajectory::{FlightSample, FlightSegment, SampledFlight, SegmentKind};
+use super::{ExportError, ExportOptions};
 use crate::base::clock;
 use slewplan_solver::model::scenario::Scenario;
 use std::fmt::Write;
@@ -31,12 +31,12 @@ pub(super) struct Message {
 #[derive(Debug)]
 struct Block {
     metadata: Vec<(&'static str, String)>,
-    lines: Vec<Line>,
+    lines: Vec<DataLine>,
 }
 
 /// Epoch, quaternion with the scalar last, angular velocity in degrees per second.
 #[derive(Debug)]
-struct Line {
+struct DataLine {
     epoch: String,
     quaternion: [f64; 4],
     velocity: [f64; 3],
@@ -45,21 +45,21 @@ struct Line {
 /// The message of a trajectory.
 pub(super) fn message(
     scenario: &Scenario,
-    trajectory: &Trajectory<'_>,
-    options: &Options,
+    trajectory: &SampledFlight<'_>,
+    options: &ExportOptions,
 ) -> Result<Message, ExportError> {
     let epoch = calendar::epoch(scenario)?;
     let segments = trajectory.segments.iter();
     Ok(Message {
         header: header(scenario, options),
         segments: segments
-            .map(|segment| block(scenario, segment, (epoch, options)))
+            .map(|segment| block(scenario, segment, epoch, options))
             .collect::<Result<_, _>>()?,
         rates: options.rates,
     })
 }
 
-fn header(scenario: &Scenario, options: &Options) -> Vec<(&'static str, String)> {
+fn header(scenario: &Scenario, options: &ExportOptions) -> Vec<(&'static str, String)> {
     let mut header = Vec::new();
     if let Some(name) = scenario.name() {
         header.push(("COMMENT", format!("Plan of the scenario {}", plain(name))));
@@ -77,19 +77,20 @@ fn header(scenario: &Scenario, options: &Options) -> Vec<(&'static str, String)>
 
 fn block(
     scenario: &Scenario,
-    segment: &Segment<'_>,
-    (epoch, options): (Moment, &Options),
+    segment: &FlightSegment<'_>,
+    epoch: CalendarTime,
+    options: &ExportOptions,
 ) -> Result<Block, ExportError> {
-    let lines: Vec<Line> = segment
+    let lines: Vec<DataLine> = segment
         .samples
         .iter()
         .map(|sample| line(epoch, sample))
         .collect::<Result<_, _>>()?;
-    let at = |line: Option<&Line>| line.map(|line| line.epoch.clone()).unwrap_or_default();
+    let at = |line: Option<&DataLine>| line.map(|line| line.epoch.clone()).unwrap_or_default();
     let named = |name: &Option<String>| name.as_deref().map_or(UNKNOWN.to_owned(), plain);
     let what = match segment.kind {
-        Kind::Slew(from, to) => format!("Slew from {} to {}", plain(from), plain(to)),
-        Kind::Rest(target) => format!("At rest at {}", plain(target)),
+        SegmentKind::Slew(from, to) => format!("Slew from {} to {}", plain(from), plain(to)),
+        SegmentKind::Rest(target) => format!("At rest at {}", plain(target)),
     };
     let frame = scenario.reference_frame().unwrap_or("EME2000");
     let mut metadata = vec![
@@ -113,9 +114,9 @@ fn block(
     Ok(Block { metadata, lines })
 }
 
-fn line(epoch: Moment, sample: &Sample) -> Result<Line, ExportError> {
+fn line(epoch: CalendarTime, sample: &FlightSample) -> Result<DataLine, ExportError> {
     let state = &sample.state;
-    Ok(Line {
+    Ok(DataLine {
         epoch: epoch.plus(state.time_s)?.iso(),
         quaternion: state.attitude.xyzw(),
         velocity: <[f64; 3]>::from(state.body_rate_rad_s).map(f64::to_degrees),
@@ -161,7 +162,7 @@ impl Message {
             text.push_str("META_STOP\n\nDATA_START\n");
             for line in &block.lines {
                 text.push_str(&line.epoch);
-                // Writing into a text cannot fail, here and below.
+                // Writing to a String cannot fail, here and below.
                 for component in line.quaternion {
                     let _ = write!(text, " {component:.15}");
                 }
@@ -204,7 +205,7 @@ impl Message {
         text
     }
 
-    fn state(&self, text: &mut String, line: &Line) {
+    fn state(&self, text: &mut String, line: &DataLine) {
         let name = if self.rates {
             "quaternionAngVel"
         } else {

@@ -1,31 +1,24 @@
-//! The scenario's epoch and times after it as text.
+//! The scenario's epoch, and times after it, as text.
 //!
 //! Days have 86,400 s here. Where a plan runs through a leap second of UTC, label its epoch in TAI.
 
 use super::ExportError;
-use crate::base::clock;
+use jiff::civil::{DateTime, date};
 use slewplan_solver::model::scenario::Scenario;
+use std::str::FromStr;
 use std::time::Duration;
 
-const DAY_S: i64 = 86_400;
-/// Stands for the epoch of scenarios without one.
+/// The epoch of scenarios without one.
 pub(super) const NO_EPOCH: &str = "2000-01-01T12:00:00";
-const MONTHS: [&str; 12] = [
-    "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
-];
 
-/// A moment in the time system of a scenario.
+/// A moment in the time system of a scenario, in the years -9999 to 9999.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Moment {
-    /// Whole seconds since 1970-01-01T00:00:00.
-    seconds: i64,
-    nanoseconds: u32,
-}
+pub(super) struct CalendarTime(DateTime);
 
 /// The epoch of a scenario, [`NO_EPOCH`] when it has none.
-pub(super) fn epoch(scenario: &Scenario) -> Result<Moment, ExportError> {
+pub(super) fn epoch(scenario: &Scenario) -> Result<CalendarTime, ExportError> {
     let text = scenario.epoch().unwrap_or(NO_EPOCH);
-    Moment::parse(text).ok_or_else(|| ExportError::Label {
+    CalendarTime::parse(text).ok_or_else(|| ExportError::Label {
         pointer: "/epoch",
         what: format!("{text:?} is not of the form 2026-01-31T12:00:00.5 or with Z at its end"),
     })
@@ -37,7 +30,7 @@ pub(super) fn time_system(scenario: &Scenario) -> &str {
 }
 
 /// The epoch for formats that know UTC only.
-pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<Moment, ExportError> {
+pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<CalendarTime, ExportError> {
     match time_system(scenario) {
         "UTC" => epoch(scenario),
         other => Err(ExportError::Label {
@@ -49,70 +42,55 @@ pub(super) fn utc_epoch(scenario: &Scenario, format: &str) -> Result<Moment, Exp
     }
 }
 
-impl Moment {
+impl CalendarTime {
     /// Reads `YYYY-MM-DDThh:mm:ss`, with a fraction or `Z` or both or none.
     fn parse(text: &str) -> Option<Self> {
         let text = text.strip_suffix(['Z', 'z']).unwrap_or(text);
         let (date, time) = text.split_once(['T', 't', ' '])?;
-        let mut date = date.splitn(3, '-').map(|part| whole(part, 10));
-        let (year, month, day) = (date.next()??, date.next()??, date.next()??);
+        let mut date = date.splitn(3, '-');
+        let (year, month, day) = (date.next()?, date.next()?, date.next()?);
         let (time, fraction) = time.split_once('.').unwrap_or((time, "0"));
-        let mut time = time.splitn(3, ':').map(|part| whole(part, 2));
-        let (hour, minute, second) = (time.next()??, time.next()??, time.next()??);
-        let days = clock::days_from_civil(year, month, day);
-        if clock::civil(days) != (year, month, day) || hour > 23 || minute > 59 || second > 59 {
-            return None;
-        }
-        let digits = whole(fraction, 9).and(Some(fraction))?;
-        let nanoseconds = format!("{digits:0<9}").parse().ok()?;
-        Some(Self {
-            seconds: days * DAY_S + hour * 3600 + minute * 60 + second,
-            nanoseconds,
-        })
+        let mut time = time.splitn(3, ':');
+        let (hour, minute, second) = (time.next()?, time.next()?, time.next()?);
+        whole::<u32>(fraction, 9)?;
+        let moment = DateTime::new(
+            whole(year, 10)?,
+            whole(month, 10)?,
+            whole(day, 10)?,
+            whole(hour, 2)?,
+            whole(minute, 2)?,
+            whole(second, 2)?,
+            format!("{fraction:0<9}").parse().ok()?,
+        );
+        moment.ok().map(Self)
     }
 
     /// So many seconds later, not negative; to the nanosecond.
     pub(super) fn plus(self, time_s: f64) -> Result<Self, ExportError> {
         let later = Duration::try_from_secs_f64(time_s).map_err(|_| ExportError::NotFinite)?;
-        let sum = later + Duration::from_nanos(self.nanoseconds.into());
-        let seconds = i64::try_from(sum.as_secs()).map_err(|_| ExportError::NotFinite)?;
-        Ok(Self {
-            seconds: self.seconds.saturating_add(seconds),
-            nanoseconds: sum.subsec_nanos(),
-        })
+        let sum = self.0.checked_add(later);
+        sum.map(Self).map_err(|_| ExportError::NotFinite)
     }
 
-    /// `YYYY-MM-DDThh:mm:ss.nnnnnnnnn`, without a zone: the time system is told elsewhere.
+    /// `YYYY-MM-DDThh:mm:ss.nnnnnnnnn`, without a zone: the time system stands elsewhere in the file.
     pub(super) fn iso(self) -> String {
-        let (year, month, day) = clock::civil(self.seconds.div_euclid(DAY_S));
-        let (hour, minute, second) = self.clock();
-        let fraction = self.nanoseconds;
-        format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{fraction:09}")
+        format!("{:.9}", self.0)
     }
 
     /// `D Mon YYYY hh:mm:ss.nnnnnnnnn`, as STK writes dates.
     pub(super) fn gregorian(self) -> String {
-        let (year, month, day) = clock::civil(self.seconds.div_euclid(DAY_S));
-        let (hour, minute, second) = self.clock();
-        let month = usize::try_from(month - 1).ok();
-        let name = month.and_then(|month| MONTHS.get(month)).unwrap_or(&"");
-        let fraction = self.nanoseconds;
-        format!("{day} {name} {year} {hour:02}:{minute:02}:{second:02}.{fraction:09}")
+        self.0.strftime("%-d %b %-Y %H:%M:%S.%9f").to_string()
     }
 
     /// Milliseconds since 1970, rounded down.
     pub(super) fn unix_ms(self) -> i64 {
-        self.seconds * 1000 + i64::from(self.nanoseconds / 1_000_000)
-    }
-
-    fn clock(self) -> (i64, i64, i64) {
-        let in_day = self.seconds.rem_euclid(DAY_S);
-        (in_day / 3600, in_day / 60 % 60, in_day % 60)
+        let since = self.0.duration_since(date(1970, 1, 1).at(0, 0, 0, 0));
+        since.as_secs() * 1000 + i64::from(since.subsec_nanos()).div_euclid(1_000_000)
     }
 }
 
 /// A number of decimal digits only, at most so many.
-fn whole(text: &str, longest: usize) -> Option<i64> {
+fn whole<T: FromStr>(text: &str, longest: usize) -> Option<T> {
     let digits = text.bytes().all(|byte| byte.is_ascii_digit());
     (digits && text.len() <= longest).then(|| text.parse().ok())?
 }
@@ -138,7 +116,7 @@ mod tests {
             ("1969-12-31T23:59:59", 1e-9, "1969-12-31T23:59:59.000000001"),
         ];
         for (epoch, after, text) in cases {
-            let moment = Moment::parse(epoch).unwrap();
+            let moment = CalendarTime::parse(epoch).unwrap();
             assert_eq!(moment.plus(after).unwrap().iso(), text);
         }
         for wrong in [
@@ -149,15 +127,16 @@ mod tests {
             "2026-01-01T00:00:60",
             "2026-01-01T00:00:00+01:00",
             "2026-01-01T00:00:+1",
+            "12026-01-01T00:00:00",
             "tomorrow",
         ] {
-            assert_eq!(Moment::parse(wrong), None, "{wrong}");
+            assert_eq!(CalendarTime::parse(wrong), None, "{wrong}");
         }
     }
 
     #[test]
     fn stk_and_unix_have_their_own_forms() {
-        let moment = Moment::parse("2026-03-05T06:07:08.5").unwrap();
+        let moment = CalendarTime::parse("2026-03-05T06:07:08.5").unwrap();
         assert_eq!(moment.gregorian(), "5 Mar 2026 06:07:08.500000000");
         // date -u -d 2026-03-05T06:07:08 +%s
         assert_eq!(moment.unix_ms(), 1_772_690_828_500);

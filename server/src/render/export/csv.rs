@@ -1,19 +1,19 @@
 //! A plan's trajectory as a table: one row per sample.
 
-use super::trajectory::Trajectory;
+use super::trajectory::SampledFlight;
 use std::fmt::Write;
 
 const HEAD: &str = "time_s,q_x,q_y,q_z,q_w,body_rate_x_rad_s,body_rate_y_rad_s,body_rate_z_rad_s";
 
-/// The table with a head line that names the units.
+/// The table with a header that names the units.
 ///
 /// The torque of a row is the one in force from that moment on; the last row repeats the torque
 /// of the last interval. Wheels are counted from 0, as in JSON pointers.
-pub(super) fn table(trajectory: &Trajectory<'_>) -> String {
+pub(super) fn table(trajectory: &SampledFlight<'_>) -> String {
     let mut text = HEAD.to_owned();
     for quantity in ["speed_rad_s", "torque_nm"] {
         for wheel in 0..trajectory.wheels {
-            // Writing into a text cannot fail, here and below.
+            // Writing to a String cannot fail, here and below.
             let _ = write!(text, ",wheel_{wheel}_{quantity}");
         }
     }
@@ -27,8 +27,7 @@ pub(super) fn table(trajectory: &Trajectory<'_>) -> String {
             .chain(sample.torque.iter().copied());
         for (column, value) in row.enumerate() {
             let separator = if column == 0 { "" } else { "," };
-            // The shortest text that reads back as the same number, with an exponent where it is
-            // small.
+            // The shortest text that parses to the same number, with an exponent for small numbers.
             let _ = write!(text, "{separator}{value:?}");
         }
         text.push('\n');

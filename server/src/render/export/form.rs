@@ -1,6 +1,7 @@
-//! The forms that a plan can be written in: its own, or that of another tool.
+//! The forms of a written plan: its own JSON, or the format of another tool.
 
 use super::Format;
+use strum::VariantArray as _;
 
 /// The form of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,12 +13,12 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// All forms, the ones liked better among equals first.
+    /// All forms, in the order of preference among equals.
     pub(crate) const ALL: [Self; 8] = {
         let mut all = [Self::Json; 8];
         let mut index = 0;
-        while index < Format::ALL.len() {
-            all[index + 1] = Self::Export(Format::ALL[index]);
+        while index < Format::VARIANTS.len() {
+            all[index + 1] = Self::Export(Format::VARIANTS[index]);
             index += 1;
         }
         all
@@ -31,7 +32,7 @@ impl Form {
         }
     }
 
-    /// What it is, in a line.
+    /// The description, in a line.
     pub(crate) const fn summary(self) -> &'static str {
         match self {
             Self::Json => "The whole plan",

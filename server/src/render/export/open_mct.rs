@@ -1,15 +1,15 @@
 //! The schedule as a plan of Open MCT: groups of activities, times in milliseconds since 1970.
 
 use super::ExportError;
-use super::calendar::{self, Moment};
-use super::trajectory::{Kind, pieces};
+use super::calendar::{self, CalendarTime};
+use super::trajectory::{SegmentKind, pieces};
 use serde::Serialize;
 use slewplan_solver::model::plan::Flight;
 use slewplan_solver::model::scenario::Scenario;
 
 /// Two groups; an activity's `type` is the name of its group.
 #[derive(Debug, Serialize)]
-struct Plan {
+struct OpenMctPlan {
     #[serde(rename = "Slews")]
     slews: Vec<Activity>,
     #[serde(rename = "Targets")]
@@ -27,12 +27,12 @@ struct Activity {
     text_color: &'static str,
 }
 
-/// The moment that times count from.
-pub(super) fn epoch(scenario: &Scenario) -> Result<Moment, ExportError> {
+/// The time from which the flight counts.
+pub(super) fn epoch(scenario: &Scenario) -> Result<CalendarTime, ExportError> {
     calendar::utc_epoch(scenario, "Open MCT")
 }
 
-/// The plan; targets that are passed without a rest begin and end at one moment.
+/// The plan; activities of targets without rest begin and end at the same time.
 pub(super) fn plan(scenario: &Scenario, flight: &Flight) -> Result<String, ExportError> {
     let epoch = epoch(scenario)?;
     let activity = |name, (begin, end): (f64, f64), group, color| -> Result<_, ExportError> {
@@ -46,7 +46,7 @@ pub(super) fn plan(scenario: &Scenario, flight: &Flight) -> Result<String, Expor
         })
     };
     let slews = pieces(flight).into_iter().filter_map(|(kind, begin, end)| {
-        let Kind::Slew(from, to) = kind else {
+        let SegmentKind::Slew(from, to) = kind else {
             return None;
         };
         let name = format!("{from} \u{2192} {to}");
@@ -56,7 +56,7 @@ pub(super) fn plan(scenario: &Scenario, flight: &Flight) -> Result<String, Expor
         let stay = (passage.time_s, passage.departure_s);
         activity(passage.target.clone(), stay, "Targets", "#a8480f")
     });
-    let plan = Plan {
+    let plan = OpenMctPlan {
         slews: slews.collect::<Result<_, _>>()?,
         targets: targets.collect::<Result<_, _>>()?,
     };

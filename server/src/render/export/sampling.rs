@@ -1,38 +1,39 @@
-//! At which times to sample, so that what a reader puts between the samples is close enough.
+//! Choice of the sample times, such that interpolation between samples keeps a tolerance.
 
 use super::ExportError;
 use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::State;
 
-/// Times closer than this, s, are one: formats write nanoseconds, and times must be seen to grow.
+/// Minimum distance of two times, s: formats write nanoseconds, and written times must increase.
 pub(super) const CLOSEST_S: f64 = 1e-6;
 
-/// Turn between two samples at most, rad: linear interpolation of quaternions needs it small, and
-/// no motion can hide between samples so close.
+/// Maximum rotation between two samples, rad: small enough for linear interpolation of quaternions,
+/// and for the error to be measured at few points.
 const WIDEST: f64 = 0.3;
-/// Where in a gap the interpolation is compared with the motion.
+/// Points of a gap, as shares, at which the interpolation is compared with the motion.
 const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// Where to sample between switches.
+/// Spacing of samples between switches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Spacing {
     /// At multiples of a time, s.
     Step(f64),
-    /// Evenly between switches, so that attitudes interpolated in any of the usual ways are within
-    /// this angle, rad, and linear body rates within the same, rad/s.
+    /// Evenly between switches, such that attitudes interpolated in any of the usual ways err by at
+    /// most this angle, rad, and linearly interpolated body rates by at most the same number,
+    /// rad/s.
     Tolerance(f64),
 }
 
 impl Spacing {
-    /// A step, s, that can be meant.
+    /// A valid step, s.
     pub(crate) fn checked_step(step_s: f64) -> Result<f64, &'static str> {
         Some(step_s)
             .filter(|step| (1e-3..=1e6).contains(step))
             .ok_or("expected a number of seconds from 0.001 to 1e6")
     }
 
-    /// A tolerance that can be meant: rad, and rad/s.
+    /// A valid tolerance, rad and rad/s.
     pub(crate) fn checked_tolerance(tolerance: f64) -> Result<f64, &'static str> {
         Some(tolerance)
             .filter(|tolerance| (1e-9..=1.0).contains(tolerance))
@@ -40,11 +41,11 @@ impl Spacing {
     }
 }
 
-/// How to sample.
+/// Settings of sampling.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sampling {
     pub(super) spacing: Spacing,
-    /// Most samples.
+    /// Maximum number of samples.
     pub(super) most: usize,
 }
 
@@ -106,7 +107,7 @@ fn multiples(
 /// Number of equal parts of a gap without switches that keeps a tolerance.
 ///
 /// The error of linear interpolation falls with the square of the length or faster, so that one
-/// measurement gives the number; every part is then looked at, and their number grows until all
+/// measurement predicts the number; then every part is measured, and their number grows until all
 /// of them keep the tolerance.
 fn parts(
     motion: &PropagatedMotion,
@@ -131,8 +132,8 @@ fn parts(
     }
 }
 
-/// Largest error of interpolation over equal parts of a gap; `None` when a part turns too far for
-/// it to be told.
+/// Largest error of interpolation over equal parts of a gap; `None` when a part rotates too far for
+/// the error to be measured.
 fn worst(
     motion: &PropagatedMotion,
     (begin, end): (f64, f64),
@@ -147,7 +148,7 @@ fn worst(
     let mut part = 0.0;
     while part < parts {
         let after = state((part + 1.0) / parts)?;
-        // By the rates too: a full turn looks like none.
+        // From the rates too, because a full turn leaves the attitude unchanged.
         let rate = before
             .body_rate_rad_s
             .norm()
@@ -166,11 +167,12 @@ fn worst(
     Ok(Some(worst))
 }
 
-/// Angle and rate by which interpolation at a share of a gap misses the truth, the larger number.
+/// The larger of the errors of attitude, rad, and of rate, rad/s, of interpolation at a share of a
+/// gap.
 ///
-/// Readers go three ways between two samples: components of the quaternion, the great arc, or
-/// components of the modified Rodrigues parameters (Basilisk does, and Orekit without rates). The
-/// last costs most: it errs on steady turns too.
+/// Readers interpolate in three ways: components of the quaternion, the great arc, or components of
+/// the modified Rodrigues parameters (Basilisk, and Orekit without rates). The last has the largest
+/// errors, which are not zero on turns at constant rate either.
 fn error((before, after): (&State, &State), share: f64, truth: &State) -> f64 {
     let (begin, end) = (
         &before.attitude,
@@ -200,8 +202,8 @@ fn blend<const N: usize>(a: [f64; N], b: [f64; N], share: f64) -> [f64; N] {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share)
 }
 
-/// Modified Rodrigues parameters of an attitude: of the two sets the one that is continuous with
-/// the shorter of a neighbour.
+/// Modified Rodrigues parameters of an attitude: of the two sets the one continuous with the
+/// shorter set of a neighbour.
 fn rodrigues(attitude: &Attitude, neighbour: &Attitude) -> [f64; 3] {
     let short = |q: [f64; 4]| if q[3] < 0.0 { q.map(|c| -c) } else { q };
     let near = Attitude::from_xyzw(short(neighbour.xyzw()));

@@ -2,22 +2,22 @@
 //! last, with angular velocities in degrees per second about the body axes.
 
 use super::ExportError;
-use super::calendar::{self, Moment};
-use super::trajectory::Trajectory;
+use super::calendar::{self, CalendarTime};
+use super::trajectory::SampledFlight;
 use slewplan_solver::model::scenario::Scenario;
 use std::fmt::Write;
 
 /// Epoch and axes.
-pub(super) fn labels(scenario: &Scenario) -> Result<(Moment, &'static str), ExportError> {
+pub(super) fn labels(scenario: &Scenario) -> Result<(CalendarTime, &'static str), ExportError> {
     let epoch = calendar::utc_epoch(scenario, "STK")?;
     let axes = axes(scenario.reference_frame().unwrap_or("EME2000"))?;
     Ok((epoch, axes))
 }
 
-/// The file; the first line is the version that the format has had longest.
+/// The file; the first line is the oldest version of the format with these contents.
 pub(super) fn attitude_file(
     scenario: &Scenario,
-    trajectory: &Trajectory<'_>,
+    trajectory: &SampledFlight<'_>,
     rates: bool,
 ) -> Result<String, ExportError> {
     let (epoch, axes) = labels(scenario)?;
@@ -35,7 +35,7 @@ pub(super) fn attitude_file(
     );
     for sample in trajectory.samples() {
         let state = &sample.state;
-        // Writing into a text cannot fail.
+        // Writing to a String cannot fail.
         let _ = write!(text, "{:.9}", state.time_s);
         for component in state.attitude.xyzw() {
             let _ = write!(text, " {component:.15}");

@@ -1,10 +1,10 @@
-//! Every format on one small flight: a turn about z, a rest, another turn.
+//! Every format for one small flight: a turn about z, a rest, another turn.
 
 mod messages;
 
 use super::sampling::Sampling;
-use super::trajectory::{Kind, Trajectory};
-use super::{ExportError, Format, Options, Spacing, write};
+use super::trajectory::{SampledFlight, SegmentKind};
+use super::{ExportError, ExportOptions, Format, Spacing, write};
 use crate::documents;
 use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::plan::{Control, Flight, Passage};
@@ -34,7 +34,7 @@ fn labelled() -> Scenario {
     scenario(r#""name": "é & co", "epoch": "2026-01-31T23:59:50Z", "time_system": "UTC","#)
 }
 
-/// Five seconds each way, five seconds of rest, and the same again.
+/// Acceleration and deceleration for five seconds each, five seconds of rest, and the same turn again.
 fn flight() -> Flight {
     let control = |start_s: f64, torque: f64| Control {
         start_s,
@@ -46,7 +46,7 @@ fn flight() -> Flight {
         time_s,
         departure_s,
     };
-    // The body feels the opposite of the motor's torque on the wheel.
+    // The torque on the body is the opposite of the motor's torque on the wheel.
     let turns = [
         (0.0, -TORQUE),
         (5.0, TORQUE),
@@ -80,32 +80,32 @@ fn closed_form(time_s: f64) -> (f64, f64) {
     (first.0 + second.0, first.1 + second.1)
 }
 
-fn options() -> Options {
-    Options {
+fn options() -> ExportOptions {
+    ExportOptions {
         created_us: 1_767_225_600_000_000,
-        ..Options::new(10_000)
+        ..ExportOptions::new(10_000)
     }
 }
 
-fn stepped(step_s: f64) -> Options {
-    Options {
+fn stepped(step_s: f64) -> ExportOptions {
+    ExportOptions {
         spacing: Some(Spacing::Step(step_s)),
         ..options()
     }
 }
 
-fn written(format: Format, options: &Options) -> String {
-    write(format, (&labelled(), &flight()), options).unwrap()
+fn written(format: Format, options: &ExportOptions) -> String {
+    write(format, &labelled(), &flight(), options).unwrap()
 }
 
-fn with_trajectory(spacing: Spacing, look: impl Fn(&Trajectory<'_>)) {
+fn with_trajectory(spacing: Spacing, look: impl Fn(&SampledFlight<'_>)) {
     let (scenario, flight) = (labelled(), flight());
     let motion = PropagatedMotion::of(&scenario, &flight).unwrap();
     let sampling = Sampling {
         spacing,
         most: 10_000,
     };
-    look(&Trajectory::of(&flight, &motion, sampling).unwrap());
+    look(&SampledFlight::of(&flight, &motion, sampling).unwrap());
 }
 
 #[test]
@@ -116,7 +116,11 @@ fn slews_and_rests_are_segments_with_the_switches_among_their_samples() {
             let (start, a, b) = ("start", "a<1>", "b");
             assert_eq!(
                 kinds,
-                [Kind::Slew(start, a), Kind::Rest(a), Kind::Slew(a, b)]
+                [
+                    SegmentKind::Slew(start, a),
+                    SegmentKind::Rest(a),
+                    SegmentKind::Slew(a, b)
+                ]
             );
             let times = |index: usize| {
                 let samples = trajectory.segments[index].samples.iter();
@@ -141,7 +145,7 @@ fn slews_and_rests_are_segments_with_the_switches_among_their_samples() {
 }
 
 #[test]
-fn samples_are_true_and_close_enough_for_interpolation() {
+fn samples_keep_the_tolerance_of_interpolation() {
     for tolerance in [1e-3, 1e-5, 1e-7] {
         with_trajectory(Spacing::Tolerance(tolerance), |trajectory| {
             let (mut worst, mut count) = (0.0_f64, 0);
@@ -174,7 +178,7 @@ fn samples_are_true_and_close_enough_for_interpolation() {
 }
 
 #[test]
-fn steps_are_multiples_and_the_table_has_them() {
+fn csv_has_samples_at_multiples_of_the_step() {
     let table = written(Format::Csv, &stepped(2.0));
     let times: Vec<f64> = table
         .lines()
@@ -190,7 +194,8 @@ fn steps_are_multiples_and_the_table_has_them() {
     assert!(
         head.ends_with("wheel_2_speed_rad_s,wheel_0_torque_nm,wheel_1_torque_nm,wheel_2_torque_nm")
     );
-    // A boundary has the torque that begins there, the last row that of the last interval.
+    // A boundary has the torque of the interval that begins there, the last row that of the last
+    // interval.
     let torque = |row: usize| {
         table
             .lines()
@@ -229,12 +234,12 @@ fn waypoints_have_time_attitude_rate_and_acceleration() {
     for (found, expected) in peak.iter().zip(expected) {
         assert!((found - expected).abs() < 1e-14, "{peak:?}");
     }
-    // From the switch on it slows down.
+    // After the switch the turn decelerates.
     assert!((peak[10] + TORQUE / EFFECTIVE_Z).abs() < 1e-14);
 }
 
 #[test]
-fn an_attitude_file_counts_its_points_in_degrees() {
+fn an_stk_file_has_the_number_of_points_and_rates_in_degrees() {
     let text = written(Format::Stk, &stepped(5.0));
     let lines: Vec<&str> = text.lines().collect();
     let head = [
@@ -255,7 +260,7 @@ fn an_attitude_file_counts_its_points_in_degrees() {
         .map(|cell| cell.parse().unwrap())
         .collect();
     assert!((row[7] - closed_form(5.0).1.to_degrees()).abs() < 1e-13);
-    let alone = Options {
+    let alone = ExportOptions {
         rates: false,
         ..stepped(5.0)
     };
@@ -274,18 +279,18 @@ fn wheel_commands_are_numbered_and_in_revolutions_per_minute() {
         .lines()
         .map(|row| row.split('\t').map(|cell| cell.parse().unwrap()).collect())
         .collect();
-    // The last command is due after the end, and holds what is reached there.
+    // The last command is due after the end and has the speed at the end.
     assert_eq!(
         rows.iter().map(|row| row[0]).collect::<Vec<_>>(),
         [0.0, 1.0, 2.0, 3.0]
     );
-    // Halfway through the second turn: what the body has, the wheel has given.
+    // Halfway through the second turn the wheel has lost the momentum of the body.
     let speed = -closed_form(20.0).1 * 6.0 / 0.002;
     assert!(
         (rows[2][3] - speed * 30.0 / std::f64::consts::PI).abs() < 1e-5,
         "{rows:?}"
     );
-    let one = Options {
+    let one = ExportOptions {
         wheel: Some(2),
         ..stepped(10.0)
     };
@@ -320,32 +325,32 @@ fn a_schedule_has_slews_and_targets_in_milliseconds() {
 }
 
 #[test]
-fn choices_that_a_format_does_not_leave_are_refused() {
-    let wheel = Options {
+fn options_that_a_format_does_not_have_are_refused() {
+    let wheel = ExportOptions {
         wheel: Some(0),
         ..options()
     };
-    let beyond = Options {
+    let beyond = ExportOptions {
         wheel: Some(3),
         ..options()
     };
-    let bare = Options {
+    let bare = ExportOptions {
         rates: false,
         ..options()
     };
-    let named = Options {
+    let named = ExportOptions {
         object_id: Some("2026-001A".into()),
         ..options()
     };
-    let tolerance = Options {
+    let tolerance = ExportOptions {
         spacing: Some(Spacing::Tolerance(1e-3)),
         ..options()
     };
-    let few = Options {
+    let few = ExportOptions {
         most_samples: 20,
         ..stepped(1.0)
     };
-    let tight = Options {
+    let tight = ExportOptions {
         most_samples: 20,
         ..options()
     };
@@ -361,7 +366,7 @@ fn choices_that_a_format_does_not_leave_are_refused() {
         (Format::WheelRpm, few),
     ];
     for (format, options) in cases {
-        let refused = write(format, (&labelled(), &flight()), &options);
+        let refused = write(format, &labelled(), &flight(), &options);
         assert!(
             matches!(refused, Err(ExportError::Choice(_))),
             "{format:?} {options:?}"
@@ -370,7 +375,7 @@ fn choices_that_a_format_does_not_leave_are_refused() {
 }
 
 #[test]
-fn labels_that_a_format_cannot_say_are_refused_with_their_place() {
+fn labels_that_a_format_cannot_represent_are_refused_with_their_pointer() {
     let cases = [
         (Format::AemKvn, r#""epoch": "soon","#, "/epoch"),
         (Format::Stk, r#""time_system": "TAI","#, "/time_system"),
@@ -382,7 +387,7 @@ fn labels_that_a_format_cannot_say_are_refused_with_their_place() {
         ),
     ];
     for (format, labels, place) in cases {
-        let refused = write(format, (&scenario(labels), &flight()), &options());
+        let refused = write(format, &scenario(labels), &flight(), &options());
         let Err(ExportError::Label { pointer, .. }) = refused else {
             panic!("{format:?}: {refused:?}");
         };
@@ -391,9 +396,9 @@ fn labels_that_a_format_cannot_say_are_refused_with_their_place() {
 }
 
 #[test]
-fn a_flight_with_a_gap_is_not_written() {
+fn a_flight_with_a_gap_is_refused() {
     let mut broken = flight();
     broken.controls.remove(1);
-    let refused = write(Format::Csv, (&labelled(), &broken), &options());
+    let refused = write(Format::Csv, &labelled(), &broken, &options());
     assert!(matches!(refused, Err(ExportError::NotFlown(_))));
 }

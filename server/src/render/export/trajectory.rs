@@ -1,4 +1,4 @@
-//! The flight cut into slews and rests, each with samples at its ends and at every switch.
+//! The flight as slews and rests, each with samples at its ends and at every switch.
 
 use super::ExportError;
 use super::sampling::{self, CLOSEST_S, Sampling};
@@ -8,41 +8,41 @@ use slewplan_solver::model::plan::{Flight, State};
 
 /// A sampled flight.
 #[derive(Debug)]
-pub(super) struct Trajectory<'a> {
-    /// In order of time; the last sample of one is the first of the next.
-    pub(super) segments: Vec<Segment<'a>>,
+pub(super) struct SampledFlight<'a> {
+    /// In order of time; the last sample of a segment is the first of the next.
+    pub(super) segments: Vec<FlightSegment<'a>>,
     /// Number of wheels.
     pub(super) wheels: usize,
 }
 
-/// One slew, or one stay at a target.
+/// One slew, or one rest at a target.
 #[derive(Debug)]
-pub(super) struct Segment<'a> {
-    pub(super) kind: Kind<'a>,
+pub(super) struct FlightSegment<'a> {
+    pub(super) kind: SegmentKind<'a>,
     /// At least two, strictly increasing in time.
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Vec<FlightSample>,
 }
 
-/// What a segment is.
+/// The kind of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind<'a> {
-    /// From one place to another.
+pub(super) enum SegmentKind<'a> {
+    /// From start or a target to a target or the end.
     Slew(&'a str, &'a str),
     /// Settle and dwell at a target.
     Rest(&'a str),
 }
 
-/// A moment of the flight.
+/// The flight at one time.
 #[derive(Debug, Clone)]
-pub(super) struct Sample {
+pub(super) struct FlightSample {
     pub(super) state: State,
-    /// Angular acceleration in body axes from then on, rad/s².
+    /// Angular acceleration in body axes after this time, rad/s².
     pub(super) acceleration: Vector3<f64>,
-    /// Motor torques from then on, N m; at the end those of the last interval.
+    /// Motor torques after this time, N m; at the end those of the last interval.
     pub(super) torque: Vec<f64>,
 }
 
-impl<'a> Trajectory<'a> {
+impl<'a> SampledFlight<'a> {
     /// Samples a motion.
     pub(super) fn of(
         flight: &'a Flight,
@@ -63,7 +63,7 @@ impl<'a> Trajectory<'a> {
             )?;
             left = left.saturating_sub(times.len());
             let samples = times.iter().map(|time| sample(flight, motion, *time));
-            segments.push(Segment {
+            segments.push(FlightSegment {
                 kind,
                 samples: samples.collect::<Result<_, _>>()?,
             });
@@ -75,24 +75,28 @@ impl<'a> Trajectory<'a> {
         })
     }
 
-    /// All samples in order of time, each once.
-    pub(super) fn samples(&self) -> impl Iterator<Item = &Sample> {
+    /// All samples in order of time, without repetition.
+    pub(super) fn samples(&self) -> impl Iterator<Item = &FlightSample> {
         let segments = self.segments.iter().enumerate();
         segments.flat_map(|(index, segment)| segment.samples.iter().skip(usize::from(index > 0)))
     }
 }
 
-/// Slews and rests with begin and end, s; those that take no time are left out.
-pub(super) fn pieces(flight: &Flight) -> Vec<(Kind<'_>, f64, f64)> {
+/// Slews and rests with begin and end, s; those of zero duration are left out.
+pub(super) fn pieces(flight: &Flight) -> Vec<(SegmentKind<'_>, f64, f64)> {
     let mut pieces = Vec::new();
     let (mut from, mut since) = ("start", 0.0);
     for passage in &flight.passages {
         let target = passage.target.as_str();
-        pieces.push((Kind::Slew(from, target), since, passage.time_s));
-        pieces.push((Kind::Rest(target), passage.time_s, passage.departure_s));
+        pieces.push((SegmentKind::Slew(from, target), since, passage.time_s));
+        pieces.push((
+            SegmentKind::Rest(target),
+            passage.time_s,
+            passage.departure_s,
+        ));
         (from, since) = (target, passage.departure_s);
     }
-    pieces.push((Kind::Slew(from, "end"), since, flight.total_time_s));
+    pieces.push((SegmentKind::Slew(from, "end"), since, flight.total_time_s));
     pieces.retain(|(_, begin, end)| end - begin > CLOSEST_S);
     pieces
 }
@@ -107,11 +111,15 @@ fn knots(flight: &Flight, begin: f64, end: f64) -> Vec<f64> {
     knots
 }
 
-fn sample(flight: &Flight, motion: &PropagatedMotion, time_s: f64) -> Result<Sample, ExportError> {
+fn sample(
+    flight: &Flight,
+    motion: &PropagatedMotion,
+    time_s: f64,
+) -> Result<FlightSample, ExportError> {
     let state = motion.state(time_s).ok_or(ExportError::NotFinite)?;
     let acceleration = motion.acceleration(time_s).ok_or(ExportError::NotFinite)?;
     let controls = &flight.controls;
-    // A boundary within rounding has been passed.
+    // A boundary within rounding counts as passed.
     let begun = controls.partition_point(|control| control.start_s <= time_s + CLOSEST_S);
     let torque = controls
         .get(begun.saturating_sub(1))
@@ -122,7 +130,7 @@ fn sample(flight: &Flight, motion: &PropagatedMotion, time_s: f64) -> Result<Sam
     if !(time_s.is_finite() && numbers.all(|number| number.is_finite())) {
         return Err(ExportError::NotFinite);
     }
-    Ok(Sample {
+    Ok(FlightSample {
         state,
         acceleration,
         torque,

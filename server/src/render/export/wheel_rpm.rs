@@ -1,10 +1,10 @@
-//! Wheel speeds as commands for controllers that hold a speed until the next one comes.
+//! Wheel speed commands for controllers that hold a speed until the next command.
 //!
 //! Per line the number of the command, from 0, and the speed of every wheel, or of one, in
-//! revolutions per minute relative to the body, separated by tabs and without a head: what test
+//! revolutions per minute relative to the body, separated by tabs and without a header, as test
 //! benches read. Command `k` is due at `k` periods; the last one is at or after the end.
 
-use super::{ExportError, Options, PERIOD_S, Spacing};
+use super::{ExportError, ExportOptions, PERIOD_S, Spacing};
 use slewplan_solver::checker::PropagatedMotion;
 use slewplan_solver::model::scenario::Scenario;
 use std::f64::consts::TAU;
@@ -19,7 +19,7 @@ fn rpm(speed_rad_s: f64) -> f64 {
 pub(super) fn commands(
     motion: &PropagatedMotion,
     total_time_s: f64,
-    options: &Options,
+    options: &ExportOptions,
 ) -> Result<String, ExportError> {
     let period = match options.spacing {
         Some(Spacing::Step(step)) => step,
@@ -36,7 +36,7 @@ pub(super) fn commands(
         let state = motion.state(time).ok_or(ExportError::NotFinite)?;
         let speeds = state.wheel_speed_rad_s.iter().enumerate();
         let chosen = speeds.filter(|(wheel, _)| options.wheel.is_none_or(|one| one == *wheel));
-        // Writing into a text cannot fail.
+        // Writing to a String cannot fail.
         let _ = write!(text, "{number}");
         for (_, speed) in chosen {
             if !speed.is_finite() {
@@ -53,7 +53,7 @@ pub(super) fn commands(
     }
 }
 
-/// Whether there is such a wheel.
+/// Tests that the selected wheel exists.
 pub(super) fn check_wheel(scenario: &Scenario, wheel: Option<usize>) -> Result<(), ExportError> {
     let count = scenario.spacecraft().wheels().len();
     match wheel {

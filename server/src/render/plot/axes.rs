@@ -1,18 +1,18 @@
-//! Axes and legends, which all diagrams have alike.
+//! Axes and legends of all diagrams.
 
-use super::canvas::{Canvas, FAINT, Frame, Ink, LINE, Pen};
+use super::canvas::{Canvas, FAINT, Ink, LINE, Pen, PlotArea};
 use super::scale::Scale;
 
-/// Widths of characters of small text, about, and of what stands between two entries of a legend.
+/// Approximate width of a character of small text, and the gap between two entries of a legend.
 const CHARACTER: f64 = 6.5;
 const SWATCH: f64 = 16.0;
 const APART: f64 = 24.0;
 
-/// Lines at round values of the ordinate, and ticks below at those of the abscissa: about so many
-/// of each.
+/// Grid lines at round values of the ordinate and ticks at those of the abscissa, about as many of
+/// each as asked for.
 pub(super) fn grid(
     canvas: &mut Canvas,
-    frame: Frame,
+    frame: PlotArea,
     (across, up): (Scale, Scale),
     (columns, rows): (f64, f64),
 ) {
@@ -30,14 +30,14 @@ pub(super) fn grid(
     canvas.line((frame.left, bottom), (right, bottom), Pen::new(LINE, 1.0));
 }
 
-/// What a curve is.
+/// An entry of a legend.
 #[derive(Debug, Clone)]
 pub(super) struct Key {
     pub(super) name: String,
     pub(super) colour: &'static str,
 }
 
-/// The names of curves in a row that ends at a place.
+/// The names of curves in a row, aligned to the right at a point.
 pub(super) fn legend(canvas: &mut Canvas, (right, baseline): (f64, f64), keys: &[Key]) {
     let mut right = right;
     for key in keys.iter().rev() {

@@ -1,9 +1,9 @@
-//! Shapes and text as SVG.
+//! An SVG canvas: shapes and text.
 
 use super::scale::Scale;
 use std::fmt::Write;
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito).
+/// Colours that are distinguishable with any colour vision (Okabe and Ito).
 pub(super) const SERIES: [&str; 7] = [
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#444444",
 ];
@@ -14,21 +14,21 @@ pub(super) const ALARM: &str = "#C0392B";
 
 /// A rectangle of the picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct PlotArea {
     pub(super) left: f64,
     pub(super) top: f64,
     pub(super) width: f64,
     pub(super) height: f64,
 }
 
-impl Frame {
-    /// The time axis of what takes so long, s, along the frame.
+impl PlotArea {
+    /// The scale of a time axis from 0 to a duration, s, along the area.
     pub(super) fn times(&self, duration: f64) -> Scale {
         Scale::linear((0.0, duration), (self.left, self.left + self.width))
     }
 }
 
-/// How text looks.
+/// Style of a text.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ink {
     size: f64,
@@ -73,7 +73,7 @@ impl Ink {
     }
 }
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pen {
     pub(super) colour: &'static str,
@@ -104,14 +104,14 @@ impl Pen {
     }
 }
 
-/// A picture in the making. Writing into a text cannot fail.
+/// A picture in progress. Writing to a String cannot fail.
 #[derive(Debug)]
 pub(super) struct Canvas {
     text: String,
 }
 
 impl Canvas {
-    /// An empty white picture with words for those who cannot see it.
+    /// An empty white picture with an alternative text.
     pub(super) fn new(width: f64, height: f64, description: &str) -> Self {
         let description = escaped(description);
         let text = format!(
@@ -144,8 +144,8 @@ impl Canvas {
         );
     }
 
-    pub(super) fn rectangle(&mut self, frame: Frame, fill: &str, rounding: f64) {
-        let Frame {
+    pub(super) fn rectangle(&mut self, frame: PlotArea, fill: &str, rounding: f64) {
+        let PlotArea {
             left,
             top,
             width,
@@ -175,7 +175,7 @@ impl Canvas {
         self.shape(points, "none", pen, "");
     }
 
-    /// A filled shape.
+    /// A filled polygon.
     pub(super) fn area(&mut self, points: &[(f64, f64)], fill: &str, pen: Pen) {
         self.shape(points, fill, pen, "Z");
     }
@@ -220,7 +220,7 @@ fn stroke(pen: Pen) -> String {
     format!("stroke=\"{colour}\" stroke-width=\"{width}\"{dashes}{veil}")
 }
 
-/// Text as XML wants it; characters that XML forbids are left out.
+/// Text escaped for XML; characters that XML forbids are left out.
 fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for character in text.chars().filter(|c| !c.is_control()) {

@@ -1,13 +1,13 @@
-//! Curves of one quantity over another.
+//! Diagrams: curves of one quantity over another.
 
 use super::axes;
-use super::canvas::{Canvas, Frame, Ink, LINE, Pen};
+use super::canvas::{Canvas, Ink, LINE, Pen, PlotArea};
 use super::scale::Scale;
 use super::scale::minus;
 
-/// Room between the extreme values and the frame, as a share.
+/// Margin between the extreme values and the frame, as a share.
 const AIR: f64 = 0.06;
-/// Room left of the frame for figures, below it and above it.
+/// Space for labels left of the frame, below it and above it.
 const LEFT: f64 = 60.0;
 const BELOW: f64 = 42.0;
 const ABOVE: f64 = 22.0;
@@ -19,11 +19,11 @@ const INK: &str = "#14202B";
 /// A diagram.
 #[derive(Debug)]
 pub(super) struct Chart {
-    /// What goes up, with its unit.
+    /// Title of the ordinate, with its unit.
     pub(super) title: String,
-    /// What goes across, with its unit.
+    /// Title of the abscissa, with its unit.
     pub(super) across: String,
-    /// Whether values that span decades are drawn by their logarithms.
+    /// Whether values that span decades have logarithmic axes.
     pub(super) logarithms: bool,
     pub(super) curves: Vec<Curve>,
     /// Values of the abscissa to mark.
@@ -32,14 +32,14 @@ pub(super) struct Chart {
     pub(super) levels: Vec<f64>,
 }
 
-/// How the points of a curve are drawn.
+/// Style of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stroke {
     Line,
     Dashes,
     /// A line with a dot at each point.
     Dotted,
-    /// Nothing but a dot at each point.
+    /// Only a dot at each point.
     Dots,
 }
 
@@ -50,9 +50,9 @@ pub(super) struct Curve {
     pub(super) stroke: Stroke,
 }
 
-/// Draws a diagram into a place, figures and titles included.
-pub(super) fn draw(canvas: &mut Canvas, place: Frame, chart: &Chart) {
-    let frame = Frame {
+/// Draws a diagram with its labels and titles into an area.
+pub(super) fn draw(canvas: &mut Canvas, place: PlotArea, chart: &Chart) {
+    let frame = PlotArea {
         left: place.left + LEFT,
         top: place.top + ABOVE,
         width: place.width - LEFT,
@@ -69,7 +69,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: Frame, chart: &Chart) {
         let x = across.at(mark);
         let pen = Pen::new(LINE, 1.2).dashed();
         canvas.line((x, frame.top), (x, bottom), pen);
-        canvas.text(x + 4.0, frame.top + 12.0, Ink::SMALL, &figure(mark));
+        canvas.text(x + 4.0, frame.top + 12.0, Ink::SMALL, &significant(mark));
     }
     for curve in &chart.curves {
         draw_curve(canvas, scales, curve);
@@ -78,7 +78,7 @@ pub(super) fn draw(canvas: &mut Canvas, place: Frame, chart: &Chart) {
         let y = up.at(level);
         let pen = Pen::new(LINE, 1.2).dashed();
         canvas.line((frame.left, y), (right, y), pen);
-        canvas.text(right, y - 5.0, Ink::SMALL.end(), &figure(level));
+        canvas.text(right, y - 5.0, Ink::SMALL.end(), &significant(level));
         for curve in &chart.curves {
             draw_crossings(canvas, scales, curve, level);
         }
@@ -101,7 +101,7 @@ fn draw_curve(canvas: &mut Canvas, (across, up): (Scale, Scale), curve: &Curve) 
     }
 }
 
-/// Where a curve with its own points crosses a level, by the straight lines that are drawn.
+/// Marks where the drawn polyline of a curve crosses a level.
 fn draw_crossings(canvas: &mut Canvas, (across, up): (Scale, Scale), curve: &Curve, level: f64) {
     if curve.stroke != Stroke::Dotted {
         return;
@@ -117,13 +117,13 @@ fn draw_crossings(canvas: &mut Canvas, (across, up): (Scale, Scale), curve: &Cur
         let (from, to) = (across.at(pair[0].0), across.at(pair[1].0));
         let x = from + share * (to - from);
         canvas.circle((x, y), 4.0, "none", Pen::new(INK, 1.4));
-        let words = figure(across.value(x));
+        let words = significant(across.value(x));
         canvas.text(x + 7.0, y - 7.0, Ink::SMALL.coloured(INK), &words);
     }
 }
 
-/// A number with four digits, which is as many as can be read off a diagram.
-pub(super) fn figure(value: f64) -> String {
+/// A number with four significant digits, as many as can be read off a diagram.
+pub(super) fn significant(value: f64) -> String {
     let text = if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         let whole = value.abs().max(1e-3).log10().floor() + 1.0;
         let digits = (4.0 - whole).clamp(0.0, 6.0);
@@ -142,7 +142,7 @@ pub(super) fn figure(value: f64) -> String {
 }
 
 impl Chart {
-    fn scales(&self, frame: Frame) -> (Scale, Scale) {
+    fn scales(&self, frame: PlotArea) -> (Scale, Scale) {
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let scale = if self.logarithms {
             Scale::around
@@ -164,8 +164,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_have_four_digits() {
-        let texts = [910.1, 28.364, 0.013_567, 1234.5, 0.0, -2.5, 1e-7].map(figure);
+    fn numbers_have_four_significant_digits() {
+        let texts = [910.1, 28.364, 0.013_567, 1234.5, 0.0, -2.5, 1e-7].map(significant);
         assert_eq!(
             texts,
             [
@@ -181,9 +181,9 @@ mod tests {
     }
 
     #[test]
-    fn crossings_of_a_level_are_named() {
+    fn crossings_of_a_level_are_labelled() {
         let mut canvas = Canvas::new(400.0, 300.0, "");
-        let place = Frame {
+        let place = PlotArea {
             left: 0.0,
             top: 0.0,
             width: 400.0,

@@ -1,16 +1,16 @@
-//! Wheels against gyroscopes as a picture: slew times, advantage angles, devices, masses.
+//! The picture of a comparison of wheels and gyroscopes: slew times, advantage angles, devices, masses.
 
 use super::axes::{self, Key};
-use super::canvas::{Canvas, Frame, SERIES};
-use super::chart::{self, Chart, Curve, Stroke, figure};
+use super::canvas::{Canvas, PlotArea, SERIES};
+use super::chart::{self, Chart, Curve, Stroke, significant};
 use super::written_comparison::{Fit, Size, WrittenComparison};
 use super::{HEAD, MARGIN, WIDTH};
 
-/// Most sizes whose slews are drawn, the first ones; one row of diagrams.
+/// Maximum number of sizes whose slews are drawn: one row of diagrams.
 const COLUMNS: usize = 3;
 const CHART: f64 = 330.0;
 const BETWEEN: f64 = 36.0;
-/// Of wheels and of gyroscopes where no control makes a difference.
+/// Colours of wheels and of gyroscopes in diagrams that do not distinguish controls.
 const WHEELS: &str = SERIES[2];
 const GYROSCOPES: &str = SERIES[1];
 
@@ -30,7 +30,7 @@ const CONTROLS: [(&str, &str, &str); 4] = [
 ///
 /// # Errors
 ///
-/// A sentence, when it has nothing to draw.
+/// A message, when it has nothing to draw.
 pub(crate) fn draw(study: &WrittenComparison) -> Result<String, String> {
     if study.sizes.is_empty() || study.angles_rad.is_empty() {
         return Err("the comparison has no slews".to_owned());
@@ -67,7 +67,7 @@ pub(crate) fn draw(study: &WrittenComparison) -> Result<String, String> {
         };
         let columns = columns as f64;
         let width = (inside - (columns - 1.0) * BETWEEN) / columns;
-        let place = Frame {
+        let place = PlotArea {
             left: MARGIN + column as f64 * (width + BETWEEN),
             top: top + row_index * row,
             width,
@@ -100,7 +100,7 @@ fn slew_times(study: &WrittenComparison, size: &Size) -> Chart {
     Chart {
         title: format!(
             "Slew time, s; devices of {} N m s",
-            figure(size.momentum_nms)
+            significant(size.momentum_nms)
         ),
         across: "angle, degrees".to_owned(),
         logarithms: false,
@@ -110,7 +110,7 @@ fn slew_times(study: &WrittenComparison, size: &Size) -> Chart {
     }
 }
 
-/// Angles beyond a half turn are no slews any more, so the diagram ends there.
+/// The diagram ends at a half turn, the largest angle of a slew.
 fn advantage_angles(study: &WrittenComparison) -> Chart {
     let advantage = &study.advantage;
     let half_turn = |angle: &f64| *angle <= std::f64::consts::PI;

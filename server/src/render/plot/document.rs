@@ -1,4 +1,4 @@
-//! Which kind of document is to be drawn.
+//! The kinds of documents that can be drawn.
 
 use super::{WrittenComparison, WrittenEnvelopes, WrittenFlight, WrittenPlan, WrittenSlews};
 use serde::Deserialize;
@@ -6,20 +6,20 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 
 /// A document that can be drawn.
 #[derive(Debug)]
-pub(crate) enum Document {
+pub(crate) enum DrawableDocument {
     /// A plan.
     Plan(WrittenPlan),
-    /// The answer to a slew, perhaps with a sweep.
+    /// The answer to a slew, with or without a sweep.
     Slews(WrittenSlews),
-    /// The study of wheels and gyroscopes.
+    /// A comparison of wheels and gyroscopes.
     Comparison(WrittenComparison),
-    /// The study of what wheels can do together.
+    /// A study of envelopes.
     Envelopes(WrittenEnvelopes),
     /// A flight in closed loop.
     Flight(Box<WrittenFlight>),
 }
 
-/// Members that only one kind has.
+/// Members that identify a kind.
 #[derive(Deserialize)]
 struct Members {
     slews: Option<IgnoredAny>,
@@ -28,12 +28,12 @@ struct Members {
     flight: Option<IgnoredAny>,
 }
 
-impl Document {
-    /// Reads a document, whose members tell what it is.
+impl DrawableDocument {
+    /// Reads a document; its members identify its kind.
     ///
     /// # Errors
     ///
-    /// A sentence, when it cannot be drawn.
+    /// A message, when it cannot be drawn.
     pub(crate) fn read(bytes: &[u8]) -> Result<Self, String> {
         let members: Members = of(bytes, "a document")?;
         if members.slews.is_some() {

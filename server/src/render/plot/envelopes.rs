@@ -1,4 +1,4 @@
-//! What wheels can do together as a picture: the envelopes seen from a side, and which shares of them
+//! The picture of a study of envelopes: a projection of the envelopes, and the shares of them that
 //! the slews of a turn use (RW/CMG thesis, figures 71 to 76).
 
 mod projection;
@@ -8,33 +8,34 @@ mod written;
 
 pub(crate) use written::WrittenEnvelopes;
 
-use super::canvas::{Canvas, Frame, Ink, Pen, SERIES};
+use super::canvas::{Canvas, Ink, Pen, PlotArea, SERIES};
 use super::panel::{self, GAP, Panel};
 use super::scale::minus;
 use super::{HEAD, MARGIN, WIDTH};
 use nalgebra::Vector3;
-use projection::Way;
-use written::{Array, Polytope, Slew, Turn};
+use projection::ProjectedPath;
+use written::{Array, WrittenEnvelopeSlew, WrittenPolytope, WrittenTurn};
 
 const SOLIDS: f64 = 400.0;
-/// Room for the legend, and for the names of values beside a panel.
+/// Space for the legend, and for the labels beside a panel.
 const LEGEND: f64 = 30.0;
 const VALUES: f64 = 60.0;
-/// Parts of a straight piece of a way between which the share of an envelope is looked at.
+/// Number of parts of a straight piece of a path at whose ends the share of an envelope is
+/// evaluated.
 const PARTS: usize = 16;
 
 /// The picture of a study's envelopes with one of its turns, counted from zero.
 ///
 /// # Errors
 ///
-/// A sentence, when there is no such turn.
+/// A message, when there is no such turn.
 pub(crate) fn svg(study: &WrittenEnvelopes, turn: usize) -> Result<String, String> {
     let known = study.turns.len();
     if turn > 0 && turn >= known {
         return Err(format!("there is no turn {turn}: the study has {known}"));
     }
     let turn = study.turns.get(turn);
-    let slews = turn.map(Turn::slews).unwrap_or_default();
+    let slews = turn.map(WrittenTurn::slews).unwrap_or_default();
     let rows = if slews.is_empty() { 0.0 } else { 2.0 };
     let height = HEAD + LEGEND + SOLIDS + rows * (panel::HEIGHT + GAP) + 48.0;
     let summary = turn.map_or_else(String::new, described);
@@ -49,20 +50,20 @@ pub(crate) fn svg(study: &WrittenEnvelopes, turn: usize) -> Result<String, Strin
     let momentum = study.momentum.as_ref().map(|array| Column {
         title: "Momentum",
         array,
-        ways: slews.iter().map(Slew::momenta).collect(),
+        ways: slews.iter().map(WrittenEnvelopeSlew::momenta).collect(),
         joined: true,
     });
     let torque = Column {
         title: "Torque",
         array: &study.torque,
-        ways: slews.iter().map(Slew::torques).collect(),
+        ways: slews.iter().map(WrittenEnvelopeSlew::torques).collect(),
         joined: false,
     };
     let longest = slews.iter().map(|slew| slew.duration_s);
     let longest = longest.fold(0.0, f64::max);
     let width = (WIDTH - 2.0 * MARGIN) / 2.0;
     for (i, column) in momentum.iter().chain([&torque]).enumerate() {
-        let frame = Frame {
+        let frame = PlotArea {
             left: MARGIN + i as f64 * width,
             top: HEAD + LEGEND,
             width,
@@ -74,7 +75,7 @@ pub(crate) fn svg(study: &WrittenEnvelopes, turn: usize) -> Result<String, Strin
 }
 
 /// The turn with its slews in a line.
-fn described(turn: &Turn) -> String {
+fn described(turn: &WrittenTurn) -> String {
     let [x, y, z] = turn.axis;
     let angle = turn.angle_rad.to_degrees();
     let axis = minus(&format!("({x:.3}, {y:.3}, {z:.3})"));
@@ -84,7 +85,7 @@ fn described(turn: &Turn) -> String {
     parts.join("  \u{b7}  ")
 }
 
-fn legend(canvas: &mut Canvas, slews: &[Slew<'_>]) {
+fn legend(canvas: &mut Canvas, slews: &[WrittenEnvelopeSlew<'_>]) {
     let y = HEAD + 12.0;
     let mut x = MARGIN;
     for (slew, colour) in slews.iter().zip(SERIES.iter().cycle()) {
@@ -94,7 +95,7 @@ fn legend(canvas: &mut Canvas, slews: &[Slew<'_>]) {
     }
 }
 
-/// One of the two quantities, with a way per slew.
+/// One of the two quantities, with a path per slew.
 struct Column<'a> {
     title: &'static str,
     array: &'a Array,
@@ -103,7 +104,7 @@ struct Column<'a> {
 }
 
 impl Column<'_> {
-    fn draw(&self, canvas: &mut Canvas, frame: Frame, duration: f64) {
+    fn draw(&self, canvas: &mut Canvas, frame: PlotArea, duration: f64) {
         let Array {
             unit,
             full,
@@ -122,7 +123,7 @@ impl Column<'_> {
             let y = frame.top + 32.0 + 16.0 * line as f64;
             canvas.text(frame.left, y, Ink::SMALL, &words);
         }
-        let solid = Frame {
+        let solid = PlotArea {
             top: frame.top + 48.0,
             height: frame.height - 48.0,
             ..frame
@@ -130,7 +131,7 @@ impl Column<'_> {
         let ways: Vec<_> = self
             .ways
             .iter()
-            .map(|way| Way {
+            .map(|way| ProjectedPath {
                 points: way.iter().map(|(_, vector)| *vector).collect(),
                 joined: self.joined,
             })
@@ -153,7 +154,7 @@ impl Column<'_> {
                 limits: vec![(f64::NEG_INFINITY, 1.0)],
                 alarms: Vec::new(),
             };
-            let place = Frame {
+            let place = PlotArea {
                 left: frame.left + VALUES,
                 top,
                 width: frame.width - VALUES - 16.0,
@@ -164,9 +165,9 @@ impl Column<'_> {
         }
     }
 
-    /// The share of an envelope along a way. Between joined points it bends where another facet is
-    /// met; a jump has nothing in between.
-    fn shares(&self, way: &[(f64, Vector3<f64>)], of: &Polytope) -> Vec<(f64, f64)> {
+    /// The share of an envelope along a path. Between joined points it has a kink where another
+    /// facet becomes active; a jump has no points in between.
+    fn shares(&self, way: &[(f64, Vector3<f64>)], of: &WrittenPolytope) -> Vec<(f64, f64)> {
         if !self.joined {
             return way.iter().map(|(time, at)| (*time, of.share(at))).collect();
         }

@@ -1,20 +1,20 @@
-//! A flight in closed loop over time: errors, rates, speeds, commands, and where limits were met.
+//! The picture of a flight in closed loop over time: errors, rates, speeds, commands, active limits.
 
-use super::canvas::{Canvas, Frame};
+use super::canvas::{Canvas, PlotArea};
 use super::panel::Panel;
 use super::timeline;
-use super::written_flight::{Off, Sample, WrittenFlight};
+use super::written_flight::{Off, WrittenFlight, WrittenSample};
 use super::{HEAD, MARGIN, WIDTH};
 use slewplan_solver::model::spacecraft::Spacecraft;
 
-/// Errors beyond this, rad or rad/s, are drawn and told as this: they tell that the flight failed.
+/// Errors beyond this, rad or rad/s, are drawn as this value: the flight has failed.
 const LOST: f64 = 1e3;
 
 /// The picture of a flight; the spacecraft adds the limits.
 ///
 /// # Errors
 ///
-/// A sentence, when there is nothing to draw, or the spacecraft has another number of wheels.
+/// A message, when there is nothing to draw, or the spacecraft has another number of wheels.
 pub(crate) fn draw(written: &WrittenFlight, craft: Option<&Spacecraft>) -> Result<String, String> {
     let flight = &written.flight;
     let record = flight.record()?;
@@ -45,7 +45,7 @@ pub(crate) fn draw(written: &WrittenFlight, craft: Option<&Spacecraft>) -> Resul
     ];
     let mut motion = timeline::panels(&record, craft);
     let spans: Vec<(f64, f64)> = flight.spans().collect();
-    let met = |of: fn(&Sample) -> &[bool]| {
+    let met = |of: fn(&WrittenSample) -> &[bool]| {
         let samples = flight.samples.iter().zip(&spans);
         let met = samples.filter(|(sample, _)| of(sample).contains(&true));
         joined(met.map(|(_, span)| *span))
@@ -57,7 +57,7 @@ pub(crate) fn draw(written: &WrittenFlight, craft: Option<&Spacecraft>) -> Resul
     panels.extend(motion);
     let name = written.name.as_deref().unwrap_or("Flight");
     let summary = summary(written);
-    let frame = Frame {
+    let frame = PlotArea {
         left: MARGIN + 60.0,
         top: HEAD + 26.0,
         width: WIDTH - 2.0 * MARGIN - 60.0,
@@ -70,12 +70,12 @@ pub(crate) fn draw(written: &WrittenFlight, craft: Option<&Spacecraft>) -> Resul
     Ok(canvas.finish())
 }
 
-/// Spans in order of time, those that follow at once as one.
+/// Spans in order of time, adjacent ones merged.
 fn joined(spans: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     let mut joined: Vec<(f64, f64)> = Vec::new();
     for (begin, end) in spans {
         match joined.last_mut() {
-            // The end of one is the very number that the next begins with.
+            // Adjacent spans have exactly equal ends.
             Some(last) if begin <= last.1 => last.1 = end,
             _ => joined.push((begin, end)),
         }
@@ -83,7 +83,7 @@ fn joined(spans: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     joined
 }
 
-/// A flight in a line.
+/// The title of the picture: the flight in a line.
 fn summary(written: &WrittenFlight) -> String {
     let flight = &written.flight;
     let told = |name: &str, off: &Off| {
@@ -92,7 +92,7 @@ fn summary(written: &WrittenFlight) -> String {
         format!("{name} {value:.3} {} off", unit.angle)
     };
     let mut parts = vec![format!(
-        "flown in closed loop, {:.2} s",
+        "simulated in closed loop, {:.2} s",
         flight.flight_time_s
     )];
     if flight.flight_time_s > flight.total_time_s {
@@ -108,11 +108,11 @@ fn summary(written: &WrittenFlight) -> String {
     parts.join("  \u{b7}  ")
 }
 
-fn meets_a_limit(sample: &Sample) -> bool {
+fn meets_a_limit(sample: &WrittenSample) -> bool {
     sample.torque_limited.contains(&true) || sample.speed_limited.contains(&true)
 }
 
-/// A unit in which a small angle or rate has digits before the point.
+/// A unit in which a small angle or rate is at least one.
 struct Unit {
     angle: &'static str,
     rate: &'static str,
@@ -142,13 +142,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spans_that_follow_at_once_are_one() {
+    fn adjacent_spans_are_merged() {
         let spans = [(0.0, 1.0), (1.0, 2.0), (3.0, 4.0)];
         assert_eq!(joined(spans.into_iter()), [(0.0, 2.0), (3.0, 4.0)]);
     }
 
     #[test]
-    fn small_errors_have_small_units() {
+    fn small_errors_are_in_small_units() {
         let units = [0.01, 1e-6, 1e-9].map(|error| Unit::of(error).angle);
         assert_eq!(units, ["deg", "arcsec", "milliarcsec"]);
         assert!((Unit::of(1e-6).factor * 1e-6 - 0.206_265).abs() < 1e-6);

@@ -1,24 +1,24 @@
-//! Every slew beside the eigenaxis slew between the same attitudes.
+//! Bars of every leg and of the eigenaxis slew between the same attitudes.
 
-use super::canvas::{Canvas, Frame, Ink, Pen, SERIES};
+use super::canvas::{Canvas, Ink, Pen, PlotArea, SERIES};
 use super::scale::minus;
-use super::written::{Leg, WrittenPlan};
+use super::written::{WrittenLeg, WrittenPlan};
 
 const HIGHEST: f64 = 42.0;
 const LOWEST: f64 = 15.0;
 const NAMES: f64 = 130.0;
-/// Ends of the columns of figures, from the right.
+/// Right ends of the columns of numbers, from the right edge.
 const OURS: f64 = 150.0;
 const THEIRS: f64 = 64.0;
 const SAVED: f64 = 0.0;
-const FIGURES: f64 = OURS + 70.0;
+const NUMBERS: f64 = OURS + 70.0;
 /// Thickness of a bar as a share of its row.
 const THICK: f64 = 0.62;
-/// Most characters of a name.
+/// Maximum number of characters of a name.
 const LONGEST: usize = 9;
 
-/// Draws the bars, as many as there is room for.
-pub(super) fn draw(canvas: &mut Canvas, frame: Frame, plan: &WrittenPlan) {
+/// Draws as many bars as fit.
+pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan) {
     let baseline = frame.top + 14.0;
     canvas.text(frame.left, baseline, Ink::HEADING, "Slews");
     let right = frame.left + frame.width;
@@ -33,17 +33,17 @@ pub(super) fn draw(canvas: &mut Canvas, frame: Frame, plan: &WrittenPlan) {
     let count = plan.legs.len();
     let height = (room / (count as f64).max(1.0)).clamp(LOWEST, HIGHEST);
     let shown = plan.legs.iter().enumerate().take_while(|(index, _)| {
-        // The last line is kept for what is left out.
+        // The last line is reserved for the number of bars left out.
         let lines = *index as f64 + if *index + 1 < count { 2.0 } else { 1.0 };
         lines * height <= room + 1e-9
     });
-    let longest = |leg: &Leg| leg.duration_s.max(leg.eigenaxis_duration_s.unwrap_or(0.0));
+    let longest = |leg: &WrittenLeg| leg.duration_s.max(leg.eigenaxis_duration_s.unwrap_or(0.0));
     let most = plan.legs.iter().map(longest).fold(1e-9, f64::max);
-    let scale = (frame.width - NAMES - FIGURES) / most;
+    let scale = (frame.width - NAMES - NUMBERS) / most;
     let mut top = frame.top + 28.0;
     let mut drawn = 0;
     for (_, leg) in shown {
-        row(canvas, (frame, top, height), leg, scale);
+        row(canvas, frame, top, height, leg, scale);
         top += height;
         drawn += 1;
     }
@@ -53,11 +53,11 @@ pub(super) fn draw(canvas: &mut Canvas, frame: Frame, plan: &WrittenPlan) {
     }
 }
 
-fn row(canvas: &mut Canvas, (frame, top, height): (Frame, f64, f64), leg: &Leg, scale: f64) {
+fn row(canvas: &mut Canvas, frame: PlotArea, top: f64, height: f64, leg: &WrittenLeg, scale: f64) {
     let middle = top + 0.5 * height + 4.0;
     let names = format!("{} \u{2192} {}", short(&leg.from), short(&leg.to));
     canvas.text(frame.left, middle, Ink::PLAIN, &names);
-    let bar = |length: f64, share: f64| Frame {
+    let bar = |length: f64, share: f64| PlotArea {
         left: frame.left + NAMES,
         top: top + 0.5 * height * (1.0 - share),
         width: length * scale,

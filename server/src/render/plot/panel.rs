@@ -1,19 +1,19 @@
-//! A quantity over time: curves, grid, limits, legend.
+//! A panel of one quantity over time: curves, grid, limits, legend.
 
 use super::axes::{self, Key};
-use super::canvas::{ALARM, Canvas, Frame, Ink, LINE, Pen, SERIES};
+use super::canvas::{ALARM, Canvas, Ink, LINE, Pen, PlotArea, SERIES};
 use super::scale::Scale;
 use super::scale::minus;
 
-/// Height of a panel, and room between two.
+/// Height of a panel, and space between two.
 pub(super) const HEIGHT: f64 = 150.0;
 pub(super) const GAP: f64 = 44.0;
-/// A limit this many times the largest value is told in words, not drawn.
+/// A limit beyond this multiple of the largest value is noted as text, not drawn.
 const FAR: f64 = 2.5;
-/// Room between the largest value and the frame, as a share.
+/// Margin between the largest value and the frame, as a share.
 const AIR: f64 = 0.1;
 const ALARM_HEIGHT: f64 = 5.0;
-/// Room for a tick of the time axis.
+/// Width per tick of the time axis.
 const TICK: f64 = 89.0;
 
 /// One quantity with several curves.
@@ -25,14 +25,14 @@ pub(super) struct Panel {
     pub(super) curves: Vec<Vec<(f64, f64)>>,
     /// Lower and upper limit of each curve.
     pub(super) limits: Vec<(f64, f64)>,
-    /// From when to when something to be seen at once was the case, s.
+    /// Highlighted spans of time, s.
     pub(super) alarms: Vec<(f64, f64)>,
 }
 
-/// One panel over a time axis; stays, from a time to a time, are marked.
+/// One panel over a time axis; rests, from a time to a time, are shaded.
 pub(super) fn draw(
     canvas: &mut Canvas,
-    frame: Frame,
+    frame: PlotArea,
     panel: &Panel,
     (times, stays): (Scale, &[(f64, f64)]),
 ) {
@@ -49,7 +49,7 @@ pub(super) fn draw(
         let x = times.at(*begin);
         let pen = Pen::new(LINE, 1.0).dashed();
         canvas.line((x, frame.top), (x, bottom), pen);
-        let stay = Frame {
+        let stay = PlotArea {
             left: x,
             width: times.at(*end) - x,
             ..frame
@@ -59,7 +59,7 @@ pub(super) fn draw(
         }
     }
     for &(begin, end) in &panel.alarms {
-        let mark = Frame {
+        let mark = PlotArea {
             left: times.at(begin),
             width: times.at(end) - times.at(begin),
             height: ALARM_HEIGHT,
@@ -84,7 +84,7 @@ pub(super) fn draw(
     legend(canvas, frame, panel);
 }
 
-fn legend(canvas: &mut Canvas, frame: Frame, panel: &Panel) {
+fn legend(canvas: &mut Canvas, frame: PlotArea, panel: &Panel) {
     let baseline = frame.top - 8.0;
     let title = format!("{}, {}", panel.title, panel.unit);
     canvas.text(frame.left, baseline, Ink::HEADING, &title);
@@ -125,12 +125,12 @@ impl Panel {
         values.map(|(_, value)| value.abs()).fold(0.0, f64::max)
     }
 
-    /// Whether a limit is near enough to be drawn.
+    /// Whether a limit is close enough to the values to be drawn.
     fn is_shown(&self, limit: f64) -> bool {
         limit.is_finite() && limit.abs() <= FAR * self.largest()
     }
 
-    /// Least and largest value of the axis.
+    /// Minimum and maximum of the axis.
     fn range(&self) -> (f64, f64) {
         let curves = self.curves.iter().flatten().map(|(_, value)| *value);
         let limits = self.limits.iter().flat_map(|(low, high)| [*low, *high]);
@@ -167,7 +167,7 @@ impl Panel {
         self.limits.windows(2).all(|pair| pair[0] == pair[1])
     }
 
-    /// What the limit lines are, or where they would be.
+    /// The legend of the limit lines, or the limits that are too far to be drawn.
     fn limit_words(&self) -> Option<String> {
         let (low, high) = *self.limits.first()?;
         if !self.has_one_limit() {
@@ -176,18 +176,18 @@ impl Panel {
         if !high.is_finite() {
             return Some("no limit".to_owned());
         }
-        let figure = |value: f64| {
+        let rounded = |value: f64| {
             format!("{value:.3}")
                 .trim_end_matches('0')
                 .trim_end_matches('.')
                 .to_owned()
         };
         let words = if !low.is_finite() {
-            format!("limit {}", figure(high))
+            format!("limit {}", rounded(high))
         } else if (low + high).abs() < 1e-12 * high {
-            format!("limit \u{b1}{}", figure(high))
+            format!("limit \u{b1}{}", rounded(high))
         } else {
-            minus(&format!("limits {} and {}", figure(low), figure(high)))
+            minus(&format!("limits {} and {}", rounded(low), rounded(high)))
         };
         let beyond = if self.is_shown(high) { "" } else { ", beyond" };
         Some(words + beyond)

@@ -1,12 +1,12 @@
-//! From quantities to places in the picture.
+//! Scales: from values to coordinates of the picture.
 
-/// How far apart the ends of positive values are, as a ratio, for a scale of logarithms.
+/// Ratio of the ends of positive values from which on a scale is logarithmic.
 const DECADES: f64 = 30.0;
 
-/// How many more powers of ten than asked for there may be.
+/// Allowed surplus of powers of ten over the number of ticks asked for.
 const CROWDED: f64 = 1.5;
 
-/// A scale, linear or of logarithms.
+/// A linear or logarithmic scale.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
     least: f64,
@@ -24,7 +24,7 @@ pub(super) struct Tick {
 }
 
 impl Scale {
-    /// From the place of the least value to that of the largest, in proportion.
+    /// A linear scale from the coordinate of the minimum to that of the maximum.
     pub(super) const fn linear((least, most): (f64, f64), (from, to): (f64, f64)) -> Self {
         Self {
             least,
@@ -35,8 +35,8 @@ impl Scale {
         }
     }
 
-    /// A scale with room around values: of logarithms where they are positive and span decades,
-    /// else linear. `share` is the room at each end.
+    /// A scale with margins around values: logarithmic where they are positive and span decades,
+    /// else linear. `share` is the margin at each end.
     pub(super) fn around(
         values: &mut dyn Iterator<Item = f64>,
         share: f64,
@@ -53,7 +53,7 @@ impl Scale {
         Self::around_linear(&mut [least, most].into_iter(), share, places)
     }
 
-    /// The same, linear however far they span.
+    /// The same, always linear.
     pub(super) fn around_linear(
         values: &mut dyn Iterator<Item = f64>,
         share: f64,
@@ -68,7 +68,7 @@ impl Scale {
         Self::linear((least - room, most + room), places)
     }
 
-    /// The place of a value, above zero on a scale of logarithms.
+    /// The coordinate of a value, which must be positive on a logarithmic scale.
     pub(super) fn at(&self, value: f64) -> f64 {
         let share = if self.logarithmic {
             (value / self.least).ln() / (self.most / self.least).ln()
@@ -78,7 +78,7 @@ impl Scale {
         self.from + share * (self.to - self.from)
     }
 
-    /// The value that has a place.
+    /// The value at a coordinate.
     pub(super) fn value(&self, place: f64) -> f64 {
         let share = (place - self.from) / (self.to - self.from);
         if self.logarithmic {
@@ -88,12 +88,12 @@ impl Scale {
         }
     }
 
-    /// Whether a value has a place within the ends.
+    /// Whether a value lies within the ends.
     pub(super) fn holds(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }
 
-    /// Round values inside, about so many.
+    /// Round values within the ends, about as many as asked for.
     pub(super) fn ticks(&self, about: f64) -> Vec<Tick> {
         if self.logarithmic {
             return self.powers(about);
@@ -121,7 +121,7 @@ impl Scale {
         ticks
     }
 
-    /// Powers of ten, and where these would be few their doubles and fives.
+    /// Powers of ten and, where these are few, their multiples by 2 and 5.
     fn powers(&self, about: f64) -> Vec<Tick> {
         let decades = (self.most / self.least).log10();
         let factors: &[f64] = if 2.0 * decades <= about {
@@ -130,14 +130,14 @@ impl Scale {
             &[1.0]
         };
         let mut ticks = Vec::new();
-        // Of very many decades only every second, third and so on.
+        // With many decades only every second, third and so on.
         let stride = (decades / (CROWDED * about)).ceil().max(1.0);
         let mut power = stride * (self.least.log10() / stride).floor();
         while power <= self.most.log10() {
             let values = factors.iter().map(|factor| factor * 10_f64.powf(power));
             ticks.extend(values.filter(|value| self.holds(*value)).map(|value| Tick {
                 value,
-                words: figure(value),
+                words: round_text(value),
             }));
             power += stride;
         }
@@ -145,7 +145,7 @@ impl Scale {
     }
 }
 
-/// Least and largest value; from zero to one where there is none.
+/// Minimum and maximum; 0 and 1 without any value.
 fn ends(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     values
         .fold(None, |ends: Option<(f64, f64)>, value| {
@@ -155,8 +155,8 @@ fn ends(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
         .unwrap_or((0.0, 1.0))
 }
 
-/// A number above zero with as many digits as a power of ten, its double or its five has.
-fn figure(value: f64) -> String {
+/// The text of a power of ten or its multiple by 2 or 5.
+fn round_text(value: f64) -> String {
     if (1e-4..1e5).contains(&value) {
         let text = format!("{value:.4}");
         return text.trim_end_matches('0').trim_end_matches('.').to_owned();
@@ -164,7 +164,7 @@ fn figure(value: f64) -> String {
     minus(&format!("{value:.0e}"))
 }
 
-/// A number's text with a sign as wide as its digits.
+/// A number's text with a minus sign as wide as its digits.
 pub(super) fn minus(number: &str) -> String {
     number.replace('-', "\u{2212}")
 }
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_are_round_and_inside() {
+    fn ticks_are_round_and_within_the_ends() {
         let scale = |least, most| Scale::linear((least, most), (0.0, 100.0));
         assert_eq!(
             values(&scale(0.0, 467.7).ticks(5.0)),
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_span_decades_are_drawn_by_their_logarithms() {
+    fn values_that_span_decades_have_a_logarithmic_scale() {
         let scale = Scale::around(&mut [0.01, 0.1, 10.0].into_iter(), 0.0, (0.0, 300.0));
         assert!((scale.at(0.1) - 100.0).abs() < 1e-9);
         assert!((scale.value(100.0) - 0.1).abs() < 1e-12);
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(words(5.0), ["0.01", "0.1", "1", "10"]);
         assert_eq!(words(6.0)[..4], ["0.01", "0.02", "0.05", "0.1"]);
         assert_eq!(words(1.5), ["0.01", "1"]);
-        // Not with a zero among them, nor when they are near each other.
+        // Not with a zero among them, nor within a decade.
         for near in [[0.0, 100.0], [1.0, 20.0]] {
             let scale = Scale::around(&mut near.into_iter(), 0.0, (0.0, 1.0));
             assert!((scale.at(0.5 * (near[0] + near[1])) - 0.5).abs() < 1e-12);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_value_has_room_on_both_sides() {
+    fn a_single_value_has_margins_on_both_sides() {
         let scale = Scale::around(&mut [7.0].into_iter(), 0.1, (0.0, 10.0));
         assert!((scale.at(7.0) - 5.0).abs() < 1e-12 && scale.holds(7.5));
     }

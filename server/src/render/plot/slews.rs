@@ -1,7 +1,7 @@
-//! Slews as pictures: one over time, several as the trade between time and what it costs.
+//! Pictures of slews: one over time, several as a trade curve of time and cost.
 
 use super::axes::{self, Key};
-use super::canvas::{Canvas, Frame, SERIES};
+use super::canvas::{Canvas, PlotArea, SERIES};
 use super::chart::{self, Chart, Curve, Stroke};
 use super::timeline;
 use super::written_slews::{Swept, WrittenSlew, WrittenSlews};
@@ -15,20 +15,20 @@ const BETWEEN: f64 = 40.0;
 /// Values to mark in a trade curve.
 #[derive(Debug, Default)]
 pub(crate) struct Marks {
-    /// Of what is swept.
+    /// Values of the swept quantity.
     pub(crate) swept: Vec<f64>,
-    /// Of what it costs: energy, J, or effort, (N m)² s.
+    /// Values of the cost: energy, J, or effort, (N m)² s.
     pub(crate) cost: Vec<f64>,
 }
 
-/// A quantity of a slew.
-type Quantity = fn(&WrittenSlew) -> Option<f64>;
+/// A function of a slew that is drawn.
+type SlewQuantity = fn(&WrittenSlew) -> Option<f64>;
 
 /// The picture of a single slew over time; the spacecraft adds the limits.
 ///
 /// # Errors
 ///
-/// A sentence, when there is nothing to draw, or the spacecraft has another number of wheels.
+/// A message, when there is nothing to draw, or the spacecraft has another number of wheels.
 pub(crate) fn single(answer: &WrittenSlews, craft: Option<&Spacecraft>) -> Result<String, String> {
     let [slew] = &answer.slews[..] else {
         return Err(format!("there are {} slews to draw", answer.slews.len()));
@@ -40,7 +40,7 @@ pub(crate) fn single(answer: &WrittenSlews, craft: Option<&Spacecraft>) -> Resul
         return Err(format!("it has {expected} wheels, the slew {wheels}"));
     }
     let panels = timeline::panels(&record, craft);
-    let frame = Frame {
+    let frame = PlotArea {
         left: MARGIN + 60.0,
         top: HEAD + 26.0,
         width: WIDTH - 2.0 * MARGIN - 60.0,
@@ -54,11 +54,11 @@ pub(crate) fn single(answer: &WrittenSlews, craft: Option<&Spacecraft>) -> Resul
     Ok(canvas.finish())
 }
 
-/// The picture of what time costs: a curve for every answer.
+/// The trade curves of time and cost, one for every answer.
 ///
 /// # Errors
 ///
-/// A sentence, when the answers do not belong in one diagram or have nothing to draw.
+/// A message, when the answers do not fit into one diagram or have nothing to draw.
 pub(crate) fn trade(answers: &[WrittenSlews], marks: &Marks) -> Result<String, String> {
     let swept = common_sweep(answers)?;
     let unsolved = all(answers).filter(|slew| !slew.solved).count();
@@ -81,11 +81,11 @@ pub(crate) fn trade(answers: &[WrittenSlews], marks: &Marks) -> Result<String, S
         words += "; energy: solid the bill, nothing fed back, dashed the integral of the power";
     }
     if unsolved > 0 {
-        // Writing into a text cannot fail.
+        // Writing to a String cannot fail.
         let _ = write!(words, "; {unsolved} not solved, left out");
     }
     let described = format!("Trade curve of {}: {words}", names.join(", "));
-    // The legend may need several rows, which a canvas that is thrown away tells.
+    // The legend may need several rows; a discarded canvas measures its height.
     let place = (MARGIN, HEAD + 18.0);
     let inside = WIDTH - 2.0 * MARGIN;
     let last = axes::legend_rows(&mut Canvas::new(0.0, 0.0, ""), place, inside, &keys);
@@ -96,7 +96,7 @@ pub(crate) fn trade(answers: &[WrittenSlews], marks: &Marks) -> Result<String, S
     let count = charts.len() as f64;
     let width = (inside - (count - 1.0) * BETWEEN) / count;
     for (index, chart) in charts.iter().enumerate() {
-        let place = Frame {
+        let place = PlotArea {
             left: MARGIN + index as f64 * (width + BETWEEN),
             top,
             width,
@@ -107,7 +107,7 @@ pub(crate) fn trade(answers: &[WrittenSlews], marks: &Marks) -> Result<String, S
     Ok(canvas.finish())
 }
 
-/// What all answers are swept over.
+/// The swept quantity of all answers.
 fn common_sweep(answers: &[WrittenSlews]) -> Result<Swept, String> {
     let mut sweeps = answers.iter().map(|answer| answer.sweep);
     let first = sweeps.next().flatten();
@@ -123,9 +123,9 @@ fn all(answers: &[WrittenSlews]) -> impl Iterator<Item = &WrittenSlew> {
     answers.iter().flat_map(|answer| &answer.slews)
 }
 
-/// The diagrams: the duration, unless it is what is swept, and the cost, unless it is.
+/// The diagrams: duration and cost, each unless it is the swept quantity.
 fn charts(answers: &[WrittenSlews], swept: Swept, marks: &Marks) -> Vec<Chart> {
-    let chart = |title: &str, quantities: &[(Quantity, Stroke)], levels: &[f64]| Chart {
+    let chart = |title: &str, quantities: &[(SlewQuantity, Stroke)], levels: &[f64]| Chart {
         title: title.to_owned(),
         across: across(swept).to_owned(),
         logarithms: true,
@@ -135,29 +135,29 @@ fn charts(answers: &[WrittenSlews], swept: Swept, marks: &Marks) -> Vec<Chart> {
     };
     let mut charts = Vec::new();
     if swept != Swept::DurationsS {
-        let time: Quantity = |slew| Some(slew.time_s);
+        let time: SlewQuantity = |slew| Some(slew.time_s);
         charts.push(chart("Duration, s", &[(time, Stroke::Dotted)], &[]));
     }
     let has_motors = all(answers).any(|slew| slew.energy_bill_j.is_some());
     if swept != Swept::EnergiesJ && has_motors {
-        let energies: [(Quantity, Stroke); 2] = [
+        let energies: [(SlewQuantity, Stroke); 2] = [
             (|slew| slew.energy_bill_j, Stroke::Dotted),
             (|slew| slew.energy_proxy_j, Stroke::Dashes),
         ];
         charts.push(chart("Energy, J", &energies, &marks.cost));
     } else {
-        let effort: Quantity = |slew| Some(slew.effort_nm2_s);
+        let effort: SlewQuantity = |slew| Some(slew.effort_nm2_s);
         let title = "Effort, integral of the squared torques, (N m)\u{b2} s";
         charts.push(chart(title, &[(effort, Stroke::Dotted)], &marks.cost));
     }
     charts
 }
 
-fn curves(answers: &[WrittenSlews], quantities: &[(Quantity, Stroke)]) -> Vec<Curve> {
+fn curves(answers: &[WrittenSlews], quantities: &[(SlewQuantity, Stroke)]) -> Vec<Curve> {
     let coloured = answers.iter().zip(SERIES.iter().cycle());
     let of_answer = |(answer, colour): (&WrittenSlews, &&'static str)| {
         let colour = *colour;
-        let curve = |(quantity, stroke): &(Quantity, Stroke)| {
+        let curve = |(quantity, stroke): &(SlewQuantity, Stroke)| {
             let solved = answer.slews.iter().filter(|slew| slew.solved);
             let mut points: Vec<_> = solved
                 .filter_map(|slew| Some((slew.swept?, quantity(slew)?)))
@@ -186,7 +186,7 @@ fn title(answer: &WrittenSlews) -> &str {
     answer.name.as_deref().unwrap_or("Slew")
 }
 
-/// A slew in a line.
+/// The title of the picture: a slew in a line.
 fn summary(slew: &WrittenSlew) -> String {
     let mut parts = vec![
         format!("{:.2} s", slew.time_s),

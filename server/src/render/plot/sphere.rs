@@ -1,24 +1,24 @@
-//! The unit sphere of the reference frame, seen from outside: where a boresight goes.
+//! The trace of a boresight on the unit sphere of the reference frame, seen from outside.
 
-use super::canvas::{ALARM, Canvas, FAINT, Frame, Ink, LINE, Pen, SERIES};
-use super::view::Boresight;
-use super::written::{State, WrittenPlan};
+use super::canvas::{ALARM, Canvas, FAINT, Ink, LINE, Pen, PlotArea, SERIES};
+use super::view::DrawnBoresight;
+use super::written::{WrittenPlan, WrittenState};
 use nalgebra::Vector3;
 use slewplan_solver::model::scenario::{KeepOut, Scenario};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Room for the words below the sphere.
+/// Space for the text below the sphere.
 const RIM: f64 = 22.0;
-/// Points of a circle on the sphere.
+/// Number of points of a circle on the sphere.
 const CIRCLE: u32 = 96;
-/// Length of the mean direction below which a trace has no side of its own.
+/// Length of the mean direction below which a trace has no preferred side.
 const ASTRAY: f64 = 0.3;
-/// Highest and usual elevation of the viewer, rad.
+/// Maximum and default elevation of the viewer, rad.
 const STEEPEST: f64 = 1.2;
 const USUAL: f64 = 0.45;
 
 /// Orthographic view from a direction, the reference z axis upwards.
-struct View {
+struct SphereView {
     towards: Vector3<f64>,
     right: Vector3<f64>,
     up: Vector3<f64>,
@@ -26,8 +26,8 @@ struct View {
     radius: f64,
 }
 
-impl View {
-    fn new(azimuth: f64, elevation: f64, frame: Frame) -> Self {
+impl SphereView {
+    fn new(azimuth: f64, elevation: f64, frame: PlotArea) -> Self {
         let (sine, cosine) = azimuth.sin_cos();
         let (rise, flat) = elevation.sin_cos();
         Self {
@@ -53,7 +53,7 @@ impl View {
         self.towards.dot(direction) >= 0.0
     }
 
-    /// The place of a direction, on the rim when it is behind.
+    /// The point of a direction, on the rim when it is behind.
     fn at_or_rim(&self, direction: &Vector3<f64>) -> (f64, f64) {
         let behind = self.towards.dot(direction).min(0.0);
         let flat = direction - self.towards * behind;
@@ -65,7 +65,7 @@ impl View {
         self.at(&(flat / length))
     }
 
-    /// A line over the sphere: what is behind first and faint.
+    /// A line on the sphere: the part behind first and faint.
     fn trace(&self, canvas: &mut Canvas, directions: &[Vector3<f64>], near: Pen, far: Option<Pen>) {
         for (wanted, pen) in [(false, far), (true, Some(near))] {
             let Some(pen) = pen else { continue };
@@ -86,11 +86,11 @@ impl View {
 /// Draws the sphere with trace, targets and the keep-out cones of the boresight.
 pub(super) fn draw(
     canvas: &mut Canvas,
-    frame: Frame,
+    frame: PlotArea,
     plan: &WrittenPlan,
-    (scenario, boresight): (Option<&Scenario>, &Boresight),
+    (scenario, boresight): (Option<&Scenario>, &DrawnBoresight),
 ) {
-    let points = |state: &State| state.attitude().to_reference(boresight.axis);
+    let points = |state: &WrittenState| state.attitude().to_reference(boresight.axis);
     let trace: Vec<Vector3<f64>> = plan.trajectory.states.iter().map(points).collect();
     let view = looking_at(&trace, frame);
     let rim = Pen::new(LINE, 1.2);
@@ -121,22 +121,22 @@ pub(super) fn draw(
     canvas.text(view.centre.0, below, Ink::SMALL.middle(), &caption);
 }
 
-/// A view of the side on which most of a trace is.
-fn looking_at(trace: &[Vector3<f64>], frame: Frame) -> View {
+/// A view of the side with most of a trace.
+fn looking_at(trace: &[Vector3<f64>], frame: PlotArea) -> SphereView {
     let sum: Vector3<f64> = trace.iter().sum();
     let mean = sum / (trace.len() as f64).max(1.0);
     if mean.norm() > ASTRAY {
-        // A little from the side, so that it looks like a sphere.
+        // Slightly elevated, so that circles of latitude are visible.
         let azimuth = mean.y.atan2(mean.x) + 0.25;
         let elevation = (mean.z / mean.norm()).asin() * 0.8;
-        View::new(azimuth, elevation.clamp(-STEEPEST, STEEPEST), frame)
+        SphereView::new(azimuth, elevation.clamp(-STEEPEST, STEEPEST), frame)
     } else {
         let first = trace.first().map_or(0.0, |d| d.y.atan2(d.x));
-        View::new(first + 0.6, USUAL, frame)
+        SphereView::new(first + 0.6, USUAL, frame)
     }
 }
 
-fn graticule(canvas: &mut Canvas, view: &View) {
+fn graticule(canvas: &mut Canvas, view: &SphereView) {
     let pen = Pen::new(FAINT, 1.0);
     let point = |azimuth: f64, elevation: f64| {
         let (sine, cosine) = azimuth.sin_cos();
@@ -159,7 +159,7 @@ fn graticule(canvas: &mut Canvas, view: &View) {
     }
 }
 
-fn axes(canvas: &mut Canvas, view: &View) {
+fn axes(canvas: &mut Canvas, view: &SphereView) {
     for (axis, name) in [
         (Vector3::x(), "x"),
         (Vector3::y(), "y"),
@@ -176,10 +176,10 @@ fn axes(canvas: &mut Canvas, view: &View) {
     }
 }
 
-/// The part of the sphere that a cone forbids.
-fn cap(canvas: &mut Canvas, view: &View, cone: &KeepOut) {
+/// The part of the sphere excluded by a cone.
+fn cap(canvas: &mut Canvas, view: &SphereView, cone: &KeepOut) {
     let (rise, flat) = cone.half_angle.sin_cos();
-    // Any two directions across the axis.
+    // Any two directions perpendicular to the axis.
     let helper = if cone.direction.z.abs() < 0.9 {
         Vector3::z()
     } else {
@@ -194,7 +194,7 @@ fn cap(canvas: &mut Canvas, view: &View, cone: &KeepOut) {
         })
         .collect();
     let pen = Pen::new(ALARM, 1.2);
-    // Wider than a hemisphere the edge bounds what is allowed; then the edge alone is drawn.
+    // A cone wider than a hemisphere leaves only its outside allowed; then only the edge is drawn.
     if edge.iter().any(|point| view.is_near(point)) && cone.half_angle < FRAC_PI_2 {
         let outline: Vec<_> = edge.iter().map(|point| view.at_or_rim(point)).collect();
         canvas.area(&outline, ALARM, Pen::new("none", 0.0).faded(0.16));
@@ -203,7 +203,7 @@ fn cap(canvas: &mut Canvas, view: &View, cone: &KeepOut) {
 }
 
 /// Targets numbered in visiting order.
-fn targets(canvas: &mut Canvas, view: &View, plan: &WrittenPlan, trace: &[Vector3<f64>]) {
+fn targets(canvas: &mut Canvas, view: &SphereView, plan: &WrittenPlan, trace: &[Vector3<f64>]) {
     let radius = if plan.passages.len() > 30 { 6.5 } else { 9.0 };
     let places = plan.passages.iter().map(|passage| {
         let states = &plan.trajectory.states;
@@ -214,7 +214,7 @@ fn targets(canvas: &mut Canvas, view: &View, plan: &WrittenPlan, trace: &[Vector
         .enumerate()
         .filter_map(|(index, place)| Some((index + 1, place?)))
         .collect();
-    // The nearest last, on top.
+    // The nearest are drawn last, on top.
     marks.sort_by(|a, b| view.towards.dot(&a.1).total_cmp(&view.towards.dot(&b.1)));
     for (number, direction) in marks {
         let (x, y) = view.at(&direction);

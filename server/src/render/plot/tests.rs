@@ -1,6 +1,6 @@
-//! What a picture shows, without looking at it.
+//! Contents of the SVG of a plan.
 
-use super::{Boresight, WrittenPlan, plan as svg};
+use super::{DrawnBoresight, WrittenPlan, plan as svg};
 use crate::documents;
 use crate::render::report::sample;
 use serde_json::{Value, json};
@@ -33,7 +33,7 @@ fn scenario() -> Scenario {
 
 fn drawn(scenario: Option<&Scenario>, boresight: Option<&str>) -> String {
     let plan = WrittenPlan::read(&written()).unwrap();
-    let boresight = Boresight::find(boresight, scenario).unwrap();
+    let boresight = DrawnBoresight::find(boresight, scenario).unwrap();
     svg(&plan, scenario, &boresight).unwrap()
 }
 
@@ -64,13 +64,13 @@ fn the_scenario_adds_limits_and_the_cones_of_the_boresight() {
     // 0.6 rad/s and 0.5 N m.
     assert!(picture.contains("limit \u{b1}34.377") && picture.contains("limit \u{b1}500"));
     assert!(picture.contains(">no limit<"));
-    // Another boresight may look there.
+    // The cones of other boresights are not drawn.
     assert!(!drawn(Some(&scenario), Some("x2")).contains("keep-out"));
     assert!(!drawn(Some(&scenario), Some("-z")).contains("keep-out"));
 }
 
 #[test]
-fn a_picture_is_well_formed_and_has_numbers_only() {
+fn the_svg_is_well_formed_and_has_finite_numbers() {
     let scenario = scenario();
     for picture in [drawn(None, Some("-y")), drawn(Some(&scenario), None)] {
         assert!(!picture.contains("NaN") && !picture.contains("inf"));
@@ -90,10 +90,10 @@ fn a_picture_is_well_formed_and_has_numbers_only() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused() {
+fn documents_that_cannot_be_drawn_are_refused() {
     let scenario = scenario();
-    assert!(Boresight::find(Some("w"), None).is_err());
-    let named = Boresight::find(Some("w"), Some(&scenario)).unwrap_err();
+    assert!(DrawnBoresight::find(Some("w"), None).is_err());
+    let named = DrawnBoresight::find(Some("w"), Some(&scenario)).unwrap_err();
     assert!(named.contains("camera, x2"));
     let infeasible = r#"{"status": "infeasible", "total_time_s": null}"#;
     assert!(WrittenPlan::read(infeasible.as_bytes()).is_err());
@@ -116,7 +116,7 @@ fn what_cannot_be_drawn_is_refused() {
         }
     }
     let plan = WrittenPlan::read(without_wheels.to_string().as_bytes()).unwrap();
-    let x = Boresight::find(None, None).unwrap();
+    let x = DrawnBoresight::find(None, None).unwrap();
     assert!(
         svg(&plan, Some(&scenario), &x)
             .unwrap_err()

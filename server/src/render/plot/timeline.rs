@@ -1,11 +1,11 @@
-//! What happens when: a strip of slews and rests, and quantities over the same time axis.
+//! Timelines: a strip of slews and rests, and quantities over the same time axis.
 
-use super::canvas::{Canvas, Frame, Ink, Pen, WARM};
+use super::canvas::{Canvas, Ink, Pen, PlotArea, WARM};
 use super::panel::{self, Panel};
 use super::written::{Record, WrittenPlan};
 use slewplan_solver::model::spacecraft::Spacecraft;
 
-/// Body rates, wheel speeds and wheel torques; a spacecraft adds the limits.
+/// Panels of body rates, wheel speeds and wheel torques; a spacecraft adds the limits.
 pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Panel> {
     let states = record.states;
     let wheels = record.torques.len();
@@ -65,13 +65,13 @@ pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Pan
     ]
 }
 
-/// Panels one below the other, from a height on.
-pub(super) fn stack(canvas: &mut Canvas, frame: Frame, panels: &[Panel], record: &Record<'_>) {
+/// Draws panels one below the other, beginning at a height.
+pub(super) fn stack(canvas: &mut Canvas, frame: PlotArea, panels: &[Panel], record: &Record<'_>) {
     let passages = record.passages.iter();
     let stays: Vec<_> = passages.map(|it| (it.time_s, it.departure_s)).collect();
     let times = frame.times(record.total_time_s);
     for (index, panel) in panels.iter().enumerate() {
-        let frame = Frame {
+        let frame = PlotArea {
             top: frame.top + index as f64 * (panel::HEIGHT + panel::GAP),
             height: panel::HEIGHT,
             ..frame
@@ -80,15 +80,15 @@ pub(super) fn stack(canvas: &mut Canvas, frame: Frame, panels: &[Panel], record:
     }
 }
 
-/// Height of so many panels one below the other.
+/// Height of a number of panels one below the other.
 pub(super) fn height(panels: &[Panel]) -> f64 {
     panels.len() as f64 * (panel::HEIGHT + panel::GAP)
 }
 
 /// Slews and rests, with the targets numbered in visiting order.
-pub(super) fn strip(canvas: &mut Canvas, frame: Frame, plan: &WrittenPlan, height: f64) {
+pub(super) fn strip(canvas: &mut Canvas, frame: PlotArea, plan: &WrittenPlan, height: f64) {
     let times = frame.times(plan.total_time_s);
-    let bar = |begin: f64, end: f64| Frame {
+    let bar = |begin: f64, end: f64| PlotArea {
         left: times.at(begin),
         top: frame.top + height - 12.0,
         width: times.at(end) - times.at(begin),
@@ -108,7 +108,7 @@ pub(super) fn strip(canvas: &mut Canvas, frame: Frame, plan: &WrittenPlan, heigh
         let pen = Pen::new("#14202B", 1.5);
         canvas.line((x, frame.top + height - 14.0), (x, frame.top + height), pen);
         let words = format!("{} {}", index + 1, passage.target);
-        // Names that would lie upon each other are left out.
+        // Names that would overlap are left out.
         if x - last > 7.0 * words.chars().count() as f64 + 6.0 {
             canvas.text(x, frame.top + height - 19.0, Ink::SMALL.middle(), &words);
             last = x;

@@ -1,22 +1,22 @@
-//! Which body axis is drawn on the sphere.
+//! The body axis that is drawn on the sphere.
 
 use nalgebra::Vector3;
 use slewplan_solver::model::scenario::Scenario;
 
 /// A named body axis.
 #[derive(Debug, Clone)]
-pub(crate) struct Boresight {
+pub(crate) struct DrawnBoresight {
     pub(super) name: String,
     pub(super) axis: Vector3<f64>,
 }
 
-impl Boresight {
+impl DrawnBoresight {
     /// The boresight of the scenario with this name, or a body axis like `x` or `-z`; without a
     /// name the first one of the scenario, or `x`.
     ///
     /// # Errors
     ///
-    /// A sentence, when there is none of this name.
+    /// A message, when there is none of this name.
     pub(crate) fn find(name: Option<&str>, scenario: Option<&Scenario>) -> Result<Self, String> {
         let known = scenario.map_or(&[][..], |scenario| scenario.spacecraft().boresights());
         let found = match name {

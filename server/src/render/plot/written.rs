@@ -1,23 +1,23 @@
-//! A plan as it was written, as far as a picture shows it.
+//! The part of a plan that is drawn, read from its JSON.
 
 use serde::Deserialize;
 use slewplan_solver::model::attitude::Attitude;
 
-/// What is read of a plan's document.
+/// The part of a plan's document that is read.
 #[derive(Debug, Deserialize)]
 pub(crate) struct WrittenPlan {
     pub(super) status: String,
     pub(super) total_time_s: f64,
     pub(super) lower_bound_s: f64,
     pub(super) relative_gap: f64,
-    pub(super) legs: Vec<Leg>,
-    pub(super) passages: Vec<Passage>,
-    pub(super) trajectory: Trajectory,
-    pub(super) verification: Option<Verification>,
+    pub(super) legs: Vec<WrittenLeg>,
+    pub(super) passages: Vec<WrittenPassage>,
+    pub(super) trajectory: WrittenTrajectory,
+    pub(super) verification: Option<WrittenVerification>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Leg {
+pub(super) struct WrittenLeg {
     pub(super) from: String,
     pub(super) to: String,
     pub(super) start_s: f64,
@@ -26,35 +26,35 @@ pub(super) struct Leg {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Passage {
+pub(super) struct WrittenPassage {
     pub(super) target: String,
     pub(super) time_s: f64,
     pub(super) departure_s: f64,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Trajectory {
-    pub(super) controls: Vec<Control>,
-    pub(super) states: Vec<State>,
+pub(super) struct WrittenTrajectory {
+    pub(super) controls: Vec<WrittenControl>,
+    pub(super) states: Vec<WrittenState>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Control {
+pub(super) struct WrittenControl {
     pub(super) start_s: f64,
     pub(super) duration_s: f64,
     pub(super) wheel_torque_nm: Vec<f64>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct State {
+pub(super) struct WrittenState {
     pub(super) time_s: f64,
-    quaternion: Quaternion,
+    quaternion: WrittenQuaternion,
     pub(super) body_rate_rad_s: [f64; 3],
     pub(super) wheel_speed_rad_s: Vec<f64>,
 }
 
 #[derive(Debug, Deserialize)]
-struct Quaternion {
+struct WrittenQuaternion {
     x: f64,
     y: f64,
     z: f64,
@@ -62,24 +62,24 @@ struct Quaternion {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Verification {
+pub(super) struct WrittenVerification {
     pub(super) passed: bool,
 }
 
-/// What is drawn over time.
+/// The quantities drawn over time.
 #[derive(Debug)]
 pub(super) struct Record<'a> {
     pub(super) total_time_s: f64,
-    pub(super) states: &'a [State],
+    pub(super) states: &'a [WrittenState],
     /// Times (s) and torques (N m), one list per wheel.
     pub(super) torques: Vec<Vec<(f64, f64)>>,
-    pub(super) passages: &'a [Passage],
+    pub(super) passages: &'a [WrittenPassage],
 }
 
-impl State {
-    /// The attitude; body axes along the reference axes when the numbers are none.
+impl WrittenState {
+    /// The attitude; the identity when the quaternion is zero.
     pub(super) fn attitude(&self) -> Attitude {
-        let Quaternion { x, y, z, w } = self.quaternion;
+        let WrittenQuaternion { x, y, z, w } = self.quaternion;
         Attitude::from_xyzw([x, y, z, w]).unwrap_or_else(Attitude::identity)
     }
 }
@@ -89,7 +89,7 @@ impl WrittenPlan {
     ///
     /// # Errors
     ///
-    /// A sentence, when it is no plan or tells why there is none.
+    /// A message, when it is no plan, or a document of reasons why there is none.
     pub(crate) fn read(document: &[u8]) -> Result<Self, String> {
         let plan: Self = serde_json::from_slice(document)
             .map_err(|error| format!("not a plan that can be drawn: {error}"))?;
@@ -109,7 +109,7 @@ impl WrittenPlan {
         }
     }
 
-    /// What is drawn over time.
+    /// The quantities drawn over time.
     pub(super) fn record(&self) -> Record<'_> {
         let controls = &self.trajectory.controls;
         let torque = |wheel: usize| {

@@ -1,14 +1,14 @@
-//! A comparison of wheels and gyroscopes as it was written, as far as a picture shows it.
+//! The part of a comparison of wheels and gyroscopes that is drawn, read from its JSON.
 
 use serde::Deserialize;
 
-/// What is read of the answer to the study.
+/// The part of the answer that is read.
 #[derive(Debug, Deserialize)]
 pub(crate) struct WrittenComparison {
     pub(super) angles_rad: Vec<f64>,
     pub(super) market: Catalogue,
     pub(super) sizes: Vec<Size>,
-    pub(super) advantage: Advantage,
+    pub(super) advantage: WrittenAdvantage,
     pub(super) mass: Mass,
 }
 
@@ -20,18 +20,18 @@ pub(super) struct Catalogue {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Fit {
-    pub(super) used: Law,
-    pub(super) devices: Vec<Device>,
+    pub(super) used: WrittenLaw,
+    pub(super) devices: Vec<WrittenDevice>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Law {
+pub(super) struct WrittenLaw {
     pub(super) factor: f64,
     pub(super) exponent: f64,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Device {
+pub(super) struct WrittenDevice {
     pub(super) momentum_nms: f64,
     pub(super) torque_nm: f64,
 }
@@ -49,20 +49,20 @@ pub(super) struct Slews {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Advantage {
+pub(super) struct WrittenAdvantage {
     pub(super) momenta_nms: Vec<f64>,
-    pub(super) curves: Vec<AdvantageCurve>,
-    pub(super) published: Vec<PublishedAngle>,
+    pub(super) curves: Vec<WrittenAdvantageCurve>,
+    pub(super) published: Vec<WrittenPublishedAngle>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct AdvantageCurve {
+pub(super) struct WrittenAdvantageCurve {
     pub(super) control: String,
     pub(super) angles_rad: Vec<Option<f64>>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct PublishedAngle {
+pub(super) struct WrittenPublishedAngle {
     pub(super) control: String,
     pub(super) momentum_nms: f64,
     pub(super) angle_rad: f64,
@@ -71,11 +71,11 @@ pub(super) struct PublishedAngle {
 #[derive(Debug, Deserialize)]
 pub(super) struct Mass {
     pub(super) crossover_kg: Option<f64>,
-    pub(super) points: Vec<MassPoint>,
+    pub(super) points: Vec<WrittenMassPoint>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct MassPoint {
+pub(super) struct WrittenMassPoint {
     pub(super) device_mass_kg: f64,
     pub(super) wheel_torque_nm: f64,
     pub(super) gyroscope_torque_nm: f64,
@@ -83,7 +83,7 @@ pub(super) struct MassPoint {
     pub(super) gyroscope_momentum_nms: f64,
 }
 
-impl Law {
+impl WrittenLaw {
     pub(super) fn at(&self, x: f64) -> f64 {
         self.factor * x.powf(self.exponent)
     }

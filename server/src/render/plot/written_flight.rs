@@ -1,9 +1,9 @@
-//! A flight in closed loop as it was written, as far as a picture shows it.
+//! The part of a flight in closed loop that is drawn, read from its JSON.
 
-use super::written::{Passage, Record, State};
+use super::written::{Record, WrittenPassage, WrittenState};
 use serde::Deserialize;
 
-/// What is read of the answer to a study of one flight.
+/// The part of the answer that is read.
 #[derive(Debug, Deserialize)]
 pub(crate) struct WrittenFlight {
     pub(super) name: Option<String>,
@@ -11,56 +11,56 @@ pub(crate) struct WrittenFlight {
 }
 
 #[derive(Debug, Deserialize)]
-#[serde(from = "Document")]
+#[serde(from = "SimulatedFlightJson")]
 pub(super) struct Simulated {
     pub(super) total_time_s: f64,
     pub(super) flight_time_s: f64,
     pub(super) within_tolerance: bool,
     pub(super) end: Off,
     pub(super) peak: Off,
-    passages: Vec<Passage>,
-    states: Vec<State>,
-    pub(super) samples: Vec<Sample>,
+    passages: Vec<WrittenPassage>,
+    states: Vec<WrittenState>,
+    pub(super) samples: Vec<WrittenSample>,
 }
 
-/// As it is written: what a state has and what a sample has besides in one object.
+/// The JSON form: state and further members of a sample in one object.
 #[derive(Debug, Deserialize)]
-struct Document {
+struct SimulatedFlightJson {
     total_time_s: f64,
     flight_time_s: f64,
     within_tolerance: bool,
     end: Off,
     peak: Off,
-    passages: Vec<Passage>,
+    passages: Vec<WrittenPassage>,
     samples: Vec<Whole>,
 }
 
 #[derive(Debug, Deserialize)]
 struct Whole {
     #[serde(flatten)]
-    state: State,
+    state: WrittenState,
     #[serde(flatten)]
-    sample: Sample,
+    sample: WrittenSample,
 }
 
-/// What a sample has beside the state.
+/// Members of a sample besides the state.
 #[derive(Debug, Deserialize)]
-pub(super) struct Sample {
+pub(super) struct WrittenSample {
     pub(super) wheel_torque_nm: Vec<f64>,
     pub(super) torque_limited: Vec<bool>,
     pub(super) speed_limited: Vec<bool>,
     pub(super) error: Off,
 }
 
-/// How far the flight is from the plan.
+/// Errors of the flight against the plan.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(super) struct Off {
     pub(super) attitude_rad: f64,
     pub(super) rate_rad_s: f64,
 }
 
-impl From<Document> for Simulated {
-    fn from(document: Document) -> Self {
+impl From<SimulatedFlightJson> for Simulated {
+    fn from(document: SimulatedFlightJson) -> Self {
         let samples = document.samples.into_iter();
         let (states, samples) = samples.map(|whole| (whole.state, whole.sample)).unzip();
         Self {
@@ -77,24 +77,24 @@ impl From<Document> for Simulated {
 }
 
 impl Simulated {
-    /// Times of the samples, each with the time of the next, s.
+    /// Pairs of the times of each sample and of the next, s.
     pub(super) fn spans(&self) -> impl Iterator<Item = (f64, f64)> {
         let begins = self.states.iter().map(|state| state.time_s);
         let ends = begins.clone().skip(1).chain([self.flight_time_s]);
         begins.zip(ends)
     }
 
-    /// What is drawn over time; commands are held from sample to sample.
+    /// The quantities drawn over time; commands are constant from sample to sample.
     ///
     /// # Errors
     ///
-    /// A sentence, when there is nothing to draw or lists differ in length.
+    /// A message, when there is nothing to draw or lists differ in length.
     pub(super) fn record(&self) -> Result<Record<'_>, String> {
         if self.states.len() < 2 || self.flight_time_s <= 0.0 {
             return Err("the flight has fewer than two samples".to_owned());
         }
         let wheels = self.samples.first().map_or(0, |s| s.wheel_torque_nm.len());
-        let fits = |sample: &Sample| {
+        let fits = |sample: &WrittenSample| {
             sample.wheel_torque_nm.len() == wheels
                 && sample.torque_limited.len() == wheels
                 && sample.speed_limited.len() == wheels

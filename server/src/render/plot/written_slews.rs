@@ -1,18 +1,18 @@
-//! Slews as they were written, as far as a picture shows them.
+//! The part of an answer to slews that is drawn, read from its JSON.
 
-use super::written::{Record, State};
+use super::written::{Record, WrittenState};
 use serde::Deserialize;
 
-/// What is read of the answer to a slew.
+/// The part of the answer that is read.
 #[derive(Debug, Deserialize)]
 pub(crate) struct WrittenSlews {
     pub(super) name: Option<String>,
-    /// The list of the sweep; none of a single slew.
+    /// The values of the sweep; none for a single slew.
     pub(super) sweep: Option<Swept>,
     pub(super) slews: Vec<WrittenSlew>,
 }
 
-/// What is different from slew to slew.
+/// The swept quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Swept {
@@ -29,17 +29,17 @@ pub(super) struct WrittenSlew {
     pub(super) effort_nm2_s: f64,
     pub(super) energy_proxy_j: Option<f64>,
     pub(super) energy_bill_j: Option<f64>,
-    trajectory: Trajectory,
+    trajectory: SlewTrajectoryJson,
 }
 
 #[derive(Debug, Deserialize)]
-struct Trajectory {
-    controls: Vec<Ramp>,
-    states: Vec<State>,
+struct SlewTrajectoryJson {
+    controls: Vec<WrittenRamp>,
+    states: Vec<WrittenState>,
 }
 
 #[derive(Debug, Deserialize)]
-struct Ramp {
+struct WrittenRamp {
     start_s: f64,
     duration_s: f64,
     wheel_torque_begin_nm: Vec<f64>,
@@ -47,13 +47,13 @@ struct Ramp {
 }
 
 impl WrittenSlew {
-    /// What is drawn over time.
+    /// The quantities drawn over time.
     ///
     /// # Errors
     ///
-    /// A sentence, when there is nothing to draw or lists differ in length.
+    /// A message, when there is nothing to draw or lists differ in length.
     pub(super) fn record(&self) -> Result<Record<'_>, String> {
-        let Trajectory { controls, states } = &self.trajectory;
+        let SlewTrajectoryJson { controls, states } = &self.trajectory;
         if states.len() < 2 || self.time_s <= 0.0 {
             return Err("the slew has no trajectory".to_owned());
         }

@@ -1,14 +1,14 @@
-//! What became of the claims of a plan, as text.
+//! The check of a plan's proved bounds, as text.
 
 use super::table::aligned;
 use crate::documents::certification::{name, reason};
 use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate, Verdict};
 
-/// Head of the numbers, which stand to the right below it.
-const BOUND: &str = "claimed bound [s]";
+/// Headers of the numbers, which are aligned to the right below them.
+const BOUND: &str = "stated bound [s]";
 
 /// One row for every leg and one for all tours, under the verdict on the whole.
-pub(super) fn claims(claims: &PlanCertificate, checked: &CheckedCertificate) -> String {
+pub(super) fn certificate(certificate: &PlanCertificate, checked: &CheckedCertificate) -> String {
     let all = || checked.legs.iter().chain([&checked.tour]);
     let count = |of: fn(&Verdict) -> bool| all().filter(|verdict| of(verdict)).count();
     let verdict = if checked.confirmed() {
@@ -17,15 +17,20 @@ pub(super) fn claims(claims: &PlanCertificate, checked: &CheckedCertificate) -> 
         "NOT CONFIRMED"
     };
     let mut rows = vec![["from", "to", BOUND, "verdict"].map(str::to_owned)];
-    for (leg, verdict) in claims.legs.iter().zip(&checked.legs) {
+    for (leg, verdict) in certificate.legs.iter().zip(&checked.legs) {
         rows.push(row(&leg.from, &leg.to, leg.lower_bound_s, verdict));
     }
-    rows.push(row("all tours", "", claims.lower_bound_s, &checked.tour));
+    rows.push(row(
+        "all tours",
+        "",
+        certificate.lower_bound_s,
+        &checked.tour,
+    ));
     let rows: Vec<_> = rows.into_iter().map(Vec::from).collect();
     format!(
-        "{verdict}: {} of {} claims proved a second time, {} rejected\n\n{}",
+        "{verdict}: {} of {} bounds proved a second time, {} rejected\n\n{}",
         count(|verdict| *verdict == Verdict::Confirmed),
-        count(|verdict| *verdict != Verdict::NoClaim),
+        count(|verdict| *verdict != Verdict::NoBound),
         count(|verdict| matches!(verdict, Verdict::Rejected(_))),
         aligned(4, &rows)
     )

@@ -1,4 +1,4 @@
-//! Published results of scenarios that are known by name, and why ours differ.
+//! Published results of scenarios recognised by name, and why the results here differ.
 //!
 //! Source: A. Olivares, E. Staffetti, "Time-optimal attitude scheduling of a spacecraft equipped
 //! with reaction wheels" (2018), experiments A, B and C.
@@ -40,8 +40,7 @@ const WHY_QUATERNIONS: &str = "\
 It visits quaternions, not attitudes: some targets have a negative scalar part there, so that
   turns take the long way round, although q and -q are the same attitude.";
 const WHY_COARSE: &str = "\
-Its two collocation intervals per leg are too few: the printed time is below what the torque
-  and speed limits allow for its own order when it is flown (experiment A: 620.7 s).";
+Its two collocation intervals per leg are too few: the printed time is below what the torque and speed limits allow for its own order (experiment A: 620.7 s).";
 
 /// The published result for a scenario's name.
 pub(super) fn find(name: &str) -> Option<&'static Published> {
@@ -49,7 +48,7 @@ pub(super) fn find(name: &str) -> Option<&'static Published> {
 }
 
 impl Published {
-    /// The published figure beside ours, and the reasons for the difference.
+    /// The published time, the difference of the plan, and its reasons.
     pub(super) fn comparison(&self, plan: &Plan, scenario: &Scenario) -> String {
         let reasons = match scenario.options().attitude_equivalence {
             AttitudeEquivalence::Rotation => format!("{WHY_QUATERNIONS}\n  {WHY_COARSE}"),
@@ -69,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_three_experiments_are_known() {
+    fn only_the_three_experiments_are_recognised() {
         assert_eq!(
             find("olivares-staffetti-a").map(|known| known.total_time_s),
             Some(592.49)

@@ -1,4 +1,4 @@
-//! A small made-up plan for the tests of everything that writes plans.
+//! A small invented plan for the tests of reports and pictures.
 
 use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;

@@ -1,6 +1,6 @@
 //! The summary of a plan.
 
-use super::figures::{count, line, margins, verification};
+use super::blocks::{count, line, margins, verification};
 use super::table::aligned;
 use crate::documents::plan::status;
 use slewplan_solver::model::plan::{Leg, LowerBoundKind, Plan};
@@ -98,7 +98,7 @@ fn bound(plan: &Plan) -> String {
             "{:.3} s, gap {:.4} % ({}: {meaning})",
             plan.lower_bound_s,
             plan.relative_gap * 100.0,
-            plan.lower_bound_kind.as_str()
+            plan.lower_bound_kind
         ),
     ) + &proved
 }
@@ -119,7 +119,7 @@ fn alternatives(plan: &Plan) -> String {
     text
 }
 
-/// The same order flown with slews that are fastest alone, from rest to rest.
+/// The same order with legs that are minimum-time from rest to rest.
 fn rest_to_rest(plan: &Plan) -> String {
     let slews: Option<f64> = plan
         .legs
@@ -131,19 +131,16 @@ fn rest_to_rest(plan: &Plan) -> String {
     })
 }
 
-/// The same order flown with rest-to-rest turns about the eigenaxis.
+/// The same order with rest-to-rest turns about the eigenaxis.
 fn eigenaxis(plan: &Plan) -> String {
     let turns: Option<f64> = plan.legs.iter().map(|leg| leg.eigenaxis_duration_s).sum();
     let Some(turns) = turns else {
-        return line(
-            "eigenaxis",
-            "not every leg can be flown about its eigenaxis",
-        );
+        return line("eigenaxis", "not every leg has a slew about its eigenaxis");
     };
     same_order(plan, "eigenaxis", "rest-to-rest eigenaxis slews", turns)
 }
 
-/// What the plan saves against its order flown with other slews that take so long, s.
+/// The time that the plan saves against its order with other slews of a given total time, s.
 fn same_order(plan: &Plan, label: &str, slews: &str, duration_s: f64) -> String {
     let waiting: f64 = plan
         .flight
@@ -184,7 +181,7 @@ mod tests {
     use crate::render::report::sample;
 
     #[test]
-    fn the_summary_says_order_total_bound_and_saving() {
+    fn the_summary_has_order_total_bound_and_saving() {
         let text = plan("two targets", &sample::plan());
         for part in [
             "two targets: optimal, 30.000 s for 2 targets",
@@ -201,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_leg_without_eigenaxis_slew_is_no_saving() {
+    fn without_an_eigenaxis_slew_no_saving_is_stated() {
         let mut plan = sample::plan();
         plan.legs[1].eigenaxis_duration_s = None;
         assert!(super::plan("x", &plan).contains("not every leg"));

@@ -1,6 +1,6 @@
 //! Text tables with aligned columns.
 
-/// Rows under a head: the first `left` columns to the left, the others to the right.
+/// Rows under a header: the first `left` columns are aligned to the left, the others to the right.
 pub(super) fn aligned(left: usize, rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_stand_left_and_numbers_right() {
+    fn names_are_aligned_left_and_numbers_right() {
         let rows = [
             vec!["leg".to_owned(), "time".to_owned()],
             vec!["a".to_owned(), "1".to_owned()],

@@ -1,4 +1,4 @@
-//! Forgetting legs, a few at a time, so that others can write in between.
+//! Deletion of legs in small batches, so that other writes come in between.
 
 use super::super::{Store, StoreError};
 use super::SOLVER_VERSION;
@@ -8,30 +8,33 @@ use sqlx::sqlite::SqliteArguments;
 use std::collections::HashSet;
 
 impl Store {
-    /// Forgets legs of other versions of the solver, at most so many; how many they were.
-    pub(crate) async fn forget_foreign_legs(&self, at_most: i64) -> Result<u64, StoreError> {
-        // Each half has the index; an inequality has not.
+    /// Deletes at most `at_most` legs of other versions of the solver. Returns their number.
+    pub(crate) async fn delete_legs_of_other_versions(
+        &self,
+        at_most: i64,
+    ) -> Result<u64, StoreError> {
+        // Each half can use the index; `<>` could not.
         let foreign = sqlx::query_scalar(
             "DELETE FROM legs WHERE sequence IN \
              (SELECT sequence FROM legs WHERE solver_version < ?1 \
              UNION ALL SELECT sequence FROM legs WHERE solver_version > ?1 LIMIT ?2) \
              RETURNING spacecraft",
         );
-        self.forget_legs(foreign.bind(SOLVER_VERSION).bind(at_most))
+        self.delete_legs(foreign.bind(SOLVER_VERSION).bind(at_most))
             .await
     }
 
-    /// Forgets so many of the legs that were stored first; how many there were.
-    pub(crate) async fn forget_oldest_legs(&self, count: i64) -> Result<u64, StoreError> {
+    /// Deletes the `count` oldest legs. Returns the number of those that existed.
+    pub(crate) async fn delete_oldest_legs(&self, count: i64) -> Result<u64, StoreError> {
         let oldest = sqlx::query_scalar(
             "DELETE FROM legs WHERE sequence IN \
              (SELECT sequence FROM legs ORDER BY sequence LIMIT ?) RETURNING spacecraft",
         );
-        self.forget_legs(oldest.bind(count)).await
+        self.delete_legs(oldest.bind(count)).await
     }
 
-    /// Forgets legs, and spacecraft of which there are none left.
-    async fn forget_legs(
+    /// Deletes legs, and spacecraft without any legs left.
+    async fn delete_legs(
         &self,
         delete: QueryScalar<'_, Sqlite, String, SqliteArguments>,
     ) -> Result<u64, StoreError> {

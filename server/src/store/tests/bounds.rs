@@ -1,31 +1,31 @@
-//! What grows with every request and not with the jobs stays within bounds.
+//! Limits on stored legs and versions of spacecraft.
 
 use super::on_a_store;
 use crate::store::spacecraft::KEPT_VERSIONS;
-use crate::store::{LegFilter, LegTrajectory, NewLeg, Store};
+use crate::store::{LegFilter, NewLeg, Store};
+use slewplan_solver::model::motion::Motion;
+use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 
 fn leg(number: u8, spacecraft: &str) -> NewLeg {
     NewLeg {
         identity: format!("leg {number}"),
-        spacecraft: spacecraft.to_owned(),
-        kind: "rest_to_rest",
-        turn_xyzw: [0.0, 0.0, 0.0, 1.0],
-        momentum: [0.0; 3],
-        reversible: false,
-        duration_s: number.into(),
-        certified_lower_bound_s: None,
-        solve_time_s: 0.1,
-        status: "converged".into(),
-        trajectory: LegTrajectory {
-            attitudes_xyzw: Vec::new(),
-            wheel_momenta_nms: Vec::new(),
-            lengths_s: Vec::new(),
+        leg: StoredLeg {
+            spacecraft: spacecraft.to_owned(),
+            kind: LegKind::RestToRest,
+            turn_xyzw: [0.0, 0.0, 0.0, 1.0],
+            body_momentum_nms: [0.0; 3],
+            reversible: false,
+            duration_s: number.into(),
+            certified_lower_bound_s: None,
+            solve_time_s: 0.1,
+            status: "converged".into(),
+            motion: Motion::default(),
         },
     }
 }
 
-/// The durations of all remembered legs, s, and the number of spacecraft.
-async fn remembered(store: &Store) -> (Vec<f64>, i64) {
+/// The durations of all stored legs, s, and the number of spacecraft.
+async fn stored(store: &Store) -> (Vec<f64>, i64) {
     let all = LegFilter {
         spacecraft: None,
         turn: None,
@@ -38,8 +38,8 @@ async fn remembered(store: &Store) -> (Vec<f64>, i64) {
     (legs.iter().map(|leg| leg.duration_s).collect(), spacecraft)
 }
 
-/// Makes a leg one of another version of the solver.
-async fn age(store: &Store, identity: &str, version: &str) {
+/// Sets the solver version of a stored leg.
+async fn set_version(store: &Store, identity: &str, version: &str) {
     sqlx::query("UPDATE legs SET solver_version = ? WHERE identity = ?")
         .bind(version)
         .bind(identity)
@@ -49,27 +49,34 @@ async fn age(store: &Store, identity: &str, version: &str) {
 }
 
 #[test]
-fn legs_of_other_versions_are_forgotten_some_at_a_time() {
+fn legs_of_other_versions_are_deleted_in_batches() {
     on_a_store(|store| async move {
         let legs = [leg(1, "a"), leg(2, "b"), leg(3, "b"), leg(4, "c")];
         store.put_legs(&legs, 1).await.expect("stored");
-        age(&store, "leg 1", "0.0.0").await;
-        age(&store, "leg 2", "0.0.0").await;
-        age(&store, "leg 4", "9999").await;
-        assert_eq!(store.forget_foreign_legs(2).await.expect("tried"), 2);
-        assert_eq!(store.forget_foreign_legs(2).await.expect("tried"), 1);
-        assert_eq!(store.forget_foreign_legs(2).await.expect("tried"), 0);
-        assert_eq!(remembered(&store).await, (vec![3.0], 1));
+        set_version(&store, "leg 1", "0.0.0").await;
+        set_version(&store, "leg 2", "0.0.0").await;
+        set_version(&store, "leg 4", "9999").await;
+        assert_eq!(
+            store.delete_legs_of_other_versions(2).await.expect("tried"),
+            2
+        );
+        assert_eq!(
+            store.delete_legs_of_other_versions(2).await.expect("tried"),
+            1
+        );
+        assert_eq!(
+            store.delete_legs_of_other_versions(2).await.expect("tried"),
+            0
+        );
+        assert_eq!(stored(&store).await, (vec![3.0], 1));
     });
 }
 
 #[test]
-fn legs_are_found_by_their_turn_within_the_tolerance() {
+fn legs_are_found_by_their_rotation_within_the_tolerance() {
     on_a_store(|store| async move {
-        let turned = NewLeg {
-            turn_xyzw: [0.1_f64.sin(), 0.0, 0.0, 0.1_f64.cos()],
-            ..leg(1, "a")
-        };
+        let mut turned = leg(1, "a");
+        turned.leg.turn_xyzw = [0.1_f64.sin(), 0.0, 0.0, 0.1_f64.cos()];
         store.put_legs(&[turned], 1).await.expect("stored");
         // It is 0.2 rad away.
         for (tolerance, count) in [(0.19, 0), (0.21, 1)] {
@@ -85,14 +92,14 @@ fn legs_are_found_by_their_turn_within_the_tolerance() {
 }
 
 #[test]
-fn the_legs_that_were_stored_first_are_forgotten_first() {
+fn the_oldest_legs_are_deleted_first() {
     on_a_store(|store| async move {
         let legs = [leg(1, "a"), leg(2, "b"), leg(3, "a")];
         store.put_legs(&legs, 1).await.expect("stored");
-        assert_eq!(store.forget_oldest_legs(1).await.expect("tried"), 1);
-        assert_eq!(remembered(&store).await, (vec![2.0, 3.0], 2));
-        assert_eq!(store.forget_oldest_legs(9).await.expect("tried"), 2);
-        assert_eq!(remembered(&store).await, (vec![], 0));
+        assert_eq!(store.delete_oldest_legs(1).await.expect("tried"), 1);
+        assert_eq!(stored(&store).await, (vec![2.0, 3.0], 2));
+        assert_eq!(store.delete_oldest_legs(9).await.expect("tried"), 2);
+        assert_eq!(stored(&store).await, (vec![], 0));
         assert_eq!(store.put_legs(&legs, 2).await.expect("stored again"), 3);
     });
 }
@@ -117,7 +124,7 @@ fn only_the_newest_versions_of_a_spacecraft_are_kept() {
 }
 
 #[test]
-fn what_is_asked_whether_it_can_be_written_is_written() {
+fn checking_writability_commits_a_write() {
     on_a_store(|store| async move {
         for now_us in [7, 9] {
             store.check_writable(now_us).await.expect("written");

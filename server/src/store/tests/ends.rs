@@ -1,4 +1,4 @@
-//! What the end of a job leaves: plans, bounds and codes.
+//! Plans, bounds and codes at the end of a job.
 
 use super::{ID, ended, improve, json, lease, on_a_store, plan, result, submitted};
 use crate::store::{EndCode, Ended, JobRow, JobState, PackedPlan, ProgressRow, Store};
@@ -10,7 +10,7 @@ async fn job(store: &Store) -> JobRow {
 
 const REASONS: &str = r#"{"status":"failed"}"#;
 
-/// An end without a plan, with the reasons for that.
+/// An end without a plan, with a document of the reasons.
 fn failed() -> Ended {
     Ended {
         document: Some(PackedPlan::of(REASONS.as_bytes())),
@@ -21,7 +21,7 @@ fn failed() -> Ended {
     }
 }
 
-/// Tells of a bound beside an incumbent.
+/// Records an incumbent and a lower bound.
 async fn bounded(store: &Store, lease: &JobRow, incumbent_s: f64, lower_bound_s: f64) {
     let progress = ProgressRow {
         stage: "search",
@@ -40,7 +40,7 @@ async fn kept_plans(store: &Store) -> i64 {
 }
 
 #[test]
-fn a_failure_takes_no_plan_away() {
+fn a_failure_keeps_the_best_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
@@ -58,7 +58,7 @@ fn a_failure_takes_no_plan_away() {
 }
 
 #[test]
-fn without_a_plan_the_reasons_are_the_result() {
+fn without_a_plan_the_document_of_reasons_is_the_result() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
@@ -71,7 +71,7 @@ fn without_a_plan_the_reasons_are_the_result() {
 }
 
 #[test]
-fn a_bound_falls_neither_at_the_end_nor_with_another_attempt() {
+fn the_bound_never_falls() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let first = lease(&store, "first").await.job;
@@ -92,7 +92,7 @@ fn a_bound_falls_neither_at_the_end_nor_with_another_attempt() {
 }
 
 #[test]
-fn no_bound_is_above_the_plan() {
+fn the_bound_never_exceeds_the_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
@@ -116,7 +116,7 @@ fn a_job_without_a_bound_ends_without_one() {
 }
 
 #[test]
-fn a_job_that_is_given_up_keeps_its_plan_and_says_why() {
+fn a_dead_job_keeps_its_plan_and_has_a_reason() {
     on_a_store(|store| async move {
         submitted(&store).await;
         for (boot, next) in [("a", "b"), ("b", "c"), ("c", "d")] {
@@ -136,7 +136,7 @@ fn a_job_that_is_given_up_keeps_its_plan_and_says_why() {
 }
 
 #[test]
-fn what_is_abandoned_leaves_no_plan_behind() {
+fn cancelling_deletes_the_incumbent() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let first = lease(&store, "first").await.job;

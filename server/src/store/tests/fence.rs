@@ -1,9 +1,9 @@
-//! What a worker may write that was taken for dead and comes back: nothing.
+//! A worker with a stale lease writes nothing.
 
 use super::{ID, ended, improve, lease, on_a_store, plan, submitted};
 use crate::store::{JobRow, JobState, SegmentRow, Store};
 
-/// Everything that is recorded of the job and what belongs to it, as text.
+/// All rows of the job in all tables, as text.
 async fn record(store: &Store) -> Vec<String> {
     let mut found = Vec::new();
     for rows in [
@@ -28,10 +28,10 @@ fn segment(content: u8) -> [SegmentRow; 1] {
     }]
 }
 
-/// What of all that a worker writes was taken from a lease, other than its end.
-async fn taken_midway(store: &Store, lease: &JobRow, content: u8) -> [bool; 3] {
+/// Which writes of a lease succeed, other than those that end it.
+async fn writes(store: &Store, lease: &JobRow, content: u8) -> [bool; 3] {
     [
-        store.beat(lease, 9_000).await.expect("tried"),
+        store.prolong(lease, 9_000).await.expect("tried"),
         improve(store, lease, f64::from(content)).await,
         store
             .put_segments(lease, &segment(content))
@@ -40,8 +40,8 @@ async fn taken_midway(store: &Store, lease: &JobRow, content: u8) -> [bool; 3] {
     ]
 }
 
-/// What of the ways to end a lease was taken.
-async fn taken_at_the_end(store: &Store, lease: &JobRow, state: JobState) -> [bool; 2] {
+/// Which writes that end a lease succeed.
+async fn endings(store: &Store, lease: &JobRow, state: JobState) -> [bool; 2] {
     let end = ended(state, Some(plan(20.0)));
     [
         store.finish(lease, &end, 6).await.expect("tried"),
@@ -49,31 +49,31 @@ async fn taken_at_the_end(store: &Store, lease: &JobRow, state: JobState) -> [bo
     ]
 }
 
-/// Tries all that a stale worker could write; none of it may be taken or leave a trace.
-async fn refused(store: &Store, stale: &JobRow) {
+/// Asserts that every write of a stale lease is refused and changes no row.
+async fn assert_refused(store: &Store, stale: &JobRow) {
     let before = record(store).await;
-    assert_eq!(taken_midway(store, stale, 20).await, [false; 3]);
+    assert_eq!(writes(store, stale, 20).await, [false; 3]);
     for state in [JobState::Succeeded, JobState::Stopped, JobState::Failed] {
-        assert_eq!(taken_at_the_end(store, stale, state).await, [false; 2]);
+        assert_eq!(endings(store, stale, state).await, [false; 2]);
     }
     assert_eq!(record(store).await, before);
 }
 
 #[test]
-fn nothing_of_a_stale_claim_is_taken_at_any_stage_of_its_successor() {
+fn a_stale_lease_is_refused_at_every_stage_of_its_successor() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let stale = lease(&store, "first").await.job;
         store.recover("second", 3).await.expect("recovered");
-        refused(&store, &stale).await;
+        assert_refused(&store, &stale).await;
         let newest = lease(&store, "second").await.job;
         assert_eq!((newest.attempt, newest.fence), (2, stale.fence + 1));
-        refused(&store, &stale).await;
-        assert_eq!(taken_midway(&store, &newest, 30).await, [true; 3]);
-        refused(&store, &stale).await;
+        assert_refused(&store, &stale).await;
+        assert_eq!(writes(&store, &newest, 30).await, [true; 3]);
+        assert_refused(&store, &stale).await;
         let end = ended(JobState::Succeeded, Some(plan(30.0)));
         assert!(store.finish(&newest, &end, 8).await.expect("written"));
-        refused(&store, &stale).await;
+        assert_refused(&store, &stale).await;
         let job = store.job(ID).await.expect("read").expect("there");
         assert_eq!(
             (job.state().expect("known"), job.incumbent_s),
@@ -83,16 +83,16 @@ fn nothing_of_a_stale_claim_is_taken_at_any_stage_of_its_successor() {
 }
 
 #[test]
-fn a_claim_of_the_same_process_is_stale_too_once_it_was_given_back() {
+fn a_released_lease_of_the_same_process_is_stale() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let stale = lease(&store, "only").await.job;
         assert!(store.release(&stale, 3).await.expect("given back"));
         let newest = lease(&store, "only").await.job;
-        // The attempt did not count: nothing but the fence tells the two apart.
+        // The released attempt does not count: the two leases differ in the fence only.
         assert_eq!((newest.attempt, newest.fence), (1, stale.fence + 1));
-        refused(&store, &stale).await;
-        assert_eq!(taken_midway(&store, &newest, 30).await, [true; 3]);
-        refused(&store, &stale).await;
+        assert_refused(&store, &stale).await;
+        assert_eq!(writes(&store, &newest, 30).await, [true; 3]);
+        assert_refused(&store, &stale).await;
     });
 }

@@ -1,9 +1,9 @@
-//! How many jobs may wait.
+//! Limits on queued jobs.
 
 use super::{lease, on_a_store, submission};
 use crate::store::{QueueLimits, Store, Submission, Submitted};
 
-/// What became of the submission of a job of this number.
+/// Submits a job with an identifier of this number.
 async fn submit(store: &Store, number: u8, client: &str, limits: QueueLimits) -> Submitted {
     let job = Submission {
         id: format!("00000000-0000-7000-8000-0000000000{number:02}"),
@@ -14,7 +14,7 @@ async fn submit(store: &Store, number: u8, client: &str, limits: QueueLimits) ->
 }
 
 #[test]
-fn a_queue_takes_exactly_as_many_as_may_wait() {
+fn the_queue_takes_exactly_as_many_jobs_as_allowed() {
     let limits = QueueLimits { all: 3, client: 9 };
     on_a_store(|store| async move {
         for number in 0..3 {
@@ -25,7 +25,7 @@ fn a_queue_takes_exactly_as_many_as_may_wait() {
             let answer = submit(&store, number, "b", limits).await;
             assert!(matches!(answer, Submitted::QueueFull), "{answer:?}");
         }
-        // A job that runs waits no longer.
+        // A running job does not count as queued.
         lease(&store, "worker").await;
         let answer = submit(&store, 5, "b", limits).await;
         assert!(matches!(answer, Submitted::New(_)), "{answer:?}");
@@ -36,7 +36,7 @@ fn a_queue_takes_exactly_as_many_as_may_wait() {
 }
 
 #[test]
-fn a_client_at_its_limit_leaves_room_for_others() {
+fn a_client_at_its_limit_does_not_block_others() {
     let limits = QueueLimits { all: 9, client: 2 };
     on_a_store(|store| async move {
         for number in 0..2 {
@@ -51,7 +51,7 @@ fn a_client_at_its_limit_leaves_room_for_others() {
 }
 
 #[test]
-fn a_queue_without_room_takes_nothing() {
+fn a_queue_of_size_zero_takes_no_job() {
     on_a_store(|store| async move {
         let answer = submit(&store, 0, "a", QueueLimits { all: 0, client: 9 }).await;
         assert!(matches!(answer, Submitted::QueueFull), "{answer:?}");

@@ -1,22 +1,22 @@
-//! Two processes that both take themselves for the owner of a job: one result, whoever is faster.
+//! Races of two processes that both hold a lease of the same job: the job has one result.
 //!
-//! `SLEWPLAN_RACES` says how many races there are.
+//! `SLEWPLAN_RACES` sets the number of races.
 
 use super::{ID, ended, json, lease, plan, result, state_of, submitted};
 use crate::store::{JobState, Store};
 use std::time::Duration;
 
 const USUAL: u64 = 40;
-/// Longest head start that one of the two has, µs: about what the other needs.
+/// Longest head start of one of the two, µs: about the time that the other needs.
 const HEAD_START_US: u64 = 3_000;
 
-/// How long a racer waits in a round, so that over the rounds each of them comes first.
+/// Delay of a racer in a round, chosen so that over the rounds each of them comes first.
 fn wait(round: u64, step: u64) -> Duration {
     Duration::from_micros(round * step % HEAD_START_US)
 }
 
-/// A worker that was taken for dead ends the job while another process rescues it; whether the
-/// stale one did, and whether the rescuer did.
+/// A stale worker ends the job while another process recovers and ends it. Whether the stale end
+/// was recorded, and whether the other was.
 async fn race(stale: &Store, rescuer: &Store, round: u64) -> (bool, bool) {
     submitted(stale).await;
     let lost = lease(stale, "stale").await.job;
@@ -36,8 +36,8 @@ async fn race(stale: &Store, rescuer: &Store, round: u64) -> (bool, bool) {
     tokio::join!(late, rescue)
 }
 
-/// How often the end of the job was told.
-async fn ends_told(store: &Store) -> i64 {
+/// Number of events of the end of the job.
+async fn end_events(store: &Store) -> i64 {
     let count = "SELECT count(*) FROM events WHERE kind = 'state' AND \
          json_extract(data, '$.state') NOT IN ('queued', 'running')";
     let count = sqlx::query_scalar(count).fetch_one(&store.readers).await;
@@ -75,7 +75,7 @@ fn a_job_that_two_workers_end_has_one_end() {
                 (state, kept.document),
                 (expected.0, json(expected.1).into())
             );
-            assert_eq!(ends_told(&rescuer).await, 1);
+            assert_eq!(end_events(&rescuer).await, 1);
             assert!(rescuer.delete(ID).await.expect("deleted"));
         }
         println!("{rounds} races, {rescued} won by the rescuer");

@@ -1,29 +1,29 @@
 //! Bounds with stored momentum.
 //!
-//! `J w = R^T H - h_locked - sum a_i I_i W_i`: the momentum turns the body by itself, by `J^-1 R^T H`.
-//! Were the inertia a sphere, `J^-1 = k`, that would be a constant rate in space, `k H`; so the rate
-//! relative to axes that turn with this *drift*,
+//! `J w = R^T H - h_locked - sum a_i I_i W_i`: the momentum alone turns the body at the rate
+//! `J^-1 R^T H`. With a spherical inertia, `J^-1 = k`, this is the constant rate `k H` in space. So
+//! the rate relative to axes that turn with this *drift*,
 //!
 //! ```text
 //!   v = w - k R^T H = J^-1 (- h_locked - sum a_i I_i W_i) + (J^-1 - k) R^T H,
 //! ```
 //!
-//! has a box that the momentum widens only by how much the inertia differs from a sphere: along a
-//! direction `d`, by `|(J^-1 - k) d| |H|` as `R^T H` may point anywhere. As `(R^T H)' = -w x R^T H` and
-//! `J_eff w' = -w x R^T H - A u`,
+//! has a box that the momentum widens only through the difference of the inertia from a sphere:
+//! along a direction `d` by `|(J^-1 - k) d| |H|`, as `R^T H` may have any direction. As
+//! `(R^T H)' = -w x R^T H` and `J_eff w' = -w x R^T H - A u`,
 //!
 //! ```text
 //!   v' = -J_eff^-1 A u - (J_eff^-1 - k) (w x R^T H),
 //! ```
 //!
-//! of which the second part is at most `|H| max_w |(J_eff^-1 d - k d) x w|` along `d`: convex in `w`,
-//! so the largest of the values at the corners of the box of rates. Limits on `w` hold for `v` up to
-//! `k |H|`. Rest at an end means `v = -k R^T H`, known there. Slews with a drift are bounded in
-//! [`crate::bounds::kinematic`]. Any `k` is valid: the middle of the eigenvalues of `J^-1` makes the box
-//! narrow, and zero, the plain box that contains all rates, does better where rates have limits of
-//! their own.
+//! whose second term along `d` is at most `|H| max_w |(J_eff^-1 d - k d) x w|`; this is convex in
+//! `w`, so its maximum is at a corner of the box of rates. Limits on `w` hold for `v` up to
+//! `k |H|`. Rest at an end means `v = -k R^T H`, which is known there. Slews with a drift are
+//! bounded in [`crate::bounds::kinematic`]. Any `k` is valid. The middle of the eigenvalues of
+//! `J^-1` makes the box narrow; zero, with the box of all rates, is better where rates have limits
+//! of their own.
 
-use super::{Frame, allowed_rate};
+use super::{BodyFrame, allowed_rate};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
@@ -36,20 +36,20 @@ mod tests;
 /// Bounds on the slews of a spacecraft with momentum.
 #[derive(Debug)]
 pub(super) struct MomentumBounds {
-    frames: Vec<Drifting>,
+    frames: Vec<DriftingFrame>,
 }
 
-/// What no motion exceeds, relative to a drift.
+/// Limits of all motions relative to a drift, with their bound.
 #[derive(Debug)]
-struct Drifting {
-    frame: Frame,
+struct DriftingFrame {
+    frame: BodyFrame,
     /// `k`, 1/(kg m²).
     share: f64,
     bound: SlewBound,
 }
 
 impl MomentumBounds {
-    /// In each of some orthonormal frames, given as columns in body axes.
+    /// The bounds in some orthonormal frames, given as columns in body axes.
     pub(super) fn of(dynamics: &Dynamics, frames: &[Matrix3<f64>]) -> Self {
         let shares = [0.0, dynamics.mean_inverse_inertia()];
         let all = frames
@@ -57,13 +57,13 @@ impl MomentumBounds {
             .flat_map(|axes| shares.map(|share| (*axes, share)));
         Self {
             frames: all
-                .filter_map(|(axes, share)| Drifting::of(dynamics, axes, share))
+                .filter_map(|(axes, share)| DriftingFrame::of(dynamics, axes, share))
                 .collect(),
         }
     }
 
-    /// A duration, s, that no slew undercuts that makes a turn, with the momentum (N m s) and rates of
-    /// these sizes at most at its two ends, all in body axes there.
+    /// Lower bound, s, on the duration of a slew that makes a turn, with the momentum, N m s, and
+    /// limits of the rates at its two ends, all in body axes there.
     pub(super) fn leg(
         &self,
         turn: &Attitude,
@@ -74,16 +74,16 @@ impl MomentumBounds {
         self.frames
             .iter()
             .filter_map(|drifting| {
-                let Drifting {
+                let DriftingFrame {
                     frame,
                     share,
                     bound,
                 } = drifting;
                 let drifts = held.map(|held| frame.axes.tr_mul(&held) * *share);
-                let most = [0, 1].map(|end| frame.seen(&ends[end]) + drifts[end].abs());
+                let limits = [0, 1].map(|end| frame.limits_in_axes(&ends[end]) + drifts[end].abs());
                 let ends = EndRates {
-                    begin_rad_s: most[0],
-                    end_rad_s: most[1],
+                    begin_rad_s: limits[0],
+                    end_rad_s: limits[1],
                 };
                 let turn = turn.seen_from(&frame.axes)?;
                 Some(bound.drifting_lower_bound_s(&turn, &drifts[0], ends, tolerance))
@@ -92,7 +92,7 @@ impl MomentumBounds {
     }
 }
 
-impl Drifting {
+impl DriftingFrame {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>, share: f64) -> Option<Self> {
         let drift = share * dynamics.momentum.norm();
         let rate = |axis: &Vector3<f64>| {
@@ -108,7 +108,7 @@ impl Drifting {
             accelerations_rad_s2: along(&axes, acceleration),
         };
         Some(Self {
-            frame: Frame { axes, limits },
+            frame: BodyFrame { axes, limits },
             share,
             bound: SlewBound::new(limits, EndRates::at_rest())?,
         })

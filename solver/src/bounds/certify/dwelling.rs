@@ -1,4 +1,4 @@
-//! The words that dwell, from the motion of the costate itself.
+//! The sequences with a dwell, from the motion of the costate.
 //!
 //! On the level of the saddle `M_j = 0` let the costate leave it in an octant with signs `s`. With
 //! `n` the corner of the octant (length one), `M(t) = h n + cos t (M - h n) + sin t M x n`, and the
@@ -9,63 +9,63 @@
 //! ```
 //!
 //! with the upper sign for the one of `k, l` that follows `j` in cyclic order if the product of the
-//! signs is positive, and for the other one if it is negative. The first zero of all is where an axis
-//! flips; from there the folded costate goes back the way that it came, so it is at the saddle again
-//! after as long a time, where `w_j` may have either sign. (A component whose rate exceeds that of
-//! `j` never reaches zero; component `j` itself touches zero only after a whole turn.)
+//! signs is positive, and for the other one if it is negative. At the first zero of these an axis
+//! flips; from there the folded costate returns on the same path and reaches the saddle again after
+//! the same time, where `w_j` may have either sign. (A component whose rate exceeds that of `j`
+//! never reaches zero; component `j` itself touches zero only after a whole turn.)
 
 use super::interval::Interval;
 use super::rates::{Octant, Rates, flipped, octants};
-use super::turn::{IDENTITY, Turn, Vector, about, product};
-use super::word::{Interior, Word};
+use super::sequence::{ArcSequence, InteriorArcs};
+use super::turn::{IDENTITY, QuatInterval, VectorInterval, about, product};
 
-/// A stretch of fixed arcs is no part of a shortest motion if its turn can be made in a time that is
-/// shorter at all; the share keeps clear of ties.
+/// Relative saving from which a turn that replaces some fixed arcs shows that they are no part of a
+/// shortest motion. Any saving would do; the margin avoids ties.
 const SHORTER: f64 = 1e-6;
 
 /// Arcs of known duration, in order.
-type Arcs = Vec<(Octant, Interval)>;
+type FixedArcs = Vec<(Octant, Interval)>;
 
-/// Collects the words of one saddle.
+/// The enumeration of the sequences of one saddle.
 struct Saddle<'a> {
     rates: &'a Rates,
     /// The axis whose rate is zero during the dwell.
     axis: usize,
-    /// Times beyond this are of no interest.
+    /// Sequences whose fixed arcs last longer than this are left out.
     horizon: f64,
     limit: usize,
-    words: Vec<Word>,
+    sequences: Vec<ArcSequence>,
 }
 
-/// All words with a dwell whose fixed arcs last less than the horizon: `None` if there are more than
-/// the limit.
-pub(super) fn words(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<Word>> {
-    let mut words = Vec::new();
+/// All sequences with a dwell whose fixed arcs last less than the horizon: `None` if there are more
+/// than the limit.
+pub(super) fn sequences(rates: &Rates, horizon: f64, limit: usize) -> Option<Vec<ArcSequence>> {
+    let mut sequences = Vec::new();
     for axis in 0..3 {
         let mut saddle = Saddle {
             rates,
             axis,
             horizon,
             limit,
-            words,
+            sequences,
         };
-        // The octant in which the costate comes to the saddle: directly in the first arc, or from
-        // a flip.
+        // The octant in which the costate reaches the saddle: in the first arc, or after a flip.
         for octant in octants() {
             saddle.begin(octant, None)?;
             for (wall, time) in saddle.walls(octant, true) {
                 saddle.begin(flipped(octant, wall), Some((octant, time)))?;
             }
         }
-        words = saddle.words;
+        sequences = saddle.sequences;
     }
-    Some(words)
+    Some(sequences)
 }
 
 impl Saddle<'_> {
-    /// Where the costate flips first when it leaves the saddle in an octant, or where it came from:
-    /// the axis and the time. More than one if intervals do not tell which is first; none if that is
-    /// more than half a turn away, as longer arcs are no part of a shortest motion.
+    /// The axis that flips first after the costate leaves the saddle in an octant, and the time
+    /// until then; `backwards`, the last flip before it reaches the saddle. Several if intervals
+    /// cannot decide which comes first; none if it is more than half a turn away, as longer arcs
+    /// are no part of a shortest motion.
     fn walls(&self, octant: Octant, backwards: bool) -> Vec<(usize, Interval)> {
         let c = &self.rates.c;
         let (j, k, l) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -91,10 +91,11 @@ impl Saddle<'_> {
         found
     }
 
-    /// Words whose dwell follows an arc in an octant, fixed if there is a duration, else the first.
+    /// Sequences whose dwell follows either the first arc, in an octant, or the `fixed` arc after
+    /// it.
     fn begin(&mut self, first: Octant, fixed: Option<(Octant, Interval)>) -> Option<()> {
         let arrives = fixed.map_or(first, |(octant, _)| octant);
-        let before: Arcs = fixed.into_iter().collect();
+        let before: FixedArcs = fixed.into_iter().collect();
         let lasted = fixed.map_or(Interval::ZERO, |(_, time)| time);
         for leaves in [arrives, flipped(arrives, self.axis)] {
             self.follow(first, &before, leaves, &mut Vec::new(), lasted)?;
@@ -102,13 +103,13 @@ impl Saddle<'_> {
         Some(())
     }
 
-    /// Words that leave a visit in an octant.
+    /// Sequences that continue from a visit of the saddle in an octant.
     fn follow(
         &mut self,
         first: Octant,
-        before: &Arcs,
+        before: &FixedArcs,
         leaves: Octant,
-        after: &mut Arcs,
+        after: &mut FixedArcs,
         lasted: Interval,
     ) -> Option<()> {
         self.add(first, before, after, leaves, lasted)?;
@@ -134,12 +135,12 @@ impl Saddle<'_> {
     fn add(
         &mut self,
         first: Octant,
-        before: &Arcs,
-        after: &Arcs,
+        before: &FixedArcs,
+        after: &FixedArcs,
         last: Octant,
         fixed: Interval,
     ) -> Option<()> {
-        if self.words.len() == self.limit {
+        if self.sequences.len() == self.limit {
             return None;
         }
         // The face is that of the octant before the dwell.
@@ -148,14 +149,14 @@ impl Saddle<'_> {
         rate[self.axis] = Interval::ZERO;
         let (k, l) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
         let speed = rate[k].length(rate[l]);
-        let direction: Vector = rate.map(|w| w / speed);
+        let direction: VectorInterval = rate.map(|w| w / speed);
         let [x, y, z] = direction;
         let (before, after) = (self.turn(before), self.turn(after));
-        self.words.push(Word {
+        self.sequences.push(ArcSequence {
             first,
             last,
             fixed,
-            interior: Interior::Dwelling {
+            interior: InteriorArcs::Dwelling {
                 even: product(&before, &after),
                 odd: product(&product(&before, &[x, y, z, Interval::ZERO]), &after),
                 speed,
@@ -164,14 +165,14 @@ impl Saddle<'_> {
         Some(())
     }
 
-    fn turn(&self, arcs: &[(Octant, Interval)]) -> Turn {
+    fn turn(&self, arcs: &[(Octant, Interval)]) -> QuatInterval {
         arcs.iter().fold(IDENTITY, |all, (octant, time)| {
             product(&all, &about(&self.rates.corner(*octant), *time))
         })
     }
 
-    /// Whether a shorter turn replaces some of the last arcs.
-    fn replaceable(&self, arcs: &Arcs) -> bool {
+    /// Whether some of the last arcs can be replaced by a faster turn.
+    fn replaceable(&self, arcs: &FixedArcs) -> bool {
         (0..arcs.len()).any(|from| {
             let lasts = arcs[from..]
                 .iter()

@@ -1,16 +1,16 @@
-//! Intervals of real numbers, rounded outwards.
+//! Intervals of real numbers with outward rounding.
 //!
-//! Sums, products, quotients and square roots are correctly rounded (IEEE 754), so the neighbours of
-//! a result enclose the true one. Sine, cosine and the arc functions are not specified: the common
-//! mathematical libraries state errors below one unit in the last place (glibc: 1 ulp for `sin` and
-//! `cos`, 1 to 2 for `atan2`); [`LIBRARY`] allows nine units of a number next to one, and of `pi`
-//! for arcs.
+//! Sums, products, quotients and square roots are correctly rounded (IEEE 754), so the two
+//! neighbours of a result enclose the exact one. Sine, cosine and the arc functions are not
+//! specified: the common mathematical libraries state errors of one or two units in the last place
+//! (glibc: 1 ulp for `sin` and `cos`, 1 to 2 for `atan2`); [`LIBRARY`] allows nine units of a
+//! number near one and more than four of an arc near `pi`.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Absolute error allowed to sines, cosines and arcs: 2e-15 is 9 ulp of a number in `[1/2, 1]`'s
-/// upper binade (2.2e-16), and 4.5 ulp of an arc between 2 and `pi` (4.4e-16).
+/// Absolute error allowed for sines, cosines and arcs: 9 ulp of a number just above one (2.2e-16
+/// each), and 4.5 ulp of an arc between 2 and `pi` (4.4e-16 each).
 const LIBRARY: f64 = 2e-15;
 
 /// All numbers from `low` to `high`.
@@ -29,7 +29,7 @@ impl Interval {
         low: 1.0,
         high: 1.0,
     };
-    /// `pi` is between the double next to it, which is less, and its successor.
+    /// `pi` lies between its nearest double, which is less, and the successor of that.
     pub(super) const PI: Self = Self {
         low: PI,
         high: 3.141_592_653_589_793_6,
@@ -40,7 +40,7 @@ impl Interval {
         Self { low: x, high: x }
     }
 
-    /// All numbers within a distance of one.
+    /// All numbers within a distance of a number.
     pub(super) fn around(x: f64, radius: f64) -> Self {
         Self {
             low: (x - radius).next_down(),
@@ -62,7 +62,7 @@ impl Interval {
         self.low <= 0.0 && self.high >= 0.0
     }
 
-    /// The largest size.
+    /// The largest absolute value.
     pub(super) fn size(self) -> f64 {
         self.high.max(-self.low)
     }
@@ -97,19 +97,19 @@ impl Interval {
         (self.squared() + other.squared()).sqrt()
     }
 
-    /// Sine and cosine; neither changes faster than its argument.
+    /// Sine and cosine, whose derivatives are at most one.
     pub(super) fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.middle().sin_cos();
         let radius = (self.radius() + LIBRARY).next_up();
         (Self::around(sin, radius), Self::around(cos, radius))
     }
 
-    /// The angle of the vector `(x, y)`, about `atan2` of the middles; all of the circle, at a
-    /// radius of `pi`, when the vector may be zero. It is not brought to any range.
+    /// The angle of the vector `(x, y)`, around `atan2` of the middles; the whole circle, a radius
+    /// of `pi`, when the vector may be zero. The result is not reduced to a range.
     pub(super) fn angle(y: Self, x: Self) -> Self {
         let angle = f64::atan2(y.middle(), x.middle());
-        // The whole box is seen from the origin within this of the middle: the sine of the angle
-        // is at most the ratio of the box's radius to the distance of the middle.
+        // The sine of the angle between the middle and any point of the box, seen from the origin,
+        // is at most the ratio of the box's radius to the distance of its middle.
         let radius = Self::exactly(x.radius())
             .length(Self::exactly(y.radius()))
             .high;
@@ -132,7 +132,7 @@ impl Interval {
         }
     }
 
-    /// Double.
+    /// `2 x`.
     pub(super) fn twice(self) -> Self {
         Self {
             low: 2.0 * self.low,
@@ -140,7 +140,7 @@ impl Interval {
         }
     }
 
-    /// Half.
+    /// `x / 2`.
     pub(super) fn half(self) -> Self {
         Self {
             low: 0.5 * self.low,
@@ -149,7 +149,7 @@ impl Interval {
     }
 }
 
-/// A number that `2 asin(sqrt(x))` does not exceed; half a turn for what is not small.
+/// An upper bound on `2 asin(sqrt(x))`: half a turn for `x >= 1/2`, else from the tangent.
 pub(super) fn twice_asin_of_root(x: f64) -> f64 {
     if x >= 0.5 {
         return Interval::PI.high;

@@ -1,34 +1,36 @@
-//! From the least times of turns to the duration: the integral of `kinematic_bound::ramps`, enclosed.
+//! The link from the least times of turns to the duration: an upper bound on the integral `s(T)` of
+//! `kinematic::ramps`.
 //!
-//! `s(T) = int_0^T max_i m_i(t) / p_i dt` with `m_i = min(r_i, b_i + a_i t, e_i + a_i (T - t))`. As
-//! least times of the turns within the box `p` add up to `s(T)` at most, a duration `T` with `s(T)`
-//! no more than their sum cannot be undercut.
+//! `s(T) = int_0^T max_i m_i(t) / p_i dt` with `m_i = min(r_i, b_i + a_i t, e_i + a_i (T - t))`.
+//! The least times of the turns within the box `p` add up to at most `s(T)` for every motion of
+//! duration `T`. So `T` is a lower bound on the duration if `s(T)` is at most their sum.
 
 use super::interval::Interval;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use nalgebra::Vector3;
 
-/// Pieces narrower than this share of the duration are bounded by a constant.
+/// Width of a piece, relative to the duration, below which it is bounded without further splitting.
 const NARROW: f64 = 1e-14;
-/// Pieces narrower than this share are not split for the sake of sharpness alone.
+/// Width of a piece, relative to the duration, below which it is not split for a tighter bound
+/// alone.
 const FINE: f64 = 1e-6;
 
-/// The integral that is to be bounded.
-struct Rise<'a> {
+/// The integral `s(T)` to be bounded.
+struct LinkIntegrand<'a> {
     limits: &'a SlewLimits,
     ends: &'a EndRates,
     rates: &'a Vector3<f64>,
     duration: f64,
 }
 
-/// A number that `s(T)` does not exceed, s.
+/// An upper bound on `s(T)`, s.
 pub(super) fn at_most(
     limits: &SlewLimits,
     ends: &EndRates,
     rates: &Vector3<f64>,
     duration: f64,
 ) -> f64 {
-    let rise = Rise {
+    let integrand = LinkIntegrand {
         limits,
         ends,
         rates,
@@ -39,7 +41,7 @@ pub(super) fn at_most(
     while let Some((from, to)) = open.pop() {
         let middle = 0.5 * (from + to);
         let narrow = to - from <= NARROW * duration || middle <= from || middle >= to;
-        match rise.piece(from, to, narrow) {
+        match integrand.piece(from, to, narrow) {
             Some(area) => sum = sum + area,
             None => open.extend([(from, middle), (middle, to)]),
         }
@@ -47,13 +49,13 @@ pub(super) fn at_most(
     sum.high
 }
 
-impl Rise<'_> {
-    /// The three bounds on the rate of an axis, linear in the time.
+impl LinkIntegrand<'_> {
+    /// The three bounds on the rate of an axis, each linear in time.
     fn bounds(&self, axis: usize, at: f64) -> [Interval; 3] {
         let exactly = Interval::exactly;
         let acceleration = exactly(self.limits.accelerations_rad_s2[axis]);
         let ramp = |rate: f64, time: Interval| {
-            // A free end bounds nothing.
+            // The limit of a free end is infinite; the largest double keeps intervals finite.
             exactly(rate.min(f64::MAX)) + acceleration * time
         };
         [
@@ -66,15 +68,15 @@ impl Rise<'_> {
         ]
     }
 
-    /// The area over a piece, or `None` where it should be split.
+    /// An upper bound on the integral over a piece, or `None` where the piece should be split.
     fn piece(&self, from: f64, to: f64, narrow: bool) -> Option<Interval> {
         let width = Interval::exactly(to) - Interval::exactly(from);
         let mut shares = [[0.0; 2]; 3];
         for axis in 0..3 {
             let (begin, end) = (self.bounds(axis, from), self.bounds(axis, to));
             let share = |x: f64| (Interval::exactly(x) / Interval::exactly(self.rates[axis])).high;
-            // Any of the linear bounds will do over the whole piece; the one that is least at both
-            // ends is the sharpest, and if there is none the piece contains a kink.
+            // Any of the linear bounds is valid over the whole piece. The one that is least at both
+            // ends is the tightest; if there is none, the piece contains a kink.
             let least = |at: &[Interval; 3]| at.iter().map(|x| x.high).fold(f64::MAX, f64::min);
             let both =
                 (0..3).find(|&i| begin[i].high <= least(&begin) && end[i].high <= least(&end));
@@ -89,14 +91,16 @@ impl Rise<'_> {
                 None => return None,
             };
         }
-        // The largest of linear functions is convex: it lies below its chord. Where another axis
-        // takes over the chord is a little too high.
-        let most = |end: usize| shares.iter().map(|s| s[end]).fold(0.0, f64::max);
-        let crosses = !shares.iter().any(|s| s[0] >= most(0) && s[1] >= most(1));
+        // The maximum of linear functions is convex and lies below its chord. Where the largest
+        // axis changes within the piece, the chord is not tight.
+        let largest = |end: usize| shares.iter().map(|s| s[end]).fold(0.0, f64::max);
+        let crosses = !shares
+            .iter()
+            .any(|s| s[0] >= largest(0) && s[1] >= largest(1));
         if crosses && !narrow && to - from > FINE * self.duration {
             return None;
         }
-        let mean = (Interval::exactly(most(0)) + Interval::exactly(most(1))).half();
+        let mean = (Interval::exactly(largest(0)) + Interval::exactly(largest(1))).half();
         Some(mean * width)
     }
 }

@@ -1,42 +1,42 @@
-//! Words with many flips: all at once, near a body axis.
+//! Sequences with many flips near a body axis, refuted all together.
 //!
-//! In a word whose axes `j`, `k` flip in turn, arcs of duration `D`, the costate (length one) has
-//! `M_j = 0` at one flip and `M_k = 0` a time `D` later. As `m_k' = +-(m_i c_j - m_j c_i)` for the
-//! sizes `m`, with `s` a bound on `hypot(m_j, m_k)` all along, `|m_k'| <= max(c_j, s c_i)`, so `m_k`
-//! is at most that times the time left until it vanishes, and likewise `m_j` since it vanished; the
-//! sum of squares is largest at an end:
+//! In a sequence whose axes `j`, `k` flip alternately, with arcs of duration `D`, the costate
+//! (length one) has `M_j = 0` at one flip and `M_k = 0` a time `D` later. As
+//! `m_k' = +-(m_i c_j - m_j c_i)` for the sizes `m`, with `s` a bound on `hypot(m_j, m_k)`
+//! throughout, `|m_k'| <= max(c_j, s c_i)`. So `m_k` is at most this times the time until it
+//! vanishes, and likewise `m_j` since it vanished; the sum of squares is largest at an end:
 //!
 //! ```text
 //!   sin e <= D max(c_j, c_k, s c_i)     for the angle e of M from the axis +-e_i,
 //! ```
 //!
-//! first with `s = 1`, then with the bound itself. As `A = R M` is fixed in space, `R` swings away
-//! from the axis by `2 e` at most, and its twist about the axis changes at a rate
+//! first with `s = 1`, then with the bound itself. As `A = R M` is fixed in space, the swing of `R`
+//! away from the axis is at most `2 e`, and its twist about the axis changes at the rate
 //!
 //! ```text
 //!   w_i + [w_k (q_0 v_j + v_i v_k) + w_j (v_i v_j - q_0 v_k)] / (q_0^2 + v_i^2),   q = (v, q_0),
 //! ```
 //!
-//! of which the second term is at most `tan(swing / 2) hypot(w_j, w_k)` (Cauchy and Schwarz), the
-//! *drift*. The bounds fall with `D`, so they hold for all words of more flips, too, and in the limit
-//! for the turn about the axis alone.
+//! whose second term, the *drift*, is at most `tan(swing / 2) hypot(w_j, w_k)` (Cauchy and
+//! Schwarz). The bounds fall with `D`, so they also hold for all sequences of more flips and, in
+//! the limit, for the turn about the axis alone.
 
 use super::interval::Interval;
 use super::rates::Rates;
-use super::turn::{Turn, swing, twist};
+use super::turn::{QuatInterval, swing, twist};
 
-/// A target as words near an axis see it.
+/// Swing and twist of a target about one axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearAxis {
-    /// Swing away from the axis, at least.
+    /// Lower bound on the swing away from the axis, rad.
     swing: f64,
-    /// Least twist in the positive and in the negative sense, in `[0, 2 pi)`.
+    /// Lower bounds on the twist in the positive and in the negative sense, in `[0, 2 pi)`, rad.
     twists: [f64; 2],
     axis: usize,
 }
 
 impl NearAxis {
-    pub(super) fn new(q: &Turn, axis: usize) -> Self {
+    pub(super) fn new(q: &QuatInterval, axis: usize) -> Self {
         let twist = twist(q, axis);
         Self {
             swing: swing(q, axis).low,
@@ -45,8 +45,8 @@ impl NearAxis {
         }
     }
 
-    /// Whether words whose interior arcs last at most so long, with a rate of the given sign about
-    /// the axis, take the time at least.
+    /// Whether sequences whose interior arcs are no longer than `longest`, with a rate of the given
+    /// sign about the axis, are proved to take at least `time`.
     pub(super) fn proved(&self, rates: &Rates, longest: f64, negative: bool, time: f64) -> bool {
         let c = &rates.c;
         let (i, j, k) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -59,7 +59,8 @@ impl NearAxis {
             return false;
         }
         let sine = Interval::exactly(sine);
-        // The tangent is more than the angle, and than its half is that of half the swing.
+        // The tangent bounds the angle e from above, and it is the tangent of half the largest
+        // swing.
         let tangent = sine / (Interval::ONE - sine.squared()).sqrt();
         if self.swing > tangent.twice().high {
             return true;
@@ -74,19 +75,20 @@ impl NearAxis {
         if forward.low < time {
             return false;
         }
-        // Where the drift may exceed the rate the twist may come from the other side.
+        // Where the drift may exceed the rate, the twist may be reached in the opposite sense.
         let fastest_back = (Interval::exactly(drift) - c[i]).high;
         fastest_back <= 0.0
             || (Interval::exactly(back) / Interval::exactly(fastest_back)).low >= time
     }
 }
 
-/// The least angle in `[0, 2 pi)` that is one of an interval modulo a full turn, rounded down.
+/// The least angle in `[0, 2 pi)` that equals an angle of the interval modulo a full turn, rounded
+/// down.
 fn least_turn(angle: Interval) -> f64 {
     let full = Interval::PI.twice();
     let turns = (angle.low / full.low).floor();
     let low = (Interval::exactly(angle.low) - full * Interval::exactly(turns)).low;
     let high = (Interval::exactly(angle.high) - full * Interval::exactly(turns)).high;
-    // Just below a full turn it may be none.
+    // An angle just below a full turn may be zero within its error.
     if high >= full.low { 0.0 } else { low.max(0.0) }
 }

@@ -1,11 +1,12 @@
 //! The box of rates, scaled so that its corners have length one.
 
 use super::interval::Interval;
-use super::turn::{Turn, Vector, angle_of};
+use super::turn::{QuatInterval, VectorInterval, angle_of};
 use nalgebra::Vector3;
 
-/// Rates are raised until each exceeds the next smaller one by this share: then no two saddles of the
-/// costate are on one level, and times only fall, by less than the claims leave room for.
+/// Relative difference by which each rate exceeds the next smaller one; closer rates are raised.
+/// Then no two saddles of the costate are on one level. Times only fall, by less than the margin of
+/// certificates.
 const APART: f64 = 2e-7;
 
 /// Signs of the rates on an arc.
@@ -25,16 +26,16 @@ pub(super) fn flipped(mut octant: Octant, axis: usize) -> Octant {
 /// A box of rates.
 #[derive(Debug, Clone)]
 pub(super) struct Rates {
-    /// Rates over the length of all three.
-    pub(super) c: Vector,
-    /// That length, rad/s.
+    /// Rates divided by the norm of their vector.
+    pub(super) c: VectorInterval,
+    /// That norm, rad/s.
     pub(super) speed: Interval,
-    /// How much larger than the given rates these are at most, as a factor.
+    /// Upper bound on the ratio of the raised rates to the given ones.
     pub(super) stretch: f64,
 }
 
 impl Rates {
-    /// A box that holds all rates given, all positive and finite: `None` if they are not.
+    /// A box that contains the given rates; `None` unless they are positive and finite.
     pub(super) fn around(given: &Vector3<f64>) -> Option<Self> {
         if !given.iter().all(|rate| rate.is_finite() && *rate > 0.0) {
             return None;
@@ -55,7 +56,7 @@ impl Rates {
     }
 
     /// The rate vector of an octant.
-    pub(super) fn corner(&self, octant: Octant) -> Vector {
+    pub(super) fn corner(&self, octant: Octant) -> VectorInterval {
         [0, 1, 2].map(|i| if octant[i] { -self.c[i] } else { self.c[i] })
     }
 
@@ -64,17 +65,17 @@ impl Rates {
         self.c.iter().fold(1.0, |least, c| f64::min(least, c.low))
     }
 
-    /// A time that the turn about its own axis does not exceed: `max |x_i| / c_i` for the rotation
+    /// Upper bound on the time of a turn about its own axis: `max |x_i| / c_i` for the rotation
     /// vector `x`.
-    pub(super) fn eigenaxis(&self, q: &Turn) -> f64 {
+    pub(super) fn eigenaxis(&self, q: &QuatInterval) -> f64 {
         let angle = angle_of(q);
         let length = q[0].length(q[1]).length(q[2]);
         if length.low <= 0.0 {
             return (angle / Interval::exactly(self.least())).high;
         }
-        (0..3).fold(0.0, |most, i| {
+        (0..3).fold(0.0, |largest, i| {
             let share = q[i].abs() / length;
-            f64::max(most, (share * angle / self.c[i]).high)
+            f64::max(largest, (share * angle / self.c[i]).high)
         })
     }
 }

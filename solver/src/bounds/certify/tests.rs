@@ -1,5 +1,5 @@
-mod claims;
+mod certificates;
 mod enclosures;
-mod words;
+mod sequences;
 
 use super::*;

@@ -2,12 +2,12 @@
 
 use super::interval::Interval;
 
-/// A quaternion, or any vector of four components.
-pub(super) type Turn = [Interval; 4];
-/// A vector in space.
-pub(super) type Vector = [Interval; 3];
+/// A quaternion of intervals, scalar last.
+pub(super) type QuatInterval = [Interval; 4];
+/// A vector of intervals.
+pub(super) type VectorInterval = [Interval; 3];
 
-pub(super) const IDENTITY: Turn = [
+pub(super) const IDENTITY: QuatInterval = [
     Interval::ZERO,
     Interval::ZERO,
     Interval::ZERO,
@@ -15,7 +15,7 @@ pub(super) const IDENTITY: Turn = [
 ];
 
 /// Hamilton's product.
-pub(super) fn product(a: &Turn, b: &Turn) -> Turn {
+pub(super) fn product(a: &QuatInterval, b: &QuatInterval) -> QuatInterval {
     let [ax, ay, az, aw] = *a;
     let [bx, by, bz, bw] = *b;
     [
@@ -27,7 +27,7 @@ pub(super) fn product(a: &Turn, b: &Turn) -> Turn {
 }
 
 /// The product with a vector on the right.
-pub(super) fn times_vector(a: &Turn, b: &Vector) -> Turn {
+pub(super) fn times_vector(a: &QuatInterval, b: &VectorInterval) -> QuatInterval {
     let [ax, ay, az, aw] = *a;
     let [bx, by, bz] = *b;
     [
@@ -38,44 +38,44 @@ pub(super) fn times_vector(a: &Turn, b: &Vector) -> Turn {
     ]
 }
 
-pub(super) fn conjugate(q: &Turn) -> Turn {
+pub(super) fn conjugate(q: &QuatInterval) -> QuatInterval {
     [-q[0], -q[1], -q[2], q[3]]
 }
 
-pub(super) fn sum(a: &Turn, b: &Turn) -> Turn {
+pub(super) fn sum(a: &QuatInterval, b: &QuatInterval) -> QuatInterval {
     [0, 1, 2, 3].map(|i| a[i] + b[i])
 }
 
-pub(super) fn scaled(a: &Turn, factor: Interval) -> Turn {
+pub(super) fn scaled(a: &QuatInterval, factor: Interval) -> QuatInterval {
     a.map(|x| x * factor)
 }
 
 /// Scalar product of two quaternions.
-pub(super) fn dot4(a: &Turn, b: &Turn) -> Interval {
+pub(super) fn dot4(a: &QuatInterval, b: &QuatInterval) -> Interval {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// Scalar product of two vectors.
-pub(super) fn dot(a: &Vector, b: &Vector) -> Interval {
+pub(super) fn dot(a: &VectorInterval, b: &VectorInterval) -> Interval {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The turn about a vector of unit length by an angle.
-pub(super) fn about(axis: &Vector, angle: Interval) -> Turn {
+pub(super) fn about(axis: &VectorInterval, angle: Interval) -> QuatInterval {
     let (sin, cos) = angle.half().sin_cos();
     [axis[0] * sin, axis[1] * sin, axis[2] * sin, cos]
 }
 
 /// `q v q*`.
-pub(super) fn rotate(q: &Turn, v: &Vector) -> Vector {
+pub(super) fn rotate(q: &QuatInterval, v: &VectorInterval) -> VectorInterval {
     let [x, y, z, _] = product(&times_vector(q, v), &conjugate(q));
     [x, y, z]
 }
 
 /// Angle of a turn, the shorter way round.
-pub(super) fn angle_of(q: &Turn) -> Interval {
+pub(super) fn angle_of(q: &QuatInterval) -> Interval {
     let vector = q[0].length(q[1]).length(q[2]);
-    // Both components of the vector are not negative, so the arc is within [0, pi / 2].
+    // Both components are not negative, so the angle is within [0, pi / 2].
     let angle = Interval::angle(vector, q[3].abs()).twice();
     Interval {
         low: angle.low.max(0.0),
@@ -84,12 +84,12 @@ pub(super) fn angle_of(q: &Turn) -> Interval {
 }
 
 /// Swing of a turn away from a body axis, in `[0, pi]`.
-pub(super) fn swing(q: &Turn, axis: usize) -> Interval {
+pub(super) fn swing(q: &QuatInterval, axis: usize) -> Interval {
     let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
     Interval::angle(q[j].length(q[k]), q[axis].length(q[3])).twice()
 }
 
-/// Twist of a turn about a body axis, an angle modulo a full turn.
-pub(super) fn twist(q: &Turn, axis: usize) -> Interval {
+/// Twist of a turn about a body axis, modulo a full turn.
+pub(super) fn twist(q: &QuatInterval, axis: usize) -> Interval {
     Interval::angle(q[axis], q[3]).twice()
 }

@@ -1,39 +1,39 @@
-//! What a bound claims, in plain data: all that a checker needs to verify it.
+//! The certificate of a bound: the bound as plain data, with all that its verification needs.
 
 use super::limits::{EndRates, SlewLimits};
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
-/// Share by which least times are lowered before they are claimed. It leaves an independent proof
-/// in intervals room for its own rounding, and for rates that it raises a little so that no two are
-/// nearly equal (see [`crate::bounds::certify`]).
-pub(super) const ROOM: f64 = 2e-6;
+/// Relative reduction of least times in a certificate. It leaves the verification in interval
+/// arithmetic a margin for its own rounding, and for rates that it raises so that no two are nearly
+/// equal (see [`crate::bounds::certify`]).
+pub(super) const PROOF_MARGIN: f64 = 2e-6;
 
-/// A turn with a time that no motion within a box of rates undercuts.
+/// A turn with a lower bound on its time within a box of rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ClaimedTurn {
+pub struct CertifiedTurn {
     /// The turn, body axes at its beginning; either sign of the quaternion.
     pub turn: Attitude,
-    /// The claim, s: no motion with `|w_i| <= box_i` that makes the turn is faster.
+    /// Lower bound on the time of any motion with `|w_i| <= box_i` that makes the turn, s.
     pub least_s: f64,
 }
 
-/// The claim that a slew, or a tour through several attitudes, takes a time at least.
+/// A lower bound on the duration of a slew, or of a tour through several attitudes, with its
+/// premises.
 ///
-/// Every motion with rates and accelerations within `limits` and end rates within `ends`, that makes
-/// the turns one after the other, lasts `duration_s` at least: because the turns within the box
-/// `box_rad_s` take their `least_s` at least, and by the link of [`super::ramps`] from these to the
-/// duration.
+/// Every motion with rates and accelerations within `limits` and end rates within `ends` that makes
+/// the turns one after the other lasts at least `duration_s`: the turns within the box `box_rad_s`
+/// take at least their `least_s`, and [`super::ramps`] links these times to the duration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
-    /// What no motion of the spacecraft exceeds.
+    /// Limits that every motion of the spacecraft satisfies.
     pub limits: SlewLimits,
-    /// What the rates do not exceed at the ends of the whole.
+    /// Limits of the rates at the two ends of the whole motion.
     pub ends: EndRates,
     /// The box of rates `p` whose least times bound the duration, rad/s.
     pub box_rad_s: Vector3<f64>,
     /// The turns, each in the body axes where the one before ended.
-    pub turns: Vec<ClaimedTurn>,
-    /// The claim, s.
+    pub turns: Vec<CertifiedTurn>,
+    /// The lower bound on the duration, s.
     pub duration_s: f64,
 }

@@ -1,29 +1,29 @@
-//! The motion behind an upper bound: its arcs, made to reach the target.
+//! The motion of an upper bound: its arcs, corrected to reach the target.
 
 use super::RateBox;
-use super::closing::{IMAGES, image_of};
 use super::search::Candidate;
+use super::sequences::{FIRST, InteriorArc, corner};
+use super::terminal_arcs::{IMAGES, image_of};
 use super::turns::{about, best_axis_sequence, dot, eigenaxis_time, rotation_vector};
-use super::words::{FIRST, Step, corner};
 use crate::math::quaternion::{Quat, conjugate, product, rotate_back};
 use nalgebra::{Matrix3, Vector3};
 
-/// Newton steps that make a word reach its target.
-const POLISHING: usize = 6;
-/// A miss that is left alone, rad.
+/// Newton steps that correct a sequence.
+const NEWTON_STEPS: usize = 6;
+/// A miss that is not corrected, rad.
 const REACHED: f64 = 1e-12;
-/// Damping of the Newton steps, for words whose arcs do not span all directions: the misses that a
-/// search leaves, 1e-7 rad, then move no duration by more than 1e-3.
+/// Damping of the Newton steps, for sequences whose arcs do not span all directions: the misses
+/// left by a search, 1e-7 rad, then change no duration by more than 1e-3.
 const DAMPING: f64 = 1e-9;
-/// Arcs shorter than this are left out, rad.
+/// Arcs shorter than this are omitted, rad.
 const NO_ARC: f64 = 1e-13;
 
 /// Arcs at constant rate, normalised: rate vector and duration.
-pub(super) type Arcs = Vec<([f64; 3], f64)>;
+pub(super) type TimedArcs = Vec<([f64; 3], f64)>;
 
-/// The arcs of the best motion that a search found; the last one covers what Newton's method has
-/// left of the miss, so that the target is reached whatever happens.
-pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
+/// The arcs of the best motion that a search found. A last arc about the eigenaxis corrects the
+/// miss that Newton's method leaves, so that the target is always reached.
+pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> TimedArcs {
     let c = &table.levels.c;
     let mut arcs = match best {
         Candidate::Eigenaxis => Vec::new(),
@@ -35,36 +35,36 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
                 (rate, angle.abs() / c[axis])
             })
             .collect(),
-        Candidate::Single {
-            word,
+        Candidate::ClosedForm {
+            sequence,
             image,
-            outer,
+            terminal,
             parameter,
         } => {
-            let word = &table.singles[word];
-            let steps = Word {
-                first: word.first,
-                last: word.last,
-                steps: word.steps.clone(),
+            let sequence = &table.closed_forms[sequence];
+            let steps = CandidateSequence {
+                first: sequence.first,
+                last: sequence.last,
+                steps: sequence.steps.clone(),
             };
-            steps.polished(c, q, image, outer, parameter)
+            steps.polished(c, q, image, terminal, parameter)
         }
         Candidate::Family {
             family,
             first,
             flips,
             image,
-            outer,
+            terminal,
             parameter,
         } => {
             let family = &table.families[family];
             let steps = family.steps(c, first, flips);
-            Word {
+            CandidateSequence {
                 first,
                 last: family.octant(first, flips),
                 steps,
             }
-            .polished(c, q, image, outer, parameter)
+            .polished(c, q, image, terminal, parameter)
         }
     };
     let miss = product(&conjugate(&turn_of(&arcs)), q);
@@ -77,7 +77,7 @@ pub(super) fn arcs(table: &RateBox, q: &Quat, best: Candidate) -> Arcs {
     arcs
 }
 
-/// The turn that arcs make up.
+/// The product of the turns of some arcs.
 pub(super) fn turn_of(arcs: &[([f64; 3], f64)]) -> Quat {
     arcs.iter()
         .fold([0.0, 0.0, 0.0, 1.0], |all, (rate, duration)| {
@@ -86,26 +86,28 @@ pub(super) fn turn_of(arcs: &[([f64; 3], f64)]) -> Quat {
         })
 }
 
-struct Word {
+/// An arc sequence without its durations.
+struct CandidateSequence {
     first: usize,
     last: usize,
-    steps: Vec<Step>,
+    steps: Vec<InteriorArc>,
 }
 
-impl Word {
-    /// Its arcs for durations near the given ones, the fastest when a miss is made up for.
+impl CandidateSequence {
+    /// Its arcs after Newton steps from the given durations: those of the iterate that is fastest
+    /// when the remaining miss is corrected about the eigenaxis.
     fn polished(
         &self,
         c: &[f64; 3],
         q: &Quat,
         image: usize,
-        outer: [f64; 2],
+        terminal: [f64; 2],
         parameter: f64,
-    ) -> Arcs {
+    ) -> TimedArcs {
         let target = image_of(q, image);
         let mut best = (f64::INFINITY, Vec::new());
-        let mut durations = Vector3::new(outer[0], parameter, outer[1]);
-        for _ in 0..POLISHING {
+        let mut durations = Vector3::new(terminal[0], parameter, terminal[1]);
+        for _ in 0..NEWTON_STEPS {
             let arcs = self.arcs(c, &durations);
             let missing = product(&conjugate(&turn_of(&arcs)), &target);
             let miss = rotation_vector(&missing);
@@ -132,7 +134,7 @@ impl Word {
         best.1
     }
 
-    fn arcs(&self, c: &[f64; 3], durations: &Vector3<f64>) -> Arcs {
+    fn arcs(&self, c: &[f64; 3], durations: &Vector3<f64>) -> TimedArcs {
         let interior = self
             .steps
             .iter()
@@ -143,7 +145,8 @@ impl Word {
             .collect()
     }
 
-    /// Turn of the end, in its own axes, per change of the three durations.
+    /// Derivative of the final attitude, as a rotation vector in final body axes, by the three
+    /// durations.
     fn slopes(&self, arcs: &[([f64; 3], f64)]) -> Matrix3<f64> {
         let mut slopes = Matrix3::zeros();
         let mut rest: Quat = [0.0, 0.0, 0.0, 1.0];

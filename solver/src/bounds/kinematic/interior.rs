@@ -1,21 +1,22 @@
-//! The interior of a word with several arcs of one length, and where its equation can hold.
+//! The interior of a sequence with several arcs of one duration, and the parts of a cell in which
+//! its equation can hold.
 
+use super::sequences::{SequenceFamily, corner};
 use super::turns::rotate;
-use super::words::{Family, corner};
 use crate::math::quaternion::{Quat, product};
 
-/// Margin of the equation `f = 0`, rad. Rounding in `f` is below 1e-12 even for a thousand arcs.
+/// Margin in the equation `f = 0`, rad. Rounding of `f` is below 1e-12 even for a thousand arcs.
 pub(super) const MARGIN: f64 = 1e-10;
 
-/// The interior of a word of a family at a value of its parameter.
+/// The turn of a sequence's interior at a value of its parameter.
 #[derive(Clone, Copy)]
-pub(super) struct Interior {
+pub(super) struct InteriorTurn {
     pub(super) turn: Quat,
-    /// Its angular velocity in the parameter, frame of its beginning.
+    /// Its derivative by the parameter, as an angular velocity in the frame of its beginning.
     pub(super) velocity: [f64; 3],
 }
 
-impl Interior {
+impl InteriorTurn {
     pub(super) const NONE: Self = Self {
         turn: [0.0, 0.0, 0.0, 1.0],
         velocity: [0.0; 3],
@@ -29,10 +30,10 @@ impl Interior {
         }
     }
 
-    /// The interior of a word: its arcs repeat with period four.
+    /// The interior of a sequence: its arcs repeat with period four.
     pub(super) fn of(
         c: &[f64; 3],
-        family: &Family,
+        family: &SequenceFamily,
         first: usize,
         flips: usize,
         parameter: f64,
@@ -68,9 +69,14 @@ impl Interior {
     }
 }
 
-/// The parts of `[-half, half]` in which a function can be zero up to the margin, that has a value
-/// and a slope at 0 and a second derivative of at most `bend`.
-pub(super) fn where_zero(value: f64, slope: f64, bend: f64, half: f64) -> [Option<(f64, f64)>; 3] {
+/// The parts of `[-half, half]` in which a function can be zero up to the margin. The function has
+/// the given value and slope at 0 and a second derivative of at most `curvature`.
+pub(super) fn where_zero(
+    value: f64,
+    slope: f64,
+    curvature: f64,
+    half: f64,
+) -> [Option<(f64, f64)>; 3] {
     let (value, slope) = if value < 0.0 {
         (-value, -slope)
     } else {
@@ -80,20 +86,20 @@ pub(super) fn where_zero(value: f64, slope: f64, bend: f64, half: f64) -> [Optio
         let (from, to) = (from.max(-half), to.min(half));
         (from <= to).then_some((from, to))
     };
-    // Positive where value + slope x - bend x^2 / 2 > margin: between these two.
+    // Positive where value + slope x - curvature x^2 / 2 > margin: between these two.
     let above = value - MARGIN;
     if above <= 0.0 {
         return [kept(-half, half), None, None];
     }
-    let root = (slope * slope + 2.0 * bend * above).sqrt();
-    let (left, right) = ((slope - root) / bend, (slope + root) / bend);
-    // Negative where value + slope x + bend x^2 / 2 < -margin: between these two, on one side.
-    let inner = slope * slope - 2.0 * bend * (value + MARGIN);
+    let root = (slope * slope + 2.0 * curvature * above).sqrt();
+    let (left, right) = ((slope - root) / curvature, (slope + root) / curvature);
+    // Negative where value + slope x + curvature x^2 / 2 < -margin: between these two, on one side.
+    let inner = slope * slope - 2.0 * curvature * (value + MARGIN);
     if inner <= 0.0 {
         return [kept(-half, left), kept(right, half), None];
     }
     let root = inner.sqrt();
-    let (far, near) = ((-slope - root) / bend, (-slope + root) / bend);
+    let (far, near) = ((-slope - root) / curvature, (-slope + root) / curvature);
     if slope > 0.0 {
         [kept(-half, far), kept(near, left), kept(right, half)]
     } else {

@@ -8,19 +8,19 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Lengths of gaps are widened by this much, rad: `acos` loses half the digits at a saddle, and a
-/// range that is too wide only adds feasible motions.
+/// Widening of the lengths of gaps, rad: `acos` loses half the digits at a saddle, and a range that
+/// is too wide only adds feasible motions.
 pub(super) const RANGE_SLACK: f64 = 1e-7;
-/// Rates closer than this share are made equal.
+/// Relative difference below which two rates are made equal.
 pub(super) const EQUAL: f64 = 1e-7;
 /// Entries of the table of cones per halving of the gap.
 const CONES_PER_OCTAVE: u32 = 8;
 /// Halvings of the gap that the table spans.
 const OCTAVES: u32 = 14;
-/// Steps that find a level to this power of two of its height above the minimum.
+/// Bisections for a level; each halves its error relative to its height above the minimum.
 const BISECTIONS: usize = 6;
 
-/// What the rates fix.
+/// Quantities that depend on the rates only.
 #[derive(Debug, Clone)]
 pub(super) struct Levels {
     /// The rates, of length one.
@@ -41,7 +41,7 @@ pub(super) fn others(i: usize) -> (usize, usize) {
 }
 
 impl Levels {
-    /// Of rates of length one, all positive.
+    /// The levels for positive rates of length one.
     pub(super) fn new(c: [f64; 3]) -> Self {
         // The projections of two body axes on the plane normal to c are at an angle whose cosine is
         // -c_i c_j / (g_i g_j): always obtuse, in the order of a right-handed frame.
@@ -68,8 +68,8 @@ impl Levels {
         levels
     }
 
-    /// Whether two rates are equal, so that their saddles are on one circle; rates that differ do so
-    /// by a share of [`EQUAL`] at least.
+    /// Whether two rates are equal, so that their saddles are on one circle. Different rates differ
+    /// by a share of at least [`EQUAL`].
     pub(super) fn same_rate(&self, i: usize, j: usize) -> bool {
         (self.c[i] - self.c[j]).abs() < 0.5 * EQUAL * self.c[j]
     }
@@ -111,7 +111,7 @@ impl Levels {
         TAU - 2.0 * self.half_width(i, h)
     }
 
-    /// Angle of the costate from axis `i` that no level exceeds whose gap is at most so long, rad.
+    /// Largest angle of the costate from axis `i` on all levels whose gap is at most `gap`, rad.
     pub(super) fn cone(&self, i: usize, gap: f64) -> f64 {
         let octaves = (self.longest_gap(i) / gap).log2().max(0.0);
         // Rounded to the longer gap; the cone widens with the gap.
@@ -124,14 +124,14 @@ impl Levels {
         self.cones[i][entry.min(self.cones[i].len() - 1)]
     }
 
-    /// The level on which the gap about axis `i` is so long, rounded up; not above a given one.
-    fn level_of(&self, i: usize, gap: f64, most: f64) -> f64 {
-        if self.gap(i, most) <= gap {
-            return most;
+    /// The level on which the gap about axis `i` has the length `gap`, rounded up; at most `highest`.
+    fn level_of(&self, i: usize, gap: f64, highest: f64) -> f64 {
+        if self.gap(i, highest) <= gap {
+            return highest;
         }
-        // From the minimum, where the gap vanishes; what is left of the interval only widens a cone.
+        // Bisection from the minimum, where the gap vanishes. Its error only widens the cone.
         let longer = |above: f64| self.gap(i, self.c[i] + above) >= gap;
-        let mut high = most - self.c[i];
+        let mut high = highest - self.c[i];
         while longer(0.5 * high) && high > f64::EPSILON {
             high *= 0.5;
         }

@@ -1,8 +1,9 @@
-//! What limits the slews of a spacecraft: rates and accelerations on the way, rates at the ends.
+//! Limits of the slews of a spacecraft: of rates and accelerations on the way and of rates at the
+//! ends.
 
 use nalgebra::Vector3;
 
-/// What no motion of the spacecraft exceeds, per body axis.
+/// Limits that every motion of the spacecraft satisfies, per body axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlewLimits {
     /// Largest rates, rad/s, positive.
@@ -11,8 +12,8 @@ pub struct SlewLimits {
     pub accelerations_rad_s2: Vector3<f64>,
 }
 
-/// What the rates do not exceed at the ends of a leg or tour, per body axis: 0 where they are
-/// stopped, infinite where they are free.
+/// Limits of the rates at the ends of a leg or tour, per body axis: 0 where a component is stopped,
+/// infinite where it is free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndRates {
     /// At the beginning, rad/s.
@@ -22,7 +23,7 @@ pub struct EndRates {
 }
 
 impl EndRates {
-    /// All components stopped at both ends.
+    /// Rest at both ends.
     #[must_use]
     pub fn at_rest() -> Self {
         Self {

@@ -10,8 +10,8 @@
 //!
 //! **Any box.** For rates `p_i > 0` let `s(T) = int_0^T max_i m_i / p_i dt`. Along the motion take
 //! `s` as the time instead, `ds / dt = max_i m_i / p_i`: then `dR / ds = R S(w / s')` with
-//! `|w_i / s'| <= p_i`, a motion within the box `p` that lasts `s(T)`. So `V_p(R) <= s(T)`, and as `s`
-//! does not decrease with `T` (neither the integrand nor the range does),
+//! `|w_i / s'| <= p_i`, a motion within the box `p` that lasts `s(T)`. So `V_p(R) <= s(T)`, and as
+//! `s` does not decrease with `T` (neither the integrand nor the range does),
 //!
 //! ```text
 //!   T >= s^-1(V_p(R))    for every box p: the best of them counts.
@@ -20,48 +20,50 @@
 //! Special cases, with `p = r`:
 //!
 //! * both ends at rest, `r_i = a_i tau` for all axes: `s = T - tau` for `T >= 2 tau`, else
-//!   `T^2 / (4 tau)`. Hence `T >= V + tau` if `V >= tau`, else `T >= 2 sqrt(tau V)` (**short slews**).
-//!   With unequal `tau_i`, `m_i / r_i` is largest for the least of them: the same with that one, and
-//!   other boxes do better;
+//!   `T^2 / (4 tau)`. Hence `T >= V + tau` if `V >= tau`, else `T >= 2 sqrt(tau V)` (**short
+//!   slews**). With unequal `tau_i`, `m_i / r_i` is largest for the least of them: the same with
+//!   that one, and other boxes do better;
 //! * one end at rest, one free: `m_i / r_i = min(1, t / tau)`, so `T >= V + tau / 2` if
 //!   `V >= tau / 2`, else `sqrt(2 tau V)`;
 //! * some components free at both ends: `m_i = r_i` for these, `s = T`, `T >= V`; boxes that are
 //!   narrower on the stopped axes do better where these are the bottleneck;
 //! * known end rates: `b_i = |w_i(0)|`, `e_i = |w_i(T)|`.
 //!
-//! **Tours.** For a motion through several rotations the argument holds on each leg, and `s` adds
-//! up: the sum of `V_p` over the legs is at most `s(T)` of the whole, with the end conditions of the
-//! tour. Where all components stop at every target, the legs are independent and their bounds add up
-//! instead.
+//! **Tours.** For a motion through several rotations the argument holds on each leg, and `s` is
+//! additive: the sum of `V_p` over the legs is at most `s(T)` of the whole motion, with the end
+//! conditions of the tour. Where all components stop at every target, the legs are independent and
+//! their bounds are summed instead.
 //!
-//! The boxes tried are those of the mean rates `1 / T int m_i dt` that are to be had in some durations
-//! `T`, from `r` (long slews) to the shape of `a` (short ones at rest). Any choice is valid.
+//! The boxes tried are those of the mean rates `1 / T int m_i dt` for some durations `T`, from `r`
+//! (long slews) to the shape of `a` (short slews at rest). Any choice is valid.
 
 use super::RateBox;
-use super::certificate::{Certificate, ClaimedTurn, ROOM};
+use super::certificate::{Certificate, CertifiedTurn, PROOF_MARGIN};
 use super::limits::{EndRates, SlewLimits};
-use super::rise::Rise;
+use super::rate_envelope::RateEnvelope;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
 
-/// Durations whose mean rates make the boxes, in units of the longest ramp.
+/// Durations whose mean rates give the boxes, in units of the longest ramp.
 const DURATIONS: [f64; 4] = [0.5, 1.0, 2.0, 5.0];
-/// Boxes whose shapes differ by less than this are one.
+/// Relative difference of shapes below which two boxes are treated as one.
 const SAME_SHAPE: f64 = 0.02;
-/// Share taken off for the rounding of `s`.
+/// Relative reduction of a duration for the rounding of `s`.
 pub(super) const DEFLATION: f64 = 1e-9;
 
-/// Lower bounds on slews of one kind: built once per spacecraft and kind of ends.
+/// Lower bounds on the slews within given limits and with given end rates.
 #[derive(Debug, Clone)]
 pub struct SlewBound {
-    pub(super) rise: Rise,
-    /// Boxes with their rates, that of the limits first.
+    pub(super) envelope: RateEnvelope,
+    /// Rate limits of the boxes with their extremals; the first box is that of the limits
+    /// themselves.
     pub(super) boxes: Vec<(Vector3<f64>, RateBox)>,
 }
 
 impl SlewBound {
-    /// For slews within limits and with such ends. `None` when limits are not positive and finite,
-    /// an end rate is negative or not a number, or [`RateBox::new`] refuses the rates.
+    /// Bounds for slews within these limits and with these end rates. `None` when limits are not
+    /// positive and finite, an end rate is negative or not a number, or [`RateBox::new`] refuses
+    /// the rates.
     #[must_use]
     pub fn new(limits: SlewLimits, ends: EndRates) -> Option<Self> {
         let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
@@ -74,18 +76,18 @@ impl SlewBound {
         }
         let rates = limits.rates_rad_s;
         let mut bound = Self {
-            rise: Rise { limits, ends },
+            envelope: RateEnvelope { limits, ends },
             boxes: vec![(rates, RateBox::new(rates)?)],
         };
         let longest = rates.component_div(&limits.accelerations_rad_s2).max();
         for duration in DURATIONS {
-            let candidate = bound.rise.mean_rates(duration * longest);
+            let candidate = bound.envelope.mean_rates(duration * longest);
             let known = bound.boxes.iter().any(|(other, _)| {
                 let ratio = candidate.component_div(other);
                 ratio.max() < ratio.min() * (1.0 + SAME_SHAPE)
             });
             if !known {
-                // The others do without a box that is refused.
+                // A refused box is left out.
                 let table = RateBox::new(candidate);
                 bound.boxes.extend(table.map(|table| (candidate, table)));
             }
@@ -93,45 +95,45 @@ impl SlewBound {
         Some(bound)
     }
 
-    /// A duration, s, that no slew undercuts that makes these turns one after the other, each in the
-    /// body axes where the one before ended; one turn for a leg. Only the ends of the whole have the
-    /// end rates, between the turns all are free.
+    /// Lower bound, s, on the duration of a slew that makes these turns one after the other, each
+    /// in the body axes where the one before ended; one turn for a leg. The end rates apply to the
+    /// two ends of the whole motion; between the turns all rates are free.
     ///
-    /// The turns' least times are computed to the relative tolerance and lowered by 2e-6, so that
-    /// [`crate::bounds::certify`] can prove them again; the result is valid for any tolerance. It is rounded
-    /// down to seven digits, so that it does not depend on the mathematical library.
+    /// The least times of the turns are computed to the relative tolerance and reduced by 2e-6, so
+    /// that [`crate::bounds::certify`] can verify them. The result is valid for any tolerance. It
+    /// is rounded down to seven digits, so that it does not depend on the mathematical library.
     #[must_use]
     pub fn lower_bound_s(&self, turns: &[Attitude], tolerance: f64) -> f64 {
         self.best(turns, tolerance).1
     }
 
-    /// The claim of [`Self::lower_bound_s`], with all that its proof needs.
+    /// The certificate of the bound [`Self::lower_bound_s`].
     #[must_use]
     pub fn certificate(&self, turns: &[Attitude], tolerance: f64) -> Certificate {
         let (index, duration_s) = self.best(turns, tolerance);
         let (box_rad_s, table) = &self.boxes[index];
-        let claimed = |turn: &Attitude| ClaimedTurn {
+        let certified = |turn: &Attitude| CertifiedTurn {
             turn: *turn,
-            least_s: claimable(table, turn, tolerance),
+            least_s: certifiable_time(table, turn, tolerance),
         };
         Certificate {
-            limits: self.rise.limits,
-            ends: self.rise.ends,
+            limits: self.envelope.limits,
+            ends: self.envelope.ends,
             box_rad_s: *box_rad_s,
-            turns: turns.iter().map(claimed).collect(),
+            turns: turns.iter().map(certified).collect(),
             duration_s,
         }
     }
 
-    /// The box that bounds the turns best, by its index, and the bound, s.
+    /// Index of the box with the best bound for the turns, and the bound, s.
     fn best(&self, turns: &[Attitude], tolerance: f64) -> (usize, f64) {
         let mut best = (0, 0.0);
         for (index, (rates, table)) in self.boxes.iter().enumerate() {
             let least: f64 = turns
                 .iter()
-                .map(|turn| claimable(table, turn, tolerance))
+                .map(|turn| certifiable_time(table, turn, tolerance))
                 .sum();
-            let duration = self.rise.duration_of(rates, least);
+            let duration = self.envelope.duration_of(rates, least);
             if duration > best.1 {
                 best = (index, duration);
             }
@@ -140,12 +142,12 @@ impl SlewBound {
     }
 }
 
-/// A lower bound on the least time of a turn that leaves its proof some room.
-pub(super) fn claimable(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
-    table.lower_bound(turn, tolerance) * (1.0 - ROOM)
+/// A lower bound on the least time of a turn, with the margin that its verification needs.
+pub(super) fn certifiable_time(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
+    table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN)
 }
 
-/// Seven digits, never more than the number.
+/// A number rounded down to seven digits; 0 if it is negative.
 pub(super) fn rounded_down(x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;

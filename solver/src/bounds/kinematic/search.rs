@@ -1,61 +1,62 @@
-//! Branch and bound over the words of one target.
+//! Branch and bound over the arc sequences that reach one target.
 
 use super::RateBox;
-use super::closing::{Closing, IMAGES, Probes};
-use super::interior::{Interior, MARGIN, where_zero};
+use super::interior::{InteriorTurn, MARGIN, where_zero};
 use super::levels::others;
+use super::sequences::{ClosedFormSequence, FIRST, SequenceFamily, corner};
+use super::terminal_arcs::{IMAGES, Probes, TerminalArcs};
 use super::turns::{
     best_axis_sequence, cross, dot, eigenaxis_time, rotate, small_angle_bound, twist_and_swing,
 };
-use super::words::{FIRST, Family, SingleWord, corner};
 use crate::math::quaternion::Quat;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Cells narrower than this are not split, whatever their bound, rad.
+/// Width below which cells are not split, rad.
 const NARROW: f64 = 1e-9;
-/// Turn of the interior over half a cell below which the outer arcs are worth a look, rad.
-const CLOSE_LOOK: f64 = 0.25;
-/// Most flips that are followed near an axis; beyond, the bound of the tail is reported.
+/// Turn of the interior over half a cell below which the terminal arcs are computed, rad.
+const MAX_TURN_FOR_TERMINAL: f64 = 0.25;
+/// Largest number of flips near an axis; the bound of longer sequences becomes part of the result.
 const MAX_FLIPS: usize = 4096;
-/// Rounding allowance for angles that wrap, rad.
+/// Rounding allowance for angles modulo a full turn, rad.
 const WRAP: f64 = 1e-9;
-/// What rounding takes from a cosine of one: a candidate that seems to miss by less is taken to
-/// arrive. Should it not, its time is too low, which the lower value can bear: it is the least of all
+/// Rounding of a cosine near one: a candidate that misses by less counts as reaching the target. If
+/// it does not, its time is too low, which keeps the lower value valid: it is the minimum of all
 /// bounds and of this time.
 const ROUNDED_AWAY: f64 = 1e-15;
-/// Cells after which a query ends with a weaker bound. A usual one takes hundreds; where one axis is a
-/// thousand times faster than another, words have thousands of flips and a query would take minutes.
+/// Number of cells after which a query ends with a weaker bound. Ordinary queries take hundreds.
+/// Where one axis is a thousand times faster than another, sequences have thousands of flips, and
+/// an unlimited query would take minutes.
 const MAX_CELLS: usize = 100_000;
 /// Capacity of the stack of cells: halving from a turn to `NARROW` takes 36 levels.
 const STACK: usize = 160;
 
-/// Which word, and how long its parts are (normalised).
+/// A motion: which sequence, with its normalised durations.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Candidate {
     /// The turn about its own axis.
     Eigenaxis,
     /// Three turns about body axes.
     Axes,
-    /// A word of the table.
-    Single {
-        word: usize,
+    /// A sequence with one free arc.
+    ClosedForm {
+        sequence: usize,
         image: usize,
-        outer: [f64; 2],
+        terminal: [f64; 2],
         parameter: f64,
     },
-    /// A two-flip or longer word of a family.
+    /// A sequence of a family.
     Family {
         family: usize,
         first: usize,
         flips: usize,
         image: usize,
-        outer: [f64; 2],
+        terminal: [f64; 2],
         parameter: f64,
     },
 }
 
-/// The state of a query; everything of fixed size.
-pub(super) struct Search<'a> {
+/// The state of a query; all parts have a fixed size.
+pub(super) struct SequenceSearch<'a> {
     table: &'a RateBox,
     q: Quat,
     /// Twist about each axis, in `[0, 2 pi)`, and swing away from it, rad.
@@ -63,15 +64,16 @@ pub(super) struct Search<'a> {
     probes: Probes,
     stack: [(f64, f64); STACK],
     tolerance: f64,
-    /// Least time of a kept leaf.
+    /// Smallest bound of the cells that are not split further, normalised.
     pub(super) lower: f64,
+    /// Time of the best motion, normalised.
     pub(super) upper: f64,
     pub(super) best: Candidate,
-    /// Cells looked at.
+    /// Number of cells so far.
     pub(super) cells: usize,
 }
 
-impl<'a> Search<'a> {
+impl<'a> SequenceSearch<'a> {
     pub(super) fn new(table: &'a RateBox, q: &Quat, tolerance: f64) -> Self {
         let c = &table.levels.c;
         let (eigenaxis, axes) = (eigenaxis_time(q, c), best_axis_sequence(q, c).0);
@@ -94,31 +96,31 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Goes through all words that can matter.
+    /// Searches all sequences that can be faster than the best motion.
     pub(super) fn run(&mut self) {
         let table = self.table;
         self.two_arcs();
-        let (short, long) = table.singles.split_at(table.promising);
-        for (index, word) in short.iter().enumerate() {
-            self.single(word, index);
+        let (short, long) = table.closed_forms.split_at(table.promising);
+        for (index, sequence) in short.iter().enumerate() {
+            self.search_closed_form(sequence, index);
         }
         let floor = self.floor();
         for index in 0..table.families.len() {
             self.family(index, floor);
         }
-        for (index, word) in long.iter().enumerate() {
-            if word.fixed >= self.upper {
+        for (index, sequence) in long.iter().enumerate() {
+            if sequence.fixed >= self.upper {
                 break;
             }
-            self.single(word, table.promising + index);
+            self.search_closed_form(sequence, table.promising + index);
         }
         if self.is_spent() {
-            // Of what was not looked at nothing else is known.
-            self.keep(self.swing_time().max(floor));
+            // The bound of everything that was not searched.
+            self.keep_bound(self.swing_time().max(floor));
         }
     }
 
-    /// A time that no motion undercuts as none moves a body axis faster than the other two rates do.
+    /// Lower bound on the time to the target: a body axis is moved by the other two rates only.
     fn swing_time(&self) -> f64 {
         let c = &self.table.levels.c;
         let time = |axis: usize| {
@@ -133,14 +135,15 @@ impl<'a> Search<'a> {
         self.cells >= MAX_CELLS
     }
 
-    /// A time that no motion to the target undercuts.
+    /// Lower bound on the time to the target that needs no search.
     pub(super) fn floor(&self) -> f64 {
         // The rate's length is at most one.
         let angle = 2.0 * (self.q[0].hypot(self.q[1]).hypot(self.q[2])).atan2(self.q[3].abs());
         angle.max(small_angle_bound(&self.q, &self.table.levels.c))
     }
 
-    /// Words of one and two arcs; the first flips of the three vertex families are all there are.
+    /// Sequences of one and two arcs; the first flips of the three vertex families cover all of
+    /// them.
     fn two_arcs(&mut self) {
         let c = self.table.levels.c;
         for (family, image) in (0..3).flat_map(|family| (0..4).map(move |image| (family, image))) {
@@ -152,47 +155,48 @@ impl<'a> Search<'a> {
                 if (value - probe.target).abs() > MARGIN {
                     continue;
                 }
-                if let Some(closing) = probe.close(&Interior::NONE.turn, MARGIN) {
-                    let word = move |outer| Candidate::Family {
+                if let Some(terminal) = probe.terminal_arcs(&InteriorTurn::NONE.turn, MARGIN) {
+                    let sequence = move |terminal| Candidate::Family {
                         family,
                         first,
                         flips: 1,
                         image,
-                        outer,
+                        terminal,
                         parameter: 0.0,
                     };
-                    self.leaf(&closing, 0.0, 0.0, f64::INFINITY, word);
+                    self.bound_cell(&terminal, 0.0, 0.0, f64::INFINITY, sequence);
                 }
             }
         }
     }
 
-    /// Takes the centre of a cell as a candidate, and bounds the cell: whether it must be split.
-    fn leaf(
+    /// Tries the centre of a cell as a candidate and bounds the cell; returns whether it must be
+    /// split.
+    fn bound_cell(
         &mut self,
-        closing: &Closing,
+        terminal: &TerminalArcs,
         least_interior: f64,
         interior: f64,
         cap: f64,
-        word: impl Fn([f64; 2]) -> Candidate,
+        sequence: impl Fn([f64; 2]) -> Candidate,
     ) -> bool {
-        let Some(least) = closing.least(cap) else {
+        let Some(least) = terminal.least(cap) else {
             return false;
         };
         let bound = least_interior + 2.0 * least;
         if bound >= self.upper {
             return false;
         }
-        for (first, last, cosine) in closing.candidates() {
+        for (first, last, cosine) in terminal.candidates() {
             let mut time = interior + 2.0 * (first + last);
             let missing = 1.0 - cosine;
             if missing > ROUNDED_AWAY {
-                // The turn that is missing, about its own axis at the worst.
+                // The missing turn takes no longer than about its own axis.
                 time += 2.0 * (1.0 - missing).acos() / self.table.slowest;
             }
             if time < self.upper {
                 self.upper = time;
-                self.best = word([2.0 * first, 2.0 * last]);
+                self.best = sequence([2.0 * first, 2.0 * last]);
             }
         }
         if bound < self.upper * (1.0 - self.tolerance) {
@@ -202,15 +206,15 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// A word whose equation is a sinusoid: its roots in closed form.
-    fn single(&mut self, word: &SingleWord, index: usize) {
+    /// Searches a sequence whose equation is a sinusoid, with its roots in closed form.
+    fn search_closed_form(&mut self, sequence: &ClosedFormSequence, index: usize) {
         for image in 0..4 {
-            if word.fixed + word.range.0 >= self.upper {
+            if sequence.fixed + sequence.range.0 >= self.upper {
                 return;
             }
-            let target = self.probes.of(image, word.first, word.last).target;
-            let cosine = (target - word.offset) / word.amplitude;
-            let margin = MARGIN / word.amplitude;
+            let target = self.probes.of(image, sequence.first, sequence.last).target;
+            let cosine = (target - sequence.offset) / sequence.amplitude;
+            let margin = MARGIN / sequence.amplitude;
             if cosine.abs() > 1.0 + margin {
                 continue;
             }
@@ -227,22 +231,22 @@ impl<'a> Search<'a> {
                 );
                 (0.5 * (wide + narrow), 0.5 * (wide - narrow) + WRAP)
             };
-            for angle in [word.phase - middle, word.phase + middle] {
+            for angle in [sequence.phase - middle, sequence.phase + middle] {
                 let angle = angle.rem_euclid(TAU);
-                // Next to a full turn the parameter may in truth be next to nothing.
+                // An angle near a full turn may be near zero within its error.
                 let angle = if angle + half >= TAU {
                     angle - TAU
                 } else {
                     angle
                 };
-                self.single_cells(word, index, image, angle, half);
+                self.closed_form_cells(sequence, index, image, angle, half);
             }
         }
     }
 
-    fn single_cells(
+    fn closed_form_cells(
         &mut self,
-        word: &SingleWord,
+        sequence: &ClosedFormSequence,
         index: usize,
         image: usize,
         angle: f64,
@@ -253,40 +257,40 @@ impl<'a> Search<'a> {
         while open > 0 && !self.is_spent() {
             open -= 1;
             let (angle, half) = self.stack[open];
-            let least = ((angle - half) / word.speed).max(word.range.0);
-            let most = ((angle + half) / word.speed).min(word.range.1);
-            if least > most || word.fixed + least >= self.upper {
+            let least = ((angle - half) / sequence.speed).max(sequence.range.0);
+            let most = ((angle + half) / sequence.speed).min(sequence.range.1);
+            if least > most || sequence.fixed + least >= self.upper {
                 continue;
             }
             self.cells += 1;
             let (sin, cos) = (0.5 * angle).sin_cos();
-            let interior = [0, 1, 2, 3].map(|i| cos * word.even[i] + sin * word.odd[i]);
-            let probe = self.probes.of(image, word.first, word.last);
-            let Some(closing) = probe.close(&interior, 0.5 * (half + MARGIN)) else {
+            let interior = [0, 1, 2, 3].map(|i| cos * sequence.even[i] + sin * sequence.odd[i]);
+            let probe = self.probes.of(image, sequence.first, sequence.last);
+            let Some(terminal) = probe.terminal_arcs(&interior, 0.5 * (half + MARGIN)) else {
                 continue;
             };
-            let parameter = (angle / word.speed).clamp(least, most);
-            let cap = if word.capped {
+            let parameter = (angle / sequence.speed).clamp(least, most);
+            let cap = if sequence.capped {
                 0.5 * most + WRAP
             } else {
                 f64::INFINITY
             };
-            let candidate = move |outer| Candidate::Single {
-                word: index,
+            let candidate = move |terminal| Candidate::ClosedForm {
+                sequence: index,
                 image,
-                outer,
+                terminal,
                 parameter,
             };
-            let split = self.leaf(
-                &closing,
-                word.fixed + least,
-                word.fixed + parameter,
+            let split = self.bound_cell(
+                &terminal,
+                sequence.fixed + least,
+                sequence.fixed + parameter,
                 cap,
                 candidate,
             );
             if split {
                 if half < NARROW || open + 2 > STACK {
-                    self.keep(word.fixed + least + closing_floor(&closing, cap));
+                    self.keep_bound(sequence.fixed + least + least_terminal_time(&terminal, cap));
                     continue;
                 }
                 self.stack[open] = (angle - 0.5 * half, 0.5 * half);
@@ -296,14 +300,14 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn keep(&mut self, bound: f64) {
+    fn keep_bound(&mut self, bound: f64) {
         self.lower = self.lower.min(bound);
     }
 
-    /// The words of a gap, by their number of flips, until none can be shorter.
+    /// Searches the sequences of a family by their number of flips, until none can be faster.
     fn family(&mut self, index: usize, floor: f64) {
         let family = &self.table.families[index];
-        // Words with two flips are among the singles.
+        // Sequences with two flips have a closed form.
         for flips in 3.. {
             let arcs = (flips - 1) as f64;
             let longest = family.range.1.min(self.upper / arcs);
@@ -322,7 +326,7 @@ impl<'a> Search<'a> {
                 };
                 let least = bounds[usize::from(backwards)];
                 if least >= self.upper * (1.0 - self.tolerance) || flips == MAX_FLIPS {
-                    self.keep(least);
+                    self.keep_bound(least);
                     continue;
                 }
                 any = true;
@@ -337,8 +341,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Least times of words near an axis whose arcs last at most so long, when the rate about the
-    /// axis is positive and when it is negative: infinite if the target swings too far from it.
+    /// Lower bounds on the times of sequences near an axis whose arcs are no longer than `longest`,
+    /// for a positive and for a negative rate about the axis; infinite if the target's swing is too
+    /// large.
     fn by_twist(&self, axis: usize, longest: f64) -> [f64; 2] {
         let levels = &self.table.levels;
         let cone = levels.cone(axis, longest);
@@ -362,8 +367,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn family_cells(&mut self, family: &Family, word: [usize; 4], range: (f64, f64)) {
-        let [index, first, flips, image] = word;
+    fn family_cells(&mut self, family: &SequenceFamily, sequence: [usize; 4], range: (f64, f64)) {
+        let [index, first, flips, image] = sequence;
         let c = self.table.levels.c;
         let arcs = (flips - 1) as f64;
         let last = family.octant(first, flips);
@@ -380,60 +385,74 @@ impl<'a> Search<'a> {
             }
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             self.cells += 1;
-            let interior = Interior::of(&c, family, first, flips, middle);
+            let interior = InteriorTurn::of(&c, family, first, flips, middle);
             let tip = rotate(&interior.turn, &end);
             let value = dot(&begin, &tip) - target;
             let slope = dot(&begin, &cross(&interior.velocity, &tip));
-            // |f''| <= (sum of the speeds)^2.
-            let bend = arcs * arcs;
-            if value.abs() > slope.abs() * half + 0.5 * bend * half * half + MARGIN {
+            // |f''| <= (sum of the speeds)^2, with corners of length one.
+            let curvature = arcs * arcs;
+            if value.abs() > slope.abs() * half + 0.5 * curvature * half * half + MARGIN {
                 continue;
             }
             if open + 6 > STACK {
-                self.keep(arcs * low);
+                self.keep_bound(arcs * low);
                 continue;
             }
-            if arcs * half < CLOSE_LOOK {
+            if arcs * half < MAX_TURN_FOR_TERMINAL {
                 let speed = dot(&interior.velocity, &interior.velocity).sqrt();
-                let eta = speed * half + 0.5 * bend * half * half;
+                let eta = speed * half + 0.5 * curvature * half * half;
                 let probe = self.probes.of(image, first, last);
-                let Some(closing) = probe.close(&interior.turn, 0.5 * (eta + MARGIN)) else {
+                let Some(terminal) = probe.terminal_arcs(&interior.turn, 0.5 * (eta + MARGIN))
+                else {
                     continue;
                 };
                 let cap = 0.5 * high + WRAP;
-                let candidate = move |outer| Candidate::Family {
+                let candidate = move |terminal| Candidate::Family {
                     family: index,
                     first,
                     flips,
                     image,
-                    outer,
+                    terminal,
                     parameter: middle,
                 };
-                if !self.leaf(&closing, arcs * low, arcs * middle, cap, candidate) {
+                if !self.bound_cell(&terminal, arcs * low, arcs * middle, cap, candidate) {
                     continue;
                 }
                 if half < NARROW {
-                    self.keep(arcs * low + closing_floor(&closing, cap));
+                    self.keep_bound(arcs * low + least_terminal_time(&terminal, cap));
                     continue;
                 }
             }
-            for (from, to) in where_zero(value, slope, bend, half).into_iter().flatten() {
-                // A cell that hardly shrank is halved.
-                if to - from > 1.2 * half {
-                    let cut = 0.5 * (from + to);
-                    self.stack[open] = (middle + from, middle + cut);
-                    self.stack[open + 1] = (middle + cut, middle + to);
-                    open += 2;
-                } else {
-                    self.stack[open] = (middle + from, middle + to);
-                    open += 1;
-                }
+            let parts = where_zero(value, slope, curvature, half);
+            open = self.push_parts(open, middle, half, parts);
+        }
+    }
+
+    /// Pushes parts of a cell, given relative to its middle, onto the stack; a part that is hardly
+    /// narrower than the cell is halved. Returns the new height of the stack.
+    fn push_parts(
+        &mut self,
+        mut open: usize,
+        middle: f64,
+        half: f64,
+        parts: [Option<(f64, f64)>; 3],
+    ) -> usize {
+        for (from, to) in parts.into_iter().flatten() {
+            if to - from > 1.2 * half {
+                let cut = 0.5 * (from + to);
+                self.stack[open] = (middle + from, middle + cut);
+                self.stack[open + 1] = (middle + cut, middle + to);
+                open += 2;
+            } else {
+                self.stack[open] = (middle + from, middle + to);
+                open += 1;
             }
         }
+        open
     }
 }
 
-/// Least time of the outer arcs of a cell.
-fn closing_floor(closing: &Closing, cap: f64) -> f64 {
-    2.0 * closing.least(cap).unwrap_or(0.0)
+/// Lower bound on the time of the terminal arcs of a cell.
+fn least_terminal_time(terminal: &TerminalArcs, cap: f64) -> f64 {
+    2.0 * terminal.least(cap).unwrap_or(0.0)
 }

@@ -1,46 +1,46 @@
-//! The words that dwell: extremals on the level of a saddle.
+//! The sequences with a dwell: extremals on the level of a saddle.
 //!
-//! The costate may rest on the saddle `M_j = 0`, `M` parallel to the face diagonal, with the rate
-//! parallel to it; on leaving, `w_j` has either sign. A later visit is passed or reflected. All
-//! dwells of an extremal are turns about the same axis in space and may be collected at the first
-//! one. Between visits the arcs have durations that the level fixes.
+//! The costate may rest on the saddle `M_j = 0`, where `M` and the rate are parallel to the face
+//! diagonal; on leaving, `w_j` has either sign. At a later visit it passes or is reflected. All
+//! dwells of an extremal are turns about the same axis in space and may be moved to the first
+//! visit. Between visits the level determines the durations of the arcs.
 
 use super::levels::Levels;
+use super::sequences::{ClosedFormSequence, FIRST, InteriorArc, OctantBits, corner, sense};
 use super::turns::{about, best_axis_sequence, eigenaxis_time};
-use super::words::{FIRST, Octant, SingleWord, Step, corner, sense};
 use crate::math::quaternion::{Quat, product};
 use std::f64::consts::{PI, TAU};
 
-/// Most arcs of an interior.
+/// Largest number of arcs of an interior.
 const MAX_STEPS: usize = 500;
-/// A sequence of fixed arcs is no part of a shortest motion if it can be replaced by one shorter by
-/// this share.
+/// Relative saving from which a turn that replaces some fixed arcs shows that they are no part of a
+/// shortest motion.
 const CLEARLY_SHORTER: f64 = 1e-6;
 
-/// What the folded costate meets on its circle.
+/// What the folded costate reaches on its circle.
 #[derive(Debug, Clone, Copy)]
-enum Event {
+enum CostateEvent {
     /// A saddle, where the sign of an axis is free.
     Saddle(usize),
     /// The wall of an axis, met when moving in the given direction.
     Wall(usize, i32),
 }
 
-/// One level and what lies on it, by azimuth.
+/// One level with its saddles and walls, by azimuth.
 struct Circle<'a> {
     c: &'a [f64; 3],
     horizon: f64,
     limit: usize,
-    events: Vec<(f64, Event)>,
-    words: &'a mut Vec<SingleWord>,
+    events: Vec<(f64, CostateEvent)>,
+    sequences: &'a mut Vec<ClosedFormSequence>,
 }
 
-/// How far a word has been followed.
+/// The end of a sequence under construction.
 #[derive(Clone, Copy)]
-struct Place {
+struct PartialSequence {
     /// Index of the first octant.
     first: usize,
-    octant: Octant,
+    octant: OctantBits,
     event: usize,
     direction: i32,
     /// Index of the dwell among the steps.
@@ -49,9 +49,13 @@ struct Place {
     fixed: f64,
 }
 
-/// All dwelling words whose fixed arcs last at most up to the horizon; `None` if there are more
+/// All dwelling sequences whose fixed arcs last less than the horizon; `None` if there are more
 /// than the limit.
-pub(super) fn words(levels: &Levels, horizon: f64, limit: usize) -> Option<Vec<SingleWord>> {
+pub(super) fn sequences(
+    levels: &Levels,
+    horizon: f64,
+    limit: usize,
+) -> Option<Vec<ClosedFormSequence>> {
     let mut found = Vec::new();
     for j in 0..3 {
         let h = levels.saddle[j];
@@ -63,11 +67,11 @@ pub(super) fn words(levels: &Levels, horizon: f64, limit: usize) -> Option<Vec<S
         for k in 0..3 {
             let centre = levels.azimuth[k] + PI;
             if same(k) {
-                events.push((centre.rem_euclid(TAU), Event::Saddle(k)));
+                events.push((centre.rem_euclid(TAU), CostateEvent::Saddle(k)));
             } else if levels.saddle[k] > h {
                 let half = levels.half_width(k, h);
-                events.push(((centre - half).rem_euclid(TAU), Event::Wall(k, 1)));
-                events.push(((centre + half).rem_euclid(TAU), Event::Wall(k, -1)));
+                events.push(((centre - half).rem_euclid(TAU), CostateEvent::Wall(k, 1)));
+                events.push(((centre + half).rem_euclid(TAU), CostateEvent::Wall(k, -1)));
             }
         }
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -76,15 +80,16 @@ pub(super) fn words(levels: &Levels, horizon: f64, limit: usize) -> Option<Vec<S
             horizon,
             limit,
             events,
-            words: &mut found,
+            sequences: &mut found,
         };
         for first in 0..FIRST.len() {
             let direction = -sense(FIRST[first]);
             for event in 0..circle.events.len() {
-                if matches!(circle.events[event].1, Event::Wall(_, met) if met != direction) {
+                if matches!(circle.events[event].1, CostateEvent::Wall(_, met) if met != direction)
+                {
                     continue;
                 }
-                let place = Place {
+                let place = PartialSequence {
                     first,
                     octant: FIRST[first],
                     event,
@@ -101,50 +106,53 @@ pub(super) fn words(levels: &Levels, horizon: f64, limit: usize) -> Option<Vec<S
 }
 
 impl Circle<'_> {
-    /// Goes on from an event in all ways that there are.
-    fn follow(&mut self, at: Place, steps: &mut Vec<Step>) -> Option<()> {
+    /// Continues from an event in all possible ways.
+    fn follow(&mut self, at: PartialSequence, steps: &mut Vec<InteriorArc>) -> Option<()> {
         match self.events[at.event].1 {
-            Event::Wall(axis, _) => self.leave(at, at.octant ^ (1 << axis), -at.direction, steps),
-            Event::Saddle(axis) if at.dwell.is_none() => {
+            CostateEvent::Wall(axis, _) => {
+                self.leave(at, at.octant ^ (1 << axis), -at.direction, steps)
+            }
+            CostateEvent::Saddle(axis) if at.dwell.is_none() => {
                 let mut rate = corner(self.c, at.octant);
                 rate[axis] = 0.0;
                 let dwell = Some(steps.len());
-                steps.push(Step {
+                steps.push(InteriorArc {
                     rate,
                     duration: None,
                 });
-                let at = Place { dwell, ..at };
+                let at = PartialSequence { dwell, ..at };
                 for octant in [at.octant, at.octant ^ (1 << axis)] {
                     self.leave(at, octant, -sense(octant), steps)?;
                 }
                 steps.pop();
                 Some(())
             }
-            Event::Saddle(axis) => {
+            CostateEvent::Saddle(axis) => {
                 self.leave(at, at.octant, at.direction, steps)?;
                 self.leave(at, at.octant ^ (1 << axis), -at.direction, steps)
             }
         }
     }
 
-    /// Leaves an event in an octant: ends there with the last arc, or follows the arc to the next
-    /// event.
+    /// Continues from an event in an octant: adds the sequence that ends with this arc, and follows
+    /// the arc to the next event.
     fn leave(
         &mut self,
-        at: Place,
-        octant: Octant,
+        at: PartialSequence,
+        octant: OctantBits,
         direction: i32,
-        steps: &mut Vec<Step>,
+        steps: &mut Vec<InteriorArc>,
     ) -> Option<()> {
         if at.dwell.is_some() {
-            if self.words.len() == self.limit {
+            if self.sequences.len() == self.limit {
                 return None;
             }
             let range = (0.0, f64::INFINITY);
-            let word = SingleWord::new(self.c, at.first, steps.clone(), octant, range, false);
-            self.words.extend(word);
+            let sequence =
+                ClosedFormSequence::new(self.c, at.first, steps.clone(), octant, range, false);
+            self.sequences.extend(sequence);
         }
-        // Refused rather than followed without end, should rounding make arcs vanish.
+        // Prevents endless recursion if rounding makes arcs vanish.
         if steps.len() == MAX_STEPS {
             return None;
         }
@@ -155,15 +163,15 @@ impl Circle<'_> {
         if event == at.event {
             arc = TAU;
         }
-        // Two walls without a saddle between them: no dwell will come.
-        if at.dwell.is_none() && matches!(self.events[event].1, Event::Wall(..)) {
+        // A second wall before any saddle: this sequence has no dwell.
+        if at.dwell.is_none() && matches!(self.events[event].1, CostateEvent::Wall(..)) {
             return Some(());
         }
-        steps.push(Step {
+        steps.push(InteriorArc {
             rate: corner(self.c, octant),
             duration: Some(arc),
         });
-        let next = Place {
+        let next = PartialSequence {
             octant,
             event,
             direction,
@@ -177,9 +185,9 @@ impl Circle<'_> {
         Some(())
     }
 
-    /// Whether some of the last arcs, back to the dwell at most, can be replaced by a faster turn:
-    /// then no shortest motion contains them.
-    fn replaceable(&self, steps: &[Step], dwell: Option<usize>) -> bool {
+    /// Whether some of the last arcs, at most those since the dwell, can be replaced by a faster
+    /// turn: then no shortest motion contains them.
+    fn replaceable(&self, steps: &[InteriorArc], dwell: Option<usize>) -> bool {
         let begin = dwell.map_or(0, |at| at + 1);
         let mut turn: Quat = [0.0, 0.0, 0.0, 1.0];
         let mut lasted = 0.0;

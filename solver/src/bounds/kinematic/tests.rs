@@ -3,7 +3,7 @@ mod table;
 
 use super::*;
 use proptest::prelude::*;
-use slewplan_tests::motions::{Kind, end_of, motion};
+use slewplan_tests::motions::{MotionKind, end_of, motion};
 use slewplan_tests::random::Generator;
 use table::TABLE;
 
@@ -18,13 +18,13 @@ fn turn(vector: [f64; 3]) -> Attitude {
     Attitude::from_rotation_vector(vector.into())
 }
 
-/// Where arcs lead.
+/// The attitude after some arcs.
 fn attitude_after(arcs: &[(Vector3<f64>, f64)]) -> Attitude {
     let end = end_of(arcs);
     Attitude::from_xyzw(end.coords.into()).expect("a unit quaternion")
 }
 
-/// Checks all that an answer promises about itself; returns it.
+/// Queries a turn, checks the properties that every answer has, and returns the answer.
 fn checked(rates: [f64; 3], table: &RateBox, target: &Attitude, tolerance: f64) -> ShortestTurn {
     let answer = table.query(target, tolerance);
     let arcs: Vec<_> = answer
@@ -44,11 +44,11 @@ fn checked(rates: [f64; 3], table: &RateBox, target: &Attitude, tolerance: f64) 
     let total: f64 = arcs.iter().map(|arc| arc.1).sum();
     assert!((total - answer.upper_s).abs() <= 1e-12 * total);
     assert!(answer.lower_s <= answer.upper_s);
-    // Rounding makes the work grow for turns below half a degree.
+    // Rounding increases the number of cells for turns below half a degree.
     let small = target.angle_to(&Attitude::identity()) < 0.01;
     assert!(small || answer.cells < 20_000, "{} cells", answer.cells);
     let gap = 1.0 - answer.lower_s / answer.upper_s;
-    // Rounding hides misses of 1e-7 rad, which may take the slowest rate to make up for.
+    // Rounding hides misses of 1e-7 rad, which may have to be corrected at the slowest rate.
     let slowest = Vector3::from(rates).normalize().min();
     let allowed = tolerance + 3e-7 / (slowest * target.angle_to(&Attitude::identity()));
     assert!(gap <= allowed, "gap {gap} of {target:?} at {rates:?}");
@@ -122,7 +122,7 @@ fn no_motion_beats_the_bound() {
         [1.0, 0.999, 0.9],
     ] {
         let table = rate_box(rates);
-        for kind in (0..60).flat_map(|_| Kind::ALL) {
+        for kind in (0..60).flat_map(|_| MotionKind::ALL) {
             let arcs = motion(&mut generator, kind, rates.into(), 4.5);
             let time: f64 = arcs.iter().map(|arc| arc.1).sum();
             let target = attitude_after(&arcs);
@@ -131,7 +131,7 @@ fn no_motion_beats_the_bound() {
                 answer.lower_s <= time * (1.0 + 1e-12),
                 "{answer:?} against {time}: {arcs:?}"
             );
-            // Extremals are words: the search must not miss what is as fast.
+            // Extremals are arc sequences: the search must find a motion that is as fast.
             if kind.is_extremal() {
                 assert!(
                     answer.upper_s <= time * (1.0 + 1e-4) + 1e-6 / rates[0],
@@ -143,7 +143,7 @@ fn no_motion_beats_the_bound() {
 }
 
 #[test]
-fn no_turn_takes_no_time_and_signs_do_not_matter() {
+fn the_identity_takes_no_time_and_signs_do_not_matter() {
     let table = rate_box(PAPER);
     for q in [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, -1.0]] {
         let answer = table.query(&Attitude::from_xyzw(q).expect("a unit quaternion"), 1e-4);
@@ -159,7 +159,7 @@ fn no_turn_takes_no_time_and_signs_do_not_matter() {
 }
 
 #[test]
-fn levels_that_meet_are_no_trouble() {
+fn rates_whose_levels_coincide_are_solved() {
     // A saddle on the level of a vertex: the gap between two walls vanishes.
     for rates in [[1.0, 0.8, 0.6], [0.6, 0.8, 1.0], [0.8, 1.0, 0.600_000_001]] {
         checked(rates, &rate_box(rates), &turn([0.4, 1.1, -0.9]), 1e-6);
@@ -179,7 +179,7 @@ fn bad_rates_are_refused() {
 }
 
 #[test]
-fn nearly_equal_rates_are_as_good_as_equal() {
+fn nearly_equal_rates_give_the_times_of_equal_ones() {
     let target = turn([0.4, 1.1, -0.9]);
     let equal = rate_box([1.0; 3]).query(&target, 1e-6);
     for near in [1e-12, 1e-9, 9e-8, 2e-7, 1e-5] {
@@ -217,7 +217,7 @@ proptest! {
     }
 
     #[test]
-    fn a_detour_takes_no_less(rates in rates(), first in vector(), second in vector()) {
+    fn the_triangle_inequality_holds(rates in rates(), first in vector(), second in vector()) {
         let table = rate_box(rates);
         let (a, b) = (turn(first), turn(second));
         let detour = table.query(&a, 1e-6).upper_s + table.query(&b, 1e-6).upper_s;
@@ -225,7 +225,7 @@ proptest! {
     }
 
     #[test]
-    fn larger_rates_take_no_longer(rates in rates(), vector in vector(), axis in 0..3_usize, more in 1.0..1.5) {
+    fn a_larger_rate_does_not_lengthen_a_turn(rates in rates(), vector in vector(), axis in 0..3_usize, more in 1.0..1.5) {
         let mut larger = rates;
         larger[axis] *= more;
         let slow = rate_box(rates).query(&turn(vector), 1e-6);
@@ -243,7 +243,7 @@ proptest! {
 }
 
 #[test]
-fn rates_of_very_different_size_end_with_a_bound_too() {
+fn rates_of_very_different_size_give_a_bound_within_the_cell_limit() {
     for rates in [[1.0, 3e-4, 2e-4], [1.0, 2e-3, 1e-3]] {
         let table = RateBox::new(Vector3::from(rates)).expect("valid rates");
         for angle in [0.4, 1.7, 3.0] {

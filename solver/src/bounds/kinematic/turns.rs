@@ -1,4 +1,4 @@
-//! Small helpers on turns, and the bounds that need no search.
+//! Operations on turns, and bounds on their least time that need no search.
 //!
 //! Rates are normalised to length one, so times are angles.
 
@@ -36,7 +36,7 @@ pub(super) fn about(axis: &[f64; 3], angle: f64) -> Quat {
 /// The rotation vector of a turn, the shorter way round, rad.
 pub(super) fn rotation_vector(q: &Quat) -> [f64; 3] {
     let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]).sqrt();
-    // For small turns sin x = x to rounding.
+    // For small turns sin x = x up to rounding.
     let factor = if length < 1e-150 {
         2.0
     } else {
@@ -52,8 +52,8 @@ pub(super) fn eigenaxis_time(q: &Quat, c: &[f64; 3]) -> f64 {
     (0..3).fold(0.0, |time, i| f64::max(time, x[i].abs() / c[i]))
 }
 
-/// Three turns about body axes `(axis, angle)` that make up a turn, and their time: the best of the
-/// sequences `i j i`. An upper bound that is far below the eigenaxis when one rate is small.
+/// Three turns about body axes `(axis, angle)` whose product is a turn, and their time: the best of
+/// the orders `i j i`. When one rate is small this upper bound is far below that of the eigenaxis.
 pub(super) fn best_axis_sequence(q: &Quat, c: &[f64; 3]) -> (f64, [(usize, f64); 3]) {
     let mut best = (f64::INFINITY, [(0, 0.0); 3]);
     for i in 0..3 {
@@ -66,7 +66,8 @@ pub(super) fn best_axis_sequence(q: &Quat, c: &[f64; 3]) -> (f64, [(usize, f64);
         for (j, k, sense) in [(one, other, 1.0), (other, one, -1.0)] {
             let difference = 2.0 * (sense * q[k]).atan2(q[j]);
             let (first, last) = (0.5 * (sum + difference), 0.5 * (sum - difference));
-            // Half a turn added to both outer ones turns the middle one round.
+            // Adding half a turn to the first and subtracting it from the last reverses the middle
+            // one.
             for (shift, turned) in [(0.0, middle), (PI, -middle)] {
                 let outer = [wrapped(first + shift), wrapped(last - shift)];
                 let time = (outer[0].abs() + outer[1].abs()) / c[i] + middle / c[j];
@@ -79,7 +80,7 @@ pub(super) fn best_axis_sequence(q: &Quat, c: &[f64; 3]) -> (f64, [(usize, f64);
     best
 }
 
-/// An angle brought to `[-pi, pi]`.
+/// An angle reduced to `[-pi, pi]`.
 fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
@@ -92,7 +93,7 @@ pub(super) fn twist_and_swing(q: &Quat, i: usize) -> (f64, f64) {
     (twist, swing)
 }
 
-/// A lower bound without a search, close for small turns.
+/// A lower bound without a search, tight for small turns.
 ///
 /// The twist about `e_i` obeys `twist' = w_i + [w_k (q0 v_j + v_i v_k) + w_j (v_i v_j - q0 v_k)] /
 /// (q0^2 + v_i^2) <= c_i + tan(swing / 2) hypot(c_j, c_k)`, and while the motion is at most as long
@@ -111,7 +112,7 @@ pub(super) fn small_angle_bound(q: &Quat, c: &[f64; 3]) -> f64 {
     })
 }
 
-/// `q1 q2 ...` of a chain of turns.
+/// The product `q1 q2 ...` of turns.
 pub(super) fn chain<'a>(turns: impl IntoIterator<Item = &'a Quat>) -> Quat {
     turns
         .into_iter()

@@ -1,4 +1,4 @@
-//! Polynomials that fail the equations of motion are noticed, whichever of them it is.
+//! Every polynomial of an expansion is tested against the equations of motion.
 
 use super::super::dynamics::Body;
 use super::*;
@@ -28,14 +28,14 @@ fn expansion(body: &Body) -> Expansion {
         rate: Vector3::new(0.02, -0.05, 0.03),
         wheel_speed: vec![50.0, -80.0, 20.0],
     };
-    Expansion::about(body, &state, (&TORQUE, &[]))
+    Expansion::about(body, &state, &TORQUE, &[])
 }
 
-/// What is damaged, and how.
+/// Name and change of a coefficient.
 type Damage = (&'static str, fn(&mut Expansion));
 
 #[test]
-fn each_damaged_coefficient_shows_in_the_defect() {
+fn a_changed_coefficient_of_any_polynomial_raises_the_defect() {
     let body = body();
     let sound = expansion(&body);
     let s = 0.5 * sound.step_length(1e-15);
@@ -58,7 +58,7 @@ fn each_damaged_coefficient_shows_in_the_defect() {
 }
 
 #[test]
-fn how_long_a_step_may_be_depends_on_no_unit() {
+fn the_step_length_scales_with_the_unit_of_time() {
     let mut size = [0.0; LEN];
     for (k, term) in size.iter_mut().enumerate() {
         *term = 0.4_f64.powi(i32::try_from(k).expect("few terms"));

@@ -1,6 +1,6 @@
 //! Slews about the x axis with closed forms, as scenarios and flights.
 
-use super::super::{Report, verify};
+use super::super::{CheckReport, verify};
 use crate::model::plan::{Control, Flight, Passage};
 use crate::model::scenario::Scenario;
 use crate::model::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec};
@@ -25,7 +25,7 @@ pub(super) fn wheel(axis: [f64; 3]) -> WheelSpec {
     }
 }
 
-/// The quaternion of a turn about x, sign as the angle has it.
+/// The quaternion of a turn about x, continuous in the angle.
 pub(super) fn about_x(angle: f64) -> AttitudeSpec {
     AttitudeSpec::Quaternion([(0.5 * angle).sin(), 0.0, 0.0, (0.5 * angle).cos()])
 }
@@ -76,7 +76,7 @@ pub(super) fn passage(id: &str, time_s: f64, departure_s: f64) -> Passage {
     }
 }
 
-/// The standard slew to target "a": the body feels the opposite of the wheel's torque.
+/// The standard slew to target "a"; the torque on the body is minus the wheel's.
 pub(super) fn bang_bang() -> Flight {
     Flight {
         total_time_s: 2.0 * HALF,
@@ -91,7 +91,7 @@ pub(super) fn valid(spec: &ScenarioSpec) -> Scenario {
         .scenario
 }
 
-pub(super) fn report(spec: &ScenarioSpec, flight: &Flight) -> Report {
+pub(super) fn report(spec: &ScenarioSpec, flight: &Flight) -> CheckReport {
     let report = verify(&valid(spec), flight);
     assert_eq!(
         report.verification.passed,
@@ -100,15 +100,15 @@ pub(super) fn report(spec: &ScenarioSpec, flight: &Flight) -> Report {
     report
 }
 
-/// Demands that a flight passes.
-pub(super) fn accepted(spec: &ScenarioSpec, flight: &Flight) -> Report {
+/// Asserts that a flight passes.
+pub(super) fn accepted(spec: &ScenarioSpec, flight: &Flight) -> CheckReport {
     let report = report(spec, flight);
     assert!(report.verification.passed, "{:#?}", report.verification);
     report
 }
 
-/// Demands that a flight is refused for a reason that contains the words.
-pub(super) fn refused(spec: &ScenarioSpec, flight: &Flight, words: &str) -> Report {
+/// Asserts that a flight is refused for a reason that contains the words.
+pub(super) fn refused(spec: &ScenarioSpec, flight: &Flight, words: &str) -> CheckReport {
     let report = report(spec, flight);
     let failures = &report.verification.failures;
     assert!(

@@ -50,7 +50,7 @@ fn a_cone_between_clear_ends_is_found_with_its_times() {
 }
 
 #[test]
-fn a_cone_beside_the_way_is_clear_by_the_exact_angle() {
+fn a_cone_beside_the_path_is_clear_by_the_exact_angle() {
     let report = accepted(&with_cone(0.15, 0.12, 0.05_f64.to_degrees()), &bang_bang());
     let clearance = report.margins.keep_out_clearance_deg[0].to_radians();
     assert!((clearance - 0.07).abs() < 1e-12, "{clearance}");
@@ -83,7 +83,7 @@ fn a_cone_around_the_end_is_never_left() {
 }
 
 #[test]
-fn a_warning_lists_some_of_many_times_and_counts_the_rest() {
+fn a_warning_lists_five_spans_and_counts_the_rest() {
     // To and fro through the cone, and at rest in between.
     let mut spec = with_cone(0.15, 0.0, 0.05_f64.to_degrees());
     for times in [3, 5, 6, 9] {

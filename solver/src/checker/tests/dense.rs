@@ -26,7 +26,7 @@ fn the_motion_is_that_of_the_verification_and_of_the_closed_form() {
 }
 
 #[test]
-fn at_a_switch_the_acceleration_is_the_one_that_follows_and_the_ends_are_held() {
+fn at_a_switch_the_later_acceleration_counts_and_states_beyond_the_ends_are_those_at_the_ends() {
     let scenario = valid(&scenario(vec![target("a", angle(HALF))]));
     let motion = PropagatedMotion::of(&scenario, &bang_bang()).unwrap();
     let expected = TORQUE / EFFECTIVE_X;
@@ -46,7 +46,7 @@ fn at_a_switch_the_acceleration_is_the_one_that_follows_and_the_ends_are_held() 
 }
 
 #[test]
-fn what_cannot_be_flown_has_no_motion() {
+fn a_flight_that_cannot_be_propagated_has_no_motion() {
     let scenario = valid(&scenario(vec![target("a", angle(HALF))]));
     let mut gap = bang_bang();
     gap.controls.remove(0);

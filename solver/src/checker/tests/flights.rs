@@ -1,4 +1,4 @@
-//! Whole flights that are right, and the smallest changes that make them wrong.
+//! Whole flights that pass, and the smallest changes that make them fail.
 
 use super::build::{
     EFFECTIVE_X, HALF, SPIN_INERTIA, TORQUE, about_x, accepted, angle, bang_bang, control, passage,
@@ -53,7 +53,7 @@ fn states_hold_every_boundary_and_no_wide_gap() {
 }
 
 #[test]
-fn a_short_slew_beside_a_long_rest_is_looked_at_closely() {
+fn states_of_a_short_slew_beside_a_long_rest_are_dense() {
     let (stay, short) = (5000.0, 0.1);
     let first = 2.0 * HALF;
     let second = first + stay;
@@ -104,7 +104,7 @@ fn one_percent_of_torque_is_refused() {
 }
 
 #[test]
-fn slews_of_milliseconds_and_of_hours_pass() {
+fn slews_from_milliseconds_to_hours_pass() {
     for (half, inertia) in [(5e-4, 0.01), (1e-2, 4.0), (5000.0, 1e5)] {
         let ratio = inertia / 4.0;
         let mut spec = scenario(vec![target("a", 0.9)]);
@@ -151,7 +151,7 @@ fn rests_are_held_and_tested_throughout() {
     refused(&spec, &early, "rate error");
     spec.targets[0].dwell_s = 5.0;
     refused(&spec, &stay(0.0), "stayed at for 7 s instead of 8 s");
-    // What counts as none is a share of the larger of the two limits.
+    // The tolerance is relative to the larger of the two limits.
     spec.targets[0].dwell_s = 4.0;
     spec.spacecraft.wheels[0].max_torque_nm = 2.0 * TORQUE;
     spec.spacecraft.wheels[0].min_torque_nm = Some(-TORQUE);
@@ -160,7 +160,7 @@ fn rests_are_held_and_tested_throughout() {
 }
 
 #[test]
-fn who_settles_or_dwells_is_at_rest_whatever_rates_are_free() {
+fn settling_or_dwelling_requires_rest_even_with_free_rates() {
     // Coasting through the target.
     let flight = Flight {
         total_time_s: 2.0 * HALF,
@@ -179,7 +179,7 @@ fn who_settles_or_dwells_is_at_rest_whatever_rates_are_free() {
 }
 
 #[test]
-fn a_rotation_has_two_signs_and_a_quaternion_one() {
+fn a_rotation_is_reached_with_either_sign_and_a_quaternion_with_one() {
     // 4 rad about x: the continuous quaternion ends with w < 0.
     let half = (4.0 * EFFECTIVE_X / TORQUE).sqrt();
     let flight = Flight {
@@ -226,7 +226,7 @@ fn a_target_may_be_passed_in_motion_within_its_bounds() {
 }
 
 #[test]
-fn the_end_has_its_own_conditions() {
+fn conditions_of_the_end_are_tested() {
     let mut spec = scenario(vec![target("a", angle(HALF))]);
     let mut flight = bang_bang();
     flight.total_time_s = 4.0 * HALF;
@@ -246,7 +246,7 @@ fn the_end_has_its_own_conditions() {
 }
 
 #[test]
-fn a_locked_wheel_keeps_its_spin_and_stays_part_of_the_body() {
+fn a_locked_wheel_keeps_its_speed_relative_to_the_body() {
     let mut spec = scenario(vec![target("a", angle(HALF))]);
     let mut locked = wheel([1.0, 0.0, 0.0]);
     locked.enabled = false;
@@ -264,7 +264,7 @@ fn a_locked_wheel_keeps_its_spin_and_stays_part_of_the_body() {
     refused(&spec, &flight, "drives wheel 3, which is disabled");
 }
 
-/// Four wheels in a pyramid with bias, torques that mean nothing in particular.
+/// Four wheels in a pyramid with bias, and arbitrary torques.
 fn biased(total_time_s: f64, intervals: u32) -> (ScenarioSpec, Flight) {
     let mut spec = scenario(vec![target("a", 0.0)]);
     let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
@@ -293,7 +293,7 @@ fn biased(total_time_s: f64, intervals: u32) -> (ScenarioSpec, Flight) {
 }
 
 #[test]
-fn four_biased_wheels_keep_momentum_and_notice_a_changed_torque() {
+fn momentum_of_four_biased_wheels_is_conserved_and_a_changed_torque_fails() {
     let (mut spec, mut flight) = biased(60.0, 8);
     let first = report(&spec, &flight);
     assert!(first.momentum_drift < 1e-13, "{}", first.momentum_drift);
@@ -313,7 +313,7 @@ fn four_biased_wheels_keep_momentum_and_notice_a_changed_torque() {
 }
 
 #[test]
-fn a_long_flight_verifies_fast() {
+fn a_long_flight_is_verified_without_loss_of_momentum() {
     let (spec, flight) = biased(500.0, 100);
     let scenario = valid(&spec);
     let before = Instant::now();

@@ -12,8 +12,8 @@ const AMPLITUDE: f64 = 0.02;
 /// Where its phase begins, rad; the peak of the x rate is at phase 0.
 const PHASE: f64 = -0.5;
 
-/// A free spin without torques: with `J_eff = diag(j, j, k)` and wheels that only follow, the x
-/// rate is `A cos(phase + n t)` and the wheel on x turns back by what the body gained.
+/// Motion without torques: with `J_eff = diag(j, j, k)` the x rate is `A cos(phase + n t)`, and the speed
+/// of the wheel on x changes by the opposite of the body rate.
 fn nutation() -> (ScenarioSpec, Flight) {
     let mut spec = scenario(vec![target("a", 0.0)]);
     let wheel = super::build::SPIN_INERTIA;
@@ -68,7 +68,7 @@ fn a_wheel_speed_peak_inside_an_interval_is_found() {
 }
 
 #[test]
-fn the_norm_of_the_rate_has_a_limit_of_its_own() {
+fn the_limit_on_the_norm_of_the_rate_is_tested() {
     let mut spec = scenario(vec![target("a", angle(HALF))]);
     let peak = TORQUE / super::build::EFFECTIVE_X * HALF;
     spec.spacecraft.max_body_rate_norm_rad_s = Some(peak);
@@ -79,7 +79,7 @@ fn the_norm_of_the_rate_has_a_limit_of_its_own() {
 }
 
 #[test]
-fn torque_limits_are_one_for_each_direction_and_shared_out() {
+fn torque_limits_count_per_direction_and_with_the_authority() {
     let mut spec = scenario(vec![target("a", angle(HALF))]);
     spec.spacecraft.wheels[0].min_torque_nm = Some(-0.8 * TORQUE);
     let found = refused(
@@ -102,7 +102,7 @@ fn torque_limits_are_one_for_each_direction_and_shared_out() {
 }
 
 #[test]
-fn wheels_that_pass_zero_are_counted() {
+fn zero_crossings_of_wheel_speeds_are_counted() {
     let mut spec = scenario(vec![target("a", angle(HALF))]);
     // The slew takes 100 rad/s from a wheel that has 50, and gives them back.
     spec.start.wheel_speed_rad_s = Some(vec![-50.0, 0.0, 0.0]);

@@ -1,9 +1,10 @@
 //! The integrated motion against closed forms and against a second method.
 
 use super::super::dynamics::{
-    Body, Quaternion, Snapshot, conjugate, norm, product, quaternion_derivative, to_reference,
+    Body, QuaternionComponents, Snapshot, conjugate, norm, product, quaternion_derivative,
+    to_reference,
 };
-use super::super::integrator::{Interval, Propagation, STEP_TOLERANCE, fly};
+use super::super::integrator::{Integration, STEP_TOLERANCE, TorqueSpan, integrate};
 use super::super::series::{Expansion, ORDER};
 use crate::model::spacecraft::Wheel;
 use nalgebra::{Matrix3, Vector3};
@@ -40,22 +41,22 @@ fn busy_start() -> Snapshot {
     }
 }
 
-fn turn_between(a: &Quaternion, b: &Quaternion) -> f64 {
+fn turn_between(a: &QuaternionComponents, b: &QuaternionComponents) -> f64 {
     let turn = product(&conjugate(a), b);
     2.0 * norm(&[turn[0], turn[1], turn[2], 0.0]).atan2(turn[3])
 }
 
-/// Flies and gives the last state.
-fn end_of(body: &Body, start: &Snapshot, intervals: &[Interval<'_>], tolerance: f64) -> Snapshot {
+/// Integrates and returns the last state.
+fn end_of(body: &Body, start: &Snapshot, intervals: &[TorqueSpan<'_>], tolerance: f64) -> Snapshot {
     let mut last = start.clone();
-    fly(body, start.clone(), intervals, tolerance, |step| {
+    integrate(body, start.clone(), intervals, tolerance, |step| {
         last = step.motion.state(*step.grid.last().unwrap());
     })
     .unwrap();
     last
 }
 
-fn about(axis: Vector3<f64>, angle: f64) -> Quaternion {
+fn about(axis: Vector3<f64>, angle: f64) -> QuaternionComponents {
     let v = axis.normalize() * (0.5 * angle).sin();
     [v.x, v.y, v.z, (0.5 * angle).cos()]
 }
@@ -79,14 +80,14 @@ fn top_error(inertia: f64, seconds: f64) -> f64 {
     let precession = about(reference_momentum, momentum.norm() / transverse * seconds);
     let spin = about(Vector3::z(), relative_spin * seconds);
     let expected = product(&product(&precession, &start.quaternion), &spin);
-    let interval = Interval {
+    let interval = TorqueSpan {
         begin_s: 0.0,
         end_s: seconds,
         torque: &[0.0],
         slope: &[],
     };
     let last = end_of(&body, &start, &[interval], STEP_TOLERANCE);
-    // Full turns may differ in sign, attitudes may not.
+    // Quaternions of the same attitude may differ in sign.
     let error = turn_between(&last.quaternion, &expected);
     error.min(std::f64::consts::TAU - error)
 }
@@ -105,10 +106,10 @@ fn symmetric_top_keeps_its_closed_form_at_every_scale() {
 }
 
 #[test]
-fn tighter_tolerance_changes_nothing_over_a_long_tour() {
+fn a_tighter_tolerance_does_not_change_a_long_tour() {
     let torques = [[0.01, -0.02, 0.0, 0.005], [-0.01, 0.015, 0.0, -0.02]];
-    let intervals: Vec<Interval<'_>> = (0..100)
-        .map(|k| Interval {
+    let intervals: Vec<TorqueSpan<'_>> = (0..100)
+        .map(|k| TorqueSpan {
             begin_s: 10.0 * f64::from(k),
             end_s: 10.0 * f64::from(k + 1),
             torque: &torques[usize::from(k % 2 == 1)],
@@ -123,12 +124,12 @@ fn tighter_tolerance_changes_nothing_over_a_long_tour() {
     assert!((usual.rate - tight.rate).norm() < 1e-13);
 }
 
-/// One step of the classical Runge-Kutta method on the plain equations of motion.
+/// One step of the classical Runge-Kutta method on the equations of motion.
 fn classical_step(body: &Body, at: &Snapshot, torque: &[f64], h: f64) -> Snapshot {
     let derivative = |state: &Snapshot| {
         let rate = body.rate_derivative(state, torque);
         let wheels: Vec<f64> = (0..torque.len())
-            .map(|i| body.wheel_derivative(i, (torque[i], state.wheel_speed[i]), &rate))
+            .map(|i| body.wheel_derivative(i, torque[i], state.wheel_speed[i], &rate))
             .collect();
         (
             quaternion_derivative(&state.quaternion, &state.rate),
@@ -136,17 +137,18 @@ fn classical_step(body: &Body, at: &Snapshot, torque: &[f64], h: f64) -> Snapsho
             wheels,
         )
     };
-    let moved = |state: &Snapshot, d: &(Quaternion, Vector3<f64>, Vec<f64>), h: f64| Snapshot {
-        time_s: state.time_s,
-        quaternion: std::array::from_fn(|c| state.quaternion[c] + h * d.0[c]),
-        rate: state.rate + d.1 * h,
-        wheel_speed: state
-            .wheel_speed
-            .iter()
-            .zip(&d.2)
-            .map(|(w, d)| w + h * d)
-            .collect(),
-    };
+    let moved =
+        |state: &Snapshot, d: &(QuaternionComponents, Vector3<f64>, Vec<f64>), h: f64| Snapshot {
+            time_s: state.time_s,
+            quaternion: std::array::from_fn(|c| state.quaternion[c] + h * d.0[c]),
+            rate: state.rate + d.1 * h,
+            wheel_speed: state
+                .wheel_speed
+                .iter()
+                .zip(&d.2)
+                .map(|(w, d)| w + h * d)
+                .collect(),
+        };
     let k1 = derivative(at);
     let k2 = derivative(&moved(at, &k1, 0.5 * h));
     let k3 = derivative(&moved(at, &k2, 0.5 * h));
@@ -158,13 +160,13 @@ fn classical_step(body: &Body, at: &Snapshot, torque: &[f64], h: f64) -> Snapsho
 }
 
 #[test]
-fn a_second_method_on_the_plain_equations_agrees() {
+fn the_runge_kutta_method_on_the_equations_of_motion_agrees() {
     let (body, torque) = (busy_body(), [0.01, -0.02, 0.0, 0.015]);
     let mut state = busy_start();
     for _ in 0..40_000 {
         state = classical_step(&body, &state, &torque, 1e-3);
     }
-    let interval = Interval {
+    let interval = TorqueSpan {
         begin_s: 0.0,
         end_s: 40.0,
         torque: &torque,
@@ -184,11 +186,11 @@ fn a_second_method_on_the_plain_equations_agrees() {
 }
 
 #[test]
-fn the_series_has_the_order_that_it_claims() {
+fn the_error_of_the_series_falls_with_its_order() {
     let (body, torque) = (busy_body(), [0.01, -0.02, 0.0, 0.015]);
-    let series = Expansion::about(&body, &busy_start(), (&torque, &[]));
+    let series = Expansion::about(&body, &busy_start(), &torque, &[]);
     let error = |s: f64| {
-        let interval = Interval {
+        let interval = TorqueSpan {
             begin_s: 0.0,
             end_s: s,
             torque: &torque,
@@ -204,19 +206,19 @@ fn the_series_has_the_order_that_it_claims() {
 }
 
 #[test]
-fn momentum_survives_a_tour_with_bias() {
+fn momentum_is_conserved_over_a_tour_with_bias() {
     let torque = [0.01, -0.02, 0.0, 0.015];
-    let interval = |begin_s: f64, end_s: f64| Interval {
+    let interval = |begin_s: f64, end_s: f64| TorqueSpan {
         begin_s,
         end_s,
         torque: &torque,
         slope: &[],
     };
     let intervals = [interval(0.0, 30.0), interval(30.0, 500.0)];
-    let Propagation {
+    let Integration {
         steps,
         momentum_drift,
-    } = fly(
+    } = integrate(
         &busy_body(),
         busy_start(),
         &intervals,
@@ -229,15 +231,15 @@ fn momentum_survives_a_tour_with_bias() {
 }
 
 #[test]
-fn absurd_motion_ends_in_a_sentence() {
+fn a_motion_too_fast_to_integrate_gives_a_sentence() {
     let torque = [1e300, 0.0, 0.0, 0.0];
-    let absurd = Interval {
+    let absurd = TorqueSpan {
         begin_s: 0.0,
         end_s: 1e9,
         torque: &torque,
         slope: &[],
     };
-    let sentence = fly(
+    let sentence = integrate(
         &busy_body(),
         busy_start(),
         &[absurd],
@@ -249,12 +251,12 @@ fn absurd_motion_ends_in_a_sentence() {
 
     let mut spinning = busy_start();
     spinning.rate *= 1e9;
-    let long = Interval {
+    let long = TorqueSpan {
         begin_s: 0.0,
         end_s: 1e6,
         torque: &[0.0; 4],
         slope: &[],
     };
-    let sentence = fly(&busy_body(), spinning, &[long], STEP_TOLERANCE, |_| {}).unwrap_err();
+    let sentence = integrate(&busy_body(), spinning, &[long], STEP_TOLERANCE, |_| {}).unwrap_err();
     assert!(sentence.contains("ran out of steps"), "{sentence}");
 }

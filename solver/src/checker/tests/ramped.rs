@@ -1,17 +1,17 @@
-//! Linear torques and wheels with laws against the classical Runge-Kutta method.
+//! Linear torques and wheels under speed laws against the classical Runge-Kutta method.
 
 use super::build::scenario;
-use crate::checker::ramped::{Ramp, propagate_ramps};
+use crate::checker::ramped::{TorqueRamp, propagate_ramps};
 use crate::model::drive::{Drive, SpeedLaw};
 use crate::model::scenario::Scenario;
 use nalgebra::{Matrix3, Vector3};
 
-/// Begin and end of the ramp, N m, and its length, s.
+/// Torques at beginning and end of the ramp, N m, and its length, s.
 const BEGIN: [f64; 2] = [0.015, -0.01];
 const END: [f64; 2] = [-0.02, 0.018];
 const LENGTH: f64 = 30.0;
 
-/// Body rate and wheel speeds by the plain equations: wheels x and y are driven, z follows a law.
+/// Body rate and wheel speeds by the equations of motion: wheels x and y are driven, z follows a speed law.
 fn reference(rate: Vector3<f64>, speeds: [f64; 3], law: (f64, f64)) -> (Vector3<f64>, [f64; 3]) {
     let spin = super::build::SPIN_INERTIA;
     let inertia = Vector3::new(4.0, 5.0, 6.0);
@@ -47,7 +47,7 @@ fn reference(rate: Vector3<f64>, speeds: [f64; 3], law: (f64, f64)) -> (Vector3<
 }
 
 #[test]
-fn ramps_and_laws_follow_the_plain_equations() {
+fn ramps_and_speed_laws_agree_with_the_equations_of_motion() {
     let mut spec = scenario(Vec::new());
     spec.spacecraft
         .wheels
@@ -56,7 +56,7 @@ fn ramps_and_laws_follow_the_plain_equations() {
     spec.start.body_rate_rad_s = Some([0.02, -0.01, 0.03]);
     spec.start.wheel_speed_rad_s = Some(vec![50.0, -80.0, 120.0, 0.0]);
     spec.end = Some(crate::model::spec::StateSpec::default());
-    // The fourth wheel only makes the driven ones span space; it gets no torque and hardly any inertia.
+    // The fourth wheel makes the axes of driven wheels span space; it has no torque and little inertia.
     spec.spacecraft.wheels[3].inertia_kg_m2 = 1e-12;
     let scenario = Scenario::try_new(&spec).expect("valid").scenario;
     let mut drives = vec![Drive::IDEAL; 4];
@@ -70,7 +70,7 @@ fn ramps_and_laws_follow_the_plain_equations() {
             let u = |i: usize| BEGIN[i] + (END[i] - BEGIN[i]) * t / LENGTH;
             vec![u(0), u(1), 0.0, 0.0]
         };
-        Ramp {
+        TorqueRamp {
             start_s: from,
             duration_s: to - from,
             begin_nm: at(from),
@@ -79,9 +79,9 @@ fn ramps_and_laws_follow_the_plain_equations() {
     };
     let ramps = [ramp(0.0, 11.0), ramp(11.0, LENGTH)];
     let mut impulse = 0.0;
-    let flight = propagate_ramps(&scenario, &drives, &ramps, |moment| {
-        let ends = moment.torque(0, 0.0) + moment.torque(0, moment.length_s);
-        impulse += 0.5 * moment.length_s * ends;
+    let flight = propagate_ramps(&scenario, &drives, &ramps, |part| {
+        let ends = part.torque(0, 0.0) + part.torque(0, part.length_s);
+        impulse += 0.5 * part.length_s * ends;
     })
     .expect("a flight");
     let times: Vec<_> = flight.states.iter().map(|state| state.time_s).collect();

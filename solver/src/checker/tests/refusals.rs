@@ -1,9 +1,9 @@
-//! Flights that are not flights of the scenario, each refused in words.
+//! Flights that do not belong to the scenario, each refused with a sentence.
 
 use super::super::dynamics::Snapshot;
-use super::super::integrator::Propagation;
+use super::super::integrator::Integration;
 use super::super::visits::{Misses, Visit, inspect};
-use super::super::{MOMENTUM_TOLERANCE, NOT_COMPUTED, Observed};
+use super::super::{FlightObserver, MOMENTUM_TOLERANCE, NOT_COMPUTED};
 use super::build::{
     HALF, TORQUE, accepted, angle, bang_bang, control, passage, refused, scenario, target, valid,
 };
@@ -23,7 +23,7 @@ fn changed(change: impl FnOnce(&mut Flight)) -> Flight {
 type Case = (fn(&mut Flight), &'static str);
 
 #[test]
-fn controls_that_cannot_be_flown_are_refused_with_the_worst_figures() {
+fn controls_that_cannot_be_propagated_are_refused_with_the_worst_values() {
     let cases: [Case; 11] = [
         (|f| f.controls[1].start_s += 0.01, "a gap of 0.01 s"),
         (|f| f.controls[0].duration_s += 0.5, "an overlap of 0.5 s"),
@@ -130,7 +130,7 @@ fn targets_out_of_order_are_refused() {
 }
 
 #[test]
-fn a_target_at_the_wrong_place_is_refused_at_whatever_place() {
+fn a_target_at_a_wrong_position_is_refused_at_every_position() {
     let places = [HALF, 2.0 * HALF, 2.0 * HALF];
     let names = ["a", "b", "c"];
     for (index, place) in (0..3).flat_map(|index| (0..3).map(move |place| (index, place))) {
@@ -154,7 +154,7 @@ fn a_target_at_the_wrong_place_is_refused_at_whatever_place() {
 }
 
 #[test]
-fn a_target_left_before_it_is_reached_is_tested_all_the_same() {
+fn a_target_left_before_it_is_reached_is_refused_and_tested() {
     let spec = scenario(vec![target("a", angle(HALF)), target("b", angle(HALF))]);
     let end = 2.0 * HALF;
     for early in [0.0, 1e-9, 1e-8] {
@@ -169,7 +169,7 @@ fn a_target_left_before_it_is_reached_is_tested_all_the_same() {
 }
 
 #[test]
-fn a_stay_of_which_there_is_no_state_is_refused() {
+fn a_stay_without_a_state_is_refused() {
     let scenario = valid(&spec());
     let visit = Visit {
         target: &scenario.targets()[0],
@@ -182,7 +182,7 @@ fn a_stay_of_which_there_is_no_state_is_refused() {
 }
 
 #[test]
-fn the_worst_of_the_final_wheel_speeds_counts_whichever_wheel_it_is() {
+fn the_worst_final_wheel_speed_of_all_wheels_counts() {
     let mut spec = spec();
     spec.spacecraft.wheels[1].max_speed_rad_s = None;
     spec.end = Some(StateSpec {
@@ -195,7 +195,7 @@ fn the_worst_of_the_final_wheel_speeds_counts_whichever_wheel_it_is() {
         state.wheel_speed[worst] = 0.8;
         state.wheel_speed[(worst + 1) % 3] = 1e-9;
         let misses = inspect(&scenario, &[], std::slice::from_ref(&state));
-        // Of the wheel's limit; without one, of the fastest wheel.
+        // Relative to the wheel's limit; without one, to the fastest wheel.
         let expected = if worst == 1 { 1.0 } else { 0.8 / 400.0 };
         let found = misses.end_speed.expect("speeds are given");
         assert!((found - expected).abs() < 1e-8, "wheel {worst}: {found}");
@@ -209,7 +209,7 @@ fn the_worst_of_the_final_wheel_speeds_counts_whichever_wheel_it_is() {
 }
 
 #[test]
-fn rounding_of_times_in_text_passes() {
+fn times_rounded_to_ten_digits_pass() {
     let third = HALF / 3.0;
     let text = |t: f64| format!("{t:.11}").parse::<f64>().unwrap();
     let mut flight = bang_bang();
@@ -223,7 +223,7 @@ fn rounding_of_times_in_text_passes() {
 }
 
 #[test]
-fn a_motion_beyond_all_numbers_is_refused() {
+fn a_motion_that_overflows_is_refused() {
     let flight = changed(|f| f.controls[0].wheel_torque_nm = vec![1e305, 1e305, 1e305]);
     let report = refused(&spec(), &flight, "the integration");
     assert!(report.verification.max_rate_error_rad_s >= NOT_COMPUTED);
@@ -235,16 +235,15 @@ fn a_motion_beyond_all_numbers_is_refused() {
 }
 
 #[test]
-fn an_integration_that_loses_momentum_is_not_believed() {
+fn an_integration_that_loses_momentum_fails_the_verification() {
     let scenario = valid(&spec());
     for (share, passed) in [(0.5, true), (2.0, false)] {
-        let flown = Propagation {
+        let integration = Integration {
             steps: 1,
             momentum_drift: share * MOMENTUM_TOLERANCE,
         };
-        let figures = (0.0, flown, &Misses::default());
-        let verification = Observed::new(&scenario)
-            .report(&scenario, figures, Vec::new())
+        let verification = FlightObserver::new(&scenario)
+            .report(&scenario, 0.0, integration, &Misses::default(), Vec::new())
             .verification;
         assert_eq!(verification.passed, passed, "{verification:?}");
         let told = verification.failures.iter();
@@ -256,7 +255,7 @@ fn an_integration_that_loses_momentum_is_not_believed() {
 }
 
 #[test]
-fn many_defects_are_summed_up() {
+fn defects_beyond_ten_are_counted() {
     let flight = changed(|f| {
         f.controls = (0..40).map(|_| control(0.0, -1.0, 0.0)).collect();
     });
@@ -265,7 +264,7 @@ fn many_defects_are_summed_up() {
 }
 
 #[test]
-fn figures_stay_finite_for_absurd_limits() {
+fn excesses_and_margins_stay_finite_for_tiny_limits() {
     let mut spec = spec();
     for wheel in &mut spec.spacecraft.wheels {
         wheel.max_torque_nm = 1e-308;

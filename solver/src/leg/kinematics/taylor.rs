@@ -1,7 +1,7 @@
 //! The turn with stored momentum by the Taylor expansion of the rate: polynomial, closed form.
 //!
-//! With `w' = c - a + Ji (zeta x w)` (the momentum `zeta` turns back in body axes as the body turns),
-//! the derivatives of the rate at the beginning of the interval follow from each other:
+//! With `w' = c - a + Ji (zeta x w)` (the momentum `zeta` turns back in body axes as the body
+//! turns), the derivatives of the rate at the beginning of the interval follow from each other:
 //!
 //! ```text
 //!   zeta_0 = zeta,  w_0 = a + Ji zeta
@@ -9,8 +9,8 @@
 //! ```
 //!
 //! Their series gives the integral `u` of the rate, its first moment `v = 12 int (sigma - 1/2) w`,
-//! from which [`super::magnus`] makes the turn, and the rate in the middle of the interval,
-//! where limits are imposed beside the nodes. Everything is a composition of products of two vectors:
+//! from which [`super::magnus`] makes the turn, and the rate in the middle of the interval, where
+//! limits are imposed beside the nodes. Everything is a composition of products of two vectors:
 //! first derivatives go forward, second ones come from one sweep back.
 
 use super::magnus::MagnusTurn;
@@ -34,8 +34,7 @@ const MOMENT: [f64; TERMS] = [0.0, 1.0, 1.0 / 2.0, 3.0 / 20.0, 1.0 / 30.0];
 /// `1 / (2^i i!)`: in the rate in the middle.
 const MIDDLE: [f64; TERMS] = [1.0, 1.0 / 2.0, 1.0 / 8.0, 1.0 / 48.0, 1.0 / 384.0];
 
-/// Derivatives of three numbers by the inputs, a row each: what is done to a row is done to all
-/// inputs at once.
+/// Derivatives of three numbers by the inputs, a row for each number.
 type Rows = [[f64; INPUTS]; 3];
 const NO_ROWS: Rows = [[0.0; INPUTS]; 3];
 

@@ -1,11 +1,11 @@
-//! Limits inside intervals, where the program imposes them at the nodes only.
+//! Limits inside intervals: the program imposes them at nodes and in the middle of intervals only.
 
 use super::LIMIT_TOLERANCE;
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 
-/// Parts of an interval at whose ends the limits are looked at: a long interval may turn by a
-/// radian, and the stored momentum with it.
+/// Equal parts of an interval at whose ends the limits are evaluated: the body may turn by a radian
+/// on a long interval, and the stored momentum turns with it in body axes.
 const SAMPLES: usize = 16;
 
 /// Whether no limit is exceeded between the nodes of a motion.
@@ -15,7 +15,7 @@ pub(crate) fn keeps_limits_inside(dynamics: &Dynamics, profile: &Profile) -> boo
 }
 
 /// Relative excess over every speed and rate limit inside every interval, in the order of
-/// [`Dynamics::limit_shares`]; nothing without momentum. Wheel momenta are linear there, but the
+/// [`Dynamics::limit_shares`]; empty without momentum. Wheel momenta are linear there, but the
 /// turn of the stored momentum bends the rates.
 pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Vec<f64> {
     if !dynamics.has_momentum() {
@@ -28,8 +28,8 @@ pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Ve
         .collect()
 }
 
-/// How far a share's peak exceeds one in size, when it lies between the ends; of samples at even
-/// times, both ends included.
+/// Excess over one of the peak of a share's absolute value, where the peak lies between the ends;
+/// `shares` are samples at even times, both ends included.
 pub(crate) fn excess_inside(shares: &[f64]) -> f64 {
     let over = |sign: f64| {
         let usage: Vec<_> = shares.iter().map(|share| sign * share).collect();
@@ -56,7 +56,7 @@ fn shares_inside(dynamics: &Dynamics, profile: &Profile, k: usize) -> Vec<Vec<f6
         let rate = dynamics.rate(&middle, &wheels(i as f64 + 0.5));
         attitudes.push(q.retract(rate * step));
     }
-    // The midpoint rule drifts by little; the known end takes most of that away.
+    // Spread the small drift of the midpoint rule, known at the end, over the samples.
     let drift = attitudes[SAMPLES]
         .signed_turn_to(&profile.attitudes[k + 1].nearest_sign(&attitudes[SAMPLES]));
     let mut shares = vec![Vec::with_capacity(SAMPLES + 1); dynamics.wheel_count() + 4];

@@ -1,30 +1,30 @@
-//! A flight that goes on to one more waypoint.
+//! A solved motion extended to one more waypoint.
 //!
-//! What is best on the legs of a flight changes little when it goes on: the last legs before the
-//! former end adapt, and less the farther they are from it. So a tail of a few legs is solved first,
-//! with the motion before it held, and then the whole from there. On the beginnings of random orders
-//! of twelve targets this takes a third to a half of the work from scratch, and ends in
-//! minima that are as good: those of the former flight's, which were the best of several starts.
+//! The optimal motion changes little when a leg is added: the last legs before the former end
+//! adapt, and less the farther they are from it. So a tail of a few legs is solved first, with the
+//! motion before it fixed, and then the whole from there. That takes less work than a solve from
+//! scratch, and keeps to the minimum of the former motion, the best of several starts.
 
-use super::rolling::fly_from_windows;
-use super::{Flight, LegSolution, fly, from_a_guess};
+use super::passes::from_a_guess;
+use super::rolling::solve_from_windows;
+use super::{LegSolution, MultiphaseSolve, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::Interruption;
+use crate::run::stop::StopReason;
 
-/// Legs of the tail, the new one among them: with two the minima are a little worse, with four they
-/// are not better.
+/// Legs of the tail, the new one among them. With two the minima are a little worse, with four no
+/// better.
 const TAIL: usize = 3;
 
-/// Flies through waypoints, of which all but the last have been flown through: from that motion and a
-/// guess of the last leg, joined.
-pub(crate) fn fly_on(
+/// Solves for the motion through waypoints from a `motion` that is a solution up to the last
+/// waypoint but one, with a guess of the last leg appended.
+pub(crate) fn solve_extended(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
     motion: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     let held = intervals.len().saturating_sub(TAIL);
     let begin: usize = intervals[..held].iter().sum();
@@ -33,13 +33,14 @@ pub(crate) fn fly_on(
     if held > 0 {
         through[0] = through[0].passed_with(&tail.wheels[0]);
     }
-    let mut flight = Flight::new(dynamics, &through, &intervals[held..], &tail);
-    if flight.passes(from_a_guess(dynamics), stop) {
+    let mut end = MultiphaseSolve::new(dynamics, &through, &intervals[held..], &tail);
+    if end.run_passes(from_a_guess(dynamics), stop) {
         let mut joined = motion.part(0..begin);
-        joined.append(&flight.flown.profile);
-        if let Some(flown) = fly_from_windows(dynamics, waypoints, intervals, &joined, stop) {
-            return flown;
+        joined.append(&end.solution.profile);
+        let whole = solve_from_windows(dynamics, waypoints, intervals, &joined, stop);
+        if let Some(solution) = whole {
+            return solution;
         }
     }
-    fly(dynamics, waypoints, intervals, motion, stop)
+    solve_through(dynamics, waypoints, intervals, motion, stop)
 }

@@ -1,28 +1,28 @@
-//! Long flights, a few legs at a time.
+//! Long motions, a few legs at a time.
 //!
-//! In a flight of many legs there is always a switch somewhere that is in the way of the common step,
-//! so a longer flight takes more iterations. Yet what is best on a leg depends little on legs far from
-//! it. A window of a few legs with a free end rolls along the flight and hands on the state in which
-//! it leaves all but its last legs. The whole flight then starts from a motion that can be flown and
-//! is nearly the best one, and the work is in proportion to the number of legs: 48 iterations per leg
-//! in flights of 10 legs, 55 in flights of 100, instead of 37 and 80. Durations are as good, and the
-//! longer ones a little better.
+//! All legs of a program share one step length, and some switch of some leg limits it, so a longer
+//! motion takes more iterations. Yet the optimum on a leg depends little on legs far from it. A
+//! window of a few legs with a free end rolls along the motion; each window begins in the state in
+//! which the one before it passed its last legs but a few. The whole then starts from a motion that
+//! is feasible and nearly optimal, and the iterations per leg hardly grow with the number of legs.
 
-use super::{Flight, LegSolution, Phase, fly, from_a_guess};
+use super::passes::{Pass, from_a_guess};
+use super::{LegSolution, MultiphaseSolve, solve_through};
 use crate::leg::profile::Profile;
 use crate::leg::transcription::ControlPenalty;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
-use crate::nlp::{Interruption, NlpStatus, Settings};
+use crate::nlp::{NlpStatus, Settings};
+use crate::run::stop::StopReason;
 
-/// Legs of a window, and of a flight that is better solved at once.
+/// Legs of a window, and most legs of a motion that is solved at once.
 const WINDOW: usize = 8;
 const SHORT: usize = 14;
 /// Legs at the end of a window that the next one solves again.
 const OVERLAP: usize = 2;
 
-/// From the motions of the windows, which are solutions but for where they meet.
-const FROM_WINDOWS: [Phase; 1] = [Phase {
+/// From the motions of the windows, which are solutions except where they meet.
+const FROM_WINDOWS: [Pass; 1] = [Pass {
     settings: Settings {
         initial_barrier: 3e-5,
         initial_slack: 3e-5,
@@ -31,50 +31,52 @@ const FROM_WINDOWS: [Phase; 1] = [Phase {
     penalty: ControlPenalty::of_lengths(0.02),
 }];
 
-/// Flies through waypoints from a guess as [`fly`] does, window by window first.
-pub(crate) fn fly_rolling(
+/// Solves for the motion through waypoints from a guess like [`solve_through`], window by window
+/// first.
+pub(crate) fn solve_rolling(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     if intervals.len() > SHORT {
         let motion = roll(dynamics, waypoints, intervals, guess, stop);
         let whole = motion
-            .and_then(|motion| fly_from_windows(dynamics, waypoints, intervals, &motion, stop));
-        if let Some(flown) = whole {
-            return flown;
+            .and_then(|motion| solve_from_windows(dynamics, waypoints, intervals, &motion, stop));
+        if let Some(solution) = whole {
+            return solution;
         }
     }
-    fly(dynamics, waypoints, intervals, guess, stop)
+    solve_through(dynamics, waypoints, intervals, guess, stop)
 }
 
-/// Flies through waypoints from motions that are solutions but for where they meet; none when that
-/// does not converge, unless it is stopped.
-pub(super) fn fly_from_windows(
+/// Solves for the motion through waypoints from motions that are solutions except where they meet;
+/// `None` when that does not converge, unless it was stopped.
+pub(super) fn solve_from_windows(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
     motion: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> Option<LegSolution> {
-    let flight = Flight::new(dynamics, waypoints, intervals, motion);
-    let flown = flight.solve(&FROM_WINDOWS, stop);
-    (flown.status == NlpStatus::Converged || flown.status.is_interrupted()).then_some(flown)
+    let whole = MultiphaseSolve::new(dynamics, waypoints, intervals, motion);
+    let solution = whole.run(&FROM_WINDOWS, stop);
+    let status = solution.status;
+    (status == NlpStatus::Converged || status.is_interrupted()).then_some(solution)
 }
 
-/// The motions of the windows, joined; none when a window finds no motion, or when stopped.
+/// The motions of the windows, joined; `None` when a window does not converge, or when stopped.
 fn roll(
     dynamics: &Dynamics,
     waypoints: &[Waypoint],
     intervals: &[usize],
     guess: &Profile,
-    stop: &dyn Fn() -> Option<Interruption>,
+    stop: &dyn Fn() -> Option<StopReason>,
 ) -> Option<Profile> {
     let node_of = |leg: usize| intervals[..leg].iter().sum::<usize>();
     let mut motion = Profile::empty();
-    // What has been seen of the legs ahead.
+    // The part of the last window's motion that the next window solves again.
     let mut ahead = Profile::empty();
     let mut first = 0;
     loop {
@@ -85,18 +87,19 @@ fn roll(
         }
         let begin = node_of(first);
         ahead.append(&guess.part(begin + ahead.intervals()..node_of(last)));
-        let mut flight = Flight::new(dynamics, &through, &intervals[first..last], &ahead);
-        if !flight.passes(from_a_guess(dynamics), stop) {
+        let window = &intervals[first..last];
+        let mut window = MultiphaseSolve::new(dynamics, &through, window, &ahead);
+        if !window.run_passes(from_a_guess(dynamics), stop) {
             return None;
         }
-        let flown = flight.flown.profile;
+        let solved = window.solution.profile;
         if last == intervals.len() {
-            motion.append(&flown);
+            motion.append(&solved);
             return Some(motion);
         }
         first = last - OVERLAP;
         let kept = node_of(first) - begin;
-        motion.append(&flown.part(0..kept));
-        ahead = flown.part(kept..flown.intervals());
+        motion.append(&solved.part(0..kept));
+        ahead = solved.part(kept..solved.intervals());
     }
 }

@@ -1,7 +1,8 @@
-//! The interior point against the second engine, on slews.
+//! The interior point against the second engine, on legs.
 
 use super::*;
 use crate::leg::solve::eigenaxis::{EigenaxisSlew, Perturbation};
+use crate::leg::transcription::ControlPenalty;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 use crate::model::waypoint::WheelCondition;
@@ -13,7 +14,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-/// Agreement of the costs asked for, relative.
+/// Required relative agreement of the costs.
 const AGREEMENT: f64 = 1e-6;
 /// Accuracy of the optimality conditions of the second engine, scaled variables; the cost is off
 /// by about its square.
@@ -24,8 +25,8 @@ const PROGRAMS: usize = 60;
 const INTERVALS: usize = 8;
 /// That of polishing.
 const LENGTH_PENALTY: f64 = 1e-3;
-/// Largest displacements of the variables, of order one, where the second engine starts beside the
-/// solution of the first, tried in this order.
+/// Largest displacements of the variables (of order one) from the first engine's solution to the
+/// second engine's start, tried in this order.
 const DISPLACEMENTS: [f64; 3] = [2e-3, 5e-4, 1e-4];
 
 /// A leg at rest at both ends.
@@ -36,8 +37,8 @@ struct Leg {
     null: DVector<f64>,
 }
 
-/// A leg as the engines see it.
-struct Posed {
+/// The program of a leg, with a guess.
+struct LegProgram {
     chain: Transcription,
     guess: Iterate,
 }
@@ -49,7 +50,7 @@ impl Leg {
             attitude,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(null.clone()),
-            price: None,
+            costates: None,
         });
         Self {
             name,
@@ -59,7 +60,7 @@ impl Leg {
         }
     }
 
-    fn posed(&self) -> Posed {
+    fn program(&self) -> LegProgram {
         let [from, to] = &self.ends;
         let eigenaxis =
             EigenaxisSlew::fastest(&self.dynamics, &from.attitude, &to.attitude, &self.null);
@@ -69,11 +70,11 @@ impl Leg {
         let mut chain = Transcription::new(&self.dynamics, scales, &self.ends, &[INTERVALS]);
         let guess = scaled(&guess, &scales);
         chain.draw_controls_to(&guess, ControlPenalty::of_lengths(LENGTH_PENALTY));
-        Posed { chain, guess }
+        LegProgram { chain, guess }
     }
 }
 
-impl Posed {
+impl LegProgram {
     fn cost(&self, iterate: &Iterate) -> f64 {
         let layout = Layout::of(&self.chain);
         let mut values = values_of(&self.chain);
@@ -88,7 +89,7 @@ impl Posed {
 /// Every seventh pair of the start and the 18 targets of experiment C: 25 legs.
 fn published_legs() -> Vec<Leg> {
     let spec = crate::model::scenario::reference::experiment_a();
-    let dynamics = Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario);
+    let dynamics = Scenario::try_new(&spec).expect("valid").scenario.dynamics();
     let about = |axis: Vector3<f64>, degrees: f64| {
         Attitude::from_rotation_vector(axis * degrees.to_radians())
     };
@@ -169,15 +170,15 @@ fn random_leg(case: usize, runner: &mut TestRunner) -> Leg {
     let scenario = Scenario::try_new(&spec).expect("a valid scenario").scenario;
     let to = Attitude::from_rotation_vector(turn * angle);
     let name = format!("random {case}, {angle:.3} rad");
-    Leg::new(name, &Dynamics::of(&scenario), [Attitude::identity(), to])
+    Leg::new(name, &scenario.dynamics(), [Attitude::identity(), to])
 }
 
 fn sample<S: Strategy>(strategy: &S, runner: &mut TestRunner) -> S::Value {
     strategy.new_tree(runner).expect("a value").current()
 }
 
-impl Posed {
-    /// Where the first engine goes from the guess.
+impl LegProgram {
+    /// The first engine's solution from the guess.
     fn minimum_of_first(&self) -> Iterate {
         let mut iterate = self.guess.clone();
         let mut engine = InteriorPoint::new(&self.chain, TIGHT);
@@ -186,8 +187,8 @@ impl Posed {
         iterate
     }
 
-    /// The cost that the second engine finds from a start, when it converges and has had to work
-    /// for it.
+    /// The cost that the second engine finds from a start, when it converges in more than one
+    /// iteration.
     fn cost_of_second(&self, start: &Iterate) -> Option<f64> {
         let mut iterate = start.clone();
         let mut engine = SequentialQuadratic::new(&self.chain);
@@ -195,7 +196,7 @@ impl Posed {
         (report.ending == Ending::Converged && report.iterations > 1).then_some(report.cost)
     }
 
-    /// A point beside another one.
+    /// A random point near another one.
     fn displaced(&self, from: &Iterate, by: f64, runner: &mut TestRunner) -> Iterate {
         let mut moved = Iterate::cold(from.points.clone(), from.controls.clone());
         let mut by = || sample(&(-by..by), runner);
@@ -218,24 +219,23 @@ fn both_engines_agree_on_fifty_legs() {
     assert_eq!(legs.len(), 50);
     let mut from_one_start = 0;
     for leg in legs {
-        let posed = leg.posed();
-        let solution = posed.minimum_of_first();
-        let cost = posed.cost(&solution);
+        let program = leg.program();
+        let solution = program.minimum_of_first();
+        let cost = program.cost(&solution);
         let agrees = |other: f64| (other / cost - 1.0).abs() <= AGREEMENT;
-        if posed.cost_of_second(&posed.guess).is_some_and(agrees) {
+        if program.cost_of_second(&program.guess).is_some_and(agrees) {
             from_one_start += 1;
             continue;
         }
-        // The engines went to different local minima, of which the division into intervals makes
-        // many, each with a small neighbourhood. Beside its own, the first engine's minimum must
-        // be the second's too.
+        // The engines found different local minima. The division into intervals makes many of them,
+        // close together. Started near the first engine's minimum, the second must find it too.
         let found = DISPLACEMENTS.iter().find_map(|by| {
-            let beside = posed.displaced(&solution, *by, &mut runner);
-            posed.cost_of_second(&beside).filter(|other| agrees(*other))
+            let near = program.displaced(&solution, *by, &mut runner);
+            program.cost_of_second(&near).filter(|other| agrees(*other))
         });
         assert!(found.is_some(), "{}: {cost} is no minimum", leg.name);
     }
-    // Most starts lead the engines apart; as many as this lead them to the same minimum.
+    // Most guesses lead the engines to different minima; these to the same one.
     assert!(from_one_start >= 10, "{from_one_start} legs only");
 }
 
@@ -243,16 +243,16 @@ fn both_engines_agree_on_fifty_legs() {
 fn the_inner_loop_of_a_leg_allocates_nothing() {
     // With and without momentum, which takes another turn map.
     for case in [0, 1] {
-        let posed = random_leg(case, &mut TestRunner::deterministic()).posed();
+        let program = random_leg(case, &mut TestRunner::deterministic()).program();
         let counts = [2, 12].map(|max_iterations| {
             let settings = Settings {
                 max_iterations,
                 ..TIGHT
             };
-            let mut engine = InteriorPoint::new(&posed.chain, settings);
-            let mut iterate = posed.guess.clone();
+            let mut engine = InteriorPoint::new(&program.chain, settings);
+            let mut iterate = program.guess.clone();
             let counted = allocation_counter::measure(|| {
-                let report = engine.solve(&posed.chain, &mut iterate, &|| None);
+                let report = engine.solve(&program.chain, &mut iterate, &|| None);
                 assert_eq!(report.iterations, max_iterations);
             });
             counted.count_total
@@ -261,12 +261,12 @@ fn the_inner_loop_of_a_leg_allocates_nothing() {
     }
 }
 
-/// Legs that pay each other the costates of a flight for the state in which they meet take together
-/// what the flight takes: strong duality, where each is convex in that state.
+/// Strong duality: with the costates of the whole motion as costs of the states between them, legs
+/// that are solved alone add up to its duration, where each is convex in those states.
 #[test]
-fn legs_priced_by_a_flight_add_up_to_it() {
+fn legs_with_the_costates_of_a_motion_add_up_to_it() {
     let spec = crate::model::scenario::reference::experiment_a();
-    let dynamics = Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario);
+    let dynamics = Scenario::try_new(&spec).expect("valid").scenario.dynamics();
     let turned = |x: f64, z: f64| {
         Attitude::from_rotation_vector(Vector3::z() * z)
             .then_in_body(&Attitude::from_rotation_vector(Vector3::x() * x))
@@ -276,7 +276,7 @@ fn legs_priced_by_a_flight_add_up_to_it() {
         attitude,
         rate,
         wheels: WheelCondition::Free,
-        price: None,
+        costates: None,
     };
     let route = [
         place(Attitude::identity(), [rest; 3]),
@@ -284,7 +284,7 @@ fn legs_priced_by_a_flight_add_up_to_it() {
         place(turned(0.9, 0.1), [free, free, rest]),
         place(turned(1.2, 0.9), [rest; 3]),
     ];
-    let perturbed_eigenaxis = |legs: &[Waypoint]| {
+    let eigenaxes = |legs: &[Waypoint]| {
         let mut guess = Profile::empty();
         for pair in legs.windows(2) {
             let null = DVector::zeros(0);
@@ -294,33 +294,22 @@ fn legs_priced_by_a_flight_add_up_to_it() {
         }
         guess
     };
-    let flown = fly(
-        &dynamics,
-        &route,
-        &[12; 3],
-        &perturbed_eigenaxis(&route),
-        &|| None,
-    );
-    let whole_s = flown.duration().expect("converges");
+    let whole = solve_through(&dynamics, &route, &[12; 3], &eigenaxes(&route), &|| None);
+    let whole_s = whole.duration().expect("converges");
     let mut alone_s = 0.0;
-    let mut priced_s = 0.0;
+    let mut with_costates_s = 0.0;
     for leg in 0..3 {
         let mut ends = [route[leg].clone(), route[leg + 1].clone()];
-        let alone = fly(
-            &dynamics,
-            &ends,
-            &[12],
-            &perturbed_eigenaxis(&ends),
-            &|| None,
-        );
+        let alone = solve_through(&dynamics, &ends, &[12], &eigenaxes(&ends), &|| None);
         alone_s += alone.duration().expect("converges");
-        ends[0].price = leg.checked_sub(1).map(|joint| -&flown.costates[joint]);
-        ends[1].price = flown.costates.get(leg).cloned();
-        let priced = fly(&dynamics, &ends, &[12], &alone.profile, &|| None);
-        priced_s += priced.duration().expect("converges");
-        let wheels = [&priced.profile.wheels[0], &priced.profile.wheels[12]];
+        ends[0].costates = leg.checked_sub(1).map(|joint| -&whole.costates[joint]);
+        ends[1].costates = whole.costates.get(leg).cloned();
+        let leg = solve_through(&dynamics, &ends, &[12], &alone.profile, &|| None);
+        with_costates_s += leg.duration().expect("converges");
+        let wheels = [&leg.profile.wheels[0], &leg.profile.wheels[12]];
         for (end, wheels) in ends.iter().zip(wheels) {
-            priced_s += end.price.as_ref().map_or(0.0, |price| price.dot(wheels));
+            let costates = end.costates.as_ref();
+            with_costates_s += costates.map_or(0.0, |costates| costates.dot(wheels));
         }
     }
     assert!(
@@ -328,7 +317,7 @@ fn legs_priced_by_a_flight_add_up_to_it() {
         "the legs are coupled: {alone_s} {whole_s}"
     );
     assert!(
-        (priced_s / whole_s - 1.0).abs() < 5e-4,
-        "{priced_s} {whole_s}"
+        (with_costates_s / whole_s - 1.0).abs() < 5e-4,
+        "{with_costates_s} {whole_s}"
     );
 }

@@ -1,4 +1,4 @@
-//! How a slew has to arrive at its target.
+//! The quaternion sign with which a motion has to arrive at its target.
 
 use crate::model::attitude::Attitude;
 
@@ -12,7 +12,7 @@ pub(crate) enum Arrival {
 }
 
 impl Arrival {
-    /// The attitude with the sign to arrive at from near another one.
+    /// The target attitude with the sign at which a motion from near another attitude arrives.
     pub(crate) fn signed(self, attitude: &Attitude, near: &Attitude) -> Attitude {
         match self {
             Self::Rotation => attitude.nearest_sign(near),

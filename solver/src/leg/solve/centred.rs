@@ -1,14 +1,14 @@
-//! Wheel momenta that carry a demand far from all speed limits: the analytic centre.
+//! The analytic centre: wheel momenta that meet a demand far from all speed limits.
 //!
-//! More than three wheels share a demand in many ways. The one that minimises
-//! `-sum log(1 - (h_i / c_i)^2)`, with `c_i` what wheel `i` can hold, changes smoothly with the demand,
-//! and exists wherever any way is strictly within the limits (Boyd and Vandenberghe, Convex
+//! More than three wheels can share a demand in many ways. The one that minimises
+//! `-sum log(1 - (h_i / c_i)^2)`, with the capacity `c_i` of wheel `i`, changes smoothly with the
+//! demand, and exists wherever any way is strictly within the limits (Boyd and Vandenberghe, Convex
 //! Optimization, 2004, section 8.5.3).
 
 use crate::model::dynamics::Dynamics;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Newton steps for one centre, and the decrement at which it is found.
+/// Limit of the Newton steps for one centre, and the squared Newton decrement that ends them.
 const STEPS: usize = 30;
 const DECREMENT: f64 = 1e-20;
 /// Reductions of enlarged capacities on the way to the true ones.

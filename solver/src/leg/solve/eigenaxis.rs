@@ -1,8 +1,8 @@
-//! The slew about the eigenaxis: the everyday baseline, and the first starting guess.
+//! The eigenaxis slew: the usual baseline, and a starting guess.
 //!
 //! Bang-coast-bang about a fixed axis with the wheels allocated by the pseudo-inverse and their
-//! null-space momentum held. Without total momentum its limits are constant along the way; with
-//! it they vary, and the slew is slowed down until all of them hold everywhere.
+//! null-space momentum constant. Without total momentum its limits are constant in time; with it
+//! they vary, and the slew is slowed down until all of them hold everywhere.
 
 use crate::leg::profile::Profile;
 use crate::math::bang_coast_bang::BangCoastBang;
@@ -10,26 +10,26 @@ use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use nalgebra::{DVector, Vector3};
 
-/// Points along the way at which limits are tested when momentum makes them vary.
+/// Points at which limits are tested when momentum makes them vary.
 const SAMPLES: usize = 65;
 /// Halvings of the slow-down factor's interval: six digits of the duration.
 const BISECTIONS: usize = 24;
-/// Slowest factor worth trying.
+/// Smallest slow-down factor that is tried.
 const SLOWEST: f64 = 1e-3;
 
 /// Intervals of a ramp in a starting guess.
 const RAMP_INTERVALS: usize = 2;
-/// Share of the duration below which a coast is not worth nodes of its own.
+/// Share of the duration below which a coast has no nodes of its own.
 const MIN_COAST: f64 = 1e-3;
-/// Bow of a starting guess across the axis, as a share of the peak rate.
-const BOW: f64 = 0.1;
+/// Perturbation of a starting guess across the axis, as a share of the peak rate.
+const PERTURBATION: f64 = 0.1;
 
-/// To which side a guess bows.
+/// The side of the eigenaxis to which a guess is perturbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Perturbation {
-    /// To one.
+    /// One side.
     Near,
-    /// To the other.
+    /// The opposite side.
     Far,
 }
 
@@ -48,7 +48,7 @@ pub(crate) struct EigenaxisSlew {
     from: Attitude,
     axis: Vector3<f64>,
     null: DVector<f64>,
-    /// Its course in time.
+    /// Angle and rate over time.
     pub(crate) course: BangCoastBang,
     /// Whether all limits hold.
     pub(crate) flyable: bool,
@@ -119,7 +119,7 @@ impl EigenaxisSlew {
         (attitude, rate, wheels)
     }
 
-    /// Greatest share of any torque, speed or rate limit along the way.
+    /// Greatest share of any torque, speed or rate limit during the slew.
     fn usage(&self, dynamics: &Dynamics) -> f64 {
         let mut worst = 0.0_f64;
         for sample in 0..SAMPLES {
@@ -136,7 +136,7 @@ impl EigenaxisSlew {
         worst
     }
 
-    /// The slew itself: nodes where its ramps end, and evenly between.
+    /// The slew itself: nodes where its ramps end, and evenly between them.
     pub(crate) fn exact(&self, dynamics: &Dynamics, intervals: usize) -> Profile {
         let ramp = intervals / 3;
         let coast = intervals - 2 * ramp;
@@ -164,8 +164,8 @@ impl EigenaxisSlew {
         profile
     }
 
-    /// A direction across the axis that turns with the spacecraft: that of the wheel axis least
-    /// along it, the first of equal ones.
+    /// A direction perpendicular to the axis that does not depend on the body frame: across the
+    /// wheel axis that is least along the eigenaxis, the first of equal ones.
     fn across(&self, dynamics: &Dynamics) -> Vector3<f64> {
         let (mut across, mut least) = (Vector3::zeros(), f64::INFINITY);
         for wheel in &dynamics.actuators {
@@ -175,14 +175,14 @@ impl EigenaxisSlew {
                 (across, least) = (self.axis.cross(&axis), along);
             }
         }
-        // Wheel axes span space, so one of them lies across.
+        // Wheel axes span space, so not all of them are parallel to the eigenaxis.
         across.normalize()
     }
 
     /// The slew sampled at its nodes, as a starting guess; it has to take some time.
     ///
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
-    /// solver then stays on it; a slight bow of the rate across the axis breaks the symmetry.
+    /// solver then stays on it; a small rate across the axis breaks the symmetry.
     pub(crate) fn guess(
         &self,
         dynamics: &Dynamics,
@@ -194,21 +194,20 @@ impl EigenaxisSlew {
         let across = self.across(dynamics);
         let direction = (across + across.cross(&self.axis)).normalize();
         let most = 0.5 * dynamics.axis_rate(&direction);
-        let bow = direction * (side.sign() * (BOW * peak).min(most));
+        let across = direction * (side.sign() * (PERTURBATION * peak).min(most));
         let mut profile = Profile::empty();
         for (node, time) in times.iter().enumerate() {
             let (attitude, rate, _) = self.state(dynamics, *time);
             let phase = std::f64::consts::PI * time / self.course.duration();
             // Exactly zero at both ends, where the rates are given.
-            let perturbed_eigenaxis = rate
+            let perturbed = rate
                 + if node < intervals {
-                    bow * phase.sin()
+                    across * phase.sin()
                 } else {
                     Vector3::zeros()
                 };
-            profile
-                .wheels
-                .push(dynamics.wheels_at(&attitude, &perturbed_eigenaxis, &self.null));
+            let wheels = dynamics.wheels_at(&attitude, &perturbed, &self.null);
+            profile.wheels.push(wheels);
             profile.attitudes.push(attitude);
         }
         profile.lengths = times.windows(2).map(|t| t[1] - t[0]).collect();
@@ -216,8 +215,8 @@ impl EigenaxisSlew {
     }
 }
 
-/// Times that cut a course into intervals, s: the ramps into [`RAMP_INTERVALS`] each where that cuts
-/// them finer than equal intervals would.
+/// Times of the nodes of a course, s: each ramp has [`RAMP_INTERVALS`] where equal intervals would
+/// be longer.
 fn node_times(course: &BangCoastBang, intervals: usize) -> Vec<f64> {
     let even = |begin: f64, end: f64, count: usize| {
         (0..count).map(move |i| begin + (end - begin) * i as f64 / count as f64)

@@ -1,11 +1,11 @@
 //! The first starting guess: the shortest turn within a box of rates, ramped.
 //!
 //! Without inertia the fastest motion to an attitude consists of arcs at constant rates, and
-//! [`RateBox::query`] finds it exactly: the shape of a near-optimal slew, off-axis excursions and
-//! the better way round included, which the eigenaxis slew (a symmetric stationary point) hides from
-//! a local solver. Where a rate jumps the wheels need time: the guess takes the mean rate over the
-//! last ramp, so it begins and ends at rest and lasts one ramp longer. Its rate is linear between the
-//! beginnings and ends of the ramps, where its nodes are.
+//! [`RateBox::query`] finds it exactly. It has the shape of a near-optimal leg, off-axis excursions
+//! and the better way round included, which a local solver does not find from the eigenaxis slew (a
+//! symmetric stationary point). Where a rate jumps the wheels need time: the guess takes the mean
+//! rate over the last ramp, so it begins and ends at rest and lasts one ramp longer. Its rate is
+//! linear between the beginnings and ends of the ramps, where its nodes are.
 
 use super::LegProblem;
 use crate::bounds::kinematic::{RateArc, RateBox};
@@ -16,21 +16,22 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Relative accuracy of the least times: far below what the ramps change.
+/// Relative accuracy of the least times: far below the effect of the ramps.
 const TOLERANCE: f64 = 1e-4;
 /// Nodes nearer to each other than this share of the duration are one.
 const SAME_TIME: f64 = 1e-3;
-/// Relative difference of lengths that rounding cannot make: the first of equal ones is chosen.
+/// Relative difference above which one length is longer than another; below it rounding decides,
+/// and the first is chosen.
 const LONGER: f64 = 1e-6;
-/// Turn between an attitude and its target that tells their signs apart, rad.
+/// Turn between an attitude and its target, rad, above which their quaternion signs differ.
 const OTHER_SIGN: f64 = 1.0;
 
-/// What the guesses for one spacecraft have in common, whatever its momentum.
+/// The part of the guesses that depends on the spacecraft alone, not on its momentum.
 #[derive(Debug)]
 pub(crate) struct KinematicExtremals {
     /// The axes of the box as columns, in body axes.
     axes: Matrix3<f64>,
-    /// The rates that the wheels can give about them, rad/s.
+    /// The greatest rates about them, rad/s.
     rates: Vector3<f64>,
     /// The time to reach them all, s.
     ramp: f64,
@@ -60,14 +61,14 @@ impl KinematicExtremals {
         }
     }
 
-    /// The guess for a slew; `None` where the extremal leads to the other sign of the quaternion, or
+    /// The guess for a leg; `None` where the extremal leads to the other sign of the quaternion, or
     /// there is none: no turn at all, or extreme rates.
-    pub(super) fn guess(&self, slew: &LegProblem<'_>) -> Option<Profile> {
-        let turn = slew.from.attitude.turn_to(&slew.to.attitude);
-        let guess = self.ramped(&turn)?.lasting(slew.least_duration());
-        let guess = guess.sampled(slew);
+    pub(super) fn guess(&self, leg: &LegProblem<'_>) -> Option<Profile> {
+        let turn = leg.from.attitude.turn_to(&leg.to.attitude);
+        let guess = self.ramped(&turn)?.lasting(leg.least_duration());
+        let guess = guess.sampled(leg);
         let last = guess.attitudes.last()?;
-        let arrived = slew.arrival.turn(last, &slew.to.attitude) < OTHER_SIGN;
+        let arrived = leg.arrival.turn(last, &leg.to.attitude) < OTHER_SIGN;
         arrived.then_some(guess)
     }
 
@@ -81,7 +82,7 @@ impl KinematicExtremals {
         if shortest.upper_s == 0.0 {
             return None;
         }
-        // A short slew never reaches its top rates: it lasts 2 sqrt(ramp V), half of it a ramp.
+        // A short leg never reaches the greatest rates: it lasts 2 sqrt(ramp V), half of it a ramp.
         let slower = (self.ramp / shortest.upper_s).sqrt().max(1.0);
         let slowed = |arc: RateArc| RateArc {
             rate_rad_s: self.axes * arc.rate_rad_s / slower,
@@ -95,7 +96,7 @@ impl KinematicExtremals {
 }
 
 impl Ramped {
-    /// The same motion, slower where it takes less than a time, s.
+    /// The same motion, slowed down to a least duration, s.
     fn lasting(mut self, least: f64) -> Self {
         let arcs: f64 = self.arcs.iter().map(|arc| arc.duration_s).sum();
         let slower = least / (arcs + self.ramp);
@@ -110,15 +111,15 @@ impl Ramped {
     }
 
     /// The motion at its nodes.
-    fn sampled(&self, slew: &LegProblem<'_>) -> Profile {
-        let times = self.node_times(slew.intervals());
+    fn sampled(&self, leg: &LegProblem<'_>) -> Profile {
+        let times = self.node_times(leg.intervals());
         let mut profile = Profile::empty();
         for time in &times {
             let rate = (self.turned(*time) - self.turned(time - self.ramp)) / self.ramp;
-            let attitude = self.attitude(&slew.from.attitude, time - 0.5 * self.ramp);
+            let attitude = self.attitude(&leg.from.attitude, time - 0.5 * self.ramp);
             profile
                 .wheels
-                .push(slew.dynamics.wheels_at(&attitude, &rate, slew.null));
+                .push(leg.dynamics.wheels_at(&attitude, &rate, leg.null));
             profile.attitudes.push(attitude);
         }
         profile.lengths = times.windows(2).map(|t| t[1] - t[0]).collect();
@@ -144,8 +145,8 @@ impl Ramped {
         times
     }
 
-    /// Times at which ramps begin or end, s, from zero to the duration: no more than `most` intervals,
-    /// of which the shortest pairs are joined.
+    /// Times at which ramps begin or end, s, from zero to the duration; the shortest pairs of
+    /// intervals are joined until at most `most` are left.
     fn ramp_ends(&self, most: usize) -> Vec<f64> {
         let mut time = 0.0;
         let mut ends = vec![0.0, self.ramp];

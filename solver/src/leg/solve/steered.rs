@@ -1,12 +1,13 @@
-//! The slew that exists wherever the wheels can hold the stored momentum: slowly about the eigenaxis.
+//! A leg constructed without a program, which exists wherever the wheels can hold the stored
+//! momentum: slowly about the eigenaxis.
 //!
 //! Inside the sphere of momenta that the wheels hold in every direction a body can rest at every
-//! attitude, and so it can turn, if slowly enough. The flight: brake to rest, move the wheels to where
-//! they are far from their limits ([`centred`]), turn about the eigenaxis at a pace that leaves room
-//! under every limit, move the wheels to what the end asks for, and speed up to its rates. Torque has
-//! to be constant on every interval, so a nominal motion is followed two intervals at a time: whatever
-//! the momenta at their ends are, those in their middle can be chosen such that the attitude at the
-//! second end is met exactly, three equations with three unknowns.
+//! attitude, and so it can turn, if slowly enough. The motion: brake to rest, move the wheels far
+//! from their limits ([`centred`]), turn about the eigenaxis at a pace that leaves room under every
+//! limit, move the wheels to the momenta of the end, and speed up to its rates. Torque has to be
+//! constant on every interval, so a nominal motion is followed two intervals at a time: for given
+//! momenta at both ends, those in the middle are chosen such that the attitude at the second end is
+//! met exactly, three equations with three unknowns.
 
 use super::LegProblem;
 use super::centred::centred;
@@ -22,22 +23,21 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::nlp::NlpStatus;
 use nalgebra::{DVector, Matrix3, Vector3};
 
-/// Share of the pace that zero momentum would allow, to begin with; what a slower one has of it; and
-/// how many are tried.
+/// The first pace that is tried, as a share of what zero momentum allows; the ratio of each pace to
+/// the one before it; and the number of paces.
 const FASTEST: f64 = 0.95;
 const SLOWER: f64 = 0.8;
 const PACES: i32 = 40;
 /// The slowest pace at which a body brakes from a rate at an end, or speeds up to it.
 const SLOWEST_BRAKE: f64 = 0.1;
-/// How far a rate may stray between nodes, relative to its limit: what the fastest pace leaves room
-/// for.
+/// How far a rate may stray between nodes, relative to its limit: the margin of the fastest pace.
 const STRAY: f64 = 0.02;
 /// Longest turn over one interval, rad.
 const MAX_TURN: f64 = 0.1;
 /// Intervals of a ramp, and the fewest of a coast; even numbers.
 const RAMP: usize = 4;
 const MIN_COAST: usize = 4;
-/// Most pairs of intervals of a part of the motion.
+/// Limit of the pairs of intervals of each part of the motion.
 const MAX_PAIRS: usize = 2000;
 /// Share of the torque that moves the wheels of a body at rest.
 const SHIFT_TORQUE: f64 = 0.9;
@@ -46,22 +46,23 @@ const SAME_RATE: f64 = 1e-12;
 /// Angle, rad, within which an attitude is met, and steps on the way there.
 const MET: f64 = 1e-12;
 const STEERING_STEPS: usize = 30;
-/// Turn, rad, by which the answer to a change is tried.
+/// Turn, rad, of the finite differences.
 const TRIAL_TURN: f64 = 1e-4;
 
-/// A motion to follow: its nodes, an even number of intervals in between.
+/// The nominal motion: nodes with an even number of intervals between them.
 struct Nominal {
     attitudes: Vec<Attitude>,
     wheels: Vec<DVector<f64>>,
     lengths: Vec<f64>,
 }
 
-/// The flight; `None` where no pace is slow enough, or the state at an end is not within limits.
-pub(super) fn steered(slew: &LegProblem<'_>) -> Option<LegSolution> {
+/// The constructed solution; `None` where no pace is slow enough, or the state at an end exceeds
+/// limits.
+pub(super) fn steered(leg: &LegProblem<'_>) -> Option<LegSolution> {
     (0..PACES).find_map(|step| {
         let pace = FASTEST * SLOWER.powi(step);
-        let profile = nominal(slew, pace)?.followed(slew.dynamics)?;
-        flies(slew.dynamics, &profile).then(|| LegSolution {
+        let profile = nominal(leg, pace)?.followed(leg.dynamics)?;
+        keeps_limits(leg.dynamics, &profile).then(|| LegSolution {
             status: NlpStatus::Constructed,
             intervals: vec![profile.intervals()],
             profile,
@@ -72,9 +73,9 @@ pub(super) fn steered(slew: &LegProblem<'_>) -> Option<LegSolution> {
     })
 }
 
-/// Whether speed, rate and torque limits hold at the nodes and between them; at the ends they are
-/// given.
-fn flies(dynamics: &Dynamics, profile: &Profile) -> bool {
+/// Whether speed, rate and torque limits hold at the inner nodes and between nodes; the states at
+/// the ends are given.
+fn keeps_limits(dynamics: &Dynamics, profile: &Profile) -> bool {
     let nodes = profile.attitudes.iter().zip(&profile.wheels);
     let inner = nodes.skip(1).take(profile.intervals().saturating_sub(1));
     let held = |(attitude, wheels): (&Attitude, &DVector<f64>)| {
@@ -87,19 +88,19 @@ fn flies(dynamics: &Dynamics, profile: &Profile) -> bool {
         && keeps_limits_inside(dynamics, profile)
 }
 
-fn nominal(slew: &LegProblem<'_>, pace: f64) -> Option<Nominal> {
-    let dynamics = slew.dynamics;
-    let mut motion = Nominal::at(slew.from.attitude, state_at(slew, slew.from)?);
+fn nominal(leg: &LegProblem<'_>, pace: f64) -> Option<Nominal> {
+    let dynamics = leg.dynamics;
+    let mut motion = Nominal::at(leg.from.attitude, state_at(leg, leg.from)?);
     motion.brake(dynamics, pace);
-    let mut arrival = Nominal::at(slew.to.attitude, state_at(slew, slew.to)?);
+    let mut arrival = Nominal::at(leg.to.attitude, state_at(leg, leg.to)?);
     arrival.speed_up(dynamics, pace);
     let (resting, _) = motion.last();
-    let target = slew.arrival.signed(&arrival.attitudes[0], &resting);
+    let target = leg.arrival.signed(&arrival.attitudes[0], &resting);
     if target != arrival.attitudes[0] {
         arrival.attitudes.iter_mut().for_each(|q| *q = q.negated());
     }
     motion.turn_to(dynamics, &target, pace)?;
-    if arrival.lengths.is_empty() && slew.to.wheels == WheelCondition::Free {
+    if arrival.lengths.is_empty() && leg.to.wheels == WheelCondition::Free {
         return Some(motion);
     }
     motion.shift_to(dynamics, arrival.wheels[0].clone());
@@ -107,9 +108,9 @@ fn nominal(slew: &LegProblem<'_>, pace: f64) -> Option<Nominal> {
     Some(motion)
 }
 
-/// The wheel momenta with which an end is passed as slowly as its conditions admit.
-fn state_at(slew: &LegProblem<'_>, end: &Waypoint) -> Option<DVector<f64>> {
-    let dynamics = slew.dynamics;
+/// The wheel momenta at an end with the slowest rates that its conditions admit.
+fn state_at(leg: &LegProblem<'_>, end: &Waypoint) -> Option<DVector<f64>> {
+    let dynamics = leg.dynamics;
     let rate = Vector3::from_fn(|axis, _| slowest(end.rate[axis]));
     match &end.wheels {
         WheelCondition::Fixed(momenta) => Some(momenta.clone()),
@@ -150,12 +151,12 @@ impl Nominal {
         self.lengths.extend(next.lengths);
     }
 
-    /// Goes on from the rate of a single node to rest.
+    /// Extends a single node by a motion from its rate to rest.
     fn brake(&mut self, dynamics: &Dynamics, pace: f64) {
         *self = self.ramp(dynamics, pace, 1.0);
     }
 
-    /// Leads from rest to the rate of a single node.
+    /// Extends a single node by a motion from rest to its rate.
     fn speed_up(&mut self, dynamics: &Dynamics, pace: f64) {
         *self = self.ramp(dynamics, pace, -1.0);
         self.attitudes.reverse();
@@ -163,8 +164,8 @@ impl Nominal {
         self.lengths.reverse();
     }
 
-    /// Nodes from a single one to rest, forward or backward in time, the rate falling evenly about a
-    /// fixed axis and the null-space momentum held.
+    /// Nodes from a single one to rest, forward or backward in time, the rate falling evenly about
+    /// a fixed axis at constant null-space momentum.
     fn ramp(&self, dynamics: &Dynamics, pace: f64, direction: f64) -> Self {
         let (attitude, wheels) = self.last();
         let mut nodes = Self::at(attitude, wheels);
@@ -174,7 +175,7 @@ impl Nominal {
             return nodes;
         }
         let null = dynamics.null_component(&nodes.wheels[0]);
-        // However slow the turn: a body that brakes more slowly only turns farther.
+        // A body that brakes more slowly turns farther, so there is a least pace.
         let pace = pace.max(SLOWEST_BRAKE);
         let duration = size / (dynamics.axis_acceleration(&(rate / size)) * pace.powi(2));
         let turn = 0.5 * size * duration;
@@ -189,7 +190,7 @@ impl Nominal {
         nodes
     }
 
-    /// Moves the wheels of the body at rest.
+    /// Moves the wheels while the body rests.
     fn shift_to(&mut self, dynamics: &Dynamics, wheels: DVector<f64>) {
         let (attitude, from) = self.last();
         let shift = &wheels - &from;
@@ -221,7 +222,7 @@ impl Nominal {
         let acceleration = dynamics.axis_acceleration(&axis) * pace.powi(2);
         let course = BangCoastBang::fastest(angle, acceleration, fastest);
         if !(course.duration() > 0.0 && course.duration().is_finite()) {
-            // Limits that are hardly numbers allow no turn.
+            // Limits near the ends of the number range allow no turn.
             return None;
         }
         let mut before = 0.0;
@@ -235,7 +236,7 @@ impl Nominal {
         Some(())
     }
 
-    /// The motion that meets the nodes at the ends of every two intervals.
+    /// The motion under constant torques that meets every second node.
     fn followed(self, dynamics: &Dynamics) -> Option<Profile> {
         let mut profile = Profile {
             attitudes: self.attitudes,
@@ -254,8 +255,8 @@ fn steer(dynamics: &Dynamics, profile: &mut Profile, first: usize) -> Option<()>
     let target = profile.attitudes[first + 2];
     let lever = &dynamics.axes_inverse * dynamics.inertia;
     let missed = |profile: &Profile, first: usize| {
-        let middle = flown(dynamics, profile, first, &profile.attitudes[first]);
-        let end = flown(dynamics, profile, first + 1, &middle);
+        let middle = propagated(dynamics, profile, first, &profile.attitudes[first]);
+        let end = propagated(dynamics, profile, first + 1, &middle);
         (middle, end.signed_turn_to(&target.nearest_sign(&end)))
     };
     let mut slope: Option<Matrix3<f64>> = None;
@@ -265,7 +266,7 @@ fn steer(dynamics: &Dynamics, profile: &mut Profile, first: usize) -> Option<()>
         if error.norm() <= MET {
             return Some(());
         }
-        // By differences: the momentum in the body turns the answer to a torque as time goes on.
+        // By finite differences: the momentum in the body turns the response to a torque in time.
         let slope = *slope.get_or_insert_with(|| {
             let time = profile.lengths[first] + profile.lengths[first + 1];
             let by = TRIAL_TURN / time;
@@ -282,8 +283,8 @@ fn steer(dynamics: &Dynamics, profile: &mut Profile, first: usize) -> Option<()>
     None
 }
 
-/// Where an interval leads from an attitude.
-fn flown(dynamics: &Dynamics, profile: &Profile, k: usize, from: &Attitude) -> Attitude {
+/// The attitude at the end of interval `k` from an attitude at its beginning.
+fn propagated(dynamics: &Dynamics, profile: &Profile, k: usize, from: &Attitude) -> Attitude {
     let length = profile.lengths[k];
     let rate = |wheels: &DVector<f64>| {
         let held = dynamics.locked_momentum + &dynamics.axes * wheels;
@@ -299,7 +300,8 @@ fn flown(dynamics: &Dynamics, profile: &Profile, k: usize, from: &Attitude) -> A
     from.then_in_body(&turn)
 }
 
-/// Times of the nodes after the first, s: an even number, the ramps cut evenly and the coast too.
+/// Times of the nodes after the first, s: an even number, evenly spaced on each ramp and on the
+/// coast.
 fn node_times(dynamics: &Dynamics, course: &BangCoastBang, angle: f64) -> Vec<f64> {
     let turns = 2 * parts_of(angle, 2.0 * longest_turn(dynamics), MAX_PAIRS);
     let coast = turns.max(MIN_COAST);

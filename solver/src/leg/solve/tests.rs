@@ -1,4 +1,4 @@
-//! Slews with known answers.
+//! Legs with known answers.
 
 mod steered;
 
@@ -15,7 +15,10 @@ const J_EFF_Z: f64 = 9.63 - 0.000_169;
 fn dynamics(change: impl FnOnce(&mut ScenarioSpec)) -> Dynamics {
     let mut spec = crate::model::scenario::reference::experiment_a();
     change(&mut spec);
-    Dynamics::of(&Scenario::try_new(&spec).expect("a valid scenario").scenario)
+    Scenario::try_new(&spec)
+        .expect("a valid scenario")
+        .scenario
+        .dynamics()
 }
 
 fn at_rest(attitude: Attitude) -> Waypoint {
@@ -23,7 +26,7 @@ fn at_rest(attitude: Attitude) -> Waypoint {
         attitude,
         rate: [RateCondition::Fixed(0.0); 3],
         wheels: WheelCondition::Free,
-        price: None,
+        costates: None,
     }
 }
 
@@ -34,18 +37,18 @@ fn roll_pitch_yaw(angles_deg: [f64; 3]) -> Attitude {
 }
 
 fn rest_to_rest(dynamics: &Dynamics, from: Attitude, to: Attitude) -> f64 {
-    fly_between(dynamics, &at_rest(from), &at_rest(to), Arrival::Rotation).0
+    solve_between(dynamics, &at_rest(from), &at_rest(to), Arrival::Rotation).0
 }
 
-/// Duration and last attitude of a slew.
-fn fly_between(
+/// Duration and last attitude of a leg.
+fn solve_between(
     dynamics: &Dynamics,
     from: &Waypoint,
     to: &Waypoint,
     arrival: Arrival,
 ) -> (f64, Attitude) {
     let null = &DVector::zeros(dynamics.wheel_count() - 3);
-    let slew = LegProblem {
+    let leg = LegProblem {
         dynamics,
         from,
         to,
@@ -54,9 +57,9 @@ fn fly_between(
         extremals: &KinematicExtremals::of(dynamics),
         resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
-    let flown = solve(&slew, None, &|| None).flown;
-    let duration = flown.duration().expect("the slew converges");
-    (duration, *flown.profile.attitudes.last().expect("nodes"))
+    let solution = solve(&leg, None, &|| None).solution;
+    let duration = solution.duration().expect("the leg converges");
+    (duration, *solution.profile.attitudes.last().expect("nodes"))
 }
 
 /// The spacecraft of experiment A, held so that it can turn about z only.
@@ -95,10 +98,10 @@ fn a_long_turn_about_one_axis_is_bang_coast_bang() {
     assert!((eigenaxis.course.duration() / bang_coast_bang - 1.0).abs() < 1e-9);
 }
 
-/// Two axes that must hardly move leave a program next to no interior: it ends 2.5e-6 slower than
-/// the turn about the third, which can be flown as it is.
+/// Rate limits near zero about two axes leave the program a tiny interior: its solution is 2.5e-6
+/// slower than the turn about the third axis, which keeps all limits.
 #[test]
-fn no_slew_takes_longer_than_the_one_about_the_eigenaxis() {
+fn no_leg_takes_longer_than_the_eigenaxis_slew() {
     for (angle, rate) in [(0.05, None), (1.0, Some(0.005)), (3.0, None)] {
         let dynamics = held_to_z(rate);
         let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, angle));
@@ -111,14 +114,14 @@ fn no_slew_takes_longer_than_the_one_about_the_eigenaxis() {
 }
 
 #[test]
-fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
+fn the_eigenaxis_slew_replaces_a_leg_that_does_not_converge() {
     let turn = Vector3::new(0.3, -0.5, 0.7);
     let (from, to) = (
         at_rest(Attitude::identity()),
         at_rest(Attitude::from_rotation_vector(turn)),
     );
     let dynamics = dynamics(|_| {});
-    let slew = LegProblem {
+    let leg = LegProblem {
         dynamics: &dynamics,
         from: &from,
         to: &to,
@@ -127,48 +130,45 @@ fn where_no_start_converges_the_slew_about_the_eigenaxis_is_flown() {
         extremals: &KinematicExtremals::of(&dynamics),
         resolution: Resolution::of(Accuracy::Standard, &dynamics),
     };
-    let eigenaxis = slew.eigenaxis();
+    let eigenaxis = leg.eigenaxis();
     let failed = LegSolution {
         status: NlpStatus::IterationLimit,
-        profile: eigenaxis.exact(&dynamics, slew.intervals()),
-        intervals: vec![slew.intervals()],
+        profile: eigenaxis.exact(&dynamics, leg.intervals()),
+        intervals: vec![leg.intervals()],
         iterations: 0,
         infeasibility: 1.0,
         costates: Vec::new(),
     };
-    let instead = slew.eigenaxis_at_worst(&failed, &|| None);
-    let duration = instead.and_then(|flown| flown.duration());
+    let instead = leg.no_slower_than_eigenaxis(&failed, &|| None);
+    let duration = instead.and_then(|solution| solution.duration());
     let allowed = eigenaxis.course.duration() * (1.0 + EIGENAXIS_TOLERANCE);
     assert!(duration.is_some_and(|time| time <= allowed), "{duration:?}");
-    // Ends that ask for motion are not met by it.
+    // It begins and ends at rest, so it does not meet ends with a rate.
     let moving = Waypoint {
         rate: [RateCondition::Fixed(0.01); 3],
         ..to.clone()
     };
-    let slew = LegProblem {
-        to: &moving,
-        ..slew
-    };
-    assert!(slew.eigenaxis_at_worst(&failed, &|| None).is_none());
+    let leg = LegProblem { to: &moving, ..leg };
+    assert!(leg.no_slower_than_eigenaxis(&failed, &|| None).is_none());
 }
 
 #[test]
-fn the_published_leg_and_the_roll_that_traps_local_solvers() {
+fn a_published_leg_and_a_roll_with_a_second_local_minimum_are_solved() {
     let dynamics = dynamics(|_| {});
     let (a, b) = (
         roll_pitch_yaw([15.0, 0.0, 10.0]),
         roll_pitch_yaw([25.0, 0.0, 50.0]),
     );
-    let leg = rest_to_rest(&dynamics, a, b);
-    assert!((57.50..=57.60).contains(&leg), "{leg}");
+    let published = rest_to_rest(&dynamics, a, b);
+    assert!((57.50..=57.60).contains(&published), "{published}");
     let (h, n) = (
         roll_pitch_yaw([50.0, 0.0, 50.0]),
         roll_pitch_yaw([95.0, 0.0, 50.0]),
     );
     let roll = rest_to_rest(&dynamics, h, n);
     assert!(roll <= 53.99, "{roll}");
-    // From the first start alone: about the eigenaxis itself solvers stay at 55.3 s.
-    let slew = LegProblem {
+    // The first guess alone suffices; from the eigenaxis slew a local solver stays at 55.3 s.
+    let leg = LegProblem {
         dynamics: &dynamics,
         from: &at_rest(h),
         to: &at_rest(n),
@@ -177,8 +177,8 @@ fn the_published_leg_and_the_roll_that_traps_local_solvers() {
         extremals: &KinematicExtremals::of(&dynamics),
         resolution: Resolution::of(Accuracy::Standard, &dynamics),
     };
-    let guess = slew.extremals.guess(&slew).expect("a turn");
-    let first = slew.fly(&guess, &|| None).duration();
+    let guess = leg.extremals.guess(&leg).expect("a turn");
+    let first = leg.solve_from(&guess, &|| None).duration();
     assert!(first.is_some_and(|first| first <= 53.99), "{first:?}");
 }
 
@@ -217,16 +217,16 @@ fn free_end_rates_never_take_longer() {
         ],
         ..at_rest(attitude)
     };
-    let (bound, _) = fly_between(&dynamics, &free(a), &free(b), Arrival::Rotation);
+    let (bound, _) = solve_between(&dynamics, &free(a), &free(b), Arrival::Rotation);
     assert!(bound < rest_to_rest(&dynamics, a, b));
 }
 
 #[test]
-fn a_long_way_round_is_flown_when_the_sign_asks_for_it() {
+fn a_given_quaternion_sign_leads_the_long_way_round() {
     let dynamics = dynamics(|_| {});
     let to = Attitude::from_rotation_vector(Vector3::new(0.0, 0.0, 0.8));
     let (from, there) = (at_rest(Attitude::identity()), at_rest(to.negated()));
-    let (long, arrived) = fly_between(&dynamics, &from, &there, Arrival::Quaternion);
+    let (long, arrived) = solve_between(&dynamics, &from, &there, Arrival::Quaternion);
     assert!(long > 3.0 * rest_to_rest(&dynamics, Attitude::identity(), to));
     assert!(arrived.signed_turn_to(&to.negated()).norm() < 1e-6);
 }

@@ -17,7 +17,7 @@ use crate::math::quaternion::{Quat, conjugate, dot4, imaginary, product, quat, r
 use crate::nlp::{Link, LinkModel};
 use nalgebra::{Matrix3, Vector3};
 
-/// What the derivatives of one link are made of.
+/// The terms of one link's derivatives.
 pub(super) struct LinkTerms<'a> {
     /// Length of the interval.
     pub(super) tau: f64,
@@ -178,8 +178,8 @@ impl Transcription {
         turn
     }
 
-    /// The gap by wheel momenta, their changes and the length: `a = -tau b`, `c = -tau e` with the
-    /// wheels' rates `b = offset + gain h` and `e = b + gain m`.
+    /// Derivatives of the gap by wheel momenta, their changes and the length: `a = -tau b`,
+    /// `c = -tau e` with the wheels' rates `b = offset + gain h` and `e = b + gain m`.
     fn write_wheel_slopes(&self, terms: &LinkTerms<'_>, out: &mut LinkModel) {
         let (wheels, vars) = (self.wheels(), out.vars);
         let [by_begin, by_end, _] = terms.slopes;
@@ -240,7 +240,7 @@ impl Transcription {
         out.hessian[length_row + 3 + 2 * wheels] += along;
     }
 
-    /// Rows of `2 vec(target* q) = 0` by so many directions of a state.
+    /// Derivatives of `2 vec(target* q) = 0` by so many directions of a state.
     pub(super) fn write_attitude_rows(
         &self,
         target: &Quat,
@@ -269,8 +269,8 @@ impl LinkTerms<'_> {
 }
 
 /// The chart `2 vec(q)` of the hemisphere around the identity. Beyond it the vector part shrinks
-/// again towards `-1`, where it would pass for no error at all: not a number there, so that the
-/// line search stays on its side.
+/// again towards `-1`, which would look like no error at all: there the chart is NaN, so that the
+/// line search stays inside the hemisphere.
 pub(super) fn chart(q: &Quat) -> Vector3<f64> {
     if q[3] > 0.0 {
         imaginary(q) * 2.0

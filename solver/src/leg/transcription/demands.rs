@@ -1,4 +1,4 @@
-//! What the ends of a leg ask for beside the turn between them.
+//! The changes of rates and momenta that the ends of a leg require beside the turn between them.
 
 use super::{Waypoint, WheelCondition};
 use crate::model::dynamics::Dynamics;
@@ -6,8 +6,8 @@ use crate::model::scenario::RateCondition;
 use nalgebra::{DVector, Vector3};
 
 impl Waypoint {
-    /// Time, s, in which the wheels make the change of rates and of null-space momentum that this
-    /// place and the next one ask for; zero where both can be passed in the same way.
+    /// Time, s, that the wheels need for the change of rates and of null-space momentum between
+    /// this waypoint and the next one; zero where both admit the same values.
     pub(crate) fn change_time(&self, next: &Self, dynamics: &Dynamics) -> f64 {
         let change = Vector3::from_fn(|axis, _| between(self.rate[axis], next.rate[axis]));
         let size = change.norm();
@@ -27,7 +27,7 @@ impl Waypoint {
         of_rates + of_null
     }
 
-    /// The null-space momentum with which the place is passed, N m s, where it is given.
+    /// The null-space momentum at the waypoint, N m s, where it is given.
     fn null(&self, dynamics: &Dynamics) -> Option<DVector<f64>> {
         match &self.wheels {
             WheelCondition::Free => None,

@@ -1,12 +1,12 @@
 //! Rate limits in the middle of intervals.
 //!
 //! Between nodes the wheel momenta are linear, but stored momentum turns in body axes and bends the
-//! rates. Imposed at nodes alone a rate limit would be passed between them by `|H| theta^2 / (8 J)`
-//! where the body turns by `theta`, and a program would gain by making more of that: by long intervals,
-//! and by rates about one axis that alternate from interval to interval. With the middle limited too
-//! the mean of a rate over an interval exceeds its limit by nothing to that order, and there is nothing
-//! to gain. The rows are posed times the length of the interval, `tau limit -+ W >= 0`, so that they
-//! stay regular where it vanishes.
+//! rates. Imposed at nodes alone a rate limit would be exceeded between them by
+//! `|H| theta^2 / (8 J)` where the body turns by `theta`, and the program would exploit that: by
+//! long intervals, and by rates about one axis that alternate from interval to interval. With the
+//! middle limited too, the mean of a rate over an interval keeps its limit to that order. The rows
+//! are multiplied by the length of the interval, `tau limit -+ W >= 0`, so that they stay regular
+//! where it vanishes.
 
 use super::Transcription;
 use super::attitude_link::LinkTerms;
@@ -29,7 +29,7 @@ pub(super) struct MiddleRow {
     share: usize,
 }
 
-/// What the rate `W` is limited in.
+/// The quantity of the rate `W` that is limited.
 #[derive(Debug, Clone)]
 enum Side {
     /// `limit tau + direction . W >= 0`.
@@ -39,7 +39,7 @@ enum Side {
 }
 
 impl Side {
-    /// What is added to `limit tau`, its derivative by `W`, and minus its second one.
+    /// The summand beside `limit tau`, its derivative by `W`, and minus its second derivative.
     fn of(&self, rate: &Vector3<f64>) -> (f64, Vector3<f64>, Option<Matrix3<f64>>) {
         match self {
             Self::Along(direction) => (direction.dot(rate), *direction, None),
@@ -113,14 +113,15 @@ impl Transcription {
         rows.map(move |row| row.limit * (1.0 - reserves[row.share]) * tau + row.side.of(&rate).0)
     }
 
-    /// What the rows' multipliers weigh the rate in the middle with in the Lagrangian.
+    /// The covector that weighs the rate in the middle in the Lagrangian: the rows' slopes times
+    /// minus their multipliers.
     pub(super) fn middle_pull(&self, rate: &Vector3<f64>, z: &[f64]) -> Vector3<f64> {
         let rows = self.middle_rows.iter().zip(z);
         rows.map(|(row, z)| row.side.of(rate).1 * -z).sum()
     }
 
-    /// Writes the derivatives of the rows with these multipliers, and adds what bends them beside
-    /// the rate itself.
+    /// Writes the derivatives of the rows with these multipliers, and adds their curvature beside
+    /// that of the rate itself.
     pub(super) fn write_middle_rows(
         &self,
         terms: &LinkTerms<'_>,

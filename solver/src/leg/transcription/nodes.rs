@@ -7,14 +7,14 @@ use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::Vector3;
 
-/// Least unit of a rate limit's row, in units of a typical rate: in that of a limit near zero the
-/// row would be steeper than anything else by orders of magnitude.
+/// Smallest unit of a rate limit's row, in units of a typical rate. In the unit of a limit near
+/// zero the row would be steeper than all others by orders of magnitude.
 const MIN_RATE_UNIT: f64 = 1e-2;
 
 /// The rows of one node.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Node {
-    /// Attitude to be at.
+    /// The attitude, where it is given.
     pub(super) attitude: Option<Quat>,
     /// Rows that are zero.
     pub(super) equalities: Vec<Row>,
@@ -23,8 +23,8 @@ pub(super) struct Node {
     /// Whether speed and rate limits are imposed: not where the state is fixed, since a fixed
     /// state on a limit would leave no interior.
     pub(super) limited: bool,
-    /// Cost of the wheel momenta, scaled; empty where there is none.
-    pub(super) prices: Vec<f64>,
+    /// Costates of the wheel momenta, scaled; empty where momenta cost nothing.
+    pub(super) costates: Vec<f64>,
 }
 
 impl Transcription {
@@ -67,7 +67,7 @@ impl Transcription {
         let mut node = Node {
             attitude: Some(waypoint.attitude.xyzw()),
             limited: !waypoint.is_fixed(&self.dynamics),
-            prices: self.scaled_prices(waypoint),
+            costates: self.scaled_costates(waypoint),
             ..Node::default()
         };
         match &waypoint.wheels {
@@ -101,11 +101,11 @@ impl Transcription {
         node
     }
 
-    /// In units of time per unit of momentum.
-    fn scaled_prices(&self, waypoint: &Waypoint) -> Vec<f64> {
+    /// The costates of a waypoint in units of time per unit of momentum.
+    fn scaled_costates(&self, waypoint: &Waypoint) -> Vec<f64> {
         let unit = self.scales.momentum / self.scales.time;
-        let prices = waypoint.price.iter().flatten();
-        prices.map(|price| price * unit).collect()
+        let costates = waypoint.costates.iter().flatten();
+        costates.map(|costate| costate * unit).collect()
     }
 
     fn add_rate_rows(&self, axis: usize, condition: RateCondition, node: &mut Node) {
@@ -149,7 +149,7 @@ impl Transcription {
         for axis in 0..3 {
             let limit = self.dynamics.max_rate[axis];
             if limit.is_finite() && limit <= reachable[axis] {
-                // In units of the limit, but for an axis that is hardly allowed to turn at all.
+                // In units of the limit, unless that is close to zero.
                 let unit = limit.max(MIN_RATE_UNIT * self.scales.rate);
                 for sign in [1.0, -1.0] {
                     let limit = limit / unit;

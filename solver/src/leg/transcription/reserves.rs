@@ -1,4 +1,4 @@
-//! Reserves kept from limits at nodes, for what happens between them.
+//! Reserves kept from limits at nodes, so that the limits hold between nodes too.
 
 use crate::model::dynamics::Dynamics;
 

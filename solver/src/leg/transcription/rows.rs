@@ -1,16 +1,16 @@
 //! Constraints on a state: rows that are affine in body rate and wheel momenta.
 //!
-//! A row is posed as `c + y . w + g . h`, `w` in rad/s, `h` scaled. The rate depends on the attitude
-//! through the momentum `eta = R(q)^T H`, `w = Ji (eta - h_locked - hs A h)`, so the row is kept as
-//! `c' + p . eta + g' . h` with `p = Ji^T y`: without momentum its derivatives are constants. With an
-//! attitude step `d`, to second order,
+//! A row is posed as `c + y . w + g . h`, `w` in rad/s, `h` scaled. The rate depends on the
+//! attitude through the momentum `eta = R(q)^T H`, `w = Ji (eta - h_locked - hs A h)`, so the row
+//! is kept as `c' + p . eta + g' . h` with `p = Ji^T y`: without momentum its derivatives are
+//! constants. With an attitude step `d`, to second order,
 //!
 //! ```text
 //!   eta(d) = eta + eta x d + 1/2 d x (d x eta)
 //! ```
 //!
-//! Of what locked wheels take of the momentum in the course of time ([`Drift`]) every row has its
-//! share: `p . (eta - drift)`.
+//! Where locked wheels take momentum in the course of time ([`Drift`]), every row has
+//! `p . (eta - drift)` instead of `p . eta`.
 
 use super::{Transcription, quaternion_of};
 use crate::math::quaternion::rotate_back;
@@ -39,21 +39,21 @@ pub(super) struct LimitRow {
     pub(super) share: usize,
 }
 
-/// What the locked wheels have taken of the momentum since the beginning, as a function of a clock.
+/// Momentum that the locked wheels have taken since the beginning, as a function of a clock.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Drift {
     /// N m s, and its first two derivatives by the clock.
     pub(crate) taken: [Vector3<f64>; 3],
-    /// The clock among the directions of a state; none where nothing drifts.
+    /// Index of the clock among the directions of a state; `None` where nothing drifts.
     pub(crate) clock: Option<usize>,
 }
 
-/// A state as rows see it.
+/// What rows are evaluated on.
 pub(crate) struct StateView<'a> {
     /// `R(q)^T H`, N m s.
     pub(super) momentum: Vector3<f64>,
     pub(super) drift: Drift,
-    /// Scaled wheel momenta, and what else there is in the state.
+    /// Scaled wheel momenta, then the rest of the state.
     pub(super) wheels: &'a [f64],
 }
 
@@ -66,7 +66,7 @@ impl Row {
 }
 
 impl Transcription {
-    /// The row `c + y . w + g . h`; `g` by wheels, of which those that are not named have none.
+    /// The row `c + y . w + g . h`; `g` lists wheels with their coefficients, the others have zero.
     pub(crate) fn row(&self, constant: f64, rate: Vector3<f64>, wheels: &[(usize, f64)]) -> Row {
         let momentum = self.dynamics.inertia_inverse.tr_mul(&rate);
         let of_rate = |axis: &Vector3<f64>| -self.scales.momentum * momentum.dot(axis);
@@ -82,7 +82,7 @@ impl Transcription {
         row
     }
 
-    /// The state at a node as rows see it.
+    /// What rows are evaluated on at a node.
     pub(crate) fn view<'a>(&self, point: &'a [f64], drift: Drift) -> StateView<'a> {
         StateView {
             momentum: rotate_back(&quaternion_of(point), &self.dynamics.momentum),
@@ -127,8 +127,9 @@ impl Transcription {
         (1.0 - reserve).powi(2) - squares / self.dynamics.max_rate_norm.powi(2)
     }
 
-    /// Writes the norm limit's derivative and adds its curvature times `-z`, but for that of the
-    /// rates, which is returned as a covector on the momentum. `states` is the number of directions.
+    /// Writes the norm limit's derivative and adds its curvature times `-z`, except the curvature
+    /// of the rates, which is returned as a covector on the momentum. `states` is the number of
+    /// directions.
     pub(super) fn write_norm_row(
         &self,
         state: &StateView<'_>,

@@ -3,12 +3,12 @@
 use crate::model::dynamics::Dynamics;
 use nalgebra::Vector3;
 
-/// What one interval lasts, as a share of a slew: sets the unit of time.
+/// Unit of time as a share of a leg's duration: roughly the length of an interval.
 const INTERVAL_SHARE: f64 = 0.2;
-/// Peak rate of a slew in units of its mean rate, between one (a long coast) and two (none).
+/// Peak rate of a leg in units of its mean rate, between one (a long coast) and two (none).
 const PEAK_SHARE: f64 = 1.5;
 
-/// Turns, rad, below which there is none worth a unit.
+/// Smallest turn, rad, from which units are derived; smaller ones count as none.
 pub(crate) const MIN_TURN: f64 = 1e-9;
 
 /// Units of the scaled variables.
@@ -44,13 +44,13 @@ impl Scales {
 }
 
 impl Dynamics {
-    /// Time, s, that a guess takes at least: that of a turn which counts as none.
+    /// Least duration of a guess, s: that of the smallest turn that counts.
     pub(crate) fn least_duration(&self) -> f64 {
         2.0 * (MIN_TURN / self.axis_acceleration(&Vector3::x())).sqrt()
     }
 
-    /// The turn, rad, that a bang-bang in a time, s, makes: what a change of rates or momenta that
-    /// takes so long is measured in where nothing turns.
+    /// The turn, rad, of a bang-bang motion in a time, s. It scales legs that change rates or
+    /// momenta without a turn.
     pub(crate) fn turn_within(&self, duration: f64) -> f64 {
         0.25 * self.axis_acceleration(&Vector3::x()) * duration.powi(2)
     }

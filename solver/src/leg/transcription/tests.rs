@@ -50,7 +50,10 @@ fn dynamics(biased: bool) -> Dynamics {
         }],
         ..ScenarioSpec::default()
     };
-    Dynamics::of(&Scenario::try_new(&spec).expect("a valid scenario").scenario)
+    Scenario::try_new(&spec)
+        .expect("a valid scenario")
+        .scenario
+        .dynamics()
 }
 
 fn transcription(dynamics: &Dynamics) -> Transcription {
@@ -65,13 +68,13 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
                 RateCondition::Within(-0.1, 0.2),
             ],
             wheels: WheelCondition::NullSpace(null),
-            price: Some(DVector::from_vec(vec![0.7, -1.3, 0.4, 2.0])),
+            costates: Some(DVector::from_vec(vec![0.7, -1.3, 0.4, 2.0])),
         },
         Waypoint {
             attitude: Attitude::from_rotation_vector(Vector3::new(0.5, -0.4, 0.3)),
             rate: [RateCondition::Free; 3],
             wheels: WheelCondition::Free,
-            price: None,
+            costates: None,
         },
     ];
     let mut chain = Transcription::new(dynamics, scales, &waypoints, &[2]);

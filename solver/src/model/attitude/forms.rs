@@ -16,15 +16,15 @@ use crate::model::problem::{Code, Problem};
 use crate::model::spec::{AttitudeEquivalence, AttitudeSpec};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 
-/// Deviation from a rotation that rounding of a text form explains.
+/// Deviation from a rotation up to which it is attributed to rounding of the text.
 const SILENT_DEVIATION: f64 = 1e-6;
-/// Deviation from a rotation beyond which the numbers mean something else.
+/// Deviation from a rotation above which the numbers are no rotation.
 const MAX_DEVIATION: f64 = 1e-3;
 /// Sine of the angle to body Z below which a boresight lies along it.
 const ALONG_Z: f64 = 1e-6;
 
 impl Attitude {
-    /// Interprets an input form and tells what was doubtful about it.
+    /// Reads an input form; returns warnings beside the attitude.
     ///
     /// `pointer` is the JSON pointer of the attitude.
     ///
@@ -41,7 +41,7 @@ impl Attitude {
         findings.conclude(attitude)
     }
 
-    /// As [`Attitude::try_new`], for a reader of something larger.
+    /// Like [`Attitude::try_new`], for a reader of a larger description.
     pub fn read(
         spec: &AttitudeSpec,
         equivalence: AttitudeEquivalence,

@@ -109,7 +109,7 @@ fn right_ascension_declination_and_roll_follow_the_stated_convention() {
 }
 
 #[test]
-fn small_and_large_deviations_of_the_norm_are_told_apart() {
+fn small_deviations_of_the_norm_warn_and_large_ones_are_refused() {
     let scaled = |scale: f64| AttitudeSpec::Quaternion([0.6 * scale, 0.0, 0.0, 0.8 * scale]);
     assert_eq!(read(&scaled(1.0 + 1e-7)).unwrap().1, []);
     let (read_back, warnings) = read(&scaled(1.0 - 1e-4)).unwrap();
@@ -268,7 +268,7 @@ proptest! {
     ) {
         let vector = direction.to_reference(Vector3::x()) * angle;
         let turn = from.signed_turn_to(&from.retract(vector));
-        // Near a full turn the axis rests on a short vector part.
+        // Near a full turn the axis is inaccurate: the vector part is short.
         prop_assert!((turn - vector).norm() < 1e-14 / (0.5 * angle).sin());
     }
 
@@ -300,7 +300,7 @@ proptest! {
 }
 
 #[test]
-fn comparison_tells_the_signs_apart() {
+fn quaternions_of_opposite_sign_are_not_equal() {
     let attitude = Attitude::from_rotation_vector(Vector3::new(0.3, -0.2, 0.1));
     assert_ne!(attitude, attitude.negated());
     assert_eq!(attitude, attitude.negated().negated());

@@ -1,8 +1,9 @@
-//! What the wheels can do, by enumeration.
+//! Dynamics against enumeration, and the definition of zero momentum.
 
 use super::*;
 use crate::math::random::SplitMix;
 use crate::model::random::{direction, spacecraft};
+use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
 use crate::model::spec::WheelSpec;
 
@@ -15,7 +16,7 @@ fn corners() -> impl Iterator<Item = Vector3<f64>> {
 fn the_gyroscopic_acceleration_is_the_largest_of_all_corners() {
     let mut random = SplitMix::new(31);
     for case in 0..40 {
-        let mut dynamics = Dynamics::of(&spacecraft(&mut random, true));
+        let mut dynamics = spacecraft(&mut random, true).dynamics();
         dynamics.max_rate_norm = f64::INFINITY;
         let rates = dynamics.reachable_rates().inf(&dynamics.max_rate);
         for share in [0.0, dynamics.mean_inverse_inertia()] {
@@ -35,7 +36,7 @@ fn the_gyroscopic_acceleration_is_the_largest_of_all_corners() {
 fn the_axes_nearest_to_the_wheels_are_right_handed() {
     let mut random = SplitMix::new(32);
     for case in 0..40 {
-        let axes = Dynamics::of(&spacecraft(&mut random, false)).wheel_axes();
+        let axes = spacecraft(&mut random, false).dynamics().wheel_axes();
         let unit = axes.tr_mul(&axes) - Matrix3::identity();
         assert!(unit.amax() < 1e-12, "case {case}: {axes}");
         assert!(
@@ -48,7 +49,7 @@ fn the_axes_nearest_to_the_wheels_are_right_handed() {
 #[test]
 fn body_axes_are_natural_where_their_rates_are_limited() {
     let mut random = SplitMix::new(36);
-    let mut dynamics = Dynamics::of(&spacecraft(&mut random, false));
+    let mut dynamics = spacecraft(&mut random, false).dynamics();
     dynamics.max_rate = Vector3::new(f64::INFINITY, 0.1, f64::INFINITY);
     assert_eq!(dynamics.natural_axes(), Matrix3::identity());
     dynamics.max_rate.y = f64::INFINITY;
@@ -57,9 +58,9 @@ fn body_axes_are_natural_where_their_rates_are_limited() {
 }
 
 #[test]
-fn momentum_that_is_rounding_is_none() {
+fn momentum_below_rounding_counts_as_zero() {
     let mut spec = experiment_a();
-    // Four wheels of a pyramid turn along their null space: three tenths do not sum to nothing.
+    // Four wheels of a pyramid spin along their null space; their momenta cancel up to rounding.
     spec.spacecraft.wheels = [
         [1.0, 0.0, 1.0],
         [0.0, 1.0, 1.0],
@@ -74,7 +75,8 @@ fn momentum_that_is_rounding_is_none() {
     let with = |speeds: [f64; 4]| {
         let mut spec = spec.clone();
         spec.start.wheel_speed_rad_s = Some(speeds.into());
-        Dynamics::of(&Scenario::try_new(&spec).expect("valid").scenario)
+        let valid = Scenario::try_new(&spec).expect("valid");
+        valid.scenario.dynamics()
     };
     assert!(!with([300.3, -300.3, 300.3, -300.3]).has_momentum());
     assert!(!with([300.3, -300.3, 300.3, -300.3 * (1.0 + 1e-15)]).has_momentum());
@@ -91,15 +93,15 @@ fn a_body_that_turns_against_its_wheels_has_no_momentum() {
         spec.start.body_rate_rad_s = Some([rate, 0.0, 0.0]);
         spec.start.wheel_speed_rad_s = Some(vec![spin, 0.0, 0.0]);
         let scenario = Scenario::try_new(&spec).expect("valid").scenario;
-        assert!(!Dynamics::of(&scenario).has_momentum(), "{rate}");
+        assert!(!scenario.dynamics().has_momentum(), "{rate}");
     }
 }
 
 #[test]
-fn without_momentum_or_lever_nothing_is_gyroscopic() {
+fn the_gyroscopic_acceleration_vanishes_without_momentum_or_lever() {
     let mut random = SplitMix::new(35);
     let axis = direction(&mut random);
-    let mut dynamics = Dynamics::of(&spacecraft(&mut random, true));
+    let mut dynamics = spacecraft(&mut random, true).dynamics();
     dynamics.max_rate_norm = f64::INFINITY;
     dynamics.inertia_inverse = Matrix3::identity();
     // Equal moments of inertia, seen from axes that turn with the whole acceleration.
@@ -109,10 +111,10 @@ fn without_momentum_or_lever_nothing_is_gyroscopic() {
 }
 
 #[test]
-fn what_the_wheels_hold_at_a_rate_is_a_rate_again() {
+fn wheel_momenta_of_a_rate_give_the_rate_again() {
     let mut random = SplitMix::new(34);
     for case in 0..40 {
-        let dynamics = Dynamics::of(&spacecraft(&mut random, true));
+        let dynamics = spacecraft(&mut random, true).dynamics();
         let attitude = Attitude::from_rotation_vector(direction(&mut random));
         let rate = direction(&mut random) * 0.1;
         let null = DVector::from_element(dynamics.null_space.ncols(), 0.02);
@@ -123,10 +125,10 @@ fn what_the_wheels_hold_at_a_rate_is_a_rate_again() {
 }
 
 #[test]
-fn a_lower_limit_is_strayed_from_by_a_larger_share() {
+fn rates_stray_from_a_lower_limit_by_a_larger_share() {
     let mut random = SplitMix::new(33);
     for norm in [false, true] {
-        let mut dynamics = Dynamics::of(&spacecraft(&mut random, true));
+        let mut dynamics = spacecraft(&mut random, true).dynamics();
         dynamics.max_rate = Vector3::repeat(f64::INFINITY);
         dynamics.max_rate_norm = f64::INFINITY;
         assert!(dynamics.straying() <= 0.0);

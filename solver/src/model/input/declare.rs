@@ -77,7 +77,8 @@ macro_rules! input_object {
 
 /// Declares one text of several: an enum whose variants are `Variant = "text"`.
 ///
-/// The first variant is the default.
+/// The first variant is the default. `Display`, `FromStr` and `Into<&'static str>` have the texts of
+/// documents.
 #[macro_export]
 macro_rules! input_choice {
     (
@@ -90,10 +91,13 @@ macro_rules! input_choice {
         }
     ) => {
         $(#[doc = $doc])+
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumString, strum::IntoStaticStr,
+        )]
         $visibility enum $name {
             $(
                 $(#[doc = $variant_doc])+
+                #[strum(serialize = $text)]
                 $variant,
             )+
         }
@@ -101,14 +105,6 @@ macro_rules! input_choice {
         impl $name {
             /// All of them.
             $visibility const ALL: &[Self] = &[$(Self::$variant),+];
-
-            /// The text in documents.
-            #[must_use]
-            $visibility const fn as_str(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $text),+
-                }
-            }
         }
 
         impl Default for $name {
@@ -121,7 +117,7 @@ macro_rules! input_choice {
             type Value = Self;
 
             fn read<P: $crate::model::input::InputPlace>(place: &P) -> Option<Self> {
-                Some(Self::ALL[place.choice(&[$(Self::$variant.as_str()),+])?])
+                Some(Self::ALL[place.choice(&[$($text),+])?])
             }
 
             fn schema() -> $crate::model::input::Schema {

@@ -300,7 +300,9 @@ fn an_open_object_has_further_members() {
 #[test]
 fn the_first_text_of_a_choice_is_its_default() {
     assert_eq!(MaterialSpec::default(), MaterialSpec::Titanium);
-    let texts = MaterialSpec::ALL.iter().map(|material| material.as_str());
+    let texts = MaterialSpec::ALL
+        .iter()
+        .map(|&material| <&str>::from(material));
     assert_eq!(texts.collect::<Vec<_>>(), ["titanium", "steel"]);
 }
 

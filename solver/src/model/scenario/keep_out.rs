@@ -6,14 +6,14 @@ use crate::model::problem::{self, Code};
 use crate::model::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
 use nalgebra::Vector3;
 
-/// Most keep-out cones of a scenario.
+/// Limit of the keep-out cones of a scenario.
 pub const MAX_CONES: usize = 1000;
 
 pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
     if !findings.at_most("/keep_out", spec.keep_out.len(), MAX_CONES) {
         return None;
     }
-    // Read one by one first: collecting straight into an option would stop at the first fault.
+    // All are read before they are collected: collecting into an option stops at the first fault.
     let cones: Vec<_> = spec
         .keep_out
         .iter()
@@ -36,7 +36,7 @@ fn read(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<KeepOut> {
-    // Sought in the description, where a name is known even if its axis is refused.
+    // Looked up in the description, which has the name even if its axis is refused.
     let boresight = boresights.iter().find(|known| known.name == spec.boresight);
     if boresight.is_none() {
         let known = problem::quoted(boresights.iter().map(|b| b.name.as_str()));

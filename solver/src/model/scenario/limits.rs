@@ -1,27 +1,27 @@
-//! The limits that states at the boundaries must respect.
+//! The limits for the states at start and end.
 
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::model::spec::ScenarioSpec;
 use nalgebra::Vector3;
 
-/// Relative excess over a limit that a conversion of units explains.
+/// Relative excess over a limit that is attributed to the conversion of units.
 const ROUNDING: f64 = 1e-9;
 
-/// Limits taken straight from the description, so that they are known beside an invalid
-/// spacecraft; a limit that is absent or itself wrong is infinite here.
+/// Limits read from the description, so that they are known even if the spacecraft is invalid. A
+/// limit that is absent or invalid is infinite here.
 pub(super) struct Limits {
     /// Largest rate about each body axis, rad/s.
     pub(super) rate: [f64; 3],
     /// Largest norm of the rate, rad/s.
     pub(super) rate_norm: f64,
-    /// What each wheel may do.
+    /// The limits of each wheel.
     pub(super) wheels: Vec<WheelLimit>,
 }
 
-/// What a state may ask of a wheel.
+/// The limit of a wheel's speed.
 pub(super) struct WheelLimit {
-    /// Largest speed relative to the body, rad/s: the plan's share of it, or all of it for a
+    /// Largest speed relative to the body, rad/s: the share that a plan may use, or all of it for a
     /// locked wheel, which no plan uses.
     pub(super) speed: f64,
     /// Whether the wheel is locked at its start speed.
@@ -109,7 +109,7 @@ impl Limits {
     }
 }
 
-/// Whether the size of a value is beyond a limit by more than rounding.
+/// Whether the absolute value exceeds a limit by more than rounding.
 pub(super) fn exceeds(value: f64, limit: f64) -> bool {
     value.abs() > limit * (1.0 + ROUNDING)
 }

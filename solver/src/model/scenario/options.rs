@@ -4,9 +4,9 @@ use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::model::spec::OptionsSpec;
 
-/// Most further orders that may be asked for: each has to be proved.
+/// Limit of the further orders, each of which has to be proved.
 pub(crate) const MAX_ALTERNATIVES: usize = 100;
-/// Longest time limit, s: thirty years, well within what clocks can add.
+/// Largest time limit, s: thirty years, well within the range of clocks.
 const MAX_TIME_LIMIT: f64 = 1e9;
 
 /// Checks every option; `false` after a fault.

@@ -1,4 +1,4 @@
-//! What the description says about the order of the targets.
+//! The rules for the order of the targets.
 
 use crate::model::findings::Findings;
 use crate::model::order_rules::{DeadEnd, OrderRules};
@@ -6,8 +6,8 @@ use crate::model::problem::Code;
 use crate::model::spec::{ScenarioSpec, TargetSpec};
 use std::collections::{HashMap, HashSet};
 
-/// Reads positions and precedences; whether any order keeps them all is asked when each of them
-/// makes sense.
+/// Reads positions and precedences. Whether an order keeps them all is checked when each of them is
+/// valid.
 pub(super) fn read(spec: &ScenarioSpec, findings: &mut Findings) -> Option<OrderRules> {
     let positions = read_positions(&spec.targets, findings);
     let after = read_precedences(&spec.targets, findings)
@@ -113,11 +113,10 @@ fn cycles_are_absent(
     cycles.is_empty()
 }
 
-/// Circles without a common target, at least one in every knot of targets that wait for each other.
+/// Cycles without a common target, at least one in every strongly connected set of targets.
 fn cycles(after: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let waits = waiting(after);
-    // Whoever waits for ever does so for another one that does: going on from one to the next ends
-    // in a circle.
+    // Every blocked target has a blocked predecessor, so following predecessors ends in a cycle.
     let next = |target: usize| after[target].iter().copied().find(|&before| waits[before]);
     let mut passed = vec![None; after.len()];
     let mut cycles = Vec::new();
@@ -137,7 +136,7 @@ fn cycles(after: &[Vec<usize>]) -> Vec<Vec<usize>> {
     cycles
 }
 
-/// Which targets never have all their predecessors behind them.
+/// Whether each target is blocked: on a cycle, or after a target on one.
 fn waiting(after: &[Vec<usize>]) -> Vec<bool> {
     let mut successors = vec![Vec::new(); after.len()];
     for (target, predecessors) in after.iter().enumerate() {
@@ -158,7 +157,7 @@ fn waiting(after: &[Vec<usize>]) -> Vec<bool> {
     awaited.into_iter().map(|count| count > 0).collect()
 }
 
-/// Refuses rules that make sense one by one and admit no order together.
+/// Refuses rules that are valid one by one and admit no order together.
 fn refuse_all(targets: &[TargetSpec], dead_end: DeadEnd, findings: &mut Findings) {
     let (pointer, message) = match dead_end {
         DeadEnd::Overdue { target, due } => {

@@ -1,5 +1,7 @@
 //! A published scenario for unit tests.
 
+use super::Scenario;
+use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
 };
@@ -27,6 +29,14 @@ pub(crate) fn experiment_a() -> ScenarioSpec {
         end: Some(StateSpec::default()),
         targets: targets.map(target).into(),
         ..ScenarioSpec::default()
+    }
+}
+
+impl Scenario {
+    /// The dynamics that a solve of the scenario uses.
+    pub(crate) fn dynamics(&self) -> Dynamics {
+        let authority = Authority::of(&self.options);
+        Dynamics::of(&self.spacecraft, &self.start, authority)
     }
 }
 

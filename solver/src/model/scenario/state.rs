@@ -1,7 +1,7 @@
 //! The states at the start and at the end.
 
 use super::limits::{Limits, exceeds};
-use super::{End, Start, momentum_at};
+use super::{End, Start};
 use crate::model::attitude::Attitude;
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
@@ -9,10 +9,10 @@ use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::{AttitudeEquivalence, StateSpec};
 use nalgebra::Vector3;
 
-/// Disagreement of the momentum at the end with the conserved one, relative to the sizes of the
-/// terms, that rounding of the wheel speeds explains.
+/// Difference between the momentum at the end and the conserved one, relative to the terms, that is
+/// attributed to rounding of the wheel speeds.
 const MOMENTUM_TOLERANCE: f64 = 1e-6;
-/// The same relative to what the wheels can hold, for momenta that are zero but for rounding.
+/// The same relative to the capacity of the wheels, for momenta that are zero up to rounding.
 const CAPACITY_TOLERANCE: f64 = 1e-9;
 
 pub(super) fn read_start(
@@ -123,7 +123,7 @@ fn keeps_locked_wheels(
     kept
 }
 
-/// Refuses rates and speeds so large that their momentum leaves the number range.
+/// Refuses rates and speeds whose momentum is outside the number range.
 pub(super) fn momentum_is_finite(
     momentum: &Vector3<f64>,
     pointer: &str,
@@ -146,7 +146,7 @@ pub(super) fn momentum_is_finite(
 
 /// Whether wheel speeds given at the end carry the conserved momentum at that attitude and rate.
 ///
-/// Three equations bind any number of wheels; with three of them nothing is left to choose.
+/// These are three equations for the speeds of all wheels; three wheels have no other speeds.
 /// Without speeds only the size of the rate is checked.
 pub(super) fn end_conserves_momentum(
     spacecraft: &Spacecraft,
@@ -157,7 +157,7 @@ pub(super) fn end_conserves_momentum(
     let Some(speeds) = &end.wheel_speed else {
         return momentum_is_finite(&(spacecraft.inertia() * end.rate), "/end", findings);
     };
-    let conserved = end.attitude.to_body(momentum_at(spacecraft, start));
+    let conserved = end.attitude.to_body(start.momentum(spacecraft));
     let given = spacecraft.body_momentum(end.rate, speeds);
     let terms = spacecraft.wheels().iter().zip(speeds);
     let stored: f64 = terms

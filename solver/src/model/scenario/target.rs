@@ -1,4 +1,4 @@
-//! The targets and what is asked of the rate there.
+//! The targets and the conditions on the rate there.
 
 use super::limits::{Limits, exceeds};
 use super::{RateCondition, Target};
@@ -8,10 +8,10 @@ use crate::model::problem::Code;
 use crate::model::spec::{ScenarioSpec, TargetSpec};
 use std::collections::HashSet;
 
-/// Most targets of a scenario: legs between all of them are more than any disk holds. What can be
-/// planned ends far below.
+/// Limit of the targets of a scenario, far above what can be planned: legs between that many exceed
+/// any disk.
 pub const MAX_TARGETS: usize = 10_000;
-/// Names by which legs call the ends of the tour.
+/// Reserved names of the ends of the tour.
 const RESERVED: [&str; 2] = ["start", "end"];
 
 pub(super) fn read_all(
@@ -32,7 +32,7 @@ pub(super) fn read_all(
         return None;
     }
     let mut ids = HashSet::new();
-    // Read one by one first: collecting straight into an option would stop at the first fault.
+    // All are read before they are collected: collecting into an option stops at the first fault.
     let targets: Vec<_> = spec
         .targets
         .iter()
@@ -204,7 +204,7 @@ struct Bounds<'a> {
 }
 
 impl Bounds<'_> {
-    /// Refuses bounds that only rates beyond the spacecraft's limits satisfy.
+    /// Refuses bounds that exclude all rates within the spacecraft's limits.
     fn check_limits(&self, spec: &TargetSpec, limits: &Limits, findings: &mut Findings) -> bool {
         let mut reachable = true;
         let mut refuse = |pointer: String, least: f64, limit: f64| {
@@ -241,7 +241,7 @@ impl Bounds<'_> {
         reachable
     }
 
-    /// Refuses bounds that exclude the rest which settling and dwelling require.
+    /// Refuses bounds that exclude rest, which settling and dwelling require.
     fn check_rest(&self, findings: &mut Findings) -> bool {
         let mut allowed = true;
         for (i, &(min, max)) in self.ranges.iter().enumerate() {

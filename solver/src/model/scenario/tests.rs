@@ -7,7 +7,7 @@ use crate::model::spec::{
     AttitudeEquivalence, AttitudeSpec, BoresightSpec, KeepOutSpec, StateSpec,
 };
 
-/// What to change in a valid description, the code expected of it, and where.
+/// A change of a valid description, and the code and pointer that are expected.
 type Fault = (fn(&mut ScenarioSpec), Code, &'static str);
 
 fn valid() -> ScenarioSpec {
@@ -49,7 +49,7 @@ fn expect_faults(table: &[Fault]) {
 }
 
 #[test]
-fn a_valid_description_is_taken_over() {
+fn a_valid_description_becomes_a_scenario() {
     let mut spec = valid();
     spec.epoch = Some("2026-01-01T00:00:00Z".to_owned());
     spec.time_system = Some("UTC".to_owned());
@@ -146,7 +146,7 @@ fn faults_of_start_and_end_are_found() {
 }
 
 #[test]
-fn unlimited_rates_must_still_leave_a_momentum_to_compute_with() {
+fn unlimited_rates_must_have_a_finite_momentum() {
     expect_faults(&[
         (
             |s| {
@@ -402,7 +402,7 @@ fn bounds_become_conditions() {
 }
 
 #[test]
-fn rest_is_required_unless_something_else_is_said() {
+fn rest_is_required_without_other_conditions() {
     let mut spec = valid();
     spec.targets[0].zero_rate_axes = None;
     let scenario = Scenario::try_new(&spec).unwrap().scenario;
@@ -437,7 +437,7 @@ fn a_locked_wheel_keeps_its_speed_and_ignores_the_authority() {
     spec.start.wheel_speed_rad_s = Some(vec![0.0, 0.0, 0.0, 700.0]);
     end(&mut spec).wheel_speed_rad_s = Some(vec![0.0, 0.0, 0.0, 700.0]);
     assert!(Scenario::try_new(&spec).is_ok());
-    // The same momentum, but moved from the locked wheel to its parallel neighbour.
+    // The same momentum, moved from the locked wheel to a parallel one.
     end(&mut spec).wheel_speed_rad_s = Some(vec![0.0, 0.0, 100.0, 600.0]);
     let problems = Scenario::try_new(&spec).unwrap_err();
     let found: Vec<_> = problems
@@ -451,7 +451,7 @@ fn a_locked_wheel_keeps_its_speed_and_ignores_the_authority() {
 }
 
 #[test]
-fn an_end_alone_is_a_task() {
+fn a_scenario_may_have_an_end_and_no_targets() {
     let mut spec = valid();
     spec.targets.clear();
     assert!(

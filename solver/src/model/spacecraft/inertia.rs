@@ -1,4 +1,4 @@
-//! Which matrices are the inertia of a rigid body.
+//! The inertia of a rigid body: symmetric, positive definite, with the triangle inequality.
 
 use crate::model::findings::Findings;
 use crate::model::problem::Code;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::model::scenario::reference::experiment_a;
 
-/// What to change in a valid description, the code expected of it, and where.
+/// A change of a valid description, and the code and pointer that are expected.
 type Fault = (fn(&mut SpacecraftSpec), Code, &'static str);
 
 fn valid() -> SpacecraftSpec {
@@ -30,7 +30,7 @@ fn diagonal(x: f64, y: f64, z: f64) -> [[f64; 3]; 3] {
 }
 
 #[test]
-fn a_valid_description_is_taken_over() {
+fn a_valid_description_becomes_a_spacecraft() {
     let spacecraft = Spacecraft::try_new(&valid(), "/spacecraft").unwrap();
     let j_eff = spacecraft.effective_inertia();
     assert!((j_eff.m11 - (6.63 - 0.000_169)).abs() < 1e-15);
@@ -41,7 +41,7 @@ fn a_valid_description_is_taken_over() {
     assert!(spacecraft.max_rate_norm().is_infinite());
 }
 
-/// Has an axis enter as it is, with another length.
+/// Gives an axis another length and switches its normalisation off.
 fn unscaled(wheel: &mut crate::model::spec::WheelSpec, length: f64) {
     wheel.normalize_axis = false;
     wheel.axis = wheel.axis.map(|component| component * length);
@@ -223,7 +223,7 @@ fn limiting_inertias_are_accepted_at_any_scale() {
 }
 
 #[test]
-fn rounding_of_mirrored_entries_is_evened_out() {
+fn mirrored_entries_that_differ_by_rounding_are_averaged() {
     let mut spec = valid();
     spec.inertia_kg_m2[0][1] = 0.1;
     spec.inertia_kg_m2[1][0] = 0.1 + 1e-10;
@@ -234,7 +234,7 @@ fn rounding_of_mirrored_entries_is_evened_out() {
 }
 
 #[test]
-fn an_axis_enters_as_given_when_asked() {
+fn an_axis_keeps_its_length_without_normalisation() {
     let mut spec = valid();
     spec.wheels[0].axis = [2.0, 0.0, 0.0];
     let unit = Spacecraft::try_new(&spec, "").unwrap();
@@ -247,7 +247,7 @@ fn an_axis_enters_as_given_when_asked() {
 }
 
 #[test]
-fn a_disabled_wheel_spans_nothing_and_stays_in_the_inertia() {
+fn a_disabled_wheel_spans_no_axis_and_stays_in_the_inertia() {
     let mut spec = valid();
     let mut fourth = spec.wheels[2].clone();
     fourth.axis = [1.0, 1.0, 1.0];

@@ -1,4 +1,4 @@
-//! Which sets of wheels can turn a body about every axis.
+//! The wheels of a spacecraft, which have to turn it about every axis.
 
 use super::Wheel;
 use super::inertia::positive_definite_inverse;
@@ -8,9 +8,9 @@ use crate::model::spec::WheelSpec;
 use crate::model::wheel_axes;
 use nalgebra::{DMatrix, Matrix3};
 
-/// Most enabled wheels.
+/// Limit of the enabled wheels.
 pub(crate) const MAX_ENABLED: usize = 17;
-/// Most wheels of a spacecraft, enabled or not.
+/// Limit of the wheels of a spacecraft, enabled or not.
 pub const MAX_WHEELS: usize = 100;
 
 /// Reads the wheels, of which the enabled ones must span space, with the pseudo-inverse of their
@@ -23,7 +23,7 @@ pub(super) fn read(
     if !findings.at_most(pointer, specs.len(), MAX_WHEELS) {
         return None;
     }
-    // Read one by one first: collecting straight into an option would stop at the first fault.
+    // All are read before they are collected: collecting into an option stops at the first fault.
     let wheels: Vec<_> = specs
         .iter()
         .enumerate()

@@ -43,7 +43,7 @@ input_object! {
         pub min_torque_nm: Option<f64> = optional().below(0.0),
         /// Limit of the speed relative to the body; none without it.
         pub max_speed_rad_s: Option<f64> = optional().above(0.0),
-        /// A disabled wheel is locked at its start speed.
+        /// Whether the wheel may be commanded; a disabled wheel is locked at its start speed.
         pub enabled: bool = or(true),
     }
 }

@@ -1,15 +1,15 @@
 //! One stage of the Riccati recursion, in blocks of fixed size.
 //!
-//! With `[L_vv; L_xv]` the factor of the controls' columns of `M + [A B]^T P+ [A B]`, the cost to go
-//! is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`. The
-//! controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
+//! With `[L_vv; L_xv]` the factor of the controls' columns of `M + [A B]^T P+ [A B]`, the cost to
+//! go is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`.
+//! The controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
 
-use crate::nlp::model::LinkModel;
+use crate::nlp::chain::LinkModel;
 
 /// A row-major matrix.
 pub(super) type Matrix<const ROWS: usize, const COLUMNS: usize> = [[f64; COLUMNS]; ROWS];
 
-/// What the sweeps keep of a stage.
+/// The factors of a stage that the sweeps store.
 #[derive(Debug, Clone)]
 pub(super) struct Stage<const N: usize, const M: usize> {
     /// `A`.
@@ -100,7 +100,7 @@ pub(super) struct Blocks<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Blocks<N, M> {
-    /// `H + J^T sigma J + delta I` of a model of `n` states, the identity in the rows to spare.
+    /// `H + J^T sigma J + delta I` of a model of `n` states, the identity in surplus rows.
     pub(super) fn condensed(
         model: &LinkModel,
         n: usize,
@@ -116,7 +116,7 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
         };
         if hessian {
             for (i, row) in model.hessian.chunks_exact(vars).enumerate() {
-                // Of what is above the diagonal nothing is read.
+                // Entries above the diagonal are not read.
                 let (states, controls) = row.split_at(n);
                 if i < n {
                     blocks.states[i] = padded(states);
@@ -211,9 +211,9 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
     }
 }
 
-/// A vector with zeros to spare.
+/// A vector extended by zeros.
 pub(super) fn padded<const L: usize>(values: &[f64]) -> [f64; L] {
-    // The exact size is the usual one, and a copy of known length.
+    // The common case: the exact size, a copy of known length.
     values.first_chunk().copied().unwrap_or_else(|| {
         let mut all = [0.0; L];
         all[..values.len()].copy_from_slice(values);

@@ -1,8 +1,8 @@
-//! The equations of a step, solved: a particular solution and what they leave free.
+//! The linear equations of a step: a particular solution and the null space.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Pivots below this share of the first are zero: equations that repeat others.
+/// Pivots below this share of the first count as zero: their equations depend on others.
 const DEPENDENT: f64 = 1e-10;
 
 /// The solutions `d = particular + basis y` of `E d = -c`.

@@ -8,12 +8,12 @@
 //!   subject to  E d + c = 0,   J d + g >= 0
 //! ```
 //!
-//! The equations are eliminated ([`NullSpace`]): `d = d_0 + Z y`. The general solver wants the
-//! Hessian `Z^T W Z` positive, which that of the Lagrangian is at best along the inequalities that
-//! bind too. Therefore `weight (J_b d + g_b)^2 / 2` is added for the rows `b` that bind, with the
-//! least weight that serves: where they keep binding the term vanishes with its derivative, and the
-//! step is that of the exact Hessian. Where no weight serves, negative curvatures are replaced by
-//! their sizes.
+//! The equations are eliminated ([`NullSpace`]): `d = d_0 + Z y`. The general solver needs a
+//! positive Hessian `Z^T W Z`, but at a minimum that of the Lagrangian is positive only along the
+//! inequalities that bind. Therefore `weight (J_b d + g_b)^2 / 2` is added for the rows `b` that
+//! bind, with the least weight that makes it positive: where they keep binding the term vanishes
+//! with its derivative, and the step is that of the exact Hessian. Where no weight does, negative
+//! eigenvalues are replaced by their absolute values.
 
 use super::null_space::NullSpace;
 use crate::math::convex::{ConvexProgram, Ending};
@@ -24,15 +24,15 @@ use nalgebra::{DMatrix, DVector};
 const WEIGHTS: [f64; 5] = [0.0, 1.0, 1e1, 1e2, 1e3];
 /// Least curvature.
 const LEAST: f64 = 1e-6;
-/// Damping from which an unsolved program is taken to be infeasible.
-const HELPLESS: f64 = 1.0;
+/// Damping from which an unsolved program counts as infeasible.
+const INFEASIBLE_DAMPING: f64 = 1.0;
 /// Cost of a unit of violation where the linearised conditions contradict each other, and the
 /// curvature of all unknowns then.
 const ELASTIC: f64 = 1e3;
 const ELASTIC_CURVATURE: f64 = 1.0;
-/// Share of the violation that a step must promise to remove when the conditions contradict each
-/// other.
-const PROMISE: f64 = 1e-3;
+/// Share of the violation that the linearised conditions must predict to vanish when they
+/// contradict each other.
+const PREDICTED_DECREASE: f64 = 1e-3;
 
 /// All conditions and derivatives at a point.
 pub(super) struct Linearisation {
@@ -148,9 +148,9 @@ impl Linearisation {
     pub(super) fn step(&self, damping: f64) -> Option<Stepped> {
         match self.step_to(&self.equal_value, &self.above_value, damping) {
             Ok(step) => Some(step),
-            // A little damping often makes a program solvable; where much does not, it is likely
-            // to be infeasible.
-            Err(Refused::Unsolved) if damping < HELPLESS => None,
+            // A little damping often makes a program solvable. One that a lot does not is probably
+            // infeasible.
+            Err(Refused::Unsolved) if damping < INFEASIBLE_DAMPING => None,
             Err(_) => self.elastic_step(),
         }
     }
@@ -231,8 +231,8 @@ impl Linearisation {
         })
     }
 
-    /// The step where the linearised conditions contradict each other: all of them may be violated
-    /// at a price.
+    /// The step where the linearised conditions contradict each other: with linear penalties on all
+    /// violations.
     fn elastic_step(&self) -> Option<Stepped> {
         let unknowns = self.gradient.len();
         let program = relaxed(&ConvexProgram {
@@ -280,11 +280,11 @@ impl Stepped {
     /// Whether the linearised conditions contradict each other and hardly less so after the step.
     pub(super) fn unreachable(&self, here: &Linearisation) -> bool {
         let left = here.violation_after(&self.direction);
-        self.elastic && left > (1.0 - PROMISE) * here.violation()
+        self.elastic && left > (1.0 - PREDICTED_DECREASE) * here.violation()
     }
 }
 
-/// The program with every condition violable at a price.
+/// The program with linear penalties instead of conditions.
 fn relaxed(program: &ConvexProgram) -> ConvexProgram {
     let (equations, rows) = (program.equal_to.len(), program.at_most.len());
     let unknowns = program.cost.len();

@@ -1,4 +1,4 @@
-//! The second engine on problems with known answers, as the first is tested.
+//! The second engine on problems with known answers.
 
 use super::*;
 use crate::nlp::tests::carts::{Least, Metered, Period, Sampled};
@@ -38,8 +38,8 @@ fn bounds_and_repeated_conditions_are_met() {
 }
 
 #[test]
-fn contradictions_are_suspected() {
-    // Less time than none.
+fn contradictory_conditions_are_suspected_to_be_infeasible() {
+    // A negative duration.
     let problem = Metered {
         least: Least::EffortWithin(-1.0),
         intervals: 3,

@@ -6,11 +6,11 @@ use super::TIGHT;
 use crate::nlp::NlpReport;
 use crate::nlp::{Chain, InteriorPoint, Iterate, Link, LinkModel, LinkMultipliers, LinkValues};
 
-/// Least length of a free interval: one that vanishes leaves its acceleration without meaning, and
+/// Least length of a free interval: an interval of no length has no determined acceleration, and
 /// the journey with one interval less is then another stationary point.
 const SHORTEST: f64 = 0.01;
 
-/// What is least in a [`Metered`] journey, the other being given.
+/// The quantity that a [`Metered`] journey minimises, the other one being given.
 #[derive(Clone, Copy)]
 pub(crate) enum Least {
     /// The effort `sum a^2 tau`; the journey takes exactly this long.
@@ -26,12 +26,12 @@ pub(crate) struct Metered {
     pub(crate) intervals: usize,
 }
 
-/// What is known of the common interval length of a [`Sampled`] journey.
+/// The common interval length of a [`Sampled`] journey.
 #[derive(Clone, Copy)]
 pub(crate) enum Period {
-    /// Nothing: the journey with `|a| <= 1` is to be short.
+    /// Unknown: the duration is minimised with `|a| <= 1`.
     Free,
-    /// Its value: the effort is to be little.
+    /// Given: the effort is minimised.
     Given(f64),
 }
 

@@ -1,8 +1,8 @@
-//! Starting warm, stopping soon, saying where numbers broke down, allocating nothing.
+//! Warm starts, interruption, breakdowns and allocation.
 
 use super::carts::{Least, Metered, Period, Sampled, solve};
 use super::*;
-use crate::nlp::settings::{Breakdown, Interruption, Quantity};
+use crate::run::stop::StopReason;
 use std::cell::Cell;
 
 const JOURNEY: Metered = Metered {
@@ -10,7 +10,7 @@ const JOURNEY: Metered = Metered {
     intervals: 20,
 };
 
-/// A chain that counts evaluations at its first node, and spoils a derivative when asked to.
+/// A chain that counts evaluations of its first node, and makes a derivative of one node NaN.
 struct Watched<C> {
     chain: C,
     evaluations: Cell<usize>,
@@ -115,7 +115,7 @@ fn the_stop_signal_is_polled_between_evaluations() {
     let (report, most) = watched(JOURNEY, JOURNEY.guess());
     assert_eq!(report.status, NlpStatus::Converged);
     assert!(most <= 2, "{most} evaluations without a poll");
-    // Out of reach, so that it ends in restoration.
+    // The goal is out of reach, so the solve ends in restoration.
     let cart = Cart {
         intervals: 1,
         goal: 50.0,
@@ -129,11 +129,12 @@ fn the_stop_signal_is_polled_between_evaluations() {
 
 #[test]
 fn the_reason_of_an_interruption_is_the_status() {
-    for (reason, status, text) in [
-        (Interruption::TimeLimit, NlpStatus::TimeLimit, "time_limit"),
-        (Interruption::Cancelled, NlpStatus::Cancelled, "cancelled"),
+    for (reason, text) in [
+        (StopReason::TimeLimit, "time_limit"),
+        (StopReason::Requested, "cancelled"),
+        (StopReason::Cancelled, "cancelled"),
     ] {
-        // At once, and anywhere later.
+        // At the first poll, and at every later one.
         for after in 0..40 {
             let (mut iterate, polls) = (JOURNEY.guess(), Cell::new(0));
             let mut engine = InteriorPoint::new(&JOURNEY, TIGHT);
@@ -145,7 +146,8 @@ fn the_reason_of_an_interruption_is_the_status() {
                 assert!(after > 0);
                 continue;
             }
-            assert_eq!(report.status, status, "after {after} polls");
+            let interrupted = NlpStatus::Interrupted(reason);
+            assert_eq!(report.status, interrupted, "after {after} polls");
             assert!(report.iterations <= after);
             assert_eq!(report.status.to_string(), text);
         }
@@ -159,7 +161,7 @@ fn a_breakdown_names_stage_and_quantity() {
     start.controls[2 * 7] = f64::INFINITY;
     assert_eq!(solve(&JOURNEY, start).0.status, broken(7, Quantity::Gap));
     let mut start = JOURNEY.guess();
-    // The effort at the end is the cost, and the link before is checked first.
+    // The effort at the end is the cost of the last node; the link before it is checked first.
     let last = start.points.len() - 1;
     start.points[last] = f64::NAN;
     assert_eq!(solve(&JOURNEY, start).0.status, broken(19, Quantity::Gap));
@@ -193,7 +195,7 @@ fn the_inner_loop_allocates_nothing() {
             let report = engine.solve(&sampled, &mut iterate, &|| None);
             assert_eq!(report.status, NlpStatus::IterationLimit);
         });
-        // The multipliers are there now: another solve needs nothing more.
+        // The iterate has its multipliers now: another solve allocates nothing.
         let again = allocation_counter::measure(|| {
             engine.solve(&sampled, &mut iterate, &|| None);
         });

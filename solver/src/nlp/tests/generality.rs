@@ -17,7 +17,7 @@ fn least_effort_in_a_given_time_with_free_lengths() {
                 (effort / expected - 1.0).abs() < 1e-6,
                 "{intervals}, {time}: {effort} against {expected}"
             );
-            // Equal lengths are best, and nothing but the optimum says so.
+            // Equal lengths are optimal, and no condition asks for them.
             for control in iterate.controls.chunks_exact(2) {
                 assert!((control[1] * intervals as f64 / time - 1.0).abs() < 1e-3);
             }
@@ -48,7 +48,7 @@ fn sampled_commands_with_one_free_period() {
         };
         let (report, iterate) = solve(&problem, problem.guess());
         assert_eq!(report.status, NlpStatus::Converged, "{intervals}");
-        // An even number is bang-bang; of an odd one the middle sample coasts.
+        // Even numbers of samples are bang-bang; with odd ones the middle sample coasts.
         let half = f64::from(half);
         let samples = if intervals % 2 == 0 { half } else { half + 1.0 };
         let expected = (half * samples).sqrt().recip();

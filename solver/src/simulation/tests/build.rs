@@ -53,7 +53,7 @@ pub(super) fn scenario() -> Scenario {
     Scenario::try_new(&spec()).expect("valid").scenario
 }
 
-/// The same without stored momentum, so that it can stay where it is.
+/// The same without stored momentum, so that it stays at rest without torques.
 pub(super) fn calm_scenario() -> Scenario {
     let mut spec = spec();
     spec.start.wheel_speed_rad_s = None;
@@ -69,7 +69,7 @@ fn control(start_s: f64, duration_s: f64, torque: [f64; 4]) -> Control {
     }
 }
 
-/// Torques that switch off the grid of any computer, in twenty seconds.
+/// Twenty seconds of torques that switch at times off every sampling grid.
 pub(super) fn lively() -> Flight {
     Flight {
         total_time_s: 20.0,

@@ -1,4 +1,4 @@
-//! Random numbers: the same for any number of threads, and those that were asked for.
+//! Random errors: independent of the number of threads, and with the given deviations.
 
 use super::super::{ErrorsSpec, SimulationSpec, Spread};
 use super::build::{calm_scenario, idle, lively, scenario, simulation};
@@ -38,7 +38,7 @@ fn spread(spec: &SimulationSpec, threads: usize, stop: &StopSignal) -> Spread {
 }
 
 #[test]
-fn the_number_of_threads_changes_nothing() {
+fn the_result_does_not_depend_on_the_number_of_threads() {
     let (spec, stop) = (every_error(), StopSignal::new());
     let one = spread(&spec, 1, &stop);
     assert_eq!(one, spread(&spec, 2, &stop));
@@ -52,14 +52,14 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn one_flight_is_the_same_as_among_many() {
+fn a_flight_simulated_alone_is_that_of_the_monte_carlo_run() {
     let (scenario, flight) = (scenario(), lively());
     let simulation = simulation(&scenario, &flight, &every_error());
     let alone: Vec<f64> = (0..24)
         .map(|number| {
             simulation
-                .fly(number, None, &|| false)
-                .expect("nobody gives up")
+                .simulate(number, None, &|| false)
+                .expect("not stopped")
                 .end
                 .attitude_rad
         })
@@ -70,7 +70,7 @@ fn one_flight_is_the_same_as_among_many() {
 }
 
 #[test]
-fn a_stop_leaves_what_was_flown() {
+fn a_stopped_run_counts_complete_flights_only() {
     let stop = StopSignal::new();
     stop.request();
     let found = spread(&every_error(), 2, &stop);
@@ -78,7 +78,7 @@ fn a_stop_leaves_what_was_flown() {
 }
 
 #[test]
-fn the_share_within_the_tolerance_counts_flights() {
+fn the_share_within_the_tolerance_is_a_half_at_the_median_error() {
     let stop = StopSignal::new();
     let mut spec = every_error();
     spec.tolerance_deg =
@@ -88,7 +88,7 @@ fn the_share_within_the_tolerance_counts_flights() {
 }
 
 #[test]
-fn noise_jitters_as_much_as_the_loop_lets_through() {
+fn attitude_noise_gives_the_jitter_of_the_closed_loop_transfer_function() {
     let (scenario, flight) = (calm_scenario(), idle(2000.0));
     let spec = SimulationSpec {
         errors: ErrorsSpec {
@@ -97,11 +97,14 @@ fn noise_jitters_as_much_as_the_loop_lets_through() {
         },
         ..SimulationSpec::default()
     };
-    let flown = simulation(&scenario, &flight, &spec)
-        .fly(0, Some(10), &|| false)
-        .expect("nobody gives up");
-    let squares = flown.states.iter().map(|s| s.error.attitude_rad.powi(2));
-    let rms = (squares.sum::<f64>() / flown.states.len() as f64).sqrt();
+    let simulated = simulation(&scenario, &flight, &spec)
+        .simulate(0, Some(10), &|| false)
+        .expect("not stopped");
+    let squares = simulated
+        .states
+        .iter()
+        .map(|s| s.error.attitude_rad.powi(2));
+    let rms = (squares.sum::<f64>() / simulated.states.len() as f64).sqrt();
     // White noise of density s^2 T through w^2 / (s^2 + 2 z w s + w^2): variance s^2 T w / (4 z)
     // about each of three axes.
     let expected = 1e-4 * (3.0 * 0.1 * 0.1 / (4.0 * 0.7_f64)).sqrt();

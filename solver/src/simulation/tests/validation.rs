@@ -1,4 +1,4 @@
-//! What is refused, with code and place.
+//! Refused simulations, with codes and pointers.
 
 use super::super::{
     ControllerSpec, ErrorsSpec, GainsSpec, PidGainsSpec, Simulation, SimulationSpec,
@@ -28,7 +28,7 @@ fn at(code: Code, place: &str) -> (Code, String) {
 }
 
 #[test]
-fn every_fault_is_found_at_once() {
+fn all_problems_of_a_description_are_found_at_once() {
     let spec = SimulationSpec {
         controller: ControllerSpec::Quaternion {
             gains: GainsSpec::Bandwidth {
@@ -74,7 +74,7 @@ fn every_fault_is_found_at_once() {
 }
 
 #[test]
-fn friction_that_asks_for_too_short_steps_is_refused() {
+fn friction_that_needs_too_short_steps_is_refused() {
     let drive = DriveSpec {
         viscous_friction_nms: Some(1e6),
         ..DriveSpec::default()
@@ -146,7 +146,7 @@ fn gains_are_checked_in_every_form() {
 }
 
 #[test]
-fn what_does_not_fit_together_is_refused() {
+fn contradictory_settings_are_refused() {
     let slow_loop = SimulationSpec {
         on_board_rate_hz: Some(10.0),
         wheel_loop_rate_hz: Some(5.0),
@@ -156,7 +156,7 @@ fn what_does_not_fit_together_is_refused() {
         refused(&lively(), &slow_loop),
         [at(Code::OutOfRange, "/wheel_loop_rate_hz")]
     );
-    // The lively flight does not end at rest.
+    // This flight does not end at rest.
     let held = SimulationSpec {
         settle_s: Some(10.0),
         ..SimulationSpec::default()
@@ -194,7 +194,7 @@ fn what_does_not_fit_together_is_refused() {
 }
 
 #[test]
-fn flights_that_cannot_be_flown_are_refused() {
+fn flights_that_cannot_be_propagated_are_refused() {
     let plan = |flight: &Flight| {
         let found = refused(flight, &SimulationSpec::default());
         assert!(!found.is_empty());

@@ -1,10 +1,10 @@
-//! Integrals of wheels at their limits.
+//! Integral windup while wheels are at their limits.
 
 use super::super::{ControllerSpec, ErrorsSpec, PidGainsSpec, SimulationSpec};
 use super::build::{calm_scenario, idle, simulation};
 use crate::model::attitude::Attitude;
 
-/// A controller that has to take away an initial error far beyond what the wheels can turn at once.
+/// A controller with an initial error so large that the wheels saturate.
 fn spec(anti_windup: bool) -> SimulationSpec {
     SimulationSpec {
         controller: ControllerSpec::GeometricPid {
@@ -23,12 +23,12 @@ fn spec(anti_windup: bool) -> SimulationSpec {
     }
 }
 
-/// How far a flight turns beyond the attitude that it is to be in, as a share of the turn to it, and
-/// the time from which on it stays within a hundredth of that turn, s.
+/// Overshoot as a share of the initial error, and the time, s, after which the error stays within a
+/// hundredth of the initial one.
 fn recovery(spec: &SimulationSpec, number: u64) -> (f64, f64) {
     let (scenario, flight) = (calm_scenario(), idle(600.0));
-    let flown = simulation(&scenario, &flight, spec).fly(number, Some(1), &|| false);
-    let states = flown.expect("nobody gives up").states;
+    let simulated = simulation(&scenario, &flight, spec).simulate(number, Some(1), &|| false);
+    let states = simulated.expect("not stopped").states;
     let turn = |attitude: &Attitude| Attitude::identity().signed_turn_to(attitude);
     let begin = turn(&states[0].attitude);
     let (size, axis) = (begin.norm(), begin.normalize());
@@ -42,7 +42,7 @@ fn recovery(spec: &SimulationSpec, number: u64) -> (f64, f64) {
 }
 
 #[test]
-fn an_integral_that_does_not_wind_up_turns_less_too_far_and_is_there_sooner() {
+fn anti_windup_reduces_overshoot_and_settling_time() {
     for number in [1, 2] {
         let [clamped, pure] = [true, false].map(|anti_windup| recovery(&spec(anti_windup), number));
         println!("{number}: {clamped:?}, as published {pure:?}");

@@ -1,85 +1,93 @@
-//! The controls among which the minimum principle chooses, and how well torques are chosen.
+//! The controls over which the minimum principle minimises, and how close the torques are to the
+//! minimum.
 //!
-//! Torques that are free of each other are each a control, within a range of its own. Those that the
-//! pseudo-inverse shares out are `u = B v` with `B = A^+` and three controls, the torque `v = A u` on
-//! all wheels together in body axes, within the polytope that the ranges of all wheels leave. The
-//! switching function is the Hamiltonian's derivative by the controls,
+//! Where every torque is chosen by itself, each is a control within its own range. Torques allocated by
+//! the pseudo-inverse are `u = B v` with `B = A^+` and three controls, the torque `v = A u` on all wheels
+//! together in body axes, within the polytope given by the ranges of all wheels. The switching function
+//! is the Hamiltonian's derivative by the controls,
 //!
 //! ```text
-//!   dH/du   = r + dl/du                          torques free of each other
-//!   dH/dv   = B^T (r + dl/du)                    torques of the pseudo-inverse
+//!   dH/du   = r + dl/du                          every torque by itself
+//!   dH/dv   = B^T (r + dl/du)                    torques allocated by the pseudo-inverse
 //! ```
 //!
-//! and at a minimum it is a sum of the outward normals of the limits that are met,
+//! and at a minimum minus the switching function is a non-negative combination of the outward normals
+//! of the active limits,
 //!
 //! ```text
 //!   dH/dv + sum of mu_i s_i b_i = 0,   mu_i >= 0        b_i: row i of B, s_i = 1 at the upper limit
 //! ```
 //!
-//! which for free torques says that the switching function of a torque at a limit has the sign of
-//! minus that limit's. A wheel that a limit of speed holds can do no other: its torque is no choice,
-//! and the multiplier of its row has either sign.
+//! which for torques chosen by themselves says that the switching function of a torque at its upper
+//! limit is not positive and that at its lower limit not negative. The torque of a wheel at a speed
+//! limit is determined by the limit: the multiplier of its row has either sign.
 
-use super::cost::Running;
+use super::cost::RunningCost;
 use super::costate::Costate;
 use crate::math::cone;
-use crate::slew::WheelAllocation;
-use crate::slew::flow::Sample;
+use crate::slew::flow::MotionSample;
+use crate::slew::spec::WheelAllocation;
 use nalgebra::{Matrix3, Vector3};
 
-/// Torques tried for a lower Hamiltonian: of a wheel within its range, or on the way to a corner.
+/// Torques tried for a lower Hamiltonian: over a wheel's range, or on a line to a corner.
 const TRIALS: usize = 64;
-/// Rounds of ways to all corners.
+/// Rounds of line searches towards all corners.
 const ROUNDS: usize = 3;
-/// Relative excess over a range that is rounding.
+/// Relative excess over a range that counts as rounding.
 const ROUNDING: f64 = 1e-9;
-/// Squared share of a direction that is left of it where it lies in the span of others.
+/// Squared share of a direction outside a span below which it counts as lying in it.
 const SPANNED: f64 = 1e-18;
 
 /// The controls of a slew.
 pub(super) enum Controls {
     /// The torque of every wheel.
     Wheels,
-    /// The torque on all wheels together.
-    Shared(Shared),
+    /// The torque on all wheels together, body axes.
+    Shared(SharedControls),
 }
 
-/// What the pseudo-inverse makes of three controls.
-pub(super) struct Shared {
+/// The wheels' torques as functions of three controls, by the pseudo-inverse.
+pub(super) struct SharedControls {
     /// Rows `b_i` of the pseudo-inverse.
     rows: Vec<Vector3<f64>>,
-    /// Three wheels whose torques determine the controls, with the matrix that does.
+    /// Triples of wheels whose torques determine the controls, each with the matrix that maps them.
     triples: Vec<([usize; 3], Matrix3<f64>)>,
 }
 
 impl Controls {
-    pub(super) fn new(allocation: WheelAllocation, running: &Running<'_>) -> Self {
+    pub(super) fn new(allocation: WheelAllocation, running: &RunningCost<'_>) -> Self {
         match allocation {
             WheelAllocation::Free => Self::Wheels,
             WheelAllocation::PseudoInverse => {
                 let inverse = &running.dynamics().axes_inverse;
                 let rows = inverse.row_iter();
                 let rows = rows.map(|row| Vector3::new(row[0], row[1], row[2]));
-                Self::Shared(Shared::new(rows.collect()))
+                Self::Shared(SharedControls::new(rows.collect()))
             }
         }
     }
 
-    /// What costs of the wheels, one number each, are for the controls.
-    pub(super) fn pulled(&self, wheels: impl Iterator<Item = f64>) -> Vec<f64> {
+    /// Derivatives by the controls, given those by the wheels' torques.
+    pub(super) fn onto_controls(&self, wheels: impl Iterator<Item = f64>) -> Vec<f64> {
         match self {
             Self::Wheels => wheels.collect(),
-            Self::Shared(shared) => shared.pulled(wheels).as_slice().to_vec(),
+            Self::Shared(shared) => shared.onto_controls(wheels).as_slice().to_vec(),
         }
     }
 
     /// The derivatives of the Hamiltonian by the controls.
-    pub(super) fn switching(&self, p: &Costate, at: &Sample, running: &Running<'_>) -> Vec<f64> {
-        self.pulled(by_torques(p, at, running))
+    pub(super) fn switching(
+        &self,
+        p: &Costate,
+        at: &MotionSample,
+        running: &RunningCost<'_>,
+    ) -> Vec<f64> {
+        self.onto_controls(by_torques(p, at, running))
     }
 
-    /// By how much other torques could lower the Hamiltonian, wheels at a speed limit left as they are.
-    pub(super) fn gap(&self, p: &Costate, at: &Sample, running: &Running<'_>) -> f64 {
+    /// Difference of the Hamiltonian from its minimum over the torques; wheels at a speed limit keep
+    /// theirs.
+    pub(super) fn gap(&self, p: &Costate, at: &MotionSample, running: &RunningCost<'_>) -> f64 {
         let held = running.held(at);
         let cost = |wheel: usize, torque: f64| {
             running.of_wheel(wheel, torque, at) + p.momenta[wheel] * torque
@@ -107,9 +115,14 @@ impl Controls {
         }
     }
 
-    /// The size of the switching function as far as it belongs to torques at limits, and of that what
-    /// has the sign asked for.
-    pub(super) fn limited(&self, p: &Costate, at: &Sample, running: &Running<'_>) -> [f64; 2] {
+    /// Size of the switching function of torques at limits, and of its part with the sign that the
+    /// minimum principle prescribes.
+    pub(super) fn limited(
+        &self,
+        p: &Costate,
+        at: &MotionSample,
+        running: &RunningCost<'_>,
+    ) -> [f64; 2] {
         let held = running.held(at);
         let sides = (0..held.len()).map(|wheel| running.side(wheel, at).filter(|_| !held[wheel]));
         let pulls = by_torques(p, at, running);
@@ -123,14 +136,18 @@ impl Controls {
                 }),
             Self::Shared(shared) => {
                 let sides: Vec<_> = sides.collect();
-                shared.limited(&shared.pulled(pulls), &sides, &held)
+                shared.limited(&shared.onto_controls(pulls), &sides, &held)
             }
         }
     }
 }
 
 /// `r + dl/du` of every wheel.
-fn by_torques(p: &Costate, at: &Sample, running: &Running<'_>) -> impl Iterator<Item = f64> {
+fn by_torques(
+    p: &Costate,
+    at: &MotionSample,
+    running: &RunningCost<'_>,
+) -> impl Iterator<Item = f64> {
     (0..at.speeds.len()).map(|wheel| p.momenta[wheel] + running.by_torque(wheel, at))
 }
 
@@ -138,7 +155,7 @@ fn share(trial: usize) -> f64 {
     trial as f64 / TRIALS as f64
 }
 
-impl Shared {
+impl SharedControls {
     fn new(rows: Vec<Vector3<f64>>) -> Self {
         let mut triples = Vec::new();
         for (i, a) in rows.iter().enumerate() {
@@ -156,11 +173,12 @@ impl Shared {
         Self { rows, triples }
     }
 
-    fn pulled(&self, wheels: impl Iterator<Item = f64>) -> Vector3<f64> {
+    fn onto_controls(&self, wheels: impl Iterator<Item = f64>) -> Vector3<f64> {
         self.rows.iter().zip(wheels).map(|(row, x)| row * x).sum()
     }
 
-    /// Corners of what ranges of all torques leave: three torques are at limits, and no other beyond.
+    /// Corners of the polytope given by the ranges of all torques: three torques are at limits, and no
+    /// other is beyond.
     fn corners(&self, ranges: &[[f64; 2]]) -> Vec<Vector3<f64>> {
         let within = |control: &Vector3<f64>| {
             self.rows.iter().zip(ranges).all(|(row, [least, most])| {
@@ -177,7 +195,7 @@ impl Shared {
         ends.filter(within).collect()
     }
 
-    /// By how much other controls within the ranges could lower a convex cost of the wheels.
+    /// Difference of a convex cost of the wheels from its minimum within the ranges.
     fn gap(
         &self,
         from: Vector3<f64>,
@@ -218,7 +236,8 @@ impl Shared {
             .iter()
             .flat_map(|(row, _)| [**row, -**row])
             .collect();
-        // Rows of wheels that are held explain any part of the switching function along them.
+        // The part of the switching function in the span of the held wheels' rows is compensated by
+        // their multipliers, which have either sign.
         let beside = |v: &Vector3<f64>| {
             let rest = v - cone::nearest(&span, v);
             if rest.norm_squared() > SPANNED * v.norm_squared() {
@@ -249,15 +268,15 @@ mod tests {
     use super::*;
 
     /// The rows of the published pyramid's pseudo-inverse.
-    fn pyramid() -> Shared {
+    fn pyramid() -> SharedControls {
         let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
         let rows = [[s, 0.0, c], [0.0, s, c], [-s, 0.0, c], [0.0, -s, c]];
         // A A^T = 4/3.
-        Shared::new(rows.map(|axis| Vector3::from(axis) * 0.75).to_vec())
+        SharedControls::new(rows.map(|axis| Vector3::from(axis) * 0.75).to_vec())
     }
 
     #[test]
-    fn the_pyramids_torques_make_an_octahedron() {
+    fn corners_of_the_pyramid_are_those_of_an_octahedron() {
         // u_0 + u_2 = u_1 + u_3 cuts the cube of four torques at the six corners that lie on it.
         let corners = pyramid().corners(&[[-1.0, 1.0]; 4]);
         let mut distinct: Vec<Vector3<f64>> = Vec::new();
@@ -270,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lower_cost_is_found_where_there_is_one_and_only_there() {
+    fn the_gap_of_a_cost_is_its_distance_from_the_minimum() {
         let shared = pyramid();
         let ranges = [[-1.0, 1.0]; 4];
         let linear = [0.3, -0.2, 0.1, 0.05];
@@ -294,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn the_switching_function_is_made_of_the_normals_of_limits() {
+    fn a_switching_function_along_normals_of_active_limits_agrees_with_the_principle() {
         let shared = pyramid();
         let rows = &shared.rows;
         let none = [false; 4];
@@ -304,7 +323,7 @@ mod tests {
         assert!((size - right.norm()).abs() < 1e-12 && (agrees - size).abs() < 1e-12);
         let [size, agrees] = shared.limited(&-right, &sides, &none);
         assert!(size > 0.1 && agrees < 1e-12);
-        // A wheel that is held explains what lies along its row, with either sign.
+        // A part along the row of a held wheel is compensated, whatever its sign.
         let held = [false, false, true, false];
         for along in [-2.0, 2.0] {
             let [size, agrees] = shared.limited(&(right + rows[2] * along), &sides, &held);

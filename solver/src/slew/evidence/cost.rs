@@ -1,28 +1,33 @@
-//! The running cost of the wheels and its derivatives, and what limits their torques.
+//! The running cost of the wheels with its derivatives, and the limits of their torques.
 
 use crate::model::drive::Drive;
 use crate::model::dynamics::Dynamics;
-use crate::slew::Measure;
 use crate::slew::cost_weights::CostWeights;
-use crate::slew::flow::{Sample, Vehicle};
+use crate::slew::flow::MotionSample;
+use crate::slew::spec::EnergyMeasure;
+use crate::slew::vehicle::Vehicle;
 
-/// Share of a limit from which on it counts as active.
+/// Share of a limit above which it counts as active.
 pub(super) const NEAR: f64 = 0.999;
 
-/// What torques cost at moments of one price, and where they are limited.
-pub(super) struct Running<'a> {
+/// The running cost `l` for a constant weight of energy, and the limits of torques.
+pub(super) struct RunningCost<'a> {
     vehicle: &'a Vehicle,
     cost_weights: &'a CostWeights,
-    /// What energy costs, unit of the objective per J.
-    price: f64,
+    /// Weight of energy, unit of the objective per J.
+    energy_weight: f64,
 }
 
-impl<'a> Running<'a> {
-    pub(super) fn new(vehicle: &'a Vehicle, cost_weights: &'a CostWeights, price: f64) -> Self {
+impl<'a> RunningCost<'a> {
+    pub(super) fn new(
+        vehicle: &'a Vehicle,
+        cost_weights: &'a CostWeights,
+        energy_weight: f64,
+    ) -> Self {
         Self {
             vehicle,
             cost_weights,
-            price,
+            energy_weight,
         }
     }
 
@@ -30,21 +35,21 @@ impl<'a> Running<'a> {
         &self.vehicle.dynamics
     }
 
-    /// The drive of a wheel, where its energy costs something and its motor is known.
-    fn priced(&self, wheel: usize) -> Option<(&'a Drive, &'a crate::model::drive::Motor)> {
+    /// The drive of a wheel and its motor, where energy has a weight and the motor is known.
+    fn costed_motor(&self, wheel: usize) -> Option<(&'a Drive, &'a crate::model::drive::Motor)> {
         let drive = &self.vehicle.drives[wheel];
-        let motor = drive.motor.as_ref().filter(|_| self.price != 0.0);
+        let motor = drive.motor.as_ref().filter(|_| self.energy_weight != 0.0);
         motor.map(|motor| (drive, motor))
     }
 
-    /// Whether a wheel's energy counts in the running cost at a moment.
+    /// Whether energy at this power, W, counts in the running cost.
     fn counts(&self, power: f64) -> bool {
-        self.cost_weights.measure == Measure::Proxy || power > 0.0
+        self.cost_weights.measure == EnergyMeasure::Proxy || power > 0.0
     }
 
     /// `dl / dW` of a wheel.
-    pub(super) fn by_speed(&self, wheel: usize, at: &Sample) -> f64 {
-        let Some((drive, motor)) = self.priced(wheel) else {
+    pub(super) fn by_speed(&self, wheel: usize, at: &MotionSample) -> f64 {
+        let Some((drive, motor)) = self.costed_motor(wheel) else {
             return 0.0;
         };
         let (torque, speed) = (at.torques[wheel], at.speeds[wheel]);
@@ -56,23 +61,23 @@ impl<'a> Running<'a> {
         };
         let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
         if self.counts(motor.power(given, speed)) {
-            let share = self.cost_weights.share(motor.efficiency);
-            self.price * share * (heat * viscous + given + viscous * speed)
+            let share = self.cost_weights.supply_factor(motor.efficiency);
+            self.energy_weight * share * (heat * viscous + given + viscous * speed)
         } else {
             0.0
         }
     }
 
     /// `dl / du` of a wheel.
-    pub(super) fn by_torque(&self, wheel: usize, at: &Sample) -> f64 {
+    pub(super) fn by_torque(&self, wheel: usize, at: &MotionSample) -> f64 {
         let (torque, speed) = (at.torques[wheel], at.speeds[wheel]);
         let effort = 2.0 * self.cost_weights.effort * torque;
-        let motor = self.priced(wheel).map_or(0.0, |(drive, motor)| {
+        let motor = self.costed_motor(wheel).map_or(0.0, |(drive, motor)| {
             let given = drive.motor_torque(torque, speed);
             let heat = 2.0 * motor.resistance / motor.torque_constant.powi(2) * given;
-            let share = self.cost_weights.share(motor.efficiency);
+            let share = self.cost_weights.supply_factor(motor.efficiency);
             if self.counts(motor.power(given, speed)) {
-                self.price * share * (heat + speed)
+                self.energy_weight * share * (heat + speed)
             } else {
                 0.0
             }
@@ -81,37 +86,37 @@ impl<'a> Running<'a> {
     }
 
     /// The running cost of one wheel as a function of its torque, N m.
-    pub(super) fn of_wheel(&self, wheel: usize, torque: f64, at: &Sample) -> f64 {
+    pub(super) fn of_wheel(&self, wheel: usize, torque: f64, at: &MotionSample) -> f64 {
         let effort = self.cost_weights.effort * torque * torque;
-        let Some((drive, motor)) = self.priced(wheel) else {
+        let Some((drive, motor)) = self.costed_motor(wheel) else {
             return effort;
         };
         let speed = at.speeds[wheel];
         let power = motor.power(drive.motor_torque(torque, speed), speed);
-        let share = self.cost_weights.share(motor.efficiency);
+        let share = self.cost_weights.supply_factor(motor.efficiency);
         effort
             + if self.counts(power) {
-                self.price * share * power
+                self.energy_weight * share * power
             } else {
                 0.0
             }
     }
 
     /// The whole running cost.
-    pub(super) fn value(&self, at: &Sample) -> f64 {
+    pub(super) fn value(&self, at: &MotionSample) -> f64 {
         let wheels = 0..at.speeds.len();
         let torques: f64 = wheels.map(|w| self.of_wheel(w, at.torques[w], at)).sum();
-        let idle = if self.cost_weights.measure == Measure::Bill {
+        let idle = if self.cost_weights.measure == EnergyMeasure::Bill {
             let motors = self.vehicle.drives.iter().filter_map(|drive| drive.motor);
-            self.price * motors.map(|motor| motor.quiescent_power).sum::<f64>()
+            self.energy_weight * motors.map(|motor| motor.quiescent_power).sum::<f64>()
         } else {
             0.0
         };
         self.cost_weights.time + torques + idle
     }
 
-    /// The range of commanded torques that the motor's limits leave, N m.
-    pub(super) fn range(&self, wheel: usize, at: &Sample) -> [f64; 2] {
+    /// The range of commanded torques within the motor's limits, N m.
+    pub(super) fn range(&self, wheel: usize, at: &MotionSample) -> [f64; 2] {
         let actuator = &self.vehicle.dynamics.actuators[wheel];
         let friction = self.vehicle.drives[wheel].motor_torque(0.0, at.speeds[wheel]);
         [
@@ -120,8 +125,8 @@ impl<'a> Running<'a> {
         ]
     }
 
-    /// The sign of the limit at which a wheel's torque is, if it is at one.
-    pub(super) fn side(&self, wheel: usize, at: &Sample) -> Option<f64> {
+    /// 1 or -1 for a torque at its upper or lower limit.
+    pub(super) fn side(&self, wheel: usize, at: &MotionSample) -> Option<f64> {
         let ([least, most], torque) = (self.range(wheel, at), at.torques[wheel]);
         let slack = (1.0 - NEAR) * (most - least);
         if torque >= most - slack {
@@ -131,12 +136,12 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Of every wheel, whether a limit of speed or rate keeps it from following its switching function.
-    pub(super) fn held(&self, at: &Sample) -> Vec<bool> {
+    /// For every wheel, whether an active limit of speed or body rate determines its torque.
+    pub(super) fn held(&self, at: &MotionSample) -> Vec<bool> {
         let shares = self.vehicle.dynamics.limit_shares(&at.rate, &at.momenta);
         let active: Vec<bool> = shares.map(|share| share.abs() > NEAR).collect();
         let (wheels, rates) = active.split_at(at.speeds.len());
-        // The rates' limits hold all wheels together.
+        // A limit on the body rate involves all wheels.
         let together = rates.contains(&true);
         wheels.iter().map(|own| *own || together).collect()
     }

@@ -1,13 +1,13 @@
-//! The costates: from the multipliers at the nodes, by their equations in between.
+//! Costates: the multipliers at the nodes, integrated by the costate equations in between.
 
-use super::{Witness, cost::Running};
-use crate::slew::flow::Sample;
+use super::{OptimalityTest, cost::RunningCost};
+use crate::slew::flow::MotionSample;
 use nalgebra::{DVector, Vector3};
 
-/// Steps of the costates' integration per interval; as many moments are looked at.
+/// Integration steps of the costates per interval; the conditions are evaluated at their ends.
 pub(super) const PARTS: usize = 8;
 
-/// The costates at a moment.
+/// The costates at one time.
 #[derive(Debug, Clone)]
 pub(super) struct Costate {
     /// `p`, unit of the objective per rad, body axes.
@@ -28,16 +28,16 @@ impl Costate {
     }
 }
 
-impl Witness<'_> {
-    /// The costates at the end of an interval, as the links' multipliers have them.
+impl OptimalityTest<'_> {
+    /// The costates at the end of an interval: the multipliers of its link in physical units.
     pub(super) fn end_costate(&self, k: usize) -> Costate {
         let program = self.program();
         let lambda = &self.solved.iterate.lambda[self.layout.link(k)];
         let unit = program.units.cost;
         let wheels = program.shape.wheels;
-        let time = if self.slew.vehicle().followers.move_at_all() {
+        let time = if self.slew.vehicle().speed_law_wheels.any_drift() {
             let per_second = unit / program.scales.time;
-            (lambda[program.shape.clock_at()] - self.price_of_duration()) * per_second
+            (lambda[program.shape.clock_at()] - self.duration_multiplier()) * per_second
         } else {
             0.0
         };
@@ -49,8 +49,8 @@ impl Witness<'_> {
         }
     }
 
-    /// The multiplier of the clock's own condition at the end, scaled; none where the end is free.
-    fn price_of_duration(&self) -> f64 {
+    /// The multiplier of the condition on the clock at the end, scaled; zero where the duration is free.
+    fn duration_multiplier(&self) -> f64 {
         let row = self.program().clock_end_row();
         let at = |row: usize| self.layout.equality(self.layout.intervals).start + row;
         row.map_or(0.0, |row| self.solved.iterate.nu[at(row)])
@@ -60,8 +60,8 @@ impl Witness<'_> {
     pub(super) fn costates(
         &self,
         k: usize,
-        samples: &[Sample],
-        running: &Running<'_>,
+        samples: &[MotionSample],
+        running: &RunningCost<'_>,
     ) -> Vec<Costate> {
         let step = -self.solved.motion.lengths[k] / PARTS as f64;
         let mut costates = vec![self.end_costate(k)];
@@ -84,8 +84,8 @@ impl Witness<'_> {
     }
 }
 
-/// The costates' equations.
-fn slope(p: &Costate, at: &Sample, running: &Running<'_>) -> Costate {
+/// Time derivatives of the costates.
+fn slope(p: &Costate, at: &MotionSample, running: &RunningCost<'_>) -> Costate {
     let dynamics = running.dynamics();
     // The running cost depends on attitude, momenta and time through the wheels' speeds.
     let wheels = 0..at.speeds.len();
@@ -94,14 +94,14 @@ fn slope(p: &Costate, at: &Sample, running: &Running<'_>) -> Costate {
     for (wheel, slope) in dynamics.actuators.iter().zip(&by_speed) {
         lever -= wheel.axis * *slope;
     }
-    let pulled = dynamics.inertia_inverse.tr_mul(&lever);
+    let onto_controls = dynamics.inertia_inverse.tr_mul(&lever);
     let momenta = dynamics.actuators.iter().zip(&by_speed);
     Costate {
-        attitude: at.stored.cross(&pulled) - at.rate.cross(&p.attitude),
+        attitude: at.stored.cross(&onto_controls) - at.rate.cross(&p.attitude),
         momenta: DVector::from_iterator(
             by_speed.len(),
-            momenta.map(|(wheel, slope)| wheel.axis.dot(&pulled) - slope / wheel.inertia),
+            momenta.map(|(wheel, slope)| wheel.axis.dot(&onto_controls) - slope / wheel.inertia),
         ),
-        time: pulled.dot(&at.drift_rate),
+        time: onto_controls.dot(&at.drift_rate),
     }
 }

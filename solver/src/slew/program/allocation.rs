@@ -1,18 +1,18 @@
-//! The conditions under which torques are those that the pseudo-inverse shares out.
+//! Conditions under which torques are allocated by the pseudo-inverse.
 //!
-//! `u = A^+ A u` (RW/CMG thesis, equation 87) asks that `u` has nothing in the null space of `A`.
-//! Constant torques have nothing there when the momenta have the same there at both nodes. Linear
-//! torques could alternate about that, so it is asked of them themselves, at every node but the last:
-//! there it follows from the momenta, which have their own condition at the end.
+//! `u = A^+ A u` (RW/CMG thesis, equation 87) means that `u` has no component in the null space of
+//! `A`. Constant torques have none if the momenta have the same null-space components at both nodes.
+//! Linear torques could alternate about zero under that condition, so the condition is put on the
+//! torques themselves at every node but the last, where it follows from the momenta's end condition.
 
 use super::Program;
 use crate::nlp::Chain;
-use crate::slew::shape::Course;
+use crate::slew::shape::TorqueCourse;
 use nalgebra::{DMatrix, DVector};
 
-/// What the wheels keep in the null space of their axes.
+/// The null-space momentum that the wheels keep.
 #[derive(Debug, Clone)]
-pub(super) struct Kept {
+pub(super) struct PinnedNullSpace {
     /// Orthonormal columns that span the null space.
     pub(super) null_space: DMatrix<f64>,
     /// Components of the momenta along them, scaled.
@@ -28,7 +28,8 @@ pub(super) struct AllocationRow {
 }
 
 impl AllocationRow {
-    /// What is missing at a point, whose attitude has one number more than directions.
+    /// Left side minus right side at a point. A point has one number more than the state has
+    /// directions, because of the quaternion.
     pub(super) fn residual(&self, point: &[f64]) -> f64 {
         let entries = &point[1 + self.at..];
         let terms = self.coefficients.iter().zip(entries);
@@ -37,16 +38,16 @@ impl AllocationRow {
 }
 
 impl Program {
-    /// The equations of a node.
+    /// The allocation's equations at a node.
     pub(super) fn allocation_rows(&self, node: usize) -> impl Iterator<Item = AllocationRow> + '_ {
         let (first, last) = (node == 0, node == self.base.intervals());
         let (at, ramps) = match self.shape.course {
-            Course::Steps => (3, false),
-            Course::Ramps => (self.shape.torque_at(), true),
+            TorqueCourse::Steps => (3, false),
+            TorqueCourse::Ramps => (self.shape.torque_at(), true),
         };
         // The momenta have conditions of their own at both ends.
         let asked = !last && (ramps || !first);
-        let kept = self.kept.iter().filter(move |_| asked);
+        let kept = self.pinned_null_space.iter().filter(move |_| asked);
         kept.flat_map(move |kept| {
             let columns = kept.null_space.column_iter().zip(kept.momenta.iter());
             columns.map(move |(column, held)| AllocationRow {

@@ -1,17 +1,17 @@
-//! The program as a chain of stages: values, and derivatives pulled back to its variables.
+//! The program as a chain of stages: values, and derivatives by the chain rule.
 
-use super::{Local, Place, Program};
+use super::{Program, SparseDerivatives, TermTarget};
 use crate::nlp::{Chain, Link, LinkModel, LinkMultipliers, LinkValues};
 use nalgebra::DVector;
 
-/// The variables of a link in which the attitude link is posed, with the storage for it.
+/// The variables `(q, h)` and `(m, tau)` of the transcription's attitude link.
 pub(super) struct BaseLink {
     point: Vec<f64>,
     control: Vec<f64>,
 }
 
 impl BaseLink {
-    /// The link in these variables.
+    /// The link of the chain in these variables.
     pub(super) fn link<'a>(&'a self, link: &Link<'a>, wheels: usize) -> Link<'a> {
         Link {
             node: link.node,
@@ -23,7 +23,7 @@ impl BaseLink {
 }
 
 impl Program {
-    /// `(q, h)` and `(m, tau)` of an interval as the attitude link sees them.
+    /// `(q, h)` and `(m, tau)` of an interval, computed from the program's own variables.
     pub(super) fn base_link(&self, link: &Link<'_>) -> BaseLink {
         let wheels = self.shape.wheels;
         let mut base = BaseLink {
@@ -41,8 +41,8 @@ impl Program {
         base
     }
 
-    /// What the locked wheels have taken at the begin and the end of an interval, as momenta of the
-    /// enabled wheels that do the same to the body, scaled, with its derivatives by the clock.
+    /// Momentum drift of the speed-law wheels at the beginning and the end of an interval, as momenta of
+    /// the enabled wheels with the same effect on the body, scaled, with derivatives by the clock.
     fn drifts(&self, link: &Link<'_>) -> [[DVector<f64>; 3]; 2] {
         [0.0, self.length(link)].map(|length| {
             let drift = self.drift_after(link.point, length);
@@ -51,9 +51,9 @@ impl Program {
     }
 
     /// The variables of the attitude link as functions of those of the program.
-    fn base_locals(&self, link: &Link<'_>) -> Vec<Local> {
+    fn base_locals(&self, link: &Link<'_>) -> Vec<SparseDerivatives> {
         let (wheels, unit) = (self.shape.wheels, self.scales.momentum.recip());
-        let itself = |at: usize| Local {
+        let itself = |at: usize| SparseDerivatives {
             gradient: vec![(at, 1.0)],
             hessian: Vec::new(),
         };
@@ -69,15 +69,15 @@ impl Program {
             locals.push(self.local(i, &impulse, link));
         }
         let length = self.shape.length_variable();
-        locals.push(length.map_or_else(Local::default, itself));
-        if self.followers.move_at_all() {
+        locals.push(length.map_or_else(SparseDerivatives::default, itself));
+        if self.speed_law_wheels.any_drift() {
             self.add_drifts(link, &mut locals);
         }
         locals
     }
 
-    /// Adds how the drift moves the variables of the attitude link with the clock and the length.
-    fn add_drifts(&self, link: &Link<'_>, locals: &mut [Local]) {
+    /// Adds the derivatives of the attitude link's variables by clock and length through the drift.
+    fn add_drifts(&self, link: &Link<'_>, locals: &mut [SparseDerivatives]) {
         let wheels = self.shape.wheels;
         let [[_, from, from_bend], [_, to, to_bend]] = self.drifts(link);
         let clock = self.shape.clock_at();
@@ -98,11 +98,13 @@ impl Program {
         }
     }
 
-    /// Pulls the derivatives of the attitude link back; `base` has them in its own variables.
+    /// Adds the derivatives of the attitude link, which `base` has in its own variables, by the chain
+    /// rule. `weights` are the multipliers of the attitude gap, `z` those of the rates in the middle.
     fn pull_back(
         &self,
         base: &LinkModel,
-        (weights, z): (&[f64], &[f64]),
+        weights: &[f64],
+        z: &[f64],
         link: &Link<'_>,
         out: &mut LinkModel,
     ) {
@@ -144,8 +146,13 @@ impl Program {
         }
     }
 
-    /// Adds a term to the derivatives of a link, weighed by the multipliers.
-    fn add_term(&self, term: &super::Term<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
+    /// Adds a term to the derivatives of a link, weighted by the multipliers.
+    fn add_term(
+        &self,
+        term: &super::WheelTerm<'_>,
+        duals: &LinkMultipliers<'_>,
+        out: &mut LinkModel,
+    ) {
         let local = self.local(term.wheel, &term.jet, term.link);
         let (row, weight) = place_in(term.place, duals, out);
         for (at, c) in &local.gradient {
@@ -154,7 +161,7 @@ impl Program {
         for (i, j, bend) in &local.hessian {
             out.hessian[i * out.vars + j] += weight * bend;
         }
-        // The speed of the wheel bends with the attitude where momentum is stored.
+        // With stored momentum the wheel's speed has second derivatives by the attitude.
         let by_speed = weight * term.jet.gradient[super::SPEED];
         let pull = self.speeds[term.wheel].momentum * by_speed;
         let drift = self.drift(term.link.point);
@@ -162,7 +169,7 @@ impl Program {
         self.base.add_momentum_curvature(&pull, &view, out);
     }
 
-    /// Adds the conditions on the state at a node, which the transcription knows.
+    /// Adds the derivatives of the transcription's conditions on the state at a node.
     fn add_state(&self, link: &Link<'_>, duals: &LinkMultipliers<'_>, out: &mut LinkModel) {
         let node = Link {
             control: &[],
@@ -174,7 +181,7 @@ impl Program {
             .write_state_derivatives(&node, extended, duals, out);
     }
 
-    /// Parts of the state that begin or end with a given value: `(index, value)`.
+    /// Entries of the state with a given value at the first or last node: `(index, value)`.
     fn fixed_parts(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
         let (first, last) = (node == 0, node == self.base.intervals());
         let at = self.shape.clock_at();
@@ -182,23 +189,24 @@ impl Program {
         let total = self.clocked_duration().filter(|_| last);
         let end = total.map(|total| (at, total / self.scales.time));
         let clock = begin.or(end);
-        let account = (self.shape.account && first).then(|| (self.shape.account_at(), 0.0));
-        clock.into_iter().chain(account)
+        let energy_account =
+            (self.shape.energy_account && first).then(|| (self.shape.energy_account_at(), 0.0));
+        clock.into_iter().chain(energy_account)
     }
 
-    /// The duration, s, where it is a condition: lengths that are given sum up to it anyway.
+    /// The duration, s, where it is a condition on the clock; given lengths sum up to it without one.
     fn clocked_duration(&self) -> Option<f64> {
         let free = self.shape.clock && self.shape.length_variable().is_some();
         self.cost_weights.duration.filter(|_| free)
     }
 
-    /// The equality at the last node that prescribes the duration, if one does.
+    /// Index of the equality at the last node that prescribes the duration, if there is one.
     pub(in crate::slew) fn clock_end_row(&self) -> Option<usize> {
         self.clocked_duration()
             .map(|_| self.base.equalities(self.base.intervals()))
     }
 
-    /// How far a length is from the one to which it is drawn.
+    /// Difference of a length from the one that the penalty draws it to, scaled.
     pub(super) fn stray(&self, link: &Link<'_>) -> f64 {
         self.length(link) - self.penalty.lengths[link.node]
     }
@@ -208,20 +216,20 @@ impl Program {
     }
 }
 
-/// The gradient of a place and the multiplier of its second derivatives.
+/// The gradient of a target and the weight of its second derivatives in the Lagrangian.
 fn place_in<'a>(
-    place: Place,
+    place: TermTarget,
     duals: &LinkMultipliers<'_>,
     out: &'a mut LinkModel,
 ) -> (&'a mut [f64], f64) {
     let vars = out.vars;
     match place {
-        Place::Cost => (&mut out.gradient, 1.0),
-        Place::Gap(row) => (
+        TermTarget::Cost => (&mut out.gradient, 1.0),
+        TermTarget::Gap(row) => (
             &mut out.link_jacobian[row * vars..(row + 1) * vars],
             duals.gap[row],
         ),
-        Place::Inequality(row) => (
+        TermTarget::Inequality(row) => (
             &mut out.inequality_jacobian[row * vars..(row + 1) * vars],
             -duals.inequality[row],
         ),
@@ -295,9 +303,9 @@ impl Chain for Program {
             None => link.point[1 + at],
         };
         let mut add = |place, value: f64| match place {
-            Place::Cost => out.cost += value,
-            Place::Gap(row) => out.gap[row] += value,
-            Place::Inequality(row) => out.inequality[row] += value,
+            TermTarget::Cost => out.cost += value,
+            TermTarget::Gap(row) => out.gap[row] += value,
+            TermTarget::Inequality(row) => out.inequality[row] += value,
         };
         self.terms(link, |term| add(term.place, term.jet.value));
         self.linear_terms(link.node, |place, at, c| {
@@ -324,7 +332,7 @@ impl Chain for Program {
             let z = &duals.inequality[self.middle_rows_at(link.node)..];
             self.base
                 .write_attitude_link(&inner, &duals.gap[..3], (0, z), &mut base);
-            self.pull_back(&base, (&duals.gap[..3], z), link, out);
+            self.pull_back(&base, &duals.gap[..3], z, link, out);
             if let Some(at) = self
                 .shape
                 .length_variable()

@@ -1,13 +1,15 @@
-//! Slews whose torques the pseudo-inverse shares out.
+//! Slews whose torques the pseudo-inverse allocates.
 
 use super::craft::{OLRAC_AXIS, olrac, pyramid, pyramid_end, solved, turn};
 use crate::model::problem::Code;
 use crate::model::spec::StateSpec;
-use crate::slew::{Command, FinalWheels, Hold, Objective, Slew, SlewSpec, WheelAllocation};
+use crate::slew::{
+    FinalWheels, Objective, SampleHold, Slew, SlewSpec, TorqueCommand, WheelAllocation,
+};
 use nalgebra::DVector;
 
-/// The pyramid's slew from and to null-space momentum, in each way of sharing torque out.
-fn slew(allocation: WheelAllocation, command: Command) -> SlewSpec {
+/// The pyramid's slew from and to null-space momentum, with an allocation and a command.
+fn slew(allocation: WheelAllocation, command: TorqueCommand) -> SlewSpec {
     SlewSpec {
         spacecraft: pyramid(),
         start: StateSpec {
@@ -22,11 +24,11 @@ fn slew(allocation: WheelAllocation, command: Command) -> SlewSpec {
     }
 }
 
-/// Greatest part of a torque that the pseudo-inverse would not have asked for, N m.
-fn greatest_stray(spec: &SlewSpec) -> f64 {
+/// Greatest component of the torques in the null space of the axes, N m.
+fn greatest_null_space_torque(spec: &SlewSpec) -> f64 {
     let valid = Slew::try_new(spec).expect("a valid slew");
     let dynamics = &valid.slew.vehicle().dynamics;
-    let pieces = solved(spec).flown.pieces;
+    let pieces = solved(spec).propagated.pieces;
     let torques = pieces
         .iter()
         .flat_map(|piece| [&piece.torque_begin_nm, &piece.torque_end_nm]);
@@ -39,51 +41,51 @@ fn greatest_stray(spec: &SlewSpec) -> f64 {
 }
 
 #[test]
-fn torques_are_those_of_the_pseudo_inverse_whatever_the_command() {
+fn pseudo_inverse_torques_have_no_null_space_component_under_any_command() {
     let intervals = 24;
-    let sampled = |hold| Command::Sampled {
+    let sampled = |hold| TorqueCommand::Sampled {
         period_s: 2.0,
         hold,
     };
     for command in [
-        Command::Free { intervals },
-        Command::Uniform { intervals },
-        Command::Smooth { intervals },
-        sampled(Hold::Constant),
-        sampled(Hold::Linear),
+        TorqueCommand::Free { intervals },
+        TorqueCommand::Uniform { intervals },
+        TorqueCommand::Smooth { intervals },
+        sampled(SampleHold::Constant),
+        sampled(SampleHold::Linear),
     ] {
-        let shared = greatest_stray(&slew(WheelAllocation::PseudoInverse, command));
+        let shared = greatest_null_space_torque(&slew(WheelAllocation::PseudoInverse, command));
         assert!(shared < 1e-9, "{command:?}: {shared} N m");
-        let free = greatest_stray(&slew(WheelAllocation::Free, command));
+        let free = greatest_null_space_torque(&slew(WheelAllocation::Free, command));
         assert!(free > 1e-3, "{command:?}: {free} N m");
     }
 }
 
 #[test]
-fn the_published_slew_takes_between_the_eigenaxis_and_the_free_optimum() {
+fn the_published_slew_by_the_pseudo_inverse_is_between_eigenaxis_and_free_optimum() {
     let time = |allocation| {
         let spec = SlewSpec {
             start: StateSpec::default(),
-            ..slew(allocation, Command::Free { intervals: 40 })
+            ..slew(allocation, TorqueCommand::Free { intervals: 40 })
         };
         solved(&spec).time_s
     };
     let shared = time(WheelAllocation::PseudoInverse);
     let free = time(WheelAllocation::Free);
-    println!("{shared} s shared out by the pseudo-inverse, {free} s free");
-    // About the eigenaxis 51.57 s; the axis is the one along which the pseudo-inverse has least.
+    println!("{shared} s by the pseudo-inverse, {free} s free");
+    // About the eigenaxis it is 51.57 s; along this axis the pseudo-inverse has its least torque.
     assert!(shared < 51.57 - 0.5 && shared > free + 5.0);
 }
 
 #[test]
-fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
-    // Where only effort is weighed and no limit is met, nothing along the null space is of use.
+fn much_weight_on_effort_gives_the_same_optimum_with_either_allocation() {
+    // Without active limits, torque in the null space only adds effort.
     let objective = |allocation| {
         solved(&SlewSpec {
             spacecraft: olrac(5),
             end: turn(OLRAC_AXIS, 1.25),
             objective: Objective::TimeAndEffort { weight: 1e3 },
-            command: Command::Uniform { intervals: 24 },
+            command: TorqueCommand::Uniform { intervals: 24 },
             allocation,
             ..SlewSpec::default()
         })
@@ -94,10 +96,10 @@ fn effort_in_a_given_time_is_least_by_the_pseudo_inverse_anyway() {
 }
 
 #[test]
-fn speeds_at_the_end_cannot_be_given() {
+fn final_wheel_speeds_are_refused_with_the_pseudo_inverse() {
     let mut given = slew(
         WheelAllocation::PseudoInverse,
-        Command::Free { intervals: 24 },
+        TorqueCommand::Free { intervals: 24 },
     );
     given.final_wheels = FinalWheels::Given;
     given.end.wheel_speed_rad_s = Some(vec![0.0; 4]);

@@ -32,7 +32,7 @@ pub(super) fn turn(axis: [f64; 3], angle: f64) -> StateSpec {
     }
 }
 
-/// Solves and demands an answer.
+/// Solves a slew and panics unless it is solved.
 pub(super) fn solved(spec: &SlewSpec) -> SlewOutcome {
     let slew = Slew::try_new(spec).expect("a valid slew").slew;
     let outcome = solve(&slew, &StopSignal::new());
@@ -41,29 +41,29 @@ pub(super) fn solved(spec: &SlewSpec) -> SlewOutcome {
         spec.objective,
         spec.command,
         outcome.status,
-        outcome.flown.failures,
+        outcome.propagated.failures,
         outcome.time_s,
         outcome.effort,
-        outcome.flown.energies.proxy_j,
-        outcome.flown.energies.bill_j,
+        outcome.propagated.energies.proxy_j,
+        outcome.propagated.energies.bill_j,
         outcome.continuous_time_s,
-        outcome.flown.attitude_error_rad,
-        outcome.flown.rate_error_rad_s,
-        outcome.flown.torque_excess,
-        outcome.flown.wheel_speed_excess,
-        outcome.flown.rate_excess,
+        outcome.propagated.attitude_error_rad,
+        outcome.propagated.rate_error_rad_s,
+        outcome.propagated.torque_excess,
+        outcome.propagated.wheel_speed_excess,
+        outcome.propagated.rate_excess,
         outcome.starts,
         outcome.iterations,
     );
     assert!(
         outcome.solved,
         "{} {:?}",
-        outcome.status, outcome.flown.failures
+        outcome.status, outcome.propagated.failures
     );
     outcome
 }
 
-/// OLRAC's spacecraft with so many of its wheels.
+/// OLRAC's spacecraft with the first `wheels` of its wheels.
 pub(super) fn olrac(wheels: usize) -> SpacecraftSpec {
     let axes = [
         [1.0, 0.0, 0.0],
@@ -94,12 +94,12 @@ pub(super) fn pyramid() -> SpacecraftSpec {
     }
 }
 
-/// Its turn by 120 degrees about the axis of the first wheel.
+/// The pyramid's turn by 120 degrees about the axis of the first wheel.
 pub(super) fn pyramid_end() -> StateSpec {
     turn(pyramid().wheels[0].axis, 120_f64.to_radians())
 }
 
-/// OLRAC's axis.
+/// The axis of OLRAC's slew.
 pub(super) const OLRAC_AXIS: [f64; 3] = [0.4896, 0.2032, 0.8480];
 
 /// The energy thesis's spacecraft.
@@ -117,7 +117,7 @@ pub(super) fn lro() -> SpacecraftSpec {
     }
 }
 
-/// Its motors.
+/// The drives of the energy thesis's spacecraft.
 pub(super) fn lro_drives() -> Vec<DriveSpec> {
     let drive = DriveSpec {
         viscous_friction_nms: Some(2.15e-5),
@@ -132,7 +132,7 @@ pub(super) fn lro_drives() -> Vec<DriveSpec> {
     vec![drive; 4]
 }
 
-/// Where its slew ends.
+/// The end of the energy thesis's slew.
 pub(super) fn lro_end() -> StateSpec {
     StateSpec {
         attitude: AttitudeSpec::Quaternion([-0.8026, 0.1498, -0.2264, 0.5312]),
@@ -141,7 +141,8 @@ pub(super) fn lro_end() -> StateSpec {
     }
 }
 
-/// BIROS with its high-torque wheels, and the pyramid of small ones on request.
+/// BIROS with its three high-torque wheels, and with the pyramid of four small ones under a speed law
+/// if asked for.
 pub(super) fn biros(pyramid: bool) -> (SpacecraftSpec, Vec<DriveSpec>, StateSpec) {
     let rpm = std::f64::consts::PI / 30.0;
     let high = |axis| wheel(axis, 5e-3, 0.21, Some(1825.0 * rpm));
@@ -184,7 +185,7 @@ pub(super) fn biros(pyramid: bool) -> (SpacecraftSpec, Vec<DriveSpec>, StateSpec
     (spacecraft, drives, start)
 }
 
-/// Where its slew ends.
+/// The end of BIROS's slew.
 pub(super) fn biros_end() -> StateSpec {
     StateSpec {
         attitude: AttitudeSpec::Matrix([

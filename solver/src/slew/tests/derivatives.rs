@@ -8,12 +8,12 @@ use crate::model::spec::{SpacecraftSpec, StateSpec};
 use crate::nlp::{Chain, Iterate, Layout, Link, LinkModel, LinkMultipliers, models_of};
 use crate::slew::cost_weights::CostWeights;
 use crate::slew::motion::SlewMotion;
-use crate::slew::program::{LengthPenalty, Program, Units};
-use crate::slew::shape::{Course, Lengths, Shape};
-use crate::slew::{Measure, Slew, SlewSpec, WheelAllocation};
+use crate::slew::program::{LengthPenalty, Program, ProgramSetup, ProgramUnits};
+use crate::slew::shape::{IntervalLengths, ProgramShape, TorqueCourse};
+use crate::slew::{EnergyMeasure, Slew, SlewSpec, WheelAllocation};
 use nalgebra::{DVector, Vector3};
 
-/// Four wheels with friction and motors, one that follows a law, stored momentum, rate limits.
+/// Four wheels with friction and motors, one under a speed law, stored momentum, rate limits.
 fn slew(allocation: WheelAllocation) -> Slew {
     let mut drives = lro_drives();
     for drive in &mut drives {
@@ -53,7 +53,7 @@ fn slew(allocation: WheelAllocation) -> Slew {
     Slew::try_new(&spec).expect("a valid slew").slew
 }
 
-/// A wild motion of two intervals.
+/// A motion of two intervals, far from any solution.
 fn motion() -> SlewMotion {
     let at = |v: [f64; 3]| crate::model::attitude::Attitude::from_rotation_vector(Vector3::from(v));
     SlewMotion::of_profile(&Profile {
@@ -71,7 +71,7 @@ fn motion() -> SlewMotion {
     })
 }
 
-fn shapes(slew: &Slew) -> Vec<(Shape, CostWeights)> {
+fn shapes(slew: &Slew) -> Vec<(ProgramShape, CostWeights)> {
     let effort = CostWeights {
         effort: 3.0,
         ..CostWeights::TIME
@@ -86,17 +86,37 @@ fn shapes(slew: &Slew) -> Vec<(Shape, CostWeights)> {
         ..effort
     };
     let energy = |measure| CostWeights::energy_in(16.0, measure);
-    let given = Lengths::Given(vec![7.0, 9.0]);
+    let given = IntervalLengths::Given(vec![7.0, 9.0]);
     [
-        (Course::Steps, Lengths::Own, effort),
-        (Course::Steps, Lengths::Own, within(16.0)),
-        (Course::Steps, Lengths::Own, energy(Measure::Bill)),
-        (Course::Steps, Lengths::Own, budget(Measure::Proxy)),
-        (Course::Steps, Lengths::Shared, budget(Measure::Bill)),
-        (Course::Steps, given.clone(), energy(Measure::Proxy)),
-        (Course::Ramps, Lengths::Shared, effort),
-        (Course::Ramps, Lengths::Own, budget(Measure::Bill)),
-        (Course::Ramps, given, energy(Measure::Bill)),
+        (TorqueCourse::Steps, IntervalLengths::Free, effort),
+        (TorqueCourse::Steps, IntervalLengths::Free, within(16.0)),
+        (
+            TorqueCourse::Steps,
+            IntervalLengths::Free,
+            energy(EnergyMeasure::Bill),
+        ),
+        (
+            TorqueCourse::Steps,
+            IntervalLengths::Free,
+            budget(EnergyMeasure::Proxy),
+        ),
+        (
+            TorqueCourse::Steps,
+            IntervalLengths::Shared,
+            budget(EnergyMeasure::Bill),
+        ),
+        (
+            TorqueCourse::Steps,
+            given.clone(),
+            energy(EnergyMeasure::Proxy),
+        ),
+        (TorqueCourse::Ramps, IntervalLengths::Shared, effort),
+        (
+            TorqueCourse::Ramps,
+            IntervalLengths::Free,
+            budget(EnergyMeasure::Bill),
+        ),
+        (TorqueCourse::Ramps, given, energy(EnergyMeasure::Bill)),
     ]
     .map(|(course, lengths, of)| (slew.shape(course, lengths, &of), of))
     .to_vec()
@@ -112,28 +132,29 @@ struct Fixture {
 }
 
 impl Fixture {
-    fn new(slew: &Slew, (shape, cost_weights): (Shape, CostWeights), node: usize) -> Self {
+    fn new(slew: &Slew, (shape, cost_weights): (ProgramShape, CostWeights), node: usize) -> Self {
         let vehicle = slew.vehicle();
         let scales = Scales::for_legs(&vehicle.dynamics, 0.8, 16.0);
-        let units = Units {
+        let units = ProgramUnits {
             cost: 3.0,
             energy: 2.0,
         };
         let motion = motion();
-        let mut program = Program::new(
-            vehicle,
-            scales,
-            slew.ends(),
-            2,
+        let setup = ProgramSetup {
+            waypoints: slew.ends(),
+            intervals: 2,
             shape,
-            (cost_weights, units),
-        );
+            cost_weights,
+            scales,
+            units,
+        };
+        let mut program = Program::new(vehicle, setup);
         program.penalty = LengthPenalty {
             weight: 0.3,
             lengths: vec![0.6; 2],
         };
         program.torque_reserve = vec![0.01, 0.02, 0.03];
-        let iterate = motion.iterate(&program);
+        let iterate = program.iterate_at(&motion);
         let weights = |n: usize, seed: f64| (0..n).map(|i| (seed + i as f64).sin()).collect();
         Self {
             gap: weights(program.state_dim(), 1.0),
@@ -244,7 +265,7 @@ impl Fixture {
 }
 
 #[test]
-fn derivatives_of_every_shape_match_finite_differences() {
+fn derivatives_of_programs_of_every_shape_match_finite_differences() {
     for allocation in [WheelAllocation::Free, WheelAllocation::PseudoInverse] {
         let slew = slew(allocation);
         for of in shapes(&slew) {
@@ -258,7 +279,7 @@ fn derivatives_of_every_shape_match_finite_differences() {
 }
 
 #[test]
-fn a_wheel_under_a_law_is_no_actuator() {
+fn a_wheel_under_a_speed_law_is_locked_and_not_an_actuator() {
     let (spacecraft, drives, start) = biros(true);
     let spec = SlewSpec {
         spacecraft,

@@ -1,20 +1,20 @@
-//! Slews while a speed law moves the momentum of wheels: how much time and the Hamiltonian know of it.
+//! Slews while speed laws change the momentum of wheels: the costate of time and the Hamiltonian.
 
 use super::craft::{biros, biros_end, lro_drives, solved};
 use crate::model::drive::SpeedLawSpec;
 use crate::run::stop::StopSignal;
 use crate::slew::evidence::{self, Evidence};
-use crate::slew::{Command, Measure, Objective, Slew, SlewSpec};
+use crate::slew::{EnergyMeasure, Objective, Slew, SlewSpec, TorqueCommand};
 use nalgebra::Vector3;
 
-/// Speeds of the wheels with laws, rad/s: at the start, and where the law leads.
+/// Speeds of the wheels under a speed law, rad/s: at the start, and of the law.
 const SPEEDS: [f64; 2] = [-200.0, 400.0];
-/// Return rate, 1/s: most of the way is gone during the slew.
+/// Rate of the speed law, 1/s: most of the change of speed happens during the slew.
 const RATE: f64 = 0.1;
 
-/// A slew whose wheels with laws are ahead by a time, s, in what is otherwise the same state: momenta
-/// of the commanded wheels and of the whole.
-fn ahead(by: f64, objective: Objective, command: Command) -> SlewSpec {
+/// A slew whose speed laws are ahead by a time, s, with the same momenta of the commanded wheels and of
+/// the whole spacecraft.
+fn ahead(by: f64, objective: Objective, command: TorqueCommand) -> SlewSpec {
     let (spacecraft, mut drives, mut start) = biros(true);
     for drive in &mut drives[..3] {
         drive.motor.clone_from(&lro_drives()[0].motor);
@@ -29,7 +29,7 @@ fn ahead(by: f64, objective: Objective, command: Command) -> SlewSpec {
     let spins = spacecraft.wheels[3..].iter();
     let spins = spins.map(|wheel| Vector3::from(wheel.axis) * wheel.inertia_kg_m2);
     let taken = spins.sum::<Vector3<f64>>() * (held - SPEEDS[0]);
-    let plain = SlewSpec {
+    let choice = SlewSpec {
         spacecraft: spacecraft.clone(),
         drives,
         start: start.clone(),
@@ -38,8 +38,8 @@ fn ahead(by: f64, objective: Objective, command: Command) -> SlewSpec {
         command,
         ..SlewSpec::default()
     };
-    let slew = Slew::try_new(&plain).expect("valid").slew;
-    // The body takes the other side of what the wheels with laws have taken.
+    let slew = Slew::try_new(&choice).expect("valid").slew;
+    // The body has the opposite of the momentum that the wheels under a speed law have taken up.
     let rate = -(slew.vehicle().dynamics.inertia_inverse * taken);
     let mut speeds = vec![held; 7];
     for (speed, wheel) in speeds.iter_mut().zip(&spacecraft.wheels[..3]) {
@@ -47,7 +47,7 @@ fn ahead(by: f64, objective: Objective, command: Command) -> SlewSpec {
     }
     start.body_rate_rad_s = Some(rate.into());
     start.wheel_speed_rad_s = Some(speeds);
-    SlewSpec { start, ..plain }
+    SlewSpec { start, ..choice }
 }
 
 fn evidence_for(spec: &SlewSpec) -> Evidence {
@@ -67,20 +67,20 @@ fn evidence_for(spec: &SlewSpec) -> Evidence {
     found
 }
 
-/// What a law that is a second ahead changes the objective by, from slews on both sides.
-fn difference(objective: Objective, command: Command) -> f64 {
+/// Derivative of the objective by an advance of the speed law, per s, by central differences.
+fn difference(objective: Objective, command: TorqueCommand) -> f64 {
     let by = 0.05;
     let value = |by: f64| solved(&ahead(by, objective, command)).objective;
     (value(by) - value(-by)) / (2.0 * by)
 }
 
 #[test]
-fn the_hamiltonian_is_constant_only_with_the_costate_of_time() {
-    let command = Command::Free { intervals: 40 };
+fn the_hamiltonian_of_drifting_wheels_is_constant_only_with_the_costate_of_time() {
+    let command = TorqueCommand::Free { intervals: 40 };
     let found = evidence_for(&ahead(0.0, Objective::MinimumTime, command));
     assert!(found.hamiltonian.abs() <= 2e-3);
     assert!(found.average_spread <= 1e-2 && found.pointwise_spread <= 1e-2);
-    // The same check without the correction.
+    // Without the costate of time it is not constant.
     assert!(found.variation > 5e-2 && found.variation > 10.0 * found.pointwise_spread);
     assert!(found.costate_defect <= 1e-2);
     assert!(found.complementarity <= 1e-5);
@@ -88,8 +88,8 @@ fn the_hamiltonian_is_constant_only_with_the_costate_of_time() {
 }
 
 #[test]
-fn the_costate_of_time_is_what_a_law_ahead_changes_the_time_by() {
-    let command = Command::Uniform { intervals: 60 };
+fn the_costate_of_time_is_the_derivative_of_the_duration_by_an_advance_of_the_law() {
+    let command = TorqueCommand::Uniform { intervals: 60 };
     let found = evidence_for(&ahead(0.0, Objective::MinimumTime, command));
     let changed = difference(Objective::MinimumTime, command);
     let [costate, _] = found.intervals[0].time_costate;
@@ -98,12 +98,12 @@ fn the_costate_of_time_is_what_a_law_ahead_changes_the_time_by() {
 }
 
 #[test]
-fn the_costate_of_time_is_what_a_law_ahead_changes_the_energy_by() {
-    // Here the times of all nodes are known, and the Hamiltonian is not zero.
-    let command = Command::Uniform { intervals: 60 };
+fn the_costate_of_time_is_the_derivative_of_the_energy_by_an_advance_of_the_law() {
+    // The times of all nodes are given, and the Hamiltonian is not zero.
+    let command = TorqueCommand::Uniform { intervals: 60 };
     let objective = |duration_s: f64| Objective::Energy {
         duration_s,
-        measure: Measure::Proxy,
+        measure: EnergyMeasure::Proxy,
     };
     let found = evidence_for(&ahead(0.0, objective(14.0), command));
     let changed = difference(objective(14.0), command);

@@ -1,9 +1,9 @@
 //! OLRAC: time with weighted effort.
 
 use super::craft::{OLRAC_AXIS, olrac, solved, turn};
-use crate::slew::{Command, Objective, SlewOutcome, SlewSpec};
+use crate::slew::{Objective, SlewOutcome, SlewSpec, TorqueCommand};
 
-fn olrac_slew(wheels: usize, angle: f64, weight: f64, command: Command) -> SlewOutcome {
+fn olrac_slew(wheels: usize, angle: f64, weight: f64, command: TorqueCommand) -> SlewOutcome {
     solved(&SlewSpec {
         spacecraft: olrac(wheels),
         end: turn(OLRAC_AXIS, angle),
@@ -25,7 +25,7 @@ const WEIGHTS: [f64; 3] = [0.01, 0.1, 10.0];
 fn time_and_effort_is_no_worse_than_published() {
     for (wheels, published) in TABLE {
         for (weight, published) in WEIGHTS.into_iter().zip(published) {
-            let outcome = olrac_slew(wheels, 1.25, weight, Command::Free { intervals: 40 });
+            let outcome = olrac_slew(wheels, 1.25, weight, TorqueCommand::Free { intervals: 40 });
             assert!(
                 outcome.objective <= published * 1.0005,
                 "{wheels} wheels, weight {weight}: {} against {published}",
@@ -35,10 +35,11 @@ fn time_and_effort_is_no_worse_than_published() {
     }
 }
 
-/// How far the torques are from straight lines in time: root mean square of what is left over that
-/// of the torques, all wheels together, and the greatest distance over the widest range of a wheel.
+/// How far the torques are from straight lines in time: the root mean square of the residuals of a
+/// linear fit over that of the torques, of all wheels together, and the greatest residual over the
+/// widest range of a wheel's torques.
 fn bend(outcome: &SlewOutcome) -> [f64; 2] {
-    let pieces = &outcome.flown.pieces;
+    let pieces = &outcome.propagated.pieces;
     let times: Vec<f64> = pieces
         .iter()
         .map(|p| p.start_s + 0.5 * p.duration_s)
@@ -72,11 +73,11 @@ fn bend(outcome: &SlewOutcome) -> [f64; 2] {
     [(left / all).sqrt(), farthest / widest]
 }
 
-/// The least of `T + rho C / T^3`, what a turn about the eigenaxis costs with torques that are
-/// exactly linear in time: `u(t) = 6 angle J e (1 - 2 t / T) / T^2`.
+/// The minimum over `T` of `T + rho C / T^3`, the objective of a turn about the eigenaxis with torques
+/// that are exactly linear in time: `u(t) = 6 angle J e (1 - 2 t / T) / T^2`.
 fn linear_law(angle: f64, weight: f64) -> f64 {
     let norm = OLRAC_AXIS.iter().map(|a| a * a).sum::<f64>().sqrt();
-    // Without the wheels' spin, 0.05 kg m2.
+    // Without the axial inertia of the wheels, 0.05 kg m2.
     let inertia = [86.165, 85.020, 133.515];
     let levers = inertia
         .iter()
@@ -89,26 +90,26 @@ fn linear_law(angle: f64, weight: f64) -> f64 {
 #[test]
 fn much_weight_on_effort_makes_torques_linear_in_time() {
     for command in [
-        Command::Free { intervals: 40 },
-        Command::Smooth { intervals: 24 },
+        TorqueCommand::Free { intervals: 40 },
+        TorqueCommand::Smooth { intervals: 24 },
     ] {
         let outcome = olrac_slew(3, 1.25, 10.0, command);
         let [mean, most] = bend(&outcome);
         let gained = 1.0 - outcome.objective / linear_law(1.25, 10.0);
         println!("{command:?} bend {mean} {most}, better than linear by {gained}");
-        // Of the squared torques 99 % are linear in time; bending the smallest torque gains 0.2 %.
+        // Of the squared torques 99 % are linear in time; the rest gains 0.2 %.
         assert!(mean * mean <= 0.05 && most <= 0.06, "{mean} {most}");
         assert!((0.0..0.005).contains(&gained), "{gained}");
-        // Little weight makes them jump.
+        // With little weight the torques jump.
         let [jumping, _] = bend(&olrac_slew(3, 1.25, 0.01, command));
         assert!(jumping * jumping > 0.1, "{jumping}");
     }
 }
 
 #[test]
-fn the_angle_of_the_text_takes_longer_than_the_published_times() {
+fn durations_for_the_angle_of_the_text_exceed_the_published_ones() {
     for (wheels, time) in [(3, 37.30), (4, 31.42)] {
-        let outcome = olrac_slew(wheels, 2.5, 0.01, Command::Free { intervals: 40 });
+        let outcome = olrac_slew(wheels, 2.5, 0.01, TorqueCommand::Free { intervals: 40 });
         assert!(
             (outcome.time_s / time - 1.0).abs() < 3e-3,
             "{}",

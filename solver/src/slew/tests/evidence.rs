@@ -1,4 +1,4 @@
-//! The minimum principle along solutions.
+//! Conditions of the minimum principle along solutions.
 
 use super::craft::{
     OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, pyramid, pyramid_end, turn,
@@ -6,7 +6,7 @@ use super::craft::{
 use crate::run::stop::StopSignal;
 use crate::slew::evidence::{self, Evidence};
 use crate::slew::{
-    Command, FinalWheels, Measure, Objective, Slew, SlewSpec, WheelAllocation, solve,
+    EnergyMeasure, FinalWheels, Objective, Slew, SlewSpec, TorqueCommand, WheelAllocation, solve,
 };
 
 fn evidence_for(spec: &SlewSpec) -> Evidence {
@@ -16,7 +16,7 @@ fn evidence_for(spec: &SlewSpec) -> Evidence {
     assert!(
         outcome.solved,
         "{} {:?}",
-        outcome.status, outcome.flown.failures
+        outcome.status, outcome.propagated.failures
     );
     let evidence = evidence::of(&slew, &outcome, &stop).expect("a polished solution");
     println!(
@@ -39,7 +39,7 @@ fn evidence_for(spec: &SlewSpec) -> Evidence {
 
 fn fastest(intervals: usize) -> [SlewSpec; 3] {
     let (spacecraft, _, start) = biros(false);
-    let command = Command::Free { intervals };
+    let command = TorqueCommand::Free { intervals };
     [
         SlewSpec {
             spacecraft,
@@ -78,7 +78,7 @@ fn the_hamiltonian_of_minimum_time_is_constant() {
 }
 
 #[test]
-fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
+fn the_hamiltonian_at_a_given_duration_is_the_derivative_of_the_energy_by_it() {
     let at = |duration_s: f64| SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
@@ -86,9 +86,9 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
         final_wheels: FinalWheels::Given,
         objective: Objective::Energy {
             duration_s,
-            measure: Measure::Proxy,
+            measure: EnergyMeasure::Proxy,
         },
-        command: Command::Uniform { intervals: 80 },
+        command: TorqueCommand::Uniform { intervals: 80 },
         ..SlewSpec::default()
     };
     let evidence = evidence_for(&at(910.0));
@@ -105,8 +105,8 @@ fn the_hamiltonian_of_a_given_time_is_what_a_second_more_adds() {
     assert!(evidence.principle_gap < 1e-2);
 }
 
-/// The pyramid's published slew, by the pseudo-inverse.
-fn shared_out(command: Command) -> SlewSpec {
+/// The pyramid's published slew with torques allocated by the pseudo-inverse.
+fn shared_out(command: TorqueCommand) -> SlewSpec {
     SlewSpec {
         spacecraft: pyramid(),
         end: pyramid_end(),
@@ -118,8 +118,8 @@ fn shared_out(command: Command) -> SlewSpec {
 }
 
 #[test]
-fn torques_of_the_pseudo_inverse_are_chosen_together() {
-    let evidence = evidence_for(&shared_out(Command::Free { intervals: 60 }));
+fn torques_of_the_pseudo_inverse_keep_the_minimum_principle_in_three_controls() {
+    let evidence = evidence_for(&shared_out(TorqueCommand::Free { intervals: 60 }));
     assert!(evidence.hamiltonian.abs() <= 1e-5);
     assert!((evidence.scale - 1.0).abs() <= 1e-5);
     assert!(evidence.pointwise_spread <= 1e-5);
@@ -132,13 +132,13 @@ fn torques_of_the_pseudo_inverse_are_chosen_together() {
 }
 
 #[test]
-fn effort_by_the_pseudo_inverse_makes_the_switching_function_vanish() {
-    // Away from limits the torque on all wheels together is where the Hamiltonian is flat.
+fn with_effort_and_without_active_limits_the_switching_function_vanishes() {
+    // Away from limits the Hamiltonian is stationary in the torque on all wheels together.
     let evidence = evidence_for(&SlewSpec {
         spacecraft: olrac(5),
         end: turn(OLRAC_AXIS, 1.25),
         objective: Objective::TimeAndEffort { weight: 1e3 },
-        command: Command::Uniform { intervals: 40 },
+        command: TorqueCommand::Uniform { intervals: 40 },
         allocation: WheelAllocation::PseudoInverse,
         ..SlewSpec::default()
     });
@@ -147,7 +147,7 @@ fn effort_by_the_pseudo_inverse_makes_the_switching_function_vanish() {
         .iter()
         .flat_map(|one| &one.momentum_costate[0]);
     let size = costates.fold(0.0_f64, |size, r| size.max(r.abs()));
-    // Torque is constant on an interval: at its middle it is that of the minimum.
+    // Torque is constant on an interval: the switching function vanishes in its middle.
     let middles = evidence.intervals.iter().flat_map(|one| {
         let [begin, end] = &one.switching;
         begin.iter().zip(end).map(|(a, b)| 0.5 * (a + b).abs())

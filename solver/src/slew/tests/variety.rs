@@ -1,4 +1,4 @@
-//! Combinations of objectives, commands and drives that no source has, all of them flown.
+//! Combinations of objectives, commands and drives that no source has; all solutions are propagated.
 
 use super::craft::{
     OLRAC_AXIS, biros, biros_end, lro, lro_drives, lro_end, olrac, pyramid, pyramid_end, solved,
@@ -8,10 +8,11 @@ use crate::model::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
 use crate::model::spec::StateSpec;
 use crate::run::stop::StopSignal;
 use crate::slew::{
-    Command, FinalWheels, Hold, Measure, Objective, Slew, SlewSpec, Sweep, solve, trade_curve,
+    EnergyMeasure, FinalWheels, Objective, SampleHold, Slew, SlewSpec, Sweep, TorqueCommand, solve,
+    trade_curve,
 };
 
-fn thrifty(command: Command, measure: Measure) -> SlewSpec {
+fn minimum_energy(command: TorqueCommand, measure: EnergyMeasure) -> SlewSpec {
     SlewSpec {
         spacecraft: lro(),
         drives: lro_drives(),
@@ -27,20 +28,20 @@ fn thrifty(command: Command, measure: Measure) -> SlewSpec {
 }
 
 #[test]
-fn every_command_comes_to_about_the_same_energy() {
-    let hold = |hold| Command::Sampled {
+fn energies_under_all_commands_are_within_five_per_cent() {
+    let hold = |hold| TorqueCommand::Sampled {
         period_s: 10.0,
         hold,
     };
-    for measure in [Measure::Proxy, Measure::Bill] {
+    for measure in [EnergyMeasure::Proxy, EnergyMeasure::Bill] {
         let energies = [
-            Command::Free { intervals: 60 },
-            Command::Uniform { intervals: 90 },
-            Command::Smooth { intervals: 60 },
-            hold(Hold::Constant),
-            hold(Hold::Linear),
+            TorqueCommand::Free { intervals: 60 },
+            TorqueCommand::Uniform { intervals: 90 },
+            TorqueCommand::Smooth { intervals: 60 },
+            hold(SampleHold::Constant),
+            hold(SampleHold::Linear),
         ]
-        .map(|command| solved(&thrifty(command, measure)).objective);
+        .map(|command| solved(&minimum_energy(command, measure)).objective);
         let least = energies.iter().copied().fold(f64::INFINITY, f64::min);
         for energy in energies {
             assert!(energy < 1.05 * least, "{measure:?} {energies:?}");
@@ -49,8 +50,11 @@ fn every_command_comes_to_about_the_same_energy() {
 }
 
 #[test]
-fn losses_of_the_supply_are_billed() {
-    let mut spec = thrifty(Command::Uniform { intervals: 60 }, Measure::Bill);
+fn the_bill_includes_efficiency_and_quiescent_power() {
+    let mut spec = minimum_energy(
+        TorqueCommand::Uniform { intervals: 60 },
+        EnergyMeasure::Bill,
+    );
     let ideal = solved(&spec).objective;
     for drive in &mut spec.drives {
         drive.motor = Some(MotorSpec {
@@ -67,21 +71,21 @@ fn losses_of_the_supply_are_billed() {
     );
     spec.objective = Objective::MinimumTimeAtEnergy {
         energy_j: real,
-        measure: Measure::Bill,
+        measure: EnergyMeasure::Bill,
     };
     let fast = solved(&spec);
     assert!(
-        fast.time_s <= 900.0 + 0.5 && fast.flown.energies.bill_j <= real,
+        fast.time_s <= 900.0 + 0.5 && fast.propagated.energies.bill_j <= real,
         "{}",
         fast.time_s
     );
 }
 
 #[test]
-fn a_wheel_that_returns_to_its_speed_is_carried_along() {
+fn slews_arrive_while_a_speed_law_moves_wheels() {
     let (spacecraft, mut drives, mut start) = biros(true);
     for drive in &mut drives[3..] {
-        // A thousandfold the published rate, from another speed: a fifth of a wheel's momentum moves.
+        // 500 times the published rate, towards another speed: a fifth of a wheel's momentum changes.
         drive.speed_law = Some(SpeedLawSpec {
             rate_per_s: 0.05,
             speed_rad_s: -100.0,
@@ -89,11 +93,11 @@ fn a_wheel_that_returns_to_its_speed_is_carried_along() {
     }
     start.body_rate_rad_s = Some([0.01, -0.02, 0.015]);
     let commands = [
-        Command::Free { intervals: 24 },
-        Command::Smooth { intervals: 30 },
-        Command::Sampled {
+        TorqueCommand::Free { intervals: 24 },
+        TorqueCommand::Smooth { intervals: 30 },
+        TorqueCommand::Sampled {
             period_s: 0.5,
-            hold: Hold::Linear,
+            hold: SampleHold::Linear,
         },
     ];
     for command in commands {
@@ -105,15 +109,15 @@ fn a_wheel_that_returns_to_its_speed_is_carried_along() {
             command,
             ..SlewSpec::default()
         });
-        let end = outcome.flown.states.last().expect("an end");
+        let end = outcome.propagated.states.last().expect("an end");
         let held = -100.0 - 100.0 * (-0.05 * outcome.time_s).exp();
         assert!((end.wheel_speed_rad_s[4] - held).abs() < 1e-9);
-        assert!(outcome.flown.attitude_error_rad < 1e-7);
+        assert!(outcome.propagated.attitude_error_rad < 1e-7);
     }
 }
 
 #[test]
-fn friction_costs_time_where_it_is_made_up_for() {
+fn friction_costs_time_where_the_motors_compensate_it() {
     let time = |compensated: Option<bool>| {
         let (spacecraft, _, start) = biros(false);
         let drive = DriveSpec {
@@ -128,15 +132,15 @@ fn friction_costs_time_where_it_is_made_up_for() {
             drives,
             start,
             end: biros_end(),
-            command: Command::Free { intervals: 40 },
+            command: TorqueCommand::Free { intervals: 40 },
             ..SlewSpec::default()
         });
-        assert!(outcome.flown.torque_excess < 1e-6);
+        assert!(outcome.propagated.torque_excess < 1e-6);
         outcome.time_s
     };
     let (ideal, made_up, left) = (time(None), time(Some(true)), time(Some(false)));
     assert!((left - ideal).abs() < 1e-4, "{left} {ideal}");
-    // Speeding up takes more of the motor, and slowing down less.
+    // The motor's torque is larger when the wheel speeds up, and smaller when it slows down.
     assert!(
         made_up > ideal * 1.0001 && made_up < ideal * 1.05,
         "{made_up} {ideal}"
@@ -144,22 +148,22 @@ fn friction_costs_time_where_it_is_made_up_for() {
 }
 
 #[test]
-fn a_pinned_null_space_returns_and_costs_time() {
+fn keeping_the_null_space_momentum_of_the_start_costs_time() {
     let spec = |final_wheels| SlewSpec {
         spacecraft: pyramid(),
         start: StateSpec {
-            // Along the null space: no momentum in sum.
+            // In the null space: the momenta sum to zero.
             wheel_speed_rad_s: Some(vec![157.0, -157.0, 157.0, -157.0]),
             ..StateSpec::default()
         },
         end: pyramid_end(),
         final_wheels,
-        command: Command::Free { intervals: 40 },
+        command: TorqueCommand::Free { intervals: 40 },
         ..SlewSpec::default()
     };
     let free = solved(&spec(FinalWheels::Free));
     let pinned = solved(&spec(FinalWheels::NullSpaceOfStart));
-    let end = pinned.flown.states.last().expect("an end");
+    let end = pinned.propagated.states.last().expect("an end");
     for (speed, start) in end
         .wheel_speed_rad_s
         .iter()
@@ -167,7 +171,7 @@ fn a_pinned_null_space_returns_and_costs_time() {
     {
         assert!((speed - start).abs() < 1e-5, "{speed}");
     }
-    // Published for half of the maximum: 41.19 s.
+    // Published for half of the greatest null-space momentum: 41.19 s.
     assert!(
         pinned.time_s <= 41.2 && free.time_s < pinned.time_s - 0.5,
         "{} {}",
@@ -177,7 +181,7 @@ fn a_pinned_null_space_returns_and_costs_time() {
 }
 
 #[test]
-fn a_failed_wheel_is_done_without() {
+fn a_disabled_wheel_gets_no_torque_and_the_slew_takes_longer() {
     let time = |failed: Option<usize>| {
         let mut spacecraft = olrac(5);
         if let Some(failed) = failed {
@@ -186,12 +190,12 @@ fn a_failed_wheel_is_done_without() {
         let outcome = solved(&SlewSpec {
             spacecraft,
             end: turn(OLRAC_AXIS, 1.25),
-            command: Command::Free { intervals: 32 },
+            command: TorqueCommand::Free { intervals: 32 },
             ..SlewSpec::default()
         });
         let idle = failed.map_or(0.0, |i| {
             let torques = outcome
-                .flown
+                .propagated
                 .pieces
                 .iter()
                 .map(|p| p.torque_begin_nm[i].abs());
@@ -204,8 +208,11 @@ fn a_failed_wheel_is_done_without() {
 }
 
 #[test]
-fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
-    let spec = thrifty(Command::Uniform { intervals: 60 }, Measure::Proxy);
+fn a_trade_curve_falls_and_each_point_starts_from_the_one_before() {
+    let spec = minimum_energy(
+        TorqueCommand::Uniform { intervals: 60 },
+        EnergyMeasure::Proxy,
+    );
     let slew = Slew::try_new(&spec).expect("valid").slew;
     let sweep = Sweep::Durations(vec![800.0, 850.0, 900.0, 1000.0, 1200.0]);
     let curve = trade_curve(&slew, &sweep, &StopSignal::new()).expect("a valid sweep");
@@ -216,7 +223,7 @@ fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
             .windows(2)
             .all(|pair| pair[1].objective < pair[0].objective)
     );
-    // From its neighbour, a point takes one start, and gets where its own starts lead.
+    // From its neighbour a point takes one guess, and has the optimum that it has by itself.
     assert_eq!(curve[2].starts, 1);
     let alone = solved(&spec).objective;
     assert!((curve[2].objective / alone - 1.0).abs() < 1e-4);
@@ -231,13 +238,13 @@ fn a_trade_curve_falls_and_begins_where_it_is_asked_to() {
 }
 
 #[test]
-fn all_problems_are_told_at_once() {
-    let mut spec = thrifty(Command::Free { intervals: 1 }, Measure::Bill);
+fn all_problems_of_a_description_are_found_at_once() {
+    let mut spec = minimum_energy(TorqueCommand::Free { intervals: 1 }, EnergyMeasure::Bill);
     spec.spacecraft.inertia_kg_m2[0][0] = -1.0;
     spec.drives[2].motor = None;
     spec.objective = Objective::Energy {
         duration_s: f64::NAN,
-        measure: Measure::Bill,
+        measure: EnergyMeasure::Bill,
     };
     spec.end.wheel_speed_rad_s = None;
     spec.options.torque_authority = 2.0;
@@ -256,11 +263,14 @@ fn all_problems_are_told_at_once() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_and_a_stop_is_obeyed() {
-    let mut spec = thrifty(Command::Uniform { intervals: 40 }, Measure::Proxy);
+fn an_impossible_duration_is_not_solved_and_a_stop_is_reported() {
+    let mut spec = minimum_energy(
+        TorqueCommand::Uniform { intervals: 40 },
+        EnergyMeasure::Proxy,
+    );
     spec.objective = Objective::Energy {
         duration_s: 600.0,
-        measure: Measure::Proxy,
+        measure: EnergyMeasure::Proxy,
     };
     let slew = Slew::try_new(&spec).expect("valid").slew;
     let outcome = solve(&slew, &StopSignal::new());

@@ -1,4 +1,4 @@
-//! The least time from a place through all remaining targets, bounded from below by the pair table.
+//! Lower bounds on the time from a place through all remaining targets, from the pair table.
 
 pub(super) mod least_tree;
 mod spanning_tree;
@@ -11,9 +11,10 @@ use super::PairTable;
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 
-/// Up to so many targets the completion is exact. The table has `n 2^n` entries: 160 MiB and a quarter
-/// of a second for twenty targets, half of the one and of the other for every target less.
-pub const EXACT_TARGETS: usize = 20;
+/// Number of targets up to which the bound is the exact shortest path. The table has `n 2^n`
+/// entries: 160 MiB and a quarter of a second for twenty targets, and half of both for each target
+/// less.
+pub const MAX_EXACT_TARGETS: usize = 20;
 
 /// Costs of legs between places numbered as in [`PairTable`], s.
 pub trait LegCosts {
@@ -39,21 +40,21 @@ impl LegCosts for PairTable {
     }
 }
 
-/// Bounds what comes after a prefix.
+/// Lower bounds on the part of a tour after a prefix.
 #[derive(Debug)]
-pub enum Remainder {
+pub enum CompletionBound {
     /// The shortest path in the pair table.
     Exact(SubsetTable),
     /// A relaxation of the shortest path.
     Relaxed(SpanningTrees),
 }
 
-impl Remainder {
-    /// Prepares the bounds over a pair table, for the orders that some rules admit; the weaker ones
-    /// when stopped.
+impl CompletionBound {
+    /// Prepares the bounds of a pair table for the orders that some rules admit. If the stop signal
+    /// interrupts the exact table, the relaxation is used.
     #[must_use]
     pub fn new(table: &PairTable, rules: &OrderRules, stop: &StopSignal) -> Self {
-        let few = table.targets() <= EXACT_TARGETS;
+        let few = table.targets() <= MAX_EXACT_TARGETS;
         let exact = few.then(|| SubsetTable::new(table, rules, stop)).flatten();
         exact.map_or_else(|| Self::Relaxed(SpanningTrees::new(table)), Self::Exact)
     }
@@ -108,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn subsets_give_the_shortest_path() {
+    fn the_table_of_subsets_gives_the_shortest_path() {
         for seed in 0..10 {
             let table = PairTable::new(&RandomModel::new(6, seed % 2 == 0, seed));
             let exact = SubsetTable::new(&table, table.rules(), &StopSignal::new());
@@ -121,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn trees_never_exceed_the_shortest_path() {
+    fn spanning_trees_never_exceed_the_shortest_path() {
         for seed in 0..20 {
             let model = if seed < 10 {
                 RandomModel::new
@@ -140,14 +141,14 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_leaves_the_bounds_of_trees() {
+    fn an_interrupted_exact_table_is_replaced_by_spanning_trees() {
         let table = PairTable::new(&RandomModel::new(14, false, 3));
         let stop = StopSignal::new();
-        let exact = Remainder::new(&table, table.rules(), &stop);
-        assert!(matches!(exact, Remainder::Exact(_)));
+        let exact = CompletionBound::new(&table, table.rules(), &stop);
+        assert!(matches!(exact, CompletionBound::Exact(_)));
         stop.request();
-        let relaxed = Remainder::new(&table, table.rules(), &stop);
-        assert!(matches!(relaxed, Remainder::Relaxed(_)));
+        let relaxed = CompletionBound::new(&table, table.rules(), &stop);
+        assert!(matches!(relaxed, CompletionBound::Relaxed(_)));
         let all: Vec<usize> = (0..14).collect();
         let bounds = [relaxed, exact].map(|bounds| bounds.bound(&table, table.start(), &all));
         assert!(

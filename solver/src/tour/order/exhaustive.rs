@@ -1,24 +1,25 @@
-//! Every order, flown: the answer that tests hold the search against.
+//! Evaluation of every order: the reference for tests of the search.
 
 use super::incumbents::Incumbents;
-use super::{FlownOrder, TourEvaluation, TourModel};
+use super::{SolvedOrder, TourEvaluation, TourModel};
 use crate::run::pool::SolverPool;
 
-/// Flies all orders that the rules admit, n! at most, and lists the best and so many alternatives, best first. Orders that do not
-/// resolve are left out. For a handful of targets only.
+/// Evaluates all orders that the rules admit, up to n!, and lists the best one and so many
+/// alternatives, best first. Orders that do not resolve are left out. For a handful of targets
+/// only.
 #[must_use]
 pub fn exhaustive(
     model: &dyn TourModel,
     alternatives: usize,
     pool: &SolverPool,
-) -> Vec<FlownOrder> {
+) -> Vec<SolvedOrder> {
     let mut orders = permutations(model.target_count());
     orders.retain(|order| model.rules().admits(order));
     let answers = pool.map(&orders, |order| model.tour(order));
     let mut best = Incumbents::new(alternatives, 0.0);
     for (order, answer) in orders.into_iter().zip(answers) {
-        if let TourEvaluation::LegSolution(duration_s) = answer {
-            best.offer(FlownOrder { order, duration_s });
+        if let TourEvaluation::Solved(duration_s) = answer {
+            best.offer(SolvedOrder { order, duration_s });
         }
     }
     best.into_orders()
@@ -47,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn permutations_are_all_there_once() {
+    fn every_permutation_is_listed_once() {
         let mut orders = permutations(5);
         assert_eq!(orders.len(), 120);
         orders.sort();

@@ -1,45 +1,43 @@
-//! The open nodes, in order of their bounds, in bounded memory.
+//! The open nodes of the search tree, ordered by their bounds, in bounded memory.
 
-use super::node::Node;
+use super::node::SearchNode;
 use std::collections::BTreeSet;
 
-/// Memory for open nodes when nothing else is asked for: enough for some 300 000 nodes of twenty
-/// targets, little beside what the service may use.
+/// Default memory for open nodes, bytes: enough for some 300 000 nodes of twenty targets.
 pub(super) const DEFAULT_BYTES: usize = 64 << 20;
 
-/// At least this many nodes are kept, whatever the memory: fewer could not even hold the children
-/// of one node and a few of their siblings.
-const FEWEST_NODES: usize = 16;
+/// Smallest capacity, whatever the memory: enough for the children of one node and a few others.
+const MIN_NODES: usize = 16;
 
 /// The open nodes.
 #[derive(Debug)]
 pub(super) struct Frontier {
-    nodes: BTreeSet<Node>,
+    nodes: BTreeSet<SearchNode>,
     capacity: usize,
 }
 
 impl Frontier {
-    /// An empty frontier for so many targets within so many bytes.
+    /// An empty frontier for nodes with so many targets, within so many bytes.
     pub(super) fn new(targets: usize, bytes: usize) -> Self {
-        let node_bytes = size_of::<Node>() + targets * size_of::<usize>();
+        let node_bytes = size_of::<SearchNode>() + targets * size_of::<usize>();
         Self {
             nodes: BTreeSet::new(),
-            capacity: (bytes / node_bytes).max(FEWEST_NODES),
+            capacity: (bytes / node_bytes).max(MIN_NODES),
         }
     }
 
     /// Adds a node.
-    pub(super) fn insert(&mut self, node: Node) {
+    pub(super) fn insert(&mut self, node: SearchNode) {
         self.nodes.insert(node);
     }
 
     /// Takes the node of the smallest bound.
-    pub(super) fn pop(&mut self) -> Option<Node> {
+    pub(super) fn pop(&mut self) -> Option<SearchNode> {
         self.nodes.pop_first()
     }
 
-    /// Takes the worst node if there are more than fit.
-    pub(super) fn pop_excess(&mut self) -> Option<Node> {
+    /// Takes the node of the largest bound if there are more nodes than the capacity.
+    pub(super) fn pop_excess(&mut self) -> Option<SearchNode> {
         if self.nodes.len() > self.capacity {
             self.nodes.pop_last()
         } else {
@@ -48,7 +46,10 @@ impl Frontier {
     }
 
     /// Takes out all nodes for which this holds.
-    pub(super) fn take_if(&mut self, mut hopeless: impl FnMut(&Node) -> bool) -> Vec<Node> {
+    pub(super) fn take_if(
+        &mut self,
+        mut hopeless: impl FnMut(&SearchNode) -> bool,
+    ) -> Vec<SearchNode> {
         self.nodes.extract_if(.., |node| hopeless(node)).collect()
     }
 
@@ -67,10 +68,10 @@ impl Frontier {
 mod tests {
     use super::*;
 
-    fn node(bound: f64, prefix: &[usize]) -> Node {
-        Node {
+    fn node(bound: f64, prefix: &[usize]) -> SearchNode {
+        SearchNode {
             prefix: prefix.to_vec(),
-            ..Node::root(bound)
+            ..SearchNode::root(bound)
         }
     }
 
@@ -87,14 +88,14 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_nodes_are_the_excess() {
+    fn the_nodes_of_largest_bound_are_the_excess() {
         let mut frontier = Frontier::new(100, 0);
-        for target in 0..FEWEST_NODES + 2 {
+        for target in 0..MIN_NODES + 2 {
             frontier.insert(node(target as f64, &[target]));
         }
         let dropped: Vec<_> = std::iter::from_fn(|| frontier.pop_excess()).collect();
         assert_eq!(dropped.len(), 2);
-        assert!(dropped.iter().all(|node| node.prefix[0] >= FEWEST_NODES));
+        assert!(dropped.iter().all(|node| node.prefix[0] >= MIN_NODES));
         assert_eq!(frontier.bound().total_cmp(&0.0), std::cmp::Ordering::Equal);
     }
 }

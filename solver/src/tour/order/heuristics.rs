@@ -1,4 +1,4 @@
-//! Orders worth flying at once, found in the pair table alone.
+//! Heuristic orders: short in the pair table, or in the pair bounds with the known coupling gaps.
 
 mod cost;
 mod iterated;
@@ -8,7 +8,7 @@ mod path;
 #[cfg(test)]
 mod tests;
 
-use super::completion::Remainder;
+use super::completion::CompletionBound;
 use super::triple_bounds::TripleBounds;
 use super::{PairTable, TourModel};
 use crate::model::order_rules::OrderRules;
@@ -16,17 +16,16 @@ use crate::run::stop::StopSignal;
 use iterated::IteratedSearch;
 use local_search::OrderTask;
 
-/// Candidates besides the best when the shortest order of the table is out of reach.
+/// Candidates besides the best where the shortest order of the table is not computed exactly.
 const ALTERNATIVES: usize = 3;
-/// Kicks per target for the candidates and for the completion of a prefix: about half a second and
-/// fifty milliseconds at 200 targets.
+/// Kicks per target for the candidates: about half a second at 200 targets.
 const CANDIDATE_KICKS: usize = 100;
+/// Kicks per target for the completion of a prefix: about fifty milliseconds at 200 targets.
 const COMPLETION_KICKS: usize = 10;
-/// The searches of this file are repeatable, and may all draw the same numbers.
+/// Seed of all searches of this file, so that they are reproducible.
 const SEED: u64 = 0;
 
-/// An order that is short in the table of a model's pair bounds, without flying any; `None` where
-/// there are no targets.
+/// An order that is short in the table of a model's pair bounds; `None` where there are no targets.
 #[must_use]
 pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
     let table = PairTable::new(model);
@@ -34,20 +33,21 @@ pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize
     searched(&table, &all, 0, stop).into_iter().next()
 }
 
-/// A few different orders that are short in the pair table, best guess first.
+/// A few different orders that are short in the pair table, shortest first except for the reverse
+/// of the shortest one, which comes second.
 pub(super) fn candidates(
     table: &PairTable,
-    completion: &Remainder,
+    completion: &CompletionBound,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
     let all: Vec<usize> = (0..table.targets()).collect();
     let mut orders = match completion {
         _ if all.is_empty() => return Vec::new(),
-        Remainder::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
-        Remainder::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
+        CompletionBound::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
+        CompletionBound::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
     };
-    // Slews are nearly symmetric in time, and legs that are free at the targets are not: the
-    // shortest order of the table is often best flown backwards.
+    // Tours are nearly symmetric in time, while the table of legs with free ends is not: the
+    // reverse of the table's shortest order is often the shorter tour.
     let reverse: Vec<usize> = orders[0].iter().rev().copied().collect();
     if table.rules().admits(&reverse) {
         orders.insert(1, reverse);
@@ -61,18 +61,19 @@ pub(super) fn candidates(
     distinct
 }
 
-/// How long to search among orders.
+/// Length and seed of a heuristic search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SearchEffort {
-    /// Kicks, by the number of targets.
+    /// Number of kicks divided by the number of targets.
     pub(super) kicks_per_target: usize,
-    /// How many orders to list besides the best.
+    /// Number of orders to list besides the best.
     pub(super) alternatives: usize,
-    /// What other kicks follow from.
+    /// Seed of the random kicks.
     pub(super) seed: u64,
 }
 
-/// Orders that are shorter than one in what is known of legs and their couplings, best first.
+/// Orders found from a given one that are short in the pair bounds with the known coupling gaps,
+/// best first.
 pub(super) fn shorter_orders(
     costs: &TripleBounds,
     rules: &OrderRules,
@@ -92,7 +93,7 @@ pub(super) fn shorter_orders(
     best.map(|best| best.order.clone()).collect()
 }
 
-/// Orders by iterated search from the nearest neighbours, best first.
+/// Orders found by iterated search from the nearest-neighbour order, best first.
 fn searched(
     table: &PairTable,
     all: &[usize],
@@ -104,19 +105,19 @@ fn searched(
     iterated(table, &[], &built, alternatives, kicks, stop)
 }
 
-/// A short completion of a prefix that an admitted order begins with.
+/// An order that completes a prefix by a short path. An admitted order must begin with the prefix.
 pub(super) fn complete(
     table: &PairTable,
-    completion: &Remainder,
+    completion: &CompletionBound,
     prefix: &[usize],
     remaining: &[usize],
     stop: &StopSignal,
 ) -> Vec<usize> {
     let completion = match completion {
-        Remainder::Exact(subsets) => {
+        CompletionBound::Exact(subsets) => {
             subsets.shortest_order(table, table.last_place(prefix), remaining)
         }
-        Remainder::Relaxed(_) => {
+        CompletionBound::Relaxed(_) => {
             let built = nearest_neighbours(table, prefix, remaining);
             let kicks = COMPLETION_KICKS * built.len();
             let mut found = iterated(table, prefix, &built, 0, kicks, stop);
@@ -126,8 +127,7 @@ pub(super) fn complete(
     [prefix, &completion].concat()
 }
 
-/// The best orders of an iterated search that begins at an admitted one, best first, so many besides
-/// the best.
+/// The best order of an iterated search from an admitted one and so many alternatives, best first.
 fn iterated(
     table: &PairTable,
     prefix: &[usize],
@@ -149,17 +149,17 @@ fn iterated(
     best.map(|best| best.order.clone()).collect()
 }
 
-/// From the end of a prefix always on to the nearest of the targets, the smallest index among
-/// equals, of those that leave an admitted order.
+/// The nearest-neighbour order after a prefix: the next target is the nearest one, the smallest
+/// index among equals, of those after which an admitted order remains possible.
 fn nearest_neighbours(table: &PairTable, prefix: &[usize], targets: &[usize]) -> Vec<usize> {
     let mut path = prefix.to_vec();
     let mut left = targets.to_vec();
     while !left.is_empty() {
         let from = table.last_place(&path);
-        // Sorted, since whether an order is left is the dearer question.
+        // Sorted first, since the rules are more expensive to evaluate than distances.
         left.sort_by(|&a, &b| {
-            let far = |target| table.bound(from, target);
-            far(a).total_cmp(&far(b)).then(a.cmp(&b))
+            let distance = |target| table.bound(from, target);
+            distance(a).total_cmp(&distance(b)).then(a.cmp(&b))
         });
         let admitted = |target: &usize| {
             path.push(*target);

@@ -1,20 +1,20 @@
-//! The best orders flown so far.
+//! The best orders evaluated so far.
 
-use super::FlownOrder;
+use super::SolvedOrder;
 use std::cmp::Ordering;
 
-/// Durations that differ by less than about this share are equal: far below what an evaluation
-/// resolves, far above rounding.
+/// Relative difference below which two durations are a tie: far below the accuracy of an
+/// evaluation, far above rounding.
 const TIE_RELATIVE: f64 = 1e-9;
 
-/// Numbers durations such that those within [`TIE_RELATIVE`] share a number (up to rounding at the
-/// boundaries). Unlike comparing with a tolerance this is transitive, as sorting needs it.
+/// Maps durations to classes of relative width [`TIE_RELATIVE`]. Unlike a comparison with a
+/// tolerance, equality of classes is transitive, which sorting requires.
 pub(super) fn tie_class(duration_s: f64) -> f64 {
     (duration_s.max(0.0).ln() / TIE_RELATIVE).round()
 }
 
 /// Shorter first, ties in lexicographic order of the indices.
-fn rank(a: &FlownOrder, b: &FlownOrder) -> Ordering {
+fn rank(a: &SolvedOrder, b: &SolvedOrder) -> Ordering {
     tie_class(a.duration_s)
         .total_cmp(&tie_class(b.duration_s))
         .then_with(|| a.order.cmp(&b.order))
@@ -23,13 +23,13 @@ fn rank(a: &FlownOrder, b: &FlownOrder) -> Ordering {
 /// The best orders, best first, at most a fixed number of them.
 #[derive(Debug)]
 pub(super) struct Incumbents {
-    orders: Vec<FlownOrder>,
+    orders: Vec<SolvedOrder>,
     capacity: usize,
     relative_gap: f64,
 }
 
 impl Incumbents {
-    /// Room for the best and so many alternatives.
+    /// An empty list with room for the best order and so many alternatives.
     pub(super) fn new(alternatives: usize, relative_gap: f64) -> Self {
         Self {
             orders: Vec::new(),
@@ -38,8 +38,8 @@ impl Incumbents {
         }
     }
 
-    /// Takes in an order; says whether it is now among the best. An order counts once.
-    pub(super) fn offer(&mut self, order: FlownOrder) -> bool {
+    /// Adds an order if it is among the best and not listed yet; returns whether it was added.
+    pub(super) fn offer(&mut self, order: SolvedOrder) -> bool {
         let place = self
             .orders
             .partition_point(|known| rank(known, &order) == Ordering::Less);
@@ -62,7 +62,7 @@ impl Incumbents {
         match self.compare_with_worst(bound) {
             Ordering::Less => false,
             Ordering::Greater => true,
-            // A tie still matters when it may come first lexicographically.
+            // A tie enters the list if it may come first lexicographically.
             Ordering::Equal => {
                 let worst = &self.orders[self.capacity - 1].order;
                 self.relative_gap > 0.0 || prefix > &worst[..prefix.len()]
@@ -70,12 +70,13 @@ impl Incumbents {
         }
     }
 
-    /// Whether orders with this bound are certain not to enter the list, up to the gap.
+    /// Whether no order with this bound can enter the list, up to the gap, whatever its targets.
     pub(super) fn rule_out_bound(&self, bound: f64) -> bool {
         self.compare_with_worst(bound) == Ordering::Greater
     }
 
-    /// Compares a bound with what it takes to enter the list; anything enters one that is not full.
+    /// Compares a bound with the duration below which an order enters the list; any order enters a
+    /// list that is not full.
     fn compare_with_worst(&self, bound: f64) -> Ordering {
         if self.orders.len() < self.capacity {
             return Ordering::Less;
@@ -85,12 +86,12 @@ impl Incumbents {
     }
 
     /// The orders so far, best first.
-    pub(super) fn orders(&self) -> &[FlownOrder] {
+    pub(super) fn orders(&self) -> &[SolvedOrder] {
         &self.orders
     }
 
     /// The orders, best first.
-    pub(super) fn into_orders(self) -> Vec<FlownOrder> {
+    pub(super) fn into_orders(self) -> Vec<SolvedOrder> {
         self.orders
     }
 }
@@ -99,15 +100,15 @@ impl Incumbents {
 mod tests {
     use super::*;
 
-    fn flown(order: &[usize], duration_s: f64) -> FlownOrder {
-        FlownOrder {
+    fn flown(order: &[usize], duration_s: f64) -> SolvedOrder {
+        SolvedOrder {
             order: order.to_vec(),
             duration_s,
         }
     }
 
     #[test]
-    fn keeps_the_best_and_orders_ties_lexicographically() {
+    fn the_best_are_kept_and_ties_are_ordered_lexicographically() {
         let mut pool = Incumbents::new(1, 0.0);
         assert!(pool.offer(flown(&[2, 1, 0], 5.0)));
         assert!(!pool.offer(flown(&[2, 1, 0], 5.0)));
@@ -130,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gap_lowers_what_is_ruled_out() {
+    fn the_gap_lowers_the_bound_at_which_nodes_are_ruled_out() {
         let mut pool = Incumbents::new(0, 0.1);
         pool.offer(flown(&[0], 10.0));
         assert!(pool.rule_out(9.1, &[]));

@@ -1,77 +1,79 @@
-//! A bound from prices: what legs cost when each pays its neighbours for the state they meet in.
+//! Lagrangian bounds: the coupling of legs is relaxed with costates as multipliers.
 //!
-//! # Prices decouple legs
+//! # Costates decouple legs
 //!
-//! Slews couple because a target is left in the state in which it was reached. Give every leg its
-//! own copies `a, b` of the states at its ends, and demand of each target `j` between the places `i`
-//! and `k` that the copies agree, `b(i, j) = a(j, k)`. With a multiplier `p(i, j, k)` of this demand
-//! the legs of a tour `.. h, i, j, k ..` fall apart,
+//! Legs couple because a leg begins in the state in which the leg before it ends. Give every leg
+//! its own copies `a, b` of the states at its ends, and demand for each target `j` between the
+//! places `i` and `k` that the copies agree, `b(i, j) = a(j, k)`. With a multiplier `p(i, j, k)`
+//! for this constraint the legs of a tour `.. h, i, j, k ..` are independent,
 //!
 //! `T >= sum over its legs of c(h, i, j, k)`,
 //!
 //! `c(h, i, j, k) = min over a, b of t(a -> b) - p(h, i, j) . a + p(i, j, k) . b`,
 //!
-//! for any prices whatever (Lagrangian duality): where the copies agree the prices cancel. The bound
-//! of a tour is sharp when its prices are the costates of its flight and legs are convex in the states
-//! at their ends, which they nearly are: on the best tours of random schedules it is within 0.1 %,
-//! where five places in a row, averaged, leave 2 to 3 %.
+//! for any multipliers (Lagrangian duality): where the copies agree the terms cancel. The bound of
+//! a tour is sharp when its multipliers are the costates of its solution and the leg durations are
+//! convex in the states at their ends, which is nearly the case: on the best tours of random
+//! schedules the bound is within 0.1 %, where the bounds of five places in a row leave 2 to 3 %.
 //!
-//! A price may depend on the three places it stands between, since both legs know them. One that suits
-//! many tours is not the best for any of them.
+//! A multiplier may depend on the three places `i, j, k`, since both legs know them. One value that
+//! is shared by many tours is not the best one for each of them.
 //!
 //! # All tours at once
 //!
-//! The least sum over all orders is a shortest path through states `(h, i, j, R)`, with `R` what
-//! remains ([`LagrangianPaths`]): exact, whatever the prices.
+//! The least sum over all orders is a shortest path through states `(h, i, j, R)`, where `R` is the
+//! set of remaining targets ([`LagrangianPaths`]): exact for any multipliers.
 //!
-//! # Learning prices
+//! # Dual ascent
 //!
-//! At first there are none, and a leg costs what it takes with free ends. Then, in rounds, the orders
-//! that are shortest by the prices of the moment are flown, and the prices along them move to the
-//! costates of their flights: to the mean, when there have been several. This is an ascent of the
-//! Lagrangian dual with steps `1/m`. Legs are solved only where prices have moved.
+//! Initially all multipliers are zero, and a leg costs its duration with free ends. Then, in
+//! rounds, the tours of the orders with the smallest bounds are solved, and each multiplier along
+//! them is set to the mean of the costates of all solutions so far. This is an ascent of the
+//! Lagrangian dual with steps `1/m`. Legs are solved again only where a multiplier has changed.
 
 mod paths;
 
 pub use paths::LagrangianPaths;
 
-use super::completion::EXACT_TARGETS;
-use super::{Evaluation, PairTable, Place, Price, TourModel};
+use super::completion::MAX_EXACT_TARGETS;
+use super::{Evaluation, PairTable, PassageCostate, Place, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Up to so many targets legs are lagrangian: the table of paths has some `n^3 2^n / 8` entries of four
-/// bytes, 160 MB for sixteen targets and half of it for every target less.
-pub const PRICED_TARGETS: usize = 16;
-// With the numbers of start, end and nobody a row is no longer than that of a table of subsets.
-const _: () = assert!(PRICED_TARGETS + 3 <= EXACT_TARGETS);
+/// Number of targets up to which Lagrangian bounds are computed. The table of paths has some
+/// `n^3 2^n / 8` entries of four bytes: 160 MB for sixteen targets, and half of it for each target
+/// less.
+pub const MAX_LAGRANGIAN_TARGETS: usize = 16;
+// With start, end and the number for no neighbour, a row fits the rows of the table of subsets.
+const _: () = assert!(MAX_LAGRANGIAN_TARGETS + 3 <= MAX_EXACT_TARGETS);
 
-/// A price with the number of flights that it is the mean of.
+/// The mean of the costates of some solutions.
 #[derive(Debug, Clone)]
-struct Mean {
-    price: Price,
-    flights: f64,
+struct MeanCostate {
+    costate: PassageCostate,
+    /// Number of solutions.
+    count: f64,
 }
 
-/// What every leg costs between its neighbours, s.
+/// The Lagrangian cost of every leg between its neighbours, s.
 ///
-/// Places are numbered as in [`PairTable`]; one more number stands for no neighbour, which pays and
-/// is paid nothing.
+/// Places are numbered as in [`PairTable`]. One more number stands for no neighbour; the multiplier
+/// there is zero.
 #[derive(Debug, Clone)]
 pub struct LagrangianLegs {
     table: PairTable,
     has_end: bool,
-    /// Whether every leg costs the same backwards, between the same neighbours and with start and end
-    /// exchanged.
+    /// Whether every leg costs the same in reverse, between the same neighbours and with start and
+    /// end exchanged.
     symmetric: bool,
-    prices: BTreeMap<[usize; 3], Mean>,
-    /// Rows of the last of four places, by the first three.
-    costs: Vec<[f64; EXACT_TARGETS]>,
+    costates: BTreeMap<[usize; 3], MeanCostate>,
+    /// For the first three of four places, a row of costs by the last one.
+    costs: Vec<[f64; MAX_EXACT_TARGETS]>,
 }
 
 impl LagrangianLegs {
-    /// No prices yet.
+    /// The costs with all multipliers zero.
     #[must_use]
     pub fn new(model: &dyn TourModel, table: &PairTable) -> Self {
         let numbers = table.targets() + 3;
@@ -79,21 +81,21 @@ impl LagrangianLegs {
             table: table.clone(),
             has_end: model.has_end(),
             symmetric: model.is_symmetric(),
-            prices: BTreeMap::new(),
+            costates: BTreeMap::new(),
             costs: Vec::with_capacity(numbers.pow(3)),
         };
         for _ in 0..numbers {
             for (from, to) in (0..numbers).flat_map(|from| (0..numbers).map(move |to| (from, to))) {
-                let is_leg = from.max(to) < legs.nobody();
+                let is_leg = from.max(to) < legs.no_neighbour();
                 let bound = if is_leg { table.bound(from, to) } else { 0.0 };
-                legs.costs.push([bound; EXACT_TARGETS]);
+                legs.costs.push([bound; MAX_EXACT_TARGETS]);
             }
         }
         legs
     }
 
-    /// The number of no neighbour.
-    fn nobody(&self) -> usize {
+    /// The number that stands for no neighbour.
+    fn no_neighbour(&self) -> usize {
         self.table.targets() + 2
     }
 
@@ -103,7 +105,7 @@ impl LagrangianLegs {
     }
 
     /// Costs of a leg by the place after it, s.
-    fn row(&self, path: [usize; 3]) -> &[f64; EXACT_TARGETS] {
+    fn row(&self, path: [usize; 3]) -> &[f64; MAX_EXACT_TARGETS] {
         &self.costs[self.index(path)]
     }
 
@@ -113,37 +115,40 @@ impl LagrangianLegs {
             .fold(0, |index, place| index * numbers + place)
     }
 
-    /// Cost of all that comes once the last target has been reached: the last two legs, s.
+    /// Cost of the legs whose neighbours are known once the last target is reached, s: the leg to
+    /// it and, with a prescribed end, the leg to the end.
     fn ending(&self, [before, from, last]: [usize; 3]) -> f64 {
         if self.has_end {
             let end = self.table.end();
-            self.cost([before, from, last, end]) + self.cost([from, last, end, self.nobody()])
+            self.cost([before, from, last, end]) + self.cost([from, last, end, self.no_neighbour()])
         } else {
-            self.cost([before, from, last, self.nobody()])
+            self.cost([before, from, last, self.no_neighbour()])
         }
     }
 
-    /// Moves the prices along flown orders towards those of their flights, and solves the legs that
-    /// this concerns. All or nothing: `false`, and nothing has changed, when the solve is stopped
-    /// meanwhile or no flight tells prices.
-    pub fn learn(
+    /// Updates the multipliers along some orders by the costates of their tours, and solves the
+    /// legs that change. Returns `false`, with nothing changed, when the solve is stopped meanwhile
+    /// or no tour has costates.
+    pub fn update_costates(
         &mut self,
         orders: &[Vec<usize>],
         model: &dyn TourModel,
         pool: &SolverPool,
         stop: &StopSignal,
     ) -> bool {
-        let mut prices = self.prices.clone();
+        let mut costates = self.costates.clone();
         let mut moved = BTreeSet::new();
         for order in orders {
-            let Some(flight) = model.costates(order) else {
+            let Some(of_tour) = model.costates(order) else {
                 continue;
             };
             let path = self.path_of(order);
-            for (triple, price) in path.windows(3).zip(flight) {
+            for (triple, costate) in path.windows(3).zip(of_tour) {
                 let triple = self.either_way([triple[0], triple[1], triple[2]]);
-                let mean = prices.entry(triple).or_insert_with(|| Mean::new(&price));
-                mean.take_in(&price);
+                let mean = costates
+                    .entry(triple)
+                    .or_insert_with(|| MeanCostate::new(&costate));
+                mean.add(&costate);
                 moved.insert(triple);
             }
         }
@@ -156,7 +161,7 @@ impl LagrangianLegs {
             .map(|leg| self.either_way(leg))
             .collect();
         let legs: Vec<[usize; 4]> = legs.into_iter().collect();
-        let costs = pool.map(&legs, |&leg| self.solve(leg, &prices, model, stop));
+        let costs = pool.map(&legs, |&leg| self.solve(leg, &costates, model, stop));
         let Some(costs): Option<Vec<f64>> = costs.into_iter().collect() else {
             return false;
         };
@@ -170,27 +175,27 @@ impl LagrangianLegs {
                 self.costs[row][after] = cost;
             }
         }
-        self.prices = prices;
+        self.costates = costates;
         true
     }
 
-    /// Cost of a leg by some prices; `None` when the solve is stopped. One that does not resolve
-    /// costs nothing that could be relied on.
+    /// Cost of a leg for given multipliers, s; `None` when the solve is stopped. The cost of a leg
+    /// that does not resolve is minus infinity, which is always a valid bound.
     fn solve(
         &self,
         [before, from, to, after]: [usize; 4],
-        prices: &BTreeMap<[usize; 3], Mean>,
+        costates: &BTreeMap<[usize; 3], MeanCostate>,
         model: &dyn TourModel,
         stop: &StopSignal,
     ) -> Option<f64> {
         if stop.is_set() {
             return None;
         }
-        let price = |triple: [usize; 3]| {
-            let known = prices.get(&self.either_way(triple));
-            known.map(|mean| mean.price.as_slice())
+        let costate = |triple: [usize; 3]| {
+            let known = costates.get(&self.either_way(triple));
+            known.map(|mean| mean.costate.as_slice())
         };
-        let at_ends = [price([before, from, to]), price([from, to, after])];
+        let at_ends = [costate([before, from, to]), costate([from, to, after])];
         let cost = if at_ends == [None; 2] {
             Evaluation::Value(self.table.bound(from, to))
         } else {
@@ -203,17 +208,30 @@ impl LagrangianLegs {
         }
     }
 
-    /// The legs before and after the middle of a triple, with every other neighbour.
+    /// The legs before and after the middle of a triple, with every possible other neighbour.
     fn legs_at(&self, [i, j, k]: [usize; 3]) -> impl Iterator<Item = [usize; 4]> + use<> {
-        let (start, end, nobody) = (self.table.start(), self.table.end(), self.nobody());
+        let (start, end, no_neighbour) =
+            (self.table.start(), self.table.end(), self.no_neighbour());
         let fits = move |place: &usize| ![i, j, k].contains(place);
-        let before = (0..=nobody).filter(move |&h| if i == start { h == nobody } else { h != end });
-        let after = (0..=nobody).filter(move |&l| if k == end { l == nobody } else { l != start });
+        let before = (0..=no_neighbour).filter(move |&h| {
+            if i == start {
+                h == no_neighbour
+            } else {
+                h != end
+            }
+        });
+        let after = (0..=no_neighbour).filter(move |&l| {
+            if k == end {
+                l == no_neighbour
+            } else {
+                l != start
+            }
+        });
         let before = before.filter(fits).map(move |h| [h, i, j, k]);
         before.chain(after.filter(fits).map(move |l| [i, j, k, l]))
     }
 
-    /// Start, targets in this order, and the end where there is one.
+    /// The start, the targets of an order, and the end where there is one.
     fn path_of(&self, order: &[usize]) -> Vec<usize> {
         let mut path = vec![self.table.start()];
         path.extend(order);
@@ -221,7 +239,7 @@ impl LagrangianLegs {
         path
     }
 
-    /// The same places from behind, with start and end exchanged.
+    /// The same places in reverse, with start and end exchanged.
     fn backwards<const N: usize>(&self, mut path: [usize; N]) -> [usize; N] {
         let (start, end) = (self.table.start(), self.table.end());
         path.reverse();
@@ -232,7 +250,7 @@ impl LagrangianLegs {
         })
     }
 
-    /// What a path and its reverse have in common, where that is as good.
+    /// The key of a path: in a symmetric model the lesser of it and its reverse.
     fn either_way<const N: usize>(&self, path: [usize; N]) -> [usize; N] {
         if self.symmetric {
             path.min(self.backwards(path))
@@ -252,19 +270,19 @@ impl LagrangianLegs {
     }
 }
 
-impl Mean {
-    /// The mean of nothing.
-    fn new(price: &Price) -> Self {
+impl MeanCostate {
+    /// The mean of no costates yet.
+    fn new(costate: &PassageCostate) -> Self {
         Self {
-            price: vec![0.0; price.len()],
-            flights: 0.0,
+            costate: vec![0.0; costate.len()],
+            count: 0.0,
         }
     }
 
-    fn take_in(&mut self, price: &Price) {
-        self.flights += 1.0;
-        for (mean, price) in self.price.iter_mut().zip(price) {
-            *mean += (price - *mean) / self.flights;
+    fn add(&mut self, costate: &PassageCostate) {
+        self.count += 1.0;
+        for (mean, costate) in self.costate.iter_mut().zip(costate) {
+            *mean += (costate - *mean) / self.count;
         }
     }
 }

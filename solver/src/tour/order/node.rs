@@ -2,20 +2,20 @@
 
 use std::cmp::Ordering;
 
-/// A partial order with what is known about its completions.
+/// A prefix of orders with the bounds on its completions.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct SearchNode {
     /// The fixed first targets; all of them in a leaf.
     pub(super) prefix: Vec<usize>,
     /// Lower bound of the time until the last fixed target is left, s.
     pub(super) head: f64,
     /// Lower bound of every completion, s.
     pub(super) bound: f64,
-    /// Whether the node's own evaluation is in the bounds, or was tried in vain.
+    /// Whether the node's prefix has been evaluated, resolved or not.
     pub(super) evaluated: bool,
 }
 
-impl Node {
+impl SearchNode {
     /// The node of all orders.
     pub(super) fn root(bound: f64) -> Self {
         Self {
@@ -27,7 +27,8 @@ impl Node {
         }
     }
 
-    /// Takes in a better bound of the time until the last fixed target is left.
+    /// Raises the head to a bound of the time until the last fixed target is left, s, and the bound
+    /// with it; `rest` bounds the time after that, s.
     pub(super) fn raise_head(&mut self, head: f64, rest: f64) {
         self.head = self.head.max(head);
         self.bound = self.bound.max(self.head + rest);
@@ -43,8 +44,8 @@ impl Node {
     }
 }
 
-/// Smallest bound first, then by the indices of the prefix.
-impl Ord for Node {
+/// Smallest bound first, then lexicographic by the prefix.
+impl Ord for SearchNode {
     fn cmp(&self, other: &Self) -> Ordering {
         self.bound
             .total_cmp(&other.bound)
@@ -52,16 +53,16 @@ impl Ord for Node {
     }
 }
 
-impl PartialOrd for Node {
+impl PartialOrd for SearchNode {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Node {
+impl PartialEq for SearchNode {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Node {}
+impl Eq for SearchNode {}

@@ -1,54 +1,56 @@
-//! The loop: best-first in rounds.
+//! The loop of the branch and bound: best-first, in rounds.
 
-mod account;
 mod coupled;
-mod pricing;
+mod lagrangian;
+mod reporter;
 mod tree;
 
-use super::node::Node;
+use super::node::SearchNode;
 use super::{
-    Evaluation, FlownOrder, SearchEnd, SearchObserver, SearchResult, SearchSettings,
+    Evaluation, SearchEnd, SearchObserver, SearchResult, SearchSettings, SolvedOrder,
     TourEvaluation, TourModel,
 };
 use crate::run::pool::SolverPool;
 use crate::run::stop::{StopReason, StopSignal};
-use account::Account;
-use tree::Tree;
+use reporter::SearchReporter;
+use tree::SearchTree;
 
-/// Fewest and most nodes evaluated per round, and their share of the nodes explored before. The later
-/// nodes of a round are evaluated without the knowledge that the earlier ones bring, so a part of
-/// them is wasted: the share bounds that part, the fewest occupy a small machine from the beginning,
-/// the most a large one later on. All are properties of the search, not of the machine: were they
-/// the number of threads, the nodes explored would depend on that.
-const FEWEST_NODES: u64 = 4;
+/// Smallest number of nodes evaluated per round. A round has as many nodes as this, [`MAX_NODES`]
+/// and [`EXPLORED_PER_NODE`] allow. The later nodes of a round are evaluated without the results of
+/// the earlier ones, and some of that work is wasted; the share of the nodes explored before limits
+/// the waste. None of the three depends on the number of threads, so that the nodes explored do not
+/// either.
+const MIN_NODES: u64 = 4;
+/// Largest number of nodes evaluated per round.
 const MAX_NODES: u64 = 32;
+/// Nodes explored before a round for each of its nodes.
 const EXPLORED_PER_NODE: u64 = 8;
 
-/// After so many nodes the most promising one is completed by the pair table and flown at once.
-/// Best-first search alone reaches whole orders late, and a stopped search should have a good one;
-/// an order costs as much as a few prefixes, so this may not happen often.
+/// Nodes between two probes. A probe completes the most promising prefix by the pair table and
+/// evaluates the order at once: best-first search alone reaches whole orders late, and a stopped
+/// search should have a good one. An order costs as much as a few prefixes.
 const PROBE_NODES: u64 = 24;
 
-/// After so many nodes a search over few targets that goes on asks for the bounds of longer paths.
+/// Number of explored nodes at which a search over few targets computes the triple bounds.
 const TIGHTEN_NODES: u64 = 160;
 
-/// After so many nodes it prices the legs.
-const PRICE_NODES: u64 = 960;
+/// Number of explored nodes at which a search over few targets computes the Lagrangian bounds.
+const LAGRANGIAN_NODES: u64 = 960;
 
-/// What is evaluated in a round.
-enum Task {
-    Node(Node),
+/// A unit of work of a round.
+enum RoundTask {
+    Node(SearchNode),
     Probe(Vec<usize>),
 }
 
-/// Answer to a task.
+/// Result of a task.
 #[derive(Clone, Copy)]
-enum Answer {
+enum TaskResult {
     Prefix(Evaluation),
     Tour(TourEvaluation),
 }
 
-impl Answer {
+impl TaskResult {
     fn is_stopped(self) -> bool {
         matches!(
             self,
@@ -57,33 +59,33 @@ impl Answer {
     }
 }
 
-/// A search under way.
-struct Search<'a> {
+/// A running search.
+struct OrderSearch<'a> {
     model: &'a dyn TourModel,
     pool: &'a SolverPool,
     stop: &'a StopSignal,
     node_limit: u64,
-    /// Number of explored nodes at which an order is probed next.
+    /// Number of explored nodes at which the next probe is made.
     next_probe: u64,
-    /// Whether the bounds of longer paths have been asked for.
+    /// Whether the triple bounds have been computed.
     tightened: bool,
-    /// Whether legs have been lagrangian.
+    /// Whether the Lagrangian bounds have been computed.
     lagrangian: bool,
-    tree: Tree,
-    account: Account<'a>,
+    tree: SearchTree,
+    reporter: SearchReporter<'a>,
 }
 
-/// Searches the best orders; some may have been flown before.
+/// Searches the best orders. `known` lists orders whose duration is known already.
 #[must_use]
 pub fn search(
     model: &dyn TourModel,
-    known: &[FlownOrder],
+    known: &[SolvedOrder],
     settings: &SearchSettings,
     pool: &SolverPool,
     stop: &StopSignal,
     observer: &dyn SearchObserver,
 ) -> SearchResult {
-    let mut search = Search {
+    let mut search = OrderSearch {
         model,
         pool,
         stop,
@@ -91,44 +93,44 @@ pub fn search(
         next_probe: PROBE_NODES,
         tightened: false,
         lagrangian: false,
-        tree: Tree::new(model, settings, stop),
-        account: Account::new(observer),
+        tree: SearchTree::new(model, settings, stop),
+        reporter: SearchReporter::new(observer),
     };
-    for flown in known {
-        let answer = TourEvaluation::LegSolution(flown.duration_s);
-        search.tree.record_candidate(&flown.order, answer);
-        search.account.is_told(flown.duration_s);
+    for order in known {
+        let answer = TourEvaluation::Solved(order.duration_s);
+        search.tree.record_candidate(&order.order, answer);
+        search.reporter.skip(order.duration_s);
     }
     let mut end = search
-        .fly_candidates()
-        .or_else(|| search.work_on_couplings());
-    search.tree.plant();
+        .evaluate_candidates()
+        .or_else(|| search.bound_and_improve_orders());
+    search.tree.open_root();
     while end.is_none() {
-        search.account.hand_over(&search.tree);
-        search.account.report(&search.tree);
+        search.reporter.announce(&search.tree);
+        search.reporter.report(&search.tree);
         end = search.explore_round();
     }
-    search.account.report(&search.tree);
+    search.reporter.report(&search.tree);
     search
-        .account
+        .reporter
         .finish(search.tree, end.unwrap_or(SearchEnd::Exhausted))
 }
 
-impl Search<'_> {
-    /// Flies the orders that the pair table recommends, for a first incumbent.
-    fn fly_candidates(&mut self) -> Option<SearchEnd> {
+impl OrderSearch<'_> {
+    /// Evaluates the orders that are short in the pair table, for a first incumbent.
+    fn evaluate_candidates(&mut self) -> Option<SearchEnd> {
         let candidates = self.tree.candidates(self.stop);
-        let interrupted = self.fly_new(&candidates);
+        let interrupted = self.evaluate_new(&candidates);
         interrupted.then(|| self.stopped())
     }
 
-    /// Flies the orders that have not been flown; whether that was interrupted.
-    fn fly_new(&mut self, orders: &[Vec<usize>]) -> bool {
+    /// Evaluates those orders that have not been evaluated; returns whether that was interrupted.
+    fn evaluate_new(&mut self, orders: &[Vec<usize>]) -> bool {
         let fresh: Vec<&Vec<usize>> = orders
             .iter()
             .filter(|order| self.tree.is_new(order))
             .collect();
-        let answers = self.pool.map(&fresh, |order| self.fly(order));
+        let answers = self.pool.map(&fresh, |order| self.evaluate_order(order));
         let mut interrupted = false;
         for (order, answer) in fresh.into_iter().zip(answers) {
             interrupted |= answer == TourEvaluation::Stopped;
@@ -137,7 +139,7 @@ impl Search<'_> {
         interrupted
     }
 
-    /// One round; says when it was the last.
+    /// Explores one round; returns why the search ends, if it does.
     fn explore_round(&mut self) -> Option<SearchEnd> {
         if self.tree.is_exhausted() {
             return Some(SearchEnd::Exhausted);
@@ -150,31 +152,31 @@ impl Search<'_> {
             self.tightened = true;
             self.tighten();
         }
-        if explored >= PRICE_NODES && !self.lagrangian {
+        if explored >= LAGRANGIAN_NODES && !self.lagrangian {
             self.lagrangian = true;
-            self.price();
+            self.raise_lagrangian_bound();
         }
         let budget = self.node_limit.saturating_sub(explored);
         if budget == 0 {
             return Some(SearchEnd::NodeLimit);
         }
-        let size = (explored / EXPLORED_PER_NODE).clamp(FEWEST_NODES, MAX_NODES);
+        let size = (explored / EXPLORED_PER_NODE).clamp(MIN_NODES, MAX_NODES);
         let tasks = self.take_round(size.min(budget));
         let answers = self.pool.map(&tasks, |task| self.evaluate(task));
         let mut interrupted = false;
         for (task, answer) in tasks.into_iter().zip(answers) {
             interrupted |= answer.is_stopped();
             match task {
-                Task::Node(node) => self.merge(node, answer),
-                Task::Probe(order) => self.merge_probe(&order, answer),
+                RoundTask::Node(node) => self.merge(node, answer),
+                RoundTask::Probe(order) => self.merge_probe(&order, answer),
             }
         }
         self.tree.tidy();
         interrupted.then(|| self.stopped())
     }
 
-    /// The nodes of the next round, and now and then an order to probe.
-    fn take_round(&mut self, size: u64) -> Vec<Task> {
+    /// The tasks of the next round: nodes, and an order if a probe is due.
+    fn take_round(&mut self, size: u64) -> Vec<RoundTask> {
         let nodes = self.tree.take_round(size, self.pool, self.stop);
         let explored = self.tree.statistics().nodes_explored;
         let mut probe = None;
@@ -187,57 +189,62 @@ impl Search<'_> {
         }
         nodes
             .into_iter()
-            .map(Task::Node)
-            .chain(probe.map(Task::Probe))
+            .map(RoundTask::Node)
+            .chain(probe.map(RoundTask::Probe))
             .collect()
     }
 
-    /// Asks the model.
-    fn evaluate(&self, task: &Task) -> Answer {
+    /// Evaluates a task with the model.
+    fn evaluate(&self, task: &RoundTask) -> TaskResult {
         match task {
-            Task::Probe(order) => Answer::Tour(self.fly(order)),
-            Task::Node(node) if self.tree.is_leaf(node) => Answer::Tour(self.fly(&node.prefix)),
-            Task::Node(_) if self.stop.is_set() => Answer::Prefix(Evaluation::Stopped),
-            Task::Node(node) => Answer::Prefix(self.model.prefix_bound(&node.prefix)),
+            RoundTask::Probe(order) => TaskResult::Tour(self.evaluate_order(order)),
+            RoundTask::Node(node) if self.tree.is_leaf(node) => {
+                TaskResult::Tour(self.evaluate_order(&node.prefix))
+            }
+            RoundTask::Node(_) if self.stop.is_set() => TaskResult::Prefix(Evaluation::Stopped),
+            RoundTask::Node(node) => TaskResult::Prefix(self.model.prefix_bound(&node.prefix)),
         }
     }
 
-    fn fly(&self, order: &[usize]) -> TourEvaluation {
+    fn evaluate_order(&self, order: &[usize]) -> TourEvaluation {
         if self.stop.is_set() {
             return TourEvaluation::Stopped;
         }
         match self.model.tour(order) {
-            // A duration that is no number is no result.
-            TourEvaluation::LegSolution(duration_s) if !duration_s.is_finite() => {
+            // A duration that is not finite is no result.
+            TourEvaluation::Solved(duration_s) if !duration_s.is_finite() => {
                 TourEvaluation::Unresolved
             }
             answer => answer,
         }
     }
 
-    /// Puts the answer to a node into the tree.
-    fn merge(&mut self, node: Node, answer: Answer) {
+    /// Records the result for a node in the tree.
+    fn merge(&mut self, node: SearchNode, answer: TaskResult) {
         match answer {
-            Answer::Prefix(Evaluation::Value(bound_s)) => self.tree.bounded(node, Some(bound_s)),
-            Answer::Prefix(Evaluation::Unresolved) => self.tree.bounded(node, None),
-            Answer::Tour(TourEvaluation::LegSolution(duration_s)) => {
-                self.tree.flown(&node, duration_s)
+            TaskResult::Prefix(Evaluation::Value(bound_s)) => {
+                self.tree.prefix_evaluated(node, Some(bound_s));
             }
-            Answer::Tour(TourEvaluation::Unresolved) => self.tree.unresolved(&node),
-            Answer::Prefix(Evaluation::Stopped) | Answer::Tour(TourEvaluation::Stopped) => {
+            TaskResult::Prefix(Evaluation::Unresolved) => self.tree.prefix_evaluated(node, None),
+            TaskResult::Tour(TourEvaluation::Solved(duration_s)) => {
+                self.tree.leaf_solved(&node, duration_s);
+            }
+            TaskResult::Tour(TourEvaluation::Unresolved) => self.tree.leaf_unresolved(&node),
+            TaskResult::Prefix(Evaluation::Stopped) | TaskResult::Tour(TourEvaluation::Stopped) => {
                 self.tree.put_back(node);
             }
         }
     }
 
-    /// Puts the answer to a probe into the tree.
-    fn merge_probe(&mut self, order: &[usize], answer: Answer) {
-        if let Answer::Tour(answer) = answer {
+    /// Records the result of a probe in the tree.
+    fn merge_probe(&mut self, order: &[usize], answer: TaskResult) {
+        if let TaskResult::Tour(answer) = answer {
             self.tree.record_candidate(order, answer);
         }
     }
 
-    /// The signal's reason; a model that stops of its own accord counts as a request.
+    /// The end with the signal's reason. Where a model stops without the signal, the reason is a
+    /// request.
     fn stopped(&self) -> SearchEnd {
         SearchEnd::Stopped(self.stop.reason().unwrap_or(StopReason::Requested))
     }

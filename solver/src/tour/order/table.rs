@@ -1,12 +1,13 @@
-//! The table of pair bounds, and which orders it is for.
+//! The table of pair bounds, with the rules of the orders.
 
 use super::{Place, TourModel};
 use crate::model::order_rules::OrderRules;
 
-/// Lower bounds of all legs, s, between places numbered: targets `0..n`, then start, then end.
+/// Lower bounds of all legs, s, between places that are numbered: targets `0..n`, then the start,
+/// then the end.
 ///
-/// A tour without a prescribed end goes on to a place that is reached from everywhere in no time,
-/// so that whoever reads the table need not tell the two cases apart.
+/// Without a prescribed end, the table has an end that every place reaches in zero time, so that
+/// both cases are treated alike.
 #[derive(Debug, Clone)]
 pub struct PairTable {
     targets: usize,
@@ -15,7 +16,7 @@ pub struct PairTable {
 }
 
 impl PairTable {
-    /// Asks the model for every pair.
+    /// The table of a model: its bounds for every pair.
     #[must_use]
     pub fn new(model: &dyn TourModel) -> Self {
         let targets = model.target_count();
@@ -51,7 +52,7 @@ impl PairTable {
         table
     }
 
-    /// Times are not negative, and 0 is a valid bound when nothing is known.
+    /// Sets a bound; one that is negative or not finite is replaced by 0.
     fn set(&mut self, from: usize, to: usize, bound: f64) {
         let place = from * (self.targets + 2) + to;
         self.bounds[place] = if bound.is_finite() {
@@ -67,7 +68,7 @@ impl PairTable {
         self.targets
     }
 
-    /// Which orders of the targets may be flown.
+    /// Which orders of the targets are admitted.
     #[must_use]
     pub fn rules(&self) -> &OrderRules {
         &self.rules
@@ -91,7 +92,7 @@ impl PairTable {
         self.bounds[from * (self.targets + 2) + to]
     }
 
-    /// Place that a prefix ends at.
+    /// Number of the last place of a prefix: the start, if it has no targets.
     #[must_use]
     pub fn last_place(&self, prefix: &[usize]) -> usize {
         prefix.last().copied().unwrap_or(self.start())

@@ -1,4 +1,4 @@
-//! The search against exhaustive enumeration, on cost models that couple neighbouring legs.
+//! The search against exhaustive enumeration, on cost models whose neighbouring legs couple.
 
 mod anytime;
 mod exactness;

@@ -1,6 +1,6 @@
-//! From solved segments to a flight that can be checked and flown.
+//! From solved segments to a flight: torques, legs and passages on one time axis.
 
-use super::torques::{SHORTEST, torques};
+use super::torques::{MIN_PIECE_SHARE, torques};
 use super::tours::Tours;
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{Control, Flight, Leg, Passage};
@@ -17,25 +17,25 @@ struct Assembly<'a> {
     legs: Vec<Leg>,
 }
 
-/// Puts the solved segments of a route together, settle and dwell included.
+/// Assembles the solved segments of a route, with settle and dwell times.
 pub(super) fn assemble(
     tours: &Tours<'_>,
     route: &[Place],
     segments: &[Arc<LegSolution>],
 ) -> (Flight, Vec<Leg>) {
-    let total: f64 = segments.iter().map(|flown| flown.profile.duration()).sum();
+    let total: f64 = segments.iter().map(|s| s.profile.duration()).sum();
     let mut assembly = Assembly {
         tours,
         clock: 0.0,
-        shortest: SHORTEST * total,
+        shortest: MIN_PIECE_SHARE * total,
         controls: Vec::new(),
         passages: Vec::new(),
         legs: Vec::new(),
     };
-    for (places, flown) in tours.split(route).iter().zip(segments) {
+    for (places, solution) in tours.places.split(route).iter().zip(segments) {
         let mut begin = 0;
-        for (pair, intervals) in places.windows(2).zip(&flown.intervals) {
-            assembly.fly_leg(pair[0], pair[1], flown, begin..begin + intervals);
+        for (pair, intervals) in places.windows(2).zip(&solution.intervals) {
+            assembly.add_leg(pair[0], pair[1], solution, begin..begin + intervals);
             begin += intervals;
             assembly.visit(pair[1]);
         }
@@ -49,15 +49,15 @@ pub(super) fn assemble(
 }
 
 impl Assembly<'_> {
-    fn fly_leg(
+    fn add_leg(
         &mut self,
         from: Place,
         to: Place,
-        flown: &LegSolution,
+        solution: &LegSolution,
         range: std::ops::Range<usize>,
     ) {
         let begin = self.clock;
-        for (length, torque) in torques(&flown.profile, range, self.shortest) {
+        for (length, torque) in torques(&solution.profile, range, self.shortest) {
             self.push(length, torque.iter().copied());
         }
         let duration = self.clock - begin;
@@ -69,11 +69,11 @@ impl Assembly<'_> {
             certified_lower_bound_s: None,
             eigenaxis_duration_s: self.eigenaxis_duration(from, to),
             rest_to_rest_duration_s: None,
-            solver_status: flown.status.as_str().into(),
+            solver_status: solution.status.into_str().into(),
         });
     }
 
-    /// Records the arrival at a target and holds still there as long as it asks for.
+    /// Adds the passage of a target, with zero torques for its settle and dwell times.
     fn visit(&mut self, place: Place) {
         let Place::Target(index) = place else { return };
         let target = &self.tours.places.scenario.targets()[index];

@@ -12,28 +12,28 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
 use std::fmt::Write;
 
-/// Version of the canonical form and of the numerics behind it: stored legs of another are not
-/// found.
+/// Version of the canonical form and of the numerics behind it. It is part of the identity: legs
+/// stored by another version are not found.
 const VERSION: &str = "leg-8";
 
 /// A leg in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone)]
 pub(super) struct CanonicalLeg {
-    /// The text that tells it from all other legs.
+    /// Canonical text of everything that the solution depends on.
     pub(super) identity: String,
-    /// The share of the identity that describes the spacecraft.
+    /// The part of the identity that describes the spacecraft.
     pub(super) spacecraft: String,
     /// The spacecraft with the momentum in this frame.
     pub(super) dynamics: Dynamics,
-    /// Begin, at the identity attitude.
+    /// The begin, at the identity attitude.
     pub(super) from: Waypoint,
-    /// End.
+    /// The end.
     pub(super) to: Waypoint,
-    /// Whether it is the wanted leg flown backwards.
+    /// Whether this is the requested leg with begin and end exchanged.
     pub(super) mirrored: bool,
-    /// Whether it may be flown backwards.
+    /// Whether the time-reversed solution solves the leg with begin and end exchanged.
     pub(super) reversible: bool,
-    /// Which signs count as arrived.
+    /// Which quaternion signs count as arrived.
     pub(super) arrival: Arrival,
     null: DVector<f64>,
     /// How finely it is solved.
@@ -89,7 +89,7 @@ impl CanonicalLeg {
         }
     }
 
-    /// The problem to solve, with the guesses for its spacecraft.
+    /// The problem to solve; initial guesses come from the extremals of its spacecraft.
     pub(super) fn problem<'a>(&'a self, extremals: &'a KinematicExtremals) -> LegProblem<'a> {
         LegProblem {
             dynamics: &self.dynamics,
@@ -103,8 +103,8 @@ impl CanonicalLeg {
     }
 }
 
-/// A place at an attitude of this frame; conditions that leave nothing free are written as the
-/// wheel momenta that they fix, so that different wordings of one state are one leg.
+/// A waypoint with its attitude in the leg's frame. Conditions that leave nothing free are replaced
+/// by the wheel momenta that they imply, so that equivalent conditions have one identity.
 fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoint {
     let mut settled = Waypoint {
         attitude,
@@ -130,7 +130,7 @@ fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoin
 
 fn rounded_attitude(attitude: &Attitude) -> Attitude {
     let components = attitude.xyzw().map(|c| rounded(c, 1.0));
-    Attitude::from_xyzw(components).expect("rounding leaves a unit quaternion its length")
+    Attitude::from_xyzw(components).expect("a rounded unit quaternion has nearly unit length")
 }
 
 fn rounded_vector(vector: Vector3<f64>) -> Vector3<f64> {
@@ -138,7 +138,7 @@ fn rounded_vector(vector: Vector3<f64>) -> Vector3<f64> {
     vector.map(|c| rounded(c, scale))
 }
 
-/// The one of `q` and `-q` whose last component that is not zero is positive.
+/// The one of `q` and `-q` whose last nonzero component is positive.
 fn upper_hemisphere(attitude: &Attitude) -> Attitude {
     let leading = attitude.xyzw().into_iter().rev().find(|c| *c != 0.0);
     if leading.is_some_and(|c| c < 0.0) {

@@ -1,23 +1,23 @@
-//! The certified bounds of a plan, proved a second time.
+//! Verification of the certified bounds of a plan.
 //!
-//! What a plan claims is of unknown origin here. For every claim about a leg the certificate is made
-//! anew from the scenario (boxes, turn, and what is known of the ends; nothing of the flight), the
-//! claimed duration is put in, and [`crate::bounds::certify`] proves it or says why not. A claim about all
-//! tours rests on every leg that a tour may fly: the bounds of these are proved in the same way,
-//! legs whose proof fails count nothing, and the shortest way through the table is what may be
-//! claimed at most.
+//! The bounds of a plan may come from anywhere. For the bound of a leg, a leg certificate is made
+//! from the scenario (box, turn and end rates; nothing of the flight), the plan's bound is put into
+//! it, and [`crate::bounds::certify`] proves it in interval arithmetic or says why it cannot. The
+//! bound on all tours rests on every leg that can be part of a tour: their bounds are verified in
+//! the same way, legs that cannot be verified count as 0, and the plan's bound must not exceed the
+//! shortest path through the table of these bounds.
 //!
-//! What a certificate takes for granted (boxes, turn, ends) is compared with the scenario's own words,
-//! by other ways than those it was made by (`premises`). Computed in ordinary arithmetic and not proved
-//! a second time is the search of the shortest way.
+//! The premises of a certificate (box, turn, end rates) are compared with the scenario by formulas
+//! other than those that made them (`premises`). The search for the shortest path runs in ordinary
+//! arithmetic and is not verified.
 
 mod premises;
 
 use super::Run;
 use super::canonical::CanonicalLeg;
-use super::certified::tour_bound;
 use super::places::Places;
 use super::tables::{CertifiedLeg, CertifiedTable, Table};
+use super::tour_bound::tour_bound;
 use super::tour_pairs;
 use crate::bounds::certify::{self, Rejection};
 use crate::model::scenario::Scenario;
@@ -26,160 +26,162 @@ use crate::tour::order::Place;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What a plan claims to be proved.
+/// The certified bounds of a plan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PlanCertificate {
-    /// Its legs.
+    /// The bounds of its legs.
     pub legs: Vec<LegCertificate>,
-    /// No tour takes less, s, in any order that the scenario admits; `None` where nothing is claimed.
+    /// Lower bound on all tours, s, in any order that the scenario admits; `None` when the plan
+    /// gives none.
     pub lower_bound_s: Option<f64>,
-    /// How long the plan takes, s, when it says so.
+    /// Duration of the plan, s, when it is given.
     pub total_time_s: Option<f64>,
 }
 
-/// What a plan claims of a leg.
+/// The certified bound of a leg of a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegCertificate {
     /// `start` or a target's identifier.
     pub from: String,
     /// A target's identifier or `end`.
     pub to: String,
-    /// No slew between the places takes less, s; `None` where nothing is claimed.
+    /// Lower bound on any slew between the places, s; `None` when the plan gives none.
     pub lower_bound_s: Option<f64>,
-    /// How long the leg takes, s, when the plan says so.
+    /// Duration of the leg in the plan, s, when it is given.
     pub duration_s: Option<f64>,
 }
 
-/// What became of a claim.
+/// Result of the verification of a bound.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
-    /// There is none.
-    NoClaim,
-    /// It is proved.
+    /// The plan gives no bound.
+    NoBound,
+    /// The bound is proved.
     Confirmed,
-    /// It is wrong, or no proof was found.
+    /// The bound is false, or no proof was found.
     Rejected(Objection),
-    /// It may be right or wrong.
+    /// The bound was not checked.
     NotChecked(Obstacle),
 }
 
-/// Why a claim is rejected.
+/// Why a bound is rejected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Objection {
-    /// The plan contradicts itself.
+    /// The bound exceeds the duration in the plan itself.
     #[error("the plan itself takes {duration_s} s only")]
     AboveDuration {
-        /// How long it takes there, s.
+        /// Duration in the plan, s.
         duration_s: f64,
     },
-    /// No tour flies such a leg.
+    /// No tour contains such a leg.
     #[error("no tour of the scenario has such a leg")]
     NoSuchLeg,
     /// The scenario leaves rates or accelerations without limits.
     #[error("nothing is proved of such slews: their rates are not limited")]
-    Unfounded,
-    /// What a proof rests on is not what the scenario says.
-    #[error("a proof would take for granted {what}, which the scenario does not support")]
+    UnlimitedRates,
+    /// A premise of the leg's certificate does not follow from the scenario.
+    #[error("a proof would rest on {what}, which the scenario does not support")]
     Premises {
-        /// What it is.
+        /// The premise.
         what: &'static str,
     },
-    /// The second proof failed.
-    #[error("{known_s} s is the bound that is known of such slews: {rejection}")]
+    /// The interval arithmetic does not prove the bound.
+    #[error("the solver's own bound for such slews is {known_s} s: {rejection}")]
     NotProved {
-        /// The bound that the solver itself would claim, s.
+        /// The bound that the solver itself computes, s.
         known_s: f64,
-        /// What the second proof says.
+        /// Why the proof failed.
         rejection: Rejection,
     },
-    /// The legs do not add up to it.
+    /// The bound exceeds the shortest path through the proved bounds of the legs.
     #[error("the proved bounds of {proved} of {legs} legs add up to {supported_s} s at least")]
-    AboveTours {
-        /// The shortest way through all targets in the table of proved bounds, s.
+    AboveTourBound {
+        /// Shortest path through all targets in the table of proved bounds, s.
         supported_s: f64,
-        /// Legs with a proved bound.
+        /// Number of legs with a proved bound.
         proved: usize,
-        /// Legs that a tour may fly.
+        /// Number of legs that can be part of a tour.
         legs: usize,
     },
 }
 
-/// Why a claim is not checked.
+/// Why a bound is not checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Obstacle {
-    /// There is no second proof of bounds on slews with stored momentum.
+    /// Bounds on slews with stored momentum cannot be verified.
     #[error("there is no second proof of bounds with stored momentum")]
     Momentum,
-    /// The work was stopped before.
+    /// The work was stopped first.
     #[error("stopped before it was checked")]
     Stopped,
 }
 
-/// What became of the claims of a plan.
+/// Verdicts on the bounds of a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedCertificate {
-    /// Of its legs, in the order of the claims.
+    /// On the bounds of its legs, in the order of the certificate.
     pub legs: Vec<Verdict>,
-    /// Of all tours.
+    /// On the bound on all tours.
     pub tour: Verdict,
 }
 
 impl CheckedCertificate {
-    /// Whether something is claimed and all of it is proved.
+    /// Whether the plan gives at least one bound and all its bounds are proved.
     #[must_use]
     pub fn confirmed(&self) -> bool {
-        let claims = || self.legs.iter().chain([&self.tour]);
-        let fine = |claim: &Verdict| matches!(claim, Verdict::Confirmed | Verdict::NoClaim);
-        claims().all(fine) && claims().any(|claim| *claim == Verdict::Confirmed)
+        let verdicts = || self.legs.iter().chain([&self.tour]);
+        let fine = |verdict: &Verdict| matches!(verdict, Verdict::Confirmed | Verdict::NoBound);
+        verdicts().all(fine) && verdicts().any(|verdict| *verdict == Verdict::Confirmed)
     }
 }
 
-/// Proves what a plan claims of its legs and of all tours a second time, in intervals.
+/// Verifies the certified bounds of a plan in interval arithmetic.
 ///
-/// Takes some 10 ms for every claimed leg, and as much for every distinct leg that a tour may fly
-/// when something is claimed of tours, divided among the workers. The store of legs is not asked.
+/// Takes some 10 ms for every leg with a bound and, if there is a bound on all tours, as much for
+/// every distinct leg that can be part of a tour, divided among the workers. The leg store is not
+/// used.
 #[must_use]
-pub fn certify_plan(
+pub fn verify_certificate(
     scenario: &Scenario,
-    claims: &PlanCertificate,
+    certificate: &PlanCertificate,
     run: Run<'_>,
 ) -> CheckedCertificate {
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let distinct = match claims.lower_bound_s {
-        Some(_) if !places.dynamics.has_momentum() => Distinct::of(&places, &pairs),
-        _ => Distinct::default(),
+    let distinct = match certificate.lower_bound_s {
+        Some(_) if !places.dynamics.has_momentum() => DistinctLegs::of(&places, &pairs),
+        _ => DistinctLegs::default(),
     };
-    let second = SecondProof {
+    let verifier = CertificateVerifier {
         places: &places,
         named: places
             .all()
             .into_iter()
             .map(|p| (places.name(p), p))
             .collect(),
-        flown: pairs.iter().copied().collect(),
+        tour_legs: pairs.iter().copied().collect(),
         run,
         done: AtomicU64::new(0),
-        total: (claims.legs.len() + distinct.legs.len()) as u64,
+        total: (certificate.legs.len() + distinct.legs.len()) as u64,
     };
-    let legs = run.pool.map(&claims.legs, |claim| {
-        let verdict = second.of_leg(claim);
-        second.tell();
+    let legs = run.pool.map(&certificate.legs, |leg| {
+        let verdict = verifier.verify_leg(leg);
+        verifier.report_progress();
         verdict
     });
-    let tour = second.of_tours(claims, &pairs, &distinct);
+    let tour = verifier.verify_tour_bound(certificate, &pairs, &distinct);
     CheckedCertificate { legs, tour }
 }
 
-/// The legs between pairs of places, equal ones once.
+/// The legs between pairs of places; legs with equal canonical forms are listed once.
 #[derive(Default)]
-struct Distinct {
+struct DistinctLegs {
     legs: Vec<((Place, Place), CanonicalLeg)>,
-    /// Which of them each pair is.
+    /// Index of the leg of each pair.
     of_pair: Vec<usize>,
 }
 
-impl Distinct {
+impl DistinctLegs {
     fn of(places: &Places<'_>, pairs: &[(Place, Place)]) -> Self {
         let (mut distinct, mut known) = (Self::default(), HashMap::new());
         for pair in pairs {
@@ -195,53 +197,53 @@ impl Distinct {
     }
 }
 
-/// Proves claims about the legs and tours of a scenario.
-struct SecondProof<'a> {
+/// Verifies bounds on the legs and tours of a scenario.
+struct CertificateVerifier<'a> {
     places: &'a Places<'a>,
     named: HashMap<String, Place>,
-    /// The legs that a tour may fly.
-    flown: HashSet<(Place, Place)>,
+    /// The pairs of places that can be a leg of a tour.
+    tour_legs: HashSet<(Place, Place)>,
     run: Run<'a>,
     done: AtomicU64,
     total: u64,
 }
 
-impl SecondProof<'_> {
-    fn of_leg(&self, claim: &LegCertificate) -> Verdict {
-        let Some(bound) = claim.lower_bound_s else {
-            return Verdict::NoClaim;
+impl CertificateVerifier<'_> {
+    fn verify_leg(&self, leg: &LegCertificate) -> Verdict {
+        let Some(bound) = leg.lower_bound_s else {
+            return Verdict::NoBound;
         };
-        let ends = self.named.get(&claim.from).zip(self.named.get(&claim.to));
+        let ends = self.named.get(&leg.from).zip(self.named.get(&leg.to));
         let Some(pair) = ends
             .map(|(from, to)| (*from, *to))
-            .filter(|pair| self.flown.contains(pair))
+            .filter(|pair| self.tour_legs.contains(pair))
         else {
             return Verdict::Rejected(Objection::NoSuchLeg);
         };
-        if let Some(early) = self.without_proof(bound, claim.duration_s) {
+        if let Some(early) = self.early_verdict(bound, leg.duration_s) {
             return early;
         }
-        match self.proved(pair, &canonical(self.places, pair), Some(bound)) {
+        match self.prove_leg(pair, &canonical(self.places, pair), Some(bound)) {
             Ok(_) => Verdict::Confirmed,
             Err(objection) => Verdict::Rejected(objection),
         }
     }
 
-    fn of_tours(
+    fn verify_tour_bound(
         &self,
-        claims: &PlanCertificate,
+        certificate: &PlanCertificate,
         pairs: &[(Place, Place)],
-        distinct: &Distinct,
+        distinct: &DistinctLegs,
     ) -> Verdict {
-        let Some(bound) = claims.lower_bound_s else {
-            return Verdict::NoClaim;
+        let Some(bound) = certificate.lower_bound_s else {
+            return Verdict::NoBound;
         };
-        if let Some(early) = self.without_proof(bound, claims.total_time_s) {
+        if let Some(early) = self.early_verdict(bound, certificate.total_time_s) {
             return early;
         }
         let bounds = self.run.pool.map(&distinct.legs, |(pair, leg)| {
-            let bound = (!self.run.stop.is_set()).then(|| self.proved(*pair, leg, None).ok());
-            self.tell();
+            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(*pair, leg, None).ok());
+            self.report_progress();
             bound.flatten()
         });
         let entry = |index: &usize| CertifiedLeg {
@@ -258,22 +260,22 @@ impl SecondProof<'_> {
             return Verdict::NotChecked(Obstacle::Stopped);
         }
         let Some(supported_s) = supported_s else {
-            return Verdict::Rejected(Objection::Unfounded);
+            return Verdict::Rejected(Objection::UnlimitedRates);
         };
         if bound <= supported_s {
             return Verdict::Confirmed;
         }
         let proved = distinct.of_pair.iter().filter(|i| bounds[**i].is_some());
-        Verdict::Rejected(Objection::AboveTours {
+        Verdict::Rejected(Objection::AboveTourBound {
             supported_s,
             proved: proved.count(),
             legs: pairs.len(),
         })
     }
 
-    /// The verdict on a bound, s, that can be told before anything is proved: what has this
-    /// duration, s, is in the plan.
-    fn without_proof(&self, bound: f64, duration_s: Option<f64>) -> Option<Verdict> {
+    /// The verdict on a bound, s, where it needs no proof. `duration_s` is the duration in the plan
+    /// of what the bound is for, s.
+    fn early_verdict(&self, bound: f64, duration_s: Option<f64>) -> Option<Verdict> {
         if let Some(duration_s) = duration_s.filter(|duration| bound > *duration) {
             return Some(Verdict::Rejected(Objection::AboveDuration { duration_s }));
         }
@@ -284,28 +286,28 @@ impl SecondProof<'_> {
         stopped.then_some(Verdict::NotChecked(Obstacle::Stopped))
     }
 
-    /// A bound on the leg between two places that has been proved, s: the given one, or that of the
-    /// solver.
-    fn proved(
+    /// Proves a bound on the leg between two places, s: the given one, or the one that the solver
+    /// computes. Returns the proved bound.
+    fn prove_leg(
         &self,
         (from, to): (Place, Place),
         leg: &CanonicalLeg,
         bound: Option<f64>,
     ) -> Result<f64, Objection> {
         let certificate = self.places.certified.certificate(&leg.from, &leg.to);
-        let (axes, mut certificate) = certificate.ok_or(Objection::Unfounded)?;
-        let flown = if leg.mirrored { [to, from] } else { [from, to] };
-        premises::check(self.places.scenario, flown, &axes, &certificate)
+        let (axes, mut certificate) = certificate.ok_or(Objection::UnlimitedRates)?;
+        let ends = if leg.mirrored { [to, from] } else { [from, to] };
+        premises::check(self.places.scenario, ends, &axes, &certificate)
             .map_err(|what| Objection::Premises { what })?;
         let known_s = certificate.duration_s;
         certificate.duration_s = bound.unwrap_or(known_s);
-        match certify::check(&certificate) {
+        match certify::verify(&certificate) {
             Ok(()) => Ok(certificate.duration_s),
             Err(rejection) => Err(Objection::NotProved { known_s, rejection }),
         }
     }
 
-    fn tell(&self) {
+    fn report_progress(&self) {
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done: self.done.fetch_add(1, Ordering::Relaxed) + 1,
@@ -316,7 +318,7 @@ impl SecondProof<'_> {
     }
 }
 
-/// A leg in the form in which it is certified, each end with its own conditions only.
+/// The canonical leg between two places, each end with its own conditions only.
 fn canonical(places: &Places<'_>, (from, to): (Place, Place)) -> CanonicalLeg {
     CanonicalLeg::of(places, &places.waypoint(from), &places.waypoint(to))
 }

@@ -1,31 +1,31 @@
-//! The targets in an order that is given.
+//! Solves a scenario for a prescribed order of its targets.
 
-use super::certified::route_bound;
-use super::conclude::PlanBuilder;
 use super::legs::LegSolver;
 use super::places::Places;
+use super::plan_builder::PlanBuilder;
+use super::tour_bound::route_bound;
 use super::tours::Tours;
 use super::{Run, feasibility_problems, limited, unsolved};
 use crate::model::plan::Outcome;
 use crate::model::scenario::Scenario;
 use crate::tour::legs::LegKind;
-use crate::tour::order::{FlownOrder, Place, TourEvaluation, TourModel};
+use crate::tour::order::{Place, SolvedOrder, TourEvaluation, TourModel};
 use std::time::Instant;
 
-/// Where the bound on the tours along a given order comes from.
+/// Where the lower bound on the tours in a prescribed order comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoundFrom {
-    /// The certified bounds of its legs: nothing is solved for it, and the plan has no legs from rest
-    /// to rest to compare with.
+    /// The certified bounds of its legs. No leg is solved for it, and the plan has no rest-to-rest
+    /// legs for comparison.
     Certificates,
-    /// Its legs with free ends, solved one by one: tighter, for about the same work again.
+    /// Its legs solved one by one with free ends. This bound is tighter and doubles the work.
     Legs,
 }
 
-/// Why a list of indices cannot be flown as an order of a scenario's targets.
+/// Why a list of indices is refused as an order of a scenario's targets.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OrderError {
-    /// It is none.
+    /// The list is not a permutation of the targets' indices.
     #[error("an order lists the indices of all {targets} targets, each of them once")]
     NotAnOrder {
         /// Number of targets.
@@ -36,18 +36,18 @@ pub enum OrderError {
     NotAdmitted,
 }
 
-/// Visits the targets in a given order in minimum time: torques, bound and verification, without a
-/// search.
+/// Solves the minimum-time tour of the targets in a prescribed order: torques, bound and
+/// verification, without a search.
 ///
-/// `order` lists indices into [`Scenario::targets`]; the work is linear in their number. The flight is
-/// the one that [`super::solve`] makes of the order when it finds it best. The bound holds for this
-/// order only; nothing is said of other orders, so the plan is never called optimal.
+/// `order` lists indices into [`Scenario::targets`]; the work is linear in their number. The flight
+/// equals that of [`super::solve`] for the same order. The bound holds for this order only, so the
+/// plan is never called optimal.
 ///
 /// # Errors
 ///
 /// When `order` does not name every target exactly once, or breaks
 /// [`Scenario::order_rules`].
-pub fn fly_order(
+pub fn solve_order(
     scenario: &Scenario,
     order: &[usize],
     bound: BoundFrom,
@@ -62,10 +62,10 @@ pub fn fly_order(
     if !scenario.order_rules().admits(order) {
         return Err(OrderError::NotAdmitted);
     }
-    Ok(fly(scenario, order, bound, run))
+    Ok(solve_admitted(scenario, order, bound, run))
 }
 
-fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> Outcome {
+fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> Outcome {
     let begin = Instant::now();
     let problems = feasibility_problems(scenario);
     if !problems.is_empty() {
@@ -78,33 +78,33 @@ fn fly(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: Run<'_>) -> 
     let pairs = legs_of(&places, &route);
     let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
     let certified = route_bound(&places, &bounds, &route);
-    solver.tell(None, certified);
+    solver.report_bounds(None, certified);
     let tours = Tours::new(&places, &solver, &stop);
-    tours.prove(bounds);
+    tours.set_certified_bounds(bounds);
     if bound == BoundFrom::Legs {
-        tours.know(solver.table(LegKind::LowerBound, &pairs));
+        tours.set_free_legs(solver.table(LegKind::LowerBound, &pairs));
     }
     match tours.tour(order) {
-        TourEvaluation::LegSolution(duration_s) => {
+        TourEvaluation::Solved(duration_s) => {
             let order = order.to_vec();
-            let flown = FlownOrder { order, duration_s };
+            let solved = SolvedOrder { order, duration_s };
             let bounds = route.windows(2).map(|leg| tours.pair_bound(leg[0], leg[1]));
-            // Nothing is known of a leg whose solve failed: the maximum drops what is no number.
+            // The bound of a leg whose solve failed is not a number, for which the maximum gives 0.
             let lower_bound_s = bounds.map(|bound| bound.max(0.0)).sum();
-            let mut conclusions = PlanBuilder::new(&tours, run, begin);
-            conclusions.prove(certified);
+            let mut builder = PlanBuilder::new(&tours, run, begin);
+            builder.set_certified_bound(certified);
             if bound == BoundFrom::Legs {
-                conclusions.compare_with_rest(&flown);
+                builder.compare_with_rest(&solved);
             }
-            conclusions.given(&flown, lower_bound_s)
+            builder.fixed_order_outcome(&solved, lower_bound_s)
         }
         TourEvaluation::Stopped => Outcome::StoppedEmpty,
         TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),
     }
 }
 
-/// The legs between neighbours of a route, also between those that become neighbours because places
-/// that are one stop are flown as one.
+/// The legs between neighbours of a route, and those between places that become neighbours because
+/// a place covered by its neighbour is no waypoint.
 fn legs_of(places: &Places<'_>, route: &[Place]) -> Vec<(Place, Place)> {
     let mut legs = Vec::new();
     for (i, from) in route.iter().enumerate() {

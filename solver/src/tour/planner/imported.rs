@@ -16,6 +16,7 @@ use crate::checker::{END_SPEED_TOLERANCE, RATE_TOLERANCE};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
+use crate::model::motion::Motion;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::run::pool::SolverPool;
@@ -30,19 +31,6 @@ const EIGENAXIS_TOLERANCE: f64 = 1e-5;
 
 /// Most intervals of a leg: ten times what ordinary ones have.
 const MAX_INTERVALS: usize = 500;
-
-/// The motion of a leg, in the frame in which it begins at the identity attitude.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ImportedLeg {
-    /// Attitude at every node relative to the begin, scalar-last unit quaternions.
-    pub attitudes_xyzw: Vec<[f64; 4]>,
-    /// Momentum of every enabled wheel about its axis at every node, N m s.
-    pub wheel_momenta_nms: Vec<Vec<f64>>,
-    /// Time between nodes, s.
-    pub lengths_s: Vec<f64>,
-    /// Wall-clock time that the solve took, s; only handed on.
-    pub solve_time_s: f64,
-}
 
 /// The legs of a kind between the places of a scenario, by their identity.
 pub struct LegCheck<'a> {
@@ -85,17 +73,22 @@ impl<'a> LegCheck<'a> {
         self.legs.keys().map(String::as_str)
     }
 
-    /// A leg as it may be stored.
+    /// A leg as it may be stored, from its motion, in the frame in which it begins at the identity
+    /// attitude, and the wall-clock time that its solve took, which is only handed on.
     ///
     /// # Errors
     ///
     /// Sentences about everything that is wrong with it.
-    pub fn check(&self, identity: &str, imported: ImportedLeg) -> Result<StoredLeg, Vec<String>> {
+    pub fn check(
+        &self,
+        identity: &str,
+        motion: Motion,
+        solve_time_s: f64,
+    ) -> Result<StoredLeg, Vec<String>> {
         let leg = self.legs.get(identity);
         let leg = leg.ok_or_else(|| vec!["the scenario has no such leg".to_owned()])?;
-        let solve_time = imported.solve_time_s;
-        let flown = motion(leg, imported)?;
-        let profile = &flown.profile;
+        let solution = solved(leg, motion)?;
+        let profile = &solution.profile;
         let mut faults = self.faults(leg, profile);
         if faults.is_empty() {
             faults = flight_faults(&self.places, leg, profile);
@@ -107,10 +100,10 @@ impl<'a> LegCheck<'a> {
             return Err(faults);
         }
         let solved = SolvedLeg {
-            flown,
+            solution,
             certified: certify(&self.places, leg).lower_bound,
             solves: 0,
-            solve_time,
+            solve_time: solve_time_s,
         };
         Ok(stored(leg, self.kind, &solved))
     }
@@ -150,9 +143,9 @@ impl<'a> LegCheck<'a> {
 }
 
 /// The motion of an imported leg, when its numbers fit together.
-fn motion(leg: &CanonicalLeg, imported: ImportedLeg) -> Result<LegSolution, Vec<String>> {
+fn solved(leg: &CanonicalLeg, motion: Motion) -> Result<LegSolution, Vec<String>> {
     let wheels = leg.dynamics.wheel_count();
-    let momenta = &imported.wheel_momenta_nms;
+    let momenta = &motion.wheel_momenta_nms;
     let mut faults = Vec::new();
     if momenta.iter().any(|node| node.len() != wheels) {
         faults.push(format!("not every node has momenta of {wheels} wheels"));
@@ -165,25 +158,21 @@ fn motion(leg: &CanonicalLeg, imported: ImportedLeg) -> Result<LegSolution, Vec<
         faults.push("a momentum is not finite".into());
     }
     let is_time = |length: &f64| length.is_finite() && *length >= 0.0;
-    if !imported.lengths_s.iter().all(is_time) {
+    if !motion.lengths_s.iter().all(is_time) {
         faults.push("a time between nodes is negative or not finite".into());
     }
-    let intervals = imported.lengths_s.len();
+    let intervals = motion.lengths_s.len();
     if intervals > MAX_INTERVALS {
         faults.push(format!("it has more than {MAX_INTERVALS} intervals"));
     }
-    let flown = leg_from_store(
-        &imported.attitudes_xyzw,
-        imported.wheel_momenta_nms,
-        imported.lengths_s,
-    );
-    if flown.is_none() {
+    let solution = leg_from_store(motion);
+    if solution.is_none() {
         let nodes = intervals + 1;
         faults.push(format!(
             "it has not {nodes} unit quaternions and momenta with {intervals} times between them"
         ));
     }
-    flown.filter(|_| faults.is_empty()).ok_or(faults)
+    solution.filter(|_| faults.is_empty()).ok_or(faults)
 }
 
 /// Rates at an end of a leg that are not what its conditions ask for.

@@ -1,14 +1,14 @@
-//! The tables of leg times.
+//! Solves legs between places, one by one and in tables.
 //!
-//! Pairs of places are reduced to canonical legs first, so that equal problems are solved once:
-//! in a table, between tables of one solve, and, through the store, between solves.
+//! Pairs of places are reduced to canonical legs first. Equal problems are solved once: within a
+//! table, between the tables of one solve and, through the store, between solves.
 
+use super::Run;
 use super::canonical::CanonicalLeg;
-use super::from_store::{attitudes_of, leg_from_store, momenta_of};
+use super::from_store::leg_from_store;
 use super::places::Places;
-use super::tables::{CertifiedLeg, CertifiedTable, LegTable, SolvedLeg, Table, TabledLeg};
-use super::verified::{flies, flight_faults};
-use super::{Run, interruption};
+use super::tables::{CertifiedLeg, CertifiedTable, SolvedLeg, SolvedTable, Table, TabulatedLeg};
+use super::verified::{flight_faults, is_feasible};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
 use crate::model::waypoint::Waypoint;
@@ -23,28 +23,28 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Solves canonical legs and remembers them for the tables and tours of one solve.
+/// Solves canonical legs and keeps them for the tables and tours of one solve.
 pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
-    known: Remembered<Arc<SolvedLeg>>,
-    certified: Remembered<CertifiedLeg>,
-    /// What a first tour takes and what none undercuts, s, as far as it is known: told with the
-    /// progress.
-    told: Mutex<(Option<f64>, Option<f64>)>,
-    /// Legs solved.
+    known: ByIdentity<Arc<SolvedLeg>>,
+    certified: ByIdentity<CertifiedLeg>,
+    /// Duration of the first tour and lower bound on all tours, s, when known: part of every report
+    /// of progress.
+    reported: Mutex<(Option<f64>, Option<f64>)>,
+    /// Number of legs solved.
     solved: AtomicU64,
-    /// Legs taken from the store.
+    /// Number of legs taken from the store.
     from_store: AtomicU64,
-    /// NLPs solved for them.
+    /// Number of NLPs solved for legs.
     nlp_solves: AtomicU64,
-    /// Claims that a flight has contradicted.
+    /// Number of certified bounds that a flight has contradicted.
     contradictions: AtomicU64,
 }
 
-/// What has been found out, by the identity of the leg.
-type Remembered<T> = Mutex<HashMap<String, T>>;
+/// Results by the identity of the leg.
+type ByIdentity<T> = Mutex<HashMap<String, T>>;
 
 impl<'a> LegSolver<'a> {
     pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
@@ -52,9 +52,9 @@ impl<'a> LegSolver<'a> {
             places,
             run,
             stop,
-            known: Remembered::default(),
-            certified: Remembered::default(),
-            told: Mutex::default(),
+            known: ByIdentity::default(),
+            certified: ByIdentity::default(),
+            reported: Mutex::default(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
             nlp_solves: AtomicU64::new(0),
@@ -62,34 +62,34 @@ impl<'a> LegSolver<'a> {
         }
     }
 
-    /// The places between which the legs are.
+    /// The places whose legs are solved.
     pub(super) fn places(&self) -> &'a Places<'a> {
         self.places
     }
 
-    /// Where the segments of tours are remembered beyond this solve.
+    /// The store of tour segments.
     pub(super) fn segments(&self) -> &'a dyn SegmentStore {
         self.run.segments
     }
 
-    /// Tells that work has begun.
-    pub(super) fn tell_begin(&self) {
-        self.tell_done(0, None);
+    /// Reports that work has begun.
+    pub(super) fn report_begin(&self) {
+        self.report_progress(0, None);
     }
 
-    /// Tells the duration of a first tour and a bound on all tours, s, now and with the progress of
-    /// the legs from now on.
-    pub(super) fn tell(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
+    /// Reports the duration of a first tour and a lower bound on all tours, s, now and with all
+    /// later progress of the legs.
+    pub(super) fn report_bounds(&self, incumbent_s: Option<f64>, lower_bound_s: Option<f64>) {
         {
-            let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-            *told = (incumbent_s.or(told.0), lower_bound_s.or(told.1));
+            let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
+            *reported = (incumbent_s.or(reported.0), lower_bound_s.or(reported.1));
         }
-        self.tell_done(0, None);
+        self.report_progress(0, None);
     }
 
-    fn tell_done(&self, done: u64, total: Option<u64>) {
-        let told = self.told.lock();
-        let (incumbent_s, lower_bound_s) = *told.unwrap_or_else(PoisonError::into_inner);
+    fn report_progress(&self, done: u64, total: Option<u64>) {
+        let reported = self.reported.lock();
+        let (incumbent_s, lower_bound_s) = *reported.unwrap_or_else(PoisonError::into_inner);
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done,
@@ -99,17 +99,17 @@ impl<'a> LegSolver<'a> {
         });
     }
 
-    /// The work so far: legs solved, legs from the store, NLPs.
+    /// Numbers of legs solved, of legs from the store, and of NLPs.
     pub(super) fn work(&self) -> [u64; 3] {
         [&self.solved, &self.from_store, &self.nlp_solves].map(|count| count.load(Relaxed))
     }
 
-    /// Counts a program of one slew that is no leg to keep.
+    /// Counts the NLP of a leg that is not kept.
     pub(super) fn count_solve(&self) {
         self.nlp_solves.fetch_add(1, Relaxed);
     }
 
-    /// Takes note of a contradiction: no certified bound counts from now on.
+    /// Reports a contradiction. From now on no certified bound is trusted.
     pub(super) fn contradicted(&self, contradiction: &Contradiction) {
         self.contradictions.fetch_add(1, Relaxed);
         self.run.observer.contradicted(contradiction);
@@ -120,14 +120,20 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
-    /// Solves the legs of a kind between pairs of places; what the stop signal prevents is left
-    /// out of the table.
-    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
-        self.fill(kind, pairs, |done, total| self.tell_done(done, Some(total)))
+    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal
+    /// are missing from the table.
+    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
+        self.fill(kind, pairs, |done, total| {
+            self.report_progress(done, Some(total));
+        })
     }
 
-    /// The same, without telling of a stage that is over.
-    pub(super) fn late_table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> LegTable {
+    /// The same without reports of progress, for use after the stage of the legs.
+    pub(super) fn table_without_progress(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> SolvedTable {
         self.fill(kind, pairs, |_, _| {})
     }
 
@@ -136,13 +142,13 @@ impl<'a> LegSolver<'a> {
         kind: LegKind,
         pairs: &[(Place, Place)],
         tell: impl Fn(u64, u64) + Sync,
-    ) -> LegTable {
+    ) -> SolvedTable {
         let canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
-            Some(TabledLeg {
+            Some(TabulatedLeg {
                 leg: Arc::clone(known.get(&canonical.identity)?),
                 mirrored: canonical.mirrored,
             })
@@ -152,22 +158,22 @@ impl<'a> LegSolver<'a> {
         Table::new(self.places, entries)
     }
 
-    /// The leg of a kind between two places, solved if it was not before.
-    pub(super) fn lone(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
+    /// The leg of a kind between two places, solved if it is not known.
+    pub(super) fn leg(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
         let canonical = self.canonical(kind, from, to);
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
-            let stored = self.from_store(&canonical);
+            let stored = self.load(&canonical);
             let from_store = stored.is_some();
             let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
-            self.remember(&canonical, &leg, from_store);
+            self.keep(&canonical, &leg, from_store);
             leg
         });
-        let placed = TabledLeg {
+        let placed = TabulatedLeg {
             leg,
             mirrored: canonical.mirrored,
         };
-        placed.from(&self.places.waypoint(from).attitude)
+        placed.beginning_at(&self.places.waypoint(from).attitude)
     }
 
     /// A table of [`Self::certified_legs`].
@@ -180,8 +186,8 @@ impl<'a> LegSolver<'a> {
         Table::new(self.places, pairs.iter().copied().zip(legs))
     }
 
-    /// What is proved of the legs of a kind between pairs of places, without any program; nothing
-    /// where the stop signal prevents it.
+    /// Certified bounds on the legs of a kind between pairs of places; no leg is solved. `None` for
+    /// pairs not reached before the stop signal.
     pub(super) fn certified_legs(
         &self,
         kind: LegKind,
@@ -207,15 +213,15 @@ impl<'a> LegSolver<'a> {
         CanonicalLeg::of(self.places, &from, &to)
     }
 
-    /// The legs of many pairs; those that the stop signal prevents are left out.
+    /// The canonical legs of many pairs; `None` for pairs not reached before the stop signal.
     fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<Option<CanonicalLeg>> {
         self.run.pool.map(pairs, |(from, to)| {
             (!self.is_abandoned()).then(|| self.canonical(kind, *from, *to))
         })
     }
 
-    /// Whether not even known legs are wanted any more: whoever asks for the best so far still
-    /// takes what the store has.
+    /// Whether the solve is cancelled or out of time, so that not even stored legs are of use.
+    /// After a request for the best plan so far they still are.
     fn is_abandoned(&self) -> bool {
         let reason = self.stop.reason();
         reason.is_some_and(|reason| reason != StopReason::Requested)
@@ -231,23 +237,23 @@ impl<'a> LegSolver<'a> {
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
         self.run.pool.map(&missing, |leg| {
-            // Asking the store takes time too, for thousands of legs too much of it.
+            // With thousands of legs, store look-ups alone would delay the stop noticeably.
             if self.is_abandoned() {
                 return;
             }
-            if let Some(stored) = self.from_store(leg) {
-                self.remember(leg, &Arc::new(stored), true);
+            if let Some(stored) = self.load(leg) {
+                self.keep(leg, &Arc::new(stored), true);
             } else if !self.stop.is_set() {
-                self.remember(leg, &Arc::new(self.solve(kind, leg)), false);
+                self.keep(leg, &Arc::new(self.solve(kind, leg)), false);
             }
             tell(done.fetch_add(1, Relaxed) + 1, total);
         });
     }
 
-    /// A leg from the store.
-    fn from_store(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
+    /// A leg from the store, if its motion passes verification.
+    fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
-        let faults = flight_faults(self.places, leg, &stored.flown.profile);
+        let faults = flight_faults(self.places, leg, &stored.solution.profile);
         if !faults.is_empty() {
             let identity = leg.identity.clone();
             self.run
@@ -259,17 +265,18 @@ impl<'a> LegSolver<'a> {
         Some(stored)
     }
 
-    /// Takes the certified bound from a leg that was flown in less.
+    /// Drops the certified bound of a leg whose duration is below it, and reports the
+    /// contradiction.
     fn compare_with_bound(&self, leg: &CanonicalLeg, solved: &mut SolvedLeg) {
-        let Some((bound_s, flown_s)) = solved.certified.zip(solved.flown.duration()) else {
+        let Some((bound_s, solved_s)) = solved.certified.zip(solved.solution.duration()) else {
             return;
         };
         let turn = leg.arrival.turn(&leg.from.attitude, &leg.to.attitude);
-        if bound_s - slack(bound_s, turn) > flown_s {
+        if bound_s - slack(bound_s, turn) > solved_s {
             self.contradicted(&Contradiction::Leg {
                 identity: leg.identity.clone(),
                 bound_s,
-                flown_s,
+                duration_s: solved_s,
             });
             solved.certified = None;
         }
@@ -280,17 +287,17 @@ impl<'a> LegSolver<'a> {
         let bound = lock(&self.certified).get(&leg.identity).copied();
         let mut fresh = solve(self.places, leg, bound, self.stop);
         self.compare_with_bound(leg, &mut fresh);
-        if fresh.flown.status == NlpStatus::Converged && !self.stop.is_set() {
-            // At once, so that a solve that is killed has not worked in vain; but not when
-            // stopped, since then perhaps not all starts have been tried.
+        if fresh.solution.status == NlpStatus::Converged && !self.stop.is_set() {
+            // Stored at once, so that a killed process loses little work. A stopped solve may have
+            // skipped starts, and its leg is not stored.
             self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
         }
         fresh
     }
 
-    /// Keeps a leg unless it was interrupted.
-    fn remember(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
-        if solved.flown.status.is_interrupted() {
+    /// Keeps a leg for this solve unless its solve was interrupted.
+    fn keep(&self, leg: &CanonicalLeg, solved: &Arc<SolvedLeg>, from_store: bool) {
+        if solved.solution.status.is_interrupted() {
             return;
         }
         if from_store {
@@ -303,12 +310,12 @@ impl<'a> LegSolver<'a> {
     }
 }
 
-fn lock<T>(remembered: &Remembered<T>) -> MutexGuard<'_, HashMap<String, T>> {
-    // Whoever panicked has left the map whole.
+fn lock<T>(remembered: &ByIdentity<T>) -> MutexGuard<'_, HashMap<String, T>> {
+    // A panic under the lock leaves the map consistent.
     remembered.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The legs of which nothing is known, each of them once.
+/// The legs that are not known yet, without repetitions.
 fn missing_from<'c, T>(
     known: &HashMap<String, T>,
     legs: &'c [Option<CanonicalLeg>],
@@ -320,7 +327,7 @@ fn missing_from<'c, T>(
         .collect()
 }
 
-/// A place under the conditions of a kind of leg.
+/// The waypoint of a place in a leg of this kind.
 pub(super) fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoint {
     match kind {
         LegKind::RestToRest | LegKind::Certified => places.at_rest(place),
@@ -328,7 +335,7 @@ pub(super) fn end_of(places: &Places<'_>, kind: LegKind, place: Place) -> Waypoi
     }
 }
 
-/// What is proved of a leg.
+/// Computes the certified bound of a leg.
 pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     let begin = Instant::now();
     CertifiedLeg {
@@ -339,8 +346,8 @@ pub(super) fn certify(places: &Places<'_>, leg: &CanonicalLeg) -> CertifiedLeg {
     }
 }
 
-/// Solves a leg, refines it until it can be flown, and has it flown by the checker. What has been
-/// certified of it before is not computed again.
+/// Solves a leg, refines it until the checker accepts it, and verifies it. A bound certified before
+/// is not computed again.
 fn solve(
     places: &Places<'_>,
     leg: &CanonicalLeg,
@@ -352,15 +359,15 @@ fn solve(
         .unwrap_or_else(|| certify(places, leg))
         .lower_bound;
     let problem = leg.problem(&places.extremals);
-    let mut solved = solve::solve(&problem, certified, &|| interruption(stop));
-    if solved.flown.duration().is_some() && !flies(places, leg, &solved.flown.profile) {
-        solved.flown.status = NlpStatus::NumericalError(Breakdown {
-            stage: solved.flown.profile.intervals(),
+    let mut solved = solve::solve(&problem, certified, &|| stop.reason());
+    if solved.solution.duration().is_some() && !is_feasible(places, leg, &solved.solution.profile) {
+        solved.solution.status = NlpStatus::NumericalError(Breakdown {
+            stage: solved.solution.profile.intervals(),
             quantity: Quantity::Flight,
         });
     }
     SolvedLeg {
-        flown: solved.flown,
+        solution: solved.solution,
         certified,
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
@@ -369,7 +376,7 @@ fn solve(
 
 /// A solved leg to be stored.
 pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
-    let profile = &solved.flown.profile;
+    let profile = &solved.solution.profile;
     StoredLeg {
         spacecraft: leg.spacecraft.clone(),
         kind,
@@ -378,23 +385,17 @@ pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> S
         reversible: leg.reversible,
         duration_s: profile.duration(),
         certified_lower_bound_s: solved.certified,
-        status: solved.flown.status.as_str().into(),
+        status: solved.solution.status.into_str().into(),
         solve_time_s: solved.solve_time,
-        attitudes_xyzw: attitudes_of(profile),
-        wheel_momenta_nms: momenta_of(profile),
-        lengths_s: profile.lengths.clone(),
+        motion: profile.into(),
     }
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
 fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
-    let flown = leg_from_store(
-        &stored.attitudes_xyzw,
-        stored.wheel_momenta_nms,
-        stored.lengths_s,
-    )?;
+    let solution = leg_from_store(stored.motion)?;
     Some(SolvedLeg {
-        flown,
+        solution,
         certified: stored.certified_lower_bound_s,
         solves: 0,
         solve_time: stored.solve_time_s,

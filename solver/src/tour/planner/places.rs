@@ -1,4 +1,4 @@
-//! Start, targets and end as waypoints.
+//! The places of a scenario (start, targets and end) as waypoints of legs.
 
 use crate::bounds::certified::CertifiedBounds;
 use crate::leg::solve::arrival::Arrival;
@@ -6,14 +6,14 @@ use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
-use crate::model::dynamics::Dynamics;
+use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::AttitudeEquivalence;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::tour::order::Place;
 use nalgebra::{DVector, Vector3};
 
-/// The places of a scenario, seen by the slew solver.
+/// The places of a scenario, with what the legs between them have in common.
 pub(super) struct Places<'a> {
     /// The scenario.
     pub(super) scenario: &'a Scenario,
@@ -21,24 +21,26 @@ pub(super) struct Places<'a> {
     pub(super) dynamics: Dynamics,
     /// Which quaternion signs count as arrived.
     pub(super) arrival: Arrival,
-    /// Null-space momentum of the wheels at the start, N m s: held by rest-to-rest legs.
+    /// Null-space momentum of the wheels at the start, N m s; rest-to-rest legs hold it at both
+    /// ends.
     pub(super) null: DVector<f64>,
-    /// How finely slews are solved.
+    /// Discretization of the legs.
     pub(super) resolution: Resolution,
-    /// What guesses of slews have in common.
+    /// Kinematic extremals of the spacecraft, for initial guesses.
     pub(super) extremals: KinematicExtremals,
-    /// What no slew undercuts.
+    /// Certified lower bounds on the spacecraft's slews.
     pub(super) certified: CertifiedBounds,
 }
 
 impl<'a> Places<'a> {
     pub(super) fn of(scenario: &'a Scenario) -> Self {
-        let dynamics = Dynamics::of(scenario);
         let start = scenario.start();
+        let authority = Authority::of(scenario.options());
+        let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
         Self {
-            // What rounding leaves of none is none.
+            // Rounding errors of a null-space component that vanishes are set to zero.
             null: dynamics.null_component(&wheels).map(|h| rounded(h, scale)),
             extremals: KinematicExtremals::of(&dynamics),
             certified: CertifiedBounds::of(&dynamics),
@@ -62,7 +64,8 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// The places of an order, start included and, for whole tours, the end.
+    /// The start and the targets of an order, followed by the end if the tour is `whole` and has
+    /// one.
     pub(super) fn route(&self, order: &[usize], whole: bool) -> Vec<Place> {
         let end = self.scenario.end().filter(|_| whole).map(|_| Place::End);
         let targets = order.iter().map(|i| Place::Target(*i));
@@ -72,7 +75,22 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// Identifier of a place.
+    /// Cuts a route into segments at every waypoint that leaves nothing free: what comes before and
+    /// after it are separate problems.
+    pub(super) fn split<'r>(&self, route: &'r [Place]) -> Vec<&'r [Place]> {
+        let mut segments = Vec::new();
+        let mut begin = 0;
+        for (i, place) in route.iter().enumerate().skip(1) {
+            let last = i + 1 == route.len();
+            if last || self.waypoint(*place).is_fixed(&self.dynamics) {
+                segments.push(&route[begin..=i]);
+                begin = i;
+            }
+        }
+        segments
+    }
+
+    /// Identifier of a place: `start`, `end` or a target's identifier.
     pub(super) fn name(&self, place: Place) -> String {
         match place {
             Place::Start => "start".into(),
@@ -91,7 +109,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A place with its own conditions.
+    /// A place as a waypoint with its own conditions.
     pub(super) fn waypoint(&self, place: Place) -> Waypoint {
         let wheels = |rate: &Vector3<f64>, speeds: &[f64]| {
             WheelCondition::Fixed(self.dynamics.wheels_of_speeds(rate, speeds))
@@ -104,7 +122,7 @@ impl<'a> Places<'a> {
                     attitude: start.attitude,
                     rate: fixed(&start.rate),
                     wheels: wheels(&start.rate, &start.wheel_speed),
-                    price: None,
+                    costates: None,
                 }
             }
             Place::Target(i) => {
@@ -113,20 +131,20 @@ impl<'a> Places<'a> {
                     attitude: target.attitude,
                     rate: target.rate,
                     wheels: WheelCondition::Free,
-                    price: None,
+                    costates: None,
                 }
             }
             Place::End => {
                 let end = self
                     .scenario
                     .end()
-                    .expect("an end is only asked for where there is one");
+                    .expect("only scenarios with an end have the place `End`");
                 let speeds = end.wheel_speed.as_ref();
                 Waypoint {
                     attitude: end.attitude,
                     rate: fixed(&end.rate),
                     wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
-                    price: None,
+                    costates: None,
                 }
             }
         }
@@ -138,21 +156,21 @@ impl<'a> Places<'a> {
             attitude: self.waypoint(place).attitude,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
-            price: None,
+            costates: None,
         }
     }
 
-    /// Torques of all wheels of the spacecraft, N m, from those of the enabled ones.
+    /// Torques of all wheels, N m, from those of the enabled ones; disabled wheels have none.
     pub(super) fn all_torques(&self, enabled: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut all = vec![0.0; self.scenario.spacecraft().wheels().len()];
         for (actuator, torque) in self.dynamics.actuators.iter().zip(enabled) {
-            // The quotient of two rounded numbers may leave the limits by a rounding error.
+            // A torque is a quotient of rounded numbers and may exceed the limits by rounding.
             all[actuator.index] = torque.clamp(actuator.min_torque, actuator.max_torque);
         }
         all
     }
 
-    /// The slew between two waypoints.
+    /// The leg between two waypoints as a problem to solve.
     pub(super) fn slew<'s>(&'s self, from: &'s Waypoint, to: &'s Waypoint) -> LegProblem<'s> {
         LegProblem {
             dynamics: &self.dynamics,
@@ -165,15 +183,14 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether whoever passes one place has passed the other one with it: the same attitude under
-    /// conditions that imply those of the other.
+    /// Whether a motion through one place satisfies the conditions of the other: the attitudes are
+    /// the same, and the conditions of the first imply those of the second.
     pub(super) fn covers(&self, one: Place, other: Place) -> bool {
         let (one, other) = (self.waypoint(one), self.waypoint(other));
         let turn = self.arrival.turn(&one.attitude, &other.attitude);
         let implied = |axis: usize| {
-            let ([low, high], [least, greatest]) =
-                (one.rate[axis].range(), other.rate[axis].range());
-            least <= low && high <= greatest
+            let ([low, high], [min, max]) = (one.rate[axis].range(), other.rate[axis].range());
+            min <= low && high <= max
         };
         let held = other.wheels == WheelCondition::Free || one.wheels == other.wheels;
         turn <= SAME_ATTITUDE && (0..3).all(implied) && held
@@ -184,15 +201,15 @@ impl<'a> Places<'a> {
         self.covers(one, other) || self.covers(other, one)
     }
 
-    /// Whether every tour may be flown backwards as a tour of the same targets: it begins and ends in
-    /// the same state, each leg is reversible, and no target has its place in the order.
+    /// Whether the time-reversed motion of every tour is a tour of the same targets: tours begin
+    /// and end in the same state, all legs are reversible, and there are no rules for the order.
     pub(super) fn are_symmetric(&self) -> bool {
         if self.scenario.end().is_none() || !self.scenario.order_rules().is_free() {
             return false;
         }
         let (start, end) = (self.waypoint(Place::Start), self.waypoint(Place::End));
         let turn = self.arrival.turn(&start.attitude, &end.attitude);
-        // Three wheels have no momentum of their own choice.
+        // Three wheels have no null space: the rate fixes their momenta.
         let same_wheels = start.wheels == end.wheels || self.dynamics.wheel_count() == 3;
         let targets = (0..self.scenario.targets().len()).map(Place::Target);
         turn <= SAME_ATTITUDE
@@ -204,7 +221,7 @@ impl<'a> Places<'a> {
                 .all(|target| self.reversible([&target, &end]))
     }
 
-    /// Whether a flown leg may be flown backwards as the leg between the same places exchanged.
+    /// Whether the time-reversed solution of a leg solves the leg between the same ends exchanged.
     ///
     /// With zero momentum and no locked wheel turning, `(q, h, u)(t)` and `(q, -h, u)(T - t)` obey
     /// the same equations and torque and speed limits; conditions on rates and null-space

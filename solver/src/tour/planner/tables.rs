@@ -10,37 +10,37 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct SolvedLeg {
     /// The motion, from the identity attitude, and how it ended.
-    pub(super) flown: LegSolution,
-    /// No slew with its conditions takes less, s.
+    pub(super) solution: LegSolution,
+    /// Certified lower bound on any slew with its conditions, s.
     pub(super) certified: Option<f64>,
-    /// NLPs solved for it.
+    /// Number of NLPs solved for it.
     pub(super) solves: u64,
     /// Wall-clock time of all starts, s.
     pub(super) solve_time: f64,
 }
 
-/// What is proved of a leg.
+/// The certified bound of a leg.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CertifiedLeg {
-    /// No slew with its conditions takes less, s; `None` where nothing is proved.
+    /// Lower bound on any slew with its conditions, s; `None` where nothing is proved.
     pub(super) lower_bound: Option<f64>,
-    /// Wall-clock time that this took, s.
+    /// Wall-clock time of its computation, s.
     pub(super) solve_time: f64,
 }
 
 /// A solved leg between two places.
 #[derive(Debug, Clone)]
-pub(super) struct TabledLeg {
-    /// The solution that it multipliers with all legs of the same canonical form.
+pub(super) struct TabulatedLeg {
+    /// The solution that all legs of the same canonical form share.
     pub(super) leg: Arc<SolvedLeg>,
-    /// Whether that is flown backwards.
+    /// Whether this leg is that solution backwards in time.
     pub(super) mirrored: bool,
 }
 
-impl TabledLeg {
-    /// The motion from an attitude, and how it ended.
-    pub(super) fn from(&self, begin: &Attitude) -> LegSolution {
-        let solution = &self.leg.flown;
+impl TabulatedLeg {
+    /// The solution with a motion that begins at the given attitude.
+    pub(super) fn beginning_at(&self, begin: &Attitude) -> LegSolution {
+        let solution = &self.leg.solution;
         let mut profile = if self.mirrored {
             solution.profile.reversed()
         } else {
@@ -60,40 +60,40 @@ impl TabledLeg {
     }
 }
 
-/// What is known of legs of one kind between pairs of places.
+/// An entry for every ordered pair of places, for legs of one kind.
 pub(super) struct Table<T> {
     places: usize,
     entries: Vec<Option<T>>,
 }
 
 /// Solved legs.
-pub(super) type LegTable = Table<TabledLeg>;
+pub(super) type SolvedTable = Table<TabulatedLeg>;
 /// Certified legs.
 pub(super) type CertifiedTable = Table<CertifiedLeg>;
 
-impl LegTable {
+impl SolvedTable {
     /// Minimum time of the leg between two places, s, where it is solved.
     pub(super) fn duration(&self, from: Place, to: Place) -> Option<f64> {
         self.get(from, to)
-            .and_then(|leg| leg.leg.flown.least_duration())
+            .and_then(|leg| leg.leg.solution.least_duration())
     }
 }
 
 impl CertifiedTable {
-    /// No slew between two places takes less, s; `None` where nothing is proved.
+    /// Lower bound on any slew between two places, s; `None` where nothing is proved.
     pub(super) fn bound(&self, from: Place, to: Place) -> Option<f64> {
         self.get(from, to).and_then(|leg| leg.lower_bound)
     }
 
-    /// Whether anything is proved of any leg.
-    pub(super) fn says_anything(&self) -> bool {
+    /// Whether any leg has a proved bound.
+    pub(super) fn has_bounds(&self) -> bool {
         let mut known = self.entries.iter().flatten();
         known.any(|leg| leg.lower_bound.is_some())
     }
 }
 
 impl<T> Table<T> {
-    /// A table with some entries.
+    /// A table with the given entries; all others are empty.
     pub(super) fn new(
         places: &Places<'_>,
         entries: impl Iterator<Item = ((Place, Place), Option<T>)>,

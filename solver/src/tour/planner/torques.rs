@@ -4,9 +4,9 @@ use crate::leg::profile::Profile;
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// Intervals shorter than this share of the whole flight are joined to their neighbour: the torque
-/// in them is a quotient of two vanishing numbers.
-pub(super) const SHORTEST: f64 = 1e-9;
+/// Intervals shorter than this share of the whole flight are joined to their neighbour: their
+/// torque would be a quotient of two vanishing numbers.
+pub(super) const MIN_PIECE_SHARE: f64 = 1e-9;
 
 /// Lengths, s, and wheel torques, N m, over some intervals of a motion; none of the pieces is
 /// shorter than `shortest`, s, unless all of them together are.
@@ -21,7 +21,7 @@ pub(super) fn torques(
     for k in intervals {
         let length: f64 = profile.lengths[first..=k].iter().sum();
         let rest: f64 = profile.lengths[k + 1..end].iter().sum();
-        // Wait for a neighbour when this one, or all that is left, is too short to stand alone.
+        // Join with the next interval when this one, or all that is left, is too short alone.
         let last = k + 1 == end;
         if !last && (length < shortest || rest < shortest) {
             continue;

@@ -1,51 +1,57 @@
-//! What the order search asks of the slews: bounds and durations of tours.
+//! Durations of tours and lower bounds on them, for the order search.
 //!
-//! A waypoint that leaves nothing free separates the slews before and after it, so a tour falls
-//! into segments between such waypoints, each a multi-phase problem of its own. Segments recur in
-//! many orders and are remembered. A segment that may go on is flown on from the flight of the same
-//! segment without its last place: what it comes to follows from its places alone, whether that
-//! flight is still remembered or has to be solved again.
+//! A waypoint that leaves nothing free separates the legs before and after it. So a tour falls into
+//! segments between such waypoints, each a multi-phase problem of its own. Segments recur in many
+//! orders and are cached. The initial guess of a beginning is the solution of the same beginning
+//! without its last place. The result depends on the places alone: a solution that the cache has
+//! dropped is solved again in the same way.
 
-use super::extent::{Extent, SHORT, Segment};
 use super::from_store::{segment_from_store, stored_segment};
-use super::interruption;
+use super::guesses::{InitialGuess, admits_rest, extended, joined};
 use super::legs::LegSolver;
 use super::places::Places;
-use super::segments::Segments;
-use super::starts::Start;
-use super::tables::{CertifiedTable, LegTable};
-use crate::leg::multiphase::{LegSolution, fly, fly_on, fly_rolling, polish};
+use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
+use super::solved_segments::SolvedSegments;
+use super::tables::{CertifiedTable, SolvedTable};
+use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::model::order_rules::OrderRules;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::LegKind;
-use crate::tour::order::{Evaluation, Place, Price, TourEvaluation, TourModel};
+use crate::tour::order::{Evaluation, PassageCostate, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// The starts of a segment, and how many are tried when all goes well: a short segment has local
-/// minima that longer ones inherit. A tour is a piece of itself, and is flown from rest to rest where
-/// that piece finds no flight.
-const STARTS: [Start; 2] = [Start::Eigenaxes, Start::Extremals];
-const STARTS_OF_LONGER: [Start; 3] = [Start::Shorter, Start::Eigenaxes, Start::Extremals];
-const START_OF_TOURS: [Start; 1] = [Start::AtRest];
-const DEFAULT_STARTS_OF_SHORT: usize = 2;
+/// Initial guesses of a piece, in the order in which they are tried.
+const PIECE_GUESSES: [InitialGuess; 2] = [InitialGuess::Eigenaxes, InitialGuess::Extremals];
+/// Initial guesses of a beginning of more than [`MAX_SHORT_LEGS`] legs.
+const BEGINNING_GUESSES: [InitialGuess; 3] = [
+    InitialGuess::Shorter,
+    InitialGuess::Eigenaxes,
+    InitialGuess::Extremals,
+];
+/// Initial guess of a whole tour whose solution as a piece has failed.
+const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
+/// Number of guesses tried for a short segment even if the first one converges: longer segments
+/// start from short ones and would inherit a local minimum.
+const MIN_GUESSES_OF_SHORT: usize = 2;
 
-/// Tours over legs.
+/// The tours of a scenario, evaluated by solving their segments.
 pub(super) struct Tours<'a> {
     pub(super) places: &'a Places<'a>,
     pub(super) legs: &'a LegSolver<'a>,
-    /// Certified bounds of legs with free ends, s, once they are known.
+    /// Certified bounds of the legs, each end with its own conditions only, once they are computed.
     certified: OnceLock<CertifiedTable>,
-    /// Legs with free ends, once they are solved: bounds.
-    free: OnceLock<LegTable>,
-    /// Whether orders are as good backwards.
+    /// Legs solved with only the conditions of their own ends, once they are known: their durations
+    /// are lower bounds.
+    free: OnceLock<SolvedTable>,
+    /// Whether every order takes as long as its reverse.
     symmetric: bool,
     pub(super) stop: &'a StopSignal,
     pub(super) solves: AtomicU64,
-    segments: Segments,
+    segments: SolvedSegments,
 }
 
 impl<'a> Tours<'a> {
@@ -62,32 +68,32 @@ impl<'a> Tours<'a> {
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
-            segments: Segments::default(),
+            segments: SolvedSegments::default(),
         }
     }
 
-    /// Takes in the certified bounds of the legs; those of the first call count.
-    pub(super) fn prove(&self, certified: CertifiedTable) {
+    /// Sets the certified bounds of the legs. Later calls have no effect.
+    pub(super) fn set_certified_bounds(&self, certified: CertifiedTable) {
         self.certified.get_or_init(|| certified);
     }
 
-    /// No slew between two places takes less, s; `None` where nothing is proved.
-    pub(super) fn proved(&self, from: Place, to: Place) -> Option<f64> {
+    /// Certified lower bound on any leg between two places, s; `None` where nothing is proved.
+    pub(super) fn certified_bound(&self, from: Place, to: Place) -> Option<f64> {
         self.certified.get().and_then(|legs| legs.bound(from, to))
     }
 
-    /// Takes in the legs with free ends, which bound all tours better than the certified bounds;
-    /// those of the first call count.
-    pub(super) fn know(&self, free: LegTable) {
+    /// Sets the legs with free ends, whose durations are tighter bounds than the certified ones.
+    /// Later calls have no effect.
+    pub(super) fn set_free_legs(&self, free: SolvedTable) {
         self.free.get_or_init(|| free);
     }
 
     /// The legs with free ends, when they are known.
-    pub(super) fn free(&self) -> Option<&LegTable> {
+    pub(super) fn free_legs(&self) -> Option<&SolvedTable> {
         self.free.get()
     }
 
-    /// Intervals of every leg of a route.
+    /// Number of intervals of every leg of a route.
     pub(super) fn intervals(&self, route: &[Place]) -> Vec<usize> {
         let legs = route.windows(2).map(|leg| {
             let ends = [leg[0], leg[1]].map(|place| self.places.waypoint(place));
@@ -96,27 +102,28 @@ impl<'a> Tours<'a> {
         legs.collect()
     }
 
-    /// The segments of a whole route, each solved; shorter than the route when one did not converge
-    /// or the solve was stopped.
+    /// The solutions of a whole route's segments. The list ends early, with the failed solution,
+    /// when a segment did not converge or the solve was stopped.
     ///
-    /// Of an order and its reverse, where they are equally good, one is flown, and the other is that
-    /// flight backwards.
-    pub(super) fn fly_route(&self, route: &[Place]) -> Vec<Arc<LegSolution>> {
-        let Some(reverse) = self.better_backwards(route) else {
-            return self.fly_segments(route, Extent::Tour);
+    /// In a symmetric scenario only one of an order and its reverse is solved; the other is that
+    /// solution reversed in time.
+    pub(super) fn solve_route(&self, route: &[Place]) -> Vec<Arc<LegSolution>> {
+        let Some(reverse) = self.preferred_reverse(route) else {
+            return self.solve_segments(route, SegmentKind::Tour);
         };
-        let mut flown = self.fly_segments(&reverse, Extent::Tour);
-        if flown.iter().all(|segment| segment.duration().is_some()) {
-            flown.reverse();
-            for segment in &mut flown {
+        let mut solutions = self.solve_segments(&reverse, SegmentKind::Tour);
+        if solutions.iter().all(|segment| segment.duration().is_some()) {
+            solutions.reverse();
+            for segment in &mut solutions {
                 *segment = Arc::new(segment.reversed());
             }
         }
-        flown
+        solutions
     }
 
-    /// The reverse of a route, when that is the one of the two to be flown.
-    fn better_backwards(&self, route: &[Place]) -> Option<Vec<Place>> {
+    /// The reverse of a route in a symmetric scenario, when it comes first lexicographically: then
+    /// it is the one of the two that is solved.
+    fn preferred_reverse(&self, route: &[Place]) -> Option<Vec<Place>> {
         if !self.symmetric {
             return None;
         }
@@ -131,95 +138,85 @@ impl<'a> Tours<'a> {
         smaller.then_some(reverse)
     }
 
-    fn fly_segments(&self, route: &[Place], extent: Extent) -> Vec<Arc<LegSolution>> {
-        let mut flown = Vec::new();
-        let segments = self.split(route);
+    fn solve_segments(&self, route: &[Place], kind: SegmentKind) -> Vec<Arc<LegSolution>> {
+        let mut solutions = Vec::new();
+        let segments = self.places.split(route);
         let last = segments.len().saturating_sub(1);
         for (i, segment) in segments.into_iter().enumerate() {
-            let extent = match extent {
-                Extent::Beginning if i < last => Extent::Piece,
-                _ => extent,
+            let kind = match kind {
+                SegmentKind::Beginning if i < last => SegmentKind::Piece,
+                _ => kind,
             };
-            let solved = self.segment(segment, extent);
-            let flies = solved.duration().is_some();
-            flown.push(solved);
-            if !flies {
+            let solution = self.segment(segment, kind);
+            let converged = solution.duration().is_some();
+            solutions.push(solution);
+            if !converged {
                 break;
             }
         }
-        flown
+        solutions
     }
 
-    /// Cuts a route at every waypoint that leaves nothing free.
-    pub(super) fn split<'r>(&self, route: &'r [Place]) -> Vec<&'r [Place]> {
-        let mut segments = Vec::new();
-        let mut begin = 0;
-        for (i, place) in route.iter().enumerate().skip(1) {
-            let last = i + 1 == route.len();
-            if last || self.places.waypoint(*place).is_fixed(&self.places.dynamics) {
-                segments.push(&route[begin..=i]);
-                begin = i;
-            }
-        }
-        segments
-    }
-
-    /// The flight of a segment: of a whole tour the one that it has as a piece, if there is one.
-    pub(super) fn segment(&self, route: &[Place], extent: Extent) -> Arc<LegSolution> {
+    /// The solution of a segment. A segment of a whole tour has the solution of the piece with the
+    /// same route, if that converges.
+    pub(super) fn segment(&self, route: &[Place], kind: SegmentKind) -> Arc<LegSolution> {
         if let [from, to] = route {
             return Arc::new(self.free_leg(*from, *to));
         }
-        let segment = Segment::new(route, extent);
-        if let Some(flown) = self.segments.get(&segment) {
-            return flown;
+        let segment = SegmentKey::new(route, kind);
+        if let Some(solution) = self.segments.get(&segment) {
+            return solution;
         }
-        if extent == Extent::Tour {
-            let piece = self.segment(route, Extent::Piece);
+        if kind == SegmentKind::Tour {
+            let piece = self.segment(route, SegmentKind::Piece);
             if piece.duration().is_some() || piece.status.is_interrupted() {
                 return piece;
             }
         }
-        let flown = Arc::new(self.recall_or_solve(&segment));
-        if flown.duration().is_some() {
-            self.segments.put(segment, &flown);
+        let solution = Arc::new(self.stored_or_solved(&segment));
+        if solution.duration().is_some() {
+            self.segments.put(segment, &solution);
         }
-        flown
+        solution
     }
 
-    /// A segment that an earlier attempt at the same scenario has solved, or else solved now.
-    fn recall_or_solve(&self, segment: &Segment) -> LegSolution {
+    /// The solution that the store holds from an earlier solve of the scenario, or else a new one.
+    fn stored_or_solved(&self, segment: &SegmentKey) -> LegSolution {
         let (store, name) = (self.legs.segments(), segment.name());
         let intervals = self.intervals(&segment.route);
         let known = store.get(&name);
         let known = known.and_then(|known| segment_from_store(known, intervals.clone()));
         known.unwrap_or_else(|| {
             let fresh = self.solve_segment(segment);
-            // When stopped perhaps not all starts have been tried.
-            let usual = fresh.intervals == intervals;
-            if fresh.status == NlpStatus::Converged && usual && !self.stop.is_set() {
+            // A store entry has no numbers of intervals. A stopped solve may have skipped guesses.
+            let has_default_intervals = fresh.intervals == intervals;
+            let converged = fresh.status == NlpStatus::Converged;
+            if converged && has_default_intervals && !self.stop.is_set() {
                 store.put(&name, stored_segment(&fresh));
             }
             fresh
         })
     }
 
-    /// The leg with free ends between two places: of the table, where there is one already.
+    /// The leg with free ends between two places: from the table, if it is known, or solved now.
     pub(super) fn free_leg(&self, from: Place, to: Place) -> LegSolution {
-        let known = self.free().and_then(|free| free.get(from, to));
+        let known = self.free_legs().and_then(|free| free.get(from, to));
         known.map_or_else(
-            || self.legs.lone(LegKind::LowerBound, from, to),
-            |leg| leg.from(&self.places.waypoint(from).attitude),
+            || self.legs.leg(LegKind::LowerBound, from, to),
+            |leg| leg.beginning_at(&self.places.waypoint(from).attitude),
         )
     }
 
-    /// Solves a segment. Of neighbours of which one covers the other only that one is a waypoint of
-    /// it: a flight that passes both, one after the other, passes the one already when it passes the
-    /// stricter one, and is never shorter than a flight that does so once. A program with both would
-    /// have a leg of no length, which no torque can change.
-    fn solve_segment(&self, segment: &Segment) -> LegSolution {
+    /// Solves a segment.
+    ///
+    /// Where one of two neighbours covers the other, only the covering one is a waypoint of the
+    /// program: a motion that passes it satisfies both. A program with both would have a leg of
+    /// zero length, whose constraints are degenerate. The covered places are inserted into the
+    /// solution as pauses of zero duration.
+    fn solve_segment(&self, segment: &SegmentKey) -> LegSolution {
         let route = &segment.route;
         let mut distinct: Vec<Place> = Vec::new();
-        // The legs that lead to them, and those that lead nowhere.
+        // The legs of the route that lead to the distinct places, and those between covered places.
         let mut legs: Vec<Option<usize>> = Vec::new();
         let mut pauses = Vec::new();
         for (i, &next) in route.iter().enumerate() {
@@ -241,86 +238,99 @@ impl<'a> Tours<'a> {
             legs.push(leg);
         }
         pauses.sort_unstable();
-        let mut flown = match distinct[..] {
+        let mut solution = match distinct[..] {
             [place] => self.free_leg(place, place),
             [from, to] => self.free_leg(from, to),
-            _ => self.solve_distinct(&distinct, segment.extent),
+            _ => self.solve_distinct(&distinct, segment.kind),
         };
-        if flown.duration().is_some() {
-            // All of them at one place: the leg itself is the first pause.
+        if solution.duration().is_some() {
+            // If all places are one, the solved leg itself is the first pause.
             let first = usize::from(distinct.len() == 1);
             for leg in &pauses[first..] {
                 let intervals = self.places.resolution.intervals;
-                let node = flown.intervals[..*leg].iter().sum();
-                flown.profile.pause_at(node, intervals);
-                flown.intervals.insert(*leg, intervals);
+                let node = solution.intervals[..*leg].iter().sum();
+                solution.profile.pause_at(node, intervals);
+                solution.intervals.insert(*leg, intervals);
             }
         }
-        flown
+        solution
     }
 
-    /// The best of several starts: a chain of legs has local minima that none of its legs has.
-    fn solve_distinct(&self, route: &[Place], extent: Extent) -> LegSolution {
-        let short = route.len() - 1 <= SHORT;
-        let usual = if short { DEFAULT_STARTS_OF_SHORT } else { 1 };
-        let starts = match extent {
-            Extent::Beginning if !short => &STARTS_OF_LONGER[..],
-            Extent::Beginning | Extent::Piece => &STARTS,
-            Extent::Tour => &START_OF_TOURS,
+    /// The best solution from several initial guesses: a chain of legs has local minima that none
+    /// of its legs has.
+    fn solve_distinct(&self, route: &[Place], kind: SegmentKind) -> LegSolution {
+        let short = route.len() - 1 <= MAX_SHORT_LEGS;
+        let min_guesses = if short { MIN_GUESSES_OF_SHORT } else { 1 };
+        let guesses = match kind {
+            SegmentKind::Beginning if !short => &BEGINNING_GUESSES[..],
+            SegmentKind::Beginning | SegmentKind::Piece => &PIECE_GUESSES,
+            SegmentKind::Tour => &TOUR_GUESSES,
         };
-        let mut best = self.solve_from(route, starts[0]);
-        for (tried, &start) in starts.iter().enumerate().skip(1) {
-            let settled = best.status == NlpStatus::Converged && tried >= usual;
+        let mut best = self.solve_from(route, guesses[0]);
+        for (tried, &guess) in guesses.iter().enumerate().skip(1) {
+            let settled = best.status == NlpStatus::Converged && tried >= min_guesses;
             if settled || best.status.is_interrupted() {
                 break;
             }
-            let flown = self.solve_from(route, start);
-            if flown.improves(&best) || flown.status.is_interrupted() {
-                best = flown;
+            let solution = self.solve_from(route, guess);
+            if solution.improves(&best) || solution.status.is_interrupted() {
+                best = solution;
             }
         }
         if self.places.resolution.polished {
             let dynamics = &self.places.dynamics;
             let intervals = best.intervals.clone();
-            let waypoints = self.program(route, &best.profile, &intervals);
+            let waypoints = self.signed_waypoints(route, &best.profile, &intervals);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
-                interruption(self.stop)
+                self.stop.reason()
             });
         }
         best
     }
 
-    fn solve_from(&self, route: &[Place], start: Start) -> LegSolution {
-        let Some((guess, intervals)) = self.guess(route, start) else {
+    fn solve_from(&self, route: &[Place], kind: InitialGuess) -> LegSolution {
+        let Some((guess, intervals)) = self.guess(route, kind) else {
             return LegSolution::nowhere();
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
         let dynamics = &self.places.dynamics;
-        let waypoints = self.program(route, &guess, &intervals);
-        let fly = match start {
-            Start::Shorter => fly_on,
-            Start::Eigenaxes => fly_rolling,
-            Start::Extremals | Start::AtRest => fly,
+        let waypoints = self.signed_waypoints(route, &guess, &intervals);
+        let solve = match kind {
+            InitialGuess::Shorter => solve_extended,
+            InitialGuess::Eigenaxes => solve_rolling,
+            InitialGuess::Extremals | InitialGuess::AtRest => solve_through,
         };
-        let flown = fly(dynamics, &waypoints, &intervals, &guess, &|| {
-            interruption(self.stop)
+        let solution = solve(dynamics, &waypoints, &intervals, &guess, &|| {
+            self.stop.reason()
         });
-        let failed = flown.duration().is_none() && !flown.status.is_interrupted();
-        if start == Start::AtRest && failed && self.admits_rest(route) {
+        let failed = solution.duration().is_none() && !solution.status.is_interrupted();
+        if kind == InitialGuess::AtRest && failed && admits_rest(self.places, route) {
             return LegSolution {
                 status: NlpStatus::Constructed,
                 profile: guess,
                 intervals,
                 costates: Vec::new(),
-                ..flown
+                ..solution
             };
         }
-        flown
+        solution
     }
 
-    /// The waypoints of a route, with the signs at which a motion of so many intervals between them
-    /// passes them.
-    pub(super) fn program(
+    /// The initial guess of a route and the number of intervals of each of its legs; `None` where
+    /// there is none.
+    fn guess(&self, route: &[Place], kind: InitialGuess) -> Option<(Profile, Vec<usize>)> {
+        match (kind, route) {
+            (InitialGuess::Shorter, [before @ .., _]) => {
+                let shorter = self.segment(before, SegmentKind::Beginning);
+                extended(self.legs, &shorter, &route[before.len() - 1..])
+            }
+            _ => joined(self.legs, route, kind),
+        }
+    }
+
+    /// The waypoints of a route. Their quaternions have the signs with which a motion, which has
+    /// these numbers of intervals on its legs, passes them.
+    pub(super) fn signed_waypoints(
         &self,
         route: &[Place],
         motion: &Profile,
@@ -338,29 +348,29 @@ impl<'a> Tours<'a> {
         route.iter().enumerate().map(signed).collect()
     }
 
-    /// Whether a leg flown backwards is the leg between its ends exchanged.
+    /// Whether the time-reversed solution of a leg solves the leg between its ends exchanged.
     fn is_reversible(&self, leg: &[Place]) -> bool {
         let ends = [leg[0], leg[1]].map(|place| self.places.waypoint(place));
         self.places.reversible(ends.each_ref())
     }
 
-    /// Duration of the flown segments of a route with settle and dwell, or how a solve failed.
+    /// Duration of a route's solved segments with settle and dwell times, s, or how a solve failed.
     fn duration(&self, route: &[Place], segments: &[Arc<LegSolution>]) -> Result<f64, NlpStatus> {
         let mut total: f64 = route
             .iter()
             .map(|place| self.places.service_time(*place))
             .sum();
-        for flown in segments {
-            total += flown.duration().ok_or(flown.status)?;
+        for solution in segments {
+            total += solution.duration().ok_or(solution.status)?;
         }
         Ok(total)
     }
 
-    /// The duration as a bound, which a flight that is no minimum does not give.
+    /// The duration as a lower bound; a constructed flight is no minimum and gives none.
     fn evaluation(&self, route: &[Place], segments: &[Arc<LegSolution>]) -> Evaluation {
         if segments
             .iter()
-            .any(|flown| flown.status == NlpStatus::Constructed)
+            .any(|solution| solution.status == NlpStatus::Constructed)
         {
             return Evaluation::Unresolved;
         }
@@ -390,24 +400,24 @@ impl TourModel for Tours<'_> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let solved = self.free().and_then(|free| free.duration(from, to));
-        let proved = self.proved(from, to);
+        let solved = self.free_legs().and_then(|free| free.duration(from, to));
+        let proved = self.certified_bound(from, to);
         let known = solved.into_iter().chain(proved).reduce(f64::max);
         known.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
         let route = self.places.route(prefix, false);
-        self.evaluation(&route, &self.fly_segments(&route, Extent::Beginning))
+        self.evaluation(&route, &self.solve_segments(&route, SegmentKind::Beginning))
     }
 
     fn path_bound(&self, path: &[Place]) -> Evaluation {
         let legs = || path.windows(2);
-        // Staying is no slew that another could couple with.
+        // A leg between places that cover each other takes no time and couples with no other.
         if legs().any(|leg| self.places.are_one_stop(leg[0], leg[1])) {
             return Evaluation::Value(legs().map(|leg| self.pair_bound(leg[0], leg[1])).sum());
         }
-        // Backwards it is the same flight: it is remembered under one route.
+        // A reversible path and its reverse share one entry of the cache.
         let mut route = path.to_vec();
         if let [Place::Target(first), .., Place::Target(last)] = path
             && last < first
@@ -415,7 +425,7 @@ impl TourModel for Tours<'_> {
         {
             route.reverse();
         }
-        match self.evaluation(&route, &self.fly_segments(&route, Extent::Piece)) {
+        match self.evaluation(&route, &self.solve_segments(&route, SegmentKind::Piece)) {
             Evaluation::Value(duration) => {
                 Evaluation::Value(duration - self.places.service_time(path[0]))
             }
@@ -428,18 +438,18 @@ impl TourModel for Tours<'_> {
         !waypoint.is_fixed(&self.places.dynamics)
     }
 
-    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
-        self.prices_of(order)
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
+        self.flight_costates(order)
     }
 
-    fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
-        self.price_leg(leg, prices)
+    fn lagrangian_leg(&self, leg: [Place; 2], costates: [Option<&[f64]>; 2]) -> Evaluation {
+        self.solve_lagrangian_leg(leg, costates)
     }
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         let route = self.places.route(order, true);
-        match self.duration(&route, &self.fly_route(&route)) {
-            Ok(duration) => TourEvaluation::LegSolution(duration),
+        match self.duration(&route, &self.solve_route(&route)) {
+            Ok(duration) => TourEvaluation::Solved(duration),
             Err(status) if status.is_interrupted() => TourEvaluation::Stopped,
             Err(_) => TourEvaluation::Unresolved,
         }

@@ -1,22 +1,22 @@
-//! Legs are flown by the checker before anyone relies on them.
+//! Verification of solved, stored and imported legs by the independent checker.
 
 use super::canonical::CanonicalLeg;
 use super::places::Places;
-use super::torques::{SHORTEST, torques};
-use crate::checker::{ATTITUDE_TOLERANCE, Arrival, leg_faults};
+use super::torques::{MIN_PIECE_SHARE, torques};
+use crate::checker::{ATTITUDE_TOLERANCE, LegEnd, leg_faults};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Control, Flight, State};
 use crate::model::scenario::RateCondition;
 use nalgebra::{DVector, Vector3};
 
-/// Whether a solved leg flies as it says: from where it begins to the attitude and the rates where
-/// it is to end, within all limits.
-pub(super) fn flies(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> bool {
+/// Whether the checker integrates a solved leg from its begin to the attitude and rates of its end
+/// within all limits.
+pub(super) fn is_feasible(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> bool {
     flight_faults(places, leg, profile).is_empty()
 }
 
-/// What keeps a leg from flying as it says.
+/// The checker's objections to a leg: limits exceeded, or an end missed.
 pub(super) fn flight_faults(
     places: &Places<'_>,
     leg: &CanonicalLeg,
@@ -26,7 +26,7 @@ pub(super) fn flight_faults(
         return vec!["there is no motion".into()];
     };
     let target = leg.arrival.signed(&leg.to.attitude, last);
-    let arrival = Arrival {
+    let arrival = LegEnd {
         quaternion: target.xyzw(),
         rate: leg.to.rate.map(|condition| match condition {
             RateCondition::Fixed(rate) => Some(rate),
@@ -37,14 +37,14 @@ pub(super) fn flight_faults(
     leg_faults(places.scenario, &begin, &flight, &arrival)
 }
 
-/// Where the nodes of a leg are not on one motion under its torques: every interval is flown from
-/// the node where it begins.
+/// Intervals whose end node is not reached from their begin node under the leg's torques: every
+/// interval is integrated on its own.
 pub(super) fn node_faults(
     places: &Places<'_>,
     leg: &CanonicalLeg,
     profile: &Profile,
 ) -> Vec<String> {
-    let shortest = SHORTEST * profile.duration();
+    let shortest = MIN_PIECE_SHARE * profile.duration();
     let mut faults = Vec::new();
     for k in 0..profile.intervals() {
         let part = profile.part(k..k + 1);
@@ -56,35 +56,36 @@ pub(super) fn node_faults(
             continue;
         }
         let rate = |node: usize| leg.dynamics.rate(&part.attitudes[node], &part.wheels[node]);
-        let begin = state(places, leg, (&part.attitudes[0], &part.wheels[0]), rate(0));
+        let begin = state(places, leg, &part.attitudes[0], &part.wheels[0], rate(0));
         let end = rate(1);
-        let arrival = Arrival {
+        let arrival = LegEnd {
             quaternion: next.xyzw(),
             rate: [end.x, end.y, end.z].map(Some),
         };
         let found = leg_faults(places.scenario, &begin, &flight(places, &part), &arrival);
-        let told = |fault: String| format!("between nodes {k} and {}: {fault}", k + 1);
-        faults.extend(found.into_iter().map(told));
+        let located = |fault: String| format!("between nodes {k} and {}: {fault}", k + 1);
+        faults.extend(found.into_iter().map(located));
     }
     faults
 }
 
-/// The state at the beginning: given rates as given, the others as the motion has them.
+/// The state at the beginning: prescribed rates as prescribed, the others from the motion.
 fn begin(places: &Places<'_>, leg: &CanonicalLeg, profile: &Profile) -> Option<State> {
     let (attitude, wheels) = (profile.attitudes.first()?, profile.wheels.first()?);
-    let flown = leg.dynamics.rate(attitude, wheels);
+    let found = leg.dynamics.rate(attitude, wheels);
     let rate = Vector3::from_fn(|axis, _| match leg.from.rate[axis] {
         RateCondition::Fixed(rate) => rate,
-        RateCondition::Free | RateCondition::Within(..) => flown[axis],
+        RateCondition::Free | RateCondition::Within(..) => found[axis],
     });
-    Some(state(places, leg, (attitude, wheels), rate))
+    Some(state(places, leg, attitude, wheels, rate))
 }
 
-/// A state with the speeds of all wheels.
+/// A state with the speeds of all wheels, from the momenta of the enabled ones.
 fn state(
     places: &Places<'_>,
     leg: &CanonicalLeg,
-    (attitude, wheels): (&Attitude, &DVector<f64>),
+    attitude: &Attitude,
+    wheels: &DVector<f64>,
     rate: Vector3<f64>,
 ) -> State {
     let mut speeds = places.scenario.start().wheel_speed.clone();
@@ -99,10 +100,11 @@ fn state(
     }
 }
 
+/// The torques of a motion as a flight that the checker can integrate.
 fn flight(places: &Places<'_>, profile: &Profile) -> Flight {
     let mut clock = 0.0;
     let mut controls = Vec::with_capacity(profile.intervals());
-    let shortest = SHORTEST * profile.duration();
+    let shortest = MIN_PIECE_SHARE * profile.duration();
     for (duration, torque) in torques(profile, 0..profile.intervals(), shortest) {
         controls.push(Control {
             start_s: clock,

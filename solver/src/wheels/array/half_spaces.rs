@@ -4,19 +4,19 @@ use super::polytope::{Facet, Polytope};
 use super::{plane_axes, rows};
 use nalgebra::Vector3;
 
-/// Volume spanned by three normals below which their planes do not meet in a point.
+/// Volume spanned by three unit normals below which their planes count as not meeting in a point.
 const MIN_SPAN: f64 = 1e-9;
 /// Distance relative to the body's size within which points are the same, or on a plane.
 const SAME: f64 = 1e-9;
 
 /// The body `{y : normal . y <= distance}` of planes given by unit normals and distances above zero.
 ///
-/// The planes must bound it to all sides.
+/// The planes must bound it in all directions.
 pub(super) fn polytope(planes: &[(Vector3<f64>, f64)]) -> Polytope {
     let planes = tightest(planes);
     let vertices = vertices(&planes);
     let size = vertices.iter().map(Vector3::norm).fold(0.0, f64::max);
-    // A plane that no three vertices lie on bounds nothing.
+    // A plane with fewer than three vertices has no facet.
     let facets = planes
         .iter()
         .map(|&(normal, distance)| {
@@ -35,7 +35,7 @@ pub(super) fn polytope(planes: &[(Vector3<f64>, f64)]) -> Polytope {
     Polytope::new(vertices, facets)
 }
 
-/// The nearest of planes with the same normal.
+/// Of all planes with the same normal the one nearest to the origin.
 fn tightest(planes: &[(Vector3<f64>, f64)]) -> Vec<(Vector3<f64>, f64)> {
     let mut tightest: Vec<(Vector3<f64>, f64)> = Vec::new();
     for &(normal, distance) in planes {
@@ -50,7 +50,7 @@ fn tightest(planes: &[(Vector3<f64>, f64)]) -> Vec<(Vector3<f64>, f64)> {
     tightest
 }
 
-/// The points in which three planes meet and that are beyond none.
+/// The points in which three planes meet and that lie within all others.
 fn vertices(planes: &[(Vector3<f64>, f64)]) -> Vec<Vector3<f64>> {
     let mut vertices: Vec<Vector3<f64>> = Vec::new();
     for (i, first) in planes.iter().enumerate() {
@@ -66,7 +66,7 @@ fn vertices(planes: &[(Vector3<f64>, f64)]) -> Vec<Vector3<f64>> {
                 };
                 let near = SAME * point.norm();
                 let inside = planes.iter().all(|(n, d)| n.dot(&point) <= d + near);
-                // More than three planes may meet in a point.
+                // More than three planes may meet in a point, which counts once.
                 if inside && vertices.iter().all(|known| (known - point).norm() > near) {
                     vertices.push(point);
                 }

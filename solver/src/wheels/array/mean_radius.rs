@@ -1,17 +1,17 @@
-//! The mean over all directions of how far a polytope reaches.
+//! The mean over all directions of the distance from the origin to the surface of a polytope.
 //!
-//! On the cone of a facet at distance `d` the reach `r` of a direction is that of the facet's point
-//! there, and a piece `dA` of the facet fills the angle `d dA / r^3`. With the distance `p` of an
-//! edge from the foot of the perpendicular, and `t` along that edge, Green's theorem leaves
+//! In the cone of a facet at distance `d` from the origin, `r` is the distance of the facet's point in
+//! a direction, and an element `dA` of the facet fills the solid angle `d dA / r^3`. With the distance
+//! `p` of an edge from the foot of the perpendicular, and `t` along that edge, Green's theorem gives
 //!
 //! ```text
 //!   sum over facets  d / 2  sum over edges  p  integral  ln(1 + (p^2 + t^2) / d^2) / (p^2 + t^2)  dt
 //! ```
 //!
-//! which divided by `4 pi` is the mean. The integrand's singularities are `t = +-i s` and beyond, with
-//! `s = sqrt(p^2 + d^2)`. With `t = s sinh(v)` they are `pi / 2` away from the real line wherever `v` is,
-//! so Gauss's rule on pieces of a unit of `v` is exact to rounding, and an edge a thousand million
-//! times as long as its facet is far away has some forty pieces.
+//! which divided by `4 pi` is the mean. The integrand's singularities nearest to the real axis are
+//! `t = +-i s` with `s = sqrt(p^2 + d^2)`. With `t = s sinh(v)` they are at the distance `pi / 2` from the
+//! real axis for every `v`, so that Gauss's rule on pieces of unit length in `v` is exact to rounding.
+//! An edge `1e9` times as long as the distance of its facet has some forty pieces.
 
 use super::plane_axes;
 use super::polytope::{Facet, Polytope};
@@ -20,9 +20,9 @@ use std::f64::consts::PI;
 
 /// Nodes of Gauss's rule: an error of `6.4^(-2 NODES)` on a piece.
 const NODES: usize = 13;
-/// The numbers that there are have less than so many units of `v`.
+/// Greatest number of pieces: `v` spans less than this for any finite numbers.
 const MAX_PIECES: u32 = 3000;
-/// Newton steps from Chebyshev's to Legendre's nodes, more than enough.
+/// Newton steps from Chebyshev's to Legendre's nodes, more than convergence needs.
 const NEWTON_STEPS: usize = 8;
 
 /// The mean radius.

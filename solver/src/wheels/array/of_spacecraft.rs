@@ -4,12 +4,12 @@ use super::{Envelopes, WheelArray, check_authority};
 use crate::model::problem::Problem;
 use crate::model::spacecraft::Spacecraft;
 
-/// An array with its envelopes, which take longer to compute than to look things up in.
+/// An array with its envelopes, computed once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvelopedArray {
-    /// What the wheels can give.
+    /// The wheels with their limits.
     pub array: WheelArray,
-    /// What they can give together.
+    /// Their envelopes.
     pub envelopes: Envelopes,
 }
 
@@ -22,13 +22,13 @@ impl From<WheelArray> for EnvelopedArray {
     }
 }
 
-/// What the enabled wheels of a spacecraft can give together.
+/// Arrays and envelopes of the enabled wheels of a spacecraft.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpacecraftEnvelopes {
     /// Of torque, N m.
     pub torque: EnvelopedArray,
-    /// Of momentum relative to the body, N m s. None with an enabled wheel without a speed limit: the
-    /// envelope would have no end.
+    /// Of momentum relative to the body, N m s. `None` when an enabled wheel has no speed limit: the
+    /// envelope would be unbounded.
     pub momentum: Option<EnvelopedArray>,
 }
 
@@ -37,7 +37,7 @@ impl SpacecraftEnvelopes {
     ///
     /// # Errors
     ///
-    /// Shares that are not in (0, 1], both at once; pointers are those of a scenario's options.
+    /// Every share that is not in (0, 1]; pointers are those of a scenario's options.
     pub fn of(
         spacecraft: &Spacecraft,
         torque_authority: f64,
@@ -58,7 +58,8 @@ impl SpacecraftEnvelopes {
     }
 }
 
-/// What is wrong with the shares of the limits alone.
+/// Problems with the usable shares of torque and speed limits.
+#[must_use]
 pub fn authority_problems(torque: f64, momentum: f64) -> Vec<Problem> {
     let shares = [
         ("/options/torque_authority", torque),

@@ -1,8 +1,6 @@
-//! A convex body with flat facets that has the origin inside.
+//! A convex polytope with the origin inside.
 
-use super::mean_radius::mean_radius;
 use nalgebra::Vector3;
-use std::f64::consts::PI;
 
 /// One facet of a polytope.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,23 +20,8 @@ pub struct Polytope {
     facets: Vec<Facet>,
 }
 
-/// How large a polytope is, in the unit of its vertices.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figures {
-    /// Radius of the largest sphere about the origin inside it: what is there in every direction.
-    pub inscribed_radius: f64,
-    /// Distance of the farthest vertex from the origin.
-    pub greatest_radius: f64,
-    /// Volume.
-    pub volume: f64,
-    /// Radius of the sphere of the same volume.
-    pub equal_volume_radius: f64,
-    /// Mean over all directions of what is there.
-    pub mean_radius: f64,
-}
-
 impl Polytope {
-    /// A polytope of facets that are known to bound it.
+    /// A polytope of vertices and facets, which must belong together.
     pub(super) fn new(vertices: Vec<Vector3<f64>>, facets: Vec<Facet>) -> Self {
         Self { vertices, facets }
     }
@@ -62,7 +45,7 @@ impl Polytope {
             let next = facet.vertices.iter().cycle().skip(1);
             facet.vertices.iter().zip(next)
         });
-        // Every edge has a facet on either side, which run along it in opposite senses.
+        // Every edge belongs to two facets, which have it in opposite directions.
         let mut edges: Vec<_> = sides
             .filter(|(a, b)| a < b)
             .map(|(a, b)| (*a, *b))
@@ -71,8 +54,8 @@ impl Polytope {
         edges
     }
 
-    /// The share of the polytope that a vector uses: 1 on its surface, less inside. The vector
-    /// divided by it is the surface point in the same direction.
+    /// The length of a vector over the distance of the surface in its direction: 1 on the surface, less
+    /// inside.
     #[must_use]
     pub fn share(&self, vector: &Vector3<f64>) -> f64 {
         self.facets
@@ -81,13 +64,13 @@ impl Polytope {
             .fold(0.0, f64::max)
     }
 
-    /// How far the polytope reaches along a direction (of any length but zero).
+    /// Distance of the surface in a direction, given by a vector of any length but zero.
     #[must_use]
     pub fn reach(&self, direction: &Vector3<f64>) -> f64 {
         direction.norm() / self.share(direction)
     }
 
-    /// Volume: pyramids from the origin over the facets, each a fan of triangles.
+    /// Volume, as the sum of tetrahedra from the origin over the triangles of every facet.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let triple = |a: usize, b: usize, c: usize| {
@@ -103,20 +86,5 @@ impl Polytope {
                     .map(|pair| triple(corners[0], pair[0], pair[1]))
             })
             .sum()
-    }
-
-    /// How large it is.
-    #[must_use]
-    pub fn figures(&self) -> Figures {
-        let volume = self.volume();
-        let distances = self.facets.iter().map(|facet| facet.distance);
-        let lengths = self.vertices.iter().map(Vector3::norm);
-        Figures {
-            inscribed_radius: distances.fold(f64::INFINITY, f64::min),
-            greatest_radius: lengths.fold(0.0, f64::max),
-            volume,
-            equal_volume_radius: (0.75 * volume / PI).cbrt(),
-            mean_radius: mean_radius(self),
-        }
     }
 }

@@ -9,7 +9,7 @@ fn of_axes<const N: usize>(axes: [[f64; 3]; N]) -> WheelArray {
     .unwrap()
 }
 
-/// The square pyramid of the thesis, each wheel giving up to one.
+/// The square pyramid of the thesis, with limits of one.
 fn pyramid() -> WheelArray {
     let (s, c) = ((2.0_f64 / 3.0).sqrt(), (1.0_f64 / 3.0).sqrt());
     of_axes([[s, 0.0, c], [0.0, s, c], [-s, 0.0, c], [0.0, -s, c]])
@@ -34,7 +34,7 @@ fn mixed() -> WheelArray {
     WheelArray::try_new(&ranges, "").unwrap()
 }
 
-/// What a convex polytope with the origin inside must be.
+/// Asserts that a polytope is convex, closed and has the origin inside.
 fn assert_convex(polytope: &Polytope) {
     let vertices = polytope.vertices();
     let size = vertices.iter().map(Vector3::norm).fold(0.0, f64::max);
@@ -94,7 +94,7 @@ fn the_pyramid_has_the_published_envelope() {
         assert_near(facet.distance, 1.633, 5e-4);
         assert_eq!(facet.vertices.len(), 4);
     }
-    let figures = envelope.figures();
+    let figures = envelope.size();
     assert_near(figures.inscribed_radius, 1.633, 5e-4);
     assert_near(figures.greatest_radius, 2.309, 5e-4);
     // Four triples of wheels with a determinant of 4 / (3 sqrt 3): 128 / (3 sqrt 3). The thesis
@@ -110,7 +110,7 @@ fn the_pyramid_has_the_published_pseudo_inverse_envelope() {
     let envelope = pyramid().pseudo_inverse_envelope();
     assert_convex(&envelope);
     assert_eq!(envelope.facets().len(), 8);
-    let figures = envelope.figures();
+    let figures = envelope.size();
     assert_near(figures.inscribed_radius, 1.333, 5e-4);
     assert_near(figures.greatest_radius, 2.309, 5e-4);
     assert_near(figures.equal_volume_radius, 1.577, 5e-4);
@@ -153,7 +153,7 @@ fn cone<const N: usize>(half_angle: f64) -> WheelArray {
 }
 
 #[test]
-fn envelopes_of_all_kinds_of_arrays_are_convex_and_as_large_as_their_triples() {
+fn envelopes_are_convex_and_have_the_volume_of_the_sum_over_triples() {
     let arrays = [
         (
             "cube",
@@ -200,7 +200,7 @@ fn three_wheels_have_one_envelope() {
 }
 
 #[test]
-fn the_mean_radius_is_that_of_a_dense_set_of_directions() {
+fn the_mean_radius_is_the_mean_over_a_dense_set_of_directions() {
     let (rows, columns) = (300, 300);
     for polytope in [
         mixed().full_envelope(),
@@ -216,28 +216,28 @@ fn the_mean_radius_is_that_of_a_dense_set_of_directions() {
                 weights += radius;
             }
         }
-        assert_near(polytope.figures().mean_radius / (sum / weights), 1.0, 1e-4);
+        assert_near(polytope.size().mean_radius / (sum / weights), 1.0, 1e-4);
     }
 }
 
-/// A square prism without end: `2 ln(1 + sqrt 2)`. An edge is cut into pieces as it needs them, not
-/// into as many as it is long; a study with one strong wheel never ended.
+/// The mean radius of an infinite square prism is `2 ln(1 + sqrt 2)`. The number of pieces of an edge
+/// must grow with the logarithm of its length only.
 #[test]
-fn the_mean_radius_of_a_prism_tends_to_that_of_an_endless_one() {
+fn the_mean_radius_of_a_long_prism_tends_to_that_of_an_infinite_one() {
     for length in [1e9, 1e15, 1e60] {
         let axis = |i: usize| Vector3::from_fn(|k, _| f64::from(u8::from(i == k)));
         let strength = [1.0, 1.0, length];
         let ranges = [0, 1, 2].map(|i| WheelRange::symmetric(axis(i), strength[i]));
         let prism = WheelArray::try_new(&ranges, "").unwrap();
-        let mean = prism.full_envelope().figures().mean_radius;
+        let mean = prism.full_envelope().size().mean_radius;
         assert_near(mean, 2.0 * 1.0_f64.asinh(), 1e-7);
     }
 }
 
 #[test]
-fn the_figures_of_a_cube_are_known() {
+fn radii_and_volume_of_a_cube_are_those_of_the_closed_form() {
     let cube = of_axes([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).full_envelope();
-    let figures = cube.figures();
+    let figures = cube.size();
     assert_near(figures.inscribed_radius, 1.0, 1e-15);
     assert_near(figures.greatest_radius, 3.0_f64.sqrt(), 1e-15);
     assert_near(figures.volume, 8.0, 1e-14);
@@ -245,7 +245,7 @@ fn the_figures_of_a_cube_are_known() {
 }
 
 #[test]
-fn every_fault_of_every_wheel_is_found() {
+fn all_problems_of_all_wheels_are_found() {
     let range = |axis: [f64; 3], least, most| WheelRange {
         axis: axis.into(),
         least,

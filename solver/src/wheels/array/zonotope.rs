@@ -1,10 +1,10 @@
 //! Sums of segments: facets from pairs of generators.
 //!
-//! The zonotope `{c + sum t_i g_i : |t_i| <= 1}` has a pair of opposite facets across the normal of
-//! every plane that two generators span. On a facet the generators out of its plane are at their
-//! ends, and those in the plane (two, or more when axes are coplanar) make its polygon. So a vertex
-//! is named by the end at which each generator is, and vertices that facets share are recognised
-//! without a tolerance.
+//! The zonotope `{c + sum t_i g_i : |t_i| <= 1}` has a pair of opposite facets perpendicular to the
+//! normal of every plane that two generators span. On a facet every generator outside of its plane has
+//! `t_i = 1` or `-1`, and those in the plane (two, or more when axes are coplanar) make its polygon.
+//! The signs of all `t_i` identify a vertex, so that vertices shared by facets are found without a
+//! tolerance.
 
 use super::plane_axes;
 use super::polytope::{Facet, Polytope};
@@ -17,7 +17,7 @@ const PARALLEL: f64 = 1e-9;
 /// The zonotope about a centre.
 pub(super) fn zonotope(centre: Vector3<f64>, generators: &[Vector3<f64>]) -> Polytope {
     let generators = merged(generators);
-    let mut vertices = Vertices::new(centre, &generators);
+    let mut vertices = ZonotopeVertices::new(centre, &generators);
     let mut facets = Vec::new();
     for i in 0..generators.len() {
         for j in i + 1..generators.len() {
@@ -25,7 +25,7 @@ pub(super) fn zonotope(centre: Vector3<f64>, generators: &[Vector3<f64>]) -> Pol
             let flat: Vec<usize> = (0..generators.len())
                 .filter(|&k| k == i || k == j || is_flat(&normal, &generators[k]))
                 .collect();
-            // Coplanar generators make one plane, found at its first pair.
+            // Coplanar generators have one plane, which is taken at its first pair.
             if flat[..2] == [i, j] {
                 facets.push(facet(normal, &flat, &mut vertices));
                 facets.push(facet(-normal, &flat, &mut vertices));
@@ -54,13 +54,13 @@ fn merged(generators: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     merged
 }
 
-/// The facet across a normal, whose polygon the generators `flat` make.
-fn facet(normal: Vector3<f64>, flat: &[usize], vertices: &mut Vertices) -> Facet {
+/// The facet with an outward normal, whose polygon the generators `flat` make.
+fn facet(normal: Vector3<f64>, flat: &[usize], vertices: &mut ZonotopeVertices) -> Facet {
     let generators = vertices.generators;
     let mut ends: Vec<bool> = generators.iter().map(|g| normal.dot(g) > 0.0).collect();
     let (first, second) = plane_axes(&normal);
-    // Each generator in the sense that points to one side, by its angle in [0, pi); zeros have signs
-    // of their own, so they are told apart first.
+    // Each generator or its opposite, whichever has its angle in [0, pi). `atan2` depends on the sign of
+    // zeros, so that y = 0 is treated first.
     let mut turning: Vec<(f64, usize, bool)> = flat
         .iter()
         .map(|&k| {
@@ -74,7 +74,7 @@ fn facet(normal: Vector3<f64>, flat: &[usize], vertices: &mut Vertices) -> Facet
     for &(_, k, sense) in &turning {
         ends[k] = !sense;
     }
-    // Around the polygon: every generator from its near end to its far one, then back.
+    // Around the polygon: in order of their angles every generator changes its sign, and then back.
     let mut corners = Vec::with_capacity(2 * flat.len());
     for &(_, k, _) in turning.iter().chain(&turning) {
         ends[k] = !ends[k];
@@ -90,15 +90,15 @@ fn facet(normal: Vector3<f64>, flat: &[usize], vertices: &mut Vertices) -> Facet
     }
 }
 
-/// The vertices found so far, by the ends at which the generators are.
-struct Vertices<'a> {
+/// The vertices found so far, by the signs of the generators.
+struct ZonotopeVertices<'a> {
     centre: Vector3<f64>,
     generators: &'a [Vector3<f64>],
     points: Vec<Vector3<f64>>,
     known: BTreeMap<Vec<bool>, usize>,
 }
 
-impl<'a> Vertices<'a> {
+impl<'a> ZonotopeVertices<'a> {
     fn new(centre: Vector3<f64>, generators: &'a [Vector3<f64>]) -> Self {
         Self {
             centre,
@@ -108,7 +108,7 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// Position of the vertex with these ends.
+    /// Position of the vertex with these signs of the generators; true is 1.
     fn at(&mut self, ends: &[bool]) -> usize {
         if let Some(&position) = self.known.get(ends) {
             return position;

@@ -23,7 +23,7 @@ fn pyramid() -> SpacecraftSpec {
     }
 }
 
-fn hold(spec: &SpacecraftSpec, locked: &[f64], momentum: Vector3<f64>) -> Hold {
+fn hold(spec: &SpacecraftSpec, locked: &[f64], momentum: Vector3<f64>) -> MomentumHold {
     let spacecraft = Spacecraft::try_new(spec, "").unwrap();
     let hold = hold_momentum(&spacecraft, 1.0, locked, momentum).unwrap();
     let carried = spacecraft.body_momentum(Vector3::zeros(), &hold.wheel_speed);
@@ -51,7 +51,7 @@ fn the_pyramid_reaches_the_published_radii_of_its_envelope() {
 }
 
 #[test]
-fn the_least_load_beats_the_pseudo_inverse() {
+fn the_least_load_holds_a_momentum_beyond_the_pseudo_inverse() {
     // Wheels (1, 1, -1, 1) carry this; proportional saturation reaches only two thirds of it.
     let momentum = Vector3::new(
         2.0 * (2.0_f64 / 3.0).sqrt(),
@@ -65,7 +65,7 @@ fn the_least_load_beats_the_pseudo_inverse() {
 }
 
 #[test]
-fn a_locked_wheel_counts_with_its_own_speed() {
+fn the_momentum_of_a_locked_wheel_is_part_of_the_total() {
     let mut spec = pyramid();
     spec.wheels[3].enabled = false;
     let locked = [0.0, 0.0, 0.0, 80.0];
@@ -75,7 +75,7 @@ fn a_locked_wheel_counts_with_its_own_speed() {
 }
 
 #[test]
-fn a_wheel_without_a_limit_takes_what_the_others_cannot() {
+fn a_wheel_without_a_speed_limit_takes_most_of_the_momentum() {
     let mut spec = pyramid();
     spec.wheels[0].max_speed_rad_s = None;
     let momentum = Vector3::new(20.0, 0.0, 14.142_135_623_730_951);
@@ -120,7 +120,7 @@ fn a_rest_beyond_the_envelope_is_reported_with_its_ratio() {
 }
 
 #[test]
-fn the_end_is_judged_at_its_rate() {
+fn the_end_is_tested_at_its_rate() {
     let mut spec = loaded();
     spec.targets.clear();
     assert_eq!(problems(&spec), []);
@@ -134,7 +134,7 @@ fn the_end_is_judged_at_its_rate() {
 }
 
 #[test]
-fn the_authority_narrows_the_envelope() {
+fn a_smaller_authority_gives_a_smaller_envelope() {
     let mut spec = experiment_a();
     spec.start.wheel_speed_rad_s = Some(vec![400.0, 300.0, 0.0]);
     // Body x along the stored momentum, so that one wheel has to take 500 rad/s.

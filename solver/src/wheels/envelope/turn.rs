@@ -1,8 +1,8 @@
-//! Where on a turn the momentum lies outside the envelope of the wheels.
+//! Parts of a turn at which the momentum of the resting body lies outside the envelope of the wheels.
 //!
-//! Inside the sphere of momenta that the wheels hold in every direction a slew about the eigenaxis
-//! always exists, if it is slow enough. Outside of it a body may be able to rest at both ends of a
-//! turn, but nowhere between them.
+//! If the wheels can hold the momentum in every direction, there is always a slew about the eigenaxis,
+//! if it is slow enough. Otherwise a body may be able to rest at both ends of a turn, but not at
+//! attitudes in between.
 
 use super::hold_momentum;
 use crate::model::attitude::Attitude;
@@ -10,7 +10,7 @@ use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
 use std::fmt;
 
-/// Steps into which a turn is cut.
+/// Steps of a turn at which the momentum is tested.
 const STEPS: usize = 180;
 
 /// A part of a turn at which the wheels cannot hold the momentum of the resting body.
@@ -18,7 +18,7 @@ const STEPS: usize = 180;
 pub(crate) struct OutsideEnvelope {
     /// The angle of the whole turn, rad.
     angle: f64,
-    /// Where that part begins and ends, rad.
+    /// Beginning and end of that part, rad.
     part: [f64; 2],
     /// The attitude in the middle of it.
     attitude: Attitude,

@@ -1,4 +1,4 @@
-//! The tables themselves: mass (kg), momentum (N m s) and torque (N m) as printed.
+//! The tables: mass (kg), momentum (N m s) and torque (N m) as printed.
 
 use super::Device;
 

@@ -1,8 +1,8 @@
-//! The farthest and the nearest singular momenta.
+//! The greatest and the least singular momenta.
 //!
-//! Grids find the neighbourhoods, a search by shrinking steps the extremes themselves. Where the
-//! direction tends to a gimbal axis, a surface ends in a rim: a circle of momenta, whose nearest
-//! point is known in closed form.
+//! A grid gives the starting points, a search with shrinking steps the extremes. Where the direction
+//! tends to a gimbal axis, a surface ends in a rim: a circle of momenta, whose nearest point has a
+//! closed form.
 
 use super::{CmgCluster, Passability, SingularState, grid};
 use nalgebra::{Rotation3, Vector3};
@@ -12,11 +12,11 @@ const ROWS: usize = 40;
 /// Step at which a search ends, rad.
 const MIN_STEP: f64 = 1e-11;
 
-/// Where a singular surface ends: the direction is along a gimbal axis, and that rotor is free to
-/// point anywhere across it. The momenta are a circle of radius one.
+/// The boundary of a singular surface: the direction is along a gimbal axis, and that gimbal's angle is
+/// arbitrary. The momenta are a circle of radius one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rim {
-    /// Which gyroscope is free.
+    /// Index of the gyroscope with an arbitrary gimbal angle.
     pub gyroscope: usize,
     /// The direction without torque, unit: its gimbal axis or the opposite.
     pub direction: Vector3<f64>,
@@ -65,8 +65,8 @@ impl CmgCluster {
         -self.least(&outer, |state| Some(-state.momentum.norm()))
     }
 
-    /// The least momentum among internal singular states that are impassable: within the sphere of
-    /// this radius null motion leads out of every singular state. Infinite when there are none.
+    /// The least momentum among elliptic singular states: within the sphere of this radius null motion
+    /// leaves every singular state. Infinite when there are none.
     #[must_use]
     pub fn least_elliptic(&self) -> f64 {
         let elliptic = |state: &SingularState| {
@@ -79,8 +79,8 @@ impl CmgCluster {
         least.fold(f64::INFINITY, f64::min)
     }
 
-    /// The greatest lower bound of the momentum among singular states with one rotor against the
-    /// others, rims included: the sphere within which the thesis promises momentum.
+    /// The infimum of the momentum among singular states with one sign reversed, rims included: the
+    /// radius of the thesis's guaranteed sphere.
     #[must_use]
     pub fn least_with_one_reversed(&self) -> f64 {
         let surfaces = (0..self.count()).map(|reversed| {

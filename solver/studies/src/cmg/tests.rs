@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn the_momentum_and_its_derivatives_belong_together() {
+fn the_jacobian_is_the_derivative_of_the_momentum() {
     let cluster = CmgCluster::pyramid(0.8);
     let angles = [0.3, -1.2, 2.0, 0.7];
     let jacobian = cluster.jacobian(&angles);
@@ -16,7 +16,7 @@ fn the_momentum_and_its_derivatives_belong_together() {
 }
 
 #[test]
-fn no_torque_is_left_along_the_direction_of_a_singular_state() {
+fn a_singular_state_has_no_torque_along_its_direction() {
     let cluster = CmgCluster::thesis();
     for signs in cluster.sign_patterns() {
         for state in cluster.singular_surface(&signs, 9).states.iter().flatten() {
@@ -37,7 +37,7 @@ fn the_pyramid_has_the_published_greatest_momentum() {
 }
 
 #[test]
-fn the_published_sphere_is_that_of_a_grid_and_the_surface_comes_nearer() {
+fn the_published_sphere_is_that_of_a_grid_and_larger_than_the_exact_one() {
     let cluster = CmgCluster::thesis();
     let signs = [false, true, true, true];
     // The nodes of a sphere in 20 by 20 facets.
@@ -56,7 +56,7 @@ fn the_published_sphere_is_that_of_a_grid_and_the_surface_comes_nearer() {
 }
 
 #[test]
-fn elliptic_states_begin_farther_out_than_the_published_sphere() {
+fn elliptic_states_lie_outside_of_the_published_sphere() {
     let cluster = CmgCluster::thesis();
     let least = cluster.least_elliptic();
     assert!((least - 2.0 / 3.0_f64.sqrt()).abs() < 1e-9, "{least}");
@@ -69,8 +69,8 @@ fn elliptic_states_begin_farther_out_than_the_published_sphere() {
     }
 }
 
-/// Whether null motion of some size keeps the momentum and leaves the singular state: by Newton's
-/// method back to the momentum after a push within the null space.
+/// Whether finite null motion leaves the singular state: a step in the null space, after which Newton's
+/// method restores the momentum.
 fn escapes(cluster: &CmgCluster, state: &SingularState) -> bool {
     let jacobian = cluster.jacobian(&state.angles);
     let gram = jacobian.tr_mul(&jacobian).symmetric_eigen();
@@ -114,7 +114,7 @@ fn null_motion_leaves_hyperbolic_states_and_no_elliptic_ones() {
     let mut counted = [0, 0];
     for signs in &cluster.sign_patterns()[1..] {
         for state in cluster.singular_surface(signs, 7).states.iter().flatten() {
-            // Not at the border of the kinds, where escapes become flat.
+            // Not near the border of the two kinds, where the second-order form almost vanishes.
             let kinds = [0.05, -0.05].map(|shift| {
                 let near = (state.direction + Vector3::new(shift, -shift, shift)).normalize();
                 cluster.singular_state(&near, signs).map(|s| s.passability)
@@ -150,7 +150,7 @@ fn rims_are_the_limits_of_their_surfaces() {
 }
 
 #[test]
-fn a_surface_has_an_end() {
+fn the_number_of_rows_of_a_surface_is_limited() {
     let single = CmgCluster {
         gimbals: CmgCluster::thesis().gimbals[..1].to_vec(),
     };

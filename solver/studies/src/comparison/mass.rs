@@ -1,16 +1,16 @@
-//! What a kilogram of devices gives: momentum and torque of arrays over their mass.
+//! Momentum and torque of arrays over their mass.
 //!
-//! Momentum over mass is a law fitted to the tables (RW/CMG thesis, figure 87); a pyramid of four
-//! counts with its radii, and its torque follows from the laws of torque over momentum (figures 88
-//! and 89). Per mass, wheels hold an order of magnitude more momentum. Light wheels give more torque
-//! too, up to the crossover.
+//! Momentum over mass is a law fitted to the tables (RW/CMG thesis, figure 87). The body momentum of a
+//! pyramid of four follows with its radius, its torque by the laws of torque over momentum (figures 88
+//! and 89). Per mass, wheels hold an order of magnitude more momentum than gyroscopes. Below the
+//! crossover mass they give more torque too.
 //!
-//! The thesis prints a crossover of 0.898 kg per device and not the fits it rests on. Its printed laws
-//! and radii with the fits of momentum over mass to its tables give 0.908 kg, one per cent more;
-//! the law of torque fitted to its table of gyroscopes gives 1.036 kg (see [`crate::catalogue`] for the
-//! points that the table lacks).
+//! The thesis prints a crossover of 0.898 kg per device, but not the fits that it follows from. Its
+//! printed laws and radii with fits of momentum over mass to its tables give 0.908 kg, one per cent
+//! more; the law of torque fitted to its table of gyroscopes gives 1.036 kg (see [`crate::catalogue`] for
+//! the points that are not in the table).
 
-use super::{Control, Laws, Radii};
+use super::{Laws, PyramidControl, Radii};
 use crate::catalogue::{GYROSCOPES, PowerLaw, WHEELS};
 
 /// Devices of a pyramid.
@@ -48,7 +48,7 @@ impl MassStudy {
     /// The crossover that the thesis prints, kg per device.
     pub const PUBLISHED_CROSSOVER_KG: f64 = 0.898;
 
-    /// The study of the tables, wheels counting as under eigenaxis control. `None` never, for these
+    /// The study of the tables, with the radii of eigenaxis control for wheels; always `Some` for these
     /// tables.
     #[must_use]
     pub fn of(radii: Radii, laws: Laws) -> Option<Self> {
@@ -65,14 +65,14 @@ impl MassStudy {
     #[must_use]
     pub fn wheel_torque(&self) -> PowerLaw {
         let device = self.laws.wheel.of(&self.wheel_momentum);
-        device.times(self.radii.of(Control::Eigenaxis).torque)
+        device.times(self.radii.of(PyramidControl::Eigenaxis).torque)
     }
 
     /// Body torque (N m) over the mass of a device (kg), of gyroscopes.
     #[must_use]
     pub fn gyroscope_torque(&self) -> PowerLaw {
         let device = self.laws.gyroscope.of(&self.gyroscope_momentum);
-        device.times(self.radii.of(Control::Gyroscopes).torque)
+        device.times(self.radii.of(PyramidControl::Gyroscopes).torque)
     }
 
     /// Mass of a device, kg, below which wheels give more torque.
@@ -81,11 +81,11 @@ impl MassStudy {
         self.wheel_torque().crossing(&self.gyroscope_torque())
     }
 
-    /// What arrays of devices of a mass (kg, above zero) give.
+    /// Momentum and torque of arrays of devices of a mass (kg, above zero).
     #[must_use]
     pub fn at(&self, device_mass_kg: f64) -> MassPoint {
-        let wheels = self.radii.of(Control::Eigenaxis).momentum;
-        let gyroscopes = self.radii.of(Control::Gyroscopes).momentum;
+        let wheels = self.radii.of(PyramidControl::Eigenaxis).momentum;
+        let gyroscopes = self.radii.of(PyramidControl::Gyroscopes).momentum;
         MassPoint {
             device_mass_kg,
             array_mass_kg: DEVICES * device_mass_kg,

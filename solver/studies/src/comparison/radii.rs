@@ -1,4 +1,4 @@
-//! What a pyramid of four devices counts with: spheres of momentum and torque.
+//! Radii of the spheres that represent the envelopes of a pyramid of four devices.
 
 use super::study::pyramid_envelopes;
 use crate::cmg::CmgCluster;
@@ -7,20 +7,25 @@ use slewplan_solver::model::input::{
     InputForm, InputPlace, Schema, input_object, input_union, or, required,
 };
 
-/// How a pyramid of devices is used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Control {
-    /// Wheels, slews about the eigenaxis, shared out by the pseudo-inverse.
+/// Kind of devices of a pyramid, and how they are controlled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+pub enum PyramidControl {
+    /// Wheels, slews about the eigenaxis, allocation by the pseudo-inverse.
+    #[strum(serialize = "rw_eigenaxis")]
     Eigenaxis,
-    /// Wheels, time-optimal slews within what the pseudo-inverse shares out.
+    /// Wheels, time-optimal slews, allocation by the pseudo-inverse.
+    #[strum(serialize = "rw_pseudo_optimal")]
     PseudoOptimal,
-    /// Wheels, time-optimal slews.
+    /// Wheels, time-optimal slews with any allocation.
+    #[strum(serialize = "rw_optimal")]
     Optimal,
     /// Control moment gyroscopes, within the sphere inside their internal singularities.
+    #[strum(serialize = "cmg")]
     Gyroscopes,
 }
 
-impl Control {
+impl PyramidControl {
     /// All of them, the gyroscopes last.
     pub const ALL: [Self; 4] = [
         Self::Eigenaxis,
@@ -28,17 +33,6 @@ impl Control {
         Self::Optimal,
         Self::Gyroscopes,
     ];
-
-    /// The stable text of the control.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Eigenaxis => "rw_eigenaxis",
-            Self::PseudoOptimal => "rw_pseudo_optimal",
-            Self::Optimal => "rw_optimal",
-            Self::Gyroscopes => "cmg",
-        }
-    }
 }
 
 input_object! {
@@ -55,13 +49,13 @@ input_object! {
 /// The radii of all controls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Radii {
-    /// [`Control::Eigenaxis`].
+    /// [`PyramidControl::Eigenaxis`].
     pub eigenaxis: Radius,
-    /// [`Control::PseudoOptimal`].
+    /// [`PyramidControl::PseudoOptimal`].
     pub pseudo_optimal: Radius,
-    /// [`Control::Optimal`].
+    /// [`PyramidControl::Optimal`].
     pub optimal: Radius,
-    /// [`Control::Gyroscopes`].
+    /// [`PyramidControl::Gyroscopes`].
     pub gyroscopes: Radius,
 }
 
@@ -113,8 +107,8 @@ impl InputForm for Radii {
 }
 
 impl Radii {
-    /// As the thesis uses them, equations 270 and 271. (Where it computes the rate of 4.067 deg/s it
-    /// writes 1.807 for 1.805.)
+    /// The thesis's radii, equations 270 and 271. (In the computation of the rate of 4.067 deg/s it has
+    /// 1.807 instead of 1.805.)
     pub const PUBLISHED: Self = Self {
         eigenaxis: Radius {
             momentum: 1.333,
@@ -134,9 +128,9 @@ impl Radii {
         },
     };
 
-    /// Computed from the envelopes and the singular surfaces of the thesis's pyramid: spheres inside
-    /// or of equal volume, and for gyroscopes the exact sphere in the sense of the thesis
-    /// ([`CmgCluster::least_with_one_reversed`]). `None` never, for this pyramid.
+    /// Computed from the envelopes and the singular surfaces of the thesis's pyramid: inscribed spheres
+    /// or spheres of equal volume, and for gyroscopes the exact sphere by the thesis's definition
+    /// ([`CmgCluster::least_with_one_reversed`]). Always `Some` for this pyramid.
     #[must_use]
     pub fn of_the_pyramid() -> Option<Self> {
         let envelopes = pyramid_envelopes()?;
@@ -154,22 +148,22 @@ impl Radii {
         })
     }
 
-    /// Those of a control.
+    /// The radii of a kind of control.
     #[must_use]
-    pub fn of(&self, control: Control) -> Radius {
+    pub fn of(&self, control: PyramidControl) -> Radius {
         match control {
-            Control::Eigenaxis => self.eigenaxis,
-            Control::PseudoOptimal => self.pseudo_optimal,
-            Control::Optimal => self.optimal,
-            Control::Gyroscopes => self.gyroscopes,
+            PyramidControl::Eigenaxis => self.eigenaxis,
+            PyramidControl::PseudoOptimal => self.pseudo_optimal,
+            PyramidControl::Optimal => self.optimal,
+            PyramidControl::Gyroscopes => self.gyroscopes,
         }
     }
 
-    /// Notes every radius that is not above zero.
+    /// Refuses every radius that is not above zero.
     pub(super) fn check(&self, pointer: &str, findings: &mut Findings) {
-        for control in Control::ALL {
+        for control in PyramidControl::ALL {
             let radius = self.of(control);
-            let at = format!("{pointer}/{}", control.as_str());
+            let at = format!("{pointer}/{control}");
             findings.positive(&format!("{at}/momentum"), radius.momentum);
             findings.positive(&format!("{at}/torque"), radius.torque);
         }

@@ -1,7 +1,7 @@
 use super::*;
 
 fn published() -> Comparison {
-    Comparison::of(ComparisonSpec::default()).unwrap()
+    Comparison::of(ComparisonStudySpec::default()).unwrap()
 }
 
 fn assert_near(found: f64, expected: f64, tolerance: f64) {
@@ -13,7 +13,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 
 #[test]
 fn the_published_rates_and_accelerations_are_found() {
-    let mut spec = ComparisonSpec::default();
+    let mut spec = ComparisonStudySpec::default();
     // The thesis writes 1.807 here.
     spec.radii.optimal.momentum = 1.807;
     let sizes = Comparison::of(spec).unwrap().sizes;
@@ -70,7 +70,7 @@ fn a_cut_off_end_explains_part_of_the_published_angles() {
         let [exact, cut] = [advantage.angle_rad, advantage.with_cut_off_rad];
         let (exact, cut) = (exact.unwrap().to_degrees(), cut.unwrap().to_degrees());
         assert_near(cut, cut_off, 0.1);
-        // The published angle is lower than both, and the cut-off goes towards it.
+        // The published angle is smaller than both; the angle with a cut-off is nearer to it.
         assert!(published.angle_deg < cut && cut < exact);
     }
 }
@@ -106,9 +106,9 @@ fn durations_fall_with_better_control_and_rise_with_the_angle() {
 }
 
 #[test]
-fn who_leads_always_or_never_is_told() {
+fn an_advantage_may_hold_always_or_never() {
     let of = |rate_rad_s, acceleration_rad_s2| Agility {
-        control: Control::Optimal,
+        control: PyramidControl::Optimal,
         momentum_nms: 1.0,
         torque_nm: 1.0,
         rate_rad_s,
@@ -122,14 +122,18 @@ fn who_leads_always_or_never_is_told() {
 }
 
 #[test]
-fn the_radii_of_the_pyramid_are_the_published_ones_but_for_the_grid() {
+fn computed_radii_are_the_published_ones_except_for_the_gyroscopes() {
     let radii = Radii::of_the_pyramid().unwrap();
-    for control in [Control::Eigenaxis, Control::PseudoOptimal, Control::Optimal] {
+    for control in [
+        PyramidControl::Eigenaxis,
+        PyramidControl::PseudoOptimal,
+        PyramidControl::Optimal,
+    ] {
         let (found, published) = (radii.of(control), Radii::PUBLISHED.of(control));
         assert_near(found.momentum, published.momentum, 5e-4);
         assert_near(found.torque, published.torque, 5e-4);
     }
-    // The published 1.007 is that of a grid, see the docs of the clusters.
+    // The published 1.007 is that of a grid, see the documentation of the clusters.
     assert_near(radii.gyroscopes.momentum, 1.0, 1e-9);
 }
 
@@ -160,12 +164,12 @@ fn light_wheels_give_more_torque_than_light_gyroscopes() {
 }
 
 #[test]
-fn every_fault_of_a_request_is_found() {
-    let mut spec = ComparisonSpec {
+fn all_problems_of_a_request_are_found() {
+    let mut spec = ComparisonStudySpec {
         momenta_nms: vec![1.0, -1.0],
         angles_rad: vec![],
         required_rate_rad_s: f64::NAN,
-        ..ComparisonSpec::default()
+        ..ComparisonStudySpec::default()
     };
     spec.radii.gyroscopes.torque = 0.0;
     spec.laws.wheel.exponent = f64::INFINITY;

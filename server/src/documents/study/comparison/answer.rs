@@ -2,12 +2,12 @@
 
 use crate::documents::number::Number;
 use serde::Serialize;
-use slewplan_solver::wheels::array::Figures;
+use slewplan_solver::wheels::array::PolytopeSize;
 use slewplan_studies::catalogue::{Device, PowerLaw};
 use slewplan_studies::cmg::SingularSurface;
 use slewplan_studies::comparison::{
-    Advantage, AdvantageCurve, Agility, CUT_OFF, Control, Durations, MarketFit, MassPoint,
-    MassStudy, PUBLISHED_ANGLES, Radius, SingularStates, SizeComparison, Study,
+    Advantage, AdvantageCurve, Agility, CUT_OFF, CatalogueFit, ComparisonStudy, Durations,
+    MassPoint, MassStudy, PUBLISHED_ANGLES, PyramidControl, Radius, SingularStates, SizeComparison,
 };
 use utoipa::ToSchema;
 
@@ -106,7 +106,7 @@ struct CatalogueDocument {
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-#[schema(as = MarketFit)]
+#[schema(as = CatalogueFit)]
 struct FitDocument {
     /// The law that was asked for.
     used: LawDocument,
@@ -218,14 +218,14 @@ struct MassPointDocument {
 
 impl ComparisonAnswerDocument {
     /// The answer to a study.
-    pub(crate) fn new(study: &Study) -> Self {
+    pub(crate) fn new(study: &ComparisonStudy) -> Self {
         let of = &study.spec;
-        let (wheels, gyroscopes) = Study::devices();
-        let radius = |control: Control| {
+        let (wheels, gyroscopes) = ComparisonStudy::devices();
+        let radius = |control: PyramidControl| {
             let Radius { momentum, torque } = of.radii.of(control);
             let computed = study.computed_radii.of(control);
             RadiusDocument {
-                control: control.as_str(),
+                control: control.into(),
                 momentum: Number(momentum),
                 torque: Number(torque),
                 computed_momentum: Number(computed.momentum),
@@ -235,7 +235,7 @@ impl ComparisonAnswerDocument {
         Self {
             required_rate_rad_s: Number(of.required_rate_rad_s),
             angles_rad: Number::all(&of.angles_rad),
-            radii: Control::ALL.map(radius).into(),
+            radii: PyramidControl::ALL.map(radius).into(),
             envelopes: EnvelopesDocument {
                 full: study.envelopes.full.into(),
                 pseudo_inverse: study.envelopes.pseudo_inverse.into(),
@@ -258,8 +258,8 @@ impl ComparisonAnswerDocument {
     }
 }
 
-impl From<Figures> for FiguresDocument {
-    fn from(figures: Figures) -> Self {
+impl From<PolytopeSize> for FiguresDocument {
+    fn from(figures: PolytopeSize) -> Self {
         Self {
             inscribed_radius: Number(figures.inscribed_radius),
             greatest_radius: Number(figures.greatest_radius),
@@ -288,7 +288,7 @@ impl From<&SingularSurface> for SurfaceDocument {
             state.as_ref().map(|state| SingularStateDocument {
                 direction: <[f64; 3]>::from(state.direction).map(Number),
                 momentum: <[f64; 3]>::from(state.momentum).map(Number),
-                kind: state.passability.as_str(),
+                kind: state.passability.into(),
             })
         });
         Self {
@@ -300,7 +300,7 @@ impl From<&SingularSurface> for SurfaceDocument {
 }
 
 impl FitDocument {
-    fn new(used: PowerLaw, fit: MarketFit, devices: &[Device]) -> Self {
+    fn new(used: PowerLaw, fit: CatalogueFit, devices: &[Device]) -> Self {
         Self {
             used: used.into(),
             published: fit.published.into(),
@@ -350,7 +350,7 @@ impl From<&SizeComparison> for SizeDocument {
 impl From<(&Agility, &Durations)> for ControlDocument {
     fn from((agility, slews): (&Agility, &Durations)) -> Self {
         Self {
-            control: agility.control.as_str(),
+            control: agility.control.into(),
             body_momentum_nms: Number(agility.momentum_nms),
             body_torque_nm: Number(agility.torque_nm),
             rate_rad_s: Number(agility.rate_rad_s),
@@ -363,7 +363,7 @@ impl From<(&Agility, &Durations)> for ControlDocument {
 impl From<&Advantage> for AdvantageDocument {
     fn from(advantage: &Advantage) -> Self {
         Self {
-            control: advantage.control.as_str(),
+            control: advantage.control.into(),
             angle_rad: advantage.angle_rad.map(Number),
             with_cut_off_rad: advantage.with_cut_off_rad.map(Number),
         }
@@ -371,9 +371,9 @@ impl From<&Advantage> for AdvantageDocument {
 }
 
 impl AdvantageCurvesDocument {
-    fn new(study: &Study) -> Self {
+    fn new(study: &ComparisonStudy) -> Self {
         let published = PUBLISHED_ANGLES.iter().map(|angle| PublishedDocument {
-            control: angle.control.as_str(),
+            control: angle.control.into(),
             momentum_nms: Number(angle.momentum_nms),
             angle_rad: Number(angle.angle_deg.to_radians()),
         });
@@ -393,7 +393,7 @@ impl From<&AdvantageCurve> for CurveDocument {
     fn from(curve: &AdvantageCurve) -> Self {
         let angles = curve.angles_rad.iter();
         Self {
-            control: curve.control.as_str(),
+            control: curve.control.into(),
             angles_rad: angles.map(|angle| angle.map(Number)).collect(),
         }
     }

@@ -5,9 +5,9 @@ use crate::documents::number::Number;
 use crate::documents::problems::{ProblemDocument, documents};
 use nalgebra::Vector3;
 use serde::Serialize;
-use slewplan_solver::wheels::allocation::Allocation;
+use slewplan_solver::wheels::allocation::DemandAllocation;
 use slewplan_solver::wheels::array::{EnvelopedArray, Facet, Polytope};
-use slewplan_studies::eigenaxis::EigenaxisSlew;
+use slewplan_studies::eigenaxis::EigenaxisBaseline;
 use slewplan_studies::envelope_path::{EnvelopePath, MomentumSample, TorqueStep};
 use slewplan_studies::envelope_study::{DemandReport, EnvelopeReport, TimeOptimalSlew, TurnReport};
 use utoipa::ToSchema;
@@ -195,7 +195,7 @@ impl ArrayDocument {
 
 impl From<&Polytope> for EnvelopeDocument {
     fn from(polytope: &Polytope) -> Self {
-        let figures = polytope.figures();
+        let figures = polytope.size();
         Self {
             inscribed_radius: Number(figures.inscribed_radius),
             equal_volume_radius: Number(figures.equal_volume_radius),
@@ -234,11 +234,11 @@ impl<'a> From<&'a TurnReport> for TurnDocument<'a> {
     }
 }
 
-impl From<&(EigenaxisSlew, EnvelopePath)> for EigenaxisDocument {
-    fn from((slew, path): &(EigenaxisSlew, EnvelopePath)) -> Self {
+impl From<&(EigenaxisBaseline, EnvelopePath)> for EigenaxisDocument {
+    fn from((slew, path): &(EigenaxisBaseline, EnvelopePath)) -> Self {
         let course = &slew.course;
         Self {
-            limit: slew.limit.as_str(),
+            limit: slew.limit.into(),
             duration_s: Number(course.duration()),
             rate_rad_s: Number(course.rate()),
             acceleration_rad_s2: Number(course.acceleration()),
@@ -254,7 +254,7 @@ impl<'a> From<&'a TimeOptimalSlew> for TimeOptimalDocument<'a> {
     fn from(slew: &'a TimeOptimalSlew) -> Self {
         let found = slew.found.as_ref();
         Self {
-            allocation: slew.allocation.as_str(),
+            allocation: slew.allocation.into(),
             solved: found.is_some(),
             status: &slew.status,
             duration_s: found.map(|(duration, _)| Number(*duration)),
@@ -308,8 +308,8 @@ impl From<&DemandReport> for DemandDocument {
     }
 }
 
-impl From<&Allocation> for AllocationDocument {
-    fn from(allocation: &Allocation) -> Self {
+impl From<&DemandAllocation> for AllocationDocument {
+    fn from(allocation: &DemandAllocation) -> Self {
         Self {
             wheel_torque_nm: Number::all(&allocation.wheels),
             load: Number(allocation.load),

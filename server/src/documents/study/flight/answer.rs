@@ -6,7 +6,7 @@ use crate::documents::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::model::plan::Passage;
 use slewplan_solver::simulation::{PassageError, Saturation, SimulatedState, TrackingError};
-use slewplan_studies::flight::{FlightStudy, FlownOnce, Outcome};
+use slewplan_studies::flight::{FlightStudy, FlightStudyOutcome, SimulatedPlan};
 use utoipa::ToSchema;
 
 /// A plan flown once with a truth that differs from what is believed.
@@ -94,11 +94,15 @@ struct SampleDocument {
 
 impl<'a> FlightAnswerDocument<'a> {
     /// The answer to a request.
-    pub(crate) fn new(study: &'a FlightStudy, flown: &'a Outcome) -> Self {
-        let (status, flight, reasons) = match flown {
-            Outcome::Flown(flown) => ("flown", Some(FlightDocument::new(study, flown)), Vec::new()),
-            Outcome::NoPlan(reasons) => ("no_plan", None, documents(reasons)),
-            Outcome::Stopped => ("stopped", None, Vec::new()),
+    pub(crate) fn new(study: &'a FlightStudy, outcome: &'a FlightStudyOutcome) -> Self {
+        let (status, flight, reasons) = match outcome {
+            FlightStudyOutcome::Simulated(simulated) => (
+                "flown",
+                Some(FlightDocument::new(study, simulated)),
+                Vec::new(),
+            ),
+            FlightStudyOutcome::NoPlan(reasons) => ("no_plan", None, documents(reasons)),
+            FlightStudyOutcome::Stopped => ("stopped", None, Vec::new()),
         };
         Self {
             name: study.scenario.name(),
@@ -111,9 +115,9 @@ impl<'a> FlightAnswerDocument<'a> {
 }
 
 impl<'a> FlightDocument<'a> {
-    fn new(study: &FlightStudy, flown: &'a FlownOnce) -> Self {
-        let simulated = &flown.simulated;
-        let passages = simulated.passages.iter().zip(&flown.plan.passages);
+    fn new(study: &FlightStudy, plan: &'a SimulatedPlan) -> Self {
+        let simulated = &plan.simulated;
+        let passages = simulated.passages.iter().zip(&plan.plan.passages);
         let passage = |(of, planned): (&'a PassageError, &Passage)| PassageDocument {
             target: &of.target,
             time_s: Number(of.time_s),
@@ -122,11 +126,11 @@ impl<'a> FlightDocument<'a> {
         };
         Self {
             number: study.number,
-            plan_status: flown.optimality.map(plan::status),
-            total_time_s: Number(flown.plan.total_time_s),
-            flight_time_s: Number(flown.flight_time_s),
-            tolerance_rad: Number(flown.tolerance_rad),
-            within_tolerance: simulated.end.attitude_rad <= flown.tolerance_rad,
+            plan_status: plan.optimality.map(plan::status),
+            total_time_s: Number(plan.plan.total_time_s),
+            flight_time_s: Number(plan.flight_time_s),
+            tolerance_rad: Number(plan.tolerance_rad),
+            within_tolerance: simulated.end.attitude_rad <= plan.tolerance_rad,
             end: simulated.end.into(),
             plan_end: simulated.plan_end.into(),
             peak: simulated.peak.into(),
@@ -136,8 +140,8 @@ impl<'a> FlightDocument<'a> {
                 .iter()
                 .map(SharesDocument::from)
                 .collect(),
-            sample_period_s: Number(flown.sample_s),
-            keep_every: flown.keep_every,
+            sample_period_s: Number(plan.sample_s),
+            keep_every: plan.keep_every,
             samples: simulated.states.iter().map(SampleDocument::from).collect(),
         }
     }

@@ -1,11 +1,11 @@
-//! Attitude ephemeris messages, read back by a parser that is not ours.
+//! Attitude ephemeris messages, read back by another project's parser.
 
 use super::{closed_form, flight, labelled, options, scenario, stepped, written};
-use crate::render::export::{Format, Options, write};
+use crate::render::export::{ExportOptions, Format, write};
 use ccsds_ndm::messages::aem::Aem;
 use ccsds_ndm::traits::Ndm;
 
-fn both(options: &Options) -> [Aem; 2] {
+fn both(options: &ExportOptions) -> [Aem; 2] {
     [
         Aem::from_kvn(&written(Format::AemKvn, options)).unwrap(),
         Aem::from_xml(&written(Format::AemXml, options)).unwrap(),
@@ -13,7 +13,7 @@ fn both(options: &Options) -> [Aem; 2] {
 }
 
 #[test]
-fn both_forms_say_the_same_and_the_rates_are_in_degrees() {
+fn kvn_and_xml_have_the_same_content_with_rates_in_degrees() {
     for aem in both(&stepped(5.0)) {
         assert_eq!(aem.version, "2.0");
         assert_eq!(aem.body.segment.len(), 3);
@@ -36,7 +36,7 @@ fn both_forms_say_the_same_and_the_rates_are_in_degrees() {
         assert_eq!(metadata.time_system, "UTC");
         assert_eq!(metadata.comment, ["Slew from start to a<1>"]);
         assert_eq!(metadata.object_name, "UNKNOWN");
-        // The next segment begins where this one ends, into the next month.
+        // The next segment begins where this one ends, in the next month.
         assert_eq!(
             metadata.stop_time.to_string(),
             "2026-02-01T00:00:00.000000000"
@@ -46,8 +46,8 @@ fn both_forms_say_the_same_and_the_rates_are_in_degrees() {
 }
 
 #[test]
-fn a_message_can_do_without_rates_and_name_its_object() {
-    let chosen = Options {
+fn a_message_may_leave_rates_out_and_name_its_object() {
+    let chosen = ExportOptions {
         rates: false,
         object_name: Some("Sat & Co".into()),
         object_id: Some("2026-001A".into()),
@@ -66,7 +66,7 @@ fn a_message_can_do_without_rates_and_name_its_object() {
 }
 
 #[test]
-fn the_head_tells_when_and_from_what() {
+fn the_header_has_creation_date_and_originator() {
     let text = written(Format::AemKvn, &stepped(5.0));
     let head: Vec<&str> = text.lines().take(5).collect();
     let expected = [
@@ -85,9 +85,9 @@ fn the_head_tells_when_and_from_what() {
 }
 
 #[test]
-fn without_an_epoch_the_message_says_so() {
+fn a_missing_epoch_is_noted_in_a_comment() {
     assert!(!written(Format::AemKvn, &options()).contains("no epoch"));
-    let text = write(Format::AemKvn, (&scenario(""), &flight()), &options()).unwrap();
+    let text = write(Format::AemKvn, &scenario(""), &flight(), &options()).unwrap();
     assert!(
         text.contains("COMMENT The scenario has no epoch: times count from 2000-01-01T12:00:00")
     );

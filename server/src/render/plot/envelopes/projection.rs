@@ -1,25 +1,25 @@
-//! Envelopes seen from a side, with the ways of slews inside.
+//! A projection of envelopes, with the paths of slews inside.
 
-use super::written::{Array, Polytope};
-use crate::render::plot::canvas::{Canvas, Frame, Ink, LINE, Pen, SERIES, WARM};
+use super::written::{Array, WrittenPolytope};
+use crate::render::plot::canvas::{Canvas, Ink, LINE, Pen, PlotArea, SERIES, WARM};
 use nalgebra::Vector3;
 
-/// From where the body is looked at, in its axes.
+/// Direction of the viewer in body axes.
 const TOWARDS_VIEWER: [f64; 3] = [0.45, -0.8, 0.4];
 /// Share of the frame that the envelope takes.
 const FILLED: f64 = 0.42;
-/// How far beyond the surface the name of an axis is, as a multiple.
+/// Distance of the name of an axis from the centre, as a multiple of that of the surface.
 const BEYOND: f64 = 1.1;
 
-/// A way through an envelope.
-pub(super) struct Way {
+/// A path in an envelope.
+pub(super) struct ProjectedPath {
     pub(super) points: Vec<Vector3<f64>>,
-    /// Whether it is a line; else it jumps from point to point.
+    /// Whether it is continuous; else it jumps from point to point.
     pub(super) joined: bool,
 }
 
-/// From body axes to places in the picture.
-struct View {
+/// The projection from body axes to points of the picture.
+struct EnvelopeView {
     right: Vector3<f64>,
     up: Vector3<f64>,
     near: Vector3<f64>,
@@ -27,8 +27,8 @@ struct View {
     scale: f64,
 }
 
-impl View {
-    fn of(frame: Frame, radius: f64) -> Self {
+impl EnvelopeView {
+    fn of(frame: PlotArea, radius: f64) -> Self {
         let near = Vector3::from(TOWARDS_VIEWER).normalize();
         let right = Vector3::z().cross(&near).normalize();
         Self {
@@ -56,7 +56,7 @@ impl View {
     }
 
     /// The facets of one side.
-    fn outline(&self, canvas: &mut Canvas, of: &Polytope, front: bool, pen: Pen) {
+    fn outline(&self, canvas: &mut Canvas, of: &WrittenPolytope, front: bool, pen: Pen) {
         let facets = of.facets.iter();
         for facet in facets.filter(|facet| self.faces(facet.normal) == front) {
             let corners: Vec<_> = of.corners(facet).map(|corner| self.at(&corner)).collect();
@@ -65,9 +65,9 @@ impl View {
     }
 }
 
-/// Draws both envelopes of an array, and one way per slew in its colour.
-pub(super) fn draw(canvas: &mut Canvas, frame: Frame, array: &Array, ways: &[Way]) {
-    let view = View::of(frame, array.full.greatest_radius);
+/// Draws both envelopes of an array, and one path per slew in its colour.
+pub(super) fn draw(canvas: &mut Canvas, frame: PlotArea, array: &Array, ways: &[ProjectedPath]) {
+    let view = EnvelopeView::of(frame, array.full.greatest_radius);
     let far = Pen::new(LINE, 1.0).dashed().faded(0.7);
     view.outline(canvas, &array.full, false, far);
     axes(canvas, &view, &array.full);
@@ -95,7 +95,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: Frame, array: &Array, ways: &[Way
 }
 
 /// The body axes up to the surface.
-fn axes(canvas: &mut Canvas, view: &View, within: &Polytope) {
+fn axes(canvas: &mut Canvas, view: &EnvelopeView, within: &WrittenPolytope) {
     for (name, axis) in [
         ("x", Vector3::x()),
         ("y", Vector3::y()),

@@ -1,8 +1,8 @@
-//! What a picture of envelopes shows, without looking at it.
+//! Contents of the SVG of a study of envelopes.
 
 use super::{WrittenEnvelopes, svg};
 use crate::documents::study::envelopes::{self, EnvelopeAnswerDocument};
-use crate::render::plot::Document;
+use crate::render::plot::DrawableDocument;
 use serde_json::Value;
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
@@ -32,8 +32,8 @@ const TURN: &str = r#", "turns": [{"from": {"roll_pitch_yaw_deg": [0, 0, 0]},
 fn both_quantities_are_drawn_with_their_slews() {
     let document = answer(TURN);
     assert!(matches!(
-        Document::read(&document),
-        Ok(Document::Envelopes(_))
+        DrawableDocument::read(&document),
+        Ok(DrawableDocument::Envelopes(_))
     ));
     let study = WrittenEnvelopes::read(&document).unwrap();
     let picture = svg(&study, 0).unwrap();
@@ -65,7 +65,7 @@ fn without_turns_and_momentum_there_are_envelopes_of_torque() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused() {
+fn documents_that_cannot_be_drawn_are_refused() {
     let document: Value = serde_json::from_slice(&answer("")).unwrap();
     let refused = |document: &Value| WrittenEnvelopes::read(document.to_string().as_bytes());
     let mut far = document.clone();

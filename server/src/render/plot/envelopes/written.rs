@@ -1,41 +1,41 @@
-//! A study of envelopes as it was written, as far as a picture shows it.
+//! The part of a study of envelopes that is drawn, read from its JSON.
 
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-/// What is read of a study's answer.
+/// The part of the answer that is read.
 #[derive(Debug, Deserialize)]
 pub(crate) struct WrittenEnvelopes {
     pub(super) torque: Array,
     pub(super) momentum: Option<Array>,
-    pub(super) turns: Vec<Turn>,
+    pub(super) turns: Vec<WrittenTurn>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Array {
     pub(super) unit: String,
-    pub(super) full: Polytope,
-    pub(super) pseudo_inverse: Polytope,
+    pub(super) full: WrittenPolytope,
+    pub(super) pseudo_inverse: WrittenPolytope,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Polytope {
+pub(super) struct WrittenPolytope {
     pub(super) inscribed_radius: f64,
     pub(super) equal_volume_radius: f64,
     pub(super) greatest_radius: f64,
     pub(super) vertices: Vec<[f64; 3]>,
-    pub(super) facets: Vec<Facet>,
+    pub(super) facets: Vec<WrittenFacet>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Facet {
+pub(super) struct WrittenFacet {
     pub(super) normal: [f64; 3],
     distance: f64,
     vertices: Vec<usize>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Turn {
+pub(super) struct WrittenTurn {
     pub(super) angle_rad: f64,
     pub(super) axis: [f64; 3],
     eigenaxis: Vec<Eigenaxis>,
@@ -46,18 +46,18 @@ pub(super) struct Turn {
 struct Eigenaxis {
     limit: String,
     duration_s: f64,
-    path: Path,
+    path: WrittenPath,
 }
 
 #[derive(Debug, Deserialize)]
 struct TimeOptimal {
     allocation: String,
     duration_s: Option<f64>,
-    path: Option<Path>,
+    path: Option<WrittenPath>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Path {
+pub(super) struct WrittenPath {
     momentum: Vec<Momentum>,
     torque: Vec<Torque>,
 }
@@ -77,20 +77,20 @@ struct Torque {
     vector: [f64; 3],
 }
 
-/// What is drawn of a slew.
+/// The drawn part of a slew.
 #[derive(Debug)]
-pub(super) struct Slew<'a> {
+pub(super) struct WrittenEnvelopeSlew<'a> {
     pub(super) name: &'static str,
     pub(super) duration_s: f64,
-    path: &'a Path,
+    path: &'a WrittenPath,
 }
 
 impl WrittenEnvelopes {
-    /// Reads the answer to a study.
+    /// Reads the answer to a study of envelopes.
     ///
     /// # Errors
     ///
-    /// A sentence, when it is none that can be drawn.
+    /// A message, when it cannot be drawn.
     pub(crate) fn read(document: &[u8]) -> Result<Self, String> {
         let study: Self = serde_json::from_slice(document)
             .map_err(|error| format!("not a study that can be drawn: {error}"))?;
@@ -104,18 +104,18 @@ impl WrittenEnvelopes {
     }
 }
 
-impl Polytope {
+impl WrittenPolytope {
     fn is_sound(&self) -> bool {
-        let known = |facet: &Facet| {
+        let known = |facet: &WrittenFacet| {
             let corners = &facet.vertices;
             corners.len() > 2 && corners.iter().all(|&i| i < self.vertices.len())
         };
-        let around = |facet: &Facet| facet.distance > 0.0;
+        let around = |facet: &WrittenFacet| facet.distance > 0.0;
         self.facets.len() > 3 && self.facets.iter().all(|it| known(it) && around(it))
     }
 
     /// The corners of a facet.
-    pub(super) fn corners(&self, facet: &Facet) -> impl Iterator<Item = Vector3<f64>> {
+    pub(super) fn corners(&self, facet: &WrittenFacet) -> impl Iterator<Item = Vector3<f64>> {
         facet.vertices.iter().map(|&i| self.vertices[i].into())
     }
 
@@ -129,12 +129,12 @@ impl Polytope {
     }
 }
 
-impl Turn {
-    /// The slews that are worth comparing, as far as they are there.
-    pub(super) fn slews(&self) -> Vec<Slew<'_>> {
+impl WrittenTurn {
+    /// The slews that are compared, as far as they were solved.
+    pub(super) fn slews(&self) -> Vec<WrittenEnvelopeSlew<'_>> {
         let about = |limit: &str, name| {
             let found = self.eigenaxis.iter().find(|slew| slew.limit == limit)?;
-            Some(Slew {
+            Some(WrittenEnvelopeSlew {
                 name,
                 duration_s: found.duration_s,
                 path: &found.path,
@@ -143,7 +143,7 @@ impl Turn {
         let fastest = |allocation: &str, name| {
             let mut slews = self.time_optimal.iter();
             let found = slews.find(|slew| slew.allocation == allocation)?;
-            Some(Slew {
+            Some(WrittenEnvelopeSlew {
                 name,
                 duration_s: found.duration_s?,
                 path: found.path.as_ref()?,
@@ -159,14 +159,14 @@ impl Turn {
     }
 }
 
-impl Slew<'_> {
-    /// Momenta at their times, straight in between.
+impl WrittenEnvelopeSlew<'_> {
+    /// Momenta at their times, joined by straight lines.
     pub(super) fn momenta(&self) -> Vec<(f64, Vector3<f64>)> {
         let samples = self.path.momentum.iter();
         samples.map(|it| (it.time_s, it.vector.into())).collect()
     }
 
-    /// Torques at both ends of the times in which they are constant.
+    /// Torques at both ends of the intervals in which they are constant.
     pub(super) fn torques(&self) -> Vec<(f64, Vector3<f64>)> {
         let steps = self.path.torque.iter().filter(|it| it.duration_s > 0.0);
         let ends = steps.flat_map(|it| {

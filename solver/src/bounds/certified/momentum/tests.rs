@@ -1,4 +1,4 @@
-//! Nothing that the wheels can do leaves the boxes.
+//! Reachable motions stay within the boxes.
 
 use super::*;
 use crate::bounds::certified::CertifiedBounds;
@@ -9,11 +9,11 @@ use crate::model::scenario::reference::experiment_a;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::waypoint::{Waypoint, WheelCondition};
 
-/// Excess over a box that is rounding, relative.
+/// Tolerance for rounding of a box, relative.
 const ROUNDING: f64 = 1e-12;
 
-/// A state that the limits admit, with the torques: rate, its derivative and the momentum, all in body
-/// axes. Wheels and torques are at their limits more often than not.
+/// Rate, its derivative and the momentum of a random state and torques within the limits, all in
+/// body axes; `None` if the rate exceeds its limits. Speeds and torques are mostly at their limits.
 fn motion(dynamics: &Dynamics, random: &mut SplitMix) -> Option<[Vector3<f64>; 3]> {
     let extreme = |random: &mut SplitMix, low: f64, high: f64| match random.below(3) {
         0 => low,
@@ -40,28 +40,28 @@ fn motion(dynamics: &Dynamics, random: &mut SplitMix) -> Option<[Vector3<f64>; 3
     let allowed = rate
         .iter()
         .zip(&dynamics.max_rate)
-        .all(|(w, most)| w.abs() <= *most)
+        .all(|(w, limit)| w.abs() <= *limit)
         && rate.norm() <= dynamics.max_rate_norm;
     let change = dynamics.inertia_inverse * (-rate.cross(&held) - torque);
     allowed.then_some([rate, change, held])
 }
 
-/// Shares of the box's sides that a vector has at most.
-fn share(vector: &Vector3<f64>, most: &Vector3<f64>) -> f64 {
-    vector.component_div(most).amax()
+/// Largest ratio of a vector's component to the box's limit.
+fn share(vector: &Vector3<f64>, limits: &Vector3<f64>) -> f64 {
+    vector.component_div(limits).amax()
 }
 
 #[test]
-fn no_motion_leaves_a_box_and_the_boxes_are_not_idle() {
+fn no_motion_leaves_a_box_and_some_motions_nearly_fill_it() {
     let mut random = SplitMix::new(20);
-    // Of boxes of all rates, and relative to a drift.
+    // For the boxes of all rates, and for those relative to a drift.
     let (mut fullest, mut samples) = ([[0.0_f64; 2]; 2], 0);
     for case in 0..60 {
         let scenario = spacecraft(&mut random, case % 3 > 0);
-        let dynamics = Dynamics::of(&scenario);
+        let dynamics = scenario.dynamics();
         let bounds = CertifiedBounds::of(&dynamics);
         let drifting = bounds.momentum.iter().flat_map(|bounds| &bounds.frames);
-        let boxes: Vec<(Frame, f64)> = drifting
+        let boxes: Vec<(BodyFrame, f64)> = drifting
             .map(|drifting| (drifting.frame, drifting.share))
             .chain(bounds.frames.iter().map(|frame| (*frame, 0.0)))
             .collect();
@@ -89,19 +89,19 @@ fn no_motion_leaves_a_box_and_the_boxes_are_not_idle() {
         }
     }
     assert!(samples > 50_000, "{samples}");
-    let idle = fullest.iter().flatten().any(|share| *share < 0.98);
-    assert!(!idle, "{fullest:?}");
+    let loose = fullest.iter().flatten().any(|share| *share < 0.98);
+    assert!(!loose, "{fullest:?}");
 }
 
 #[test]
-fn axes_that_differ_are_all_tried() {
-    let frames = |scenario: &Scenario| CertifiedBounds::of(&Dynamics::of(scenario)).frames.len();
+fn body_axes_and_wheel_axes_are_both_used_where_they_differ() {
+    let frames = |scenario: &Scenario| CertifiedBounds::of(&scenario.dynamics()).frames.len();
     let orthogonal = Scenario::try_new(&experiment_a()).expect("valid").scenario;
     assert_eq!(frames(&orthogonal), 1);
     let mut random = SplitMix::new(23);
     let all = (0..20).map(|_| spacecraft(&mut random, false));
-    // A locked wheel may turn.
-    let still = all.filter(|scenario| !Dynamics::of(scenario).has_momentum());
+    // A locked wheel may spin and have momentum.
+    let still = all.filter(|scenario| !scenario.dynamics().has_momentum());
     let counts: Vec<_> = still.map(|scenario| frames(&scenario)).collect();
     assert!(
         counts.len() > 5 && counts.iter().all(|frames| *frames == 2),
@@ -110,7 +110,7 @@ fn axes_that_differ_are_all_tried() {
 }
 
 #[test]
-fn conditions_at_an_end_admit_no_rate_beyond_their_bound() {
+fn the_limit_of_an_end_rate_is_valid_and_tight() {
     let mut random = SplitMix::new(21);
     for _ in 0..500 {
         let ends = [0, 1, 2].map(|_| match random.below(3) {
@@ -122,7 +122,7 @@ fn conditions_at_an_end_admit_no_rate_beyond_their_bound() {
             _ => {
                 let (one, other) = (random.normal(), random.normal());
                 let (low, high) = (one.min(other), one.max(other));
-                // The ends of the range are what is most often forgotten.
+                // The ends of the range are tested as often as its inside.
                 let rate = [low, high, between(&mut random, low, high)][random.below(3)];
                 (RateCondition::Within(low, high), rate)
             }
@@ -131,17 +131,17 @@ fn conditions_at_an_end_admit_no_rate_beyond_their_bound() {
             attitude: Attitude::identity(),
             rate: ends.map(|(condition, _)| condition),
             wheels: WheelCondition::Free,
-            price: None,
+            costates: None,
         };
-        let most = crate::bounds::certified::most(&waypoint);
+        let limits = crate::bounds::certified::rate_limits(&waypoint);
         for (axis, (condition, rate)) in ends.iter().enumerate() {
-            assert!(rate.abs() <= most[axis], "{condition:?} admits {rate}");
+            assert!(rate.abs() <= limits[axis], "{condition:?} admits {rate}");
             let tight = match condition {
                 RateCondition::Within(low, high) => low.abs().max(high.abs()),
                 RateCondition::Fixed(rate) => rate.abs(),
                 RateCondition::Free => f64::INFINITY,
             };
-            assert!(most[axis] <= tight, "{condition:?}: {}", most[axis]);
+            assert!(limits[axis] <= tight, "{condition:?}: {}", limits[axis]);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Intervals, turns and the integral contain what they should, and not much more.
+//! Enclosures by intervals, turns and the integral are valid and tight.
 
 use super::super::interval::{Interval, twice_asin_of_root};
 use super::super::link;
@@ -9,10 +9,10 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-/// Widest enclosure that a few operations on exact numbers may give.
+/// Largest width of an enclosure after a few operations on exact numbers.
 const SHARP: f64 = 1e-13;
 
-/// A real number as the double next to it and the sign of what is missing to it.
+/// A real number as its nearest double and the sign of the difference.
 #[derive(Debug, Clone, Copy)]
 struct Exact {
     nearest: f64,
@@ -20,7 +20,8 @@ struct Exact {
 }
 
 impl Exact {
-    /// Two-sum: what a sum loses is a double (Knuth, The Art of Computer Programming 2, 4.2.2).
+    /// Two-sum: the rounding error of a sum is a double (Knuth, The Art of Computer Programming 2,
+    /// 4.2.2).
     fn sum(a: f64, b: f64) -> Self {
         let nearest = a + b;
         let of_b = nearest - a;
@@ -28,7 +29,7 @@ impl Exact {
         Self { nearest, missing }
     }
 
-    /// What a product loses is a double, and a fused multiplication finds it.
+    /// The rounding error of a product is a double, which a fused multiply-add computes.
     fn product(a: f64, b: f64) -> Self {
         let nearest = a * b;
         let missing = a.mul_add(b, -nearest);
@@ -70,8 +71,8 @@ fn assert_encloses(interval: Interval, x: f64) {
 }
 
 #[test]
-fn pi_and_thirds_are_between_neighbours() {
-    // The double next to pi is 1.2e-16 less.
+fn pi_and_thirds_are_enclosed() {
+    // The double nearest to pi is 1.2e-16 less.
     assert_eq!(Interval::PI.low.to_bits(), PI.to_bits());
     assert_eq!(Interval::PI.high.to_bits(), PI.next_up().to_bits());
     let third = Interval::ONE / Interval::exactly(3.0);
@@ -83,7 +84,7 @@ fn pi_and_thirds_are_between_neighbours() {
 }
 
 #[test]
-fn a_box_about_the_origin_is_seen_everywhere() {
+fn the_angle_of_a_box_about_the_origin_is_the_whole_circle() {
     let wide = Interval::around(0.0, 1e-3);
     let angle = Interval::angle(wide, Interval::exactly(1e-4));
     assert!(angle.high - angle.low >= 2.0 * PI);
@@ -91,7 +92,7 @@ fn a_box_about_the_origin_is_seen_everywhere() {
 
 proptest! {
     #[test]
-    fn operations_on_numbers_enclose_what_is_exact(x in -3.0..3.0_f64, y in -3.0..3.0_f64) {
+    fn operations_on_numbers_enclose_the_exact_results(x in -3.0..3.0_f64, y in -3.0..3.0_f64) {
         prop_assume!(x != 0.0 && y != 0.0);
         let (a, b) = (Interval::exactly(x), Interval::exactly(y));
         let size = x.abs();
@@ -159,7 +160,7 @@ proptest! {
         let expected = both.to_reference(v.into());
         for i in 0..3 {
             assert_encloses(rotated[i], expected[i]);
-            // Swing is the angle by which the axis is moved; twist and swing make up the turn.
+            // Swing is the angle by which the axis moves; twist and swing together give the turn.
             let axis = Vector3::ith(i, 1.0);
             let moved = both.to_reference(axis).dot(&axis);
             prop_assert!((swing(&product, i).middle().cos() - moved).abs() < 1e-12);
@@ -170,7 +171,7 @@ proptest! {
     }
 
     #[test]
-    fn integrals_are_those_of_sums(
+    fn the_bound_on_the_integral_agrees_with_a_sum(
         rates in prop::array::uniform3(0.1..1.0_f64),
         ramps in prop::array::uniform3(0.1..3.0_f64),
         narrowed in prop::array::uniform3(0.2..1.0_f64),
@@ -189,16 +190,16 @@ proptest! {
             end_rad_s: Vector3::from_fn(|i, _| end(ends[3 + i]) * rates[i]),
         };
         let p = rates.component_mul(&Vector3::from(narrowed));
-        let integrand = |t: f64| (0..3).fold(0.0, |most, i| {
+        let integrand = |t: f64| (0..3).fold(0.0, |largest, i| {
             let a = limits.accelerations_rad_s2[i];
             let m = rates[i].min(bounds.begin_rad_s[i] + a * t).min(bounds.end_rad_s[i] + a * (duration - t));
-            f64::max(most, m / p[i])
+            f64::max(largest, m / p[i])
         });
         let steps = 20_000;
         let step = duration / f64::from(steps);
         let sum = (0..steps).map(|k| integrand((f64::from(k) + 0.5) * step)).sum::<f64>() * step;
         let bound = link::at_most(&limits, &bounds, &p, duration);
-        // The sum is of second order, and of first at few kinks.
+        // The sum is accurate to second order, and to first order at the few kinks.
         prop_assert!((bound / sum - 1.0).abs() < 1e-6, "{} against {}", bound, sum);
     }
 }

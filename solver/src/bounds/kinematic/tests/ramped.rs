@@ -65,7 +65,7 @@ fn equal_ramps_have_closed_forms() {
 }
 
 #[test]
-fn tours_ramp_once() {
+fn the_ramps_of_a_tour_with_free_targets_count_once() {
     let turns = [
         turn([0.5, 0.2, -1.0]),
         turn([1.0, -0.4, 0.3]),
@@ -82,8 +82,8 @@ fn tours_ramp_once() {
 }
 
 #[test]
-fn pure_turns_of_a_stopped_axis_pay_for_their_ramps() {
-    // Turning about z alone, with z the only component that is stopped.
+fn a_turn_about_a_stopped_axis_includes_its_ramps() {
+    // A turn about z, with z the only component that is stopped.
     let limits = equal([1.0, 1.0, 1.0], 0.2);
     let z_only = ends([FREE, FREE, 0.0], [FREE, FREE, 0.0]);
     let plain = rate_box([1.0; 3]).lower_bound(&turn([0.0, 0.0, 0.6]), 1e-6);
@@ -91,15 +91,15 @@ fn pure_turns_of_a_stopped_axis_pay_for_their_ramps() {
     assert!(bound > plain + 0.05, "{bound} is hardly more than {plain}");
 }
 
-/// Rates anywhere within limits.
+/// Random rates within limits.
 fn share_of(limits: &SlewLimits, generator: &mut Generator) -> Vector3<f64> {
     limits
         .rates_rad_s
         .component_mul(&Vector3::from(generator.vector(-1.0, 1.0)))
 }
 
-/// A ramped motion: rates go linearly between values within the limits, fast enough to keep to the
-/// accelerations; with its duration, end rates and where it leads.
+/// Duration, end rates and final attitude of a random ramped motion: rates change linearly between
+/// values within the limits, slowly enough for the limits of the accelerations.
 fn ramped_motion(generator: &mut Generator, limits: &SlewLimits) -> (f64, EndRates, Attitude) {
     let mut rate = share_of(limits, generator);
     if generator.below(3) == 0 {
@@ -145,12 +145,12 @@ fn no_ramped_motion_beats_the_bound() {
             closest = f64::max(closest, least / duration);
         }
     }
-    assert!(closest > 0.3, "the bounds are idle: {closest}");
+    assert!(closest > 0.3, "the bounds are loose: {closest}");
 }
 
 #[test]
-fn single_axis_slews_at_rest_are_exact() {
-    // About one axis, a triangle or a trapezoid of the rate is optimal and well known.
+fn bounds_on_single_axis_rest_to_rest_slews_are_nearly_exact() {
+    // About one axis the optimal rate is a triangle or a trapezoid.
     let limits = SlewLimits {
         rates_rad_s: Vector3::new(1.0, 0.05, 0.05),
         accelerations_rad_s2: Vector3::new(0.5, 0.025, 0.025),
@@ -192,7 +192,7 @@ fn bad_limits_are_refused() {
 }
 
 #[test]
-fn without_drift_the_march_arrives_at_the_bound() {
+fn the_bound_with_zero_drift_equals_the_bound_without() {
     let limits = SlewLimits {
         rates_rad_s: Vector3::new(1.0, 0.8, 0.6),
         accelerations_rad_s2: Vector3::new(0.4, 1.0, 2.0),
@@ -219,11 +219,11 @@ fn no_drifting_motion_beats_the_bound() {
     for _ in 0..60 {
         let (duration, ends, relative) = ramped_motion(&mut generator, &limits);
         let drift = Vector3::from(generator.direction()) * generator.between(0.0, 0.5);
-        // The drift adds its turn in space to that of the relative motion.
+        // The turn of the drift in space precedes that of the relative motion.
         let target = Attitude::from_rotation_vector(drift * duration).then_in_body(&relative);
         let least = any.drifting_lower_bound_s(&target, &drift, ends, 1e-4);
         assert!(least <= duration, "{least} against {duration}, {ends:?}");
-        // A box that holds the drift in all directions has shorter times.
+        // A plain box that contains the drift in all directions gives a weaker bound.
         let wider = SlewLimits {
             rates_rad_s: limits.rates_rad_s.add_scalar(drift.norm()),
             ..limits
@@ -238,8 +238,8 @@ fn no_drifting_motion_beats_the_bound() {
 }
 
 #[test]
-fn a_turn_along_the_drift_is_made_by_both() {
-    // About the one fast axis: rates of 1 and of the drift make a radian.
+fn a_turn_along_the_drift_takes_the_time_of_the_summed_rates() {
+    // About the only fast axis, at the rate 1 plus the drift.
     let limits = equal([1.0, 0.05, 0.05], 1e-6);
     let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
     for drift in [0.5, -0.5] {

@@ -1,5 +1,5 @@
-//! Least times by an independent implementation (branch and bound by bisection over every word, without
-//! any pruning of words): rates, then rotation vectors in rad with lower and upper value.
+//! Least times from an independent implementation (bisection over every sequence, without pruning
+//! of sequences): rates, then rotation vectors in rad with lower and upper values.
 
 /// A rotation vector, rad, with the lower and upper value of its least time, s.
 type Row = ([f64; 3], f64, f64);

@@ -1,4 +1,4 @@
-//! The flight that always exists.
+//! The constructed leg, which exists wherever the wheels can hold the momentum.
 
 use super::*;
 use crate::leg::multiphase::keeps_limits_inside;
@@ -47,7 +47,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn inside_the_sphere_every_turn_can_be_flown(
+    fn inside_the_sphere_every_turn_is_constructed(
         count in 3_usize..7,
         rise in 0.3_f64..1.1,
         share in 0.0_f64..0.97,
@@ -70,13 +70,13 @@ proptest! {
             attitude,
             rate: [RateCondition::Fixed(rate * limit), RateCondition::Free, RateCondition::Fixed(0.0)],
             wheels: WheelCondition::Free,
-            price: None,
+            costates: None,
         };
-        // Of rates at the ends as much as the wheels have room for.
+        // Rates at the ends only where the wheels can hold their momentum too.
         let room = if share < 0.6 { 1.0 } else { 0.0 };
         let from = end(Attitude::identity(), rates[0] * room);
         let to = end(Attitude::from_rotation_vector(turn.into()), -rates[1] * room);
-        let slew = LegProblem {
+        let leg = LegProblem {
             dynamics: &dynamics,
             from: &from,
             to: &to,
@@ -85,10 +85,10 @@ proptest! {
             extremals: &KinematicExtremals::of(&dynamics),
             resolution: Resolution::of(Accuracy::Standard, &dynamics),
         };
-        let flown = steered(&slew).expect("a flight");
-        let profile = &flown.profile;
+        let solution = steered(&leg).expect("a solution");
+        let profile = &solution.profile;
         let last = profile.intervals();
-        prop_assert_eq!(&flown.intervals, &vec![last]);
+        prop_assert_eq!(&solution.intervals, &vec![last]);
         prop_assert!(profile.attitudes[last].turn_to(&to.attitude).angle_to(&Attitude::identity()) < 1e-9);
         for (node, place) in [(0, &from), (last, &to)] {
             let rate = dynamics.rate(&profile.attitudes[node], &profile.wheels[node]);

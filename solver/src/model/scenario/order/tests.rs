@@ -1,4 +1,4 @@
-//! Positions and precedences that make no sense, alone or together.
+//! Positions and precedences that are invalid, alone or together.
 
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
@@ -9,7 +9,7 @@ fn demand(spec: &mut ScenarioSpec, target: usize, position: Option<usize>, after
     spec.targets[target].after = after.iter().map(ToString::to_string).collect();
 }
 
-/// What is wrong with experiment A under demands: index, position and predecessors.
+/// The problems of experiment A with rules, given as index, position and predecessors.
 fn faults(demands: &[(usize, Option<usize>, &[&str])]) -> Vec<(String, String)> {
     let mut spec = experiment_a();
     for (target, position, after) in demands {
@@ -32,7 +32,7 @@ fn expect_fault(demands: &[(usize, Option<usize>, &[&str])], pointer: &str, word
 }
 
 #[test]
-fn demands_arrive_as_rules_on_indices() {
+fn positions_and_precedences_become_rules_on_indices() {
     let mut spec = experiment_a();
     demand(&mut spec, 0, Some(3), &[]);
     demand(&mut spec, 4, None, &["a", "f"]);
@@ -44,7 +44,7 @@ fn demands_arrive_as_rules_on_indices() {
     assert!(!rules.is_free());
     let free = Scenario::try_new(&experiment_a()).unwrap().scenario;
     assert!(free.order_rules().is_free());
-    // The last place has the due date of all.
+    // The due date of the last place holds for all targets.
     for place in 1..=6 {
         let mut spec = experiment_a();
         demand(&mut spec, 2, Some(place), &[]);
@@ -54,7 +54,7 @@ fn demands_arrive_as_rules_on_indices() {
 }
 
 #[test]
-fn each_position_is_one_of_the_places_and_given_once() {
+fn each_position_is_within_the_targets_and_given_once() {
     for place in [0, 7, usize::MAX] {
         expect_fault(
             &[(2, Some(place), &[])],
@@ -100,8 +100,8 @@ fn every_circle_is_named_once() {
 }
 
 #[test]
-fn demands_that_only_together_admit_no_order_are_refused() {
-    // Two targets between two places that are next to each other.
+fn valid_rules_that_together_admit_no_order_are_refused() {
+    // Two targets between two adjacent places.
     let between = [
         (0, Some(2), &[][..]),
         (1, None, &["a"]),
@@ -113,12 +113,12 @@ fn demands_that_only_together_admit_no_order_are_refused() {
         "/targets/2/after",
         "\"c\" has to be among the first 3",
     );
-    // A place that comes before that of a predecessor.
+    // A place before that of a predecessor.
     let late = [(0, Some(1), &["b"][..])];
     expect_fault(&late, "/targets/1", "no place is left for \"b\" ahead");
     let late = [(0, Some(3), &["b"][..]), (1, Some(4), &[])];
     expect_fault(&late, "/targets/1/position", "among the first 2");
-    // Nobody may begin.
+    // No target may be the first.
     let all: Vec<_> = (1..6).map(|target| (target, None, &["a"][..])).collect();
     let begun = [&[(0, Some(2), &[][..])], &*all].concat();
     expect_fault(&begun, "/targets", "at position 1");

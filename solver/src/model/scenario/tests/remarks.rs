@@ -1,4 +1,4 @@
-//! What is said beside the problems: hints and warnings.
+//! Hints and warnings.
 
 use super::*;
 
@@ -25,7 +25,7 @@ fn the_hint_for_an_unknown_boresight_stays_short() {
 }
 
 #[test]
-fn rounded_quaternions_warn_at_their_place() {
+fn rounded_quaternions_warn_with_their_pointer() {
     let mut spec = valid();
     spec.targets[0].attitude = AttitudeSpec::Quaternion([0.13, 0.01137, 0.08641, 0.9877]);
     let warnings = Scenario::try_new(&spec).unwrap().warnings;
@@ -35,7 +35,7 @@ fn rounded_quaternions_warn_at_their_place() {
 }
 
 #[test]
-fn warnings_come_with_the_problems() {
+fn warnings_are_returned_with_the_problems() {
     let mut spec = valid();
     spec.targets[0].attitude = AttitudeSpec::Quaternion([0.13, 0.01137, 0.08641, 0.9877]);
     spec.options.alternatives = 1000;

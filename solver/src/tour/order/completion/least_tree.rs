@@ -1,21 +1,21 @@
-//! Least spanning trees (Prim 1957, Dijkstra 1959) and least outer edges.
+//! Minimum spanning trees (Prim 1957, Dijkstra 1959) and cheapest outer edges.
 
 /// An edge of a tree.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::tour::order) struct Edge {
-    /// The two ends, by their places in the list.
+    /// The two ends, by their positions in the list.
     pub(in crate::tour::order) ends: [usize; 2],
-    /// What it weighs.
+    /// Its weight.
     pub(in crate::tour::order) weight: f64,
 }
 
-/// The edges of a least spanning tree of a complete graph. Every edge comes after the one that
-/// joins its first end to the tree; the tree begins with place 0.
+/// The edges of a minimum spanning tree of a complete graph. The tree begins with position 0; every
+/// edge comes after the one that joins its first end to the tree.
 pub(in crate::tour::order) fn least_tree(
     count: usize,
     weight: impl Fn(usize, usize) -> f64,
 ) -> Vec<Edge> {
-    // For each place outside the tree: the lightest edge into the tree and where it ends.
+    // For each position outside the tree: weight and other end of the lightest edge to the tree.
     let mut link = vec![(f64::INFINITY, 0); count];
     let mut outside: Vec<usize> = (1..count).collect();
     let mut edges = Vec::with_capacity(outside.len());
@@ -41,7 +41,7 @@ pub(in crate::tour::order) fn least_tree(
     edges
 }
 
-/// Place in the list and weight of the lightest target; the first among equals.
+/// Position in the list and weight of the lightest target; the first among equals.
 pub(in crate::tour::order) fn cheapest(
     remaining: &[usize],
     weight: impl Fn(usize) -> f64,

@@ -4,19 +4,19 @@
 //! `j` is any target that the rules admit once all but `R` have been visited; infinite where there
 //! is none.
 
-use super::{EXACT_TARGETS, LegCosts};
+use super::{LegCosts, MAX_EXACT_TARGETS};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 
-/// Sets between two looks at the stop signal: about a millisecond.
-const SETS_PER_LOOK: usize = 1 << 12;
+/// Sets between two polls of the stop signal: about a millisecond.
+const SETS_PER_POLL: usize = 1 << 12;
 
 /// `rest(i, R)` for every target and every set of others, s.
 #[derive(Debug)]
 pub struct SubsetTable {
     targets: usize,
-    /// Entry `from * 2^targets + set`, sets as bit masks; unused where the set holds `from`. In this
-    /// order the table is filled along a few lines of memory at once.
+    /// Entry `from * 2^targets + set`, sets as bit masks; unused where the set holds `from`. With
+    /// this layout the table is filled sequentially in memory.
     rest: Vec<f64>,
     admitted: Admitted,
 }
@@ -24,9 +24,9 @@ pub struct SubsetTable {
 /// The rules on sets as bit masks.
 #[derive(Debug)]
 pub(in crate::tour::order) struct Admitted {
-    /// The targets that may take each place, whatever has been visited before.
+    /// For each position of the order, the targets that may take it.
     at: Vec<usize>,
-    /// Every target that comes after others, with the set of these.
+    /// Every target with predecessors, and the set of these.
     before: Vec<(usize, usize)>,
 }
 
@@ -43,7 +43,8 @@ impl Admitted {
         }
     }
 
-    /// The targets of a set that may come next when exactly the others have been visited.
+    /// The targets of a set that may come next when exactly the targets outside it have been
+    /// visited.
     pub(in crate::tour::order) fn next(&self, set: usize) -> usize {
         let place = self.at.len() - set.count_ones() as usize;
         let here = self.at.get(place).map_or(0, |targets| targets & set);
@@ -58,7 +59,8 @@ impl SubsetTable {
     pub fn new(costs: &impl LegCosts, rules: &OrderRules, stop: &StopSignal) -> Option<Self> {
         let targets = costs.targets();
         let admitted = Admitted::of(rules, targets);
-        // Piece by piece: the memory of a large table takes as long to get as its numbers.
+        // In parts, so that the stop signal is polled: allocating a large table takes as long as
+        // filling it.
         let mut rest = Vec::with_capacity(targets << targets);
         for _ in 0..targets {
             if stop.is_set() {
@@ -66,7 +68,7 @@ impl SubsetTable {
             }
             rest.resize(rest.len() + (1 << targets), f64::INFINITY);
         }
-        let legs: Vec<[f64; EXACT_TARGETS]> = (0..targets)
+        let legs: Vec<[f64; MAX_EXACT_TARGETS]> = (0..targets)
             .map(|from| row(targets, |to| costs.cost(from, to)))
             .collect();
         let place = |from: usize, set: usize| (from << targets) + set;
@@ -75,10 +77,10 @@ impl SubsetTable {
         }
         // A set is greater, as a number, than its subsets.
         for set in 1..1_usize << targets {
-            if set % SETS_PER_LOOK == 0 && stop.is_set() {
+            if set % SETS_PER_POLL == 0 && stop.is_set() {
                 return None;
             }
-            let mut after = [f64::INFINITY; EXACT_TARGETS];
+            let mut after = [f64::INFINITY; MAX_EXACT_TARGETS];
             for to in members(admitted.next(set)) {
                 after[to] = rest[place(to, set & !(1 << to))];
             }
@@ -113,8 +115,8 @@ impl SubsetTable {
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Shortest path from a place through the remaining targets and to the end, s; infinite when the
-    /// rules admit none.
+    /// Length of the shortest path from a place through the remaining targets and to the end, s;
+    /// infinite when the rules admit none.
     #[must_use]
     pub fn bound(&self, costs: &impl LegCosts, from: usize, remaining: &[usize]) -> f64 {
         let set = mask(remaining.iter().copied());
@@ -125,16 +127,16 @@ impl SubsetTable {
         }
     }
 
-    /// Shortest path through the remaining targets, of which there is at least one, and to the end,
-    /// s, when entering the first of them has a cost of its own.
+    /// Length of the shortest path through the remaining targets, of which there is at least one,
+    /// and to the end, s, when the leg into the first of them has the cost `first`.
     #[must_use]
     pub fn entered(&self, remaining: &[usize], first: impl Fn(usize) -> f64) -> Option<f64> {
         let set = mask(remaining.iter().copied());
         self.next(set, first).map(|(_, rest)| rest)
     }
 
-    /// A shortest order of the remaining targets in the table, seen from a place, of which there
-    /// is at least one.
+    /// The order of the remaining targets, of which there is at least one, on a shortest path from
+    /// a place.
     #[must_use]
     pub fn shortest_order(
         &self,
@@ -154,18 +156,21 @@ impl SubsetTable {
     }
 }
 
-/// A number for every target, and infinity beyond the last.
-fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; EXACT_TARGETS] {
-    let mut row = [f64::INFINITY; EXACT_TARGETS];
+/// A row with an entry for every target, and infinity beyond the last.
+fn row(targets: usize, entry: impl Fn(usize) -> f64) -> [f64; MAX_EXACT_TARGETS] {
+    let mut row = [f64::INFINITY; MAX_EXACT_TARGETS];
     for (to, slot) in row.iter_mut().enumerate().take(targets) {
         *slot = entry(to);
     }
     row
 }
 
-/// The least sum of two entries at the same place; four at a time, which halves the time that the
-/// whole table takes.
-pub(in crate::tour::order) fn least_sum(a: &[f64; EXACT_TARGETS], b: &[f64; EXACT_TARGETS]) -> f64 {
+/// The least sum of two entries at the same position. Four lanes at a time halve the time for the
+/// whole table.
+pub(in crate::tour::order) fn least_sum(
+    a: &[f64; MAX_EXACT_TARGETS],
+    b: &[f64; MAX_EXACT_TARGETS],
+) -> f64 {
     let mut least = [f64::INFINITY; 4];
     for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
         for lane in 0..4 {

@@ -2,34 +2,33 @@
 //! by local search, from one good order to the next.
 //!
 //! A *kick* is a double bridge of three short segments. No move of the local search undoes it, and
-//! only the places at its joints are looked at again, so that it takes tens of microseconds at 200
-//! targets. An order that is worse than the best by little is kept all the same, less so towards the
-//! end of a run.
+//! only the places at its joints are searched again, so that a kick takes tens of microseconds at
+//! 200 targets. An order slightly worse than the best is accepted, with a tolerance that falls to
+//! zero towards the end of a run.
 //!
-//! Measured on ten tables of random attitudes of the whole sphere each (5 s and 30 s per radian, one
-//! core), above the bound of the spanning trees in the mean and at most: after 100 kicks per target
-//! 0.24 and 0.63 % at 50 targets (0.07 s), 0.20 and 0.38 % at 100 (0.18 s), 0.31 and 0.53 % at 200
-//! (0.4 s); local search alone 2.1 to 2.5 and 3.7 %. With other costs in either direction (200
-//! targets) as many kicks end 0.2 % above eight times as many.
+//! Accuracy on ten tables of attitudes distributed over the sphere, as excess over the spanning
+//! tree bound (mean and maximum) after 100 kicks per target: 0.24 and 0.63 % at 50 targets, 0.20
+//! and 0.38 % at 100, 0.31 and 0.53 % at 200 (0.4 s on one core). Local search alone ends 2.1 to
+//! 2.5 % above the bound.
 
 use super::cost::OrderCost;
 use super::local_search::{LocalSearch, OrderTask};
 use crate::math::random::SplitMix;
 use crate::run::stop::StopSignal;
-use crate::tour::order::FlownOrder;
+use crate::tour::order::SolvedOrder;
 use crate::tour::order::incumbents::Incumbents;
 use std::ops::RangeInclusive;
 
 /// Longest segment of a kick.
 const MAX_SEGMENT: usize = 30;
-/// An order is kept if it is longer than the best by at most this share of a mean leg at the first
-/// kick of a run, and by less and less until the last (threshold accepting, Dueck and Scheuer 1990).
-/// A constant share gets stuck 0.2 % higher where bends cost much.
+/// Tolerance at the first kick, relative to a mean leg: an order is accepted if it is longer than
+/// the best by at most the tolerance, which falls linearly to zero (threshold accepting, Dueck and
+/// Scheuer 1990).
 const TOLERANCE: f64 = 1.0;
 
-/// A search under way.
+/// A running search.
 ///
-/// What it finds follows from what it is given, the seed among that, unless it is stopped.
+/// Its result depends on its arguments only, unless it is stopped.
 pub(in crate::tour::order) struct IteratedSearch<'a, C> {
     search: LocalSearch<'a, C>,
     /// The places of the order from which the kicks start.
@@ -41,7 +40,8 @@ pub(in crate::tour::order) struct IteratedSearch<'a, C> {
 }
 
 impl<'a, C: OrderCost> IteratedSearch<'a, C> {
-    /// Begins at an order that the rules allow, and keeps so many of the best besides the best one.
+    /// A search that begins at an order that the rules allow and lists so many orders besides the
+    /// best.
     pub(in crate::tour::order) fn new(
         task: &OrderTask<'a, C>,
         order: &[usize],
@@ -49,21 +49,21 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         seed: u64,
     ) -> Self {
         let search = LocalSearch::new(task, order);
-        let mut begun = Self {
+        let mut iterated = Self {
             kept: search.path.places().to_vec(),
             kept_s: search.path.length(),
             search,
             best: Incumbents::new(alternatives, 0.0),
             random: SplitMix::new(seed),
         };
-        begun.kept_s = begun.offer(begun.kept_s);
-        begun
+        iterated.kept_s = iterated.offer(iterated.kept_s);
+        iterated
     }
 
-    /// Kicks so many times or until stopped, one long run being better than many short ones; says how many times it did. The first kick starts from
-    /// a local minimum.
+    /// Descends to a local minimum, then kicks so many times or until stopped; returns the number
+    /// of kicks made. One long run finds better orders than several short ones.
     pub(in crate::tour::order) fn run(&mut self, kicks: usize, stop: &StopSignal) -> usize {
-        let change = self.search.settle(stop, |_| ());
+        let change = self.search.descend(stop, |_| ());
         self.kept_s = self.offer(self.kept_s + change);
         self.kept.copy_from_slice(self.search.path.places());
         let targets = self.kept.len() - 2;
@@ -81,13 +81,12 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         kicks
     }
 
-    /// The best orders so far with their costs, best first. The one begun at is among them until
-    /// better ones displace it.
-    pub(in crate::tour::order) fn best(&self) -> &[FlownOrder] {
+    /// The best orders so far with their costs, best first, the initial one included.
+    pub(in crate::tour::order) fn best(&self) -> &[SolvedOrder] {
         self.best.orders()
     }
 
-    /// Kicks, searches, and keeps the order or goes back.
+    /// Kicks, descends to a local minimum, and accepts the order or restores the previous one.
     fn kick(&mut self, tolerance_s: f64, stop: &StopSignal) {
         let targets = self.kept.len() - 2;
         let longest = MAX_SEGMENT.min(targets / 3);
@@ -99,7 +98,7 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         };
         let mut changed = first..=first + moving - 1;
         let change = change
-            + self.search.settle(stop, |step| {
+            + self.search.descend(stop, |step| {
                 changed = hull(&changed, &step.range());
             });
         let places = &self.search.path.places()[changed.clone()];
@@ -120,20 +119,20 @@ impl<'a, C: OrderCost> IteratedSearch<'a, C> {
         }
     }
 
-    /// Lists the order if it is among the best. Costs are summed from changes: those of the listed
-    /// ones anew, which is returned.
+    /// Lists the order if it is among the best. Returns its cost, s: `length_s`, which is a sum of
+    /// changes, or for a listed order the cost summed afresh.
     fn offer(&mut self, length_s: f64) -> f64 {
         if self.best.rule_out_bound(length_s) {
             return length_s;
         }
         let duration_s = self.search.path.length();
         let order = self.search.path.order().to_vec();
-        self.best.offer(FlownOrder { order, duration_s });
+        self.best.offer(SolvedOrder { order, duration_s });
         duration_s
     }
 }
 
-/// The least range that holds both.
+/// The smallest range that contains both.
 fn hull(a: &RangeInclusive<usize>, b: &RangeInclusive<usize>) -> RangeInclusive<usize> {
     *a.start().min(b.start())..=*a.end().max(b.end())
 }

@@ -1,48 +1,49 @@
 //! 2-opt, Or-opt and exchanges of segments (Croes 1958, Or 1976, Kanellakis and Papadimitriou 1980)
 //! with lists of neighbours and don't-look bits (Bentley 1992).
 //!
-//! A move removes some joints between places and makes as many others. If it helps, then at one of
-//! the removed joints a place gets a joint that costs less than the one it loses. So the move is
-//! found from that place although only the nearest others are tried there, and only those nearer
-//! than what is removed costs. A place where nothing helped is not looked at again until one of its
-//! joints changes: till then it is not `waiting`.
+//! A move removes some joints between places and adds as many others. If it shortens the order,
+//! then some place gains a joint that costs less than the one it loses. So every improving move is
+//! found from one of its places although only the neighbours nearer than the removed joint are
+//! tried. A place without an improving move is not searched again until one of its joints changes:
+//! until then it is not in the queue `waiting`.
 
 use super::cost::OrderCost;
 use super::neighbours::Neighbours;
-use super::path::{Move, Path};
+use super::path::{Move, OrderPath};
 use crate::run::stop::StopSignal;
 use std::collections::VecDeque;
 
-/// A move must shorten the order by this share of its length, lest rounding makes it go in circles.
+/// Smallest gain of a move, relative to the length of the order; it excludes cycles due to
+/// rounding.
 const MIN_GAIN: f64 = 1e-9;
-/// Longest segment that Or-opt moves, the length that the literature settled on.
+/// Longest segment that Or-opt moves; three is the value of Or (1976).
 const MAX_SEGMENT: usize = 3;
 
-/// Says whether the rules allow an order.
+/// Whether the rules allow an order.
 pub(in crate::tour::order) type Admits<'a> = &'a (dyn Fn(&[usize]) -> bool + Sync);
 
-/// Which order is sought.
+/// The problem of a heuristic search.
 pub(in crate::tour::order) struct OrderTask<'a, C> {
-    /// What orders cost.
+    /// The cost of orders.
     pub(in crate::tour::order) cost: &'a C,
     /// The place before the order.
     pub(in crate::tour::order) from: usize,
-    /// The rules, if there are any.
+    /// The rules for orders, if there are any.
     pub(in crate::tour::order) admits: Option<Admits<'a>>,
 }
 
 /// A path on its way to a local minimum.
 pub(super) struct LocalSearch<'a, C> {
-    pub(super) path: Path<'a, C>,
+    pub(super) path: OrderPath<'a, C>,
     neighbours: Neighbours,
     admits: Option<Admits<'a>>,
     waiting: VecDeque<usize>,
     is_waiting: Vec<bool>,
-    least_gain: f64,
+    min_gain: f64,
 }
 
-/// The best move so far and what it adds, s.
-struct Choice {
+/// The best move so far and its change of the cost, s.
+struct BestMove {
     step: Option<Move>,
     change: f64,
 }
@@ -50,20 +51,20 @@ struct Choice {
 impl<'a, C: OrderCost> LocalSearch<'a, C> {
     /// Begins at an order that the rules, where there are any, allow.
     pub(super) fn new(task: &OrderTask<'a, C>, order: &[usize]) -> Self {
-        let path = Path::new(task.cost, task.from, order);
+        let path = OrderPath::new(task.cost, task.from, order);
         Self {
             neighbours: Neighbours::new(path.legs(), path.places()),
             admits: task.admits,
             waiting: path.places().iter().copied().collect(),
             is_waiting: vec![true; task.cost.targets() + 2],
-            least_gain: MIN_GAIN * path.length(),
+            min_gain: MIN_GAIN * path.length(),
             path,
         }
     }
 
-    /// Makes moves that help until there is none or the solve is stopped; says what they add to the
-    /// cost, s, and tells of each.
-    pub(super) fn settle(&mut self, stop: &StopSignal, mut moved: impl FnMut(Move)) -> f64 {
+    /// Makes improving moves until there is none or the search is stopped. Calls `moved` for each
+    /// and returns the sum of their changes of the cost, s.
+    pub(super) fn descend(&mut self, stop: &StopSignal, mut moved: impl FnMut(Move)) -> f64 {
         let mut sum = 0.0;
         while let Some(place) = self.waiting.pop_front() {
             self.is_waiting[place] = false;
@@ -79,8 +80,9 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         sum
     }
 
-    /// Makes `c b a` of three adjacent segments `a b c` of these lengths, the first of which begins
-    /// at a position, and says what it adds to the cost, s; unless the rules refuse it.
+    /// Replaces three adjacent segments `a b c` of these lengths, the first of which begins at a
+    /// position, by `c b a`. Returns the change of the cost, s; `None`, with nothing changed, if
+    /// the rules refuse it.
     ///
     /// Four joints change: the double bridge (Martin, Otto and Felten 1991).
     pub(super) fn bridge(&mut self, first: usize, lengths: [usize; 3]) -> Option<f64> {
@@ -95,21 +97,21 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
     }
 
     /// Exchanges two adjacent segments of these lengths, the first of which begins at a position,
-    /// and says what it adds to the cost, s.
+    /// and returns the change of the cost, s.
     fn swap(&mut self, first: usize, length: usize, other: usize) -> f64 {
         let step = Move::Exchange {
             first,
             middle: first + length - 1,
             last: first + length + other - 1,
-            turn_first: false,
-            turn_second: false,
+            reverse_first: false,
+            reverse_second: false,
         };
         let change = self.path.change(step);
         self.make(step);
         change
     }
 
-    /// Makes a move; the places at its joints are looked at again.
+    /// Makes a move and queues the places at its joints.
     fn make(&mut self, step: Move) {
         self.path.apply(step);
         let (first, last) = step.range().into_inner();
@@ -133,11 +135,11 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// The move at a place that helps most.
+    /// The move at a place with the largest gain.
     fn best_move_at(&mut self, place: usize) -> Option<(Move, f64)> {
-        let mut choice = Choice {
+        let mut choice = BestMove {
             step: None,
-            change: -self.least_gain,
+            change: -self.min_gain,
         };
         self.reversals(place, &mut choice);
         self.shifts(place, &mut choice);
@@ -145,7 +147,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         choice.step.map(|step| (step, choice.change))
     }
 
-    fn consider(&mut self, step: Move, choice: &mut Choice) {
+    fn consider(&mut self, step: Move, choice: &mut BestMove) {
         let change = self.path.change(step);
         let admits = self.admits;
         if change < choice.change
@@ -156,9 +158,9 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// Replaces the joint after or before a place by one to a near place, and turns round what lies
-    /// between.
-    fn reversals(&mut self, place: usize, choice: &mut Choice) {
+    /// 2-opt: replaces the joint after or before a place by one to a near place, and reverses the
+    /// places between.
+    fn reversals(&mut self, place: usize, choice: &mut BestMove) {
         let here = self.path.position(place);
         let end = self.path.places().len() - 1;
         for after in [true, false] {
@@ -185,8 +187,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// Moves a short segment that begins or ends at a place to a near place.
-    fn shifts(&mut self, place: usize, choice: &mut Choice) {
+    /// Or-opt: moves a short segment that begins or ends at a place next to a near place.
+    fn shifts(&mut self, place: usize, choice: &mut BestMove) {
         let here = self.path.position(place);
         let end = self.path.places().len() - 1;
         for length in 1..=MAX_SEGMENT {
@@ -208,7 +210,7 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    fn shifts_of(&mut self, first: usize, last: usize, place: usize, choice: &mut Choice) {
+    fn shifts_of(&mut self, first: usize, last: usize, place: usize, choice: &mut BestMove) {
         let end = self.path.places().len() - 1;
         let removed = self.path.joint(first - 1) + self.path.joint(last)
             - self
@@ -224,7 +226,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
             if (first..=last).contains(&there) {
                 continue;
             }
-            // Into the gap before or after the near place, such that the two come together.
+            // Into the gap before or after the near place, so that the two places become
+            // neighbours.
             for before in [true, false] {
                 if there == if before { 0 } else { end } {
                     continue;
@@ -237,8 +240,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
                             first: gap,
                             middle: first - 1,
                             last,
-                            turn_first: false,
-                            turn_second: turn,
+                            reverse_first: false,
+                            reverse_second: turn,
                         },
                         choice,
                     );
@@ -248,8 +251,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
                             first,
                             middle: last,
                             last: gap - 1,
-                            turn_first: turn,
-                            turn_second: false,
+                            reverse_first: turn,
+                            reverse_second: false,
                         },
                         choice,
                     );
@@ -258,13 +261,13 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
         }
     }
 
-    /// Goes on from a place to a near one and exchanges two segments of any length without turning
-    /// them (Kanellakis and Papadimitriou 1980).
+    /// Joins a place to a near one by exchanging two segments of any length without reversing them
+    /// (Kanellakis and Papadimitriou 1980).
     ///
     /// With the joints after the positions `i`, `j` and `k` removed, the places there are followed
     /// by the ones that followed those at `j`, `k` and `i`. That is one path again when the three
     /// ascend, cyclically.
-    fn exchanges(&mut self, place: usize, choice: &mut Choice) {
+    fn exchanges(&mut self, place: usize, choice: &mut BestMove) {
         let i = self.path.position(place);
         let end = self.path.places().len() - 1;
         if i == end {
@@ -298,8 +301,8 @@ impl<'a, C: OrderCost> LocalSearch<'a, C> {
                         first: a + 1,
                         middle: b,
                         last: c,
-                        turn_first: false,
-                        turn_second: false,
+                        reverse_first: false,
+                        reverse_second: false,
                     };
                     self.consider(step, choice);
                 }

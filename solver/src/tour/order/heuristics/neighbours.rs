@@ -1,8 +1,8 @@
 //! The places nearest to each place.
 
-use super::cost::Legs;
+use super::cost::ReducedLegs;
 
-/// So many of them: seven are a quarter faster and as good on symmetric legs, and worse on others.
+/// Neighbours per place. Fewer suffice for symmetric legs but not for directed ones.
 const NEIGHBOURS: usize = 10;
 
 /// For every place the nearest others, nearest first.
@@ -13,16 +13,16 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Sorts the places of a path, of which there are at least three.
-    pub(super) fn new(legs: &Legs, places: &[usize]) -> Self {
+    /// The neighbours of the places of a path, of which there are at least two.
+    pub(super) fn new(legs: &ReducedLegs, places: &[usize]) -> Self {
         let count = places.iter().max().map_or(0, |greatest| greatest + 1);
         let width = NEIGHBOURS.min(places.len() - 1);
         let mut nearest = vec![0; count * width];
         for &place in places {
             let mut others: Vec<usize> = places.iter().copied().filter(|&p| p != place).collect();
             others.sort_by(|&a, &b| {
-                let far = |other| legs.edge(place, other);
-                far(a).total_cmp(&far(b)).then(a.cmp(&b))
+                let distance = |other| legs.edge(place, other);
+                distance(a).total_cmp(&distance(b)).then(a.cmp(&b))
             });
             nearest[place * width..][..width].copy_from_slice(&others[..width]);
         }

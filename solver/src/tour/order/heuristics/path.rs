@@ -1,17 +1,17 @@
-//! An order under change: what a move would cost, and the move itself.
+//! An order that moves change, with the change of cost of a move.
 
-use super::cost::{Legs, OrderCost};
+use super::cost::{OrderCost, ReducedLegs};
 use std::ops::RangeInclusive;
 
-/// Stands for the place before the first and after the last.
+/// Stands for the missing place before the first one and after the last one.
 const NOWHERE: usize = usize::MAX;
 
 /// A change of the order. Positions count the place before the order as 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Move {
-    /// Turn round what lies between two positions.
+    /// Reverse the places from one position to another.
     Reverse(usize, usize),
-    /// Exchange two adjacent segments, each turned round or not.
+    /// Exchange two adjacent segments, each reversed or not.
     Exchange {
         /// First position of the first segment.
         first: usize,
@@ -19,10 +19,10 @@ pub(super) enum Move {
         middle: usize,
         /// Last position of the second segment.
         last: usize,
-        /// Whether the first segment is turned.
-        turn_first: bool,
-        /// Whether the second segment is turned.
-        turn_second: bool,
+        /// Whether the first segment is reversed.
+        reverse_first: bool,
+        /// Whether the second segment is reversed.
+        reverse_second: bool,
     },
 }
 
@@ -36,47 +36,48 @@ impl Move {
 }
 
 /// Positions of the first and the last place of a segment, in the direction of travel.
-type Piece = (usize, usize);
+type SegmentEnds = (usize, usize);
 
 /// An order with the places before and after it.
-pub(super) struct Path<'a, C> {
+pub(super) struct OrderPath<'a, C> {
     cost: &'a C,
-    legs: Legs,
+    legs: ReducedLegs,
     places: Vec<usize>,
     /// Position of every place.
     positions: Vec<usize>,
-    /// Whether turning a segment round changes the cost of its inside.
+    /// Whether reversing a segment changes the cost of its inside.
     directed: bool,
-    /// For each position what all legs up to it cost more backwards, s; empty unless directed.
+    /// For each position the excess cost of all legs up to it in reverse, s; empty unless directed.
     leg_skews: Vec<f64>,
-    /// For each position what all bends up to it cost more backwards, s; empty unless directed.
-    bend_skews: Vec<f64>,
+    /// For each position the excess cost of all couplings up to it in reverse, s; empty unless
+    /// directed.
+    coupling_skews: Vec<f64>,
 }
 
-/// The sum along some pieces.
+/// A running sum of costs along some segments.
 struct Walk {
     before: usize,
     at: usize,
     sum: f64,
 }
 
-impl<'a, C: OrderCost> Path<'a, C> {
-    /// The way from a place through some targets and to the end.
+impl<'a, C: OrderCost> OrderPath<'a, C> {
+    /// The path from a place through some targets and to the end.
     pub(super) fn new(cost: &'a C, from: usize, order: &[usize]) -> Self {
-        let legs = Legs::new(cost, from, order);
+        let legs = ReducedLegs::new(cost, from, order);
         let end = cost.targets() + 1;
         let mut path = Self {
-            directed: !(legs.are_symmetric() && cost.bends_alike_both_ways()),
+            directed: !(legs.are_symmetric() && cost.couplings_are_symmetric()),
             cost,
             legs,
             places: [&[from], order, &[end]].concat(),
             positions: vec![NOWHERE; end + 1],
             leg_skews: Vec::new(),
-            bend_skews: Vec::new(),
+            coupling_skews: Vec::new(),
         };
         if path.directed {
             path.leg_skews = vec![0.0; path.places.len()];
-            path.bend_skews = vec![0.0; path.places.len()];
+            path.coupling_skews = vec![0.0; path.places.len()];
         }
         path.update(0..=path.places.len() - 1);
         path
@@ -97,8 +98,8 @@ impl<'a, C: OrderCost> Path<'a, C> {
         self.positions[place]
     }
 
-    /// The charged legs.
-    pub(super) fn legs(&self) -> &Legs {
+    /// The reduced legs.
+    pub(super) fn legs(&self) -> &ReducedLegs {
         &self.legs
     }
 
@@ -111,61 +112,68 @@ impl<'a, C: OrderCost> Path<'a, C> {
         self.places.get(position).copied().unwrap_or(NOWHERE)
     }
 
-    fn bend(&self, from: usize, via: usize, to: usize) -> f64 {
+    fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
         if from == NOWHERE || to == NOWHERE {
             0.0
         } else {
-            self.cost.bend(from, via, to)
+            self.cost.coupling(from, via, to)
         }
     }
 
-    /// Bend at a position, s.
-    fn bend_at(&self, position: usize) -> f64 {
+    /// Coupling at a position, s.
+    fn coupling_at(&self, position: usize) -> f64 {
         let before = self.place(position.wrapping_sub(1));
-        self.bend(before, self.places[position], self.place(position + 1))
+        self.coupling(before, self.places[position], self.place(position + 1))
     }
 
-    /// Cost of the joint after a position: the leg and the bends at both its ends, s.
+    /// Cost of the joint after a position: the leg and the couplings at both its ends, s.
     pub(super) fn joint(&self, position: usize) -> f64 {
         self.legs
             .leg(self.places[position], self.places[position + 1])
-            + self.bend_at(position)
-            + self.bend_at(position + 1)
+            + self.coupling_at(position)
+            + self.coupling_at(position + 1)
     }
 
-    /// What a move adds to the cost, s.
+    /// Change of the cost by a move, s.
     pub(super) fn change(&self, step: Move) -> f64 {
         match step {
             Move::Reverse(first, last) => {
                 let range = (first, last);
-                self.toll(range, [(last, first)]) - self.toll(range, [range])
-                    + self.turning((first, last))
+                self.joint_costs(range, [(last, first)]) - self.joint_costs(range, [range])
+                    + self.reversal_change((first, last))
             }
             Move::Exchange {
                 first,
                 middle,
                 last,
-                turn_first,
-                turn_second,
+                reverse_first,
+                reverse_second,
             } => {
                 let range = (first, last);
                 let pieces = [(first, middle), (middle + 1, last)];
-                let turned = |piece: Piece, turn| if turn { (piece.1, piece.0) } else { piece };
-                let inside = |piece, turn| if turn { self.turning(piece) } else { 0.0 };
+                let turned =
+                    |piece: SegmentEnds, turn| if turn { (piece.1, piece.0) } else { piece };
+                let inside = |piece, turn| {
+                    if turn {
+                        self.reversal_change(piece)
+                    } else {
+                        0.0
+                    }
+                };
                 let after = [
-                    turned(pieces[1], turn_second),
-                    turned(pieces[0], turn_first),
+                    turned(pieces[1], reverse_second),
+                    turned(pieces[0], reverse_first),
                 ];
-                self.toll(range, after) - self.toll(range, pieces)
-                    + inside(pieces[0], turn_first)
-                    + inside(pieces[1], turn_second)
+                self.joint_costs(range, after) - self.joint_costs(range, pieces)
+                    + inside(pieces[0], reverse_first)
+                    + inside(pieces[1], reverse_second)
             }
         }
     }
 
-    /// Cost of travelling the pieces in place of what lies at a range of positions, their insides
-    /// excepted, s.
-    fn toll<const N: usize>(&self, range: (usize, usize), pieces: [Piece; N]) -> f64 {
+    /// Cost of the joints when these segments replace the places at a range of positions, s. The
+    /// legs and couplings inside the segments are not part of it.
+    fn joint_costs<const N: usize>(&self, range: (usize, usize), pieces: [SegmentEnds; N]) -> f64 {
         let mut walk = Walk {
             before: self.place(range.0.wrapping_sub(2)),
             at: self.places[range.0 - 1],
@@ -174,32 +182,32 @@ impl<'a, C: OrderCost> Path<'a, C> {
         for (enter, leave) in pieces {
             self.step(&mut walk, self.places[enter]);
             if enter != leave {
-                // The bends at the two ends of a piece belong to its joints.
+                // The couplings at the two ends of a segment belong to its joints.
                 let forth = enter < leave;
                 let second = if forth { enter + 1 } else { enter - 1 };
                 let penultimate = if forth { leave - 1 } else { leave + 1 };
-                walk.sum += self.bend(walk.before, walk.at, self.places[second]);
+                walk.sum += self.coupling(walk.before, walk.at, self.places[second]);
                 walk.before = self.places[penultimate];
                 walk.at = self.places[leave];
             }
         }
         self.step(&mut walk, self.places[range.1 + 1]);
-        walk.sum + self.bend(walk.before, walk.at, self.place(range.1 + 2))
+        walk.sum + self.coupling(walk.before, walk.at, self.place(range.1 + 2))
     }
 
     fn step(&self, walk: &mut Walk, to: usize) {
-        walk.sum += self.legs.leg(walk.at, to) + self.bend(walk.before, walk.at, to);
+        walk.sum += self.legs.leg(walk.at, to) + self.coupling(walk.before, walk.at, to);
         walk.before = walk.at;
         walk.at = to;
     }
 
-    /// What turning a segment round adds to its inside, s.
-    fn turning(&self, (first, last): Piece) -> f64 {
+    /// Change of the cost inside a segment when it is reversed, s.
+    fn reversal_change(&self, (first, last): SegmentEnds) -> f64 {
         if !self.directed || first == last {
             return 0.0;
         }
-        self.leg_skews[last] - self.leg_skews[first] + self.bend_skews[last - 1]
-            - self.bend_skews[first]
+        self.leg_skews[last] - self.leg_skews[first] + self.coupling_skews[last - 1]
+            - self.coupling_skews[first]
     }
 
     /// Makes a move.
@@ -210,13 +218,13 @@ impl<'a, C: OrderCost> Path<'a, C> {
                 first,
                 middle,
                 last,
-                turn_first,
-                turn_second,
+                reverse_first,
+                reverse_second,
             } => {
-                if turn_first {
+                if reverse_first {
                     self.places[first..=middle].reverse();
                 }
-                if turn_second {
+                if reverse_second {
                     self.places[middle + 1..=last].reverse();
                 }
                 self.places[first..=last].rotate_left(middle + 1 - first);
@@ -225,16 +233,16 @@ impl<'a, C: OrderCost> Path<'a, C> {
         self.update(step.range());
     }
 
-    /// Shows the order as it would be after a move.
-    pub(super) fn preview(&mut self, step: Move, look: impl FnOnce(&[usize]) -> bool) -> bool {
+    /// Calls a test with the order as it would be after a move, and leaves the order unchanged.
+    pub(super) fn preview(&mut self, step: Move, test: impl FnOnce(&[usize]) -> bool) -> bool {
         let before = self.places[step.range()].to_vec();
         self.apply(step);
-        let seen = look(self.order());
+        let passed = test(self.order());
         self.restore(*step.range().start(), &before);
-        seen
+        passed
     }
 
-    /// Puts places back to the positions from one on; together they must be those that are there.
+    /// Sets the places from a position on; they must be a permutation of the places there.
     pub(super) fn restore(&mut self, first: usize, places: &[usize]) {
         if !places.is_empty() {
             self.places[first..first + places.len()].copy_from_slice(places);
@@ -242,7 +250,7 @@ impl<'a, C: OrderCost> Path<'a, C> {
         }
     }
 
-    /// Brings up to date what follows from the places at a range of positions.
+    /// Updates the positions and sums that depend on the places at a range of positions.
     fn update(&mut self, range: RangeInclusive<usize>) {
         for position in range.clone() {
             self.positions[self.places[position]] = position;
@@ -252,23 +260,24 @@ impl<'a, C: OrderCost> Path<'a, C> {
         }
     }
 
-    /// Sums the skews from a position on. What touches the outer places is never turned and has
-    /// none.
+    /// Sums the skews from a position on. Legs and couplings at the outer places are never reversed
+    /// and have none.
     fn sum_skews(&mut self, first: usize) {
         let last_target = self.places.len() - 2;
         for position in first.max(2) - 1..=last_target {
             let at = self.places[position];
             let before = self.places[position - 1];
-            let (mut leg, mut bend) = (0.0, 0.0);
+            let (mut leg, mut coupling) = (0.0, 0.0);
             if position > 1 {
                 leg = self.legs.leg(at, before) - self.legs.leg(before, at);
             }
             if position > 1 && position < last_target {
                 let after = self.places[position + 1];
-                bend = self.cost.bend(after, at, before) - self.cost.bend(before, at, after);
+                coupling =
+                    self.cost.coupling(after, at, before) - self.cost.coupling(before, at, after);
             }
             self.leg_skews[position] = self.leg_skews[position - 1] + leg;
-            self.bend_skews[position] = self.bend_skews[position - 1] + bend;
+            self.coupling_skews[position] = self.coupling_skews[position - 1] + coupling;
         }
     }
 }

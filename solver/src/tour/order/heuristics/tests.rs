@@ -1,4 +1,4 @@
-//! Local search and kicks against full evaluation and enumeration.
+//! Heuristic orders against full evaluation of costs and enumeration.
 
 mod models;
 mod moves;
@@ -8,11 +8,11 @@ use super::cost::length;
 use super::{candidates, complete, iterated, nearest_neighbours};
 use crate::run::stop::StopSignal;
 use crate::tour::order::PairTable;
-use crate::tour::order::completion::Remainder;
+use crate::tour::order::completion::CompletionBound;
 use crate::tour::order::tests::RandomModel;
 
 #[test]
-fn improving_keeps_the_targets_and_shortens_the_order() {
+fn iterated_search_shortens_an_order_of_the_same_targets() {
     for seed in 0..5 {
         let table = PairTable::new(&RandomModel::new(30, seed % 2 == 0, seed));
         let start = table.start();
@@ -27,10 +27,10 @@ fn improving_keeps_the_targets_and_shortens_the_order() {
 }
 
 #[test]
-fn a_completion_keeps_the_prefix_and_visits_the_rest() {
+fn a_completion_begins_with_the_prefix_and_visits_all_targets() {
     for targets in [6, 24] {
         let table = PairTable::new(&RandomModel::new(targets, true, 9));
-        let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+        let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
         let prefix = [3, 1];
         let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
         let mut order = complete(&table, &completion, &prefix, &remaining, &StopSignal::new());
@@ -41,9 +41,9 @@ fn a_completion_keeps_the_prefix_and_visits_the_rest() {
 }
 
 #[test]
-fn few_targets_start_from_the_shortest_order_of_the_table() {
+fn candidates_of_few_targets_are_the_shortest_order_and_its_reverse() {
     let table = PairTable::new(&RandomModel::new(5, true, 3));
-    let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+    let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
     let orders = candidates(&table, &completion, &StopSignal::new());
     let least = completion.bound(&table, table.start(), &[0, 1, 2, 3, 4]);
     assert!((length(&table, table.start(), &orders[0]) - least).abs() < 1e-9);
@@ -53,7 +53,7 @@ fn few_targets_start_from_the_shortest_order_of_the_table() {
 #[test]
 fn many_targets_have_several_candidates() {
     let table = PairTable::new(&RandomModel::new(24, true, 3));
-    let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+    let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
     let orders = candidates(&table, &completion, &StopSignal::new());
     assert_eq!(orders.len(), 5);
     let of = |order: &[usize]| length(&table, table.start(), order);

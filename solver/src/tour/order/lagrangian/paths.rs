@@ -1,21 +1,22 @@
-//! The shortest orders by lagrangian legs: dynamic programming over subsets with two places remembered.
+//! The orders of smallest Lagrangian bound: dynamic programming over subsets, with the last three
+//! places in the state.
 
 use super::LagrangianLegs;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::EXACT_TARGETS;
+use crate::tour::order::completion::MAX_EXACT_TARGETS;
 use crate::tour::order::completion::subsets::{Admitted, least_sum, mask, members};
 
-/// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum of
-/// all legs from `i` on, when `h, i, j` were visited last and the targets `R` remain. Of the prices
-/// as they were when it was filled.
+/// `rest(h, i, j, R) = min over k in R of c(h, i, j, k) + rest(i, j, k, R - k)`, s: the least sum
+/// of all Lagrangian legs from `i` on, when `h, i, j` were visited last and the targets `R` remain.
+/// The table holds for the costates with which it was filled.
 #[derive(Debug)]
 pub struct LagrangianPaths {
     legs: LagrangianLegs,
     admitted: Admitted,
-    /// For every set `R` that is not empty, by its others `h, i, j` in rows: rounded down, so that
-    /// all are bounds.
+    /// For every nonempty set `R`, an entry for every triple `h, i, j` of targets outside it,
+    /// rounded down to single precision so that every entry is a lower bound.
     rest: Vec<Box<[f32]>>,
     root_s: f64,
 }
@@ -25,12 +26,12 @@ impl LagrangianPaths {
     #[must_use]
     pub fn bytes(targets: usize) -> u64 {
         let targets = targets as u64;
-        // Three others of every set; the mean of their cube over all sets.
+        // The mean over all sets of the cube of the number of targets outside the set.
         let states = (targets * targets * (targets + 3)) << targets;
         states / 8 * 4
     }
 
-    /// A table for the orders that some rules admit, to be filled.
+    /// An empty table for the orders that some rules admit.
     #[must_use]
     pub fn new(legs: &LagrangianLegs, rules: &OrderRules) -> Self {
         let targets = legs.table.targets();
@@ -42,13 +43,13 @@ impl LagrangianPaths {
         }
     }
 
-    /// Fills the table anew: some `n^4 2^n / 16` steps. When the solve is stopped meanwhile it
-    /// answers `false` and is of no use.
+    /// Fills the table: some `n^4 2^n / 16` steps. Returns `false` when the solve is stopped
+    /// meanwhile; the table must not be used then.
     #[must_use]
     pub fn fill(&mut self, legs: &LagrangianLegs, pool: &SolverPool, stop: &StopSignal) -> bool {
         self.legs.clone_from(legs);
         let targets = legs.table.targets();
-        // With fewer than three others there is no state.
+        // A state needs three targets outside the set.
         for size in 1..(targets + 1).saturating_sub(3) {
             let sets: Vec<usize> = (1..1_usize << targets)
                 .filter(|set| set.count_ones() as usize == size)
@@ -69,8 +70,8 @@ impl LagrangianPaths {
         self.root_s
     }
 
-    /// Lower bound, s, of the path from a place, in any state there, through the remaining targets and
-    /// to the end.
+    /// Lower bound, s, of the path from a place, left in any state, through the remaining targets
+    /// and to the end.
     #[must_use]
     pub fn bound(&self, from: usize, remaining: &[usize]) -> f64 {
         self.entered(from, mask(remaining.iter().copied()))
@@ -82,8 +83,8 @@ impl LagrangianPaths {
         self.beginning(prefix, mask(remaining.iter().copied()))
     }
 
-    /// The best orders with different first targets, the best first, of each that takes as long
-    /// backwards one.
+    /// For each first target the order of smallest bound, best first. In a symmetric model only one
+    /// of an order and its reverse is listed.
     #[must_use]
     pub fn orders(&self, count: usize) -> Vec<Vec<usize>> {
         let all = (1 << self.legs.table.targets()) - 1;
@@ -108,7 +109,7 @@ impl LagrangianPaths {
         orders
     }
 
-    /// The best order that begins with a target.
+    /// The order of smallest bound that begins with a target.
     fn completed(&self, first: usize) -> Vec<usize> {
         let mut order = vec![first];
         let mut left = ((1 << self.legs.table.targets()) - 1) & !(1 << first);
@@ -127,10 +128,11 @@ impl LagrangianPaths {
         order
     }
 
-    /// The least sum of all legs when the first targets are fixed and the others remain.
+    /// The least sum of all legs over the orders that begin with a prefix; `left` is the set of the
+    /// other targets.
     fn beginning(&self, prefix: &[usize], left: usize) -> f64 {
-        let (start, nobody) = (self.legs.table.start(), self.legs.nobody());
-        let path = [&[nobody, start], prefix].concat();
+        let (start, no_neighbour) = (self.legs.table.start(), self.legs.no_neighbour());
+        let path = [&[no_neighbour, start], prefix].concat();
         if let [_, _, first] = path[..]
             && left != 0
         {
@@ -139,38 +141,39 @@ impl LagrangianPaths {
         let Some(&[h, i, j]) = path.last_chunk() else {
             return self.entered(start, left);
         };
-        let flown = path
+        let fixed = path
             .windows(4)
             .map(|leg| self.legs.cost([leg[0], leg[1], leg[2], leg[3]]));
-        flown.sum::<f64>() + self.after([h, i, j], left)
+        fixed.sum::<f64>() + self.after([h, i, j], left)
     }
 
-    /// From a place in any state there through some targets.
+    /// The least sum of the legs from a place, left in any state, through some targets.
     fn entered(&self, from: usize, left: usize) -> f64 {
         if left == 0 {
             return self.legs.table.bound(from, self.legs.table.end());
         }
-        let nobody = self.legs.nobody();
+        let no_neighbour = self.legs.no_neighbour();
         members(self.admitted.next(left))
             .map(|first| match left & !(1 << first) {
-                0 => self.legs.ending([nobody, from, first]),
+                0 => self.legs.ending([no_neighbour, from, first]),
                 others => self.second(from, first, others),
             })
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// From a place in any state there to a target and through some others.
+    /// The least sum of the legs from a place, left in any state, to a target and through some
+    /// others.
     fn second(&self, from: usize, first: usize, left: usize) -> f64 {
-        let nobody = self.legs.nobody();
+        let no_neighbour = self.legs.no_neighbour();
         members(self.admitted.next(left))
             .map(|second| {
-                let leg = self.legs.cost([nobody, from, first, second]);
+                let leg = self.legs.cost([no_neighbour, from, first, second]);
                 leg + self.after([from, first, second], left & !(1 << second))
             })
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// `rest`; where `h` is the start, out of the entries of smaller sets.
+    /// `rest`; where `h` is the start, computed from the entries of smaller sets.
     fn after(&self, [h, i, j]: [usize; 3], left: usize) -> f64 {
         if left == 0 {
             return self.legs.ending([h, i, j]);
@@ -183,7 +186,7 @@ impl LagrangianPaths {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Where three targets out of a set are in its rows.
+    /// Index of the entry of three targets outside a set.
     fn state(&self, path: [usize; 3], set: usize) -> usize {
         let others = self.legs.table.targets() - set.count_ones() as usize;
         let rank = |target: usize| target - (set & ((1 << target) - 1)).count_ones() as usize;
@@ -191,7 +194,7 @@ impl LagrangianPaths {
             .fold(0, |at, target| at * others + rank(target))
     }
 
-    /// The rows of a set, out of those of smaller ones.
+    /// The entries of a set, from those of smaller sets.
     fn filled(&self, set: usize) -> Box<[f32]> {
         let targets = self.legs.table.targets();
         let next = self.admitted.next(set);
@@ -199,7 +202,7 @@ impl LagrangianPaths {
         let mut rest = vec![f32::INFINITY; others.len().pow(3)].into_boxed_slice();
         for &i in &others {
             for &j in others.iter().filter(|&&j| j != i) {
-                let mut after = [f64::INFINITY; EXACT_TARGETS];
+                let mut after = [f64::INFINITY; MAX_EXACT_TARGETS];
                 for k in members(next) {
                     after[k] = self.after([i, j, k], set & !(1 << k));
                 }
@@ -213,9 +216,12 @@ impl LagrangianPaths {
     }
 }
 
-/// The greatest number of half the precision that is not above this one.
+/// The greatest single-precision number that is not above the given one.
 fn below(value: f64) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "rounding is mended below")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounding up is corrected below"
+    )]
     let near = value as f32;
     if f64::from(near) > value {
         near.next_down()

@@ -1,47 +1,53 @@
-//! What a search knows beyond the pair table when legs couple: bounds from several places in a row,
-//! and orders that are short in what is known so far.
+//! Bounds for legs that couple, from several places in a row, and orders that are short in what is
+//! known of the couplings.
 //!
-//! A few targets are searched with pairs alone at first, since most searches end before the bounds
-//! of longer paths would pay. Many targets need them from the beginning: they are the bound that is
-//! told, and they tell which orders are worth flying.
+//! A search over few targets begins with pair bounds alone, since most of them end before tighter
+//! bounds would save work. A search over many targets computes the triple bounds first: they are
+//! the bound that it reports, and they guide the choice of orders to evaluate.
 
-use super::Search;
+use super::OrderSearch;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::{EXACT_TARGETS, SpanningTrees};
+use crate::tour::order::completion::{MAX_EXACT_TARGETS, SpanningTrees};
 use crate::tour::order::heuristics::SearchEffort;
 use crate::tour::order::lagrangian::LagrangianPaths;
-use crate::tour::order::triple_bounds::{Effort, TripleBoundSubsets, TripleBounds};
+use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{PairTable, SearchEnd, TourModel};
 
-/// Steps of an ascent at most.
-const STEPS: usize = 400;
-/// Paths asked for per target when few targets turn out to be hard: some seconds of work.
+/// Largest number of steps of an ascent.
+const MAX_STEPS: usize = 400;
+/// Triples solved per target in a search over few targets. With [`FIVES_OF_FEW`] some seconds of
+/// work.
 const TRIPLES_OF_FEW: usize = 30;
+/// Paths of five places solved per target in a search over few targets.
 const FIVES_OF_FEW: usize = 20;
-/// Rounds of raising the bound and improving orders of many targets, what is asked for per target in
-/// a round, and the orders searched after it.
+/// Rounds in which the bound for many targets is raised and orders are improved.
 const ROUNDS: u64 = 6;
+/// Triples solved per target in a round.
 const TRIPLES_OF_MANY: usize = 12;
+/// Paths of five places solved per target in a round.
 const FIVES_OF_MANY: usize = 8;
+/// Heuristic searches for orders in a round.
 const ORDERS_PER_ROUND: u64 = 4;
-/// Kicks per target of a search for an order, and how many of its best orders are flown.
+/// Kicks per target of a heuristic search.
 const KICKS: usize = 60;
-const FLOWN: usize = 2;
+/// Orders of a heuristic search that are evaluated.
+const ORDERS_EVALUATED: usize = 2;
 
-/// Bounds from several places in a row.
-pub(super) enum Couplings {
-    /// With the rest of an order relaxed to a tree.
+/// Bounds that take couplings into account.
+pub(super) enum CoupledBounds {
+    /// Triple bounds with the remaining targets relaxed to a spanning tree.
     Trees(Box<TripleBounds>),
-    /// With a shortest path in its place.
+    /// Triple bounds with a shortest path through the remaining targets.
     Paths(Box<TripleBoundSubsets>),
-    /// With that and with legs that pay each other for the states they meet in.
-    Priced(Box<TripleBoundSubsets>, Box<LagrangianPaths>),
+    /// The same and Lagrangian bounds.
+    Lagrangian(Box<TripleBoundSubsets>, Box<LagrangianPaths>),
 }
 
-impl Couplings {
-    /// What a first ascent finds for a few targets; nothing where no target couples its legs.
+impl CoupledBounds {
+    /// The triple bounds of a few targets after one ascent; `None` where no target couples its
+    /// legs.
     pub(super) fn of_few(
         model: &dyn TourModel,
         table: &PairTable,
@@ -51,10 +57,10 @@ impl Couplings {
     ) -> Option<Self> {
         let mut triple_bounds = TripleBounds::new(model, table, &SpanningTrees::new(table))?;
         let targets = table.targets();
-        let effort = Effort {
+        let effort = AscentEffort {
             triples: TRIPLES_OF_FEW * targets,
             fives: FIVES_OF_FEW * targets,
-            steps: STEPS,
+            steps: MAX_STEPS,
         };
         triple_bounds.raise(model, &effort, pool, stop);
         let subsets = TripleBoundSubsets::new(triple_bounds, rules, stop);
@@ -66,40 +72,41 @@ impl Couplings {
         match self {
             Self::Trees(triple_bounds) => triple_bounds.bound(from, remaining),
             Self::Paths(subsets) => subsets.bound(from, remaining),
-            Self::Priced(subsets, lagrangian) => {
-                let charged = subsets.bound(from, remaining);
-                charged.max(lagrangian.bound(from, remaining))
+            Self::Lagrangian(subsets, lagrangian) => {
+                let triple = subsets.bound(from, remaining);
+                triple.max(lagrangian.bound(from, remaining))
             }
         }
     }
 
-    /// Lower bound, s, of all orders that begin with a prefix, whatever is known of the prefix.
+    /// Lower bound, s, of all orders that begin with a prefix; 0 without Lagrangian bounds.
     pub(super) fn whole(&self, prefix: &[usize], remaining: &[usize]) -> f64 {
         match self {
             Self::Trees(_) | Self::Paths(_) => 0.0,
-            Self::Priced(_, lagrangian) => lagrangian.whole(prefix, remaining),
+            Self::Lagrangian(_, lagrangian) => lagrangian.whole(prefix, remaining),
         }
     }
 }
 
-impl Search<'_> {
-    /// Bounds and improves orders of many targets in turn, before the tree is opened.
-    pub(super) fn work_on_couplings(&mut self) -> Option<SearchEnd> {
-        if self.tree.table().targets() <= EXACT_TARGETS {
+impl OrderSearch<'_> {
+    /// For many targets, raises the triple bounds and improves orders in turn, before the root is
+    /// opened.
+    pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
+        if self.tree.table().targets() <= MAX_EXACT_TARGETS {
             return None;
         }
         let table = self.tree.table();
         let targets = table.targets();
         let mut triple_bounds = TripleBounds::new(self.model, table, &SpanningTrees::new(table))?;
         for round in 0..ROUNDS {
-            let effort = Effort {
+            let effort = AscentEffort {
                 triples: TRIPLES_OF_MANY * targets,
                 fives: FIVES_OF_MANY * targets,
-                steps: STEPS,
+                steps: MAX_STEPS,
             };
             triple_bounds.raise(self.model, &effort, self.pool, self.stop);
             self.tree.bound_root(triple_bounds.root_bound());
-            self.account.report(&self.tree);
+            self.reporter.report(&self.tree);
             for order in 0..ORDERS_PER_ROUND {
                 self.improve_orders(&mut triple_bounds, round * ORDERS_PER_ROUND + order);
                 if self.stop.is_set() {
@@ -110,31 +117,32 @@ impl Search<'_> {
                 break;
             }
         }
-        self.tree.couple(Couplings::Trees(Box::new(triple_bounds)));
+        self.tree
+            .set_coupled_bounds(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
     }
 
-    /// Searches for orders that are short in all that is known of couplings, flies them, and learns
-    /// what was unknown of their triples.
+    /// Searches for orders that are short in the known couplings, evaluates them, and solves their
+    /// unknown triples.
     fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, seed: u64) {
         let effort = SearchEffort {
             kicks_per_target: KICKS,
-            alternatives: FLOWN - 1,
+            alternatives: ORDERS_EVALUATED - 1,
             seed,
         };
         let orders = self.tree.short_orders(triple_bounds, &effort, self.stop);
         triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
-        self.fly_new(&orders);
-        self.account.hand_over(&self.tree);
-        self.account.report(&self.tree);
+        self.evaluate_new(&orders);
+        self.reporter.announce(&self.tree);
+        self.reporter.report(&self.tree);
     }
 
-    /// Tightens the bounds of a search over few targets that is not about to end.
+    /// Computes the triple bounds of a long search over few targets.
     pub(super) fn tighten(&mut self) {
-        if self.tree.table().targets() > EXACT_TARGETS {
+        if self.tree.table().targets() > MAX_EXACT_TARGETS {
             return;
         }
-        let couplings = Couplings::of_few(
+        let couplings = CoupledBounds::of_few(
             self.model,
             self.tree.table(),
             self.tree.rules(),
@@ -142,7 +150,7 @@ impl Search<'_> {
             self.stop,
         );
         if let Some(couplings) = couplings {
-            self.tree.couple(couplings);
+            self.tree.set_coupled_bounds(couplings);
         }
     }
 }

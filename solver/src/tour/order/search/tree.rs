@@ -1,52 +1,53 @@
-//! The search tree: what is open, what is flown, what was given up and why.
+//! The search tree: open nodes, evaluated orders, and the bounds of what was given up.
 
-use super::coupled::Couplings;
+use super::coupled::CoupledBounds;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::Remainder;
+use crate::tour::order::completion::CompletionBound;
 use crate::tour::order::frontier::Frontier;
 use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::incumbents::Incumbents;
-use crate::tour::order::node::Node;
+use crate::tour::order::node::SearchNode;
 use crate::tour::order::triple_bounds::TripleBounds;
 use crate::tour::order::{
-    FlownOrder, PairTable, SearchSettings, SearchStatistics, TourEvaluation, TourModel,
+    PairTable, SearchSettings, SearchStatistics, SolvedOrder, TourEvaluation, TourModel,
 };
 use std::collections::BTreeMap;
 
-/// Relative error of an NLP's optimal duration that says nothing about its admissibility.
+/// Relative error of an NLP's optimal duration, below which a bound does not count as contradicted.
 const CONTRADICTION_RELATIVE: f64 = 1e-6;
 
-/// All orders, each in exactly one place.
-pub(super) struct Tree {
+/// All orders, each evaluated, open or given up.
+pub(super) struct SearchTree {
     table: PairTable,
-    /// Whether orders are as good backwards.
+    /// Whether every order takes as long as its reverse.
     symmetric: bool,
-    /// The orders that are searched: with symmetry half of those that are admitted.
+    /// The orders that are searched: with symmetry, half of the admitted ones.
     rules: OrderRules,
-    completion: Remainder,
-    /// Bounds from several places in a row, once they have been asked for.
-    couplings: Option<Couplings>,
-    /// No order lasts less, s, by what is known before the root is opened.
+    completion: CompletionBound,
+    /// Bounds that take couplings into account, once they have been computed.
+    couplings: Option<CoupledBounds>,
+    /// Lower bound on all orders, s, known before the root is opened.
     root_s: f64,
     /// Whether the root has been opened.
-    planted: bool,
+    root_is_open: bool,
     frontier: Frontier,
     incumbents: Incumbents,
-    /// Orders that have been flown: the duration, s, if they resolved.
+    /// Evaluated orders with their duration, s; `None` for those that did not resolve.
     tried: BTreeMap<Vec<usize>, Option<f64>>,
-    /// Smallest bound of what was ruled out, s: it cannot be among the best up to the gap.
+    /// Smallest bound of the nodes that were ruled out, s: they cannot be among the best, up to the
+    /// gap.
     ruled_out_s: f64,
-    /// Smallest bound of what was lost, s: unresolved leaves and dropped nodes.
+    /// Smallest bound of the unresolved leaves and dropped nodes, s.
     lost_s: f64,
     /// Whether the incumbents have changed since the frontier was last pruned.
     improved: bool,
     statistics: SearchStatistics,
 }
 
-impl Tree {
-    /// A tree in which nothing is open yet.
+impl SearchTree {
+    /// A tree whose root is not open yet.
     pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings, stop: &StopSignal) -> Self {
         let table = PairTable::new(model);
         let symmetric = model.is_symmetric();
@@ -56,11 +57,11 @@ impl Tree {
         }
         Self {
             symmetric,
-            completion: Remainder::new(&table, &rules, stop),
+            completion: CompletionBound::new(&table, &rules, stop),
             rules,
             couplings: None,
             root_s: 0.0,
-            planted: false,
+            root_is_open: false,
             frontier: Frontier::new(table.targets(), settings.frontier_bytes),
             incumbents: Incumbents::new(settings.alternatives, settings.relative_gap),
             tried: BTreeMap::new(),
@@ -72,17 +73,17 @@ impl Tree {
         }
     }
 
-    /// Orders worth flying first.
+    /// Orders to evaluate first.
     pub(super) fn candidates(&self, stop: &StopSignal) -> Vec<Vec<usize>> {
         heuristics::candidates(&self.table, &self.completion, stop)
     }
 
-    /// Takes in an order flown before the search reached it.
+    /// Records an order that was evaluated before the search reached it.
     pub(super) fn record_candidate(&mut self, order: &[usize], answer: TourEvaluation) {
         let duration = match answer {
             TourEvaluation::Stopped => return,
             TourEvaluation::Unresolved => None,
-            TourEvaluation::LegSolution(duration_s) => Some(duration_s),
+            TourEvaluation::Solved(duration_s) => Some(duration_s),
         };
         self.statistics.tours += 1;
         match duration {
@@ -103,18 +104,18 @@ impl Tree {
         &self.rules
     }
 
-    /// Takes in a lower bound of all orders, s, before the root is opened.
+    /// Raises the lower bound on all orders, s, before the root is opened.
     pub(super) fn bound_root(&mut self, bound_s: f64) {
         self.root_s = self.root_s.max(bound_s);
     }
 
-    /// Gives up the bounds from several places in a row, for better ones to be made of them.
-    pub(super) fn decouple(&mut self) -> Option<Couplings> {
+    /// Takes out the bounds with couplings, to extend them.
+    pub(super) fn take_coupled_bounds(&mut self) -> Option<CoupledBounds> {
         self.couplings.take()
     }
 
-    /// Takes in better bounds, of what is open already too.
-    pub(super) fn couple(&mut self, couplings: Couplings) {
+    /// Sets the bounds with couplings, and raises the bounds of all open nodes.
+    pub(super) fn set_coupled_bounds(&mut self, couplings: CoupledBounds) {
         self.couplings = Some(couplings);
         for mut node in self.frontier.take_if(|_| true) {
             let remaining = node.remaining(self.table.targets());
@@ -124,7 +125,8 @@ impl Tree {
         }
     }
 
-    /// Orders that are short by some costs, from the best one flown so far; the best first.
+    /// Orders that are short by some costs, best first; the search begins at the best evaluated
+    /// order.
     pub(super) fn short_orders(
         &self,
         costs: &TripleBounds,
@@ -137,7 +139,7 @@ impl Tree {
         heuristics::shorter_orders(costs, self.table.rules(), &best.order, effort, stop)
     }
 
-    /// Whether an order has not been flown.
+    /// Whether an order has not been evaluated.
     pub(super) fn is_new(&self, order: &[usize]) -> bool {
         !self.tried.contains_key(&self.either_way(order))
     }
@@ -149,9 +151,9 @@ impl Tree {
         couplings.map_or(pairs, |known| pairs.max(known.bound(from, remaining)))
     }
 
-    /// Takes in a bound of the time until the last fixed target is left, s, with what is known of the
-    /// rest and of whole orders that begin so.
-    fn raise(&self, node: &mut Node, head: f64, remaining: &[usize]) {
+    /// Raises the bounds of a node by a bound of the time until the last fixed target is left, s,
+    /// and by the current bounds on the rest and on all orders with the node's prefix.
+    fn raise(&self, node: &mut SearchNode, head: f64, remaining: &[usize]) {
         node.raise_head(
             head,
             self.rest(self.table.last_place(&node.prefix), remaining),
@@ -168,26 +170,26 @@ impl Tree {
     }
 
     /// Opens the root.
-    pub(super) fn plant(&mut self) {
-        self.planted = true;
-        self.admit(Node::root(self.root_bound()));
+    pub(super) fn open_root(&mut self) {
+        self.root_is_open = true;
+        self.admit(SearchNode::root(self.root_bound()));
         self.tidy();
     }
 
     /// Whether all targets are fixed.
-    pub(super) fn is_leaf(&self, node: &Node) -> bool {
+    pub(super) fn is_leaf(&self, node: &SearchNode) -> bool {
         node.prefix.len() == self.table.targets()
     }
 
-    /// Takes the next nodes to evaluate, expanding what is evaluated already.
+    /// Takes the next nodes to evaluate; nodes that are evaluated already are expanded.
     pub(super) fn take_round(
         &mut self,
         size: u64,
         pool: &SolverPool,
         stop: &StopSignal,
-    ) -> Vec<Node> {
+    ) -> Vec<SearchNode> {
         let mut round = Vec::new();
-        // Expanding takes its time when there are many targets.
+        // With many targets expanding takes long; the stop signal is polled here too.
         while (round.len() as u64) < size && !stop.is_set() {
             let Some(node) = self.frontier.pop() else {
                 break;
@@ -201,8 +203,9 @@ impl Tree {
         round
     }
 
-    /// The completion of an open node that is shortest in the table, unless it was tried already.
-    pub(super) fn probe(&self, node: &Node, stop: &StopSignal) -> Option<Vec<usize>> {
+    /// The completion of an open node that is shortest in the table, unless it was evaluated
+    /// already.
+    pub(super) fn probe(&self, node: &SearchNode, stop: &StopSignal) -> Option<Vec<usize>> {
         if self.is_leaf(node) {
             return None;
         }
@@ -218,7 +221,7 @@ impl Tree {
     }
 
     /// Opens the children of a node.
-    fn expand(&mut self, parent: &Node, pool: &SolverPool) {
+    fn expand(&mut self, parent: &SearchNode, pool: &SolverPool) {
         let remaining = parent.remaining(self.table.targets());
         let children = pool.map(&remaining, |&next| {
             let prefix = [&*parent.prefix, &[next]].concat();
@@ -232,15 +235,15 @@ impl Tree {
     }
 
     /// The node with one more target, bounded by the pair table.
-    fn child(&self, parent: &Node, next: usize, remaining: &[usize]) -> Node {
+    fn child(&self, parent: &SearchNode, next: usize, remaining: &[usize]) -> SearchNode {
         let mut left: Vec<usize> = remaining.iter().copied().filter(|&t| t != next).collect();
         let mut child = parent.clone();
         self.append(&mut child, next);
-        // Where one target is left there is one order left: better flown than bounded.
+        // With one target left there is one order left, which is evaluated and not bounded.
         if left.len() == 1 {
             self.append(&mut child, left.remove(0));
         }
-        // Of one leg from the given start the pair table knows all.
+        // For a single leg from the start the pair bound is all that is known.
         child.evaluated = child.prefix.len() == 1;
         let head = child.head;
         self.raise(&mut child, head, &left);
@@ -248,14 +251,14 @@ impl Tree {
     }
 
     /// Fixes one more target by the pair table.
-    fn append(&self, node: &mut Node, target: usize) {
+    fn append(&self, node: &mut SearchNode, target: usize) {
         let last = self.table.last_place(&node.prefix);
         node.head += self.table.bound(last, target);
         node.prefix.push(target);
     }
 
-    /// Opens a node unless it is decided already.
-    fn admit(&mut self, node: Node) {
+    /// Opens a node unless it is evaluated already or ruled out.
+    fn admit(&mut self, node: SearchNode) {
         if self.is_leaf(&node) {
             match self.tried.get(&self.either_way(&node.prefix)) {
                 Some(Some(duration_s)) => return self.check(&node, *duration_s),
@@ -271,8 +274,8 @@ impl Tree {
         }
     }
 
-    /// Takes in the evaluation of a prefix, `None` when it did not resolve.
-    pub(super) fn bounded(&mut self, mut node: Node, head: Option<f64>) {
+    /// Records the evaluation of a prefix, `None` when it did not resolve.
+    pub(super) fn prefix_evaluated(&mut self, mut node: SearchNode, head: Option<f64>) {
         self.statistics.nodes_explored += 1;
         self.statistics.prefixes += 1;
         node.evaluated = true;
@@ -290,8 +293,8 @@ impl Tree {
         }
     }
 
-    /// Takes in the duration of a leaf.
-    pub(super) fn flown(&mut self, node: &Node, duration_s: f64) {
+    /// Records the duration of a leaf.
+    pub(super) fn leaf_solved(&mut self, node: &SearchNode, duration_s: f64) {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
         self.check(node, duration_s);
@@ -300,8 +303,8 @@ impl Tree {
         self.tried.insert(order, Some(duration_s));
     }
 
-    /// Takes in that a leaf did not resolve.
-    pub(super) fn unresolved(&mut self, node: &Node) {
+    /// Records that a leaf did not resolve.
+    pub(super) fn leaf_unresolved(&mut self, node: &SearchNode) {
         self.statistics.nodes_explored += 1;
         self.statistics.tours += 1;
         self.statistics.tours_unresolved += 1;
@@ -310,12 +313,12 @@ impl Tree {
         self.tried.insert(order, None);
     }
 
-    /// Opens a node again whose evaluation was interrupted.
-    pub(super) fn put_back(&mut self, node: Node) {
+    /// Opens a node again after its evaluation was interrupted.
+    pub(super) fn put_back(&mut self, node: SearchNode) {
         self.frontier.insert(node);
     }
 
-    /// Rules out what the incumbents allow, and drops what does not fit into memory.
+    /// Rules out nodes that the incumbents exclude, and drops nodes that do not fit into memory.
     pub(super) fn tidy(&mut self) {
         if self.improved {
             let incumbents = &self.incumbents;
@@ -339,17 +342,16 @@ impl Tree {
     }
 
     fn offer(&mut self, order: &[usize], duration_s: f64) {
-        let mut take_in = |order| {
-            self.improved |= self.incumbents.offer(FlownOrder { order, duration_s });
+        let mut list = |order| {
+            self.improved |= self.incumbents.offer(SolvedOrder { order, duration_s });
         };
-        take_in(order.to_vec());
+        list(order.to_vec());
         if self.symmetric {
-            take_in(order.iter().rev().copied().collect());
+            list(order.iter().rev().copied().collect());
         }
     }
 
-    /// What an order and its reverse have in common: where they are equally good, the
-    /// lexicographically first of the two.
+    /// The key of an order: in a symmetric model the lexicographically first of it and its reverse.
     fn either_way(&self, order: &[usize]) -> Vec<usize> {
         let reverse = order.iter().rev().copied().collect();
         if self.symmetric {
@@ -359,8 +361,8 @@ impl Tree {
         }
     }
 
-    /// Notes when an order is flown faster than its bound allows, beyond what a solver resolves.
-    fn check(&mut self, node: &Node, duration_s: f64) {
+    /// Counts a leaf whose duration is below its bound by more than the accuracy of an NLP.
+    fn check(&mut self, node: &SearchNode, duration_s: f64) {
         if duration_s < node.bound * (1.0 - CONTRADICTION_RELATIVE) {
             self.statistics.bounds_contradicted += 1;
         }
@@ -376,26 +378,26 @@ impl Tree {
 
     /// Whether nothing is open.
     pub(super) fn is_exhausted(&self) -> bool {
-        self.planted && self.frontier.is_empty()
+        self.root_is_open && self.frontier.is_empty()
     }
 
-    /// Whether the list of the best is proven up to the gap: nothing is open, and nothing that was
-    /// lost could have entered it.
+    /// Whether the list of the best is proven up to the gap: nothing is open, and no unresolved or
+    /// dropped order could enter it.
     pub(super) fn is_complete(&self) -> bool {
         let nothing_lost = self.lost_s.is_infinite() || self.incumbents.rule_out_bound(self.lost_s);
         self.is_exhausted() && nothing_lost
     }
 
-    /// Lower bound of every order that has not been flown, s.
+    /// Lower bound of every order that has not been evaluated, s.
     pub(super) fn open_bound(&self) -> f64 {
-        if self.planted {
+        if self.root_is_open {
             self.frontier.bound().min(self.ruled_out_s).min(self.lost_s)
         } else {
             self.root_bound()
         }
     }
 
-    /// Duration of the best order flown, s.
+    /// Duration of the best evaluated order, s.
     pub(super) fn best_s(&self) -> Option<f64> {
         self.incumbents.best_s()
     }
@@ -405,19 +407,19 @@ impl Tree {
         &self.statistics
     }
 
-    /// The best orders flown so far, best first.
-    pub(super) fn orders(&self) -> &[FlownOrder] {
+    /// The best orders evaluated so far, best first.
+    pub(super) fn orders(&self) -> &[SolvedOrder] {
         self.incumbents.orders()
     }
 
-    /// The orders flown, best first.
-    pub(super) fn into_orders(self) -> Vec<FlownOrder> {
+    /// The best orders, best first.
+    pub(super) fn into_orders(self) -> Vec<SolvedOrder> {
         self.incumbents.into_orders()
     }
 }
 
-/// The target of the least bound from the start, the first of equal ones.
+/// The target with the smallest bound from the start; the first among equals.
 fn nearest_to_start(table: &PairTable) -> Option<usize> {
-    let far = |target: usize| table.bound(table.start(), target);
-    (0..table.targets()).min_by(|&a, &b| far(a).total_cmp(&far(b)))
+    let bound = |target: usize| table.bound(table.start(), target);
+    (0..table.targets()).min_by(|&a, &b| bound(a).total_cmp(&bound(b)))
 }

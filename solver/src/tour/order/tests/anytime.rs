@@ -1,20 +1,20 @@
-//! What the search says when it cannot finish.
+//! Results of searches that end early, and reports of running searches.
 
 use super::{RandomModel, alternatives, pool, run};
 use crate::model::order_rules::OrderRules;
 use crate::run::progress::{Progress, Silent, Stage};
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::order::{
-    Evaluation, FlownOrder, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings,
+    Evaluation, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings, SolvedOrder,
     TourEvaluation, TourModel, exhaustive, search,
 };
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Remembers everything, and stops the search after a number of calls.
+/// Records all reports, and stops the search after a number of them.
 struct Recorder {
-    told: Mutex<Vec<Progress>>,
-    improved: Mutex<Vec<FlownOrder>>,
+    reported: Mutex<Vec<Progress>>,
+    improved: Mutex<Vec<SolvedOrder>>,
     stop: StopSignal,
     stop_after: usize,
 }
@@ -22,23 +22,23 @@ struct Recorder {
 impl Recorder {
     fn new(stop_after: usize) -> Self {
         Self {
-            told: Mutex::default(),
+            reported: Mutex::default(),
             improved: Mutex::default(),
             stop: StopSignal::new(),
             stop_after,
         }
     }
 
-    fn told(self) -> Vec<Progress> {
-        self.told.into_inner().expect("no thread panicked")
+    fn reported(self) -> Vec<Progress> {
+        self.reported.into_inner().expect("no thread panicked")
     }
 }
 
 impl SearchObserver for Recorder {
     fn progress(&self, progress: Progress) {
-        let mut told = self.told.lock().expect("no thread panicked");
-        told.push(progress);
-        if told.len() == self.stop_after {
+        let mut reported = self.reported.lock().expect("no thread panicked");
+        reported.push(progress);
+        if reported.len() == self.stop_after {
             self.stop.request();
         }
     }
@@ -50,7 +50,7 @@ impl SearchObserver for Recorder {
     }
 }
 
-/// Gives the stop signal inside an evaluation.
+/// A model that cancels the search during its evaluation number `stop_at`.
 pub(super) struct StopsInside<'a> {
     pub(super) inner: RandomModel,
     pub(super) stop: &'a StopSignal,
@@ -118,7 +118,7 @@ fn optimum(model: &dyn TourModel) -> f64 {
 }
 
 #[test]
-fn the_node_limit_is_kept_and_the_bound_stays_valid() {
+fn a_search_within_a_node_limit_has_a_valid_bound() {
     for limit in [0, 1, 7, 8, 9, 40] {
         let model = RandomModel::new(7, true, 11);
         let settings = SearchSettings {
@@ -136,7 +136,7 @@ fn the_node_limit_is_kept_and_the_bound_stays_valid() {
 }
 
 #[test]
-fn stopped_between_rounds_the_best_so_far_is_returned() {
+fn a_search_stopped_between_rounds_returns_the_best_so_far() {
     let model = RandomModel::new(7, false, 12);
     let recorder = Recorder::new(4);
     let stop = recorder.stop.clone();
@@ -149,7 +149,7 @@ fn stopped_between_rounds_the_best_so_far_is_returned() {
 }
 
 #[test]
-fn stopped_inside_an_evaluation_the_bound_of_the_node_in_flight_is_kept() {
+fn a_search_stopped_during_an_evaluation_keeps_the_bound_of_that_node() {
     for stop_at in 1..40 {
         let stop = StopSignal::new();
         let model = StopsInside {
@@ -167,7 +167,7 @@ fn stopped_inside_an_evaluation_the_bound_of_the_node_in_flight_is_kept() {
 }
 
 #[test]
-fn stopped_before_it_began_the_search_has_no_order_and_a_bound() {
+fn a_search_stopped_before_it_begins_has_a_bound_and_no_order() {
     let stop = StopSignal::new();
     stop.cancel();
     let model = RandomModel::new(5, true, 14);
@@ -178,7 +178,7 @@ fn stopped_before_it_began_the_search_has_no_order_and_a_bound() {
 }
 
 #[test]
-fn unresolved_prefixes_only_cost_work() {
+fn unresolved_prefixes_do_not_change_the_result() {
     for seed in 0..20 {
         let mut model = RandomModel::new(6, seed % 2 == 0, seed);
         let expected = optimum(&model);
@@ -204,7 +204,7 @@ fn an_unresolved_leaf_that_could_be_best_leaves_the_search_incomplete() {
             .expect("other orders resolve")
             .duration_s;
         assert_eq!(result.end, SearchEnd::Exhausted);
-        // Whatever the unresolved orders hide, neither claim may contradict it.
+        // The true optimum, which may be an unresolved order, must respect the bound.
         assert!(result.lower_bound_s <= truth + 1e-9);
         if found > truth {
             assert!(!result.complete && !result.best_is_proven(0.0));
@@ -215,7 +215,7 @@ fn an_unresolved_leaf_that_could_be_best_leaves_the_search_incomplete() {
 }
 
 #[test]
-fn when_nothing_resolves_there_is_a_bound_and_no_order() {
+fn a_search_in_which_nothing_resolves_has_a_bound_and_no_order() {
     for targets in [0, 1, 4] {
         let mut model = RandomModel::new(targets, true, 3);
         let truth = optimum(&model);
@@ -239,7 +239,7 @@ fn dropped_nodes_leave_the_search_incomplete_and_the_bound_valid() {
 }
 
 #[test]
-fn bounds_that_are_not_admissible_are_noticed() {
+fn bounds_that_are_not_admissible_are_counted() {
     let mut model = RandomModel::new(6, true, 16);
     model.known_share = 4.0;
     let result = run(&model, &alternatives(5));
@@ -248,7 +248,7 @@ fn bounds_that_are_not_admissible_are_noticed() {
 }
 
 #[test]
-fn progress_never_goes_back() {
+fn reported_incumbents_never_rise_and_bounds_never_fall() {
     for seed in 0..6 {
         let recorder = Recorder::new(usize::MAX);
         let model = RandomModel::new(7, seed % 2 == 0, seed);
@@ -260,22 +260,22 @@ fn progress_never_goes_back() {
             &StopSignal::new(),
             &recorder,
         );
-        let told = recorder.told();
-        assert!(told.len() > 2 && told.iter().all(|p| p.stage == Stage::Search));
-        for pair in told.windows(2) {
+        let reported = recorder.reported();
+        assert!(reported.len() > 2 && reported.iter().all(|p| p.stage == Stage::Search));
+        for pair in reported.windows(2) {
             assert!(pair[0].done <= pair[1].done);
             assert!(pair[0].lower_bound_s <= pair[1].lower_bound_s);
             assert!(pair[0].incumbent_s >= pair[1].incumbent_s);
         }
-        let last = told[told.len() - 1];
-        assert!(told.iter().all(|p| p.lower_bound_s <= last.incumbent_s));
+        let last = reported[reported.len() - 1];
+        assert!(reported.iter().all(|p| p.lower_bound_s <= last.incumbent_s));
         assert_eq!(last.done, result.statistics.nodes_explored);
         assert_eq!(last.incumbent_s, result.best.map(|best| best.duration_s));
     }
 }
 
 #[test]
-fn forty_targets_give_an_order_and_a_bound_at_any_time() {
+fn searches_over_forty_targets_have_an_order_and_a_bound_at_any_node_limit() {
     let mut bounds = Vec::new();
     for limit in [0, 400] {
         let model = RandomModel::new(40, true, 17);
@@ -296,7 +296,7 @@ fn forty_targets_give_an_order_and_a_bound_at_any_time() {
 }
 
 #[test]
-fn every_better_order_is_handed_over_once_before_it_is_told() {
+fn every_better_order_is_announced_once_before_its_progress() {
     let mut better = 0;
     for seed in 0..10 {
         let recorder = Recorder::new(usize::MAX);
@@ -312,16 +312,18 @@ fn every_better_order_is_handed_over_once_before_it_is_told() {
         let durations: Vec<f64> = improved.iter().map(|order| order.duration_s).collect();
         assert!(durations.windows(2).all(|pair| pair[1] < pair[0]));
         for order in &improved {
-            let flown = TourEvaluation::LegSolution(order.duration_s);
-            assert_eq!(model.tour(&order.order), flown, "seed {seed}");
+            let solved = TourEvaluation::Solved(order.duration_s);
+            assert_eq!(model.tour(&order.order), solved, "seed {seed}");
         }
-        let told = recorder.told();
-        let (_, while_running) = told.split_last().expect("at least one report");
+        let reported = recorder.reported();
+        let (_, while_running) = reported.split_last().expect("at least one report");
         for progress in while_running {
-            let incumbent = progress.incumbent_s.expect("candidates are flown first");
+            let incumbent = progress
+                .incumbent_s
+                .expect("candidates are evaluated first");
             assert!(durations.contains(&incumbent), "seed {seed}");
         }
         better += improved.len() - 1;
     }
-    assert!(better > 0, "no search found a better order on its way");
+    assert!(better > 0, "no search found a better order after its first");
 }

@@ -1,17 +1,17 @@
-//! Same answers as exhaustive enumeration, whatever the number of threads.
+//! Results equal to exhaustive enumeration, for any number of threads.
 
 use super::{RandomModel, alternatives, pool, run};
 use crate::model::order_rules::OrderRules;
 use crate::run::progress::Silent;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{
-    Evaluation, FlownOrder, Place, SearchEnd, SearchResult, SearchSettings, TourEvaluation,
+    Evaluation, Place, SearchEnd, SearchResult, SearchSettings, SolvedOrder, TourEvaluation,
     TourModel, exhaustive, search,
 };
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-fn orders_of(result: &SearchResult) -> Vec<FlownOrder> {
+fn orders_of(result: &SearchResult) -> Vec<SolvedOrder> {
     result
         .best
         .iter()
@@ -20,13 +20,13 @@ fn orders_of(result: &SearchResult) -> Vec<FlownOrder> {
         .collect()
 }
 
-fn assert_same_orders(found: &[FlownOrder], expected: &[FlownOrder], case: &str) {
-    let orders = |list: &[FlownOrder]| list.iter().map(|o| o.order.clone()).collect::<Vec<_>>();
+fn assert_same_orders(found: &[SolvedOrder], expected: &[SolvedOrder], case: &str) {
+    let orders = |list: &[SolvedOrder]| list.iter().map(|o| o.order.clone()).collect::<Vec<_>>();
     assert_eq!(orders(found), orders(expected), "{case}");
     assert_same_durations(found, expected, case);
 }
 
-fn assert_same_durations(found: &[FlownOrder], expected: &[FlownOrder], case: &str) {
+fn assert_same_durations(found: &[SolvedOrder], expected: &[SolvedOrder], case: &str) {
     assert_eq!(found.len(), expected.len(), "{case}");
     for (a, b) in found.iter().zip(expected) {
         assert!(
@@ -37,7 +37,7 @@ fn assert_same_durations(found: &[FlownOrder], expected: &[FlownOrder], case: &s
 }
 
 #[test]
-fn finds_the_best_orders_of_coupled_models() {
+fn the_search_finds_the_best_orders_of_coupled_models() {
     let pool = pool(2);
     for seed in 0..240 {
         let targets = 1 + (seed % 6) as usize;
@@ -55,10 +55,10 @@ fn finds_the_best_orders_of_coupled_models() {
 }
 
 #[test]
-fn finds_the_best_of_orders_that_hardly_differ() {
+fn the_search_finds_the_best_of_orders_that_hardly_differ() {
     let pool = pool(2);
     for seed in 0..96 {
-        // Of eight targets so many nodes that the bounds of longer paths are asked for.
+        // With eight targets the search is long enough to compute the triple bounds.
         let targets = 3 + (seed / 4 % 6) as usize;
         let model = RandomModel::with_near_ties(targets, seed % 2 == 0, seed);
         let expected = exhaustive(&model, 4, &pool);
@@ -70,7 +70,7 @@ fn finds_the_best_of_orders_that_hardly_differ() {
 }
 
 #[test]
-fn half_of_the_orders_are_enough_where_all_are_as_good_backwards() {
+fn symmetric_models_are_solved_by_searching_half_of_the_orders() {
     let pool = pool(2);
     let mut explored = [0, 0];
     for seed in 0..120 {
@@ -148,7 +148,7 @@ fn results_and_counts_do_not_depend_on_threads() {
 }
 
 #[test]
-fn a_gap_saves_work_and_is_kept() {
+fn a_gap_saves_nodes_and_the_result_is_within_it() {
     let model = RandomModel::new(8, false, 7);
     let exact = run(&model, &alternatives(0));
     let optimum = exact.best.expect("a best order").duration_s;
@@ -185,7 +185,7 @@ fn more_alternatives_than_orders_list_them_all() {
     assert_eq!(result.alternatives.len(), 5);
 }
 
-/// Counts the flights and bounds of every order and prefix.
+/// Counts the evaluations of every order and prefix.
 struct Counted {
     inner: RandomModel,
     asked: Mutex<BTreeMap<Vec<usize>, u64>>,
@@ -235,7 +235,7 @@ impl TourModel for Counted {
 }
 
 #[test]
-fn nothing_is_evaluated_twice_and_everything_is_counted() {
+fn every_prefix_and_order_is_evaluated_once_and_counted() {
     for targets in 0..9 {
         let model = Counted {
             inner: RandomModel::new(targets, true, 21),

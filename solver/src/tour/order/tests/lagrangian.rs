@@ -1,22 +1,24 @@
-//! Bounds from prices, on legs that want to meet in different states.
+//! Lagrangian bounds, on a convex model of legs with preferred boundary states.
 
 use super::{SplitMix, alternatives, pool, run, unit};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 use crate::tour::order::lagrangian::{LagrangianLegs, LagrangianPaths};
 use crate::tour::order::{
-    Evaluation, PairTable, Place, Price, TourEvaluation, TourModel, exhaustive,
+    Evaluation, PairTable, PassageCostate, Place, TourEvaluation, TourModel, exhaustive,
 };
 
-/// Legs that would begin and end in states of their own, in `[-1, 1]`, and pay for what they miss them
-/// by: convex, so that prices can make up for all that couples them.
+/// Every leg has a preferred state at its begin and one at its end, in `[-1, 1]`, and costs time in
+/// proportion to the deviations from them. The model is convex, so a single tour has no duality
+/// gap.
 struct MeetingModel {
     targets: usize,
     has_end: bool,
     symmetric: bool,
-    /// Time of every leg, s, the state that suits its end and the state that suits its beginning.
+    /// For every leg: its duration in the preferred states, s, and the preferred states at its end
+    /// and its begin.
     legs: Vec<[f64; 3]>,
-    /// What missing a state costs, s.
+    /// Time per unit of deviation from a preferred state, s.
     stiffness: f64,
     rules: OrderRules,
 }
@@ -38,7 +40,7 @@ impl MeetingModel {
         }
     }
 
-    /// The same backwards, with start and end exchanged: states change their signs.
+    /// A model that is symmetric under reversal, with start and end exchanged: states change sign.
     fn symmetric(targets: usize, seed: u64) -> Self {
         let mut model = Self::new(targets, true, seed);
         let places = targets + 2;
@@ -74,7 +76,8 @@ impl MeetingModel {
         path
     }
 
-    /// Legs and what their meetings cost: a state between the two that suit costs the same as either.
+    /// Duration along a path: the legs and the deviations at their meetings. Any state between the
+    /// two preferred ones has the same cost.
     fn along(&self, path: &[usize]) -> f64 {
         let legs = path.windows(2).map(|leg| self.leg(leg[0], leg[1])[0]);
         let meetings = path.windows(3).map(|p| {
@@ -106,7 +109,7 @@ impl TourModel for MeetingModel {
         self.leg(self.number(from), self.number(to))[0]
     }
 
-    /// Knows no more than the pairs do, so that the search is long.
+    /// No tighter than the pair bounds, so that the search is long.
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
         let path = self.path(prefix, false);
         Evaluation::Value(path.windows(2).map(|leg| self.leg(leg[0], leg[1])[0]).sum())
@@ -123,25 +126,27 @@ impl TourModel for MeetingModel {
 
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         assert!(self.rules.admits(order));
-        TourEvaluation::LegSolution(self.along(&self.path(order, true)))
+        TourEvaluation::Solved(self.along(&self.path(order, true)))
     }
 
-    fn costates(&self, order: &[usize]) -> Option<Vec<Price>> {
+    fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {
         let path = self.path(order, true);
-        let price = |p: &[usize]| {
+        let costate = |p: &[usize]| {
             let (end, begin) = (self.leg(p[0], p[1])[1], self.leg(p[1], p[2])[2]);
             vec![self.stiffness * (end - begin).signum()]
         };
-        Some(path.windows(3).map(price).collect())
+        Some(path.windows(3).map(costate).collect())
     }
 
-    /// The least over the states at both ends: at what suits or at the ends of their range.
-    fn lagrangian_leg(&self, leg: [Place; 2], prices: [Option<&[f64]>; 2]) -> Evaluation {
+    /// The minimum over the states at both ends; it is at a preferred state or at an end of the
+    /// range.
+    fn lagrangian_leg(&self, leg: [Place; 2], costates: [Option<&[f64]>; 2]) -> Evaluation {
         let [time, end, begin] = self.leg(self.number(leg[0]), self.number(leg[1]));
-        let [left, reached] = prices.map(|price| price.map_or(0.0, |price| price[0]));
-        let least = |suits: f64, price: f64| {
-            let states = [-1.0, suits, 1.0].into_iter();
-            let costs = states.map(|state| self.stiffness * (state - suits).abs() + price * state);
+        let [left, reached] = costates.map(|costate| costate.map_or(0.0, |costate| costate[0]));
+        let least = |preferred: f64, costate: f64| {
+            let states = [-1.0, preferred, 1.0].into_iter();
+            let costs =
+                states.map(|state| self.stiffness * (state - preferred).abs() + costate * state);
             costs.fold(f64::INFINITY, f64::min)
         };
         Evaluation::Value(time + least(begin, -left) + least(end, reached))
@@ -175,10 +180,10 @@ fn models(targets: usize, seed: u64) -> [MeetingModel; 3] {
     ]
 }
 
-/// Whatever the prices, no bound exceeds what it is of, and the shortest order by lagrangian legs is that
-/// of least bound.
+/// For any costates, no bound exceeds the duration it bounds, and the first order listed is the one
+/// of smallest bound.
 #[test]
-fn prices_bound_all_orders_from_below() {
+fn lagrangian_bounds_are_admissible_for_any_costates() {
     let (pool, stop) = (pool(2), StopSignal::new());
     for seed in 0..6_usize {
         for model in models(6, seed as u64) {
@@ -194,11 +199,11 @@ fn prices_bound_all_orders_from_below() {
                 assert!(paths.fill(&legs, &pool, &stop));
                 let mut least = f64::INFINITY;
                 for order in &admitted {
-                    let flown = model.along(&model.path(order, true));
+                    let duration = model.along(&model.path(order, true));
                     let bound = paths.whole(order, &[]);
                     assert!(
-                        bound <= flown + 1e-9,
-                        "seed {seed}, round {round}: {bound} {flown}"
+                        bound <= duration + 1e-9,
+                        "seed {seed}, round {round}: {bound} {duration}"
                     );
                     least = least.min(bound);
                     for cut in 0..order.len() {
@@ -216,17 +221,17 @@ fn prices_bound_all_orders_from_below() {
                 );
                 let orders = paths.orders(2);
                 assert!((paths.whole(&orders[0], &[]) - least).abs() <= 1e-5 * least);
-                // Prices of orders that are good for nothing, now and then.
+                // In every second round, costates of an arbitrary order.
                 let odd = admitted[(seed * 97 + round * 31) % admitted.len()].clone();
                 let learned = if round % 2 == 0 { orders } else { vec![odd] };
-                assert!(legs.learn(&learned, &model, &pool, &stop));
+                assert!(legs.update_costates(&learned, &model, &pool, &stop));
             }
         }
     }
 }
 
 #[test]
-fn learned_prices_close_most_of_the_gap() {
+fn the_dual_ascent_closes_most_of_the_gap() {
     let (pool, stop) = (pool(2), StopSignal::new());
     for seed in 0..6 {
         for model in models(7, seed) {
@@ -238,7 +243,7 @@ fn learned_prices_close_most_of_the_gap() {
             let pairs_s = paths.root_bound();
             let mut bound_s = pairs_s;
             for _ in 0..30 {
-                assert!(legs.learn(&paths.orders(4), &model, &pool, &stop));
+                assert!(legs.update_costates(&paths.orders(4), &model, &pool, &stop));
                 assert!(paths.fill(&legs, &pool, &stop));
                 bound_s = bound_s.max(paths.root_bound());
             }
@@ -249,7 +254,7 @@ fn learned_prices_close_most_of_the_gap() {
 }
 
 #[test]
-fn a_stopped_lesson_changes_nothing() {
+fn a_stopped_update_changes_nothing() {
     let (pool, stop) = (pool(2), StopSignal::new());
     let model = MeetingModel::new(6, true, 1);
     let mut legs = LagrangianLegs::new(&model, &PairTable::new(&model));
@@ -257,7 +262,7 @@ fn a_stopped_lesson_changes_nothing() {
     assert!(paths.fill(&legs, &pool, &stop));
     let (orders, before) = (paths.orders(3), paths.root_bound());
     stop.request();
-    assert!(!legs.learn(&orders, &model, &pool, &stop));
+    assert!(!legs.update_costates(&orders, &model, &pool, &stop));
     assert!(!paths.fill(&legs, &pool, &stop));
     assert!(paths.fill(&legs, &pool, &StopSignal::new()));
     assert_eq!(
@@ -266,9 +271,9 @@ fn a_stopped_lesson_changes_nothing() {
     );
 }
 
-/// Long enough for prices to be learned on the way.
+/// The searches are long enough to compute Lagrangian bounds.
 #[test]
-fn a_long_search_with_prices_finds_what_enumeration_finds() {
+fn a_search_with_lagrangian_bounds_finds_the_best_orders() {
     let pool = pool(2);
     for seed in 0..3 {
         for model in models(8, seed) {

@@ -1,4 +1,4 @@
-//! Cost models in place of slews.
+//! Cost models in place of solved legs.
 
 pub(super) use crate::math::random::SplitMix;
 use crate::model::order_rules::OrderRules;
@@ -11,20 +11,20 @@ pub(in crate::tour::order) fn unit(random: &mut SplitMix) -> f64 {
 
 /// Legs with random costs, and a random penalty on every two consecutive legs.
 ///
-/// The pair bounds are the costs without penalties; the bound of a prefix knows a share of the
-/// penalties inside it: admissible, and not tight.
+/// The pair bounds are the costs without penalties. The bound of a prefix contains a share of the
+/// penalties inside it: it is admissible, and not tight.
 pub(in crate::tour::order) struct RandomModel {
     targets: usize,
     has_end: bool,
     legs: Vec<f64>,
     penalties: Vec<f64>,
-    /// Which orders may be flown.
+    /// Which orders are admitted.
     pub(in crate::tour::order) rules: OrderRules,
-    /// Share of the penalties that the bound of a prefix knows.
+    /// Share of the penalties in the bounds of prefixes and paths.
     pub(in crate::tour::order) known_share: f64,
     /// Orders and prefixes for which this holds do not resolve.
     pub(in crate::tour::order) fails: fn(&[usize]) -> bool,
-    /// The other targets have no penalties.
+    /// Targets with penalties.
     pub(in crate::tour::order) couples: fn(usize) -> bool,
     symmetric: bool,
 }
@@ -51,12 +51,12 @@ impl RandomModel {
         }
     }
 
-    /// Every order costs the same backwards: the start is the end.
+    /// Every order costs the same in reverse: start and end are the same place.
     pub(in crate::tour::order) fn symmetric(targets: usize, seed: u64) -> Self {
         let mut model = Self::new(targets, true, seed);
         let places = targets + 2;
         let (start, end) = (targets, targets + 1);
-        // Costs by places in which start and end are one, whatever the direction.
+        // Costs depend neither on the direction nor on which of start and end a place is.
         let one = |place: usize| if place == end { start } else { place };
         let (legs, penalties) = (model.legs.clone(), model.penalties.clone());
         for from in 0..places {
@@ -73,7 +73,7 @@ impl RandomModel {
         model
     }
 
-    /// Costs of 0, 1 or 2 only and no penalties: ties everywhere.
+    /// Costs of 0, 1 or 2 and no penalties: many ties.
     pub(in crate::tour::order) fn with_ties(targets: usize, has_end: bool, seed: u64) -> Self {
         let mut model = Self::new(targets, has_end, seed);
         for leg in &mut model.legs {
@@ -83,7 +83,8 @@ impl RandomModel {
         model
     }
 
-    /// Orders that differ by some millionths of what they cost, or thousandths, and bounds that know all.
+    /// Orders whose costs differ by millionths to thousandths, with bounds that contain all
+    /// penalties.
     pub(in crate::tour::order) fn with_near_ties(targets: usize, has_end: bool, seed: u64) -> Self {
         let mut model = Self::new(targets, has_end, seed);
         let spread = [1e-6, 1e-5, 1e-4, 1e-3][(seed % 4) as usize];
@@ -97,7 +98,7 @@ impl RandomModel {
         model
     }
 
-    /// The same forth and back but for the start, and for a service time at every target.
+    /// Costs that are symmetric except at the start and for a service time at every target.
     pub(in crate::tour::order) fn reversible(targets: usize, has_end: bool, seed: u64) -> Self {
         let mut model = Self::new(targets, has_end, seed);
         let places = targets + 2;
@@ -116,7 +117,7 @@ impl RandomModel {
         model
     }
 
-    /// The same without telling that orders are as good backwards.
+    /// The same model without the information that it is symmetric.
     pub(in crate::tour::order) fn searched_whole(mut self) -> Self {
         self.symmetric = false;
         self
@@ -211,6 +212,6 @@ impl TourModel for RandomModel {
         if (self.fails)(order) {
             return TourEvaluation::Unresolved;
         }
-        TourEvaluation::LegSolution(self.cost(order, self.has_end, 1.0))
+        TourEvaluation::Solved(self.cost(order, self.has_end, 1.0))
     }
 }

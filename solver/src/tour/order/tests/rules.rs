@@ -1,15 +1,15 @@
-//! Orders under rules: completions against enumeration, and the search against all admitted orders.
+//! Orders under rules: completions, bounds and searches against enumeration.
 
 use super::models::SplitMix;
 use super::{RandomModel, alternatives, pool, run};
 use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::{Remainder, SpanningTrees, SubsetTable};
+use crate::tour::order::completion::{CompletionBound, SpanningTrees, SubsetTable};
 use crate::tour::order::exhaustive::permutations;
 use crate::tour::order::heuristics::{candidates, complete};
 use crate::tour::order::{PairTable, SearchEnd, SearchSettings, exhaustive};
 
-/// Any rules at all, feasible or not.
+/// Random rules, feasible or not.
 fn any_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
     let positions = (0..targets).map(|_| (random.below(4) == 0).then(|| random.below(targets)));
     let positions = positions.collect();
@@ -20,7 +20,8 @@ fn any_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
     OrderRules::new(positions, after)
 }
 
-/// Rules that at least one order keeps: a share of what holds in it.
+/// Random rules that at least one order satisfies: some of the positions and precedences that hold
+/// in it.
 fn feasible_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
     let mut order: Vec<usize> = (0..targets).collect();
     for place in (1..targets).rev() {
@@ -42,7 +43,7 @@ fn feasible_rules(targets: usize, random: &mut SplitMix) -> OrderRules {
 }
 
 #[test]
-fn a_completion_is_found_exactly_where_there_is_one() {
+fn a_prefix_is_completed_if_and_only_if_an_admitted_order_begins_with_it() {
     let mut random = SplitMix::new(5);
     let (mut found, mut none) = (0, 0);
     for case in 0..600 {
@@ -126,7 +127,7 @@ fn subsets_give_the_shortest_admitted_path_and_trees_do_not_exceed_it() {
 }
 
 #[test]
-fn orders_flown_early_keep_the_rules_whatever_their_number() {
+fn heuristic_orders_and_completions_satisfy_the_rules() {
     let mut random = SplitMix::new(9);
     let stop = StopSignal::new();
     for seed in 0..12 {
@@ -134,7 +135,7 @@ fn orders_flown_early_keep_the_rules_whatever_their_number() {
         let mut model = RandomModel::new(targets, seed % 2 == 0, seed);
         model.rules = feasible_rules(targets, &mut random);
         let table = PairTable::new(&model);
-        let completion = Remainder::new(&table, table.rules(), &StopSignal::new());
+        let completion = CompletionBound::new(&table, table.rules(), &StopSignal::new());
         let orders = candidates(&table, &completion, &stop);
         assert!(!orders.is_empty());
         for order in &orders {
@@ -144,7 +145,7 @@ fn orders_flown_early_keep_the_rules_whatever_their_number() {
         let remaining: Vec<usize> = (0..targets).filter(|t| !prefix.contains(t)).collect();
         let order = complete(&table, &completion, prefix, &remaining, &stop);
         assert!(order.starts_with(prefix) && model.rules.admits(&order));
-        // The model refuses to be asked for what the rules do not admit.
+        // The model panics when it is asked for an order that the rules do not admit.
         let settings = SearchSettings {
             node_limit: Some(60),
             ..alternatives(1)

@@ -1,25 +1,25 @@
-//! Bounds from triples, against all orders.
+//! Triple bounds against all orders.
 
 use super::anytime::StopsInside;
 use super::{RandomModel, pool};
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::SpanningTrees;
-use crate::tour::order::triple_bounds::{Effort, TripleBoundSubsets, TripleBounds};
+use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{Evaluation, PairTable, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-const EFFORT: Effort = Effort {
+const EFFORT: AscentEffort = AscentEffort {
     triples: 1000,
     fives: 1000,
     steps: 200,
 };
 
-/// Paths that do not resolve.
+/// Selects paths that do not resolve.
 fn some_paths(path: &[usize]) -> bool {
     path.iter().sum::<usize>() % 3 == 0
 }
 
-/// Models of each kind, whose paths know all penalties.
+/// Models of each kind, whose path bounds contain all penalties.
 fn models() -> impl Iterator<Item = RandomModel> {
     (0..63).map(|seed| {
         let kinds = [
@@ -44,11 +44,11 @@ fn prepared(model: &dyn TourModel) -> (PairTable, SpanningTrees, TripleBounds) {
     (table, trees, triple_bounds)
 }
 
-/// What the bound relaxes of a way, s, when all is known: a penalty counts half, and three quarters
-/// with two places on either side; that is less than the whole.
-fn relaxed(model: &RandomModel, way: &[Place]) -> f64 {
+/// The sum of pair bounds and weighted penalties along a path that the triple bounds relax, s, when
+/// all gaps are known: a penalty counts half, or three quarters with two places on either side.
+fn relaxed(model: &RandomModel, path: &[Place]) -> f64 {
     let pair = |leg: &[Place]| model.pair_bound(leg[0], leg[1]);
-    let penalties = way
+    let penalties = path
         .windows(3)
         .enumerate()
         .map(|(first, triple)| match triple[1] {
@@ -56,7 +56,7 @@ fn relaxed(model: &RandomModel, way: &[Place]) -> f64 {
                 let Evaluation::Value(bound) = model.path_bound(triple) else {
                     panic!("the model resolves");
                 };
-                let share = if first > 0 && first + 4 <= way.len() {
+                let share = if first > 0 && first + 4 <= path.len() {
                     0.75
                 } else {
                     0.5
@@ -65,24 +65,25 @@ fn relaxed(model: &RandomModel, way: &[Place]) -> f64 {
             }
             _ => 0.0,
         });
-    way.windows(2).map(pair).chain(penalties).sum()
+    path.windows(2).map(pair).chain(penalties).sum()
 }
 
-/// The least of that over all ways that begin so and go through the remaining targets to the end, s.
-fn cheapest(model: &RandomModel, begun: &[Place], remaining: &[usize]) -> f64 {
+/// Minimum of that sum over all paths that begin with these places and go through the remaining
+/// targets to the end, s.
+fn cheapest(model: &RandomModel, begin: &[Place], remaining: &[usize]) -> f64 {
     if remaining.is_empty() {
         let end = model.has_end().then_some(Place::End);
-        return relaxed(model, &begun.iter().copied().chain(end).collect::<Vec<_>>());
+        return relaxed(model, &begin.iter().copied().chain(end).collect::<Vec<_>>());
     }
     let onward = |&to: &usize| {
         let rest: Vec<usize> = remaining.iter().copied().filter(|&t| t != to).collect();
-        cheapest(model, &[begun, &[Place::Target(to)]].concat(), &rest)
+        cheapest(model, &[begin, &[Place::Target(to)]].concat(), &rest)
     };
     remaining.iter().map(onward).fold(f64::INFINITY, f64::min)
 }
 
 #[test]
-fn no_bound_exceeds_the_cheapest_way() {
+fn no_bound_exceeds_the_cheapest_path() {
     let pool = pool(2);
     for (case, mut model) in models().enumerate() {
         if case % 4 == 0 {
@@ -94,7 +95,7 @@ fn no_bound_exceeds_the_cheapest_way() {
         assert!(triple_bounds.root_bound() >= before, "case {case}");
         model.fails = |_| false;
         let all: Vec<usize> = (0..table.targets()).collect();
-        // The multipliers kept are those of the best bound.
+        // After the ascent the multipliers are those of the best bound.
         let root = triple_bounds.bound(table.start(), &all);
         assert!(
             (triple_bounds.root_bound() - root).abs() <= 1e-9,
@@ -122,7 +123,7 @@ fn no_bound_exceeds_the_cheapest_way() {
 }
 
 #[test]
-fn triples_raise_the_bound_of_held_and_karp_and_fives_raise_that() {
+fn triples_raise_the_held_karp_bound_and_fives_raise_it_further() {
     let pool = pool(2);
     for seed in 0..12 {
         let kinds = [RandomModel::new, RandomModel::reversible];
@@ -133,7 +134,7 @@ fn triples_raise_the_bound_of_held_and_karp_and_fives_raise_that() {
         let mut bound = trees.bound(&table, table.start(), &all);
         assert!(triple_bounds.root_bound() >= bound - 1e-9, "seed {seed}");
         for fives in [0, EFFORT.fives] {
-            let effort = Effort { fives, ..EFFORT };
+            let effort = AscentEffort { fives, ..EFFORT };
             triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());
             assert!(triple_bounds.root_bound() > bound * 1.005, "seed {seed}");
             bound = triple_bounds.root_bound();
@@ -142,7 +143,7 @@ fn triples_raise_the_bound_of_held_and_karp_and_fives_raise_that() {
 }
 
 #[test]
-fn nothing_depends_on_the_number_of_threads() {
+fn triple_bounds_do_not_depend_on_the_number_of_threads() {
     for seed in 0..3 {
         let model = RandomModel::new(20, seed % 2 == 0, seed);
         let some: Vec<usize> = (3..17).collect();
@@ -156,7 +157,7 @@ fn nothing_depends_on_the_number_of_threads() {
     }
 }
 
-/// A model that counts what it is asked and gives the signal at the so manieth question.
+/// A model that counts its evaluations and cancels at evaluation number `stop_at`.
 fn counting(stop: &StopSignal, stop_at: usize) -> StopsInside<'_> {
     StopsInside {
         inner: RandomModel::new(12, true, 5),
@@ -174,7 +175,7 @@ fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
     let before = triple_bounds.root_bound();
     let raised = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop);
     assert!(!raised.settled && raised.steps < EFFORT.steps);
-    // The other worker may be past its look at the signal.
+    // The other worker may already have polled the signal.
     assert!(model.evaluations.load(Ordering::Relaxed) <= 11);
     assert!(triple_bounds.root_bound() >= before);
     let again = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop);
@@ -182,11 +183,11 @@ fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
 }
 
 #[test]
-fn no_more_is_asked_than_allowed_and_nothing_twice() {
+fn the_model_is_asked_within_the_limits_and_never_twice_for_a_path() {
     let stop = StopSignal::new();
     let model = counting(&stop, usize::MAX);
     let (_, _, mut triple_bounds) = prepared(&model);
-    let mut passages = 0;
+    let mut paths = 0;
     let mut bound = triple_bounds.root_bound();
     for (triples, fives) in [
         (0, 0),
@@ -196,26 +197,26 @@ fn no_more_is_asked_than_allowed_and_nothing_twice() {
         (10_000, 0),
         (10_000, 0),
     ] {
-        let effort = Effort {
+        let effort = AscentEffort {
             triples,
             fives,
             ..EFFORT
         };
         let raised = triple_bounds.raise(&model, &effort, &pool(2), &stop);
         assert!(raised.triples <= triples && raised.fives <= fives);
-        passages += raised.triples + raised.fives;
-        // One direction for what begins at the start or ends at the end, two for all others.
+        paths += raised.triples + raised.fives;
+        // Paths from the start or to the end have one direction, all others two.
         let asked = model.evaluations.load(Ordering::Relaxed);
-        assert!((passages..=2 * passages).contains(&asked));
+        assert!((paths..=2 * paths).contains(&asked));
         assert!(triple_bounds.root_bound() >= bound);
         bound = triple_bounds.root_bound();
     }
     // There are 12 targets, each with 11 others, start and end around it.
-    assert!(passages <= 12 * (13 * 12 / 2 - 1) + 11);
+    assert!(paths <= 12 * (13 * 12 / 2 - 1) + 11);
 }
 
 #[test]
-fn estimates_lie_between_the_pairs_and_the_flight() {
+fn estimates_lie_between_the_pair_bounds_and_the_duration() {
     let mut model = RandomModel::new(6, true, 2);
     model.known_share = 1.0;
     let (table, _, mut triple_bounds) = prepared(&model);
@@ -228,9 +229,9 @@ fn estimates_lie_between_the_pairs_and_the_flight() {
         path.extend(&order);
         path.push(table.end());
         let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
-        let excess = |triple: &[usize]| triple_bounds.excess(triple[0], triple[1], triple[2]);
-        let estimate = pairs + path.windows(3).map(excess).sum::<f64>();
-        let TourEvaluation::LegSolution(duration) = model.tour(&order) else {
+        let gap = |triple: &[usize]| triple_bounds.coupling_gap(triple[0], triple[1], triple[2]);
+        let estimate = pairs + path.windows(3).map(gap).sum::<f64>();
+        let TourEvaluation::Solved(duration) = model.tour(&order) else {
             panic!("the model resolves");
         };
         assert!(pairs <= estimate && estimate <= duration + 1e-9);
@@ -240,7 +241,7 @@ fn estimates_lie_between_the_pairs_and_the_flight() {
 }
 
 #[test]
-fn where_nothing_couples_there_are_no_charges() {
+fn a_model_without_couplings_has_no_triple_bounds() {
     let mut model = RandomModel::new(5, true, 1);
     model.couples = |_| false;
     let table = PairTable::new(&model);

@@ -1,8 +1,9 @@
-//! Raising the bound: subgradient ascent over the multipliers, and asking for the passages that matter.
+//! Subgradient ascent over the multipliers; between its steps the model is asked for the coupling
+//! gaps of the paths that are chosen most often.
 
 use super::TripleBounds;
-use super::choice::{Choice, Part};
-use super::coupling_gaps::Passage;
+use super::choice::{NeighbourChoice, Part};
+use super::coupling_gaps::ShortPath;
 use super::multipliers::Multipliers;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
@@ -12,76 +13,78 @@ use crate::tour::order::completion::least_tree::{cheapest, least_tree};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-// Found by trial on points on a sphere and in clusters, 50 to 200 of them: within 400 steps, with
-// fives within four per target where that is more, the bound is within 0.2 % of where it ends.
+// With these constants the bound is within 0.2 % of its limit after 400 steps, or four steps per
+// target if that is more, on 50 to 200 points on a sphere, uniform and clustered.
 
-/// First step, as a share of the mean leg.
+/// First step, relative to the mean leg.
 const FIRST_STEP: f64 = 0.03;
-/// The ascent ends at steps of this share of the mean leg.
+/// Step at which the ascent ends, relative to the mean leg.
 const LAST_STEP: f64 = 1e-5;
-/// A step is this much shorter than the one before when the bound has not risen for so many steps.
+/// Factor by which the step shrinks when the bound has not risen for [`MAX_STALE_STEPS`] steps.
 const STEP_DECAY: f64 = 0.7;
-const PATIENCE: usize = 6;
-/// Share of its direction that a step keeps for the next: the choices jump to and fro.
+/// Steps without a rise of the bound after which the step shrinks.
+const MAX_STALE_STEPS: usize = 6;
+/// Weight of the previous direction in a step; it damps the oscillation of the choices.
 const MOMENTUM: f64 = 0.85;
-/// Weight of prices, which raise all multipliers of a target, beside that of single multipliers.
-const PRICE_WEIGHT: f64 = 0.5;
-/// So many steps go by between asking the model, and so many questions per target are asked at
-/// once: those that were chosen most often.
+/// Weight of the node potentials, which move all multipliers of a target together.
+const POTENTIAL_WEIGHT: f64 = 0.5;
+/// Steps between two batches of questions to the model.
 const STEPS_PER_BATCH: usize = 30;
+/// Questions of a batch per target.
 const BATCH_PER_TARGET: usize = 4;
 
-/// How much work to spend.
+/// Limits of the work of an ascent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effort {
-    /// Triples to ask for at most, each in both directions.
+pub struct AscentEffort {
+    /// Largest number of triples to ask for, each in both directions.
     pub triples: usize,
-    /// Five places in a row, and triples in them, to ask for at most once triples alone no longer
-    /// help; with 0 the outer multipliers stay as they are.
+    /// Largest number of paths of five places, and of triples in them, to ask for in the second
+    /// ascent. With 0 there is no second ascent, and the outer multipliers stay as they are.
     pub fives: usize,
-    /// Steps of the ascent at most, with triples and again with fives: some 400, and four per
-    /// target. With far fewer, fives gain nothing: the bound falls before it rises.
+    /// Largest number of steps of each of the two ascents: some 400, or four per target. With far
+    /// fewer the second ascent gains nothing, because the bound falls before it rises.
     pub steps: usize,
 }
 
-/// How much work was spent.
+/// The work of an ascent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Raised {
+pub struct AscentWork {
     /// Triples asked for.
     pub triples: usize,
-    /// Fives asked for, and triples in them.
+    /// Paths of five places asked for, and triples in them.
     pub fives: usize,
     /// Steps taken.
     pub steps: usize,
-    /// Whether all passages that matter are known and the ascent has settled.
+    /// Whether the ascent has converged and the gaps of all chosen paths are known.
     pub settled: bool,
 }
 
-/// What the ascent asks for.
+/// Length of the paths that an ascent asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Width {
     Triples,
     Fives,
 }
 
-/// How an ascent went.
+/// Result of one ascent.
 #[derive(Debug, Clone, Copy, Default)]
-struct Climb {
+struct AscentOutcome {
     asked: usize,
     steps: usize,
     settled: bool,
 }
 
-/// An ascent under way.
+/// A running ascent.
 struct Ascent<'a> {
     triple_bounds: &'a mut TripleBounds,
     width: Width,
     part: Part<'a>,
-    /// Edges between targets, by rows, less the multipliers taken over, s.
+    /// Edges between targets less their multipliers, by rows, s.
     weights: Vec<f64>,
-    /// Direction of the next step in the multipliers and in the prices.
+    /// Direction of the next step in the multipliers.
     heading: Multipliers,
-    price_heading: Vec<f64>,
+    /// Direction of the next step in the node potentials.
+    potential_heading: Vec<f64>,
     step: f64,
     /// Steps since the bound last rose.
     stale: usize,
@@ -89,38 +92,38 @@ struct Ascent<'a> {
     best: Multipliers,
     /// The best bound since the model was last asked, s.
     level_s: f64,
-    /// How often open passages were chosen since the model was last asked.
-    wanted: BTreeMap<Passage, usize>,
+    /// How often paths with unknown gaps were chosen since the model was last asked.
+    wanted: BTreeMap<ShortPath, usize>,
 }
 
-/// The two relaxed choices for some multipliers.
-struct Choices {
+/// The two relaxed choices for given multipliers, and their bound.
+struct RelaxedChoices {
     bound: f64,
-    /// What each target chooses.
-    targets: Vec<Choice>,
-    /// The tree with its outer edges.
+    /// The neighbours that each target chooses.
+    targets: Vec<NeighbourChoice>,
+    /// The edges of the tree and the two outer edges.
     edges: Vec<[usize; 2]>,
 }
 
 impl TripleBounds {
-    /// Raises the bound as far as it rises within the effort or until the solve is stopped. It
-    /// never falls. May be called again, to go on from the best multipliers.
+    /// Raises the bound within the limits of an effort or until the solve is stopped. The bound
+    /// never falls. A further call continues from the best multipliers.
     pub fn raise(
         &mut self,
         model: &dyn TourModel,
-        effort: &Effort,
+        effort: &AscentEffort,
         pool: &SolverPool,
         stop: &StopSignal,
-    ) -> Raised {
-        let ask = |triple_bounds: &mut Self, passages: &[Passage]| {
+    ) -> AscentWork {
+        let ask = |triple_bounds: &mut Self, paths: &[ShortPath]| {
             let table = triple_bounds.legs.table();
             triple_bounds
                 .coupling_gaps
-                .ask(passages, table, model, pool, stop);
+                .ask(paths, table, model, pool, stop);
         };
         let triples = self.climb(Width::Triples, effort.triples, effort.steps, ask, stop);
         if effort.fives == 0 || stop.is_set() {
-            return Raised {
+            return AscentWork {
                 triples: triples.asked,
                 fives: 0,
                 steps: triples.steps,
@@ -128,7 +131,7 @@ impl TripleBounds {
             };
         }
         let fives = self.climb(Width::Fives, effort.fives, effort.steps, ask, stop);
-        Raised {
+        AscentWork {
             triples: triples.asked,
             fives: fives.asked,
             steps: triples.steps + fives.steps,
@@ -136,18 +139,18 @@ impl TripleBounds {
         }
     }
 
-    /// One ascent, that asks for passages of this width.
+    /// One ascent, which asks for paths of this width.
     fn climb(
         &mut self,
         width: Width,
         limit: usize,
         steps: usize,
-        ask: impl Fn(&mut Self, &[Passage]),
+        ask: impl Fn(&mut Self, &[ShortPath]),
         stop: &StopSignal,
-    ) -> Climb {
+    ) -> AscentOutcome {
         let all: Vec<usize> = (0..self.targets()).collect();
         let mean_leg = self.root_s / (all.len() + 1) as f64;
-        let mut climb = Climb::default();
+        let mut climb = AscentOutcome::default();
         let mut ascent = Ascent::new(self, width, &all, FIRST_STEP * mean_leg);
         while climb.steps < steps && !stop.is_set() {
             climb.steps += 1;
@@ -160,7 +163,7 @@ impl TripleBounds {
                     ask(ascent.triple_bounds, &wanted);
                     climb.asked += wanted.len();
                     climb.settled = false;
-                    // What is known now is another function to climb: it may first go down.
+                    // The new gaps change the function; the bound may fall at first.
                     ascent.level_s = f64::NEG_INFINITY;
                 }
             }
@@ -170,7 +173,7 @@ impl TripleBounds {
             ascent.advance(&choices);
         }
         self.multipliers = ascent.best;
-        self.settle();
+        self.update_root_bound();
         climb
     }
 }
@@ -182,7 +185,7 @@ impl<'a> Ascent<'a> {
             part: Part::new(triple_bounds.legs.table().start(), triple_bounds.end(), all),
             weights: vec![0.0; targets * targets],
             heading: Multipliers::zero(targets),
-            price_heading: vec![0.0; targets],
+            potential_heading: vec![0.0; targets],
             step,
             stale: 0,
             level_s: f64::NEG_INFINITY,
@@ -194,8 +197,8 @@ impl<'a> Ascent<'a> {
         }
     }
 
-    /// Both choices for the multipliers as they are.
-    fn choose(&mut self) -> Choices {
+    /// Both relaxed choices for the current multipliers.
+    fn choose(&mut self) -> RelaxedChoices {
         self.triple_bounds.rank();
         let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
@@ -206,14 +209,14 @@ impl<'a> Ascent<'a> {
                 self.weights[b * targets + a] = weight;
             }
         }
-        let mut choices = Choices {
+        let mut choices = RelaxedChoices {
             bound: 0.0,
             targets: Vec::with_capacity(targets),
             edges: Vec::with_capacity(targets + 1),
         };
         for &via in self.part.targets {
             let choice = triple_bounds.choice(&self.part, via);
-            choices.bound += triple_bounds.legs.charge(via) + choice.cost;
+            choices.bound += triple_bounds.legs.entry_offset(via) + choice.cost;
             choices.targets.push(choice);
         }
         for outer in [self.part.entry, triple_bounds.end()] {
@@ -229,9 +232,9 @@ impl<'a> Ascent<'a> {
         choices
     }
 
-    /// Keeps the best multipliers, shortens the step when they no longer get better, and notes what it
-    /// would help to know.
-    fn judge(&mut self, choices: &Choices) {
+    /// Keeps the best multipliers, shortens the step when the bound no longer rises, and counts the
+    /// chosen paths whose gaps are unknown.
+    fn judge(&mut self, choices: &RelaxedChoices) {
         self.stale += 1;
         if choices.bound > self.best_s {
             self.best_s = choices.bound;
@@ -240,22 +243,22 @@ impl<'a> Ascent<'a> {
         if choices.bound > self.level_s {
             self.level_s = choices.bound;
             self.stale = 0;
-        } else if self.stale >= PATIENCE {
+        } else if self.stale >= MAX_STALE_STEPS {
             self.step *= STEP_DECAY;
             self.stale = 0;
         }
         for (via, choice) in choices.targets.iter().enumerate() {
-            if let Some(passage) = self.open_passage(via, choice) {
-                *self.wanted.entry(passage).or_default() += 1;
+            if let Some(path) = self.open_path(via, choice) {
+                *self.wanted.entry(path).or_default() += 1;
             }
         }
     }
 
-    /// What would tell more about what a target chose.
-    fn open_passage(&self, via: usize, choice: &Choice) -> Option<Passage> {
+    /// The path of a target's choice whose gap the model can be asked for, if any.
+    fn open_path(&self, via: usize, choice: &NeighbourChoice) -> Option<ShortPath> {
         let coupling_gaps = &self.triple_bounds.coupling_gaps;
         let [a, b] = choice.ends;
-        let triple = Passage::new(&[a, via, b]);
+        let triple = ShortPath::new(&[a, via, b]);
         if coupling_gaps.is_open(&triple) {
             return Some(triple);
         }
@@ -263,26 +266,26 @@ impl<'a> Ascent<'a> {
             return None;
         }
         let [first, last] = choice.path_beyond()?;
-        let five = Passage::new(&[first, a, via, b, last]);
+        let five = ShortPath::new(&[first, a, via, b, last]);
         coupling_gaps.is_open(&five).then_some(five)
     }
 
-    /// Takes the passages that were chosen most often.
-    fn most_wanted(&mut self, limit: usize) -> Vec<Passage> {
-        let mut wanted: Vec<(Passage, usize)> =
+    /// Takes out the paths that were chosen most often.
+    fn most_wanted(&mut self, limit: usize) -> Vec<ShortPath> {
+        let mut wanted: Vec<(ShortPath, usize)> =
             std::mem::take(&mut self.wanted).into_iter().collect();
-        // Stable: equals stay in the order of the passages.
+        // Stable: equals stay in the order of the paths.
         wanted.sort_by_key(|&(_, times)| Reverse(times));
         wanted.truncate(limit.min(BATCH_PER_TARGET * self.part.targets.len()));
-        wanted.into_iter().map(|(passage, _)| passage).collect()
+        wanted.into_iter().map(|(path, _)| path).collect()
     }
 
-    /// Takes a step: a share is raised where a target chooses a neighbour that the tree does not,
-    /// and lowered where it is the other way round; this is a subgradient of the bound. So is, in
-    /// the prices, the number of edges that the tree has too many at a target.
-    fn advance(&mut self, choices: &Choices) {
+    /// Takes a step along a subgradient of the bound: a multiplier rises where a target chooses a
+    /// neighbour that the tree does not, and falls in the opposite case. The subgradient in a
+    /// potential is two minus the degree of the target in the tree.
+    fn advance(&mut self, choices: &RelaxedChoices) {
         let targets = self.part.targets.len();
-        self.heading.fade(MOMENTUM);
+        self.heading.scale(MOMENTUM);
         for (via, choice) in choices.targets.iter().enumerate() {
             for place in choice.ends {
                 self.heading.add_near(via, place, 1.0);
@@ -290,28 +293,28 @@ impl<'a> Ascent<'a> {
             for [of, place] in choice.beyond {
                 self.heading.add_outer(of, place, 1.0);
             }
-            self.price_heading[via] = MOMENTUM * self.price_heading[via] + 2.0;
+            self.potential_heading[via] = MOMENTUM * self.potential_heading[via] + 2.0;
         }
         for &[a, b] in &choices.edges {
             for (of, place) in [(a, b), (b, a)] {
                 if of < targets {
                     self.heading.add_near(of, place, -1.0);
                     self.heading.add_outer(of, place, -1.0);
-                    self.price_heading[of] -= 1.0;
+                    self.potential_heading[of] -= 1.0;
                 }
             }
         }
         let multipliers = &mut self.triple_bounds.multipliers;
         let near = multipliers.near.chunks_exact_mut(targets + 2);
         let headings = self.heading.near.chunks_exact(targets + 2);
-        for ((near, headings), price) in near.zip(headings).zip(&self.price_heading) {
-            for (share, heading) in near.iter_mut().zip(headings) {
-                *share += self.step * (heading + PRICE_WEIGHT * price);
+        for ((near, headings), potential) in near.zip(headings).zip(&self.potential_heading) {
+            for (multiplier, heading) in near.iter_mut().zip(headings) {
+                *multiplier += self.step * (heading + POTENTIAL_WEIGHT * potential);
             }
         }
         if self.width == Width::Fives {
-            for (share, heading) in multipliers.outer.iter_mut().zip(&self.heading.outer) {
-                *share += self.step * heading;
+            for (multiplier, heading) in multipliers.outer.iter_mut().zip(&self.heading.outer) {
+                *multiplier += self.step * heading;
             }
         }
     }

@@ -1,30 +1,30 @@
-//! The neighbours that a target chooses for itself.
+//! The cheapest neighbours of each target: one of the two relaxed choices of the decomposition.
 
 use super::TripleBounds;
 
-/// The part of a tour that a bound is of.
+/// The part of a tour that a bound is for: from a place through some targets to the end.
 #[derive(Debug)]
 pub(super) struct Part<'a> {
-    /// Where it comes from.
+    /// The place at which it begins.
     pub(super) entry: usize,
-    /// The targets on it.
+    /// Its targets.
     pub(super) targets: &'a [usize],
     /// Whether a place lies on it.
     admitted: Vec<bool>,
     end: usize,
 }
 
-/// The neighbours of a target, what lies beyond them, and what they cost it, s.
+/// The chosen neighbours of a target, the places beyond them, and their cost, s.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Choice {
+pub(super) struct NeighbourChoice {
     /// The two neighbours.
     pub(super) ends: [usize; 2],
-    /// The outer multipliers that the target pays: of which target, and of its edge to which place.
+    /// The outer multipliers in the cost: of which target, and for which place beyond it.
     pub(super) beyond: [[usize; 2]; 2],
     pub(super) cost: f64,
 }
 
-impl Choice {
+impl NeighbourChoice {
     /// The places beyond both neighbours, when both neighbours are targets.
     pub(super) fn path_beyond(&self) -> Option<[usize; 2]> {
         let [first, last] = self.beyond;
@@ -46,14 +46,14 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Whether a place is one between which the part lies.
+    /// Whether a place is an end of the part.
     fn is_outer(&self, place: usize) -> bool {
         place == self.entry || place == self.end
     }
 }
 
 impl TripleBounds {
-    /// Ranks the places around all targets by the multipliers as they are.
+    /// Ranks the places around all targets by the current multipliers.
     pub(super) fn rank(&mut self) {
         let Self {
             multipliers,
@@ -73,14 +73,15 @@ impl TripleBounds {
         }
     }
 
-    /// The cheapest neighbours of a target of a part, and places beyond them: the least sum of their
-    /// multipliers and of what passing the target between them costs.
+    /// The cheapest neighbours of a target of a part, and places beyond them: the minimum of the
+    /// sum of their multipliers and of the cost of passing the target between them.
     ///
-    /// Exact, though most pairs are never looked at: they come in the order of their multipliers with
-    /// the least outer multipliers that they could come with, so once these alone reach the best cost
-    /// all later pairs do. What passing costs is not negative.
-    pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> Choice {
-        let mut best = Choice {
+    /// The minimum is exact although most pairs are not evaluated. Pairs are enumerated in the
+    /// order of a lower bound: their inner multipliers plus the least outer ones (the cost of
+    /// passing is not negative). Once this bound reaches the best cost, no later pair can be
+    /// cheaper.
+    pub(super) fn choice(&self, part: &Part<'_>, via: usize) -> NeighbourChoice {
+        let mut best = NeighbourChoice {
             ends: [via; 2],
             beyond: [[via; 2]; 2],
             cost: f64::INFINITY,
@@ -88,14 +89,14 @@ impl TripleBounds {
         let inner = |&place: &usize| part.admitted[place] && place != part.entry;
         let mut places = self.near.row(via).filter(inner);
         let cost = |place| self.near.cost(via, place);
-        // With the place that the part comes from, be that a target or not, no target multipliers the
-        // edge beyond: in the ranking it has no place.
+        // The entry is treated apart: nothing lies beyond it on the part, whether it is a target or
+        // not, so its rank does not apply.
         let entry = self.multipliers.near(via, part.entry) + self.far.least(via);
         for other in places.clone() {
             if entry + cost(other) >= best.cost {
                 break;
             }
-            // Only a lone target lies between where the part comes from and the end.
+            // Only the target of a part with one target lies between its two ends.
             if other != part.end || part.targets.len() == 1 {
                 self.choose_beyond(part, via, [part.entry, other], &mut best);
             }
@@ -103,7 +104,7 @@ impl TripleBounds {
         while let Some(one) = places.next() {
             for (rank, other) in places.clone().enumerate() {
                 if cost(one) + cost(other) >= best.cost {
-                    // Nor is the next place cheaper together with this one, or any after them.
+                    // If the cheapest partner fails, all later pairs fail too.
                     if rank <= 1 {
                         return best;
                     }
@@ -115,8 +116,15 @@ impl TripleBounds {
         best
     }
 
-    /// Betters a choice by one of these neighbours and the cheapest places beyond them.
-    fn choose_beyond(&self, part: &Part<'_>, via: usize, ends: [usize; 2], best: &mut Choice) {
+    /// Replaces a choice by one with these neighbours, if it is cheaper with the best places beyond
+    /// them.
+    fn choose_beyond(
+        &self,
+        part: &Part<'_>,
+        via: usize,
+        ends: [usize; 2],
+        best: &mut NeighbourChoice,
+    ) {
         let [one, other] = ends;
         let coupling_gaps = &self.coupling_gaps;
         let passing = self
@@ -141,7 +149,7 @@ impl TripleBounds {
                     cost += self.legs.passing_five(coupling_gaps, part.entry, path) - passing;
                 }
                 if cost < best.cost {
-                    *best = Choice {
+                    *best = NeighbourChoice {
                         ends,
                         beyond: [first, last],
                         cost,
@@ -151,8 +159,8 @@ impl TripleBounds {
         }
     }
 
-    /// The outer multipliers that a target may have to pay on the side of one neighbour, cheapest first.
-    /// Next to the start or the end it is the one that this would have to pay if it were a target.
+    /// The outer multipliers that may apply on the side of one neighbour, cheapest first. Next to
+    /// an end of the part it is the target's own multiplier for its other neighbour.
     fn beyond(
         &self,
         part: &Part<'_>,
@@ -184,10 +192,10 @@ mod tests {
     use crate::tour::order::PairTable;
     use crate::tour::order::completion::{LegCosts, SpanningTrees};
     use crate::tour::order::tests::RandomModel;
-    use crate::tour::order::triple_bounds::Effort;
+    use crate::tour::order::triple_bounds::AscentEffort;
     use std::num::NonZeroUsize;
 
-    /// The cheapest choice by trying all.
+    /// The cost of the cheapest choice, by enumeration.
     fn least(triple_bounds: &TripleBounds, part: &Part<'_>, via: usize) -> f64 {
         let others = || (0..=triple_bounds.end()).filter(|&p| p != via && part.admitted[p]);
         let (multipliers, legs) = (&triple_bounds.multipliers, &triple_bounds.legs);
@@ -200,8 +208,8 @@ mod tests {
         };
         let mut least = f64::INFINITY;
         for (one, other) in others().flat_map(|a| others().map(move |b| (a, b))) {
-            let lone = part.targets.len() == 1;
-            if one >= other || (part.is_outer(one) && part.is_outer(other) && !lone) {
+            let single_target = part.targets.len() == 1;
+            if one >= other || (part.is_outer(one) && part.is_outer(other) && !single_target) {
                 continue;
             }
             let near = multipliers.near(via, one) + multipliers.near(via, other);
@@ -224,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cheapest_choice_is_found_without_looking_at_all() {
+    fn the_pruned_choice_is_the_minimum_over_all_choices() {
         let pool = SolverPool::new(NonZeroUsize::new(1)).expect("test threads start");
         for seed in 0..8 {
             let kinds = [RandomModel::new, RandomModel::reversible];
@@ -233,7 +241,7 @@ mod tests {
             let trees = SpanningTrees::new(&table);
             let mut triple_bounds =
                 TripleBounds::new(&model, &table, &trees).expect("legs are coupled");
-            let effort = Effort {
+            let effort = AscentEffort {
                 triples: 300,
                 fives: 300,
                 steps: 70,

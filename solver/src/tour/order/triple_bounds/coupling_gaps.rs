@@ -1,17 +1,18 @@
-//! By how much paths exceed the sums of their parts, as far as the model has been asked.
+//! Coupling gaps: by how much the bound of a path exceeds the sum of the bounds of its parts, as
+//! far as the model has solved them.
 
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{Evaluation, PairTable, Place, TourModel};
 use std::collections::HashMap;
 
-/// Three or five places in a row, in either direction, the smaller number at the front.
+/// Three or five places in a row, in either direction, listed with the smaller end first.
 ///
 /// Places are numbered as in [`PairTable`].
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Passage(Vec<usize>);
+pub(super) struct ShortPath(Vec<usize>);
 
-impl Passage {
+impl ShortPath {
     pub(super) fn new(places: &[usize]) -> Self {
         let mut places = places.to_vec();
         if places.last() < places.first() {
@@ -21,21 +22,21 @@ impl Passage {
     }
 }
 
-/// CouplingGaps of triples over their pair bounds, and of five places in a row over these.
+/// Coupling gaps of triples, and of five places in a row, over their pair bounds.
 #[derive(Debug)]
 pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
     couples: Vec<bool>,
-    /// Row `via * places + from`, there once something is known of it: excess of every `to`, s, not
-    /// a number where nothing is known.
+    /// Row `via * places + from`, allocated when its first entry is set: the gap for every `to`, s,
+    /// or NaN where it is unknown.
     triples: Vec<Option<Box<[f64]>>>,
     /// Excess of five places over their four pair bounds, s.
     fives: HashMap<[usize; 5], f64>,
 }
 
 impl CouplingGaps {
-    /// Nothing known yet.
+    /// No gap is known yet.
     pub(super) fn new(model: &dyn TourModel) -> Self {
         let targets = model.target_count();
         Self {
@@ -47,14 +48,14 @@ impl CouplingGaps {
         }
     }
 
-    /// Lower bound, s, of what two legs take together beyond their pair bounds: 0 where nothing
-    /// better is known.
+    /// Lower bound, s, of the time of two consecutive legs beyond their pair bounds; 0 where it is
+    /// not known.
     pub(super) fn triple(&self, from: usize, via: usize, to: usize) -> f64 {
-        // The greater of 0 and what is no number is 0.
+        // An unknown gap is not a number, for which the maximum gives 0.
         self.known_triple(from, via, to).max(0.0)
     }
 
-    /// Lower bound, s, of what four legs take together beyond what their two halves take.
+    /// Lower bound, s, of the time of four consecutive legs beyond the bounds of their two halves.
     pub(super) fn five(&self, path: [usize; 5]) -> f64 {
         if self.fives.is_empty() {
             return 0.0;
@@ -63,32 +64,32 @@ impl CouplingGaps {
         let halves = || self.triple(a, b, c) + self.triple(c, d, e);
         self.fives
             .get(&path)
-            .map_or(0.0, |excess| (excess - halves()).max(0.0))
+            .map_or(0.0, |coupling_gap| (coupling_gap - halves()).max(0.0))
     }
 
-    /// Whether asking the model could tell more.
-    pub(super) fn is_open(&self, passage: &Passage) -> bool {
-        let middle = passage.0[passage.0.len() / 2];
+    /// Whether the model can be asked for a gap of this path that is not known.
+    pub(super) fn is_open(&self, path: &ShortPath) -> bool {
+        let middle = path.0[path.0.len() / 2];
         let unknown = |path: Vec<usize>| match path[..] {
             [a, b, c] => self.known_triple(a, b, c).is_nan(),
             [a, b, c, d, e] => !self.fives.contains_key(&[a, b, c, d, e]),
             _ => false,
         };
-        self.couples[middle] && self.directions(passage).into_iter().flatten().any(unknown)
+        self.couples[middle] && self.directions(path).into_iter().flatten().any(unknown)
     }
 
-    /// Asks the model, about both directions of a passage by the same worker, who may know the one
-    /// when he knows the other. What is interrupted stays unknown.
+    /// Asks the model for the gaps of paths. One worker asks for both directions of a path, since a
+    /// model may derive one from the other. Interrupted evaluations leave the gap unknown.
     pub(super) fn ask(
         &mut self,
-        passages: &[Passage],
+        paths: &[ShortPath],
         table: &PairTable,
         model: &dyn TourModel,
         pool: &SolverPool,
         stop: &StopSignal,
     ) {
-        let answers = pool.map(passages, |passage| {
-            self.directions(passage).map(|path| {
+        let answers = pool.map(paths, |path| {
+            self.directions(path).map(|path| {
                 let path = path?;
                 if stop.is_set() {
                     return None;
@@ -99,27 +100,28 @@ impl CouplingGaps {
                     Evaluation::Value(bound) if bound.is_finite() => {
                         Some((path, (bound - pairs).max(0.0)))
                     }
-                    // Nothing beyond the pairs, and no use asking again.
+                    // No gap beyond the pair bounds; the model is not asked again.
                     Evaluation::Value(_) | Evaluation::Unresolved => Some((path, 0.0)),
                     Evaluation::Stopped => None,
                 }
             })
         });
-        for (path, excess) in answers.into_iter().flatten().flatten() {
+        for (path, coupling_gap) in answers.into_iter().flatten().flatten() {
             match path[..] {
-                [a, b, c] => self.set_triple(a, b, c, excess),
-                [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], excess),
+                [a, b, c] => self.set_triple(a, b, c, coupling_gap),
+                [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], coupling_gap),
                 _ => {}
             }
         }
     }
 
-    /// The directions in which a passage can be flown and of which there is something to know.
-    fn directions(&self, passage: &Passage) -> [Option<Vec<usize>>; 2] {
+    /// The directions of a path that a tour can contain: not into the start, not out of the end,
+    /// and into the end only if one is prescribed.
+    fn directions(&self, path: &ShortPath) -> [Option<Vec<usize>>; 2] {
         let (start, end) = (self.targets, self.targets + 1);
-        let mut back = passage.0.clone();
+        let mut back = path.0.clone();
         back.reverse();
-        [passage.0.clone(), back].map(|path| {
+        [path.0.clone(), back].map(|path| {
             let (from, to) = (path[0], path[path.len() - 1]);
             let possible = from != end && to != start && (to != end || self.has_end);
             possible.then_some(path)
@@ -140,9 +142,9 @@ impl CouplingGaps {
             .map_or(f64::NAN, |row| row[to])
     }
 
-    fn set_triple(&mut self, from: usize, via: usize, to: usize, excess: f64) {
+    fn set_triple(&mut self, from: usize, via: usize, to: usize, coupling_gap: f64) {
         let places = self.targets + 2;
         let row = &mut self.triples[via * places + from];
-        row.get_or_insert_with(|| vec![f64::NAN; places].into())[to] = excess;
+        row.get_or_insert_with(|| vec![f64::NAN; places].into())[to] = coupling_gap;
     }
 }

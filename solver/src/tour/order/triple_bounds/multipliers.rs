@@ -1,13 +1,13 @@
-//! What targets take over of their edges.
+//! Inner and outer multipliers of the decomposition.
 
-/// By rows, one for each target, a value for each place: multipliers and outer multipliers, s, or a direction
-/// in them.
+/// Inner and outer multipliers, s, or a direction in them: one row for each target, with a value
+/// for each place.
 #[derive(Debug, Clone)]
 pub(super) struct Multipliers {
     places: usize,
-    /// What the target pays when it has the place for a neighbour.
+    /// Inner multipliers: cost of the place as a neighbour of the target.
     pub(super) near: Vec<f64>,
-    /// What is paid by whoever has the target for a neighbour and the place beyond it.
+    /// Outer multipliers: cost for a neighbour of the target when the place lies beyond the target.
     pub(super) outer: Vec<f64>,
 }
 
@@ -22,15 +22,15 @@ impl Multipliers {
         }
     }
 
-    /// What of every edge at a target makes up for its price, s.
-    pub(super) fn of_prices(prices: &[f64]) -> Self {
-        let mut multipliers = Self::zero(prices.len());
-        for (row, price) in multipliers
+    /// The multipliers that are equivalent to node potentials, s.
+    pub(super) fn of_potentials(potentials: &[f64]) -> Self {
+        let mut multipliers = Self::zero(potentials.len());
+        for (row, potential) in multipliers
             .near
             .chunks_exact_mut(multipliers.places)
-            .zip(prices)
+            .zip(potentials)
         {
-            row.fill(-price);
+            row.fill(-potential);
         }
         multipliers
     }
@@ -43,24 +43,25 @@ impl Multipliers {
         self.outer[target * self.places + place]
     }
 
-    /// What is taken off the edge from a target to a place on the target's side, s.
+    /// Sum of the target's two multipliers for a place, which is subtracted from the edge between
+    /// them, s.
     pub(super) fn taken(&self, target: usize, place: usize) -> f64 {
         self.near(target, place) + self.outer(target, place)
     }
 
-    /// Forgets a part of a direction.
-    pub(super) fn fade(&mut self, kept: f64) {
+    /// Multiplies all values by a factor.
+    pub(super) fn scale(&mut self, factor: f64) {
         for value in self.near.iter_mut().chain(&mut self.outer) {
-            *value *= kept;
+            *value *= factor;
         }
     }
 
-    /// Adds to a share.
+    /// Adds to an inner multiplier.
     pub(super) fn add_near(&mut self, target: usize, place: usize, change: f64) {
         self.near[target * self.places + place] += change;
     }
 
-    /// Adds to an outer share.
+    /// Adds to an outer multiplier.
     pub(super) fn add_outer(&mut self, target: usize, place: usize, change: f64) {
         self.outer[target * self.places + place] += change;
     }

@@ -1,14 +1,14 @@
-//! Places around every target in the order of some costs.
+//! The places around every target, sorted by cost.
 
-/// For every target all places but itself, ranked by their costs.
+/// For every target all other places, sorted by cost.
 ///
-/// Kept from one step of the ascent to the next: where little changes, little is to be sorted.
+/// The ranking is kept between the steps of an ascent: insertion sort is fast where little changes.
 #[derive(Debug)]
 pub(super) struct Ranking {
     places: usize,
     /// Costs by rows, one for each target.
     costs: Vec<f64>,
-    /// Rows of one place less.
+    /// Sorted places by rows, one for each target.
     ranked: Vec<u32>,
 }
 
@@ -43,7 +43,7 @@ impl Ranking {
             .map_or(f64::INFINITY, |place| self.cost(of, place))
     }
 
-    /// Ranks the places around a target anew, by insertion.
+    /// Updates the costs of the places around a target and sorts them by insertion.
     pub(super) fn rank(&mut self, of: usize, cost: impl Fn(usize) -> f64) {
         let costs = &mut self.costs[of * self.places..][..self.places];
         for (place, entry) in costs.iter_mut().enumerate() {

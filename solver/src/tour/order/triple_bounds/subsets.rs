@@ -1,4 +1,4 @@
-//! Shortest paths in place of least trees, for few targets.
+//! Triple bounds with shortest paths in place of spanning trees, for few targets.
 
 use super::TripleBounds;
 use super::choice::Part;
@@ -6,12 +6,12 @@ use crate::model::order_rules::OrderRules;
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::{LegCosts, SubsetTable};
 
-/// The bound of [`TripleBounds`] with the edges chosen as a path: tighter than a tree, and a table of
-/// `n 2^n` entries. Of the multipliers as they were when it was filled.
+/// The bound of [`TripleBounds`] with the edges chosen as a path: tighter than a tree, with a table
+/// of `n 2^n` entries. It holds for the multipliers with which the table was filled.
 #[derive(Debug)]
 pub struct TripleBoundSubsets {
     triple_bounds: TripleBounds,
-    /// Missing when it was not finished: then trees have to do.
+    /// `None` when filling it was interrupted; then trees are used.
     subsets: Option<SubsetTable>,
 }
 

@@ -1,4 +1,4 @@
-//! What makes two legs the same problem, field by field.
+//! Which fields of a scenario enter the identity of a leg.
 
 use super::*;
 use crate::model::scenario::Scenario;
@@ -9,20 +9,20 @@ use crate::model::spec::{
 };
 use crate::tour::order::Place;
 
-/// Which legs of a scenario become other problems when a field changes.
+/// Which of the two legs get another identity when a field changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Effect {
     None,
-    /// That from the start only.
+    /// The leg from the start only.
     First,
-    /// That between targets only.
+    /// The leg between targets only.
     Second,
     Both,
 }
 
 type Row = (&'static str, Effect, fn(&mut ScenarioSpec));
 
-/// The names of all fields of a description: does not compile where one is forgotten.
+/// The names of all fields of some types; does not compile when a field is missing.
 macro_rules! fields {
     ($($kind:ident { $($field:ident),+ $(,)? })+) => {{
         $(let _ = |all: $kind| { let $kind { $($field: _),+ } = all; };)+
@@ -30,7 +30,7 @@ macro_rules! fields {
     }};
 }
 
-/// The table that a new field has to be entered into.
+/// A change of every field with its effect. New fields must be entered here.
 const TABLE: &[Row] = &[
     ("ScenarioSpec.name", Effect::None, |s| {
         s.name = Some("other".into());
@@ -136,7 +136,7 @@ const TABLE: &[Row] = &[
     ("TargetSpec.rate_max_rad_s", Effect::Both, |s| {
         s.targets[0].rate_max_rad_s = Some([Some(0.0), None, Some(0.0)]);
     }),
-    // Whoever stays is at rest.
+    // A target with a dwell or settle time implies rest.
     ("TargetSpec.dwell_s", Effect::Second, |s| {
         s.targets[1].dwell_s = 5.0;
     }),
@@ -205,7 +205,8 @@ fn speeds(spec: &mut ScenarioSpec) -> &mut Vec<f64> {
     spec.start.wheel_speed_rad_s.as_mut().expect("speeds")
 }
 
-/// Five wheels of which one is locked and turns, momentum, limits and conditions of every kind.
+/// A scenario with five wheels, of which one is locked and spinning, with momentum, and with limits
+/// and conditions of every kind.
 fn everything() -> ScenarioSpec {
     let mut spec = experiment_a();
     spec.spacecraft.wheels.push(wheel([1.0, 1.0, 1.0]));
@@ -249,14 +250,14 @@ fn identities(spec: &ScenarioSpec) -> [String; 2] {
 }
 
 #[test]
-fn every_field_changes_the_legs_that_it_should_and_no_other() {
-    let usual = identities(&everything());
+fn every_field_changes_the_identities_that_it_should_and_no_other() {
+    let unchanged = identities(&everything());
     for (field, effect, change) in TABLE {
         let mut spec = everything();
         change(&mut spec);
         assert_ne!(spec, everything(), "{field} is not changed");
         let changed = identities(&spec);
-        let found = match [changed[0] != usual[0], changed[1] != usual[1]] {
+        let found = match [changed[0] != unchanged[0], changed[1] != unchanged[1]] {
             [false, false] => Effect::None,
             [true, false] => Effect::First,
             [false, true] => Effect::Second,
@@ -267,7 +268,7 @@ fn every_field_changes_the_legs_that_it_should_and_no_other() {
 }
 
 #[test]
-fn no_field_is_forgotten() {
+fn the_table_lists_every_field() {
     let mut all = fields! {
         ScenarioSpec {
             name, epoch, time_system, reference_frame, spacecraft, start, end, targets, keep_out, options,
@@ -297,7 +298,7 @@ fn no_field_is_forgotten() {
 }
 
 #[test]
-fn momentum_alone_makes_another_leg() {
+fn legs_that_differ_in_momentum_alone_have_different_identities() {
     // Three wheels have no null space, and both targets leave the wheels free.
     let with = |speeds: [f64; 3]| {
         let mut spec = experiment_a();
@@ -310,8 +311,8 @@ fn momentum_alone_makes_another_leg() {
     }
 }
 
-/// What is stored under an identity is looked for under the same one by the next version: a change of
-/// this text throws all stored legs away, and says so in `VERSION`.
+/// Stored legs are found by this text in later versions. A change of it makes all stored legs
+/// unreachable and needs a new `VERSION`.
 #[test]
 fn the_identity_of_a_leg_is_written_as_before() {
     let mut spec = experiment_a();
@@ -326,14 +327,14 @@ fn the_identity_of_a_leg_is_written_as_before() {
 }
 
 #[test]
-fn the_sense_of_an_axis_makes_another_leg() {
+fn reversing_a_wheel_axis_changes_the_identity() {
     let mut turned = everything();
     turned.spacecraft.wheels[1].axis = [0.0, -1.0, 0.0];
     assert_ne!(identities(&turned)[1], identities(&everything())[1]);
 }
 
 #[test]
-fn rounding_of_the_null_space_makes_no_other_leg() {
+fn rounding_in_the_null_space_does_not_change_the_identity() {
     let second = |bias: f64| {
         let mut spec = everything();
         spec.spacecraft.wheels.truncate(4);
@@ -350,8 +351,8 @@ fn rounding_of_the_null_space_makes_no_other_leg() {
 }
 
 #[test]
-fn the_sign_of_a_quaternion_makes_another_leg_only_where_it_counts() {
-    // Half turns have no sign that is the natural one.
+fn the_sign_of_a_quaternion_changes_the_identity_only_under_quaternion_equivalence() {
+    // The scalar part of a half turn is zero and does not fix its sign.
     let half = |axis: [f64; 3]| {
         let [x, y, z] = axis;
         AttitudeSpec::Quaternion([x, y, z, 0.0])
@@ -364,7 +365,7 @@ fn the_sign_of_a_quaternion_makes_another_leg_only_where_it_counts() {
     ];
     for attitude in cases {
         let AttitudeSpec::Quaternion(xyzw) = attitude else {
-            unreachable!("quaternions all of them")
+            unreachable!("all cases are quaternions")
         };
         for (equivalence, same) in [
             (AttitudeEquivalence::Rotation, true),
@@ -382,7 +383,7 @@ fn the_sign_of_a_quaternion_makes_another_leg_only_where_it_counts() {
 }
 
 #[test]
-fn only_what_a_sign_does_not_change_is_flown_backwards() {
+fn legs_are_reversible_only_if_rates_and_momentum_are_symmetric() {
     let reversible = |change: fn(&mut ScenarioSpec)| {
         let mut spec = everything();
         spec.start = StateSpec::default();
@@ -397,7 +398,8 @@ fn only_what_a_sign_does_not_change_is_flown_backwards() {
     assert!(!reversible(
         |s| s.targets[0].rate_min_rad_s = Some([Some(0.0), Some(-1e-3), Some(0.0)])
     ));
-    // A free wheel holds what a locked one has: no momentum in all, and yet a gyroscope.
+    // A free wheel cancels the momentum of the locked one: the total is zero, but the locked wheel
+    // still acts as a gyroscope.
     assert!(!reversible(|s| {
         s.spacecraft.wheels[3].axis = [0.0, 1.0, -1.0];
         s.start.wheel_speed_rad_s = Some(vec![0.0, 0.0, 0.0, -60.0, 60.0]);

@@ -1,28 +1,30 @@
-//! What a certificate takes for granted, compared with the scenario.
+//! The premises of a certificate, compared with the scenario.
 //!
-//! A certificate says that no motion within some limits, with some rates at its ends, makes a turn in
-//! less than a time. Whether that is about the slews of the scenario is looked at here from its words
-//! alone, by other ways than those of [`crate::bounds::certified`]: greatest components by the corners of
-//! boxes, inertias by solving with them, turns as products of matrices.
+//! A certificate says that no motion within some limits and with some end rates makes a turn in
+//! less than a time. Whether the slews of the scenario are within these limits is checked here from
+//! the scenario alone, by formulas other than those of [`crate::bounds::certified`]: largest
+//! components from the corners of boxes, inertias by solving linear systems, turns as products of
+//! matrices.
 
 use crate::bounds::kinematic::certificate::Certificate;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::tour::order::Place;
 use nalgebra::{Matrix3, Vector3};
 
-/// What rounding may take off a limit, relative.
+/// Tolerance for rounding of a limit, relative.
 const ROUNDING: f64 = 1e-12;
-/// Components of matrices of turns agree this well; places are rounded to a tenth of a picoradian.
+/// Tolerance for the components of the matrices of two equal turns; attitudes are rounded to a
+/// tenth of a picoradian.
 const SAME_TURN: f64 = 1e-9;
-/// The same of axes that have to be orthonormal.
+/// Tolerance for the products of orthonormal axes.
 const ORTHONORMAL: f64 = 1e-12;
 
-/// What stands in the way of relying on a certificate, seen from axes that are the columns of a matrix,
-/// for slews between two places without momentum.
+/// Checks the premises of a certificate, expressed in axes that are the columns of a matrix, for
+/// slews between two places without momentum.
 ///
 /// # Errors
 ///
-/// What the scenario does not support.
+/// The first premise that the scenario does not support.
 pub(super) fn check(
     scenario: &Scenario,
     places: [Place; 2],
@@ -33,11 +35,11 @@ pub(super) fn check(
         return Err("axes that are not orthonormal");
     }
     let [turn] = &certificate.turns[..] else {
-        return Err("other than one turn");
+        return Err("more or less than one turn");
     };
     let [(from, begin), (to, end)] = places.map(|place| conditions(scenario, place));
-    let made = axes.tr_mul(&(from.tr_mul(&to) * axes));
-    if (made - turn.turn.matrix()).amax() > SAME_TURN {
+    let expected = axes.tr_mul(&(from.tr_mul(&to) * axes));
+    if (expected - turn.turn.matrix()).amax() > SAME_TURN {
         return Err("another turn");
     }
     let Some([rates, accelerations]) = reachable(scenario, axes) else {
@@ -52,17 +54,18 @@ pub(super) fn check(
     if !within(accelerations, &certificate.limits.accelerations_rad_s2) {
         return Err("a limit of the accelerations below what the wheels can do");
     }
-    let greatest = |ranges: &[(f64, f64); 3]| seen(axes, |axis| over_corners(axis, ranges));
-    if !within(greatest(&begin), &certificate.ends.begin_rad_s) {
+    let largest = |ranges: &[(f64, f64); 3]| along_axes(axes, |axis| over_corners(axis, ranges));
+    if !within(largest(&begin), &certificate.ends.begin_rad_s) {
         return Err("a rate at the beginning below what is admitted there");
     }
-    if !within(greatest(&end), &certificate.ends.end_rad_s) {
+    if !within(largest(&end), &certificate.ends.end_rad_s) {
         return Err("a rate at the end below what is admitted there");
     }
     Ok(())
 }
 
-/// The body axes in the reference frame, as columns, and the ranges of the rate at a place.
+/// The body axes in the reference frame, as columns, and the ranges of the rate components at a
+/// place, rad/s.
 fn conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, f64); 3]) {
     let fixed = |rate: &Vector3<f64>| [0, 1, 2].map(|axis| (rate[axis], rate[axis]));
     match place {
@@ -80,23 +83,25 @@ fn conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, f64); 
             (target.attitude.matrix(), target.rate.map(range))
         }
         Place::End => {
-            let end = scenario.end().expect("a leg to the end has one");
+            let end = scenario
+                .end()
+                .expect("only scenarios with an end have legs to it");
             (end.attitude.matrix(), fixed(&end.rate))
         }
     }
 }
 
-fn seen(axes: &Matrix3<f64>, greatest: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
-    Vector3::from_fn(|axis, _| greatest(&axes.column(axis).into_owned()))
+fn along_axes(axes: &Matrix3<f64>, largest: impl Fn(&Vector3<f64>) -> f64) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| largest(&axes.column(axis).into_owned()))
 }
 
-/// Greatest size of the component along a direction of the vectors in a box.
+/// Largest absolute component along a direction of the vectors in a box, over its corners.
 fn over_corners(direction: &Vector3<f64>, ranges: &[(f64, f64); 3]) -> f64 {
     let corners = (0..8_u8).map(|corner| {
         let parts = (0..3).map(|axis| {
             let (low, high) = ranges[axis];
             let component = if corner >> axis & 1 == 0 { low } else { high };
-            // What is across the direction does not count, infinite or not.
+            // A component orthogonal to the direction does not contribute, even if it is infinite.
             if direction[axis] == 0.0 {
                 0.0
             } else {
@@ -105,18 +110,19 @@ fn over_corners(direction: &Vector3<f64>, ranges: &[(f64, f64); 3]) -> f64 {
         });
         parts.sum::<f64>().abs()
     });
-    // Of two infinities of different sign nothing is known: no number counts as infinite.
-    corners.fold(0.0, |most, size| {
+    // The sum of two infinities of different sign is not a number; it counts as infinite.
+    corners.fold(0.0, |largest, size| {
         if size.is_nan() {
             f64::INFINITY
         } else {
-            size.max(most)
+            size.max(largest)
         }
     })
 }
 
-/// Greatest components along axes of the rates and accelerations that wheels within their limits make
-/// without momentum: `J w = -h_locked - sum a I W` and `J_eff w' = -sum a u`.
+/// Largest components along axes of the rates and accelerations that the wheels reach within their
+/// limits without total momentum: `J w = -h_locked - sum a I W` and `J_eff w' = -sum a u`. `None`
+/// when an inertia cannot be inverted.
 fn reachable(scenario: &Scenario, axes: &Matrix3<f64>) -> Option<[Vector3<f64>; 2]> {
     let (spacecraft, options) = (scenario.spacecraft(), scenario.options());
     let speeds = &scenario.start().wheel_speed;
@@ -150,11 +156,11 @@ fn reachable(scenario: &Scenario, axes: &Matrix3<f64>) -> Option<[Vector3<f64>; 
         let push = pushes.column(axis);
         let ends = |sign: f64| -> f64 {
             let wheels = spacecraft.enabled_wheels();
-            let most = wheels.map(|(_, wheel)| {
+            let largest = wheels.map(|(_, wheel)| {
                 let share = sign * push.dot(&wheel.axis) * options.torque_authority;
                 (share * wheel.max_torque).max(share * wheel.min_torque)
             });
-            most.sum()
+            largest.sum()
         };
         ends(1.0).max(ends(-1.0))
     });

@@ -1,12 +1,11 @@
-//! What is kept of a leg, and what is not.
+//! Bounds that a solved leg contradicts, and legs that are kept.
 
 use super::*;
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
-use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::tour::legs::NoStore;
-use std::num::NonZeroUsize;
+use crate::tour::planner::tests::with_leg_solver;
 
 /// Counts contradictions.
 #[derive(Default)]
@@ -20,29 +19,20 @@ impl Observer for Counter {
     }
 }
 
-/// Tries something with legs of experiment A; how often a flight contradicted a bound meanwhile.
-fn contradictions(scene: impl FnOnce(&LegSolver<'_>)) -> u64 {
+/// Calls with a solver of the legs of experiment A; returns the number of contradictions reported.
+fn contradictions(work: impl FnOnce(&LegSolver<'_>)) -> u64 {
     let scenario = Scenario::try_new(&experiment_a()).expect("valid").scenario;
     let (counter, stop) = (Counter::default(), StopSignal::new());
-    let pool = SolverPool::new(NonZeroUsize::new(1)).expect("a thread");
-    let run = Run {
-        pool: &pool,
-        stop: &stop,
-        observer: &counter,
-        legs: &NoStore,
-        segments: &NoStore,
-    };
-    let places = Places::of(&scenario);
-    scene(&LegSolver::new(&places, run, &stop));
+    with_leg_solver(&scenario, &counter, &NoStore, &stop, |legs, _| work(legs));
     counter.0.load(Relaxed)
 }
 
 const ENDS: [Place; 2] = [Place::Start, Place::Target(0)];
 
 #[test]
-fn a_bound_above_a_fresh_flight_is_told_and_taken_from_it() {
+fn a_bound_above_the_duration_of_a_solved_leg_is_reported_and_dropped() {
     for (bound_s, is_false) in [(10.0, false), (1e4, true)] {
-        let told = contradictions(|legs| {
+        let reported = contradictions(|legs| {
             let leg = legs.canonical(LegKind::RestToRest, ENDS[0], ENDS[1]);
             let known = CertifiedLeg {
                 lower_bound: Some(bound_s),
@@ -50,18 +40,18 @@ fn a_bound_above_a_fresh_flight_is_told_and_taken_from_it() {
             };
             lock(&legs.certified).insert(leg.identity.clone(), known);
             let solved = legs.solve(LegKind::RestToRest, &leg);
-            assert!(solved.flown.duration().is_some());
+            assert!(solved.solution.duration().is_some());
             assert_eq!(solved.certified.is_none(), is_false);
             assert_eq!(legs.bounds_are_trusted(), !is_false);
         });
-        assert_eq!(told, u64::from(is_false));
+        assert_eq!(reported, u64::from(is_false));
     }
 }
 
 #[test]
-fn a_leg_that_is_asked_for_again_is_not_solved_again() {
+fn a_leg_is_solved_once_however_often_it_is_asked_for() {
     contradictions(|legs| {
-        let ask = || legs.lone(LegKind::LowerBound, ENDS[0], ENDS[1]).duration();
+        let ask = || legs.leg(LegKind::LowerBound, ENDS[0], ENDS[1]).duration();
         let first = ask();
         let [solved, stored, programs] = legs.work();
         assert!(first.is_some() && programs > 0);

@@ -1,9 +1,11 @@
-//! Which places are one stop, and which tours are as good backwards.
+//! Places that cover each other, and scenarios whose tours are reversible.
 
 use super::*;
 use crate::model::scenario::reference::experiment_a;
 use crate::model::spec::{ScenarioSpec, StateSpec, TargetSpec, WheelSpec};
 
+/// Calls with the places of experiment A, cut to two targets without rate conditions and then
+/// changed.
 fn with<T>(change: impl FnOnce(&mut ScenarioSpec), ask: impl FnOnce(&Places<'_>) -> T) -> T {
     let mut spec = experiment_a();
     spec.targets.truncate(2);
@@ -20,14 +22,14 @@ fn with<T>(change: impl FnOnce(&mut ScenarioSpec), ask: impl FnOnce(&Places<'_>)
 
 fn is_symmetric(change: impl FnOnce(&mut ScenarioSpec)) -> bool {
     with(change, |places| {
-        let backwards = places.are_symmetric();
-        assert!(!backwards || places.scenario.end().is_some());
-        backwards
+        let symmetric = places.are_symmetric();
+        assert!(!symmetric || places.scenario.end().is_some());
+        symmetric
     })
 }
 
-/// Whether the first of two targets covers the second, and the second the first, under rates within
-/// these bounds about z.
+/// Whether the first of two targets covers the second, and the second the first, with z rates
+/// within the given bounds; both have one attitude unless they are `apart`.
 fn covering(bounds: [[f64; 2]; 2], apart: bool) -> [bool; 2] {
     let (one, other) = (Place::Target(0), Place::Target(1));
     with(
@@ -67,7 +69,7 @@ fn the_stricter_of_two_equal_attitudes_covers_the_other() {
 }
 
 #[test]
-fn who_holds_given_wheel_speeds_covers_who_leaves_them_free() {
+fn fixed_wheel_speeds_cover_free_ones_and_not_the_reverse() {
     let target = Place::Target(0);
     let at_the_start = |spec: &mut ScenarioSpec| {
         spec.targets[0].attitude = spec.start.attitude.clone();
@@ -82,7 +84,7 @@ fn who_holds_given_wheel_speeds_covers_who_leaves_them_free() {
 }
 
 #[test]
-fn tours_that_end_as_they_began_are_as_good_backwards_if_all_of_it_is() {
+fn tours_are_symmetric_only_if_ends_targets_order_and_momentum_are() {
     type Change = fn(&mut ScenarioSpec);
     assert!(is_symmetric(|_| {}));
     let changes: [(&str, Change); 6] = [
@@ -111,7 +113,7 @@ fn tours_that_end_as_they_began_are_as_good_backwards_if_all_of_it_is() {
     for (what, change) in changes {
         assert!(!is_symmetric(change), "{what}");
     }
-    // A fourth wheel may end with other speeds than it began with, unless they are given.
+    // With four wheels the final speeds may differ from the initial ones, unless they are given.
     let fourth = |s: &mut ScenarioSpec| {
         s.spacecraft.wheels.push(WheelSpec {
             axis: [1.0, 1.0, 1.0],

@@ -1,35 +1,25 @@
-//! What is found of a tour does not depend on what was asked for before.
+//! The result for a tour does not depend on earlier evaluations.
 
 use super::*;
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
-use crate::run::pool::SolverPool;
 use crate::run::progress::Silent;
 use crate::tour::legs::NoStore;
-use crate::tour::planner::Run;
-use std::num::NonZeroUsize;
+use crate::tour::planner::tests::with_leg_solver;
 
-/// Answers of tours that have been asked nothing else before but what comes before in the list.
+/// The answers of fresh tours to questions asked in this order.
 fn answers(scenario: &Scenario, questions: &[&dyn Fn(&Tours<'_>) -> String]) -> Vec<String> {
-    let pool = SolverPool::new(NonZeroUsize::new(1)).expect("a thread");
     let stop = StopSignal::new();
-    let run = Run {
-        pool: &pool,
-        stop: &stop,
-        observer: &Silent,
-        legs: &NoStore,
-        segments: &NoStore,
-    };
-    let places = Places::of(scenario);
-    let legs = LegSolver::new(&places, run, &stop);
-    let tours = Tours::new(&places, &legs, &stop);
-    questions.iter().map(|ask| ask(&tours)).collect()
+    with_leg_solver(scenario, &Silent, &NoStore, &stop, |legs, _| {
+        let tours = Tours::new(legs.places(), legs, &stop);
+        questions.iter().map(|ask| ask(&tours)).collect()
+    })
 }
 
 #[test]
-fn the_answers_are_the_same_in_any_order_of_the_questions() {
+fn evaluations_in_any_order_give_the_same_results() {
     let mut spec = experiment_a();
-    // Without an end a whole tour has the same places as the beginning of longer ones.
+    // Without an end, a whole tour has the same places as a beginning.
     spec.end = None;
     let scenario = Scenario::try_new(&spec).expect("valid").scenario;
     let order = [0, 5, 1, 3, 2];
@@ -44,7 +34,7 @@ fn the_answers_are_the_same_in_any_order_of_the_questions() {
     let alone = questions.map(|question| answers(&scenario, &[question]).remove(0));
     assert_ne!(
         alone[0], alone[1],
-        "different starts, or this tests nothing"
+        "the kinds of segment must differ, or this tests nothing"
     );
     let forth = answers(&scenario, &questions);
     assert_eq!(forth, alone);

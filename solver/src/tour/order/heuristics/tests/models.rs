@@ -1,4 +1,4 @@
-//! Costs of orders in place of slews.
+//! Random costs of orders.
 
 use crate::math::random::SplitMix;
 use crate::model::order_rules::OrderRules;
@@ -6,36 +6,36 @@ use crate::tour::order::heuristics::cost::OrderCost;
 use crate::tour::order::tests::unit;
 use crate::tour::order::{Evaluation, Place, TourEvaluation, TourModel};
 
-/// What a cost is made of.
+/// Kinds of leg costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Legs {
     /// Distances between random points.
     Points,
     /// The same with a dwell at every target, part of the legs into it.
     Dwells,
-    /// Random numbers, other ones in either direction.
+    /// Random numbers, different in the two directions.
     Directed,
 }
 
-/// What consecutive legs cost each other.
+/// Kinds of coupling costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Bends {
+pub(super) enum Couplings {
     None,
     BothWays,
     Directed,
 }
 
-/// Random legs of 0 to some 40 s and bends of 0 to 15 s.
+/// Random legs of up to some 40 s and couplings of up to 15 s.
 pub(super) struct RandomCost {
     targets: usize,
     legs: Vec<f64>,
-    bends: Vec<f64>,
-    bends_kind: Bends,
+    couplings: Vec<f64>,
+    couplings_kind: Couplings,
     rules: OrderRules,
 }
 
 impl RandomCost {
-    pub(super) fn new(targets: usize, legs: Legs, bends_kind: Bends, seed: u64) -> Self {
+    pub(super) fn new(targets: usize, legs: Legs, couplings_kind: Couplings, seed: u64) -> Self {
         let mut random = SplitMix::new(seed);
         let places = targets + 2;
         let points: Vec<[f64; 3]> = (0..places)
@@ -54,19 +54,19 @@ impl RandomCost {
                 Legs::Directed => 40.0 * unit(&mut random),
             })
             .collect();
-        let mut bends: Vec<f64> = (0..places.pow(3))
+        let mut couplings: Vec<f64> = (0..places.pow(3))
             .map(|_| 15.0 * unit(&mut random))
             .collect();
         let number = |from: usize, via: usize, to: usize| (from * places + via) * places + to;
         for from in 0..places {
             for via in 0..places {
                 for to in 0..places {
-                    match bends_kind {
-                        Bends::None => bends[number(from, via, to)] = 0.0,
-                        Bends::BothWays => {
-                            bends[number(from, via, to)] = bends[number(to, via, from)];
+                    match couplings_kind {
+                        Couplings::None => couplings[number(from, via, to)] = 0.0,
+                        Couplings::BothWays => {
+                            couplings[number(from, via, to)] = couplings[number(to, via, from)];
                         }
-                        Bends::Directed => {}
+                        Couplings::Directed => {}
                     }
                 }
             }
@@ -74,13 +74,13 @@ impl RandomCost {
         Self {
             targets,
             legs,
-            bends,
+            couplings,
             rules: OrderRules::none(targets),
-            bends_kind,
+            couplings_kind,
         }
     }
 
-    /// Least cost of all orders from the start, s, by trying all of them.
+    /// Least cost of all orders from the start, s, by enumeration.
     pub(super) fn least(&self) -> f64 {
         let mut order: Vec<usize> = Vec::new();
         let mut best = f64::INFINITY;
@@ -98,12 +98,12 @@ impl RandomCost {
         for to in open {
             let at = order.last().copied().unwrap_or(self.targets);
             let before = order.iter().rev().nth(1).copied().unwrap_or(self.targets);
-            let bend = if order.is_empty() {
+            let coupling = if order.is_empty() {
                 0.0
             } else {
-                self.bend(before, at, to)
+                self.coupling(before, at, to)
             };
-            let sum = so_far + self.leg(at, to) + bend;
+            let sum = so_far + self.leg(at, to) + coupling;
             if done {
                 *best = best.min(sum);
             } else if sum < *best {
@@ -124,17 +124,17 @@ impl OrderCost for RandomCost {
         self.legs[from * (self.targets + 2) + to]
     }
 
-    fn bend(&self, from: usize, via: usize, to: usize) -> f64 {
+    fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
         let places = self.targets + 2;
-        self.bends[(from * places + via) * places + to]
+        self.couplings[(from * places + via) * places + to]
     }
 
-    fn bends_alike_both_ways(&self) -> bool {
-        self.bends_kind != Bends::Directed
+    fn couplings_are_symmetric(&self) -> bool {
+        self.couplings_kind != Couplings::Directed
     }
 }
 
-/// For tables of the legs: nothing else is known.
+/// A model with pair bounds only, for pair tables.
 impl TourModel for RandomCost {
     fn target_count(&self) -> usize {
         self.targets

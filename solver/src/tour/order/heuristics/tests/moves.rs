@@ -1,9 +1,9 @@
-//! What moves are said to cost, and what they do.
+//! Moves: their change of the cost and their effect on the order.
 
-use super::models::{Bends, Legs, RandomCost};
+use super::models::{Couplings, Legs, RandomCost};
 use crate::math::random::SplitMix;
-use crate::tour::order::heuristics::cost::{Legs as ChargedLegs, length};
-use crate::tour::order::heuristics::path::{Move, Path};
+use crate::tour::order::heuristics::cost::{ReducedLegs, length};
+use crate::tour::order::heuristics::path::{Move, OrderPath};
 
 /// A random move of an order of so many targets, of which there are at least two.
 fn random_move(random: &mut SplitMix, targets: usize) -> Move {
@@ -17,19 +17,19 @@ fn random_move(random: &mut SplitMix, targets: usize) -> Move {
         first,
         middle: first + random.below(last - first),
         last,
-        turn_first: random.below(2) == 0,
-        turn_second: random.below(2) == 0,
+        reverse_first: random.below(2) == 0,
+        reverse_second: random.below(2) == 0,
     }
 }
 
 #[test]
-fn changes_are_differences_of_lengths() {
+fn the_change_of_a_move_is_the_difference_of_the_lengths() {
     for legs in [Legs::Points, Legs::Dwells, Legs::Directed] {
-        for bends in [Bends::None, Bends::BothWays, Bends::Directed] {
+        for couplings in [Couplings::None, Couplings::BothWays, Couplings::Directed] {
             for targets in [2, 3, 5, 12] {
-                let cost = RandomCost::new(targets, legs, bends, targets as u64);
+                let cost = RandomCost::new(targets, legs, couplings, targets as u64);
                 let order: Vec<usize> = (0..targets).collect();
-                let mut path = Path::new(&cost, targets, &order);
+                let mut path = OrderPath::new(&cost, targets, &order);
                 let mut random = SplitMix::new(1);
                 let mut before = path.length();
                 for _ in 0..1000 {
@@ -40,7 +40,7 @@ fn changes_are_differences_of_lengths() {
                     let expected = after - before;
                     assert!(
                         (change - expected).abs() < 1e-9,
-                        "{legs:?} {bends:?} {targets} {step:?}: {change} for {expected}"
+                        "{legs:?} {couplings:?} {targets} {step:?}: {change} for {expected}"
                     );
                     before = after;
                 }
@@ -50,10 +50,10 @@ fn changes_are_differences_of_lengths() {
 }
 
 #[test]
-fn a_preview_leaves_everything_as_it_was() {
-    let cost = RandomCost::new(9, Legs::Directed, Bends::Directed, 4);
+fn a_preview_leaves_the_order_unchanged() {
+    let cost = RandomCost::new(9, Legs::Directed, Couplings::Directed, 4);
     let order: Vec<usize> = (0..9).collect();
-    let mut path = Path::new(&cost, 9, &order);
+    let mut path = OrderPath::new(&cost, 9, &order);
     let mut random = SplitMix::new(2);
     for _ in 0..200 {
         let (shown, probe) = (random_move(&mut random, 9), random_move(&mut random, 9));
@@ -65,18 +65,18 @@ fn a_preview_leaves_everything_as_it_was() {
         }));
         assert!(path.order().iter().eq(&order));
         assert!((path.change(probe) - change).abs() < 1e-9);
-        let mut moved = Path::new(&cost, 9, &order);
+        let mut moved = OrderPath::new(&cost, 9, &order);
         moved.apply(shown);
         assert_eq!(seen, moved.order());
     }
 }
 
 #[test]
-fn dwells_leave_legs_symmetric() {
+fn reduced_legs_are_symmetric_with_dwells_but_not_with_directed_costs() {
     let order: Vec<usize> = (0..12).collect();
     let symmetric = |kind| {
-        let cost = RandomCost::new(12, kind, Bends::None, 6);
-        ChargedLegs::new(&cost, 12, &order).are_symmetric()
+        let cost = RandomCost::new(12, kind, Couplings::None, 6);
+        ReducedLegs::new(&cost, 12, &order).are_symmetric()
     };
     assert!(symmetric(Legs::Points));
     assert!(symmetric(Legs::Dwells));

@@ -1,26 +1,26 @@
-//! What searches find, and what they obey.
+//! Iterated searches: quality, reproducibility, rules and stops.
 
-use super::models::{Bends, Legs, RandomCost};
+use super::models::{Couplings, Legs, RandomCost};
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::SpanningTrees;
 use crate::tour::order::heuristics::cost::{OrderCost, length};
 use crate::tour::order::heuristics::iterated::IteratedSearch;
 use crate::tour::order::heuristics::local_search::OrderTask;
-use crate::tour::order::{FlownOrder, PairTable};
+use crate::tour::order::{PairTable, SolvedOrder};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn all(targets: usize) -> Vec<usize> {
     (0..targets).collect()
 }
 
-/// The shortest order after a place, whatever it is.
+/// The search for the shortest order after a place, without rules.
 fn after<C>(cost: &C, from: usize) -> OrderTask<'_, C> {
     let admits = None;
     OrderTask { cost, from, admits }
 }
 
 /// The best orders from the start after so many kicks, beginning at `0, 1, ..`.
-fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -> Vec<FlownOrder> {
+fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -> Vec<SolvedOrder> {
     let task = after(cost, cost.targets());
     let mut search = IteratedSearch::new(&task, &all(cost.targets()), alternatives, seed);
     search.run(kicks, &StopSignal::new());
@@ -28,18 +28,18 @@ fn found<C: OrderCost>(cost: &C, kicks: usize, alternatives: usize, seed: u64) -
 }
 
 #[test]
-fn few_targets_are_solved() {
+fn the_search_finds_the_optimum_of_up_to_nine_targets() {
     let kinds = [
-        (Legs::Points, Bends::None),
-        (Legs::Dwells, Bends::BothWays),
-        (Legs::Directed, Bends::None),
-        (Legs::Directed, Bends::Directed),
+        (Legs::Points, Couplings::None),
+        (Legs::Dwells, Couplings::BothWays),
+        (Legs::Directed, Couplings::None),
+        (Legs::Directed, Couplings::Directed),
     ];
     let mut solved = 0;
     for seed in 0..100 {
-        let (legs, bends) = kinds[seed % 4];
+        let (legs, couplings) = kinds[seed % 4];
         let targets = 1 + seed % 9;
-        let cost = RandomCost::new(targets, legs, bends, seed as u64);
+        let cost = RandomCost::new(targets, legs, couplings, seed as u64);
         let best = found(&cost, 200, 0, 1)[0].duration_s;
         let least = cost.least();
         assert!(best > least - 1e-9, "seed {seed}: {best} below {least}");
@@ -49,9 +49,9 @@ fn few_targets_are_solved() {
 }
 
 #[test]
-fn fifty_targets_come_near_the_bound() {
+fn fifty_targets_end_within_one_percent_of_the_spanning_tree_bound() {
     for seed in 0..3 {
-        let table = PairTable::new(&RandomCost::new(50, Legs::Dwells, Bends::None, seed));
+        let table = PairTable::new(&RandomCost::new(50, Legs::Dwells, Couplings::None, seed));
         let bound = SpanningTrees::new(&table).bound(&table, table.start(), &all(50));
         let best = found(&table, 3000, 0, seed)[0].duration_s;
         assert!(bound < best + 1e-9 && best < 1.01 * bound, "{bound} {best}");
@@ -59,13 +59,13 @@ fn fifty_targets_come_near_the_bound() {
 }
 
 #[test]
-fn targets_are_kept_and_orders_never_get_worse() {
+fn the_best_order_has_the_same_targets_and_is_never_longer() {
     for targets in [0, 1, 2, 3, 4, 40] {
-        let cost = RandomCost::new(targets, Legs::Directed, Bends::Directed, 3);
-        let begun = length(&cost, targets, &all(targets));
+        let cost = RandomCost::new(targets, Legs::Directed, Couplings::Directed, 3);
+        let initial = length(&cost, targets, &all(targets));
         for kicks in [0, 1, 50] {
             let best = &found(&cost, kicks, 0, 9)[0];
-            assert!(best.duration_s <= begun);
+            assert!(best.duration_s <= initial);
             assert!((best.duration_s - length(&cost, targets, &best.order)).abs() < 1e-9);
             let mut order = best.order.clone();
             order.sort_unstable();
@@ -75,8 +75,8 @@ fn targets_are_kept_and_orders_never_get_worse() {
 }
 
 #[test]
-fn some_targets_after_one_of_the_others_are_searched_too() {
-    let cost = RandomCost::new(30, Legs::Points, Bends::BothWays, 8);
+fn a_subset_of_targets_after_another_target_is_searched() {
+    let cost = RandomCost::new(30, Legs::Points, Couplings::BothWays, 8);
     let some: Vec<usize> = (0..30).filter(|t| t % 3 != 0).collect();
     let mut search = IteratedSearch::new(&after(&cost, 6), &some, 0, 0);
     search.run(300, &StopSignal::new());
@@ -89,15 +89,15 @@ fn some_targets_after_one_of_the_others_are_searched_too() {
 }
 
 #[test]
-fn the_seed_decides() {
-    let cost = RandomCost::new(40, Legs::Directed, Bends::BothWays, 5);
+fn the_result_depends_on_the_seed_alone() {
+    let cost = RandomCost::new(40, Legs::Directed, Couplings::BothWays, 5);
     assert_eq!(found(&cost, 200, 5, 1), found(&cost, 200, 5, 1));
     assert_ne!(found(&cost, 200, 5, 1), found(&cost, 200, 5, 2));
 }
 
 #[test]
 fn alternatives_are_distinct_and_sorted() {
-    let cost = RandomCost::new(40, Legs::Points, Bends::BothWays, 5);
+    let cost = RandomCost::new(40, Legs::Points, Couplings::BothWays, 5);
     let best = found(&cost, 2000, 30, 1);
     assert_eq!(best.len(), 31);
     for (place, known) in best.iter().enumerate() {
@@ -112,25 +112,25 @@ fn alternatives_are_distinct_and_sorted() {
 }
 
 #[test]
-fn rules_are_obeyed() {
-    let cost = RandomCost::new(30, Legs::Points, Bends::BothWays, 2);
-    // The first comes third, and 20 to 29 in ascending order.
+fn listed_orders_satisfy_the_rules() {
+    let cost = RandomCost::new(30, Legs::Points, Couplings::BothWays, 2);
+    // Target 0 comes third, and the targets 20 to 29 are in ascending order.
     let admits =
         |order: &[usize]| order[2] == 0 && order.iter().filter(|&&target| target >= 20).is_sorted();
-    let mut begun = all(30);
-    begun[..3].rotate_left(1);
-    assert!(admits(&begun));
+    let mut initial = all(30);
+    initial[..3].rotate_left(1);
+    assert!(admits(&initial));
     let task = OrderTask {
         cost: &cost,
         from: 30,
         admits: Some(&admits),
     };
-    let mut search = IteratedSearch::new(&task, &begun, 10, 3);
+    let mut search = IteratedSearch::new(&task, &initial, 10, 3);
     search.run(500, &StopSignal::new());
     assert!(search.best().iter().all(|best| admits(&best.order)));
     let free = found(&cost, 500, 0, 3)[0].duration_s;
     let ruled = search.best()[0].duration_s;
-    let at_first = length(&cost, 30, &begun);
+    let at_first = length(&cost, 30, &initial);
     assert!(
         free <= ruled && ruled < 0.8 * at_first,
         "{free} {ruled} {at_first}"
@@ -138,8 +138,8 @@ fn rules_are_obeyed() {
 }
 
 #[test]
-fn a_stop_is_seen_at_once() {
-    let cost = RandomCost::new(40, Legs::Points, Bends::None, 2);
+fn a_stop_ends_the_search_within_few_moves() {
+    let cost = RandomCost::new(40, Legs::Points, Couplings::None, 2);
     let stop = StopSignal::new();
     let seen = AtomicUsize::new(0);
     // The rules are asked before every move.
@@ -159,7 +159,7 @@ fn a_stop_is_seen_at_once() {
     assert!(0 < kicks && kicks < 2000, "{kicks}");
     let asked = seen.load(Ordering::Relaxed);
     assert!(asked < 2100, "{asked}");
-    // What there is is good, and nothing more is done.
+    // The result so far is improved, and a further run does nothing.
     let best = search.best()[0].clone();
     assert!(best.duration_s < length(&cost, 40, &all(40)));
     assert_eq!(search.run(10, &stop), 0);

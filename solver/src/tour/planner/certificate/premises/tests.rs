@@ -1,10 +1,10 @@
-//! Each premise, made a little too good.
+//! Each premise of a certificate, tightened beyond what the scenario supports.
 
 use super::*;
 use crate::model::scenario::reference::experiment_a;
 use crate::tour::planner::places::Places;
 
-/// A leg with bounded rates at its end past a locked wheel that turns.
+/// A scenario with a locked, spinning wheel and bounded rates at its first target.
 fn scenario() -> Scenario {
     let mut spec = experiment_a();
     spec.spacecraft.inertia_kg_m2 = [[6.6, 0.3, -0.2], [0.3, 8.9, 0.1], [-0.2, 0.1, 9.6]];
@@ -23,11 +23,11 @@ fn scenario() -> Scenario {
     Scenario::try_new(&spec).expect("valid").scenario
 }
 
-/// What is told of a change.
+/// A part of the expected objection, and a change of the certificate.
 type Case = (&'static str, fn(&mut Certificate));
 
 #[test]
-fn premises_that_are_too_good_are_told() {
+fn tightened_premises_are_rejected() {
     let scenario = scenario();
     let places = Places::of(&scenario);
     assert!(!places.dynamics.has_momentum());
@@ -48,18 +48,21 @@ fn premises_that_are_too_good_are_told() {
         }),
         ("one turn", |c| c.turns.push(c.turns[0])),
     ];
-    for (words, change) in cases {
+    for (expected, change) in cases {
         let mut bad = good.clone();
         change(&mut bad);
-        let told = check(&scenario, route, &axes, &bad).expect_err(words);
-        assert!(told.contains(words), "{told} instead of {words}");
+        let message = check(&scenario, route, &axes, &bad).expect_err(expected);
+        assert!(
+            message.contains(expected),
+            "{message} instead of {expected}"
+        );
     }
-    let told = check(&scenario, route, &(axes * 1.001), &good).expect_err("axes");
-    assert!(told.contains("orthonormal"), "{told}");
+    let message = check(&scenario, route, &(axes * 1.001), &good).expect_err("axes");
+    assert!(message.contains("orthonormal"), "{message}");
 }
 
 #[test]
-fn greatest_components_are_those_of_the_corners() {
+fn the_largest_component_of_a_box_is_at_a_corner() {
     let open = (f64::NEG_INFINITY, f64::INFINITY);
     let cases = [
         (Vector3::x(), [(-0.05, 0.0), open, open], 0.05),

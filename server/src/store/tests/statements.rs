@@ -1,0 +1,129 @@
+//! Every SQL statement of the store is valid for the schema that the migrations make.
+//!
+//! The statements are read from the sources, with the macros that lists of columns are written as. So
+//! a misspelt name in a statement that no other test runs fails here.
+
+use super::on_a_store;
+use sqlx::{AssertSqlSafe, Executor, SqlSafeStr};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const VERBS: [&str; 6] = ["DELETE", "INSERT", "PRAGMA", "SELECT", "UPDATE", "VACUUM"];
+
+/// The sources of the store, tests left out.
+fn sources() -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/store");
+    let (mut folders, mut text) = (vec![root], String::new());
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path: PathBuf = entry.expect("an entry").path();
+            if path.is_dir() && !path.ends_with("tests") {
+                folders.push(path);
+            } else if path.is_file() && !path.ends_with("tests.rs") {
+                text += &std::fs::read_to_string(path).expect("a source");
+            }
+        }
+    }
+    text + &std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/store.rs"))
+        .expect("a source")
+}
+
+/// The text of the string literal that a source begins with, and what follows it.
+fn literal(source: &str) -> (String, &str) {
+    let mut text = String::new();
+    let mut rest = source.strip_prefix('"').expect("a literal");
+    loop {
+        let (before, after) = rest.split_at(rest.find(['"', '\\']).expect("an end"));
+        text += before;
+        if let Some(after) = after.strip_prefix('"') {
+            return (text, after);
+        }
+        // The only escape in use continues the literal on the next line.
+        let next_line = after.strip_prefix("\\\n").expect("a continued line");
+        rest = next_line.trim_start();
+    }
+}
+
+/// The macros of the sources that stand for text: parameter and body.
+fn macros(sources: &str) -> BTreeMap<&str, (&str, &str)> {
+    let definitions = sources.split("macro_rules! ").skip(1);
+    let parts = definitions.map(|text| {
+        let (name, rest) = text.split_once(" {").expect("a name");
+        let (parameter, rest) = rest.split_once("=>").expect("a parameter");
+        let (body, _) = rest.split_once("};").expect("a body");
+        let parameter = parameter.trim().trim_matches(['(', ')']);
+        (
+            name,
+            (parameter.split(':').next().unwrap_or_default(), body),
+        )
+    });
+    parts.collect()
+}
+
+/// All literals of an expression in a row, macros expanded, until its parenthesis is closed.
+fn joined(source: &str, macros: &BTreeMap<&str, (&str, &str)>) -> String {
+    let (mut text, mut rest, mut depth) = (String::new(), source, 0);
+    while let Some(next) = rest.chars().next() {
+        let name = rest
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .next();
+        let name = name.unwrap_or_default();
+        if next == '"' {
+            let (part, after) = literal(rest);
+            (text, rest) = (text + &part, after);
+        } else if let Some((parameter, body)) = macros.get(name) {
+            let argument = &rest[name.len() + "!(".len()..];
+            let end = if parameter.is_empty() {
+                text += &joined(body, macros);
+                0
+            } else {
+                let end = argument.len() - literal(argument).1.len();
+                text += &joined(&body.replace(parameter, &argument[..end]), macros);
+                end
+            };
+            rest = &argument[end + ")".len()..];
+        } else {
+            depth += i32::from(next == '(') - i32::from(next == ')');
+            if depth < 0 {
+                break;
+            }
+            rest = &rest[name.len().max(next.len_utf8())..];
+        }
+    }
+    text
+}
+
+/// Every literal that begins with a verb of SQL, with the rest of the `concat!` that it begins.
+fn statements(sources: &str) -> Vec<String> {
+    let macros = macros(sources);
+    let starts = VERBS.map(|verb| format!("\"{verb} "));
+    let starts = starts.iter().flat_map(|start| sources.match_indices(start));
+    let statement = |(place, _): (usize, &str)| {
+        if sources[..place].trim_end().ends_with("concat!(") {
+            joined(&sources[place..], &macros)
+        } else {
+            literal(&sources[place..]).0
+        }
+    };
+    starts.map(statement).collect()
+}
+
+#[test]
+fn every_statement_is_valid_for_the_schema() {
+    let sources = sources();
+    let statements = statements(&sources);
+    let calls = sources.matches("sqlx::query").count();
+    assert!(
+        statements.len() >= calls,
+        "{} statements in {calls} calls",
+        statements.len()
+    );
+    on_a_store(|store| async move {
+        for statement in statements {
+            let text = AssertSqlSafe(statement.clone()).into_sql_str();
+            if let Err(error) = store.writer.prepare(text).await {
+                panic!("{error}: {statement}");
+            }
+        }
+    });
+}

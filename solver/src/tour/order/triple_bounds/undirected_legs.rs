@@ -1,0 +1,112 @@
+//! Undirected reduced legs, and the cost of passing a target between two of them.
+
+use super::coupling_gaps::CouplingGaps;
+use crate::tour::order::PairTable;
+
+/// Legs reduced by the entry offsets of [`crate::tour::order::completion::SpanningTrees`], as
+/// undirected edges with their slacks, s.
+///
+/// Places are numbered as in [`PairTable`].
+#[derive(Debug)]
+pub(super) struct UndirectedLegs {
+    table: PairTable,
+    entry_offsets: Vec<f64>,
+    /// The lesser of the two reduced legs between two places; from the start and to the end there
+    /// is only one leg.
+    edges: Vec<f64>,
+    /// By how much each reduced leg exceeds its edge.
+    slack: Vec<f64>,
+}
+
+impl UndirectedLegs {
+    pub(super) fn new(table: &PairTable, entry_offsets: &[f64]) -> Self {
+        let (targets, places) = (table.targets(), table.targets() + 2);
+        let mut legs = Self {
+            table: table.clone(),
+            entry_offsets: entry_offsets.to_vec(),
+            edges: vec![0.0; places * places],
+            slack: vec![0.0; places * places],
+        };
+        for a in 0..targets {
+            for b in (0..targets).filter(|&b| b != a) {
+                let (forth, back) = (legs.reduced(a, b), legs.reduced(b, a));
+                legs.edges[a * places + b] = forth.min(back);
+                legs.slack[a * places + b] = forth - forth.min(back);
+            }
+            let (first, last) = (legs.reduced(table.start(), a), table.bound(a, table.end()));
+            for (place, edge) in [(table.start(), first), (table.end(), last)] {
+                legs.edges[a * places + place] = edge;
+                legs.edges[place * places + a] = edge;
+            }
+        }
+        legs
+    }
+
+    /// The pair bounds.
+    pub(super) fn table(&self) -> &PairTable {
+        &self.table
+    }
+
+    /// Offset subtracted from every leg into a target, s.
+    pub(super) fn entry_offset(&self, target: usize) -> f64 {
+        self.entry_offsets[target]
+    }
+
+    /// A leg into a target less the entry offset, s.
+    pub(super) fn reduced(&self, from: usize, to: usize) -> f64 {
+        self.table.bound(from, to) - self.entry_offsets[to]
+    }
+
+    /// The lesser of the two directions, s.
+    pub(super) fn edge(&self, a: usize, b: usize) -> f64 {
+        self.edges[a * (self.entry_offsets.len() + 2) + b]
+    }
+
+    /// Cost of passing a target between two places beyond the two edges, s: half the slacks of the
+    /// legs and half the coupling gap. The path comes from `entry`: a leg out of it is its own
+    /// edge, and no leg leads into it. The lesser of the possible directions, and infinite when
+    /// none is possible.
+    pub(super) fn passing(
+        &self,
+        coupling_gaps: &CouplingGaps,
+        entry: usize,
+        path: [usize; 3],
+    ) -> f64 {
+        let [a, via, b] = path;
+        let forth = self.directed(coupling_gaps, entry, [a, via, b]);
+        forth.min(self.directed(coupling_gaps, entry, [b, via, a]))
+    }
+
+    /// The same for a target with two places before and after it, plus a quarter of the coupling
+    /// gap of all five places.
+    pub(super) fn passing_five(
+        &self,
+        coupling_gaps: &CouplingGaps,
+        entry: usize,
+        path: [usize; 5],
+    ) -> f64 {
+        let directed = |path: [usize; 5]| {
+            let [first, from, via, to, last] = path;
+            if first == self.table.end() || last == entry {
+                return f64::INFINITY;
+            }
+            self.directed(coupling_gaps, entry, [from, via, to]) + 0.25 * coupling_gaps.five(path)
+        };
+        let [a, b, c, d, e] = path;
+        directed(path).min(directed([e, d, c, b, a]))
+    }
+
+    fn directed(&self, coupling_gaps: &CouplingGaps, entry: usize, path: [usize; 3]) -> f64 {
+        let [from, via, to] = path;
+        if to == entry || from == self.table.end() {
+            return f64::INFINITY;
+        }
+        let places = self.entry_offsets.len() + 2;
+        let first = if from == entry {
+            0.0
+        } else {
+            self.slack[from * places + via]
+        };
+        0.5 * (first + self.slack[via * places + to] + coupling_gaps.triple(from, via, to))
+    }
+}

@@ -1,0 +1,98 @@
+//! Motions along a route, joined leg by leg: initial guesses of a segment's program, and flights
+//! that need no program.
+
+use super::legs::LegSolver;
+use super::places::Places;
+use crate::leg::multiphase::LegSolution;
+use crate::leg::profile::Profile;
+use crate::leg::solve::eigenaxis::Perturbation;
+use crate::nlp::NlpStatus;
+use crate::tour::legs::LegKind;
+use crate::tour::order::Place;
+use std::sync::Arc;
+
+/// How the initial guess of a segment is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum InitialGuess {
+    /// The solution of the segment without its last leg, and a perturbed eigenaxis slew for that.
+    Shorter,
+    /// Perturbed eigenaxis slews.
+    Eigenaxes,
+    /// Extremals of the kinematic problem.
+    Extremals,
+    /// Legs from rest to rest: feasible as they are where every place admits rest.
+    AtRest,
+}
+
+/// A feasible flight along a route, constructed without solving a program: one solution for each
+/// segment. `None` where a leg cannot be constructed.
+pub(super) fn constructed(places: &Places<'_>, route: &[Place]) -> Option<Vec<Arc<LegSolution>>> {
+    let segments = places.split(route).into_iter().map(|segment| {
+        let mut whole = LegSolution {
+            status: NlpStatus::Constructed,
+            ..LegSolution::nowhere()
+        };
+        for pair in segment.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place));
+            let leg = places.slew(&from, &to).constructed()?;
+            whole.profile.append(&leg.profile);
+            whole.intervals.extend(leg.intervals);
+        }
+        Some(Arc::new(whole))
+    });
+    segments.collect()
+}
+
+/// Whether the conditions at all places of a route admit rest there.
+pub(super) fn admits_rest(places: &Places<'_>, route: &[Place]) -> bool {
+    route.windows(2).all(|pair| {
+        let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
+        places.slew(&from, &to).begins_and_ends_at_rest()
+    })
+}
+
+/// The legs of a route joined end to end, and the number of intervals of each; `None` where a leg
+/// from rest to rest has no solution. For [`InitialGuess::Shorter`] see [`extended`].
+pub(super) fn joined(
+    legs: &LegSolver<'_>,
+    route: &[Place],
+    kind: InitialGuess,
+) -> Option<(Profile, Vec<usize>)> {
+    let places = legs.places();
+    let mut guess = Profile::empty();
+    let mut intervals = Vec::new();
+    for pair in route.windows(2) {
+        let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
+        let slew = places.slew(&from, &to);
+        let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
+        let leg = match kind {
+            InitialGuess::Shorter | InitialGuess::Eigenaxes => perturbed_eigenaxis(),
+            InitialGuess::Extremals => slew
+                .extremal()
+                .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
+            InitialGuess::AtRest => {
+                let leg = legs.leg(LegKind::RestToRest, pair[0], pair[1]);
+                leg.duration()?;
+                leg.profile
+            }
+        };
+        guess.append(&leg);
+        intervals.push(leg.intervals());
+    }
+    Some((guess, intervals))
+}
+
+/// The solution of all but the last leg of a route, with a perturbed eigenaxis slew as its last
+/// leg; `None` where that solution did not converge.
+pub(super) fn extended(
+    legs: &LegSolver<'_>,
+    shorter: &LegSolution,
+    last_leg: &[Place],
+) -> Option<(Profile, Vec<usize>)> {
+    shorter.duration()?;
+    let (mut guess, mut intervals) = (shorter.profile.clone(), shorter.intervals.clone());
+    let (last, its) = joined(legs, last_leg, InitialGuess::Eigenaxes)?;
+    guess.append(&last);
+    intervals.extend(its);
+    Some((guess, intervals))
+}

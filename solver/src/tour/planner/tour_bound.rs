@@ -1,0 +1,72 @@
+//! A certified lower bound on whole tours, before any program is solved.
+//!
+//! Each leg of a tour lasts at least its certified bound, which holds whatever comes before and
+//! after the leg. So the shortest path through all targets in the table of these bounds, with
+//! settle and dwell times added, bounds all tours in all orders that the scenario admits. The order
+//! search finds a bound on that path: exact up to
+//! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, and beyond that number the bound
+//! reached within a node limit.
+
+use super::additive_tours::AdditiveTours;
+use super::places::Places;
+use super::tables::CertifiedTable;
+use crate::run::pool::SolverPool;
+use crate::run::progress::Progress;
+use crate::run::stop::StopSignal;
+use crate::tour::order::{Incumbent, Place, SearchObserver, SearchSettings, search};
+
+/// Node limit of the search times the cube of the number of targets: a fraction of a second.
+const NODES_TIMES_TARGETS_CUBED: u64 = 50_000_000;
+/// Relative gap at which the search may end; small beside the gap of the certified bounds.
+const GAP: f64 = 2e-4;
+/// Relative reduction of the bound, for orders that the search treats as ties and for rounding.
+const DEFLATION: f64 = 3e-9;
+
+/// Tours whose legs take as long as their certified bounds, and no time where nothing is proved.
+fn certified_tours<'a>(
+    places: &'a Places<'a>,
+    bounds: &'a CertifiedTable,
+) -> AdditiveTours<'a, impl Fn(Place, Place) -> f64 + Sync> {
+    AdditiveTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
+}
+
+/// Certified lower bound on the duration of all tours, s, over all orders that the scenario admits.
+/// A leg without a proved bound counts as 0; `None` when no leg has one.
+pub(super) fn tour_bound(
+    places: &Places<'_>,
+    bounds: &CertifiedTable,
+    pool: &SolverPool,
+    stop: &StopSignal,
+) -> Option<f64> {
+    if !bounds.has_bounds() {
+        return None;
+    }
+    let targets = places.scenario.targets().len() as u64;
+    let settings = SearchSettings {
+        node_limit: Some(NODES_TIMES_TARGETS_CUBED / targets.pow(3).max(1)),
+        relative_gap: GAP,
+        ..SearchSettings::default()
+    };
+    let tours = certified_tours(places, bounds);
+    let found = search(&tours, &[], &settings, pool, stop, &Unobserved);
+    Some(found.lower_bound_s * (1.0 - DEFLATION))
+}
+
+/// The same for the tours along one route.
+pub(super) fn route_bound(
+    places: &Places<'_>,
+    bounds: &CertifiedTable,
+    route: &[Place],
+) -> Option<f64> {
+    let sum = || certified_tours(places, bounds).along(route);
+    bounds.has_bounds().then(|| sum() * (1.0 - DEFLATION))
+}
+
+/// Ignores the progress of this search.
+struct Unobserved;
+
+impl SearchObserver for Unobserved {
+    fn progress(&self, _: Progress) {}
+
+    fn improved(&self, _: &Incumbent<'_>) {}
+}

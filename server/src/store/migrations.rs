@@ -52,6 +52,7 @@ pub(super) fn migrator() -> Migrator {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn the_list_names_every_file_of_the_folder_in_order() {
@@ -60,7 +61,9 @@ mod tests {
             let name = entry.expect("readable").file_name();
             name.into_string().expect("plain text")
         });
-        let mut files: Vec<String> = names.filter(|name| name.ends_with(".sql")).collect();
+        let mut files: Vec<String> = names
+            .filter(|name| Path::new(name).extension().is_some_and(|end| end == "sql"))
+            .collect();
         files.sort();
         let listed = HISTORY.map(|(number, name, _)| format!("{number}_{name}.sql"));
         assert_eq!(files, listed);

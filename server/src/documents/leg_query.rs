@@ -45,7 +45,7 @@ input_object! {
 input_choice! {
     /// What is done about legs that are not stored.
     enum LegQueryMode as "Mode" {
-        /// They are told as missing.
+        /// They are reported as missing.
         CachedOnly = "cached_only",
         /// They are solved.
         Compute = "compute",

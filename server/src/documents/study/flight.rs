@@ -13,19 +13,19 @@ use slewplan_solver::model::input::{
 };
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::spec::ScenarioSpec;
-use slewplan_solver::simulation::{self as flying, SimulationSpec};
+use slewplan_solver::simulation::{self, SimulationSpec};
 use slewplan_studies::flight::FlightStudy;
 
 input_object! {
-    /// A plan flown once in closed loop.
+    /// One simulated flight of a plan in closed loop.
     pub(crate) struct FlightStudySpec as "FlightStudy" {
         /// What the plan is for.
         scenario: () as Unread<ScenarioSpec> = required_or(()),
         /// Which of the flights of the seed; each draws other errors.
         flight: u64 = or(0),
-        /// How it is flown. The number of flights does not matter here.
+        /// How it is simulated. The number of flights does not matter here.
         simulation: SimulationSpec = or(SimulationSpec::default()),
-        /// One out of so many samples of the on-board computer is told; so many that there are no more
+        /// One out of so many samples of the on-board computer is reported; so many that there are no more
         /// than 2,000 without it.
         keep_every: Option<usize> as Option<KeepEvery> = optional().at_least(1.0).format("uint64"),
         /// A plan of the scenario; made for the flight without it.
@@ -70,7 +70,7 @@ pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
             .ok()
     });
     if let Some(valid) = &valid {
-        let found = flying::check(&spec.simulation, valid.scenario.spacecraft(), "/simulation");
+        let found = simulation::check(&spec.simulation, valid.scenario.spacecraft(), "/simulation");
         noted("", found);
     }
     let Some(valid) = valid.filter(|_| problems.is_empty()) else {

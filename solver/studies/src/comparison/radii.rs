@@ -68,11 +68,11 @@ input_union! {
         Computed = "computed",
         /// Those that are left out are as published.
         Given = "given" {
-            /// Of wheels, slews about the eigenaxis.
+            /// Of wheels, slews about the eigenaxis, allocation by the pseudo-inverse.
             rw_eigenaxis: Radius = or(Radii::PUBLISHED.eigenaxis),
-            /// Of wheels, time-optimal slews within what the pseudo-inverse shares out.
+            /// Of wheels, time-optimal slews, allocation by the pseudo-inverse.
             rw_pseudo_optimal: Radius = or(Radii::PUBLISHED.pseudo_optimal),
-            /// Of wheels, time-optimal slews.
+            /// Of wheels, time-optimal slews with any allocation.
             rw_optimal: Radius = or(Radii::PUBLISHED.optimal),
             /// Of control moment gyroscopes.
             cmg: Radius = or(Radii::PUBLISHED.gyroscopes),

@@ -106,7 +106,7 @@ struct CatalogueDocument {
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-#[schema(as = CatalogueFit)]
+#[schema(as = MarketFit)]
 struct FitDocument {
     /// The law that was asked for.
     used: LawDocument,

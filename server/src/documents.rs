@@ -2,13 +2,14 @@
 //!
 //! Reading goes in two steps, so that every problem is found at once: [`document`] turns text
 //! into a tree that loses nothing, and a [`reader`] walks the tree, knows where it is and
-//! collects what is wrong. Writing is plain `serde` on structs whose fields carry their units.
+//! collects what is wrong. What stands in a document is declared once, with
+//! [`slewplan_solver::model::input`]; [`schema`] makes its description of that. Writing is plain `serde` on structs whose fields carry their units.
 
-pub(crate) mod attitude;
+#[cfg(test)]
+mod attitude;
 pub(crate) mod certification;
 pub(crate) mod claims;
 pub(crate) mod document;
-pub(crate) mod drives;
 pub(crate) mod flight;
 pub(crate) mod jobs;
 pub(crate) mod leg_import;
@@ -21,6 +22,7 @@ pub(crate) mod plan;
 pub(crate) mod problems;
 pub(crate) mod reader;
 pub(crate) mod scenario;
+pub(crate) mod schema;
 pub(crate) mod shards;
 pub(crate) mod slew;
 pub(crate) mod spacecraft;

@@ -5,6 +5,7 @@ pub mod attitude;
 pub mod drive;
 pub(crate) mod dynamics;
 pub mod findings;
+pub mod input;
 pub mod motion;
 pub mod order_rules;
 pub mod plan;

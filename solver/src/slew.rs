@@ -62,9 +62,9 @@ mod vehicle;
 pub use outcome::SlewOutcome;
 pub use propagation::{MotorEnergies, PropagatedSlew, TorquePiece};
 pub use spec::{
-    EnergyMeasure, FinalWheels, Objective, SampleHold, SlewSpec, TorqueCommand, WheelAllocation,
+    DEFAULT_INTERVALS, EnergyMeasure, FinalWheels, MAX_POINTS, Objective, SampleHold,
+    SlewOptionsSpec, SlewSpec, Sweep, TorqueCommand, WheelAllocation,
 };
-pub use sweep::Sweep;
 pub use validated::{Slew, ValidatedSlew};
 
 use crate::model::problem::Problem;

@@ -30,6 +30,7 @@ fn main() {
         shares = SHARES.into();
     }
     let spec = AuthorityStudySpec {
+        scenario: experiment_a_spec(),
         simulation: SimulationSpec {
             settle_s,
             errors: ErrorsSpec {
@@ -40,14 +41,20 @@ fn main() {
         },
         authorities: shares
             .into_iter()
-            .map(|(torque, momentum)| Authorities { torque, momentum })
+            .map(|(torque_authority, momentum_authority)| Authorities {
+                torque_authority,
+                momentum_authority,
+            })
             .collect(),
     };
-    let rows = on_threads(2, |run| study(&experiment_a_spec(), &spec, "", run));
+    let rows = on_threads(2, |run| study(&spec, "", run));
     println!("torque momentum    time  | end: within  50 %  99 %   max | targets: within");
     println!("                      s  |      0.1 deg      deg         |    all 0.1 deg");
     for row in rows.expect("a valid study") {
-        let Authorities { torque, momentum } = row.authorities;
+        let Authorities {
+            torque_authority: torque,
+            momentum_authority: momentum,
+        } = row.authorities;
         print!("{torque:6.2} {momentum:8.2} ");
         match row.outcome {
             RowOutcome::Simulated {

@@ -10,12 +10,12 @@ use slewplan_tests::solving::{on_threads, order_of, plan_of, scenario_of};
 use slewplan_tests::{experiment_a_spec, pyramid_spec};
 
 const ALL: Authorities = Authorities {
-    torque: 1.0,
-    momentum: 1.0,
+    torque_authority: 1.0,
+    momentum_authority: 1.0,
 };
 const HELD_BACK: Authorities = Authorities {
-    torque: 0.95,
-    momentum: 0.95,
+    torque_authority: 0.95,
+    momentum_authority: 0.95,
 };
 
 fn simulated(row: &AuthorityRow) -> (f64, &Spread) {
@@ -35,6 +35,7 @@ fn experiment_a_needs_a_twentieth_of_the_wheels_for_feedback() {
     let mut scenario = experiment_a_spec();
     scenario.options.time_limit_s = None;
     let spec = AuthorityStudySpec {
+        scenario,
         simulation: SimulationSpec {
             controller: ControllerSpec::Quaternion {
                 gains: GainsSpec::Bandwidth {
@@ -54,7 +55,7 @@ fn experiment_a_needs_a_twentieth_of_the_wheels_for_feedback() {
         },
         authorities: vec![ALL, HELD_BACK],
     };
-    let rows = on_threads(2, |run| study(&scenario, &spec, "", run)).expect("a valid study");
+    let rows = on_threads(2, |run| study(&spec, "", run)).expect("a valid study");
     let [all, held_back] = &rows[..] else {
         panic!("{rows:?}")
     };

@@ -1,14 +1,14 @@
 //! Studies of envelopes: the published pyramid, and what is refused.
 
 use slewplan_solver::model::problem::Code;
-use slewplan_solver::model::spec::AttitudeSpec;
+use slewplan_solver::model::spec::{AttitudeSpec, PairSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::WheelAllocation;
 use slewplan_studies::eigenaxis::EnvelopeLimit;
 use slewplan_studies::envelope_path::EnvelopePath;
 use slewplan_studies::envelope_study::{
-    EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MAX_DEMANDS, TurnSpec,
+    EnvelopeOptionsSpec, EnvelopeReport, EnvelopeStudy, EnvelopeStudySpec, MAX_DEMANDS,
 };
 use slewplan_tests::pyramid_spec;
 
@@ -21,9 +21,9 @@ fn thesis() -> EnvelopeStudySpec {
     let sin_half = 60.0_f64.to_radians().sin();
     EnvelopeStudySpec {
         spacecraft: pyramid_spec().spacecraft,
-        torque_authority: 1.0,
-        momentum_authority: 1.0,
-        turns: vec![TurnSpec {
+        name: None,
+        options: EnvelopeOptionsSpec::default(),
+        turns: vec![PairSpec {
             from: AttitudeSpec::default(),
             // With the sign of the longer turn, which the study does not take.
             to: AttitudeSpec::Quaternion([-S * sin_half, 0.0, -C * sin_half, -0.5]),
@@ -111,11 +111,11 @@ fn a_stop_leaves_out_the_optimised_slews() {
 fn all_problems_of_a_study_have_their_pointers() {
     let mut spec = thesis();
     spec.spacecraft.wheels[2].max_torque_nm = -1.0;
-    spec.momentum_authority = 1.5;
-    spec.turns.push(TurnSpec::default());
-    spec.turns.push(TurnSpec {
+    spec.options.momentum_authority = 1.5;
+    spec.turns.push(PairSpec::default());
+    spec.turns.push(PairSpec {
         to: AttitudeSpec::Mrp([f64::NAN, 0.0, 0.0]),
-        ..TurnSpec::default()
+        ..PairSpec::default()
     });
     spec.demands_nm = vec![[0.0, f64::INFINITY, 0.0]; MAX_DEMANDS + 1];
     let problems = EnvelopeStudy::try_new(&spec).expect_err("problems");

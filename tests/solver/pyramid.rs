@@ -3,13 +3,13 @@
 
 use slewplan_solver::math::bang_coast_bang::BangCoastBang;
 use slewplan_solver::model::attitude::Attitude;
-use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec};
+use slewplan_solver::model::spec::{AttitudeSpec, PairSpec, ScenarioSpec, StateSpec};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_studies::comparison::{PyramidControl, Radii};
 use slewplan_studies::eigenaxis::Baselines;
 use slewplan_studies::envelope_path::EnvelopePath;
-use slewplan_studies::envelope_study::{EnvelopeStudy, EnvelopeStudySpec, TurnSpec};
+use slewplan_studies::envelope_study::{EnvelopeOptionsSpec, EnvelopeStudy, EnvelopeStudySpec};
 use slewplan_tests::pyramid_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{agree, plan_of, scenario_of};
@@ -84,14 +84,14 @@ fn random_slews_with_the_torque_of_the_published_figure_lie_on_or_below_its_curv
 #[test]
 fn random_slews_by_the_pseudo_inverse_lie_near_the_published_curve() {
     let mut generator = Generator::new(175);
-    let turns = [(); SLEWS / 2].map(|()| TurnSpec {
+    let turns = [(); SLEWS / 2].map(|()| PairSpec {
         from: AttitudeSpec::Quaternion(random_attitude(&mut generator).xyzw()),
         to: AttitudeSpec::default(),
     });
     let spec = EnvelopeStudySpec {
         spacecraft: pyramid_spec().spacecraft,
-        torque_authority: 1.0,
-        momentum_authority: 1.0,
+        name: None,
+        options: EnvelopeOptionsSpec::default(),
         turns: turns.into(),
         demands_nm: Vec::new(),
         time_optimal: true,

@@ -8,10 +8,11 @@ use super::{App, admission, computing, respond, stored};
 use crate::documents;
 use crate::documents::document::Node;
 use crate::documents::reader::{Cursor, Sink};
-use crate::documents::verification::ReportDocument;
+use crate::documents::verification::{ReportDocument, VerifySpec};
 use axum::extract::State;
 use axum::response::Response;
 use slewplan_solver::checker;
+use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::Problem;
 
 /// Propagate a plan again and test every limit
@@ -39,10 +40,8 @@ pub(super) async fn handler(
 
 fn parts(mut node: Node) -> Result<(Node, Node), ApiError> {
     let sink = Sink::default();
-    if let Some(fields) = Cursor::root(&node, &sink).object(&["scenario", "plan"]) {
-        fields.required("scenario");
-        fields.required("plan");
-    }
+    // Both parts are read on their own; here only whether they are there.
+    VerifySpec::read(&Cursor::root(&node, &sink));
     let problems = sink.into_problems();
     if !problems.is_empty() {
         return Err(ApiError::input(problems));

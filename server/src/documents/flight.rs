@@ -4,6 +4,9 @@
 
 use super::document::{self, Node};
 use super::reader::{Cursor, Sink};
+use slewplan_solver::model::input::{
+    InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_object, optional, required,
+};
 use slewplan_solver::model::plan::{Control, Flight, Passage};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
@@ -55,25 +58,109 @@ pub(crate) fn read_node(node: &Node, scenario: &Scenario) -> Result<Flight, Vec<
     }
 }
 
+/// A plan made by anyone, for descriptions.
+pub(crate) struct ForeignPlan;
+
+impl InputForm for ForeignPlan {
+    type Value = ();
+
+    fn read<P: InputPlace>(_: &P) -> Option<()> {
+        Some(())
+    }
+
+    fn schema() -> Schema {
+        Schema::Named(NamedSchema {
+            name: "ForeignPlan",
+            doc: "What is read of a plan; anything else in it is not looked at.",
+            schema: || {
+                Schema::OpenObject(vec![
+                    MemberSchema::of::<f64>("total_time_s", "", &required()),
+                    MemberSchema::of::<Vec<String>>(
+                        "sequence",
+                        "Identifiers in visiting order.",
+                        &required(),
+                    ),
+                    MemberSchema::of::<Vec<ForeignPassage>>(
+                        "passages",
+                        "One for every target, in the same order.",
+                        &required(),
+                    ),
+                    MemberSchema::of::<ForeignTrajectory>("trajectory", "", &required()),
+                ])
+            },
+        })
+    }
+}
+
+/// The torques of a plan, for descriptions.
+struct ForeignTrajectory;
+
+impl InputForm for ForeignTrajectory {
+    type Value = ();
+
+    fn read<P: InputPlace>(_: &P) -> Option<()> {
+        Some(())
+    }
+
+    fn schema() -> Schema {
+        Schema::Named(NamedSchema {
+            name: "ForeignTrajectory",
+            doc: "",
+            schema: || {
+                let controls = MemberSchema::of::<Vec<ForeignControl>>;
+                Schema::OpenObject(vec![controls("controls", "", &required())])
+            },
+        })
+    }
+}
+
+input_object! {
+    /// When a target is visited.
+    struct ForeignPassage as "ForeignPassage" open {
+        /// Identifier of the target.
+        target: String = required(),
+        /// The arrival.
+        time_s: f64 = required(),
+        /// The arrival without it, in a plan without settle and dwell.
+        departure_s: Option<f64> = optional(),
+    }
+}
+
+input_object! {
+    /// Constant torques.
+    struct ForeignControl as "ForeignControl" open {
+        /// When they begin.
+        start_s: f64 = required(),
+        /// How long they are held.
+        duration_s: f64 = required(),
+        /// One per wheel.
+        wheel_torque_nm: Vec<f64> = required(),
+    }
+}
+
 fn decode(node: &Node, scenario: &Scenario, sink: &Sink) -> Option<Flight> {
     let fields = Cursor::root(node, sink).open_object()?;
     let total_time_s = fields
         .required("total_time_s")
         .and_then(|time| time.number());
-    let sequence = fields.required("sequence").and_then(|list| sequence(&list));
+    let sequence = fields
+        .required("sequence")
+        .and_then(|list| Vec::<String>::read(&list));
     let passages = fields.required("passages").and_then(|list| {
-        let passages = passages(&list)?;
+        let read = Vec::<ForeignPassage>::read(&list)?;
+        let passages: Vec<_> = read.into_iter().map(Passage::from).collect();
         check_targets(&list, &passages, scenario);
         Some((list, passages))
     });
     if let (Some(sequence), Some((list, passages))) = (sequence, &passages) {
         check_sequence(list, &sequence, passages);
     }
+    let wheels = scenario.spacecraft().wheels().len();
     let controls = fields
         .required("trajectory")
         .and_then(|trajectory| trajectory.open_object())
         .and_then(|trajectory| trajectory.required("controls"))
-        .and_then(|list| controls(&list, scenario));
+        .and_then(|list| list.all(|item| control(item, wheels)));
     Some(Flight {
         total_time_s: total_time_s?,
         passages: passages?.1,
@@ -81,28 +168,36 @@ fn decode(node: &Node, scenario: &Scenario, sink: &Sink) -> Option<Flight> {
     })
 }
 
-fn sequence<'a>(cursor: &Cursor<'a>) -> Option<Vec<&'a str>> {
-    cursor.all(Cursor::text)
-}
-
-fn passages(cursor: &Cursor<'_>) -> Option<Vec<Passage>> {
-    cursor.all(passage)
-}
-
-fn passage(cursor: &Cursor<'_>) -> Option<Passage> {
-    let fields = cursor.open_object()?;
-    let target = fields.required("target").and_then(|id| id.text());
-    let time = fields.required("time_s").and_then(|time| time.number());
-    // A plan without settle and dwell may leave the departure out.
-    let departure = match fields.optional("departure_s") {
-        Some(departure) => departure.number(),
-        None => time,
-    };
-    Some(Passage {
-        target: target?.to_owned(),
-        time_s: time?,
-        departure_s: departure?,
+fn control(cursor: &Cursor<'_>, wheels: usize) -> Option<Control> {
+    let ForeignControl {
+        start_s,
+        duration_s,
+        wheel_torque_nm,
+    } = ForeignControl::read(cursor)?;
+    if wheel_torque_nm.len() != wheels {
+        let torque = cursor.member("wheel_torque_nm")?;
+        torque.report(
+            Code::WrongLength,
+            format!("{} torques for {wheels} wheels", wheel_torque_nm.len()),
+            "write one torque per wheel in the order of the scenario, 0 for disabled ones",
+        );
+        return None;
+    }
+    Some(Control {
+        start_s,
+        duration_s,
+        wheel_torque_nm,
     })
+}
+
+impl From<ForeignPassage> for Passage {
+    fn from(passage: ForeignPassage) -> Self {
+        Self {
+            target: passage.target,
+            time_s: passage.time_s,
+            departure_s: passage.departure_s.unwrap_or(passage.time_s),
+        }
+    }
 }
 
 /// Every target of the scenario is visited exactly once, and nothing else.
@@ -149,7 +244,7 @@ fn check_targets(cursor: &Cursor<'_>, passages: &[Passage], scenario: &Scenario)
     }
 }
 
-fn check_sequence(cursor: &Cursor<'_>, sequence: &[&str], passages: &[Passage]) {
+fn check_sequence(cursor: &Cursor<'_>, sequence: &[String], passages: &[Passage]) {
     let visited: Vec<&str> = passages
         .iter()
         .map(|passage| passage.target.as_str())
@@ -165,32 +260,4 @@ fn check_sequence(cursor: &Cursor<'_>, sequence: &[&str], passages: &[Passage]) 
             "list the passages in the order of the sequence",
         );
     }
-}
-
-fn controls(cursor: &Cursor<'_>, scenario: &Scenario) -> Option<Vec<Control>> {
-    let wheels = scenario.spacecraft().wheels().len();
-    cursor.all(|item| control(item, wheels))
-}
-
-fn control(cursor: &Cursor<'_>, wheels: usize) -> Option<Control> {
-    let fields = cursor.open_object()?;
-    let start = fields.required("start_s").and_then(|time| time.number());
-    let duration = fields.required("duration_s").and_then(|time| time.number());
-    let torque = fields.required("wheel_torque_nm").and_then(|torque| {
-        let values = torque.any_numbers()?;
-        if values.len() != wheels {
-            torque.report(
-                Code::WrongLength,
-                format!("{} torques for {wheels} wheels", values.len()),
-                "write one torque per wheel in the order of the scenario, 0 for disabled ones",
-            );
-            return None;
-        }
-        Some(values)
-    });
-    Some(Control {
-        start_s: start?,
-        duration_s: duration?,
-        wheel_torque_nm: torque?,
-    })
 }

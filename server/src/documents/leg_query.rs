@@ -2,15 +2,55 @@
 
 use super::document::Node;
 use super::number::Number;
-use super::reader::{Cursor, Fields, Sink};
-use super::{attitude, scenario, spacecraft};
+use super::reader::{Cursor, Sink};
 use serde::Serialize;
+use slewplan_solver::model::input::{
+    InputForm, InputPlace, input_choice, input_object, optional, or, required_or,
+};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
-use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, TargetSpec};
+use slewplan_solver::model::spec::{
+    AttitudeSpec, OptionsSpec, PairSpec, RateAxes, ScenarioSpec, SpacecraftOrReference,
+    SpacecraftSpec, StateSpec, TargetSpec,
+};
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::planner;
 use utoipa::ToSchema;
+
+input_object! {
+    /// A query for leg times: of `attitudes` and `pairs` exactly one.
+    pub(crate) struct LegQuerySpec as "LegQueryBody" {
+        /// The spacecraft.
+        spacecraft: SpacecraftSpec as SpacecraftOrReference
+            = required_or(SpacecraftSpec::substitute()),
+        /// The state whose momentum is conserved; at rest without it.
+        start: StateSpec = or(StateSpec::default()),
+        /// Options of a scenario; those about the search do not matter.
+        options: OptionsSpec = or(OptionsSpec::default()),
+        /// For `lower_bound`: which rate components vanish at both ends; all without it.
+        zero_rate_axes: Option<[bool; 3]> as Option<RateAxes> = optional(),
+        /// The legs between all of these, both directions.
+        attitudes: Option<Vec<AttitudeSpec>> = optional().min_length(2),
+        /// The legs of these pairs.
+        pairs: Option<Vec<PairSpec>> = optional().min_length(1),
+        /// The conditions at the two ends; `rest_to_rest` without it. `certified` asks for proved bounds
+        /// of the rest-to-rest times only: they are computed, in `compute`, without solving any slew, and
+        /// not stored.
+        kind: LegKind = or(LegKind::RestToRest),
+        /// Whether unknown legs are solved; `cached_only` without it.
+        mode: LegQueryMode = or(LegQueryMode::CachedOnly),
+    }
+}
+
+input_choice! {
+    /// What is done about legs that are not stored.
+    enum LegQueryMode as "Mode" {
+        /// They are reported as missing.
+        CachedOnly = "cached_only",
+        /// They are solved.
+        Compute = "compute",
+    }
+}
 
 /// A valid query.
 #[derive(Debug)]
@@ -39,7 +79,7 @@ pub(crate) struct Pair {
 }
 
 /// The attitudes of a query, and where they stand in it.
-struct Places {
+struct QueriedAttitudes {
     targets: Vec<TargetSpec>,
     pointers: Vec<String>,
     /// Whether every ordered pair is asked for, or each attitude with an even index with its
@@ -47,7 +87,30 @@ struct Places {
     all_pairs: bool,
 }
 
-impl Places {
+impl QueriedAttitudes {
+    /// The places of a query of the right shape.
+    fn of(spec: &LegQuerySpec) -> Self {
+        let pairs = spec.pairs.iter().flatten();
+        let ends = pairs.enumerate().flat_map(|(i, pair)| {
+            [("from", &pair.from), ("to", &pair.to)]
+                .map(|(end, attitude)| (format!("/pairs/{i}/{end}"), attitude))
+        });
+        let attitudes = spec.attitudes.iter().flatten().enumerate();
+        let listed = attitudes.map(|(i, attitude)| (format!("/attitudes/{i}"), attitude));
+        let (pointers, attitudes): (_, Vec<_>) = listed.chain(ends).unzip();
+        let target = |(index, attitude): (usize, &AttitudeSpec)| TargetSpec {
+            id: index.to_string(),
+            attitude: attitude.clone(),
+            zero_rate_axes: spec.zero_rate_axes,
+            ..TargetSpec::default()
+        };
+        Self {
+            targets: attitudes.into_iter().enumerate().map(target).collect(),
+            pointers,
+            all_pairs: spec.attitudes.is_some(),
+        }
+    }
+
     /// Indices of the targets at the begin and the end of each leg.
     fn pairs(&self) -> Vec<(usize, usize)> {
         let count = self.targets.len();
@@ -66,63 +129,13 @@ impl Places {
 ///
 /// Everything that is wrong with it, or, as a number, how many legs it asks for.
 pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
-    let sink = Sink::default();
-    let known = &[
-        "spacecraft",
-        "attitudes",
-        "pairs",
-        "kind",
-        "mode",
-        "start",
-        "zero_rate_axes",
-        "options",
-    ];
-    let fields = Cursor::root(node, &sink).object(known);
     // Counted before they are read, since a short list of attitudes has many pairs.
-    let count = fields.as_ref().map_or(0, legs_asked_for);
+    let count = legs_asked_for(node);
     if count > most {
         return Err(Refusal::TooMany(count));
     }
-    let read = fields.map(|fields| {
-        (
-            read_base(&fields),
-            read_places(&fields),
-            kind_and_mode(&fields),
-        )
-    });
-    let problems = sink.into_problems();
-    let (base, places, (kind, compute)) = match read {
-        Some((base, Some(places), modes)) if problems.is_empty() => (base, places, modes),
-        _ => return Err(Refusal::Invalid(problems)),
-    };
-    let scenario = check(&base, &places).map_err(Refusal::Invalid)?;
-    let pairs = places.pairs();
-    let pairs = pairs.into_iter().enumerate().map(|(index, (from, to))| {
-        let between = (from, to);
-        let targets = vec![places.targets[from].clone(), places.targets[to].clone()];
-        let spec = ScenarioSpec {
-            targets,
-            ..base.clone()
-        };
-        let valid = Scenario::try_new(&spec).map_err(Refusal::Invalid)?;
-        let (from, to) = if places.all_pairs {
-            (from, to)
-        } else {
-            (index, index)
-        };
-        Ok(Pair {
-            from,
-            to,
-            targets: between,
-            scenario: valid.scenario,
-        })
-    });
-    Ok(LegQuery {
-        kind,
-        compute,
-        pairs: pairs.collect::<Result<_, _>>()?,
-        scenario,
-    })
+    let spec = decode(node).map_err(Refusal::Invalid)?;
+    build(&spec).map_err(Refusal::Invalid)
 }
 
 /// Why a query is not answered.
@@ -135,114 +148,99 @@ pub(crate) enum Refusal {
 }
 
 /// Number of legs that a query asks for, whatever they are.
-fn legs_asked_for(fields: &Fields<'_>) -> usize {
-    let length = |name| fields.raw(name).and_then(|list| list.length()).unwrap_or(0);
-    let attitudes = length("attitudes");
+fn legs_asked_for(node: &Node) -> usize {
+    let attitudes = listed(node, "attitudes").unwrap_or(0);
     let matrix = attitudes.saturating_mul(attitudes.saturating_sub(1));
-    matrix.max(length("pairs"))
+    matrix.max(listed(node, "pairs").unwrap_or(0))
 }
 
-fn read_base(fields: &Fields<'_>) -> ScenarioSpec {
-    ScenarioSpec {
-        spacecraft: fields
-            .required("spacecraft")
-            .map_or_else(spacecraft::substitute, |cursor| spacecraft::read(&cursor)),
-        start: fields
-            .optional("start")
-            .map(|cursor| scenario::state(&cursor))
-            .unwrap_or_default(),
-        options: fields
-            .optional("options")
-            .map(|cursor| scenario::options(&cursor))
-            .unwrap_or_default(),
+/// Number of entries of a list of a query, readable or not.
+fn listed(node: &Node, name: &str) -> Option<usize> {
+    match node.member(name)? {
+        Node::List(entries) => Some(entries.len()),
+        _ => None,
+    }
+}
+
+/// A query of the right shape.
+fn decode(node: &Node) -> Result<LegQuerySpec, Vec<Problem>> {
+    let sink = Sink::default();
+    let root = Cursor::root(node, &sink);
+    let spec = LegQuerySpec::read(&root);
+    check_lists(node, &root);
+    let problems = sink.into_problems();
+    spec.filter(|_| problems.is_empty()).ok_or(problems)
+}
+
+/// Of attitudes and pairs exactly one is given, and there is a leg in it.
+fn check_lists(node: &Node, root: &Cursor<'_>) {
+    let given = |name| root.member(name).filter(|list| !list.is_null());
+    match (given("attitudes"), given("pairs")) {
+        (Some(both), Some(_)) => both.report(
+            Code::ConflictingFields,
+            "both attitudes and pairs are given",
+            "give attitudes for the full matrix, or pairs",
+        ),
+        (None, None) => {
+            // Tells that it is missing, or that null is no list.
+            root.required("attitudes").and_then(|null| null.entries());
+        }
+        (Some(list), None) => {
+            if let Some(few @ ..2) = listed(node, "attitudes") {
+                let message = format!("{few} attitudes have no leg between them");
+                list.report(Code::WrongLength, message, "list at least two attitudes");
+            }
+        }
+        (None, Some(list)) => {
+            if listed(node, "pairs") == Some(0) {
+                let hint = "list at least one pair";
+                list.report(Code::WrongLength, "there is no pair", hint);
+            }
+        }
+    }
+}
+
+/// A valid query, with a scenario for each leg.
+fn build(spec: &LegQuerySpec) -> Result<LegQuery, Vec<Problem>> {
+    let base = ScenarioSpec {
+        spacecraft: spec.spacecraft.clone(),
+        start: spec.start.clone(),
+        options: spec.options.clone(),
         ..ScenarioSpec::default()
-    }
-}
-
-fn kind_and_mode(fields: &Fields<'_>) -> (LegKind, bool) {
-    let kinds = [LegKind::RestToRest, LegKind::LowerBound, LegKind::Certified]
-        .map(|kind| (kind.into(), kind));
-    let kind = fields.optional("kind").and_then(|text| text.choice(&kinds));
-    let modes = [("cached_only", false), ("compute", true)];
-    let compute = fields.optional("mode").and_then(|text| text.choice(&modes));
-    (
-        kind.unwrap_or(LegKind::RestToRest),
-        compute.unwrap_or(false),
-    )
-}
-
-fn read_places(fields: &Fields<'_>) -> Option<Places> {
-    let axes = fields
-        .optional("zero_rate_axes")
-        .and_then(|axes| scenario::zero_rate_axes(&axes));
-    let target = |(index, attitude): (usize, AttitudeSpec)| TargetSpec {
-        id: index.to_string(),
-        attitude,
-        zero_rate_axes: axes,
-        ..TargetSpec::default()
     };
-    let ((attitudes, pointers), all_pairs) =
-        match (fields.optional("attitudes"), fields.optional("pairs")) {
-            (Some(list), None) => (read_list(&list)?, true),
-            (None, Some(list)) => (read_pairs(&list)?, false),
-            (Some(both), Some(_)) => {
-                both.report(
-                    Code::ConflictingFields,
-                    "both attitudes and pairs are given",
-                    "give attitudes for the full matrix, or pairs",
-                );
-                return None;
-            }
-            (None, None) => {
-                fields.required("attitudes");
-                return None;
-            }
+    let places = QueriedAttitudes::of(spec);
+    let scenario = check(&base, &places)?;
+    let pairs = places.pairs();
+    let pairs = pairs.into_iter().enumerate().map(|(index, (from, to))| {
+        let between = (from, to);
+        let targets = vec![places.targets[from].clone(), places.targets[to].clone()];
+        let spec = ScenarioSpec {
+            targets,
+            ..base.clone()
         };
-    let targets = attitudes.into_iter().enumerate().map(target).collect();
-    Some(Places {
-        targets,
-        pointers,
-        all_pairs,
-    })
-}
-
-fn read_list(list: &Cursor<'_>) -> Option<(Vec<AttitudeSpec>, Vec<String>)> {
-    let items = list.each(|place| (attitude::read(place), place.pointer().to_owned()))?;
-    if items.len() < 2 {
-        let message = format!("{} attitudes have no leg between them", items.len());
-        list.report(Code::WrongLength, message, "list at least two attitudes");
-        return None;
-    }
-    Some(items.into_iter().unzip())
-}
-
-fn read_pairs(list: &Cursor<'_>) -> Option<(Vec<AttitudeSpec>, Vec<String>)> {
-    let ends = |pair: &Cursor<'_>| {
-        let fields = pair.object(&["from", "to"]);
-        ["from", "to"].map(|name| {
-            let end = fields.as_ref().and_then(|fields| fields.required(name));
-            let pointer = format!("{}/{name}", pair.pointer());
-            (
-                end.map(|end| attitude::read(&end)).unwrap_or_default(),
-                pointer,
-            )
+        let (from, to) = if places.all_pairs {
+            (from, to)
+        } else {
+            (index, index)
+        };
+        Ok(Pair {
+            from,
+            to,
+            targets: between,
+            scenario: Scenario::try_new(&spec)?.scenario,
         })
-    };
-    let pairs = list.each(ends)?;
-    if pairs.is_empty() {
-        list.report(
-            Code::WrongLength,
-            "there is no pair",
-            "list at least one pair",
-        );
-        return None;
-    }
-    Some(pairs.into_iter().flatten().unzip())
+    });
+    Ok(LegQuery {
+        kind: spec.kind,
+        compute: spec.mode == LegQueryMode::Compute,
+        pairs: pairs.collect::<Result<_, Vec<Problem>>>()?,
+        scenario,
+    })
 }
 
 /// A scenario with all attitudes as targets, or what is wrong with spacecraft and attitudes, or keeps
 /// the wheels from holding a rest.
-fn check(base: &ScenarioSpec, places: &Places) -> Result<Scenario, Vec<Problem>> {
+fn check(base: &ScenarioSpec, places: &QueriedAttitudes) -> Result<Scenario, Vec<Problem>> {
     let spec = ScenarioSpec {
         targets: places.targets.clone(),
         ..base.clone()

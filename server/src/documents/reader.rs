@@ -9,6 +9,7 @@ use std::cell::RefCell;
 
 mod fields;
 mod lists;
+mod place;
 mod spelling;
 
 pub(crate) use fields::Fields;
@@ -59,11 +60,6 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The JSON pointer of the place.
-    pub(crate) fn pointer(&self) -> &str {
-        &self.pointer
-    }
-
     /// Records a problem at this place.
     pub(crate) fn report(&self, code: Code, message: impl Into<String>, hint: impl Into<String>) {
         self.sink
@@ -80,7 +76,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// An object of which only these members are known.
-    pub(crate) fn object(&self, known: &'static [&'static str]) -> Option<Fields<'a>> {
+    pub(crate) fn object(&self, known: &[&str]) -> Option<Fields<'a>> {
         let fields = self.open_object()?;
         fields.report_unknown(known);
         Some(fields)
@@ -137,15 +133,6 @@ impl<'a> Cursor<'a> {
         None
     }
 
-    /// `true` or `false`.
-    pub(crate) fn boolean(&self) -> Option<bool> {
-        if let Node::Bool(value) = self.node {
-            return Some(*value);
-        }
-        self.wrong_type("true or false", "write true or false without quotes");
-        None
-    }
-
     /// A text.
     pub(crate) fn text(&self) -> Option<&'a str> {
         if let Node::Text(text) = self.node {
@@ -154,32 +141,13 @@ impl<'a> Cursor<'a> {
         self.wrong_type("a text", "write it in double quotes");
         None
     }
-
-    /// A text among choices.
-    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
-        let text = self.text()?;
-        let found = choices.iter().find(|(name, _)| *name == text);
-        if found.is_none() {
-            let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-            self.report(
-                Code::UnknownChoice,
-                format!("{text:?} is not one of the choices"),
-                spelling::hint(text, &names),
-            );
-        }
-        found.map(|(_, value)| *value)
-    }
-
-    /// The member `kind` of an object, among choices; other members are looked at later.
-    pub(crate) fn kind<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
-        self.open_object()?.required("kind")?.choice(choices)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::documents::document::parse;
+    use slewplan_solver::model::input::InputForm;
 
     fn problems_of(text: &str, read: impl Fn(Cursor<'_>)) -> Vec<(String, Code)> {
         let node = parse(text.as_bytes()).unwrap();
@@ -202,7 +170,7 @@ mod tests {
     #[test]
     fn every_entry_of_a_list_is_reported() {
         let found = problems_of(r#"["a", 1, null]"#, |root| {
-            assert_eq!(root.numbers::<3>(), None);
+            assert_eq!(<[f64; 3]>::read(&root), None);
         });
         assert_eq!(
             found,
@@ -218,7 +186,7 @@ mod tests {
         let found = problems_of(r#"{"a": [1, 2], "a": 3, "a": 4}"#, |root| {
             let fields = root.object(&["a", "b"]).unwrap();
             assert!(fields.required("b").is_none());
-            assert_eq!(fields.required("a").unwrap().numbers::<3>(), None);
+            assert_eq!(<[f64; 3]>::read(&fields.required("a").unwrap()), None);
         });
         let expected = [
             ("/a".to_owned(), Code::DuplicateField),
@@ -231,8 +199,11 @@ mod tests {
     #[test]
     fn integers_are_not_rounded() {
         let found = problems_of("[0, 1.5, -1, 18446744073709551615]", |root| {
-            let read = root.each(Cursor::integer).unwrap();
-            assert_eq!(read, [Some(0), None, None, Some(u64::MAX)]);
+            let read = |index| root.entry(index)?.integer();
+            assert_eq!(
+                [0, 1, 2, 3].map(read),
+                [Some(0), None, None, Some(u64::MAX)]
+            );
         });
         assert_eq!(found.len(), 2);
     }

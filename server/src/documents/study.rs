@@ -4,5 +4,4 @@ pub(crate) mod authority;
 pub(crate) mod comparison;
 pub(crate) mod envelopes;
 pub(crate) mod flight;
-mod simulation;
 mod spread;

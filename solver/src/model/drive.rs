@@ -12,45 +12,49 @@
 //! supply gives `max(P, 0) / efficiency + quiescent`: nothing is fed back (equation 1.16).
 
 use crate::model::findings::Findings;
+use crate::model::input::{input_object, optional, required};
 use crate::model::problem::{Code, Problem};
 
-/// The drive of one wheel as a caller describes it; an ideal one by default.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct DriveSpec {
-    /// `v`, N m s, zero when absent.
-    pub viscous_friction_nms: Option<f64>,
-    /// `c`, N m, zero when absent.
-    pub coulomb_friction_nm: Option<f64>,
-    /// Whether an inner loop at the wheel compensates friction, true when absent. The torque limits
-    /// are then those of the motor. Without the loop a commanded torque is the motor's, and
-    /// friction is subtracted from it.
-    pub friction_compensated: Option<bool>,
-    /// The motor, for its power consumption.
-    pub motor: Option<MotorSpec>,
-    /// A speed law that the wheel follows instead of commands.
-    pub speed_law: Option<SpeedLawSpec>,
+input_object! {
+    /// How a wheel is driven: with nothing given, by an ideal drive.
+    #[derive(Default)]
+    pub struct DriveSpec as "WheelDrive" {
+        /// Viscous friction `v`.
+        pub viscous_friction_nms: Option<f64> = optional().at_least(0.0).means(0.0),
+        /// Coulomb friction `c`.
+        pub coulomb_friction_nm: Option<f64> = optional().at_least(0.0).means(0.0),
+        /// Whether an inner loop compensates friction: the torque limits are then the motor's. Without it
+        /// a commanded torque is the motor's, and friction is subtracted from it.
+        pub friction_compensated: Option<bool> = optional().means(true),
+        /// The motor, for its power consumption.
+        pub motor: Option<MotorSpec> = optional(),
+        /// A speed law that the wheel follows instead of commands.
+        pub speed_law: Option<SpeedLawSpec> = optional(),
+    }
 }
 
-/// An electric motor as a caller describes it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MotorSpec {
-    /// `R`, ohm.
-    pub resistance_ohm: f64,
-    /// `k`, N m/A, which is also V s/rad.
-    pub torque_constant_nm_a: f64,
-    /// Share of the supplied power that reaches the motor, one when absent.
-    pub efficiency: Option<f64>,
-    /// Power of the electronics without torque, W, zero when absent.
-    pub quiescent_power_w: Option<f64>,
+input_object! {
+    /// An electric motor. Its power is `resistance (torque / torque constant)^2 + torque speed`.
+    pub struct MotorSpec as "Motor" {
+        /// Resistance of the winding `R`.
+        pub resistance_ohm: f64 = required().above(0.0),
+        /// Torque constant `k`, N m/A, which is also V s/rad.
+        pub torque_constant_nm_a: f64 = required().above(0.0),
+        /// Share of the supplied power that reaches the motor.
+        pub efficiency: Option<f64> = optional().above(0.0).at_most(1.0).means(1.0),
+        /// Power of the electronics without torque.
+        pub quiescent_power_w: Option<f64> = optional().at_least(0.0).means(0.0),
+    }
 }
 
-/// `W' = -rate (W - speed)` as a caller describes it; a rate of zero leaves the wheel idle.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpeedLawSpec {
-    /// Return rate, 1/s, zero or above.
-    pub rate_per_s: f64,
-    /// The speed that is held, rad/s.
-    pub speed_rad_s: f64,
+input_object! {
+    /// The speed `W` relative to the body follows `W' = -rate (W - speed)`.
+    pub struct SpeedLawSpec as "SpeedLaw" {
+        /// Zero leaves the wheel idle.
+        pub rate_per_s: f64 = required().at_least(0.0),
+        /// The speed that is held.
+        pub speed_rad_s: f64 = required(),
+    }
 }
 
 /// A valid drive.

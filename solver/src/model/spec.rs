@@ -2,204 +2,181 @@
 //!
 //! Every value may be invalid. [`crate::model::scenario::Scenario::try_new`] turns a
 //! [`ScenarioSpec`] into a scenario that is valid by construction, or lists all that is wrong.
-//! Optional fields are `None` when the caller left them out or wrote `null`.
+//! Optional fields are `None` when the caller left them out or wrote `null`. Each declaration is also
+//! that of the JSON document and of its description, see [`crate::model::input`].
 
-/// A whole planning problem as written by the caller.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct ScenarioSpec {
-    /// Free text that names the scenario.
-    pub name: Option<String>,
-    /// Epoch of time zero, ISO 8601; only labels exports.
-    pub epoch: Option<String>,
-    /// Time system of the epoch (`UTC`, `TAI`, ...); only labels exports.
-    pub time_system: Option<String>,
-    /// Name of the reference frame; only labels exports.
-    pub reference_frame: Option<String>,
-    /// The spacecraft.
-    pub spacecraft: SpacecraftSpec,
-    /// State at time zero.
-    pub start: StateSpec,
-    /// State at the end of the tour; `None` finishes at the last target.
-    pub end: Option<StateSpec>,
-    /// The targets; their sequence here does not matter.
-    pub targets: Vec<TargetSpec>,
-    /// Cones in which a boresight must not point.
-    pub keep_out: Vec<KeepOutSpec>,
-    /// Options of the solve.
-    pub options: OptionsSpec,
-}
+mod attitude;
+mod spacecraft;
 
-/// A rigid body with reaction wheels.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct SpacecraftSpec {
-    /// Inertia of the whole spacecraft with its wheels locked, body axes, kg m².
-    pub inertia_kg_m2: [[f64; 3]; 3],
-    /// Limit of each body rate component, rad/s.
-    pub max_body_rate_rad_s: [Option<f64>; 3],
-    /// Limit of the norm of the body rate, rad/s.
-    pub max_body_rate_norm_rad_s: Option<f64>,
-    /// The wheels; every per-wheel array has this order.
-    pub wheels: Vec<WheelSpec>,
-    /// Named instrument axes.
-    pub boresights: Vec<BoresightSpec>,
-}
+pub use attitude::{AttitudeSpec, PairSpec};
+pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
 
-/// One reaction wheel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WheelSpec {
-    /// Spin axis in body axes.
-    pub axis: [f64; 3],
-    /// Whether `axis` is scaled to unit length (the default) or enters as given, between 0.001 and
-    /// 1000 long.
-    pub normalize_axis: bool,
-    /// Inertia about the spin axis, kg m².
-    pub inertia_kg_m2: f64,
-    /// Largest motor torque on the wheel, N m.
-    pub max_torque_nm: f64,
-    /// Smallest motor torque on the wheel, N m; minus the largest when absent.
-    pub min_torque_nm: Option<f64>,
-    /// Limit of the speed relative to the body, rad/s; `None` is unlimited.
-    pub max_speed_rad_s: Option<f64>,
-    /// Whether the wheel may be commanded; a disabled wheel is locked at its start speed.
-    pub enabled: bool,
-}
+use super::input::{
+    self, InputForm, InputPlace, MemberRule, Schema, UpTo, input_choice, input_object, nullable,
+    optional, or, required_or,
+};
+use super::scenario::{MAX_CONES, MAX_TARGETS};
 
-/// A named body-fixed direction.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BoresightSpec {
-    /// Name by which keep-out cones refer to it.
-    pub name: String,
-    /// Direction in body axes, any length.
-    pub axis: [f64; 3],
-}
-
-/// One of the input forms of an attitude.
-#[derive(Debug, Clone, PartialEq)]
-pub enum AttitudeSpec {
-    /// Scalar-last components `[x, y, z, w]`, rotating body vectors into the reference frame.
-    Quaternion([f64; 4]),
-    /// Roll, pitch and yaw of the z-y-x sequence, degrees.
-    RollPitchYawDeg([f64; 3]),
-    /// Modified Rodrigues parameters.
-    Mrp([f64; 3]),
-    /// Rows of the rotation matrix whose columns are the body axes in the reference frame.
-    Matrix([[f64; 3]; 3]),
-    /// Right ascension, declination and roll of a body axis, degrees.
-    RaDecRollDeg {
-        /// Right ascension, declination and roll, degrees.
-        angles: [f64; 3],
-        /// The body axis that is pointed.
-        boresight: [f64; 3],
-    },
-}
-
-impl Default for AttitudeSpec {
-    fn default() -> Self {
-        Self::Quaternion([0.0, 0.0, 0.0, 1.0])
+input_object! {
+    /// A planning problem. Numbers are SI with the unit in the field name; unknown fields are refused.
+    #[derive(Default)]
+    pub struct ScenarioSpec as "Scenario" {
+        /// Free text that names the scenario.
+        pub name: Option<String> = optional(),
+        /// Epoch of time zero, ISO 8601; only labels exports.
+        pub epoch: Option<String> = optional(),
+        /// Time system of the epoch (`UTC`, `TAI`, ...); only labels exports.
+        pub time_system: Option<String> = optional(),
+        /// Name of the reference frame; only labels exports.
+        pub reference_frame: Option<String> = optional(),
+        /// The spacecraft.
+        pub spacecraft: SpacecraftSpec as SpacecraftOrReference
+            = required_or(SpacecraftSpec::substitute()),
+        /// State at time zero.
+        pub start: StateSpec = required_or(StateSpec::default()),
+        /// State at the end of the tour; finish at the last target without it.
+        pub end: Option<StateSpec> = optional(),
+        /// Visited once each, in an order that keeps their `position` and `after`; their sequence here does
+        /// not matter.
+        pub targets: Vec<TargetSpec> as UpTo<MAX_TARGETS, TargetSpec> = required_or(Vec::new()),
+        /// Cones in which a boresight must not point.
+        pub keep_out: Vec<KeepOutSpec> as UpTo<MAX_CONES, KeepOutSpec> = or(Vec::new()),
+        /// Options of the solve.
+        pub options: OptionsSpec = or(OptionsSpec::default()),
     }
 }
 
-/// An attitude with the rates and wheel speeds there.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct StateSpec {
-    /// The attitude.
-    pub attitude: AttitudeSpec,
-    /// Body rate in body axes, rad/s; zero when absent.
-    pub body_rate_rad_s: Option<[f64; 3]>,
-    /// Wheel speeds relative to the body, rad/s; zero at the start and free at the end when absent.
-    pub wheel_speed_rad_s: Option<Vec<f64>>,
+input_object! {
+    /// An attitude with rates and wheel speeds.
+    #[derive(Default)]
+    pub struct StateSpec as "BoundaryState" {
+        /// The attitude.
+        pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()),
+        /// Body rate in body axes; zero without it.
+        pub body_rate_rad_s: Option<[f64; 3]> = optional(),
+        /// Wheel speeds relative to the body, one per wheel; zero at the start and free at the end
+        /// without it.
+        pub wheel_speed_rad_s: Option<Vec<f64>> = optional(),
+    }
 }
 
-/// An attitude to visit once.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct TargetSpec {
-    /// Name of the target, unique in the scenario.
-    pub id: String,
-    /// The attitude to pass through.
-    pub attitude: AttitudeSpec,
-    /// Which of the x, y, z rate components must vanish there; all when absent.
-    pub zero_rate_axes: Option<[bool; 3]>,
-    /// Lower bounds of the rate components there, rad/s.
-    pub rate_min_rad_s: Option<[Option<f64>; 3]>,
-    /// Upper bounds of the rate components there, rad/s.
-    pub rate_max_rad_s: Option<[Option<f64>; 3]>,
-    /// Time to stay at rest after settling, s.
-    pub dwell_s: f64,
-    /// Time to settle at rest after arrival, s.
-    pub settle_s: f64,
-    /// Place among the targets in the order of visits, counted from 1; any when absent.
-    pub position: Option<usize>,
-    /// Identifiers of targets that must have been visited before.
-    pub after: Vec<String>,
+input_object! {
+    /// An attitude to visit.
+    #[derive(Default)]
+    pub struct TargetSpec as "Target" {
+        /// Name of the target, unique in the scenario.
+        pub id: String = MemberRule::required_or_pointer().min_length(1),
+        /// The attitude to pass through.
+        pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()),
+        /// Which rate components must vanish there; all without it.
+        pub zero_rate_axes: Option<[bool; 3]> as Option<RateAxes> = optional(),
+        /// Lower bounds of the rate components there instead; `null` is none.
+        pub rate_min_rad_s: Option<[Option<f64>; 3]> = optional(),
+        /// Upper bounds of the rate components there; `null` is none.
+        pub rate_max_rad_s: Option<[Option<f64>; 3]> = optional(),
+        /// Time to stay at rest after settling.
+        pub dwell_s: f64 = or(0.0).at_least(0.0),
+        /// Time to settle at rest after arrival.
+        pub settle_s: f64 = or(0.0).at_least(0.0),
+        /// Place in the order of visits, counted from 1; any without it. No two targets have the same.
+        pub position: Option<usize> = optional().at_least(1.0),
+        /// Identifiers of targets that must have been visited before. Some order has to keep all
+        /// positions and precedences.
+        pub after: Vec<String> = or(Vec::new()),
+    }
 }
 
-/// A cone around a reference direction that a boresight must avoid.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KeepOutSpec {
-    /// Name of the boresight.
-    pub boresight: String,
-    /// Direction in the reference frame, any length.
-    pub direction: [f64; 3],
-    /// Half angle of the cone, degrees.
-    pub half_angle_deg: f64,
+input_object! {
+    /// A cone that a boresight should avoid.
+    pub struct KeepOutSpec as "KeepOut" {
+        /// Name of the boresight.
+        pub boresight: String = required_or(String::new()),
+        /// Axis of the cone in the reference frame, any length.
+        pub direction: [f64; 3] = required_or([1.0, 0.0, 0.0]),
+        /// Half angle of the cone.
+        pub half_angle_deg: f64 = required_or(1.0).above(0.0).below(180.0),
+    }
 }
 
-/// Whether q and -q are the same attitude.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum AttitudeEquivalence {
-    /// Attitudes are rotations: q and -q are the same.
-    #[default]
-    Rotation,
-    /// The continuous quaternion trajectory passes through each quaternion with its sign as given.
-    Quaternion,
-}
-
-/// Distance of durations from the minimum over all torque histories.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Accuracy {
-    /// Within 0.05 % of the converged minimum.
-    #[default]
-    Standard,
-    /// Twice the intervals, no penalty on their lengths: durations agree to 1e-6 relative between
-    /// different units and axes of the same problem. Several times slower.
-    Tight,
-}
-
-/// Options of a solve.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OptionsSpec {
-    /// Accuracy of the durations.
-    pub accuracy: Accuracy,
-    /// Meaning of equal attitudes.
-    pub attitude_equivalence: AttitudeEquivalence,
-    /// Wall-clock limit, s.
-    pub time_limit_s: Option<f64>,
-    /// Limit on explored search nodes.
-    pub node_limit: Option<u64>,
-    /// Gap at which the search may stop.
-    pub relative_gap: f64,
-    /// Number of further orders to prove and list.
-    pub alternatives: usize,
-    /// Share of every torque limit that the plan may use.
-    pub torque_authority: f64,
-    /// Share of every wheel speed limit that the plan may use.
-    pub momentum_authority: f64,
-    /// Seed of everything random.
-    pub seed: u64,
+input_object! {
+    /// Options of a solve.
+    pub struct OptionsSpec as "Options" {
+        /// Accuracy of the durations.
+        pub accuracy: Accuracy = or(Accuracy::default()),
+        /// Whether q and -q are the same attitude.
+        pub attitude_equivalence: AttitudeEquivalence = or(AttitudeEquivalence::default()),
+        /// Wall-clock limit; 60 without it, none with `null`.
+        pub time_limit_s: Option<f64> = nullable(60.0).above(0.0).at_most(1e9),
+        /// Limit on explored search nodes.
+        pub node_limit: Option<u64> = optional().at_least(1.0),
+        /// Gap at which the search may stop.
+        pub relative_gap: f64 = or(0.0).at_least(0.0).below(1.0),
+        /// Number of further orders to prove and list.
+        pub alternatives: usize = or(1).at_most(100.0).format("int32"),
+        /// Share of every torque limit that the plan may use.
+        pub torque_authority: f64 = or(1.0).above(0.0).at_most(1.0),
+        /// Share of every wheel speed limit that the plan may use.
+        pub momentum_authority: f64 = or(1.0).above(0.0).at_most(1.0),
+        /// Seed of everything random.
+        pub seed: u64 = or(0),
+    }
 }
 
 impl Default for OptionsSpec {
     fn default() -> Self {
-        Self {
-            accuracy: Accuracy::Standard,
-            attitude_equivalence: AttitudeEquivalence::Rotation,
-            time_limit_s: Some(60.0),
-            node_limit: None,
-            relative_gap: 0.0,
-            alternatives: 1,
-            torque_authority: 1.0,
-            momentum_authority: 1.0,
-            seed: 0,
-        }
+        input::left_out::<Self>()
+    }
+}
+
+input_choice! {
+    /// Whether q and -q are the same attitude.
+    pub enum AttitudeEquivalence as "Equivalence" {
+        /// Attitudes are rotations: q and -q are the same.
+        Rotation = "rotation",
+        /// The continuous quaternion trajectory passes through each quaternion with its sign as given.
+        Quaternion = "quaternion",
+    }
+}
+
+input_choice! {
+    /// Distance of durations from the minimum over all torque histories.
+    pub enum Accuracy as "Accuracy" {
+        /// Within 0.05 % of the converged minimum.
+        Standard = "standard",
+        /// Twice the intervals, no penalty on their lengths: durations agree to 1e-6 relative between
+        /// different units and axes of the same problem. Several times slower.
+        Tight = "tight",
+    }
+}
+
+input_choice! {
+    /// A component of the body rate.
+    enum RateAxis as "Axis" {
+        /// About body X.
+        X = "x",
+        /// About body Y.
+        Y = "y",
+        /// About body Z.
+        Z = "z",
+    }
+}
+
+/// A list of rate components, as whether each of x, y, z is in it.
+#[derive(Debug)]
+pub struct RateAxes;
+
+impl InputForm for RateAxes {
+    type Value = [bool; 3];
+
+    fn read<P: InputPlace>(place: &P) -> Option<[bool; 3]> {
+        let entries = 0..place.entries()?;
+        let named: Vec<_> = entries
+            .map(|index| RateAxis::read(&place.entry(index)?))
+            .collect();
+        Some([RateAxis::X, RateAxis::Y, RateAxis::Z].map(|axis| named.contains(&Some(axis))))
+    }
+
+    fn schema() -> Schema {
+        Vec::<RateAxis>::schema()
     }
 }

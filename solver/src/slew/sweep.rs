@@ -1,32 +1,12 @@
-//! What is swept along a trade curve.
+//! The slews along a sweep.
 
 use super::choices;
-use super::spec::Objective;
+use super::spec::{Objective, Sweep};
 use super::validated::Slew;
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
 
-/// Values of one quantity of the objective, in the order in which they are solved.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Sweep {
-    /// Durations, s, of [`Objective::Energy`].
-    Durations(Vec<f64>),
-    /// Weights of [`Objective::TimeAndEffort`].
-    Weights(Vec<f64>),
-    /// Energies, J, of [`Objective::MinimumTimeAtEnergy`].
-    Energies(Vec<f64>),
-}
-
 impl Sweep {
-    /// The name of the field in the document, and the values.
-    fn field_and_values(&self) -> (&'static str, &[f64]) {
-        match self {
-            Self::Durations(values) => ("durations_s", values),
-            Self::Weights(values) => ("weights", values),
-            Self::Energies(values) => ("energies_j", values),
-        }
-    }
-
     /// The objective with a value in place of its own; `None` where it has nothing like it.
     fn objective_at(&self, objective: Objective, value: f64) -> Option<Objective> {
         match (self, objective) {
@@ -54,8 +34,9 @@ impl Sweep {
     /// Problems with the values, all of them at once.
     pub(super) fn points(&self, slew: &Slew) -> Result<Vec<Slew>, Vec<Problem>> {
         let mut findings = Findings::default();
-        let (field, values) = self.field_and_values();
-        let points: Vec<_> = values
+        let field = self.name();
+        let points: Vec<_> = self
+            .values()
             .iter()
             .enumerate()
             .map(|(i, value)| {

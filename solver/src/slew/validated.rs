@@ -85,7 +85,7 @@ impl Slew {
             wheels: WheelCondition::Fixed(start_momenta.clone()),
             costates: None,
         };
-        let arrival = match spec.attitude_equivalence {
+        let arrival = match spec.options.attitude_equivalence {
             AttitudeEquivalence::Rotation => Arrival::Rotation,
             AttitudeEquivalence::Quaternion => Arrival::Quaternion,
         };
@@ -256,9 +256,9 @@ fn scenario_spec(spec: &SlewSpec) -> ScenarioSpec {
         start: spec.start.clone(),
         end: Some(end),
         options: OptionsSpec {
-            attitude_equivalence: spec.attitude_equivalence,
-            torque_authority: spec.torque_authority,
-            momentum_authority: spec.momentum_authority,
+            attitude_equivalence: spec.options.attitude_equivalence,
+            torque_authority: spec.options.torque_authority,
+            momentum_authority: spec.options.momentum_authority,
             ..OptionsSpec::default()
         },
         ..ScenarioSpec::default()

@@ -9,19 +9,20 @@
 //!
 //! Beside them, the segments of one scenario's tours, which mean nothing to others.
 
+use crate::model::input::input_choice;
 use crate::model::motion::Motion;
 
-/// Which boundary conditions a tabulated leg has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr)]
-#[strum(serialize_all = "snake_case")]
-pub enum LegKind {
-    /// All rates zero at both ends; with more than three wheels the null-space momentum of the
-    /// scenario's start is held at both ends.
-    RestToRest,
-    /// Each end with only its own conditions, everything else free: a lower bound of the leg.
-    LowerBound,
-    /// All rates zero at both ends: no slew is solved, and the answer is a proved bound on its time.
-    Certified,
+input_choice! {
+    /// Which boundary conditions a tabulated leg has.
+    pub enum LegKind as "Kind" {
+        /// All rates zero at both ends; with more than three wheels the null-space momentum of the
+        /// scenario's start is held at both ends.
+        RestToRest = "rest_to_rest",
+        /// Each end with only its own conditions, everything else free: a lower bound of the leg.
+        LowerBound = "lower_bound",
+        /// All rates zero at both ends: no slew is solved, and the answer is a proved bound on its time.
+        Certified = "certified",
+    }
 }
 
 /// A solved leg.

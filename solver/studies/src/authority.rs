@@ -4,6 +4,7 @@
 //! The study solves a scenario for each pair of shares and simulates every plan with the same errors.
 
 use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::input::{UpTo, input_object, or, required, required_or};
 use slewplan_solver::model::plan::{Optimality, Outcome, Plan};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
@@ -14,22 +15,29 @@ use slewplan_solver::tour::planner::{Run, solve};
 /// Greatest number of pairs of shares of one study: each takes a plan and a Monte-Carlo run.
 pub const MAX_AUTHORITIES: usize = 200;
 
-/// Shares of every torque and speed limit that a plan may use.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Authorities {
-    /// `torque_authority` of the plan.
-    pub torque: f64,
-    /// `momentum_authority` of the plan.
-    pub momentum: f64,
+input_object! {
+    /// Shares of every torque and speed limit that a plan may use.
+    #[derive(Copy)]
+    pub struct Authorities as "Authorities" {
+        /// Share of every torque limit.
+        pub torque_authority: f64 = required().above(0.0).at_most(1.0),
+        /// Share of every wheel speed limit.
+        pub momentum_authority: f64 = required().above(0.0).at_most(1.0),
+    }
 }
 
-/// A study as a caller describes it.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct AuthorityStudySpec {
-    /// How every plan is simulated.
-    pub simulation: SimulationSpec,
-    /// The pairs of shares to compare.
-    pub authorities: Vec<Authorities>,
+input_object! {
+    /// How much of the wheels a plan should leave to feedback.
+    #[derive(Default)]
+    pub struct AuthorityStudySpec as "AuthorityStudy" {
+        /// What is planned; the shares in its options do not matter.
+        pub scenario: ScenarioSpec = required_or(ScenarioSpec::default()),
+        /// How every plan is simulated.
+        pub simulation: SimulationSpec = or(SimulationSpec::default()),
+        /// The pairs of shares to compare.
+        pub authorities: Vec<Authorities> as UpTo<MAX_AUTHORITIES, Authorities>
+            = required_or(Vec::new()).min_length(1),
+    }
 }
 
 /// One line of the table.
@@ -68,13 +76,12 @@ pub enum RowOutcome {
 /// All problems of the scenario as it is and of the study at once; pointers into the study begin
 /// with `pointer`.
 pub fn study(
-    scenario: &ScenarioSpec,
     spec: &AuthorityStudySpec,
     pointer: &str,
     run: Run<'_>,
 ) -> Result<Vec<AuthorityRow>, Vec<Problem>> {
     let mut findings = Findings::default();
-    let given = Scenario::try_new(scenario)
+    let given = Scenario::try_new(&spec.scenario)
         .map_err(|problems| findings.include(problems))
         .ok();
     let at = format!("{pointer}/simulation");
@@ -87,7 +94,7 @@ pub fn study(
     findings.conclude((rows && is_valid).then_some(()))?;
     let rows = spec.authorities.iter().map(|&authorities| AuthorityRow {
         authorities,
-        outcome: row(scenario, &spec.simulation, authorities, &at, run),
+        outcome: row(spec, authorities, &at, run),
     });
     Ok(rows.collect())
 }
@@ -106,8 +113,8 @@ fn check_shares(authorities: &[Authorities], pointer: &str, findings: &mut Findi
     }
     for (index, pair) in authorities.iter().enumerate() {
         for (name, share) in [
-            ("torque_authority", pair.torque),
-            ("momentum_authority", pair.momentum),
+            ("torque_authority", pair.torque_authority),
+            ("momentum_authority", pair.momentum_authority),
         ] {
             let at = format!("{pointer}/{index}/{name}");
             let share = findings.positive(&at, share);
@@ -126,8 +133,7 @@ fn check_shares(authorities: &[Authorities], pointer: &str, findings: &mut Findi
 }
 
 fn row(
-    scenario: &ScenarioSpec,
-    simulation: &SimulationSpec,
+    study: &AuthorityStudySpec,
     authorities: Authorities,
     pointer: &str,
     run: Run<'_>,
@@ -135,15 +141,15 @@ fn row(
     if run.stop.is_set() {
         return RowOutcome::Stopped;
     }
-    let mut spec = scenario.clone();
-    spec.options.torque_authority = authorities.torque;
-    spec.options.momentum_authority = authorities.momentum;
+    let mut spec = study.scenario.clone();
+    spec.options.torque_authority = authorities.torque_authority;
+    spec.options.momentum_authority = authorities.momentum_authority;
     let scenario = match Scenario::try_new(&spec) {
         Ok(validated) => validated.scenario,
         Err(problems) => return RowOutcome::NoPlan(problems),
     };
     match solve(&scenario, run) {
-        Outcome::Planned(plan) => simulate(&scenario, *plan, simulation, pointer, run),
+        Outcome::Planned(plan) => simulate(&scenario, *plan, &study.simulation, pointer, run),
         Outcome::Infeasible(problems) | Outcome::Failed(problems) => RowOutcome::NoPlan(problems),
         Outcome::StoppedEmpty => RowOutcome::Stopped,
     }
@@ -211,8 +217,12 @@ mod tests {
     fn all_problems_of_a_study_are_found() {
         let mut scenario = spec();
         scenario.targets[0].id = String::new();
-        let shares = |torque, momentum| Authorities { torque, momentum };
+        let shares = |torque_authority, momentum_authority| Authorities {
+            torque_authority,
+            momentum_authority,
+        };
         let bad = AuthorityStudySpec {
+            scenario,
             simulation: SimulationSpec::default(),
             authorities: vec![shares(1.1, 0.9), shares(0.9, 0.0)],
         };
@@ -225,7 +235,7 @@ mod tests {
             legs: &NoStore,
             segments: &NoStore,
         };
-        let problems = study(&scenario, &bad, "", run).unwrap_err();
+        let problems = study(&bad, "", run).unwrap_err();
         let found: Vec<_> = problems.into_iter().map(|p| p.pointer).collect();
         let expected = [
             "/targets/0/id",
@@ -233,9 +243,12 @@ mod tests {
             "/authorities/1/momentum_authority",
         ];
         assert_eq!(found, expected);
-        let mut runs = AuthorityStudySpec::default();
+        let mut runs = AuthorityStudySpec {
+            scenario: spec(),
+            ..AuthorityStudySpec::default()
+        };
         runs.simulation.runs = Some(0);
-        let problems = study(&spec(), &runs, "/study", run).unwrap_err();
+        let problems = study(&runs, "/study", run).unwrap_err();
         let found: Vec<_> = problems.into_iter().map(|p| p.pointer).collect();
         assert_eq!(found, ["/study/simulation/runs", "/study/authorities"]);
     }

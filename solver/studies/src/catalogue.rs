@@ -13,6 +13,8 @@ mod table;
 
 pub use table::{GYROSCOPES, WHEELS};
 
+use slewplan_solver::model::input::{input_object, required};
+
 /// Number of rows of the published tables that are missing here.
 pub const LEFT_OUT: usize = 0;
 
@@ -31,13 +33,15 @@ pub struct Device {
     pub torque_nm: f64,
 }
 
-/// `y = factor x^exponent`, in the units of the data.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PowerLaw {
-    /// `y` at one.
-    pub factor: f64,
-    /// Slope in logarithms.
-    pub exponent: f64,
+input_object! {
+    /// `y = factor x^exponent`, in the units of the data.
+    #[derive(Copy)]
+    pub struct PowerLaw as "GivenLaw" {
+        /// `y` at one.
+        pub factor: f64 = required().at_least(1e-9).at_most(1e9),
+        /// Slope in logarithms.
+        pub exponent: f64 = required().at_least(-8.0).at_most(8.0),
+    }
 }
 
 impl PowerLaw {

@@ -35,14 +35,14 @@ mod study;
 
 pub use mass::{MassPoint, MassStudy};
 pub use radii::{PyramidControl, Radii, Radius};
-pub use study::{
-    AdvantageCurve, CatalogueFit, ComparisonStudy, ComparisonStudySpec, PyramidEnvelopes,
-    SingularStates,
-};
+pub use study::{AdvantageCurve, CatalogueFit, ComparisonStudy, PyramidEnvelopes, SingularStates};
 
 use crate::catalogue::{GYROSCOPES, PowerLaw, WHEELS};
 use slewplan_solver::math::bang_coast_bang::BangCoastBang;
 use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::input::{
+    self, InputForm, InputPlace, Schema, UpTo, input_object, input_union, or,
+};
 use slewplan_solver::model::problem::{Code, Problem};
 
 /// Share of the angle that remains when the thesis's simulated slews end.
@@ -91,6 +91,39 @@ pub struct Laws {
     pub gyroscope: PowerLaw,
 }
 
+input_union! {
+    /// Torque (N m) over momentum (N m s) of a device.
+    enum LawsSpec as "ComparisonLaws" {
+        /// As published.
+        Published = "published",
+        /// Fitted to the tables of devices.
+        Tables = "tables",
+        /// Those that are left out are as published.
+        Given = "given" {
+            /// Of a wheel.
+            wheel: PowerLaw = or(Laws::PUBLISHED.wheel),
+            /// Of a gyroscope.
+            gyroscope: PowerLaw = or(Laws::PUBLISHED.gyroscope),
+        },
+    }
+}
+
+impl InputForm for Laws {
+    type Value = Self;
+
+    fn read<P: InputPlace>(place: &P) -> Option<Self> {
+        match LawsSpec::read(place)? {
+            LawsSpec::Published => Some(Self::PUBLISHED),
+            LawsSpec::Tables => Self::of_the_tables(),
+            LawsSpec::Given { wheel, gyroscope } => Some(Self { wheel, gyroscope }),
+        }
+    }
+
+    fn schema() -> Schema {
+        LawsSpec::schema()
+    }
+}
+
 impl Laws {
     /// Equations 268 and 269.
     pub const PUBLISHED: Self = Self {
@@ -116,34 +149,49 @@ impl Laws {
     }
 }
 
-/// A comparison as a caller describes it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ComparisonSpec {
-    /// Momenta of a device, N m s.
-    pub momenta_nms: Vec<f64>,
-    /// Angles of the slews whose durations are compared, rad.
-    pub angles_rad: Vec<f64>,
-    /// Rate that wheels with eigenaxis control have to reach, rad/s.
-    pub required_rate_rad_s: f64,
-    /// Radii of the body's spheres.
-    pub radii: Radii,
-    /// Laws of torque.
-    pub laws: Laws,
+/// Greatest number of entries of a list in a document.
+const MAX_LISTED: usize = 1000;
+/// Greatest number of circles of latitude of the singular surfaces in an answer: eight surfaces of some
+/// 300 kB.
+pub const MAX_ROWS: usize = 40;
+
+input_object! {
+    /// Wheels against control moment gyroscopes. What is left out is as in the published study.
+    pub struct ComparisonStudySpec as "ComparisonStudy" {
+        /// Momenta of a device; 1, 0.1 and 0.01 without it.
+        pub momenta_nms: Vec<f64> as UpTo<MAX_LISTED, f64>
+            = or(vec![1.0, 0.1, 0.01]).min_length(1),
+        /// Angles of the slews that are compared; every degree to a half turn without it.
+        pub angles_rad: Vec<f64> as UpTo<MAX_LISTED, f64> = or(default_angles_rad()).min_length(1),
+        /// Rate that sizes the spacecraft: wheels with eigenaxis control just reach it. 3 deg/s without
+        /// it.
+        pub required_rate_rad_s: f64 = or(3.0_f64.to_radians()).at_least(1e-9).at_most(1e9),
+        /// Body momentum and torque of the pyramids; as published without it.
+        pub radii: Radii = or(Radii::PUBLISHED),
+        /// Torque of a device over its momentum; as published without it.
+        pub laws: Laws = or(Laws::PUBLISHED),
+        /// Momenta of a device at which the advantage angle is computed; 0.001 to 10 without it.
+        pub curve_momenta_nms: Vec<f64> as UpTo<MAX_LISTED, f64>
+            = or(study::default_curve_momenta_nms()).min_length(1),
+        /// Masses of a device at which arrays are compared; 0.1 to 100 without it.
+        pub device_masses_kg: Vec<f64> as UpTo<MAX_LISTED, f64>
+            = or(study::default_device_masses_kg()).min_length(1),
+        /// Circles of latitude of the singular surfaces.
+        pub surface_rows: usize
+            = or(study::SURFACE_ROWS).at_least(1.0).at_most(MAX_ROWS as f64).format("int32"),
+    }
 }
 
-impl Default for ComparisonSpec {
+impl Default for ComparisonStudySpec {
     /// The thesis's comparison: 1, 0.1 and 0.01 N m s, every degree to a half turn, 3 deg/s.
     fn default() -> Self {
-        Self {
-            momenta_nms: vec![1.0, 0.1, 0.01],
-            angles_rad: (1..=180)
-                .map(|angle| f64::from(angle).to_radians())
-                .collect(),
-            required_rate_rad_s: 3.0_f64.to_radians(),
-            radii: Radii::PUBLISHED,
-            laws: Laws::PUBLISHED,
-        }
+        input::left_out::<Self>()
     }
+}
+
+fn default_angles_rad() -> Vec<f64> {
+    let degrees = 1..=180;
+    degrees.map(|angle| f64::from(angle).to_radians()).collect()
 }
 
 /// Rate and acceleration of a spacecraft with one kind of control.
@@ -233,7 +281,7 @@ pub struct SizeComparison {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The request.
-    pub spec: ComparisonSpec,
+    pub spec: ComparisonStudySpec,
     /// One entry per momentum.
     pub sizes: Vec<SizeComparison>,
 }
@@ -244,7 +292,7 @@ impl Comparison {
     /// # Errors
     ///
     /// All problems of the request at once.
-    pub fn of(spec: ComparisonSpec) -> Result<Self, Vec<Problem>> {
+    pub fn of(spec: ComparisonStudySpec) -> Result<Self, Vec<Problem>> {
         let mut findings = Findings::default();
         for (name, values) in [
             ("momenta_nms", &spec.momenta_nms),
@@ -267,7 +315,7 @@ impl Comparison {
     }
 }
 
-fn size(spec: &ComparisonSpec, momentum: f64) -> SizeComparison {
+fn size(spec: &ComparisonStudySpec, momentum: f64) -> SizeComparison {
     let inertia =
         spec.radii.of(PyramidControl::Eigenaxis).momentum * momentum / spec.required_rate_rad_s;
     let agilities = PyramidControl::ALL.map(|control| {

@@ -10,13 +10,18 @@ use crate::envelope_path::EnvelopePath;
 use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::input::{self, UpTo, input_object, optional, or, required_or};
 use slewplan_solver::model::plan::Control;
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::spacecraft::Spacecraft;
-use slewplan_solver::model::spec::{AttitudeEquivalence, AttitudeSpec, SpacecraftSpec, StateSpec};
+use slewplan_solver::model::spec::{
+    AttitudeEquivalence, AttitudeSpec, PairSpec, SpacecraftOrReference, SpacecraftSpec, StateSpec,
+};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_solver::slew::{self, FinalWheels, Slew, SlewOutcome, SlewSpec, WheelAllocation};
+use slewplan_solver::slew::{
+    self, FinalWheels, Slew, SlewOptionsSpec, SlewOutcome, SlewSpec, WheelAllocation,
+};
 use slewplan_solver::wheels::allocation::{self, DemandAllocation};
 use slewplan_solver::wheels::array::{Envelopes, SpacecraftEnvelopes, authority_problems};
 
@@ -27,30 +32,39 @@ pub const MAX_DEMANDS: usize = 1000;
 /// Turns below this angle, rad, count as none.
 const MIN_ANGLE: f64 = 1e-9;
 
-/// A turn as a caller describes it.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct TurnSpec {
-    /// Attitude at the start.
-    pub from: AttitudeSpec,
-    /// Attitude at the end; the study takes the shorter turn to it.
-    pub to: AttitudeSpec,
+input_object! {
+    /// What the wheels of a spacecraft can do together.
+    pub struct EnvelopeStudySpec as "EnvelopeStudy" {
+        /// Free text, on which nothing depends.
+        pub name: Option<String> = optional(),
+        /// Options of the study.
+        pub options: EnvelopeOptionsSpec = or(EnvelopeOptionsSpec::default()),
+        /// The spacecraft.
+        pub spacecraft: SpacecraftSpec as SpacecraftOrReference
+            = required_or(SpacecraftSpec::substitute()),
+        /// From rest to rest, the shorter way round.
+        pub turns: Vec<PairSpec> as UpTo<MAX_TURNS, PairSpec> = or(Vec::new()),
+        /// Sums of the wheels' torques, body axes; the body gets the opposite.
+        pub demands_nm: Vec<[f64; 3]> as UpTo<MAX_DEMANDS, [f64; 3]> = or(Vec::new()),
+        /// Whether the turns are wanted in minimum time too.
+        pub time_optimal: bool = or(false),
+    }
 }
 
-/// A study as a caller describes it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EnvelopeStudySpec {
-    /// The spacecraft.
-    pub spacecraft: SpacecraftSpec,
-    /// Share of every torque limit that may be used.
-    pub torque_authority: f64,
-    /// Share of every wheel speed limit that may be used.
-    pub momentum_authority: f64,
-    /// Turns from rest to rest.
-    pub turns: Vec<TurnSpec>,
-    /// Sums of the wheels' torques, body axes, N m; the body gets the opposite.
-    pub demands_nm: Vec<[f64; 3]>,
-    /// Whether the fastest slews are wanted too.
-    pub time_optimal: bool,
+input_object! {
+    /// Options of a study of envelopes.
+    pub struct EnvelopeOptionsSpec as "EnvelopeOptions" {
+        /// Share of every torque limit that may be used.
+        pub torque_authority: f64 = or(1.0).above(0.0).at_most(1.0),
+        /// Share of every wheel speed limit that may be used.
+        pub momentum_authority: f64 = or(1.0).above(0.0).at_most(1.0),
+    }
+}
+
+impl Default for EnvelopeOptionsSpec {
+    fn default() -> Self {
+        input::left_out::<Self>()
+    }
 }
 
 /// A valid study.
@@ -135,7 +149,8 @@ impl EnvelopeStudy {
     pub fn try_new(spec: &EnvelopeStudySpec) -> Result<(Self, Vec<Problem>), Vec<Problem>> {
         let mut findings = Findings::default();
         let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", &mut findings);
-        let (torque, momentum) = (spec.torque_authority, spec.momentum_authority);
+        let shares = &spec.options;
+        let (torque, momentum) = (shares.torque_authority, shares.momentum_authority);
         let baselines = match &spacecraft {
             Some(spacecraft) => Baselines::of(spacecraft, torque, momentum),
             None => Err(authority_problems(torque, momentum)),
@@ -304,7 +319,7 @@ fn is_finite(allocation: &DemandAllocation) -> bool {
 }
 
 /// The rotation vector of a turn, rad.
-fn read_turn(spec: &TurnSpec, pointer: &str, findings: &mut Findings) -> Option<Vector3<f64>> {
+fn read_turn(spec: &PairSpec, pointer: &str, findings: &mut Findings) -> Option<Vector3<f64>> {
     let mut read = |spec, name| {
         let pointer = format!("{pointer}/{name}");
         Attitude::read(spec, AttitudeEquivalence::Rotation, &pointer, findings)
@@ -325,21 +340,24 @@ fn read_turn(spec: &TurnSpec, pointer: &str, findings: &mut Findings) -> Option<
 }
 
 /// The slews to optimise for a valid turn.
-fn fastest(spec: &EnvelopeStudySpec, turn: &TurnSpec) -> Result<Vec<Slew>, Vec<Problem>> {
+fn fastest(spec: &EnvelopeStudySpec, turn: &PairSpec) -> Result<Vec<Slew>, Vec<Problem>> {
     let at = |attitude: &AttitudeSpec| StateSpec {
         attitude: attitude.clone(),
         ..StateSpec::default()
     };
     WheelAllocation::ALL
-        .into_iter()
-        .map(|allocation| {
+        .iter()
+        .map(|&allocation| {
             let spec = SlewSpec {
                 spacecraft: spec.spacecraft.clone(),
                 start: at(&turn.from),
                 end: at(&turn.to),
                 final_wheels: FinalWheels::NullSpaceOfStart,
-                torque_authority: spec.torque_authority,
-                momentum_authority: spec.momentum_authority,
+                options: SlewOptionsSpec {
+                    torque_authority: spec.options.torque_authority,
+                    momentum_authority: spec.options.momentum_authority,
+                    ..SlewOptionsSpec::default()
+                },
                 allocation,
                 ..SlewSpec::default()
             };

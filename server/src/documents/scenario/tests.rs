@@ -1,5 +1,6 @@
 use super::super::unknown_members::{is_told, with_an_extra_member};
 use super::*;
+use slewplan_solver::model::spec::{Accuracy, AttitudeEquivalence, OptionsSpec};
 
 const COMPLETE: &str = r#"{
     "name": "n", "epoch": "2026-01-01T00:00:00Z", "time_system": "UTC",

@@ -144,22 +144,14 @@ impl<'a> SlewAnswerDocument<'a> {
         complete: bool,
     ) -> Self {
         let warnings: &[Problem] = &request.warnings;
-        let values = request.sweep.as_ref().map(|sweep| {
-            let (Sweep::Durations(values) | Sweep::Weights(values) | Sweep::Energies(values)) =
-                sweep;
-            values
-        });
+        let values = request.sweep.as_ref().map(Sweep::values);
         let slews = outcomes.iter().enumerate().map(|(i, outcome)| {
             let swept = values.and_then(|values| values.get(i)).copied();
             SlewDocument::new(request, swept, outcome)
         });
         Self {
             name: request.name.as_deref(),
-            sweep: request.sweep.as_ref().map(|sweep| match sweep {
-                Sweep::Weights(_) => "weights",
-                Sweep::Durations(_) => "durations_s",
-                Sweep::Energies(_) => "energies_j",
-            }),
+            sweep: request.sweep.as_ref().map(Sweep::name),
             complete,
             slews: slews.collect(),
             warnings: documents(warnings),

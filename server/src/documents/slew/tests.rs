@@ -1,6 +1,7 @@
 //! What is read of a slew, and what is refused.
 
 use super::*;
+use slewplan_solver::slew::{DEFAULT_INTERVALS, TorqueCommand};
 
 const CRAFT: &str = r#""spacecraft": {"inertia_kg_m2": [[6.63, 0, 0], [0, 8.9, 0], [0, 0, 9.63]],
     "wheels": [
@@ -27,7 +28,7 @@ fn what_is_left_out_has_its_usual_value() {
         intervals: DEFAULT_INTERVALS,
     };
     assert_eq!(request.slew.command(), free);
-    assert_eq!(request.time_limit_s, Some(DEFAULT_LIMIT_S));
+    assert_eq!(request.time_limit_s, Some(60.0));
     assert!(!request.evidence && request.sweep.is_none());
     let without = reading(r#", "options": {"time_limit_s": null}"#).unwrap();
     assert_eq!(without.time_limit_s, None);

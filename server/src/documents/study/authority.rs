@@ -1,21 +1,17 @@
 //! Which shares of torque and speed a plan should leave to feedback: the request and its answer.
 
-use super::simulation;
 use super::spread::SpreadDocument;
 use crate::documents::document::{self, Node};
 use crate::documents::number::Number;
 use crate::documents::plan;
 use crate::documents::problems::{ProblemDocument, documents};
 use crate::documents::reader::{Cursor, Sink};
-use crate::documents::scenario;
 use serde::Serialize;
+use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Scenario;
-use slewplan_solver::model::spec::ScenarioSpec;
 use slewplan_solver::tour::planner::Run;
-use slewplan_studies::authority::{
-    Authorities, AuthorityRow, AuthorityStudySpec, MAX_AUTHORITIES, RowOutcome, study,
-};
+use slewplan_studies::authority::{AuthorityRow, AuthorityStudySpec, RowOutcome, study};
 use utoipa::ToSchema;
 
 /// Where the solver puts problems of the study, to be told from those of the scenario.
@@ -24,7 +20,6 @@ const STUDY: &str = "/study";
 /// A study of the right shape.
 #[derive(Debug)]
 pub(crate) struct AuthorityStudy {
-    scenario: ScenarioSpec,
     spec: AuthorityStudySpec,
 }
 
@@ -45,37 +40,10 @@ pub(crate) fn read(bytes: &[u8]) -> Result<AuthorityStudy, Vec<Problem>> {
 /// Everything that is wrong with its shape.
 pub(crate) fn read_node(node: &Node) -> Result<AuthorityStudy, Vec<Problem>> {
     let sink = Sink::default();
-    let known = &["scenario", "simulation", "authorities"];
-    let fields = Cursor::root(node, &sink).object(known);
-    let read = fields.map(|fields| AuthorityStudy {
-        scenario: fields
-            .required("scenario")
-            .map(|it| scenario::spec(&it))
-            .unwrap_or_default(),
-        spec: AuthorityStudySpec {
-            simulation: fields
-                .optional("simulation")
-                .map(|it| simulation::read(&it))
-                .unwrap_or_default(),
-            authorities: fields
-                .required("authorities")
-                .and_then(|pairs| pairs.each_of_at_most(MAX_AUTHORITIES, authorities))
-                .map(|pairs| pairs.into_iter().flatten().collect())
-                .unwrap_or_default(),
-        },
-    });
+    let spec = AuthorityStudySpec::read(&Cursor::root(node, &sink));
     let problems = sink.into_problems();
-    read.filter(|_| problems.is_empty()).ok_or(problems)
-}
-
-fn authorities(cursor: &Cursor<'_>) -> Option<Authorities> {
-    let fields = cursor.object(&["torque_authority", "momentum_authority"])?;
-    let share = |name| fields.required(name).and_then(|it| it.number());
-    let (torque, momentum) = (share("torque_authority"), share("momentum_authority"));
-    Some(Authorities {
-        torque: torque?,
-        momentum: momentum?,
-    })
+    let spec = spec.filter(|_| problems.is_empty()).ok_or(problems)?;
+    Ok(AuthorityStudy { spec })
 }
 
 impl AuthorityStudy {
@@ -85,10 +53,10 @@ impl AuthorityStudy {
     ///
     /// Everything that is wrong with the scenario.
     pub(crate) fn scenario(&self) -> Result<Scenario, Vec<Problem>> {
-        Scenario::try_new(&self.scenario).map(|valid| valid.scenario)
+        Scenario::try_new(&self.spec.scenario).map(|valid| valid.scenario)
     }
 
-    /// Plans and flies.
+    /// Plans and simulates.
     ///
     /// # Errors
     ///
@@ -101,8 +69,7 @@ impl AuthorityStudy {
             },
             None => problem.under("/scenario"),
         };
-        study(&self.scenario, &self.spec, STUDY, run)
-            .map_err(|problems| problems.into_iter().map(placed).collect())
+        study(&self.spec, STUDY, run).map_err(|problems| problems.into_iter().map(placed).collect())
     }
 }
 
@@ -156,8 +123,8 @@ fn is_complete(rows: &[AuthorityRow]) -> bool {
 impl<'a> From<&'a AuthorityRow> for RowDocument<'a> {
     fn from(row: &'a AuthorityRow) -> Self {
         let nothing = Self {
-            torque_authority: Number(row.authorities.torque),
-            momentum_authority: Number(row.authorities.momentum),
+            torque_authority: Number(row.authorities.torque_authority),
+            momentum_authority: Number(row.authorities.momentum_authority),
             status: "stopped",
             total_time_s: None,
             plan_status: None,

@@ -4,19 +4,33 @@ mod answer;
 
 pub(crate) use answer::FlightAnswerDocument;
 
-use super::simulation;
 use crate::documents::document::{self, Node};
+use crate::documents::flight::{self, ForeignPlan};
 use crate::documents::reader::{Cursor, Sink};
-use crate::documents::{flight, scenario};
+use crate::documents::scenario;
+use slewplan_solver::model::input::{
+    InputForm, InputPlace, Schema, Unread, input_object, optional, or, required_or,
+};
 use slewplan_solver::model::problem::{Code, Problem};
-use slewplan_solver::simulation::{self as flying, SimulationSpec};
+use slewplan_solver::model::spec::ScenarioSpec;
+use slewplan_solver::simulation::{self, SimulationSpec};
 use slewplan_studies::flight::FlightStudy;
 
-/// What a document says beside scenario and plan, which are read on their own.
-struct Shape {
-    simulation: SimulationSpec,
-    number: u64,
-    keep_every: Option<usize>,
+input_object! {
+    /// One simulated flight of a plan in closed loop.
+    pub(crate) struct FlightStudySpec as "FlightStudy" {
+        /// What the plan is for.
+        scenario: () as Unread<ScenarioSpec> = required_or(()),
+        /// Which of the flights of the seed; each draws other errors.
+        flight: u64 = or(0),
+        /// How it is simulated. The number of flights does not matter here.
+        simulation: SimulationSpec = or(SimulationSpec::default()),
+        /// One out of so many samples of the on-board computer is reported; so many that there are no more
+        /// than 2,000 without it.
+        keep_every: Option<usize> as Option<KeepEvery> = optional().at_least(1.0).format("uint64"),
+        /// A plan of the scenario; made for the flight without it.
+        plan: () as Unread<ForeignPlan> = or(()),
+    }
 }
 
 /// Reads and validates a request.
@@ -36,9 +50,9 @@ pub(crate) fn read(bytes: &[u8]) -> Result<FlightStudy, Vec<Problem>> {
 /// Everything that is wrong with it.
 pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
     let sink = Sink::default();
-    let shape = decode(&Cursor::root(node, &sink));
+    let spec = FlightStudySpec::read(&Cursor::root(node, &sink));
     let mut problems = sink.into_problems();
-    let Some(shape) = shape else {
+    let Some(spec) = spec else {
         return Err(problems);
     };
     let mut noted = |place: &str, found: Vec<Problem>| {
@@ -56,11 +70,7 @@ pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
             .ok()
     });
     if let Some(valid) = &valid {
-        let found = flying::check(
-            &shape.simulation,
-            valid.scenario.spacecraft(),
-            "/simulation",
-        );
+        let found = simulation::check(&spec.simulation, valid.scenario.spacecraft(), "/simulation");
         noted("", found);
     }
     let Some(valid) = valid.filter(|_| problems.is_empty()) else {
@@ -69,38 +79,33 @@ pub(crate) fn read_node(node: &Node) -> Result<FlightStudy, Vec<Problem>> {
     Ok(FlightStudy {
         scenario: valid.scenario,
         plan,
-        simulation: shape.simulation,
-        number: shape.number,
-        keep_every: shape.keep_every,
+        simulation: spec.simulation,
+        number: spec.flight,
+        keep_every: spec.keep_every,
         warnings: valid.warnings,
     })
 }
 
-fn decode(cursor: &Cursor<'_>) -> Option<Shape> {
-    let known = &["scenario", "plan", "simulation", "flight", "keep_every"];
-    let fields = cursor.object(known)?;
-    // Told when it is missing; its meaning is for others.
-    fields.required("scenario");
-    let number = fields.optional("flight").and_then(|it| it.integer());
-    Some(Shape {
-        simulation: fields
-            .optional("simulation")
-            .map(|it| simulation::read(&it))
-            .unwrap_or_default(),
-        number: number.unwrap_or(0),
-        keep_every: fields.optional("keep_every").and_then(|it| keep_every(&it)),
-    })
-}
+/// Number of samples, at least one.
+struct KeepEvery;
 
-fn keep_every(cursor: &Cursor<'_>) -> Option<usize> {
-    let every = usize::try_from(cursor.integer()?).unwrap_or(usize::MAX);
-    if every == 0 {
-        cursor.report(
-            Code::OutOfRange,
-            "every 0th sample is none",
-            "give a whole number of at least 1, or leave it out",
-        );
-        return None;
+impl InputForm for KeepEvery {
+    type Value = usize;
+
+    fn read<P: InputPlace>(place: &P) -> Option<usize> {
+        let every = usize::read(place)?;
+        if every == 0 {
+            place.report(
+                Code::OutOfRange,
+                "every 0th sample is none",
+                "give a whole number of at least 1, or leave it out",
+            );
+            return None;
+        }
+        Some(every)
     }
-    Some(every)
+
+    fn schema() -> Schema {
+        usize::schema()
+    }
 }

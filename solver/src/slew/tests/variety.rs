@@ -247,7 +247,7 @@ fn all_problems_of_a_description_are_found_at_once() {
         measure: EnergyMeasure::Bill,
     };
     spec.end.wheel_speed_rad_s = None;
-    spec.torque_authority = 2.0;
+    spec.options.torque_authority = 2.0;
     let problems = Slew::try_new(&spec).expect_err("nothing is right");
     let pointers: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
     for wanted in [

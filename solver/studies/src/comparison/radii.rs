@@ -3,6 +3,9 @@
 use super::study::pyramid_envelopes;
 use crate::cmg::CmgCluster;
 use slewplan_solver::model::findings::Findings;
+use slewplan_solver::model::input::{
+    InputForm, InputPlace, Schema, input_object, input_union, or, required,
+};
 
 /// Kind of devices of a pyramid, and how they are controlled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::IntoStaticStr)]
@@ -32,13 +35,15 @@ impl PyramidControl {
     ];
 }
 
-/// Body momentum and torque as multiples of a device's.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Radius {
-    /// Of momentum.
-    pub momentum: f64,
-    /// Of torque.
-    pub torque: f64,
+input_object! {
+    /// Body momentum and torque as multiples of a device's.
+    #[derive(Copy)]
+    pub struct Radius as "GivenRadius" {
+        /// Of momentum.
+        pub momentum: f64 = required().at_least(1e-9).at_most(1e9),
+        /// Of torque.
+        pub torque: f64 = required().at_least(1e-9).at_most(1e9),
+    }
 }
 
 /// The radii of all controls.
@@ -52,6 +57,53 @@ pub struct Radii {
     pub optimal: Radius,
     /// [`PyramidControl::Gyroscopes`].
     pub gyroscopes: Radius,
+}
+
+input_union! {
+    /// Body momentum and torque of a pyramid of four, as multiples of a device's.
+    enum RadiiSpec as "ComparisonRadii" {
+        /// As published.
+        Published = "published",
+        /// From envelopes and singular surfaces.
+        Computed = "computed",
+        /// Those that are left out are as published.
+        Given = "given" {
+            /// Of wheels, slews about the eigenaxis, allocation by the pseudo-inverse.
+            rw_eigenaxis: Radius = or(Radii::PUBLISHED.eigenaxis),
+            /// Of wheels, time-optimal slews, allocation by the pseudo-inverse.
+            rw_pseudo_optimal: Radius = or(Radii::PUBLISHED.pseudo_optimal),
+            /// Of wheels, time-optimal slews with any allocation.
+            rw_optimal: Radius = or(Radii::PUBLISHED.optimal),
+            /// Of control moment gyroscopes.
+            cmg: Radius = or(Radii::PUBLISHED.gyroscopes),
+        },
+    }
+}
+
+impl InputForm for Radii {
+    type Value = Self;
+
+    fn read<P: InputPlace>(place: &P) -> Option<Self> {
+        match RadiiSpec::read(place)? {
+            RadiiSpec::Published => Some(Self::PUBLISHED),
+            RadiiSpec::Computed => Self::of_the_pyramid(),
+            RadiiSpec::Given {
+                rw_eigenaxis,
+                rw_pseudo_optimal,
+                rw_optimal,
+                cmg,
+            } => Some(Self {
+                eigenaxis: rw_eigenaxis,
+                pseudo_optimal: rw_pseudo_optimal,
+                optimal: rw_optimal,
+                gyroscopes: cmg,
+            }),
+        }
+    }
+
+    fn schema() -> Schema {
+        RadiiSpec::schema()
+    }
 }
 
 impl Radii {

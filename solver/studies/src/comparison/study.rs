@@ -1,6 +1,6 @@
 //! The whole study of wheels against gyroscopes, with the tables of devices.
 
-use super::{Comparison, ComparisonSpec, Laws, MassPoint, MassStudy, PyramidControl, Radii};
+use super::{Comparison, ComparisonStudySpec, Laws, MassPoint, MassStudy, PyramidControl, Radii};
 use crate::catalogue::{Device, GYROSCOPES, PowerLaw, WHEELS};
 use crate::cmg::{CmgCluster, MAX_SURFACE_ROWS, SingularSurface};
 use nalgebra::Vector3;
@@ -16,32 +16,18 @@ const STEEPEST: f64 = 8.0;
 const PER_DECADE: i32 = 8;
 const DECADES: (i32, i32) = (-3, 1);
 /// Default number of rows of the singular surfaces.
-const SURFACE_ROWS: usize = 12;
+pub(super) const SURFACE_ROWS: usize = 12;
 
-/// The study as a caller describes it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ComparisonStudySpec {
-    /// Slews and sizes to compare.
-    pub comparison: ComparisonSpec,
-    /// Momenta of a device (N m s) at which the advantage angle is computed.
-    pub curve_momenta_nms: Vec<f64>,
-    /// Masses of a device (kg) at which arrays are compared.
-    pub device_masses_kg: Vec<f64>,
-    /// Circles of latitude of the singular surfaces, at most [`MAX_SURFACE_ROWS`].
-    pub surface_rows: usize,
+/// Default momenta of a device (N m s) at which the advantage angle is computed.
+pub(super) fn default_curve_momenta_nms() -> Vec<f64> {
+    let (from, to) = DECADES;
+    let power = |i| 10_f64.powf(f64::from(from) + f64::from(i) / f64::from(PER_DECADE));
+    (0..=PER_DECADE * (to - from)).map(power).collect()
 }
 
-impl Default for ComparisonStudySpec {
-    fn default() -> Self {
-        let (from, to) = DECADES;
-        let power = |i| 10_f64.powf(f64::from(from) + f64::from(i) / f64::from(PER_DECADE));
-        Self {
-            comparison: ComparisonSpec::default(),
-            curve_momenta_nms: (0..=PER_DECADE * (to - from)).map(power).collect(),
-            device_masses_kg: vec![0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0],
-            surface_rows: SURFACE_ROWS,
-        }
-    }
+/// Default masses of a device (kg) at which arrays are compared.
+pub(super) fn default_device_masses_kg() -> Vec<f64> {
+    vec![0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
 }
 
 /// The advantage angle of one control over the momentum of a device.
@@ -124,15 +110,15 @@ impl ComparisonStudy {
     pub fn of(spec: ComparisonStudySpec) -> Result<Option<Self>, Vec<Problem>> {
         let mut findings = Findings::default();
         check(&spec, &mut findings);
-        let comparison = Comparison::of(spec.comparison.clone())
+        let comparison = Comparison::of(spec.clone())
             .map_err(|problems| findings.include(problems))
             .ok();
         let (comparison, _) = findings.conclude(comparison)?;
-        let curves = Comparison::of(ComparisonSpec {
+        let curves = Comparison::of(ComparisonStudySpec {
             momenta_nms: spec.curve_momenta_nms.clone(),
             // Advantage angles do not depend on them, and a list must not be empty.
             angles_rad: vec![1.0],
-            ..spec.comparison.clone()
+            ..spec.clone()
         })?;
         Ok(Self::conduct(spec, comparison, &curves))
     }
@@ -142,7 +128,7 @@ impl ComparisonStudy {
         comparison: Comparison,
         curves: &Comparison,
     ) -> Option<Self> {
-        let ComparisonSpec { radii, laws, .. } = spec.comparison;
+        let ComparisonStudySpec { radii, laws, .. } = spec;
         let mass = MassStudy::of(radii, laws)?;
         let table = Laws::of_the_tables()?;
         Some(Self {
@@ -214,10 +200,10 @@ fn advantage_curves(curves: &Comparison) -> Vec<AdvantageCurve> {
 fn check(spec: &ComparisonStudySpec, findings: &mut Findings) {
     super::check_list("curve_momenta_nms", &spec.curve_momenta_nms, findings);
     super::check_list("device_masses_kg", &spec.device_masses_kg, findings);
-    let of = &spec.comparison;
+
     for (name, values) in [
-        ("momenta_nms", &of.momenta_nms),
-        ("angles_rad", &of.angles_rad),
+        ("momenta_nms", &spec.momenta_nms),
+        ("angles_rad", &spec.angles_rad),
         ("curve_momenta_nms", &spec.curve_momenta_nms),
         ("device_masses_kg", &spec.device_masses_kg),
     ] {
@@ -225,9 +211,9 @@ fn check(spec: &ComparisonStudySpec, findings: &mut Findings) {
             within(&format!("/{name}/{i}"), value, findings);
         }
     }
-    within("/required_rate_rad_s", of.required_rate_rad_s, findings);
+    within("/required_rate_rad_s", spec.required_rate_rad_s, findings);
     for control in PyramidControl::ALL {
-        let radius = of.radii.of(control);
+        let radius = spec.radii.of(control);
         within(
             &format!("/radii/{control}/momentum"),
             radius.momentum,
@@ -235,7 +221,10 @@ fn check(spec: &ComparisonStudySpec, findings: &mut Findings) {
         );
         within(&format!("/radii/{control}/torque"), radius.torque, findings);
     }
-    for (name, law) in [("wheel", of.laws.wheel), ("gyroscope", of.laws.gyroscope)] {
+    for (name, law) in [
+        ("wheel", spec.laws.wheel),
+        ("gyroscope", spec.laws.gyroscope),
+    ] {
         within(&format!("/laws/{name}/factor"), law.factor, findings);
         if law.exponent.abs() > STEEPEST {
             findings.refuse(
@@ -303,9 +292,9 @@ mod tests {
             device_masses_kg: vec![1.0, 1e300],
             ..ComparisonStudySpec::default()
         };
-        spec.comparison.laws.wheel.exponent = 9.0;
-        spec.comparison.required_rate_rad_s = -1.0;
-        spec.comparison.momenta_nms = vec![1e-300];
+        spec.laws.wheel.exponent = 9.0;
+        spec.required_rate_rad_s = -1.0;
+        spec.momenta_nms = vec![1e-300];
         let problems = ComparisonStudy::of(spec).unwrap_err();
         let mut places: Vec<_> = problems.iter().map(|p| p.pointer.as_str()).collect();
         places.sort_unstable();
@@ -328,9 +317,9 @@ mod tests {
             surface_rows: 1,
             ..ComparisonStudySpec::default()
         };
-        spec.comparison.momenta_nms = vec![1e-9, 1e9];
-        spec.comparison.angles_rad = vec![1e-9, 1e9];
-        spec.comparison.laws.wheel = PowerLaw {
+        spec.momenta_nms = vec![1e-9, 1e9];
+        spec.angles_rad = vec![1e-9, 1e9];
+        spec.laws.wheel = PowerLaw {
             factor: 1e9,
             exponent: 8.0,
         };

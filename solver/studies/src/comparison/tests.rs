@@ -1,7 +1,7 @@
 use super::*;
 
 fn published() -> Comparison {
-    Comparison::of(ComparisonSpec::default()).unwrap()
+    Comparison::of(ComparisonStudySpec::default()).unwrap()
 }
 
 fn assert_near(found: f64, expected: f64, tolerance: f64) {
@@ -13,7 +13,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 
 #[test]
 fn the_published_rates_and_accelerations_are_found() {
-    let mut spec = ComparisonSpec::default();
+    let mut spec = ComparisonStudySpec::default();
     // The thesis writes 1.807 here.
     spec.radii.optimal.momentum = 1.807;
     let sizes = Comparison::of(spec).unwrap().sizes;
@@ -165,11 +165,11 @@ fn light_wheels_give_more_torque_than_light_gyroscopes() {
 
 #[test]
 fn all_problems_of_a_request_are_found() {
-    let mut spec = ComparisonSpec {
+    let mut spec = ComparisonStudySpec {
         momenta_nms: vec![1.0, -1.0],
         angles_rad: vec![],
         required_rate_rad_s: f64::NAN,
-        ..ComparisonSpec::default()
+        ..ComparisonStudySpec::default()
     };
     spec.radii.gyroscopes.torque = 0.0;
     spec.laws.wheel.exponent = f64::INFINITY;

@@ -219,7 +219,7 @@ struct MassPointDocument {
 impl ComparisonAnswerDocument {
     /// The answer to a study.
     pub(crate) fn new(study: &ComparisonStudy) -> Self {
-        let of = &study.spec.comparison;
+        let of = &study.spec;
         let (wheels, gyroscopes) = ComparisonStudy::devices();
         let radius = |control: PyramidControl| {
             let Radius { momentum, torque } = of.radii.of(control);

@@ -11,9 +11,6 @@ mod order;
 mod state;
 mod target;
 
-pub use keep_out::MAX_CONES;
-pub use target::MAX_TARGETS;
-
 use crate::model::attitude::Attitude;
 use crate::model::findings::Findings;
 use crate::model::order_rules::OrderRules;

@@ -15,7 +15,12 @@ use super::input::{
     self, InputForm, InputPlace, MemberRule, Schema, UpTo, input_choice, input_object, nullable,
     optional, or, required_or,
 };
-use super::scenario::{MAX_CONES, MAX_TARGETS};
+
+/// Limit of the targets of a scenario, far above what can be planned: legs between that many exceed
+/// any disk.
+pub const MAX_TARGETS: usize = 10_000;
+/// Limit of the keep-out cones of a scenario.
+pub const MAX_CONES: usize = 1000;
 
 input_object! {
     /// A planning problem. Numbers are SI with the unit in the field name; unknown fields are refused.

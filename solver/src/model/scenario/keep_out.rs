@@ -3,11 +3,8 @@
 use super::KeepOut;
 use crate::model::findings::{Findings, unit};
 use crate::model::problem::{self, Code};
-use crate::model::spec::{BoresightSpec, KeepOutSpec, ScenarioSpec};
+use crate::model::spec::{BoresightSpec, KeepOutSpec, MAX_CONES, ScenarioSpec};
 use nalgebra::Vector3;
-
-/// Limit of the keep-out cones of a scenario.
-pub const MAX_CONES: usize = 1000;
 
 pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
     if !findings.at_most("/keep_out", spec.keep_out.len(), MAX_CONES) {

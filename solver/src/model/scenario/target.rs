@@ -5,12 +5,9 @@ use super::{RateCondition, Target};
 use crate::model::attitude::Attitude;
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
-use crate::model::spec::{ScenarioSpec, TargetSpec};
+use crate::model::spec::{MAX_TARGETS, ScenarioSpec, TargetSpec};
 use std::collections::HashSet;
 
-/// Limit of the targets of a scenario, far above what can be planned: legs between that many exceed
-/// any disk.
-pub const MAX_TARGETS: usize = 10_000;
 /// Reserved names of the ends of the tour.
 const RESERVED: [&str; 2] = ["start", "end"];
 

@@ -7,7 +7,10 @@ use super::motion::SlewMotion;
 use super::program::{LengthPenalty, Program, ProgramSetup, ProgramUnits};
 use super::shape::{IntervalLengths, ProgramShape};
 use super::vehicle::Vehicle;
-use crate::leg::multiphase::{NEAR_BARRIER, NEAR_EXCESS};
+use crate::leg::multiphase::{
+    LARGE_MISS, LIMIT_TOLERANCE, LOCAL_ROUNDS, MISS_TOLERANCE, NEAR_BARRIER, NEAR_EXCESS,
+    RESERVE_FACTOR,
+};
 use crate::leg::transcription::{Reserves, Scales};
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{
@@ -78,16 +81,6 @@ const POLISH_ROUNDS: usize = 4;
 const BILLED_PENALTY: f64 = 0.1;
 /// Greatest number of rounds of correcting the turns and raising the reserves at limits.
 const MAX_ROUNDS: usize = 15;
-/// Rounds that raise a reserve only where a limit was exceeded; later rounds raise all.
-const LOCAL_ROUNDS: usize = 6;
-/// Reserve per excess; above 1 so that a round does not end just beyond the limit.
-const RESERVE_FACTOR: f64 = 1.1;
-/// Greatest sum of the turns' errors, rad, that needs no further round.
-const MISS_TOLERANCE: f64 = 3e-9;
-/// Sum of the turns' errors, rad, above which the attitude map is refined too.
-const LARGE_MISS: f64 = 1e-3;
-/// Relative excess over a limit between nodes that needs no further round.
-const LIMIT_TOLERANCE: f64 = 1e-7;
 /// Scaled cost of a guess: sets the unit of the program's cost.
 const COST_OF_GUESS: f64 = 5.0;
 

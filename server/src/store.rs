@@ -17,6 +17,7 @@ mod packed;
 mod recent;
 mod results;
 mod retention;
+mod row;
 mod rows;
 mod segments;
 mod spacecraft;

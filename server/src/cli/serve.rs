@@ -9,7 +9,8 @@ use clap::ValueEnum;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::prelude::*;
 
 const DAY: Duration = Duration::from_hours(24);
 
@@ -122,19 +123,21 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
 }
 
 fn start_log(arguments: &ServeArguments) -> Result<(), Failure> {
-    let filter = EnvFilter::try_new(&arguments.log).map_err(|error| Failure::Setting {
+    let filter: Targets = arguments.log.parse().map_err(|error| Failure::Setting {
         name: "--log",
-        what: error.to_string(),
+        what: format!("{error}"),
     })?;
-    let log = tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    let log = tracing_subscriber::fmt::layer()
         // A log that cannot be written, because its disk is full, must not become a panic.
         .log_internal_errors(false)
         .with_writer(std::io::stderr);
-    match arguments.log_format {
-        LogFormat::Text => log.with_ansi(false).init(),
-        LogFormat::Json => log.json().init(),
-    }
+    let log = match arguments.log_format {
+        LogFormat::Text => log.with_ansi(false).boxed(),
+        LogFormat::Json => log.json().boxed(),
+    };
+    tracing_subscriber::registry()
+        .with(log.with_filter(filter))
+        .init();
     // A panic ends one job or request only and is logged.
     std::panic::set_hook(Box::new(|info| {
         let message = info.payload_as_str().unwrap_or("no message");

@@ -1,18 +1,21 @@
 //! The events of jobs, numbered per job.
 
+use super::row::row;
 use super::writing::WriteTransaction;
 use super::{JobRow, Store, StoreError};
-use sqlx::FromRow;
 
-/// An event of a job.
-#[derive(Debug, Clone, FromRow)]
-pub(crate) struct EventRow {
-    /// Counts from 1 within the job.
-    pub(crate) id: i64,
-    /// `state` or `progress`.
-    pub(crate) kind: String,
-    /// The event as JSON.
-    pub(crate) data: String,
+row! {
+    columns event_columns;
+    /// An event of a job.
+    #[derive(Debug, Clone)]
+    pub(crate) struct EventRow {
+        /// Counts from 1 within the job.
+        pub(crate) id: i64,
+        /// `state` or `progress`.
+        pub(crate) kind: String,
+        /// The event as JSON.
+        pub(crate) data: String,
+    }
 }
 
 /// Formats the state of a job at a time (microseconds since 1970) as the JSON of an event.
@@ -48,9 +51,11 @@ impl Store {
         job: i64,
         known: i64,
     ) -> Result<Vec<EventRow>, StoreError> {
-        Ok(sqlx::query_as(
-            "SELECT id, kind, data FROM events WHERE job = ? AND id > ? ORDER BY id LIMIT ?",
-        )
+        Ok(sqlx::query_as(concat!(
+            "SELECT ",
+            event_columns!(),
+            " FROM events WHERE job = ? AND id > ? ORDER BY id LIMIT ?",
+        ))
         .bind(job)
         .bind(known)
         .bind(BATCH)

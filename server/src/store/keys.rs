@@ -1,30 +1,32 @@
 //! API keys of clients, and the ownership of jobs.
 
+use super::row::row;
 use super::{Store, StoreError};
 use crate::base::access::Scopes;
-use sqlx::FromRow;
 
-/// A key without its secret.
-#[derive(Debug, Clone, FromRow)]
-pub(crate) struct KeyRow {
-    /// Public identifier of the key.
-    pub(crate) id: String,
-    /// The client that the key belongs to.
-    pub(crate) client: String,
-    #[sqlx(rename = "scopes")]
-    scopes_text: String,
-    /// When it was made.
-    pub(crate) created_us: i64,
-    /// When it expires.
-    pub(crate) expires_us: Option<i64>,
-    /// When it was revoked.
-    pub(crate) revoked_us: Option<i64>,
+row! {
+    columns key_columns;
+    /// A key without its secret.
+    #[derive(Debug, Clone)]
+    pub(crate) struct KeyRow {
+        /// Public identifier of the key.
+        pub(crate) id: String,
+        /// The client that the key belongs to.
+        pub(crate) client: String,
+        scopes: String,
+        /// When it was made.
+        pub(crate) created_us: i64,
+        /// When it expires.
+        pub(crate) expires_us: Option<i64>,
+        /// When it was revoked.
+        pub(crate) revoked_us: Option<i64>,
+    }
 }
 
 impl KeyRow {
     /// The scopes that it grants.
     pub(crate) fn scopes(&self) -> Result<Scopes, StoreError> {
-        let scopes = self.scopes_text.parse();
+        let scopes = self.scopes.parse();
         scopes.map_err(|what| StoreError::Inconsistent {
             table: "api_keys",
             what,
@@ -50,12 +52,6 @@ pub(crate) struct NewKey {
     pub(crate) scopes: Scopes,
     /// When it ends.
     pub(crate) expires_us: Option<i64>,
-}
-
-macro_rules! key_columns {
-    () => {
-        "id, client, scopes, created_us, expires_us, revoked_us"
-    };
 }
 
 impl Store {

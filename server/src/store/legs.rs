@@ -2,10 +2,11 @@
 
 mod upkeep;
 
+use super::row::row;
 use super::{Store, StoreError};
 use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{LegKind, StoredLeg};
-use sqlx::{FromRow, Row, SqliteConnection};
+use sqlx::{FromRow as _, Row, SqliteConnection};
 use std::str::FromStr;
 
 /// Legs of other versions of the solver are never found. They are replaced when they are solved
@@ -25,38 +26,41 @@ pub(crate) struct NewLeg {
     pub(crate) leg: StoredLeg,
 }
 
-/// A stored leg without its motion.
-#[derive(Debug, Clone, FromRow)]
-pub(crate) struct CachedLegRow {
-    /// Order in which legs were stored.
-    pub(crate) sequence: i64,
-    /// SHA-256 of the identity, hex.
-    pub(crate) key: String,
-    /// SHA-256 of the spacecraft's canonical text, hex.
-    pub(crate) spacecraft: String,
-    /// The kind of table for which it was solved.
-    pub(crate) kind: String,
-    turn_x: f64,
-    turn_y: f64,
-    turn_z: f64,
-    turn_w: f64,
-    momentum_x: f64,
-    momentum_y: f64,
-    momentum_z: f64,
-    /// Whether the reversed motion is a solution too.
-    pub(crate) reversible: bool,
-    /// Minimum time, s.
-    pub(crate) duration_s: f64,
-    /// No slew with its conditions takes less, s, proved.
-    pub(crate) certified_lower_bound_s: Option<f64>,
-    /// Wall-clock time of the solve, s.
-    pub(crate) solve_time_s: f64,
-    /// How the solve ended.
-    pub(crate) status: String,
-    /// Version that solved it.
-    pub(crate) solver_version: String,
-    /// When it was stored.
-    pub(crate) created_us: i64,
+row! {
+    columns leg_columns;
+    /// A stored leg without its motion.
+    #[derive(Debug, Clone)]
+    pub(crate) struct CachedLegRow {
+        /// Order in which legs were stored.
+        pub(crate) sequence: i64,
+        /// SHA-256 of the identity, hex.
+        pub(crate) key: String,
+        /// SHA-256 of the spacecraft's canonical text, hex.
+        pub(crate) spacecraft: String,
+        /// The kind of table for which it was solved.
+        pub(crate) kind: String,
+        turn_x: f64,
+        turn_y: f64,
+        turn_z: f64,
+        turn_w: f64,
+        momentum_x: f64,
+        momentum_y: f64,
+        momentum_z: f64,
+        /// Whether the reversed motion is a solution too.
+        pub(crate) reversible: bool,
+        /// Minimum time, s.
+        pub(crate) duration_s: f64,
+        /// No slew with its conditions takes less, s, proved.
+        pub(crate) certified_lower_bound_s: Option<f64>,
+        /// Wall-clock time of the solve, s.
+        pub(crate) solve_time_s: f64,
+        /// How the solve ended.
+        pub(crate) status: String,
+        /// Version that solved it.
+        pub(crate) solver_version: String,
+        /// When it was stored.
+        pub(crate) created_us: i64,
+    }
 }
 
 impl CachedLegRow {
@@ -88,14 +92,6 @@ impl CachedLegRow {
             motion,
         })
     }
-}
-
-macro_rules! leg_columns {
-    () => {
-        "sequence, key, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, momentum_x, \
-         momentum_y, momentum_z, reversible, duration_s, certified_lower_bound_s, solve_time_s, \
-         status, solver_version, created_us"
-    };
 }
 
 /// Which legs to list.

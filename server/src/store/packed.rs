@@ -5,22 +5,23 @@
 //! so that it is short.
 
 use super::StoreError;
+use super::row::row;
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
-use sqlx::FromRow;
 use std::io::{Read, Write};
 
-/// The document of a plan, or of the reasons why there is none, ready to be stored.
-#[derive(Debug, Clone, PartialEq, FromRow)]
-pub(crate) struct PackedPlan {
-    /// The JSON, compressed or plain.
-    #[sqlx(rename = "document")]
-    pub(super) bytes: Vec<u8>,
-    /// Whether it is compressed. Plans stored by older versions are not.
-    pub(super) packed: bool,
-    /// SHA-256 of the JSON, hex.
-    pub(super) digest: String,
+row! {
+    /// The document of a plan, or of the reasons why there is none, ready to be stored.
+    #[derive(Debug, Clone, PartialEq)]
+    pub(crate) struct PackedPlan {
+        /// The JSON, compressed or plain.
+        pub(super) document: Vec<u8>,
+        /// Whether it is compressed. Plans stored by older versions are not.
+        pub(super) packed: bool,
+        /// SHA-256 of the JSON, hex.
+        pub(super) digest: String,
+    }
 }
 
 impl PackedPlan {
@@ -29,7 +30,7 @@ impl PackedPlan {
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
         let written = encoder.write_all(json).and_then(|()| encoder.finish());
         Self {
-            bytes: written.expect("writing to memory cannot fail"),
+            document: written.expect("writing to memory cannot fail"),
             packed: true,
             digest: crate::base::digest::hex(json),
         }
@@ -42,9 +43,9 @@ impl PackedPlan {
     /// [`StoreError::Damaged`] when it does not match its hash.
     pub(super) fn unpacked(self) -> Result<Vec<u8>, StoreError> {
         let json = if self.packed {
-            inflated(&self.bytes).ok()
+            inflated(&self.document).ok()
         } else {
-            Some(self.bytes)
+            Some(self.document)
         };
         json.filter(|json| crate::base::digest::hex(json) == self.digest)
             .ok_or(StoreError::Damaged { what: "plan" })
@@ -69,13 +70,13 @@ mod tests {
             let packed = PackedPlan::of(text.as_bytes());
             assert_eq!(packed.unpacked().expect("intact"), text.as_bytes());
         }
-        assert!(PackedPlan::of(JSON.repeat(100).as_bytes()).bytes.len() < 10 * JSON.len());
+        assert!(PackedPlan::of(JSON.repeat(100).as_bytes()).document.len() < 10 * JSON.len());
     }
 
     #[test]
     fn uncompressed_plans_of_older_versions_are_read() {
         let old = PackedPlan {
-            bytes: JSON.into(),
+            document: JSON.into(),
             packed: false,
             digest: crate::base::digest::hex(JSON.as_bytes()),
         };
@@ -85,10 +86,11 @@ mod tests {
     #[test]
     fn damaged_plans_are_refused() {
         let sound = PackedPlan::of(JSON.as_bytes());
-        for (place, bit) in (0..sound.bytes.len()).flat_map(|place| (0..8).map(move |b| (place, b)))
+        for (place, bit) in
+            (0..sound.document.len()).flat_map(|place| (0..8).map(move |b| (place, b)))
         {
             let mut damaged = sound.clone();
-            damaged.bytes[place] ^= 1 << bit;
+            damaged.document[place] ^= 1 << bit;
             // Some bits do not affect the content: either it is the same, or it is refused.
             if let Ok(json) = damaged.unpacked() {
                 assert_eq!(json, JSON.as_bytes());
@@ -102,11 +104,11 @@ mod tests {
                 ..sound.clone()
             },
             PackedPlan {
-                bytes: other.bytes,
+                document: other.document,
                 ..sound.clone()
             },
             PackedPlan {
-                bytes: JSON.replace('8', "9").into(),
+                document: JSON.replace('8', "9").into(),
                 packed: false,
                 ..sound.clone()
             },
@@ -114,7 +116,7 @@ mod tests {
             exchanged.unpacked().expect_err("another plan");
         }
         let short = PackedPlan {
-            bytes: sound.bytes[..sound.bytes.len() / 2].into(),
+            document: sound.document[..sound.document.len() / 2].into(),
             ..sound
         };
         short.unpacked().expect_err("half of it");

@@ -54,7 +54,7 @@ pub(super) async fn store_incumbent(
     .bind(job)
     .bind(incumbent.total_time_s)
     .bind(incumbent.lower_bound_s)
-    .bind(&incumbent.document.bytes)
+    .bind(&incumbent.document.document)
     .bind(incumbent.document.packed)
     .bind(&incumbent.document.digest)
     .execute(connection)
@@ -107,7 +107,7 @@ pub(super) async fn store_result(
              WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = ?1)",
         )
         .bind(job)
-        .bind(&document.bytes)
+        .bind(&document.document)
         .bind(document.packed)
         .bind(&document.digest)
         .execute(connection)

@@ -1,7 +1,8 @@
 //! Rows of the tables as types.
 
 use super::StoreError;
-use sqlx::FromRow;
+use super::row::row;
+use sqlx::FromRow as _;
 use sqlx::sqlite::SqliteRow;
 
 /// The state of a job.
@@ -60,63 +61,56 @@ impl JobState {
     }
 }
 
-/// A job without its scenario.
-#[derive(Debug, Clone, FromRow)]
-pub(crate) struct JobRow {
-    /// Order of submission.
-    pub(crate) sequence: i64,
-    /// Public identifier.
-    pub(crate) id: String,
-    #[sqlx(rename = "state")]
-    state_text: String,
-    /// Name of the scenario.
-    pub(crate) name: Option<String>,
-    /// Number of targets.
-    pub(crate) targets: i64,
-    /// Stage of the solve.
-    pub(crate) stage: Option<String>,
-    /// Steps of the stage that are done.
-    pub(crate) done: Option<i64>,
-    /// Steps of the stage in all.
-    pub(crate) total: Option<i64>,
-    /// Duration of the best plan so far, s.
-    pub(crate) incumbent_s: Option<f64>,
-    /// Lower bound on the duration, s.
-    pub(crate) lower_bound_s: Option<f64>,
-    /// Why the job ended without a plan.
-    pub(crate) detail: Option<String>,
-    /// The same reason as a stable code.
-    pub(crate) code: Option<String>,
-    /// Number of attempts so far.
-    pub(crate) attempt: i64,
-    /// Number of its newest lease (fence).
-    pub(crate) fence: i64,
-    /// When a stop was requested.
-    pub(crate) stop_requested_us: Option<i64>,
-    /// When its cancellation was requested.
-    pub(crate) cancel_requested_us: Option<i64>,
-    /// When it was submitted.
-    pub(crate) submitted_us: i64,
-    /// When its newest attempt began.
-    pub(crate) started_us: Option<i64>,
-    /// When it ended.
-    pub(crate) finished_us: Option<i64>,
-}
-
-/// The columns of [`JobRow`].
-macro_rules! job_columns {
-    () => {
-        "sequence, id, state, name, targets, stage, done, total, incumbent_s, lower_bound_s, \
-         detail, code, attempt, fence, stop_requested_us, cancel_requested_us, submitted_us, \
-         started_us, finished_us"
-    };
+row! {
+    columns job_columns;
+    /// A job without its scenario.
+    #[derive(Debug, Clone)]
+    pub(crate) struct JobRow {
+        /// Order of submission.
+        pub(crate) sequence: i64,
+        /// Public identifier.
+        pub(crate) id: String,
+        state: String,
+        /// Name of the scenario.
+        pub(crate) name: Option<String>,
+        /// Number of targets.
+        pub(crate) targets: i64,
+        /// Stage of the solve.
+        pub(crate) stage: Option<String>,
+        /// Steps of the stage that are done.
+        pub(crate) done: Option<i64>,
+        /// Steps of the stage in all.
+        pub(crate) total: Option<i64>,
+        /// Duration of the best plan so far, s.
+        pub(crate) incumbent_s: Option<f64>,
+        /// Lower bound on the duration, s.
+        pub(crate) lower_bound_s: Option<f64>,
+        /// Why the job ended without a plan.
+        pub(crate) detail: Option<String>,
+        /// The same reason as a stable code.
+        pub(crate) code: Option<String>,
+        /// Number of attempts so far.
+        pub(crate) attempt: i64,
+        /// Number of its newest lease (fence).
+        pub(crate) fence: i64,
+        /// When a stop was requested.
+        pub(crate) stop_requested_us: Option<i64>,
+        /// When its cancellation was requested.
+        pub(crate) cancel_requested_us: Option<i64>,
+        /// When it was submitted.
+        pub(crate) submitted_us: i64,
+        /// When its newest attempt began.
+        pub(crate) started_us: Option<i64>,
+        /// When it ended.
+        pub(crate) finished_us: Option<i64>,
+    }
 }
 pub(super) use job_columns;
 
 impl JobRow {
     /// The state of the job.
     pub(crate) fn state(&self) -> Result<JobState, StoreError> {
-        JobState::stored(&self.state_text)
+        JobState::stored(&self.state)
     }
 
     pub(super) fn of(row: &SqliteRow) -> Result<Self, StoreError> {

@@ -1,28 +1,33 @@
 //! Segments of tours that the search of a running job has solved.
 
+use super::row::row;
 use super::{JobRow, Store, StoreError};
-use sqlx::FromRow;
 
 /// Segments of other versions of the solver are not found.
 const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A solved segment.
-#[derive(Debug, Clone, PartialEq, FromRow)]
-pub(crate) struct SegmentRow {
-    /// The solver's name of the segment, unique within the job.
-    pub(crate) name: String,
-    /// Number of its intervals.
-    pub(crate) intervals: i64,
-    /// Its motion in binary form.
-    pub(crate) motion: Vec<u8>,
+row! {
+    columns segment_columns;
+    /// A solved segment.
+    #[derive(Debug, Clone, PartialEq)]
+    pub(crate) struct SegmentRow {
+        /// The solver's name of the segment, unique within the job.
+        pub(crate) name: String,
+        /// Number of its intervals.
+        pub(crate) intervals: i64,
+        /// Its motion in binary form.
+        pub(crate) motion: Vec<u8>,
+    }
 }
 
 impl Store {
     /// The segments of a job that this version of the solver has solved.
     pub(crate) async fn segments(&self, job: i64) -> Result<Vec<SegmentRow>, StoreError> {
-        Ok(sqlx::query_as(
-            "SELECT name, intervals, motion FROM segments WHERE job = ? AND solver_version = ?",
-        )
+        Ok(sqlx::query_as(concat!(
+            "SELECT ",
+            segment_columns!(),
+            " FROM segments WHERE job = ? AND solver_version = ?",
+        ))
         .bind(job)
         .bind(SOLVER_VERSION)
         .fetch_all(&self.readers)

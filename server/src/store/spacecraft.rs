@@ -1,21 +1,24 @@
 //! Spacecraft stored by name, with their newest versions.
 
+use super::row::row;
 use super::{Store, StoreError};
-use sqlx::FromRow;
 
 /// Number of versions kept of each name. Jobs do not depend on them: their scenarios have the
 /// spacecraft written out.
 pub(super) const KEPT_VERSIONS: i64 = 100;
 
-/// A version of a stored spacecraft.
-#[derive(Debug, Clone, FromRow)]
-pub(crate) struct SpacecraftRow {
-    /// Counts from 1 for each name.
-    pub(crate) version: i64,
-    /// The spacecraft as JSON.
-    pub(crate) document: String,
-    /// When it was stored.
-    pub(crate) created_us: i64,
+row! {
+    columns spacecraft_columns;
+    /// A version of a stored spacecraft.
+    #[derive(Debug, Clone)]
+    pub(crate) struct SpacecraftRow {
+        /// Counts from 1 for each name.
+        pub(crate) version: i64,
+        /// The spacecraft as JSON.
+        pub(crate) document: String,
+        /// When it was stored.
+        pub(crate) created_us: i64,
+    }
 }
 
 impl Store {
@@ -28,10 +31,11 @@ impl Store {
         now_us: i64,
     ) -> Result<SpacecraftRow, StoreError> {
         let mut transaction = self.begin().await?;
-        let newest: Option<SpacecraftRow> = sqlx::query_as(
-            "SELECT version, document, created_us FROM spacecraft \
-             WHERE name = ? ORDER BY version DESC LIMIT 1",
-        )
+        let newest: Option<SpacecraftRow> = sqlx::query_as(concat!(
+            "SELECT ",
+            spacecraft_columns!(),
+            " FROM spacecraft WHERE name = ? ORDER BY version DESC LIMIT 1",
+        ))
         .bind(name)
         .fetch_optional(&mut *transaction)
         .await?;
@@ -68,10 +72,12 @@ impl Store {
         name: &str,
         version: Option<i64>,
     ) -> Result<Option<SpacecraftRow>, StoreError> {
-        Ok(sqlx::query_as(
-            "SELECT version, document, created_us FROM spacecraft \
+        Ok(sqlx::query_as(concat!(
+            "SELECT ",
+            spacecraft_columns!(),
+            " FROM spacecraft \
              WHERE name = ?1 AND (?2 IS NULL OR version = ?2) ORDER BY version DESC LIMIT 1",
-        )
+        ))
         .bind(name)
         .bind(version)
         .fetch_optional(&self.readers)

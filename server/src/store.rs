@@ -4,6 +4,12 @@
 //! begins IMMEDIATE, so that it cannot fail at its commit because of another writer; no transaction
 //! is open while anything is computed or sent.
 
+// Before the others: their macros are known from here on.
+#[macro_use]
+mod row;
+#[macro_use]
+mod rows;
+
 mod backup;
 mod ends;
 mod error;
@@ -17,8 +23,6 @@ mod packed;
 mod recent;
 mod results;
 mod retention;
-mod row;
-mod rows;
 mod segments;
 mod spacecraft;
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! The events of jobs, numbered per job.
 
-use super::row::row;
 use super::writing::WriteTransaction;
 use super::{JobRow, Store, StoreError};
 

@@ -1,6 +1,5 @@
 //! Jobs from the side of the API: submission, look-up, requests to stop or cancel, deletion.
 
-use super::rows::job_columns;
 use super::writing::WriteTransaction;
 use super::{Counts, JobRow, JobState, Store, StoreError, events, results};
 use sqlx::{FromRow, Row, SqliteConnection};

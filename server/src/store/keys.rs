@@ -1,6 +1,5 @@
 //! API keys of clients, and the ownership of jobs.
 
-use super::row::row;
 use super::{Store, StoreError};
 use crate::base::access::Scopes;
 

@@ -4,7 +4,6 @@
 //! lease succeed only while its fence is the newest, so that a worker that was presumed dead cannot
 //! overwrite the work of its successor.
 
-use super::rows::job_columns;
 use super::writing::WriteTransaction;
 use super::{
     EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,

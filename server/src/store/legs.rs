@@ -2,7 +2,6 @@
 
 mod upkeep;
 
-use super::row::row;
 use super::{Store, StoreError};
 use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{LegKind, StoredLeg};

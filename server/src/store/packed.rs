@@ -5,7 +5,6 @@
 //! so that it is short.
 
 use super::StoreError;
-use super::row::row;
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;

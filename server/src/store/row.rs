@@ -18,7 +18,7 @@ macro_rules! row {
             };
         }
 
-        $crate::store::row::row! {
+        row! {
             $(#[$about])*
             $seen struct $row {
                 $(#[$about_first])*
@@ -47,4 +47,3 @@ macro_rules! row {
         }
     };
 }
-pub(super) use row;

@@ -1,7 +1,6 @@
 //! Rows of the tables as types.
 
 use super::StoreError;
-use super::row::row;
 use sqlx::FromRow as _;
 use sqlx::sqlite::SqliteRow;
 
@@ -105,7 +104,6 @@ row! {
         pub(crate) finished_us: Option<i64>,
     }
 }
-pub(super) use job_columns;
 
 impl JobRow {
     /// The state of the job.

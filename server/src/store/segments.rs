@@ -1,6 +1,5 @@
 //! Segments of tours that the search of a running job has solved.
 
-use super::row::row;
 use super::{JobRow, Store, StoreError};
 
 /// Segments of other versions of the solver are not found.

@@ -1,6 +1,5 @@
 //! Spacecraft stored by name, with their newest versions.
 
-use super::row::row;
 use super::{Store, StoreError};
 
 /// Number of versions kept of each name. Jobs do not depend on them: their scenarios have the

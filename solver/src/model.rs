@@ -2,8 +2,10 @@
 //! have.
 
 pub mod attitude;
+pub(crate) mod boresights;
 pub mod drive;
 pub(crate) mod dynamics;
+pub mod epoch;
 pub mod findings;
 pub mod input;
 pub mod motion;
@@ -15,5 +17,6 @@ pub(crate) mod random;
 pub mod scenario;
 pub mod spacecraft;
 pub mod spec;
+pub mod spelling;
 pub(crate) mod waypoint;
 pub(crate) mod wheel_axes;

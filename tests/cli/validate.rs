@@ -13,6 +13,17 @@ fn every_fixture_is_valid() {
         "pyramid.json",
         "pyramid-one-disabled.json",
         "pyramid-momentum-bias.json",
+        "olivares-a-quaternion.json",
+        "quarter-turn.json",
+        "ra-dec.json",
+        "gallery/biros.json",
+        "gallery/cubesat-6u.json",
+        "gallery/envelope-pyramid.json",
+        "gallery/imager-500kg.json",
+        "gallery/lro.json",
+        "gallery/olrac.json",
+        "gallery/smallsat-100kg.json",
+        "gallery/telescope-2t.json",
     ] {
         let ended = slewplan(&["validate", &fixture(name)]).expect_code(0);
         assert!(ended.stdout.ends_with("is valid\n"), "{ended:?}");
@@ -46,6 +57,52 @@ fn a_quaternion_with_a_small_norm_error_is_a_warning() {
         told.contains("1 warning") && told.contains("[attitude_normalized]"),
         "{told}"
     );
+}
+
+#[test]
+fn slips_of_units_are_warnings_that_name_the_slip() {
+    let mut scenario = fixture_json("two-targets.json");
+    let craft = &mut scenario["spacecraft"];
+    craft["max_body_rate_rad_s"] = json!([2.3, 2.3, 2.3]);
+    craft["wheels"][0]["inertia_kg_m2"] = json!(0.1);
+    craft["wheels"][0]["max_speed_rad_s"] = json!(6000);
+    craft["wheels"][1]["max_torque_nm"] = json!(10.1);
+    scenario["targets"] = json!([]);
+    let text = scenario.to_string();
+    let line = ["validate", "-", "--format", "json"];
+    let document = slewplan_fed(&line, text.as_bytes()).expect_code(0).json();
+    let told: Vec<(&str, &str, &str)> = document["warnings"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|warning| {
+            let text = |name: &str| warning[name].as_str().expect("a text");
+            (text("code"), text("pointer"), text("hint"))
+        })
+        .collect();
+    let expected = [
+        ("no_targets", "/targets", "targets"),
+        (
+            "rate_limit_unreachable",
+            "/spacecraft/max_body_rate_rad_s/2",
+            "degrees per second",
+        ),
+        (
+            "wheel_speed_implausible",
+            "/spacecraft/wheels/0/max_speed_rad_s",
+            "revolutions per minute",
+        ),
+        (
+            "acceleration_implausible",
+            "/spacecraft/inertia_kg_m2",
+            "g mm2",
+        ),
+    ];
+    assert_eq!(told.len(), expected.len(), "{document:#}");
+    for (told, expected) in told.iter().zip(expected) {
+        assert_eq!((told.0, told.1), (expected.0, expected.1));
+        assert!(told.2.contains(expected.2), "{told:?}");
+    }
 }
 
 #[test]

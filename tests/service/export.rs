@@ -1,8 +1,10 @@
 //! Exports of results.
 
 use crate::client::Request;
-
 use crate::running::{Service, small};
+use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{ConnectOptions, Connection};
+use std::path::Path;
 
 const TYPES: [(&str, &str, &str); 7] = [
     ("csv", "text/csv", "time_s,"),
@@ -86,7 +88,7 @@ fn options_of_formats_are_applied() {
 }
 
 #[test]
-fn labels_that_a_format_cannot_represent_are_not_acceptable() {
+fn labels_that_a_format_cannot_represent_are_told() {
     let service = Service::start();
     let mut scenario = small();
     scenario["time_system"] = "TAI".into();
@@ -95,7 +97,7 @@ fn labels_that_a_format_cannot_represent_are_not_acceptable() {
     service.wait_end(&id);
     let path = format!("/v1/plans/{id}/result");
     let refused = service.get(&format!("{path}?format=stk"));
-    let problem = refused.expect_problem(406, "not_acceptable");
+    let problem = refused.expect_problem(422, "not_exportable");
     assert!(
         problem["detail"]
             .as_str()
@@ -103,4 +105,45 @@ fn labels_that_a_format_cannot_represent_are_not_acceptable() {
     );
     let message = service.get(&format!("{path}?format=aem-kvn")).expect(200);
     assert!(message.body.contains("TIME_SYSTEM = TAI"));
+}
+
+#[test]
+fn a_stored_plan_with_an_epoch_of_before_is_read_but_not_exported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("legs.db");
+    let mut service = Service::on(&database, &[]);
+    let mut scenario = small();
+    scenario["epoch"] = "2026-01-01T00:00:00".into();
+    let id = service.submit(&scenario);
+    service.wait_end(&id);
+    assert!(service.terminate());
+    // As it was taken by a version that did not look at epochs.
+    let bad = scenario.to_string().replace("2026-01-01T00:00:00", "soon");
+    replace_scenario(&database, bad);
+    let service = Service::on(&database, &[]);
+    let path = format!("/v1/plans/{id}/result");
+    let plan = service.get(&path).expect(200).json();
+    assert_eq!(plan["status"], "optimal");
+    let stored = service.get(&format!("/v1/plans/{id}/scenario")).expect(200);
+    assert_eq!(stored.json()["epoch"], "soon");
+    for format in ["aem-kvn", "csv"] {
+        let refused = service.get(&format!("{path}?format={format}"));
+        let problem = refused.expect_problem(422, "not_exportable");
+        let detail = problem["detail"].as_str().expect("a text");
+        assert!(detail.starts_with("/epoch of the scenario"), "{detail}");
+        assert_eq!(problem["errors"][0]["code"], "invalid_epoch");
+    }
+}
+
+/// Puts another scenario in the place of the only one.
+fn replace_scenario(database: &Path, scenario: String) {
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    runtime.block_on(async {
+        let options = SqliteConnectOptions::new().filename(database);
+        let mut connection = options.connect().await.expect("a database");
+        let put = sqlx::query("UPDATE jobs SET scenario = ?").bind(scenario.into_bytes());
+        let put = put.execute(&mut connection).await.expect("changed");
+        assert_eq!(put.rows_affected(), 1);
+        connection.close().await.expect("written");
+    });
 }

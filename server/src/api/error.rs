@@ -89,6 +89,10 @@ error_codes! {
         "Send application/json without Content-Encoding.";
     InvalidInput = "invalid_input", UNPROCESSABLE_ENTITY, "The input is not valid",
         "Correct what errors lists, each entry with its pointer and hint.";
+    NotExportable = "not_exportable", UNPROCESSABLE_ENTITY,
+        "The plan cannot be written in this format",
+        "Take another format, or plan again with a scenario whose epoch, time system and frame the \
+         format has.";
     IdempotencyKeyReused = "idempotency_key_reused", UNPROCESSABLE_ENTITY,
         "The idempotency key belongs to another request",
         "Use a new key for another request.";
@@ -182,6 +186,11 @@ impl ApiError {
             problems,
             ..Self::new(code, detail)
         }
+    }
+
+    /// Adds problems that the detail does not tell in full.
+    pub(super) fn with_problems(self, problems: Vec<Problem>) -> Self {
+        Self { problems, ..self }
     }
 
     /// Adds warnings about the input.

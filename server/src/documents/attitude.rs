@@ -4,7 +4,7 @@ use super::document::parse;
 use super::reader::{Cursor, Sink};
 use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::{Code, Problem};
-use slewplan_solver::model::spec::AttitudeSpec;
+use slewplan_solver::model::spec::{AttitudeSpec, BoresightChoice};
 
 fn read_text(text: &str) -> (AttitudeSpec, Vec<Problem>) {
     let node = parse(text.as_bytes()).unwrap();
@@ -37,7 +37,14 @@ fn every_form_is_read() {
             r#"{"ra_dec_roll_deg": [1, 2, 3], "boresight": [0, 0, 1]}"#,
             AttitudeSpec::RaDecRollDeg {
                 angles: [1.0, 2.0, 3.0],
-                boresight: [0.0, 0.0, 1.0],
+                boresight: BoresightChoice::Axis([0.0, 0.0, 1.0]),
+            },
+        ),
+        (
+            r#"{"ra_dec_roll_deg": [1, 2, 3], "boresight": "camera"}"#,
+            AttitudeSpec::RaDecRollDeg {
+                angles: [1.0, 2.0, 3.0],
+                boresight: BoresightChoice::Name("camera".to_owned()),
             },
         ),
     ];

@@ -94,6 +94,9 @@ fn follows_from_a_substitute(found: &Problem, replaced: &[String]) -> bool {
             any_related(&found.pointer)
                 || replaced.iter().any(|p| contains(p, "/spacecraft/wheels"))
         }
+        Code::UnknownReference if found.pointer.ends_with("/attitude/boresight") => {
+            any_related(&found.pointer) || any_related("/spacecraft/boresights")
+        }
         Code::UnknownReference if found.pointer.starts_with("/targets/") => {
             any_related(&found.pointer) || replaced.iter().any(|p| loses_name_of_target(p))
         }
@@ -101,6 +104,10 @@ fn follows_from_a_substitute(found: &Problem, replaced: &[String]) -> bool {
             any_related(&found.pointer) || any_related("/spacecraft/boresights")
         }
         Code::EndMomentumInconsistent => !replaced.is_empty(),
+        // Wheels, limits and inertia are compared with each other.
+        Code::RateLimitUnreachable
+        | Code::WheelSpeedImplausible
+        | Code::AccelerationImplausible => any_related("/spacecraft") || any_related("/start"),
         // A locked wheel must end as it starts.
         Code::ConflictingFields => any_related(&found.pointer) || any_related("/start"),
         _ => any_related(&found.pointer),

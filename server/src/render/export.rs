@@ -208,8 +208,7 @@ pub(crate) fn check(
 ) -> Result<(), ExportError> {
     check_choices(format, options)?;
     match format {
-        Format::Csv | Format::Basilisk => Ok(()),
-        Format::AemKvn | Format::AemXml => calendar::epoch(scenario).map(drop),
+        Format::Csv | Format::Basilisk | Format::AemKvn | Format::AemXml => Ok(()),
         Format::OpenMct => open_mct::epoch(scenario).map(drop),
         Format::Stk => stk::labels(scenario).map(drop),
         Format::WheelRpm => wheel_rpm::check_wheel(scenario, options.wheel),

@@ -14,6 +14,8 @@
 
 mod forms;
 
+pub use forms::AttitudeContext;
+
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 
 /// A unit quaternion under the [conventions](self) of this module, sign included.

@@ -55,6 +55,12 @@ pub trait InputPlace: Sized {
     /// Whether `null` stands there.
     fn is_null(&self) -> bool;
 
+    /// Whether a number stands there; that it does not is no problem.
+    fn is_number(&self) -> bool;
+
+    /// Whether a text stands there; that it does not is no problem.
+    fn is_text(&self) -> bool;
+
     /// A number.
     fn number(&self) -> Option<f64>;
 
@@ -128,6 +134,14 @@ impl InputPlace for Nothing {
     fn report(&self, _: Code, _: impl Into<String>, _: impl Into<String>) {}
 
     fn is_null(&self) -> bool {
+        false
+    }
+
+    fn is_number(&self) -> bool {
+        false
+    }
+
+    fn is_text(&self) -> bool {
         false
     }
 

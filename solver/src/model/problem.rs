@@ -269,6 +269,27 @@ pub enum Code {
     /// An order takes less time than a lower bound allowed: the bounds are doubtful (warning).
     #[strum(message = "Take the bound as doubtful; the plan itself is verified.")]
     BoundContradicted,
+    /// An epoch that is no calendar date with a time.
+    #[strum(message = "Write it like 2026-01-31T12:00:00Z, in the scenario's time system.")]
+    InvalidEpoch,
+    /// A document of another kind than was asked for.
+    #[strum(message = "Give the document that the message asks for.")]
+    WrongDocument,
+    /// A reference frame that turns, although plans are computed in inertial axes (warning).
+    #[strum(message = "Name the inertial frame in which the attitudes are given.")]
+    RotatingFrame,
+    /// A limit of the body rate far beyond what the wheels reach, as of degrees for radians (warning).
+    #[strum(message = "Write the limit in rad/s, or null where no limit is meant.")]
+    RateLimitUnreachable,
+    /// Large wheels that turn at thousands of rad/s, as of rpm for rad/s (warning).
+    #[strum(message = "Write the speed in rad/s: rpm times 0.10472.")]
+    WheelSpeedImplausible,
+    /// Wheels that accelerate the body as no spacecraft does, as of g mm2 for kg m2 (warning).
+    #[strum(message = "Write inertias in kg m2 and torques in N m.")]
+    AccelerationImplausible,
+    /// A scenario with an end and without targets (warning).
+    #[strum(message = "List targets, unless a single slew to the end is meant.")]
+    NoTargets,
     /// A boresight enters a keep-out cone (warning).
     #[strum(
         message = "Look at time and depth, and move targets or demand another order if the \

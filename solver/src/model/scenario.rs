@@ -5,18 +5,21 @@
 //! reads the description instead, so that one run lists all problems.
 
 mod keep_out;
+mod labels;
 mod limits;
 mod options;
 mod order;
 mod state;
 mod target;
+mod unit_slips;
 
-use crate::model::attitude::Attitude;
+use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::findings::Findings;
 use crate::model::order_rules::OrderRules;
 use crate::model::problem::{Faults, Problem};
 use crate::model::spacecraft::Spacecraft;
-use crate::model::spec::{OptionsSpec, ScenarioSpec};
+use crate::model::spec::{OptionsSpec, ReferenceFrame, ScenarioSpec, TimeSystem};
+use jiff::civil::DateTime;
 use limits::Limits;
 use nalgebra::Vector3;
 
@@ -104,9 +107,9 @@ pub struct KeepOut {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     name: Option<String>,
-    epoch: Option<String>,
-    time_system: Option<String>,
-    reference_frame: Option<String>,
+    epoch: Option<DateTime>,
+    time_system: Option<TimeSystem>,
+    reference_frame: Option<ReferenceFrame>,
     spacecraft: Spacecraft,
     start: Start,
     end: Option<End>,
@@ -140,18 +143,22 @@ impl Scenario {
     }
 
     fn read(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Self> {
-        let equivalence = spec.options.attitude_equivalence;
+        let context = AttitudeContext {
+            equivalence: spec.options.attitude_equivalence,
+            boresights: &spec.spacecraft.boresights,
+        };
+        let epoch = labels::read_epoch(spec, findings);
+        labels::check_frame(spec, findings);
         let limits = Limits::of(spec);
         let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", findings);
-        let start =
-            state::read_start(&spec.start, equivalence, &limits, findings).filter(|start| {
-                spacecraft.as_ref().is_none_or(|spacecraft| {
-                    let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
-                    state::momentum_is_finite(&momentum, "/start", findings)
-                })
-            });
+        let start = state::read_start(&spec.start, context, &limits, findings).filter(|start| {
+            spacecraft.as_ref().is_none_or(|spacecraft| {
+                let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+                state::momentum_is_finite(&momentum, "/start", findings)
+            })
+        });
         let end = spec.end.as_ref().map(|end| {
-            let end = state::read_end(end, &spec.start, equivalence, &limits, findings)?;
+            let end = state::read_end(end, &spec.start, context, &limits, findings)?;
             let known = spacecraft.as_ref().zip(start.as_ref());
             known
                 .is_none_or(|(spacecraft, start)| {
@@ -159,15 +166,19 @@ impl Scenario {
                 })
                 .then_some(end)
         });
-        let targets = target::read_all(spec, &limits, findings);
+        let targets = target::read_all(spec, context, &limits, findings);
         let order_rules = order::read(spec, findings);
         let keep_out = keep_out::read_all(spec, findings);
         let options_valid = options::check(&spec.options, findings);
+        unit_slips::check_targets(spec, findings);
+        if let Some((spacecraft, start)) = spacecraft.as_ref().zip(start.as_ref()) {
+            unit_slips::check_spacecraft(spacecraft, start, findings);
+        }
         Some(Self {
             name: spec.name.clone(),
-            epoch: spec.epoch.clone(),
-            time_system: spec.time_system.clone(),
-            reference_frame: spec.reference_frame.clone(),
+            epoch: epoch?,
+            time_system: spec.time_system,
+            reference_frame: spec.reference_frame,
             spacecraft: spacecraft?,
             start: start?,
             end: match end {
@@ -187,22 +198,22 @@ impl Scenario {
         self.name.as_deref()
     }
 
-    /// Epoch of time zero as the caller wrote it; only labels exports.
+    /// Epoch of time zero in the time system; only labels exports.
     #[must_use]
-    pub fn epoch(&self) -> Option<&str> {
-        self.epoch.as_deref()
+    pub fn epoch(&self) -> Option<DateTime> {
+        self.epoch
     }
 
-    /// Time system of the epoch as the caller wrote it; only labels exports.
+    /// Time system of the epoch; only labels exports.
     #[must_use]
-    pub fn time_system(&self) -> Option<&str> {
-        self.time_system.as_deref()
+    pub fn time_system(&self) -> Option<TimeSystem> {
+        self.time_system
     }
 
-    /// Name of the reference frame as the caller wrote it; only labels exports.
+    /// The reference frame; only labels exports.
     #[must_use]
-    pub fn reference_frame(&self) -> Option<&str> {
-        self.reference_frame.as_deref()
+    pub fn reference_frame(&self) -> Option<ReferenceFrame> {
+        self.reference_frame
     }
 
     /// The spacecraft.

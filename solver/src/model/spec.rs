@@ -6,11 +6,14 @@
 //! that of the JSON document and of its description, see [`crate::model::input`].
 
 mod attitude;
+mod labels;
 mod spacecraft;
 
-pub use attitude::{AttitudeSpec, PairSpec};
+pub use attitude::{AttitudeSpec, BoresightChoice, PairSpec};
+pub use labels::{ReferenceFrame, TimeSystem};
 pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
 
+use super::epoch;
 use super::input::{
     self, InputForm, InputPlace, MemberRule, Schema, UpTo, input_choice, input_object, nullable,
     optional, or, required_or,
@@ -28,12 +31,12 @@ input_object! {
     pub struct ScenarioSpec as "Scenario" {
         /// Free text that names the scenario.
         pub name: Option<String> = optional(),
-        /// Epoch of time zero, ISO 8601; only labels exports.
-        pub epoch: Option<String> = optional(),
-        /// Time system of the epoch (`UTC`, `TAI`, ...); only labels exports.
-        pub time_system: Option<String> = optional(),
-        /// Name of the reference frame; only labels exports.
-        pub reference_frame: Option<String> = optional(),
+        /// Epoch of time zero in the time system, such as `2026-01-31T12:00:00.5Z`; only labels exports.
+        pub epoch: Option<String> = optional().pattern(epoch::PATTERN),
+        /// Time system of the epoch, UTC without it; only labels exports.
+        pub time_system: Option<TimeSystem> = optional(),
+        /// Reference frame of all attitudes and directions, EME2000 without it; only labels exports.
+        pub reference_frame: Option<ReferenceFrame> = optional(),
         /// The spacecraft.
         pub spacecraft: SpacecraftSpec as SpacecraftOrReference
             = required_or(SpacecraftSpec::substitute()),

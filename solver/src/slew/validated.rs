@@ -11,7 +11,7 @@ use crate::model::attitude::Attitude;
 use crate::model::drive::Drive;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::findings::Findings;
-use crate::model::problem::Problem;
+use crate::model::problem::{Code, Problem};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{AttitudeEquivalence, OptionsSpec, ScenarioSpec};
 use crate::model::waypoint::{Waypoint, WheelCondition};
@@ -61,9 +61,12 @@ impl Slew {
         let (Ok(scenario), Ok(drives), true) = (scenario, drives, problems.is_empty()) else {
             return Err(problems);
         };
+        let mut warnings = scenario.warnings;
+        // A slew never has any.
+        warnings.retain(|warning| warning.code != Code::NoTargets);
         Ok(ValidatedSlew {
             slew: Self::assemble(spec, scenario.scenario, drives),
-            warnings: scenario.warnings,
+            warnings,
         })
     }
 

@@ -8,7 +8,7 @@
 use crate::eigenaxis::{Baselines, EigenaxisBaseline};
 use crate::envelope_path::EnvelopePath;
 use nalgebra::Vector3;
-use slewplan_solver::model::attitude::Attitude;
+use slewplan_solver::model::attitude::{Attitude, AttitudeContext};
 use slewplan_solver::model::findings::Findings;
 use slewplan_solver::model::input::{self, UpTo, input_object, optional, or, required_or};
 use slewplan_solver::model::plan::Control;
@@ -149,6 +149,10 @@ impl EnvelopeStudy {
     pub fn try_new(spec: &EnvelopeStudySpec) -> Result<(Self, Vec<Problem>), Vec<Problem>> {
         let mut findings = Findings::default();
         let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", &mut findings);
+        let context = AttitudeContext {
+            equivalence: AttitudeEquivalence::Rotation,
+            boresights: &spec.spacecraft.boresights,
+        };
         let shares = &spec.options;
         let (torque, momentum) = (shares.torque_authority, shares.momentum_authority);
         let baselines = match &spacecraft {
@@ -164,7 +168,7 @@ impl EnvelopeStudy {
             .turns
             .iter()
             .enumerate()
-            .map(|(i, turn)| read_turn(turn, &format!("/turns/{i}"), &mut findings))
+            .map(|(i, turn)| read_turn(turn, context, &format!("/turns/{i}"), &mut findings))
             .collect();
         let demands: Vec<_> = spec
             .demands_nm
@@ -319,10 +323,15 @@ fn is_finite(allocation: &DemandAllocation) -> bool {
 }
 
 /// The rotation vector of a turn, rad.
-fn read_turn(spec: &PairSpec, pointer: &str, findings: &mut Findings) -> Option<Vector3<f64>> {
+fn read_turn(
+    spec: &PairSpec,
+    context: AttitudeContext<'_>,
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<Vector3<f64>> {
     let mut read = |spec, name| {
         let pointer = format!("{pointer}/{name}");
-        Attitude::read(spec, AttitudeEquivalence::Rotation, &pointer, findings)
+        Attitude::read(spec, context, &pointer, findings)
     };
     let (from, to) = (read(&spec.from, "from"), read(&spec.to, "to"));
     let (from, to) = (from?, to?);

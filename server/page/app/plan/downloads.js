@@ -1,7 +1,8 @@
 // The plan as files.
 
-import { key, request } from "../api.js";
+import { request } from "../api.js";
 import { el, section } from "../dom.js";
+import { failure } from "../failure.js";
 
 /** Values of `format`, endings of the files, names and what they are for. */
 const FORMATS = [
@@ -27,12 +28,17 @@ export function downloads(id, name) {
 function link(path, file, title, note) {
   const node = el("a", { class: "download", href: path, download: file }, el("strong", {}, title), el("span", {}, note));
   node.addEventListener("click", async (event) => {
-    // A link carries no key.
-    if (!key.get()) return;
+    // A link carries no key, and a browser does not show why a file cannot be written.
     event.preventDefault();
-    const content = URL.createObjectURL(await (await request(path)).blob());
-    el("a", { href: content, download: file }).click();
-    setTimeout(() => URL.revokeObjectURL(content), 60_000);
+    const list = node.closest(".downloads");
+    list.parentNode.querySelector(".failure")?.remove();
+    try {
+      const content = URL.createObjectURL(await (await request(path)).blob());
+      el("a", { href: content, download: file }).click();
+      setTimeout(() => URL.revokeObjectURL(content), 60_000);
+    } catch (problem) {
+      list.after(failure(problem));
+    }
   });
   return node;
 }

@@ -14,6 +14,7 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 use axum::response::Response;
 use serde::Deserialize;
+use slewplan_solver::model::problem::Problem;
 use utoipa::IntoParams;
 
 const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
@@ -125,8 +126,10 @@ impl ResultQuery {
                     description = "A name for the file, in the formats of other tools"),
             )),
         (status = 304, description = "Not changed"),
-        (status = 406, description = "No accepted form, or one that cannot say what the scenario's \
-            epoch, time system or frame is", body = ProblemDetails<'static>,
+        (status = 406, description = "No accepted form", body = ProblemDetails<'static>,
+            content_type = "application/problem+json"),
+        (status = 422, description = "A form that cannot say what the scenario's epoch, time system \
+            or frame is (`not_exportable`); the detail tells which", body = ProblemDetails<'static>,
             content_type = "application/problem+json"),
         (status = 409, description = "No plan yet (`result_not_ready`), or none at all (`no_result`)",
             body = ProblemDetails<'static>, content_type = "application/problem+json",
@@ -237,7 +240,7 @@ fn write(
     plan: &[u8],
     options: &ExportOptions,
 ) -> Result<String, ApiError> {
-    let valid = documents::scenario::read(scenario, None).map_err(|error| unreadable(&error))?;
+    let valid = documents::scenario::read(scenario, None).map_err(outdated)?;
     let scenario = &valid.scenario;
     let Some(flight) =
         documents::flight::read_written(plan, scenario).map_err(|why| unreadable(&why))?
@@ -247,9 +250,18 @@ fn write(
     };
     export::write(format, scenario, &flight, options).map_err(|error| match error {
         ExportError::Choice(what) => ApiError::new(ErrorCode::InvalidParameter, what),
-        ExportError::Label { .. } => ApiError::new(ErrorCode::NotAcceptable, error.to_string()),
+        ExportError::Label { .. } => ApiError::new(ErrorCode::NotExportable, error.to_string()),
         ExportError::NotFlown(_) | ExportError::NotFinite => unreadable(&error),
     })
+}
+
+/// A stored scenario that was valid when it was accepted, but not for this version of the program.
+fn outdated(problems: Vec<Problem>) -> ApiError {
+    let detail = match problems.first() {
+        Some(first) => format!("{} of the scenario: {}", first.pointer, first.message),
+        None => "the scenario is not valid".to_owned(),
+    };
+    ApiError::new(ErrorCode::NotExportable, detail).with_problems(problems)
 }
 
 fn unreadable(error: &impl std::fmt::Debug) -> ApiError {

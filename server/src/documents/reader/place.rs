@@ -18,6 +18,14 @@ impl InputPlace for Cursor<'_> {
         *self.node == Node::Null
     }
 
+    fn is_number(&self) -> bool {
+        matches!(self.node, Node::Integer(_) | Node::Number(_))
+    }
+
+    fn is_text(&self) -> bool {
+        matches!(self.node, Node::Text(_))
+    }
+
     fn number(&self) -> Option<f64> {
         Cursor::number(self)
     }

@@ -163,6 +163,24 @@ fn a_nameless_target_may_be_the_one_that_another_comes_after() {
 }
 
 #[test]
+fn nobody_doubts_the_units_of_a_substitute() {
+    let follows = |shape: &str, pointer: &str, code| {
+        let shape = [Problem::new(shape, Code::WrongType, "", "")];
+        follows_from_a_substitute(&Problem::new(pointer, code, "", ""), &replaced(&shape))
+    };
+    let (inertia, wheels) = ("/spacecraft/inertia_kg_m2", "/spacecraft/wheels");
+    assert!(follows(wheels, inertia, Code::AccelerationImplausible));
+    assert!(!follows(
+        "/targets/0/id",
+        inertia,
+        Code::AccelerationImplausible
+    ));
+    let (boresights, named) = ("/spacecraft/boresights", "/start/attitude/boresight");
+    assert!(follows(boresights, named, Code::UnknownReference));
+    assert!(!follows("/targets/0/id", named, Code::UnknownReference));
+}
+
+#[test]
 fn without_wheels_nothing_is_said_about_their_number() {
     let shape = [Problem::new(
         "/spacecraft/wheels",

@@ -48,7 +48,7 @@ pub(super) fn message(
     trajectory: &SampledFlight<'_>,
     options: &ExportOptions,
 ) -> Result<Message, ExportError> {
-    let epoch = calendar::epoch(scenario)?;
+    let epoch = calendar::epoch(scenario);
     let segments = trajectory.segments.iter();
     Ok(Message {
         header: header(scenario, options),
@@ -92,14 +92,15 @@ fn block(
         SegmentKind::Slew(from, to) => format!("Slew from {} to {}", plain(from), plain(to)),
         SegmentKind::Rest(target) => format!("At rest at {}", plain(target)),
     };
-    let frame = scenario.reference_frame().unwrap_or("EME2000");
+    let frame = scenario.reference_frame().unwrap_or_default();
+    let time_system = calendar::time_system(scenario);
     let mut metadata = vec![
         ("COMMENT", what),
         ("OBJECT_NAME", named(&options.object_name)),
         ("OBJECT_ID", named(&options.object_id)),
-        ("REF_FRAME_A", plain(frame)),
+        ("REF_FRAME_A", frame.name().to_owned()),
         ("REF_FRAME_B", BODY.to_owned()),
-        ("TIME_SYSTEM", plain(calendar::time_system(scenario))),
+        ("TIME_SYSTEM", time_system.name().to_owned()),
         ("START_TIME", at(lines.first())),
         ("STOP_TIME", at(lines.last())),
     ];

@@ -5,12 +5,13 @@ use super::ExportError;
 use super::calendar::{self, CalendarTime};
 use super::trajectory::SampledFlight;
 use slewplan_solver::model::scenario::Scenario;
+use slewplan_solver::model::spec::ReferenceFrame;
 use std::fmt::Write;
 
 /// Epoch and axes.
 pub(super) fn labels(scenario: &Scenario) -> Result<(CalendarTime, &'static str), ExportError> {
     let epoch = calendar::utc_epoch(scenario, "STK")?;
-    let axes = axes(scenario.reference_frame().unwrap_or("EME2000"))?;
+    let axes = axes(scenario.reference_frame().unwrap_or_default())?;
     Ok((epoch, axes))
 }
 
@@ -50,13 +51,16 @@ pub(super) fn attitude_file(
 }
 
 /// STK's name of a frame.
-fn axes(frame: &str) -> Result<&'static str, ExportError> {
+fn axes(frame: ReferenceFrame) -> Result<&'static str, ExportError> {
     match frame {
-        "EME2000" | "J2000" => Ok("J2000"),
-        "ICRF" | "GCRF" => Ok("ICRF"),
+        ReferenceFrame::Eme2000 | ReferenceFrame::J2000 => Ok("J2000"),
+        ReferenceFrame::Icrf | ReferenceFrame::Gcrf => Ok("ICRF"),
         other => Err(ExportError::Label {
             pointer: "/reference_frame",
-            what: format!("STK has EME2000 (J2000) and ICRF (GCRF) here, not {other:?}"),
+            what: format!(
+                "STK has EME2000 (J2000) and ICRF (GCRF) here, not {}",
+                other.name()
+            ),
         }),
     }
 }

@@ -5,6 +5,7 @@ use super::view::DrawnBoresight;
 use super::written::{WrittenPlan, WrittenState};
 use nalgebra::Vector3;
 use slewplan_solver::model::scenario::{KeepOut, Scenario};
+use slewplan_solver::model::spec::ReferenceFrame;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Space for the text below the sphere.
@@ -108,7 +109,7 @@ pub(super) fn draw(
     axes(canvas, &view);
     targets(canvas, &view, plan, &trace);
     let frame_name = scenario.and_then(Scenario::reference_frame);
-    let of = frame_name.unwrap_or("the reference frame");
+    let of = frame_name.map_or("the reference frame", ReferenceFrame::name);
     let cones = match forbidden {
         0 => "",
         _ => "; red: keep-out",

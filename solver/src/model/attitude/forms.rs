@@ -11,9 +11,10 @@
 //! Roll is a right-handed turn about the boresight.
 
 use super::Attitude;
+use crate::model::boresights;
 use crate::model::findings::{Findings, unit};
 use crate::model::problem::{Code, Problem};
-use crate::model::spec::{AttitudeEquivalence, AttitudeSpec};
+use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, BoresightChoice, BoresightSpec};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// Deviation from a rotation up to which it is attributed to rounding of the text.
@@ -23,8 +24,17 @@ const MAX_DEVIATION: f64 = 1e-3;
 /// Sine of the angle to body Z below which a boresight lies along it.
 const ALONG_Z: f64 = 1e-6;
 
+/// What an input form may refer to.
+#[derive(Debug, Clone, Copy)]
+pub struct AttitudeContext<'a> {
+    /// Whether q and -q are the same attitude.
+    pub equivalence: AttitudeEquivalence,
+    /// The boresights that the form may name.
+    pub boresights: &'a [BoresightSpec],
+}
+
 impl Attitude {
-    /// Reads an input form; returns warnings beside the attitude.
+    /// Reads an input form without named boresights; returns warnings beside the attitude.
     ///
     /// `pointer` is the JSON pointer of the attitude.
     ///
@@ -37,17 +47,22 @@ impl Attitude {
         pointer: &str,
     ) -> Result<(Self, Vec<Problem>), Vec<Problem>> {
         let mut findings = Findings::default();
-        let attitude = Self::read(spec, equivalence, pointer, &mut findings);
+        let context = AttitudeContext {
+            equivalence,
+            boresights: &[],
+        };
+        let attitude = Self::read(spec, context, pointer, &mut findings);
         findings.conclude(attitude)
     }
 
     /// Like [`Attitude::try_new`], for a reader of a larger description.
     pub fn read(
         spec: &AttitudeSpec,
-        equivalence: AttitudeEquivalence,
+        context: AttitudeContext<'_>,
         pointer: &str,
         findings: &mut Findings,
     ) -> Option<Self> {
+        let equivalence = context.equivalence;
         match spec {
             AttitudeSpec::Quaternion(xyzw) => {
                 quaternion(*xyzw, &format!("{pointer}/quaternion"), findings)
@@ -64,10 +79,45 @@ impl Attitude {
             AttitudeSpec::RaDecRollDeg { angles, boresight } => {
                 let angles_pointer = format!("{pointer}/ra_dec_roll_deg");
                 sign_required(equivalence, &angles_pointer, findings);
-                let angles = findings.finite_all(&angles_pointer, *angles);
-                let boresight = findings.direction(&format!("{pointer}/boresight"), *boresight);
+                let angles = sky_angles(*angles, &angles_pointer, findings);
+                let pointer = format!("{pointer}/boresight");
+                let boresight = boresight_axis(boresight, context.boresights, &pointer, findings);
                 Some(ra_dec_roll(angles?, boresight?))
             }
+        }
+    }
+}
+
+/// Right ascension, declination and roll, degrees.
+fn sky_angles(angles: [f64; 3], pointer: &str, findings: &mut Findings) -> Option<[f64; 3]> {
+    let angles = findings.finite_all(pointer, angles)?;
+    let declination = angles[1];
+    if declination.abs() <= 90.0 {
+        return Some(angles);
+    }
+    findings.refuse(
+        format!("{pointer}/1"),
+        Code::OutOfRange,
+        format!("the declination is {declination} degrees, it must be from -90 to 90"),
+        "write right ascension, declination and roll in this order, all in degrees",
+    );
+    None
+}
+
+/// Unit vector along the body axis that is pointed.
+fn boresight_axis(
+    choice: &BoresightChoice,
+    boresights: &[BoresightSpec],
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<Vector3<f64>> {
+    match choice {
+        BoresightChoice::Axis(axis) => findings.direction(pointer, *axis),
+        BoresightChoice::Name(name) => {
+            let axis = Vector3::from(boresights::find(name, boresights, pointer, findings)?.axis);
+            // One without a direction has been refused where it is declared.
+            let usable = axis.iter().all(|c| c.is_finite()) && axis.amax() > 0.0;
+            usable.then(|| unit(axis))
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::problem::{Code, Problem};
-use crate::model::spec::{AttitudeEquivalence, AttitudeSpec};
+use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, BoresightChoice};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
@@ -86,14 +86,14 @@ fn a_printed_matrix_is_projected_with_a_warning() {
 fn right_ascension_declination_and_roll_follow_the_stated_convention() {
     let along_x = AttitudeSpec::RaDecRollDeg {
         angles: [40.0, 30.0, 20.0],
-        boresight: [2.0, 0.0, 0.0],
+        boresight: BoresightChoice::Axis([2.0, 0.0, 0.0]),
     };
     let same = attitude(&AttitudeSpec::RollPitchYawDeg([20.0, -30.0, 40.0]));
     assert!(distance(&attitude(&along_x), &same) < 1e-15);
 
     let pole = attitude(&AttitudeSpec::RaDecRollDeg {
         angles: [0.0, 90.0, 0.0],
-        boresight: [0.0, 0.0, 1.0],
+        boresight: BoresightChoice::Axis([0.0, 0.0, 1.0]),
     });
     assert!((pole.to_reference(Vector3::z()) - Vector3::z()).norm() < 1e-15);
     assert!((pole.to_reference(Vector3::x()) + Vector3::x()).norm() < 1e-15);
@@ -101,7 +101,7 @@ fn right_ascension_declination_and_roll_follow_the_stated_convention() {
     let oblique = Vector3::new(1.0, -2.0, 0.5);
     let pointed = attitude(&AttitudeSpec::RaDecRollDeg {
         angles: [200.0, -35.0, 77.0],
-        boresight: oblique.into(),
+        boresight: BoresightChoice::Axis(oblique.into()),
     });
     let (ra, dec) = (200.0_f64.to_radians(), -35.0_f64.to_radians());
     let direction = Vector3::new(dec.cos() * ra.cos(), dec.cos() * ra.sin(), dec.sin());
@@ -184,7 +184,7 @@ fn impossible_forms_are_refused_at_the_offending_value() {
         (
             AttitudeSpec::RaDecRollDeg {
                 angles: zero,
-                boresight: zero,
+                boresight: BoresightChoice::Axis(zero),
             },
             Code::ZeroDirection,
             "/boresight",
@@ -192,7 +192,7 @@ fn impossible_forms_are_refused_at_the_offending_value() {
         (
             AttitudeSpec::RaDecRollDeg {
                 angles,
-                boresight: [1.0, 0.0, 0.0],
+                boresight: BoresightChoice::Axis([1.0, 0.0, 0.0]),
             },
             Code::NotFinite,
             "/ra_dec_roll_deg/1",
@@ -210,7 +210,7 @@ fn impossible_forms_are_refused_at_the_offending_value() {
 fn forms_without_a_sign_are_refused_where_the_sign_matters() {
     let pointing = AttitudeSpec::RaDecRollDeg {
         angles: [0.0; 3],
-        boresight: [1.0, 0.0, 0.0],
+        boresight: BoresightChoice::Axis([1.0, 0.0, 0.0]),
     };
     let unsigned = [
         (rows(&Attitude::identity()), "/matrix"),

@@ -104,6 +104,14 @@ impl InputPlace for Reader<'_> {
         matches!(self.value, Null)
     }
 
+    fn is_number(&self) -> bool {
+        matches!(self.value, Number(_))
+    }
+
+    fn is_text(&self) -> bool {
+        matches!(self.value, Text(_))
+    }
+
     fn number(&self) -> Option<f64> {
         match self.value {
             Number(value) => Some(*value),

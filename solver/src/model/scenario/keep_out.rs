@@ -1,8 +1,9 @@
 //! The keep-out cones.
 
 use super::KeepOut;
+use crate::model::boresights;
 use crate::model::findings::{Findings, unit};
-use crate::model::problem::{self, Code};
+use crate::model::problem::Code;
 use crate::model::spec::{BoresightSpec, KeepOutSpec, MAX_CONES, ScenarioSpec};
 use nalgebra::Vector3;
 
@@ -33,20 +34,8 @@ fn read(
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<KeepOut> {
-    // Looked up in the description, which has the name even if its axis is refused.
-    let boresight = boresights.iter().find(|known| known.name == spec.boresight);
-    if boresight.is_none() {
-        let known = problem::quoted(boresights.iter().map(|b| b.name.as_str()));
-        findings.refuse(
-            format!("{pointer}/boresight"),
-            Code::UnknownReference,
-            format!("no boresight is named \"{}\"", spec.boresight),
-            match known.as_str() {
-                "" => "declare it in spacecraft.boresights".to_owned(),
-                known => format!("declare it in spacecraft.boresights, or use {known}"),
-            },
-        );
-    }
+    let boresight_pointer = format!("{pointer}/boresight");
+    let boresight = boresights::find(&spec.boresight, boresights, &boresight_pointer, findings);
     let direction = findings.direction(&format!("{pointer}/direction"), spec.direction);
     let half_angle = read_half_angle(spec, &format!("{pointer}/half_angle_deg"), findings);
     Some(KeepOut {

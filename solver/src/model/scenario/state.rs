@@ -2,11 +2,11 @@
 
 use super::limits::{Limits, exceeds};
 use super::{End, Start};
-use crate::model::attitude::Attitude;
+use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::model::spacecraft::Spacecraft;
-use crate::model::spec::{AttitudeEquivalence, StateSpec};
+use crate::model::spec::StateSpec;
 use nalgebra::Vector3;
 
 /// Difference between the momentum at the end and the conserved one, relative to the terms, that is
@@ -17,11 +17,11 @@ const CAPACITY_TOLERANCE: f64 = 1e-9;
 
 pub(super) fn read_start(
     spec: &StateSpec,
-    equivalence: AttitudeEquivalence,
+    context: AttitudeContext<'_>,
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<Start> {
-    let attitude = Attitude::read(&spec.attitude, equivalence, "/start/attitude", findings);
+    let attitude = Attitude::read(&spec.attitude, context, "/start/attitude", findings);
     let rate = read_rate(spec, "/start", limits, findings);
     let wheel_speed = match &spec.wheel_speed_rad_s {
         None => Some(vec![0.0; limits.wheels.len()]),
@@ -37,11 +37,11 @@ pub(super) fn read_start(
 pub(super) fn read_end(
     spec: &StateSpec,
     start: &StateSpec,
-    equivalence: AttitudeEquivalence,
+    context: AttitudeContext<'_>,
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<End> {
-    let attitude = Attitude::read(&spec.attitude, equivalence, "/end/attitude", findings);
+    let attitude = Attitude::read(&spec.attitude, context, "/end/attitude", findings);
     let rate = read_rate(spec, "/end", limits, findings);
     let wheel_speed = match &spec.wheel_speed_rad_s {
         None => Some(None),

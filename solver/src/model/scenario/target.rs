@@ -2,7 +2,7 @@
 
 use super::limits::{Limits, exceeds};
 use super::{RateCondition, Target};
-use crate::model::attitude::Attitude;
+use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::model::spec::{MAX_TARGETS, ScenarioSpec, TargetSpec};
@@ -13,6 +13,7 @@ const RESERVED: [&str; 2] = ["start", "end"];
 
 pub(super) fn read_all(
     spec: &ScenarioSpec,
+    context: AttitudeContext<'_>,
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<Vec<Target>> {
@@ -37,10 +38,8 @@ pub(super) fn read_all(
         .map(|(i, target)| {
             let pointer = format!("/targets/{i}");
             let id_valid = check_id(&target.id, &mut ids, &pointer, findings);
-            let equivalence = spec.options.attitude_equivalence;
             let attitude_pointer = format!("{pointer}/attitude");
-            let attitude =
-                Attitude::read(&target.attitude, equivalence, &attitude_pointer, findings);
+            let attitude = Attitude::read(&target.attitude, context, &attitude_pointer, findings);
             let rate = read_rate(target, &pointer, limits, findings);
             let dwell = read_time(target.dwell_s, &format!("{pointer}/dwell_s"), findings);
             let settle = read_time(target.settle_s, &format!("{pointer}/settle_s"), findings);

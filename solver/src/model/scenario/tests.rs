@@ -1,4 +1,7 @@
+mod labels;
 mod remarks;
+mod sky;
+mod unit_slips;
 
 use super::reference::experiment_a;
 use super::*;
@@ -52,13 +55,16 @@ fn expect_faults(table: &[Fault]) {
 fn a_valid_description_becomes_a_scenario() {
     let mut spec = valid();
     spec.epoch = Some("2026-01-01T00:00:00Z".to_owned());
-    spec.time_system = Some("UTC".to_owned());
-    spec.reference_frame = Some("EME2000".to_owned());
+    spec.time_system = Some(TimeSystem::Utc);
+    spec.reference_frame = Some(ReferenceFrame::Eme2000);
     let Validated { scenario, warnings } = Scenario::try_new(&spec).unwrap();
     assert_eq!(warnings, []);
-    assert_eq!(scenario.epoch(), Some("2026-01-01T00:00:00Z"));
-    assert_eq!(scenario.time_system(), Some("UTC"));
-    assert_eq!(scenario.reference_frame(), Some("EME2000"));
+    assert_eq!(
+        scenario.epoch(),
+        Some(jiff::civil::date(2026, 1, 1).at(0, 0, 0, 0))
+    );
+    assert_eq!(scenario.time_system(), Some(TimeSystem::Utc));
+    assert_eq!(scenario.reference_frame(), Some(ReferenceFrame::Eme2000));
     assert_eq!(scenario.start().wheel_speed, [0.0; 3]);
     assert_eq!(scenario.targets().len(), 6);
     let [x, y, z] = scenario.targets()[0].rate;

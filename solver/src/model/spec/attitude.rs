@@ -21,8 +21,47 @@ pub enum AttitudeSpec {
         /// Right ascension, declination and roll, degrees.
         angles: [f64; 3],
         /// The body axis that is pointed.
-        boresight: [f64; 3],
+        boresight: BoresightChoice,
     },
+}
+
+/// A body axis as a vector, or as the name of one of the spacecraft's boresights.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BoresightChoice {
+    /// Direction in body axes, any length.
+    Axis([f64; 3]),
+    /// Name of one of the spacecraft's boresights.
+    Name(String),
+}
+
+impl InputForm for BoresightChoice {
+    type Value = Self;
+
+    fn read<P: InputPlace>(place: &P) -> Option<Self> {
+        if place.is_text() {
+            return place.text().map(|name| Self::Name(name.to_owned()));
+        }
+        <[f64; 3]>::read(place).map(Self::Axis)
+    }
+
+    fn schema() -> Schema {
+        Schema::Named(NamedSchema {
+            name: "BoresightChoice",
+            doc: "A body axis: a vector, or the name of one of `spacecraft.boresights`.",
+            schema: || {
+                Schema::OneOf(vec![
+                    (
+                        "Direction in body axes, any length.".into(),
+                        <[f64; 3]>::schema(),
+                    ),
+                    (
+                        "Name of one of `spacecraft.boresights`.".into(),
+                        Schema::Text,
+                    ),
+                ])
+            },
+        })
+    }
 }
 
 impl Default for AttitudeSpec {
@@ -73,6 +112,14 @@ const NAMES: [&str; 6] = [
     "ra_dec_roll_deg",
     "boresight",
 ];
+/// What the form of right ascension, declination and roll means.
+const RA_DEC_ROLL: &str = "Right ascension, declination and roll of a body axis, degrees: the \
+    boresight points to that place of the sky. Declination is from -90 to 90; whole turns may be \
+    added to right ascension and roll. At roll 0 the body's +Z axis (+X where the boresight lies \
+    along Z), as far as it is perpendicular to the boresight, points to celestial north: in the \
+    picture of a camera that looks along the boresight with body +Z upwards, north is up and east \
+    to the left. Roll is a right-handed turn about the boresight: seen from behind, looking along \
+    it, the body turns clockwise.";
 const FORM_HINT: &str = "give exactly one of quaternion, roll_pitch_yaw_deg, mrp, matrix, or \
                          ra_dec_roll_deg together with boresight";
 
@@ -140,7 +187,7 @@ fn read_form<P: InputPlace>(place: &P, form: &str) -> Option<AttitudeSpec> {
         _ => {
             let angles = <[f64; 3]>::read(&value);
             let boresight = place.required("boresight");
-            let boresight = boresight.and_then(|axis| <[f64; 3]>::read(&axis));
+            let boresight = boresight.and_then(|choice| BoresightChoice::read(&choice));
             AttitudeSpec::RaDecRollDeg {
                 angles: angles?,
                 boresight: boresight?,
@@ -173,11 +220,10 @@ fn forms() -> [Schema; 5] {
                 Schema::Object(vec![matrix])
             },
         ),
-        named(
-            "RaDecRollForm",
-            "Right ascension, declination and roll of a body axis, degrees.",
-            || Schema::Object(vec![vector("ra_dec_roll_deg"), vector("boresight")]),
-        ),
+        named("RaDecRollForm", RA_DEC_ROLL, || {
+            let boresight = MemberSchema::of::<BoresightChoice>("boresight", "", &required());
+            Schema::Object(vec![vector("ra_dec_roll_deg"), boresight])
+        }),
     ]
 }
 

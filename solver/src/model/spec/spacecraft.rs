@@ -15,7 +15,7 @@ input_object! {
     #[derive(Default)]
     pub struct SpacecraftSpec as "Spacecraft" {
         /// Inertia of the whole spacecraft with its wheels locked, body axes.
-        pub inertia_kg_m2: [[f64; 3]; 3] = required_or(SUBSTITUTE_INERTIA),
+        pub inertia_kg_m2: [[f64; 3]; 3] as InertiaMatrix = required_or(SUBSTITUTE_INERTIA),
         /// Limit of each body rate component; `null` is none.
         pub max_body_rate_rad_s: [Option<f64>; 3] = or([None; 3]),
         /// Limit of the norm of the body rate.
@@ -51,10 +51,44 @@ input_object! {
 input_object! {
     /// A named body-fixed direction.
     pub struct BoresightSpec as "Boresight" {
-        /// Name by which keep-out cones refer to it.
+        /// Name by which keep-out cones and attitudes refer to it.
         pub name: String = MemberRule::required_or_pointer(),
         /// Direction in body axes, any length.
         pub axis: [f64; 3] = required_or([0.0, 0.0, 1.0]),
+    }
+}
+
+/// The rows of an inertia matrix. Three numbers are what many tools call an inertia, so that they get
+/// the matrix that is meant as a hint.
+struct InertiaMatrix;
+
+impl InputForm for InertiaMatrix {
+    type Value = [[f64; 3]; 3];
+
+    fn read<P: InputPlace>(place: &P) -> Option<Self::Value> {
+        let number = |index| place.entry(index).filter(P::is_number)?.number();
+        if number(0).is_none() {
+            return <[[f64; 3]; 3]>::read(place);
+        }
+        let moments = (number(0), number(1), number(2), place.entry(3));
+        let (Some(x), Some(y), Some(z), None) = moments else {
+            place.report(
+                Code::WrongType,
+                "a list of numbers, not the three rows of the inertia matrix",
+                "write three rows of three numbers, such as [[6.6, 0, 0], [0, 8.9, 0], [0, 0, 9.6]]",
+            );
+            return None;
+        };
+        place.report(
+            Code::WrongType,
+            "a vector of numbers, not the three rows of the inertia matrix",
+            format!("for these principal moments write [[{x}, 0, 0], [0, {y}, 0], [0, 0, {z}]]"),
+        );
+        None
+    }
+
+    fn schema() -> Schema {
+        <[[f64; 3]; 3]>::schema()
     }
 }
 

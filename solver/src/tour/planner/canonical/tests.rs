@@ -39,10 +39,10 @@ const TABLE: &[Row] = &[
         s.epoch = Some("2027-01-01T00:00:00Z".into());
     }),
     ("ScenarioSpec.time_system", Effect::None, |s| {
-        s.time_system = Some("TAI".into());
+        s.time_system = "TAI".parse().ok();
     }),
     ("ScenarioSpec.reference_frame", Effect::None, |s| {
-        s.reference_frame = Some("ICRF".into());
+        s.reference_frame = "ICRF".parse().ok();
     }),
     ("ScenarioSpec.spacecraft", Effect::Both, |s| {
         s.spacecraft.wheels.push(wheel([0.0, 1.0, 1.0]));

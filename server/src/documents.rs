@@ -12,6 +12,7 @@ pub(crate) mod claims;
 pub(crate) mod document;
 pub(crate) mod flight;
 pub(crate) mod jobs;
+pub(crate) mod kind;
 pub(crate) mod leg_import;
 pub(crate) mod leg_query;
 pub(crate) mod legs;

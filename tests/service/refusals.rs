@@ -137,6 +137,43 @@ fn authorities_of(scenario: &Value) -> Value {
 }
 
 #[test]
+fn the_wrong_kind_of_document_is_told_in_words() {
+    let service = Service::start();
+    let plan = json!({"status": "optimal", "total_time_s": 1.0, "trajectory": {}});
+    let swapped = json!({"scenario": plan, "plan": small()});
+    let no_plan = json!({"scenario": small(), "plan": small()});
+    for (path, body, pointer, words) in [
+        ("/v1/plans", &plan, "", "this is a plan, not a scenario"),
+        (
+            "/v1/verify",
+            &swapped,
+            "/scenario",
+            "this is a plan, not a scenario",
+        ),
+        (
+            "/v1/verify",
+            &no_plan,
+            "/plan",
+            "this is a scenario, not a plan",
+        ),
+    ] {
+        let problem = service
+            .post(path, body)
+            .expect_problem(422, "invalid_input");
+        let errors = problem["errors"].as_array().expect("a list");
+        assert_eq!(errors.len(), 1, "{problem}");
+        assert_eq!(errors[0]["code"], "wrong_document");
+        assert_eq!(errors[0]["pointer"], pointer);
+        assert_eq!(errors[0]["message"], words);
+    }
+    let yaml = Request::new("POST", "/v1/plans").header("Content-Type", "application/json");
+    let yaml = service.send(&yaml.body("name: a\nspacecraft:\n"));
+    let problem = yaml.expect_problem(400, "malformed_json");
+    let detail = problem["detail"].as_str().expect("a text");
+    assert!(detail.contains("looks like YAML"), "{detail}");
+}
+
+#[test]
 fn a_full_queue_answers_with_retry_after() {
     let service = Service::start_with(&["--queue-limit", "1"]);
     let running = service.submit(&large());

@@ -3,6 +3,8 @@
 use super::failure::Failure;
 use super::output::Destination;
 use super::{Exit, input};
+use crate::documents;
+use crate::documents::kind::Kind;
 use crate::documents::slew;
 use crate::render::plot::{
     self, DrawableDocument, DrawnBoresight, Marks, WrittenComparison, WrittenEnvelopes,
@@ -46,10 +48,11 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Exit, Failure> {
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     input::one_stream_at_most(&inputs)?;
     let destination = Destination::open(&arguments.output)?;
-    let read =
-        |path: &PathBuf| DrawableDocument::read(&input::read(path)?).map_err(wrong("DOCUMENT"));
-    let documents: Result<Vec<DrawableDocument>, Failure> =
-        arguments.documents.iter().map(read).collect();
+    let documents: Result<Vec<DrawableDocument>, Failure> = arguments
+        .documents
+        .iter()
+        .map(|path| drawable(path))
+        .collect();
     let mut documents = documents?;
     let picture = if documents.iter().all(DrawableDocument::is_swept) || documents.len() > 1 {
         trade(documents, arguments)
@@ -66,6 +69,23 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Exit, Failure> {
     };
     destination.write(&picture?)?;
     Ok(Exit::Complete)
+}
+
+fn drawable(path: &Path) -> Result<DrawableDocument, Failure> {
+    let bytes = input::read(path)?;
+    let name = input::name(path);
+    let other = match documents::document::parse(&bytes) {
+        Ok(node) => Kind::Plan
+            .mismatch(&node)
+            .filter(|_| Kind::of(&node) != Some(Kind::SlewAnswer)),
+        Err(malformed) => Some(malformed),
+    };
+    if let Some(problem) = other {
+        let problems = vec![problem];
+        return Err(Failure::Invalid { name, problems });
+    }
+    let named = |what| wrong("DOCUMENT")(format!("{name}: {what}"));
+    DrawableDocument::read(&bytes).map_err(named)
 }
 
 fn wrong(name: &'static str) -> impl Fn(String) -> Failure {

@@ -3,6 +3,7 @@
 //! Nothing else of it is looked at: whether it can be flown is not asked here.
 
 use super::document;
+use super::kind::Kind;
 use super::reader::{Cursor, Fields, Sink};
 use slewplan_solver::model::plan::LowerBoundKind;
 use slewplan_solver::model::problem::{Code, Problem};
@@ -16,6 +17,9 @@ use slewplan_solver::tour::planner::{LegCertificate, PlanCertificate};
 /// Everything that is wrong with them, with pointers into the plan.
 pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<PlanCertificate, Vec<Problem>> {
     let node = document::parse(bytes).map_err(|problem| vec![problem])?;
+    if let Some(other) = Kind::Plan.mismatch(&node) {
+        return Err(vec![other]);
+    }
     let sink = Sink::default();
     let claims = decode(&Cursor::root(&node, &sink), scenario);
     let problems = sink.into_problems();

@@ -1,6 +1,7 @@
 //! A JSON document as a tree that keeps what `serde_json::Value` would drop: the order of the
 //! members and duplicate keys.
 
+mod lookalikes;
 mod numbers;
 mod outside;
 mod size;
@@ -98,12 +99,12 @@ fn malformed(text: &[u8], error: &serde_json::Error) -> Problem {
     let (line, column) = (error.line(), error.column());
     let full = error.to_string();
     let what = full.split(" at line ").next().unwrap_or(&full);
-    Problem::new(
-        "",
-        Code::MalformedJson,
-        format!("line {line}, column {column}: {what}"),
-        malformed_hint(text, error, what),
-    )
+    let (what, hint) = match lookalikes::of(text, line, column) {
+        Some(lookalike) => (lookalike.what, lookalike.hint),
+        None => (what, malformed_hint(text, error, what)),
+    };
+    let message = format!("line {line}, column {column}: {what}");
+    Problem::new("", Code::MalformedJson, message, hint)
 }
 
 fn malformed_hint(text: &[u8], error: &serde_json::Error, what: &str) -> &'static str {
@@ -122,6 +123,8 @@ fn malformed_hint(text: &[u8], error: &serde_json::Error, what: &str) -> &'stati
         "the document is nested too deeply; no scenario or plan needs more than ten levels"
     } else if what.contains("members") {
         "no object of a document for this has more than some twenty members"
+    } else if what.contains("key must be a string") {
+        "write every name in double quotes, and no comma after the last member"
     } else if what.contains("trailing comma") {
         "remove the comma before the closing bracket"
     } else if ["NaN", "nan", "Inf", "inf"]

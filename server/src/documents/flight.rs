@@ -3,6 +3,7 @@
 //! Here only its shape is tested. Whether the times fit together is for the verification to say.
 
 use super::document::{self, Node};
+use super::kind::Kind;
 use super::reader::{Cursor, Sink};
 use slewplan_solver::model::input::{
     InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_object, optional, required,
@@ -49,6 +50,9 @@ pub(crate) fn read_written(
 ///
 /// Everything that keeps it from being flown, with pointers into the plan.
 pub(crate) fn read_node(node: &Node, scenario: &Scenario) -> Result<Flight, Vec<Problem>> {
+    if let Some(other) = Kind::Plan.mismatch(node) {
+        return Err(vec![other]);
+    }
     let sink = Sink::default();
     let flight = decode(node, scenario, &sink);
     let problems = sink.into_problems();

@@ -1,6 +1,7 @@
 //! Reading a scenario: first its shape, then its meaning, all problems at once.
 
 use super::document::{self, Node};
+use super::kind::Kind;
 use super::reader::{Cursor, Sink};
 use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::{Code, Faults, MAX_KEPT, Problem};
@@ -33,6 +34,12 @@ pub(crate) fn read_node(node: &Node, time_limit_s: Option<f64>) -> Result<Valida
 ///
 /// Everything that is wrong or doubtful with it.
 pub(crate) fn examine(node: &Node, time_limit_s: Option<f64>) -> Result<Validated, Faults> {
+    if let Some(other) = Kind::Scenario.mismatch(node) {
+        return Err(Faults {
+            problems: vec![other],
+            ..Faults::default()
+        });
+    }
     let (mut spec, mut problems) = decode(node);
     if time_limit_s.is_some() {
         spec.options.time_limit_s = time_limit_s;

@@ -176,7 +176,7 @@ impl Scenario {
         }
         Some(Self {
             name: spec.name.clone(),
-            epoch: epoch?,
+            epoch,
             time_system: spec.time_system,
             reference_frame: spec.reference_frame,
             spacecraft: spacecraft?,

@@ -6,11 +6,9 @@ use crate::model::problem::Code;
 use crate::model::spec::ScenarioSpec;
 use jiff::civil::DateTime;
 
-/// The epoch, if there is one; nothing when it is refused.
-pub(super) fn read_epoch(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Option<DateTime>> {
-    let Some(text) = &spec.epoch else {
-        return Some(None);
-    };
+/// The epoch, if there is one that is not refused.
+pub(super) fn read_epoch(spec: &ScenarioSpec, findings: &mut Findings) -> Option<DateTime> {
+    let text = spec.epoch.as_ref()?;
     let read = epoch::parse(text);
     if read.is_none() {
         let short: String = text.chars().take(40).collect();
@@ -22,7 +20,7 @@ pub(super) fn read_epoch(spec: &ScenarioSpec, findings: &mut Findings) -> Option
              2026-01-31T12:00:00.5Z; time zones and leap seconds are not known here",
         );
     }
-    read.map(Some)
+    read
 }
 
 /// Warns of a frame in which the angular momentum would not be constant.

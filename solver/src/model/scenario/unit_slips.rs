@@ -15,7 +15,7 @@ const UNREACHABLE: f64 = 20.0;
 const LARGE_WHEEL: f64 = 0.01;
 /// Speed that large wheels do not have, rad/s: 9,500 rpm.
 const FAST_WHEEL: f64 = 1000.0;
-/// Acceleration that no spacecraft has, rad/s^2. The most agile CubeSats reach a tenth.
+/// Acceleration that no spacecraft has, rad/s^2. The most agile small satellites reach a tenth.
 const VIOLENT: f64 = 1.0;
 
 /// Warns of a scenario without targets.
@@ -46,15 +46,14 @@ fn check_rate_limits(spacecraft: &Spacecraft, start: &Start, findings: &mut Find
     // The one that is most out of reach stands for all of them.
     let worst = (0..3).filter(|&k| limits[k].is_finite() && excess(k) > UNREACHABLE);
     let worst = worst.max_by(|a, b| excess(*a).total_cmp(&excess(*b)));
-    let (member, limit, reach) = match worst {
-        Some(k) => (format!("max_body_rate_rad_s/{k}"), limits[k], reach[k]),
-        None => {
-            let (limit, reach) = (spacecraft.max_rate_norm(), reach.norm());
-            if limit.is_infinite() || limit / reach <= UNREACHABLE {
-                return;
-            }
-            ("max_body_rate_norm_rad_s".to_owned(), limit, reach)
+    let (member, limit, reach) = if let Some(k) = worst {
+        (format!("max_body_rate_rad_s/{k}"), limits[k], reach[k])
+    } else {
+        let (limit, reach) = (spacecraft.max_rate_norm(), reach.norm());
+        if limit.is_infinite() || limit / reach <= UNREACHABLE {
+            return;
         }
+        ("max_body_rate_norm_rad_s".to_owned(), limit, reach)
     };
     findings.warn(
         format!("/spacecraft/{member}"),

@@ -11,6 +11,7 @@ mod legs;
 mod metrics;
 mod observe;
 mod operations;
+mod origin;
 mod page;
 mod plans;
 mod protect;
@@ -23,6 +24,7 @@ mod studies;
 mod verify;
 
 pub(crate) use access::Access;
+pub(crate) use origin::{AllowedHost, OwnHosts};
 pub(crate) use router::{openapi, router};
 
 use crate::base::lifecycle::Shutdown;
@@ -46,6 +48,8 @@ struct Parts {
     limits: RequestLimits,
     /// Whether requests need keys.
     access: Access,
+    /// The names and addresses of the service.
+    hosts: OwnHosts,
     /// Signals the shutdown.
     shutdown: Shutdown,
     /// Threads for jobs and queries.
@@ -94,6 +98,7 @@ impl App {
         jobs: Jobs,
         limits: RequestLimits,
         access: Access,
+        hosts: OwnHosts,
         shutdown: Shutdown,
         [pool, lookups]: [Arc<SolverPool>; 2],
     ) -> Self {
@@ -101,6 +106,7 @@ impl App {
             jobs,
             limits,
             access,
+            hosts,
             shutdown,
             pool,
             lookups,

@@ -1,7 +1,7 @@
 //! The service: start of database, worker and routes, and their shutdown.
 
 use crate::api::connections;
-use crate::api::{self, Access, App, RequestLimits};
+use crate::api::{self, Access, AllowedHost, App, OwnHosts, RequestLimits};
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::documents::jobs::EventDocument;
 use crate::jobs::leg_cache::upkeep;
@@ -36,6 +36,8 @@ pub(crate) struct ServiceSettings {
     pub(crate) job_memory: u64,
     /// Whether requests need no key, whatever the address.
     pub(crate) no_keys: bool,
+    /// Hosts by which the service is reached, beside loopback names and its address.
+    pub(crate) allowed_hosts: Vec<AllowedHost>,
     /// Time for which ended jobs are kept; without it they are not deleted.
     pub(crate) retain: Option<Duration>,
     /// Maximum number of cached legs.
@@ -134,6 +136,12 @@ async fn access(settings: &ServiceSettings, store: &Store) -> Result<Access, Ser
     }
     let keys = store.keys().await?;
     if !keys.is_empty() {
+        let now = crate::base::clock::now_us();
+        if !keys.iter().any(|key| key.is_valid(now)) {
+            tracing::warn!(
+                "no key is valid: nobody can use the service until slewplan keys create makes one"
+            );
+        }
         return Ok(Access::new(true));
     }
     if settings.listen.ip().is_loopback() {
@@ -203,7 +211,15 @@ async fn serve<E: From<ServiceError>>(
         // Event streams take at most half of the connections.
         streams: settings.connections.div_ceil(2),
     };
-    let router = api::router(App::new(jobs, limits, access, shutdown.clone(), pools));
+    let hosts = OwnHosts::new(address, settings.allowed_hosts.clone());
+    let router = api::router(App::new(
+        jobs,
+        limits,
+        access,
+        hosts,
+        shutdown.clone(),
+        pools,
+    ));
     tell(address)?;
     tracing::info!(%address, "listening");
     let serving = connections::serve(listener, router, shutdown.clone(), settings.connections);

@@ -35,7 +35,7 @@ pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
 pub(crate) use events::{EventRow, FormatEvent};
 pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
-pub(crate) use keys::{KeyRow, NewKey};
+pub(crate) use keys::{KeyRow, NewKey, Possessions};
 pub(crate) use leases::Lease;
 pub(crate) use legs::{CachedLegRow, LegFilter, NewLeg, key as leg_key};
 pub(crate) use packed::PackedPlan;

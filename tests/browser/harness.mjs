@@ -70,10 +70,11 @@ export async function planned(service, scenario) {
   return answer.headers.get("location").split("/").at(-1);
 }
 
-export function openBrowser() {
+/** A browser, with further options of its command line. */
+export function openBrowser(options = []) {
   const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
   // Containers have neither a sandbox of their own for it nor much shared memory.
-  return chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-dev-shm-usage"] });
+  return chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-dev-shm-usage", ...options] });
 }
 
 /** A page of a browser; `complaints` collects errors of the console and requests elsewhere. */

@@ -2,11 +2,12 @@
 
 import { answers } from "./answers.mjs";
 import { openBrowser, startService } from "./harness.mjs";
+import { hostile } from "./hostile.mjs";
 import { journeys } from "./journeys.mjs";
 import { looks } from "./looks.mjs";
 import { modules } from "./modules.mjs";
 
-const PARTS = { modules, journeys, answers, looks };
+const PARTS = { modules, hostile, journeys, answers, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

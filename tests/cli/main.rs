@@ -6,6 +6,7 @@ mod files;
 mod gallery;
 mod importing;
 mod invalid;
+mod keys;
 mod kinds;
 mod labels;
 mod legs;

@@ -139,9 +139,9 @@ fn main() {
         .first()
         .map(|file| std::fs::read(file).expect("the body can be read"));
     let mut request = match &body {
-        None => format!("GET {path} HTTP/1.1\r\nHost: load\r\n\r\n"),
+        None => format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n"),
         Some(body) => format!(
-            "POST {path} HTTP/1.1\r\nHost: load\r\nContent-Type: application/json\r\n\
+            "POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n\
              Content-Length: {}\r\n\r\n",
             body.len()
         ),

@@ -62,9 +62,13 @@ pub(crate) struct Request {
 
 impl Request {
     pub(crate) fn new(method: &str, path: &str) -> Self {
-        let head = format!("{method} {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n");
+        Self::bare(&format!("{method} {path} HTTP/1.1")).header("Host", "localhost")
+    }
+
+    /// A request without a Host header, from its first line.
+    pub(crate) fn bare(line: &str) -> Self {
         Self {
-            head,
+            head: format!("{line}\r\nConnection: close\r\n"),
             body: Vec::new(),
         }
     }

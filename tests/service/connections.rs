@@ -31,7 +31,7 @@ fn truncated_and_malformed_bodies_have_different_errors() {
     let mut broken = connected(&service);
     broken
         .write_all(
-            b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n\
+            b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n\
               Transfer-Encoding: chunked\r\n\r\n5\r\n{\"a\":\r\nno length\r\n",
         )
         .expect("sent");
@@ -53,7 +53,7 @@ fn clients_that_do_not_send_are_cut_off() {
     let mut half_body = connected(&service);
     half_body
         .write_all(
-            b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n\
+            b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n\
               Content-Length: 100\r\n\r\n{",
         )
         .expect("sent");

@@ -236,3 +236,127 @@ fn a_running_service_requires_keys_after_the_first_one() {
         .send(&request("GET", "/v1/plans", &secret))
         .expect(200);
 }
+
+/// What a key of a client is told on its making, besides the key.
+fn told(database: &Path, arguments: &[&str]) -> (String, String) {
+    let made = slewplan(&[&["keys", "create"], arguments].concat(), database);
+    assert!(made.status.success(), "{made:?}");
+    let [key, told] =
+        [made.stdout, made.stderr].map(|text| String::from_utf8(text).expect("ASCII"));
+    (key.trim().to_owned(), told)
+}
+
+#[test]
+fn plans_made_without_keys_are_hidden_until_a_client_adopts_them() {
+    let (_folder, database) = folder();
+    let keyed = Request::new("POST", "/v1/plans").header("Idempotency-Key", "once");
+    let mut spacecraft = small()["spacecraft"].clone();
+    let service = Service::on(&database, &[]);
+    let job = service.send(&keyed.json(&small())).expect(202).json();
+    let job = job["id"].as_str().expect("an identifier").to_owned();
+    let result = format!("/v1/plans/{job}/result");
+    service.wait_end(&job);
+    for name in ["one", "two"] {
+        let path = format!("/v1/spacecraft/{name}");
+        service
+            .send(&Request::new("PUT", &path).json(&spacecraft))
+            .expect(201);
+    }
+    spacecraft["boresights"][0]["name"] = json!("imager");
+    service
+        .send(&Request::new("PUT", "/v1/spacecraft/one").json(&spacecraft))
+        .expect(200);
+    drop(service);
+
+    let (first, said) = told(&database, &["first"]);
+    for part in [
+        "1 plan and 2 spacecraft",
+        "keys create first --adopt",
+        "first key",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    let service = Service::on(&database, &[]);
+    let get = |path: &str, key: &str| service.send(&request("GET", path, key));
+    get(&result, &first).expect_problem(404, "not_found");
+    get("/v1/spacecraft/one", &first).expect_problem(404, "not_found");
+    // This name is the client's own, so that nothing may take its place.
+    service
+        .send(&request("PUT", "/v1/spacecraft/two", &first).json(&spacecraft))
+        .expect(201);
+
+    let (second, said) = told(&database, &["first", "--adopt"]);
+    for part in [
+        "first now owns 1 plan and 1 spacecraft",
+        "0 plans and 1 spacecraft",
+        "stay hidden",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert!(!said.contains("first key"), "{said}");
+    for key in [&first, &second] {
+        get(&result, key).expect(200);
+        let version = |path: &str| get(path, key).expect(200).json()["version"].clone();
+        assert_eq!(version("/v1/spacecraft/one"), 2);
+        assert_eq!(version("/v1/spacecraft/one?version=1"), 1);
+        assert_eq!(version("/v1/spacecraft/two"), 1);
+        let own = get("/v1/spacecraft/two", key).json();
+        assert_eq!(own["spacecraft"]["boresights"][0]["name"], "imager");
+    }
+    // The same request as before the keys is answered with the same job.
+    let again = request("POST", "/v1/plans", &second).header("Idempotency-Key", "once");
+    let again = service.send(&again.json(&small())).expect(202);
+    assert_eq!(again.json()["id"], json!(job));
+
+    let (other, said) = told(&database, &["other", "--adopt"]);
+    assert!(
+        said.contains("other now owns 0 plans and 1 spacecraft"),
+        "{said}"
+    );
+    get(&result, &other).expect_problem(404, "not_found");
+    get("/v1/spacecraft/two", &other).expect(200);
+    assert!(!told(&database, &["other"]).1.contains("without keys"));
+}
+
+#[test]
+fn a_service_whose_last_key_is_revoked_says_the_way_back() {
+    let (_folder, database) = folder();
+    let keys = [&["owner"][..], &["owner", "--expires", "1"]].map(|arguments| {
+        let (key, said) = told(&database, arguments);
+        let id = said.split(' ').nth(2).expect("its identifier").to_owned();
+        (key, id)
+    });
+    let mut service = Service::on(&database, &[]);
+    let submission = request("POST", "/v1/plans", &keys[0].0).json(&small());
+    let job = service.send(&submission).expect(202).json();
+    let path = format!("/v1/plans/{}", job["id"].as_str().expect("an identifier"));
+    let revoke = |id: &str| {
+        let ended = slewplan(&["keys", "revoke", id], &database);
+        assert!(ended.status.success(), "{ended:?}");
+        String::from_utf8(ended.stderr).expect("ASCII")
+    };
+    assert_eq!(revoke(&keys[0].1), "");
+    let said = revoke(&keys[1].1);
+    for part in [
+        "no valid key is left",
+        "slewplan keys create",
+        "serve --no-keys",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    for _ in 0..2 {
+        for (key, _) in &keys {
+            let answer = service.send(&request("GET", &path, key));
+            answer.expect_problem(401, "unauthorized");
+        }
+        drop(service);
+        service = Service::on(&database, &[]);
+    }
+    // As it says: a new key of the same client, or no keys at all.
+    let (key, said) = told(&database, &["owner"]);
+    assert!(!said.contains("first key"), "{said}");
+    service.send(&request("GET", &path, &key)).expect(200);
+    drop(service);
+    let open = Service::on(&database, &["--no-keys"]);
+    open.get(&path).expect(200);
+}

@@ -15,6 +15,7 @@ mod imports;
 mod keys;
 mod legs;
 mod operations;
+mod origins;
 mod page;
 mod plans;
 mod refusals;

@@ -216,7 +216,7 @@ def nobody_sees_a_locked_database(scale):
             time.sleep(0.1)
 
         slow = connect(running)
-        slow.sendall(f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: a\r\n\r\n".encode())
+        slow.sendall(f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
         with Background(4, write), Background(4, read), Background(1, look):
             end = time.monotonic() + seconds
             while time.monotonic() < end:
@@ -253,7 +253,7 @@ def hang_ups_are_harmless(scale):
     import json
 
     body = json.dumps(variant(0)).encode()
-    request = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n" % len(body) + body
+    request = b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n" % len(body) + body
     with service(database, "--queue-limit", "1000000") as running:
 
         def storm(index, number):

@@ -1,5 +1,6 @@
 """Promises about who may do what."""
 
+import itertools
 import json
 import re
 import subprocess
@@ -103,7 +104,7 @@ def no_path_escapes(scale):
         except FileNotFoundError:
             pass
         for path in TRAVERSALS:
-            answer = exchange(running, f"GET {path} HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n".encode("latin1"))
+            answer = exchange(running, f"GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode("latin1"))
             status = int(answer[9:12])
             if status not in (400, 404) or b"root:" in answer:
                 wrong.append(f"{path}: {status}")
@@ -122,14 +123,14 @@ def no_path_escapes(scale):
 
 @gate("S6")
 def defaults_are_safe(scale):
-    database, bare, leaks = scale.database("s6"), [], []
+    database, bare, leaks, taken = scale.database("s6"), [], [], []
     help_text = subprocess.run([binary(), "serve", "--help"], capture_output=True, text=True, check=True).stdout
     refused = subprocess.run([binary(), "serve", "--listen", "0.0.0.0:0", "--database", database], capture_output=True, text=True, timeout=20)
     with service(database) as running:
         requests = [("GET", path) for path in ("/", "/docs/", "/docs/errors", "/openapi.yaml", "/v1/plans", "/v1/plans/x", "/v1/legs", "/v1/limits", "/health/ready", "/metrics", "/none", "/v1/plans/%ff")]
         requests += [("POST", "/v1/plans"), ("PATCH", "/v1/plans"), ("OPTIONS", "/v1/plans"), ("DELETE", "/v1/plans/x")]
-        for method, path in requests:
-            answer = exchange(running, f"{method} {path} HTTP/1.1\r\nHost: a\r\nOrigin: https://elsewhere.example\r\nConnection: close\r\n\r\n".encode()).decode("utf-8", "replace")
+        for (method, path), origin in itertools.product(requests, ("", "Origin: https://elsewhere.example\r\n")):
+            answer = exchange(running, f"{method} {path} HTTP/1.1\r\nHost: localhost\r\n{origin}Connection: close\r\n\r\n".encode()).decode("utf-8", "replace")
             head, _, body = answer.partition("\r\n\r\n")
             head = head.lower()
             needed = ("x-content-type-options: nosniff", "frame-ancestors 'none'", "cache-control:", "x-request-id:")
@@ -137,11 +138,17 @@ def defaults_are_safe(scale):
                 bare.append(f"{method} {path}")
             if int(answer[9:12]) >= 400 and re.search(r"(SELECT|INSERT|sqlx|\.rs:|/root/|/home/|" + re.escape(str(scale.work)) + ")", body):
                 leaks.append(f"{method} {path}")
+            if origin and int(answer[9:12]) != 403:
+                taken.append(f"{method} {path}")
+        rebound = exchange(running, b"GET /v1/plans HTTP/1.1\r\nHost: elsewhere.example\r\nConnection: close\r\n\r\n")
+        if b" 403 " not in rebound[:16]:
+            taken.append("Host: elsewhere.example")
         preface = exchange(running, b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", timeout=15.0)
     return [
         Row("S6", "default address", "127.0.0.1:8080", "loopback", "default: 127.0.0.1:8080" in help_text),
         Row("S6", "other addresses without keys: exit code", str(refused.returncode), "not 0", refused.returncode == 2),
         Row("S6", f"answers without the headers, of {len(requests)} {bare}", str(len(bare)), "0", not bare),
         Row("S6", f"errors that tell about the inside {leaks}", str(len(leaks)), "0", not leaks),
+        Row("S6", f"requests of foreign pages and names that are served {taken}", str(len(taken)), "0", not taken),
         Row("S6", "HTTP/2", "off" if not preface.startswith(b"\x00") else "on", "off", not preface.startswith(b"\x00\x00")),
     ]

@@ -60,7 +60,7 @@ def seconds(took):
 @gate("H1")
 def slow_clients_are_cut_off(scale):
     """Silence, half heads, drip-fed bodies; then a thousand of them and one good client."""
-    head = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n"
+    head = b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n"
     rows, results = [], {}
     most, count = scale.of(512, 64), scale.of(1000, 150)
     with service(scale.database("h1"), "--max-connections", str(most)) as running:
@@ -85,7 +85,7 @@ def slow_clients_are_cut_off(scale):
         idle = resident_kib(running.process.pid)
         job = running.submit(long_running())
         crowd, waits = [], []
-        parts = [b"", b"GET / HTTP/1.1\r\nHo", head + b"{", f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: a\r\n\r\n".encode()]
+        parts = [b"", b"GET / HTTP/1.1\r\nHo", head + b"{", f"GET /v1/plans/{job}/events HTTP/1.1\r\nHost: localhost\r\n\r\n".encode()]
 
         def good(patience):
             end = time.monotonic() + patience
@@ -169,7 +169,7 @@ def hostile_bodies():
         case(f"objects of fields, at most {count}", filled(members, 2 * 900 + 1))
     case("oversize", b"[" + b"0," * (megabytes // 2) + b"0]", statuses=(413,))
     chunk = b"%x\r\n" % (1 << 16) + b" " * (1 << 16) + b"\r\n"
-    head = b"POST /v1/plans HTTP/1.1\r\nHost: a\r\nConnection: close\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
+    head = b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
     cases.append(("oversize in chunks", head + chunk * (megabytes >> 16) + b"0\r\n\r\n", (413,)))
     bomb = zlib.compress(bytes(64 << 20))
     for coding in ("gzip", "deflate", "zstd", "br"):

@@ -59,6 +59,11 @@ error_codes! {
         "Send Authorization: Bearer with a key from slewplan keys create.";
     ScopeMissing = "scope_missing", FORBIDDEN, "The key does not open this",
         "Use a key with the scope that the detail names.";
+    ForeignHost = "foreign_host", FORBIDDEN, "The service does not answer to this name",
+        "Use localhost or the address of the service, or start it with --allowed-host NAME.";
+    ForeignOrigin = "foreign_origin", FORBIDDEN, "Pages of other sites cannot use the service",
+        "Use the service's own page, or a program outside of the browser; behind a proxy see \
+         --allowed-host of slewplan serve.";
     NotFound = "not_found", NOT_FOUND, "There is nothing here",
         "Look for a mistake in the address; what belongs to another client is not there either.";
     MethodNotAllowed = "method_not_allowed", METHOD_NOT_ALLOWED, "The method does not exist here",

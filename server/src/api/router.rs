@@ -2,8 +2,8 @@
 
 use super::operations::docs::OpenApiPage;
 use super::{
-    App, access, legs, observe, operations, page, plans, protect, slews, spacecraft, studies,
-    verify,
+    App, access, legs, observe, operations, origin, page, plans, protect, slews, spacecraft,
+    studies, verify,
 };
 use crate::documents::jobs::EventDocument;
 use axum::middleware::{from_fn, from_fn_with_state};
@@ -76,6 +76,7 @@ pub(crate) fn router(app: App) -> Router {
     let router = router.layer(from_fn(observe::fault));
     router
         .layer(from_fn_with_state(app.clone(), access::authorize))
+        .layer(from_fn_with_state(app.clone(), origin::guard))
         .layer(CatchPanicLayer::custom(observe::panicked))
         .layer(from_fn(observe::envelop))
         .layer(from_fn_with_state(app.clone(), observe::observe))

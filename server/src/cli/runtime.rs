@@ -4,6 +4,7 @@ use super::Failure;
 use crate::documents::jobs::EventDocument;
 use crate::service::ServiceError;
 use crate::store::Store;
+use std::fs;
 use std::path::Path;
 use tokio::runtime::Runtime;
 
@@ -17,6 +18,18 @@ pub(super) fn start() -> Result<Runtime, Failure> {
         what: "cannot start the threads of the database".into(),
         source,
     })?)
+}
+
+/// Opens a database that exists, works on it and closes it.
+pub(super) fn with_existing_store<T>(
+    database: &Path,
+    work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    fs::metadata(database).map_err(|source| Failure::Unreadable {
+        name: format!("the database {}", database.display()),
+        source,
+    })?;
+    with_store(database, work)
 }
 
 /// Opens or creates a database, works on it and closes it.

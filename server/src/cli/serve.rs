@@ -3,6 +3,7 @@
 use super::Exit;
 use super::failure::Failure;
 use super::output;
+use crate::api::AllowedHost;
 use crate::service::{self, ServiceSettings};
 use crate::store::QueueLimits;
 use clap::ValueEnum;
@@ -63,6 +64,15 @@ pub(super) struct ServeArguments {
     /// Require no keys, at any address and even if there are some
     #[arg(long, env = "SLEWPLAN_NO_KEYS")]
     no_keys: bool,
+    /// Name or address by which the service is reached, beside localhost and the one it listens on;
+    /// repeatable. Pages of that name may use it, at a port other than 80 and 443 only with NAME:PORT
+    #[arg(
+        long,
+        env = "SLEWPLAN_ALLOWED_HOST",
+        value_name = "NAME",
+        value_delimiter = ','
+    )]
+    allowed_host: Vec<AllowedHost>,
     /// Days for which ended jobs are kept, with their plans and idempotency keys [default: without
     /// end]
     #[arg(long, env = "SLEWPLAN_RETAIN", value_name = "DAYS",
@@ -113,6 +123,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
         retain: arguments.retain.map(|days| DAY * days),
         job_memory: u64::from(arguments.job_memory) << 20,
         no_keys: arguments.no_keys,
+        allowed_hosts: arguments.allowed_host.clone(),
         legs: arguments.leg_cache.into(),
         connections: arguments.max_connections.into(),
     };

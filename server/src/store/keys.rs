@@ -1,7 +1,8 @@
-//! API keys of clients, and the ownership of jobs.
+//! API keys of clients, and the ownership of jobs and spacecraft.
 
 use super::{Store, StoreError};
 use crate::base::access::Scopes;
+use sqlx::SqliteConnection;
 
 row! {
     columns key_columns;
@@ -53,9 +54,23 @@ pub(crate) struct NewKey {
     pub(crate) expires_us: Option<i64>,
 }
 
+/// Numbers of jobs and of names of spacecraft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Possessions {
+    /// Jobs.
+    pub(crate) jobs: i64,
+    /// Names of spacecraft.
+    pub(crate) spacecraft: i64,
+}
+
 impl Store {
-    /// Stores a key.
-    pub(crate) async fn put_key(&self, key: &NewKey, now_us: i64) -> Result<(), StoreError> {
+    /// Stores a key. With `adopt` its client becomes the owner of what belongs to nobody.
+    pub(crate) async fn put_key(
+        &self,
+        key: &NewKey,
+        adopt: bool,
+        now_us: i64,
+    ) -> Result<(), StoreError> {
         let mut transaction = self.begin().await?;
         sqlx::query(
             "INSERT INTO api_keys (id, client, digest, scopes, created_us, expires_us) \
@@ -69,7 +84,21 @@ impl Store {
         .bind(key.expires_us)
         .execute(&mut *transaction)
         .await?;
+        if adopt {
+            give(&mut transaction, &key.client).await?;
+        }
         transaction.commit().await
+    }
+
+    /// How much belongs to nobody: what was made without keys.
+    pub(crate) async fn ownerless(&self) -> Result<Possessions, StoreError> {
+        let (jobs, spacecraft) = sqlx::query_as(
+            "SELECT (SELECT count(*) FROM jobs WHERE client IS NULL), \
+             (SELECT count(DISTINCT name) FROM spacecraft WHERE instr(name, ' ') = 0)",
+        )
+        .fetch_one(&self.readers)
+        .await?;
+        Ok(Possessions { jobs, spacecraft })
     }
 
     /// All keys, the oldest first.
@@ -117,4 +146,30 @@ impl Store {
             .await?;
         Ok(owned.unwrap_or(false))
     }
+}
+
+/// Makes a client the owner of the jobs, idempotency keys and spacecraft that have none. Names that
+/// the client has already stay its own, and what would be hidden by them stays without owner.
+///
+/// A name without owner is stored as it is, others after their client and a space.
+async fn give(connection: &mut SqliteConnection, client: &str) -> Result<(), StoreError> {
+    sqlx::query(
+        "UPDATE OR IGNORE idempotency_keys SET key = ?1 || ' ' || key \
+         WHERE instr(key, ' ') = 0",
+    )
+    .bind(client)
+    .execute(&mut *connection)
+    .await?;
+    sqlx::query("UPDATE jobs SET client = ? WHERE client IS NULL")
+        .bind(client)
+        .execute(&mut *connection)
+        .await?;
+    sqlx::query(
+        "UPDATE spacecraft SET name = ?1 || ' ' || name WHERE instr(name, ' ') = 0 \
+         AND ?1 || ' ' || name NOT IN (SELECT name FROM spacecraft)",
+    )
+    .bind(client)
+    .execute(connection)
+    .await?;
+    Ok(())
 }

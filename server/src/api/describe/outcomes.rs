@@ -57,7 +57,8 @@ outcomes! {
     /// Everything that needs the database, which is everything that needs a key.
     ServerErrors = [
         ("401", "A key is needed (where keys are asked for)"),
-        ("403", "The key has not the scope"),
+        ("403", "The key has not the scope, or the request comes under a foreign name or from a page of \
+            another site"),
         ("500", "An internal error; the log has its cause"),
         ("503", "Busy or full; Retry-After says when to come again"),
         ("507", "The disk is full")

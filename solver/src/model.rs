@@ -15,5 +15,6 @@ pub(crate) mod random;
 pub mod scenario;
 pub mod spacecraft;
 pub mod spec;
+pub mod tolerances;
 pub(crate) mod waypoint;
 pub(crate) mod wheel_axes;

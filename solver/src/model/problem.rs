@@ -269,6 +269,9 @@ pub enum Code {
     /// An order takes less time than a lower bound allowed: the bounds are doubtful (warning).
     #[strum(message = "Take the bound as doubtful; the plan itself is verified.")]
     BoundContradicted,
+    /// A plan takes less time than its own lower bound, so that one of them is false.
+    #[strum(message = "Make the plan again, and do not trust what it says of itself.")]
+    BoundAboveTime,
     /// A boresight enters a keep-out cone (warning).
     #[strum(
         message = "Look at time and depth, and move targets or demand another order if the \

@@ -3,3 +3,5 @@
 pub(crate) mod certified;
 pub mod certify;
 pub mod kinematic;
+
+pub use certified::VERSION;

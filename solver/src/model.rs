@@ -18,5 +18,6 @@ pub mod scenario;
 pub mod spacecraft;
 pub mod spec;
 pub mod spelling;
+pub mod tolerances;
 pub(crate) mod waypoint;
 pub(crate) mod wheel_axes;

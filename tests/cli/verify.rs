@@ -205,6 +205,59 @@ fn inconsistent_times_do_not_pass() {
 }
 
 #[test]
+fn what_cannot_be_computed_is_no_number() {
+    let mut plan = solved("two-targets.json");
+    plan["total_time_s"] = json!(100.0);
+    let ended = verify("two-targets.json", &plan).expect_code(3);
+    assert!(!ended.stdout.contains("e308"), "{}", ended.stdout);
+    let found = ended.json();
+    let figures = [
+        "/max_attitude_error_rad",
+        "/max_rate_error_rad_s",
+        "/max_wheel_speed_excess",
+        "/max_torque_excess",
+        "/max_rate_excess",
+        "/margins/torque",
+        "/margins/wheel_speed",
+        "/margins/body_rate",
+    ];
+    for pointer in figures {
+        assert_eq!(found.pointer(pointer), Some(&Value::Null), "{pointer}");
+    }
+    let text = slewplan_fed(
+        &["verify", &fixture("two-targets.json"), "-", "--summary"],
+        plan.to_string().as_bytes(),
+    );
+    let text = text.expect_code(3).stdout;
+    assert!(text.contains("torque not computed"), "{text}");
+    let longest = text
+        .split(|c: char| !c.is_ascii_digit())
+        .map(str::len)
+        .max();
+    assert!(longest < Some(20), "{text}");
+}
+
+#[test]
+fn a_plan_below_its_own_bounds_does_not_pass() {
+    let plan = solved("two-targets.json");
+    let total_s = plan["total_time_s"].as_f64().expect("a number");
+    for pointer in [
+        "/lower_bound_s",
+        "/certified_lower_bound_s",
+        "/legs/1/certified_lower_bound_s",
+    ] {
+        let mut claimed = plan.clone();
+        *claimed.pointer_mut(pointer).expect("a bound") = json!(total_s * 1.01);
+        let found = verify("two-targets.json", &claimed).expect_code(3).json();
+        assert_eq!(found["passed"], false);
+        let warning = &found["warnings"][0];
+        assert_eq!(warning["pointer"], pointer);
+        assert_eq!(warning["code"], "bound_above_time");
+        assert_eq!(found["failures"], json!([warning["message"]]), "{pointer}");
+    }
+}
+
+#[test]
 fn every_missing_field_of_an_empty_plan_is_named() {
     let ended = verify("two-targets.json", &json!({})).expect_code(2);
     for field in ["/total_time_s", "/sequence", "/passages", "/trajectory"] {

@@ -14,9 +14,8 @@ use slewplan_tests::solving::{on_threads, plan_of, planned, pool, scenario_of};
 use slewplan_tests::{experiment_a_spec, experiment_c_spec, published_targets_spec};
 use std::sync::Mutex;
 
-/// Relative excess over limits within the checker's tolerance: by as much a leg may be faster than its
-/// bound.
-const ROUNDING: f64 = 2e-6;
+/// Durations of legs are differences of times; bounds give the checker's tolerances away.
+const ROUNDING: f64 = 1e-12;
 
 fn table(spec: &ScenarioSpec, kind: LegKind) -> Vec<LegRow> {
     let (scenario, all) = (scenario_of(spec), Shard { index: 0, of: 1 });

@@ -19,3 +19,4 @@ mod resumed;
 mod standing;
 mod stopping;
 mod tight;
+mod tolerances;

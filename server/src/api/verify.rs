@@ -8,10 +8,9 @@ use super::{App, admission, computing, respond, stored};
 use crate::documents;
 use crate::documents::document::Node;
 use crate::documents::reader::{Cursor, Sink};
-use crate::documents::verification::{ReportDocument, VerifySpec};
+use crate::documents::verification::{ClaimedPlan, ReportDocument, VerifySpec};
 use axum::extract::State;
 use axum::response::Response;
-use slewplan_solver::checker;
 use slewplan_solver::model::input::InputForm;
 use slewplan_solver::model::problem::Problem;
 
@@ -53,11 +52,12 @@ fn parts(mut node: Node) -> Result<(Node, Node), ApiError> {
 fn verify(scenario: &Node, plan: &Node) -> Result<Vec<u8>, ApiError> {
     let valid = documents::scenario::read_node(scenario, None)
         .map_err(|problems| ApiError::input(Problem::all_under("/scenario", problems)))?;
-    let flight = documents::flight::read_node(plan, &valid.scenario)
+    let plan = ClaimedPlan::read_node(plan, &valid.scenario)
         .map_err(|problems| ApiError::input(Problem::all_under("/plan", problems)))?;
-    let found = checker::verify(&valid.scenario, &flight);
+    let found = plan.verify(&valid.scenario);
     let warnings = valid.warnings.into_iter().chain(found.keep_out).collect();
-    let warnings = Problem::all_under("/scenario", warnings);
+    let mut warnings = Problem::all_under("/scenario", warnings);
+    warnings.extend(Problem::all_under("/plan", plan.into_false_claims()));
     let report = ReportDocument::new(&found.verification, &found.margins, &warnings);
     respond::written(&report, "verification")
 }

@@ -2,10 +2,8 @@
 
 use super::failure::Failure;
 use super::{Exit, input, output};
-use crate::documents;
-use crate::documents::verification::ReportDocument;
+use crate::documents::verification::{ClaimedPlan, ReportDocument};
 use crate::render::report;
-use slewplan_solver::checker;
 use slewplan_solver::model::problem::Problem;
 use std::io::{IsTerminal, stdout};
 use std::path::PathBuf;
@@ -26,9 +24,10 @@ pub(super) struct VerifyArguments {
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Exit, Failure> {
     input::one_stream_at_most(&[&arguments.scenario, &arguments.plan])?;
     let valid = input::scenario(&arguments.scenario, None)?;
-    let flight = input::of_plan(&arguments.plan, &valid.scenario, documents::flight::read)?;
-    let found = checker::verify(&valid.scenario, &flight);
-    let warnings: Vec<Problem> = valid.warnings.into_iter().chain(found.keep_out).collect();
+    let plan = input::of_plan(&arguments.plan, &valid.scenario, ClaimedPlan::read)?;
+    let found = plan.verify(&valid.scenario);
+    let warnings = valid.warnings.into_iter().chain(found.keep_out);
+    let warnings: Vec<Problem> = warnings.chain(plan.into_false_claims()).collect();
     output::print(&if arguments.summary || stdout().is_terminal() {
         report::verification(&found.verification, &found.margins, &warnings)
     } else {

@@ -1,6 +1,7 @@
 //! Numbers that are safe to write.
 
 use serde::ser::{Error, Serialize, Serializer};
+use slewplan_solver::checker::NOT_COMPUTED;
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
@@ -9,6 +10,15 @@ use utoipa::{PartialSchema, ToSchema};
 pub(crate) struct Number(pub(crate) f64);
 
 impl Number {
+    /// A number that could not be computed is none.
+    pub(crate) fn computed(value: f64) -> Option<Self> {
+        if value.is_finite() && value.abs() >= NOT_COMPUTED {
+            None
+        } else {
+            Some(Self(value))
+        }
+    }
+
     /// All entries of an array.
     pub(crate) fn all(values: &[f64]) -> Vec<Self> {
         values.iter().copied().map(Self).collect()

@@ -91,7 +91,7 @@ impl From<&CachedLegRow> for StoredLegDocument {
             body_momentum_nms: row.momentum().map(Number),
             reversible: row.reversible,
             duration_s: Number(row.duration_s),
-            certified_lower_bound_s: row.certified_lower_bound_s.map(Number),
+            certified_lower_bound_s: row.certified_lower_bound_s().map(Number),
             solve_time_s: Number(row.solve_time_s),
             status: row.status.clone(),
             solver_version: row.solver_version.clone(),

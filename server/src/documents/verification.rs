@@ -1,12 +1,17 @@
-//! A request to verify a plan, and its answer.
+//! A plan to be verified, a request to do so, and its answer.
 
-use super::flight::ForeignPlan;
+mod own_bounds;
+
+use super::document::{self, Node};
+use super::flight::{self, ForeignPlan};
 use super::plan::{MarginsDocument, VerificationDocument};
 use super::problems::{ProblemDocument, documents};
 use serde::Serialize;
+use slewplan_solver::checker::{self, CheckReport};
 use slewplan_solver::model::input::{Unread, input_object, required_or};
-use slewplan_solver::model::plan::{Margins, Verification};
+use slewplan_solver::model::plan::{Flight, Margins, Verification};
 use slewplan_solver::model::problem::Problem;
+use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ScenarioSpec;
 use utoipa::ToSchema;
 
@@ -17,6 +22,55 @@ input_object! {
         scenario: () as Unread<ScenarioSpec> = required_or(()),
         /// The plan.
         plan: () as Unread<ForeignPlan> = required_or(()),
+    }
+}
+
+/// A plan made by anyone: what it flies, and what it claims of itself though it cannot be.
+#[derive(Debug)]
+pub(crate) struct ClaimedPlan {
+    flight: Flight,
+    false_claims: Vec<Problem>,
+}
+
+impl ClaimedPlan {
+    /// Reads a plan for a scenario.
+    ///
+    /// # Errors
+    ///
+    /// Everything that keeps it from being flown, with pointers into the plan.
+    pub(crate) fn read(bytes: &[u8], scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        Self::read_node(
+            &document::parse(bytes).map_err(|problem| vec![problem])?,
+            scenario,
+        )
+    }
+
+    /// Reads a plan that has been parsed.
+    ///
+    /// # Errors
+    ///
+    /// Everything that keeps it from being flown, with pointers into the plan.
+    pub(crate) fn read_node(node: &Node, scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        let flight = flight::read_node(node, scenario)?;
+        Ok(Self {
+            false_claims: own_bounds::above_times(node, flight.total_time_s),
+            flight,
+        })
+    }
+
+    /// Verifies the flight. A false claim is a failure too.
+    pub(crate) fn verify(&self, scenario: &Scenario) -> CheckReport {
+        let mut found = checker::verify(scenario, &self.flight);
+        let verification = &mut found.verification;
+        let claims = self.false_claims.iter().map(|claim| claim.message.clone());
+        verification.failures.extend(claims);
+        verification.passed = verification.failures.is_empty();
+        found
+    }
+
+    /// The false claims, with pointers into the plan.
+    pub(crate) fn into_false_claims(self) -> Vec<Problem> {
+        self.false_claims
     }
 }
 

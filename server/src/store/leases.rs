@@ -8,6 +8,7 @@ use super::writing::WriteTransaction;
 use super::{
     EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
 };
+use slewplan_solver::bounds;
 use sqlx::query::Query;
 use sqlx::sqlite::SqliteArguments;
 use sqlx::{Row, Sqlite};
@@ -48,7 +49,8 @@ pub(crate) struct Recovered {
 }
 
 impl Store {
-    /// Leases the job that has waited longest; `None` when no job is queued.
+    /// Leases the job that has waited longest; `None` when no job is queued. A lower bound of an
+    /// earlier attempt is kept if this version of the bounds gave it.
     pub(crate) async fn lease(
         &self,
         boot_id: &str,
@@ -58,8 +60,9 @@ impl Store {
         let mut transaction = self.begin().await?;
         let row = sqlx::query(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, \
-             boot_id = ?, lease_until_us = ?, started_us = ?, stage = NULL, done = NULL, \
+             boot_id = ?1, lease_until_us = ?2, started_us = ?3, stage = NULL, done = NULL, \
              total = NULL, \
+             lower_bound_s = CASE bound_version WHEN ?4 THEN lower_bound_s END, bound_version = ?4, \
              incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = sequence) \
              WHERE sequence = \
              (SELECT sequence FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1) \
@@ -69,6 +72,7 @@ impl Store {
         .bind(boot_id)
         .bind(lease_until_us)
         .bind(now_us)
+        .bind(bounds::VERSION)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else {

@@ -3,6 +3,7 @@
 mod upkeep;
 
 use super::{Store, StoreError};
+use slewplan_solver::bounds;
 use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 use sqlx::{FromRow as _, Row, SqliteConnection};
@@ -49,8 +50,8 @@ row! {
         pub(crate) reversible: bool,
         /// Minimum time, s.
         pub(crate) duration_s: f64,
-        /// No slew with its conditions takes less, s, proved.
-        pub(crate) certified_lower_bound_s: Option<f64>,
+        certified_lower_bound_s: Option<f64>,
+        bound_version: Option<u32>,
         /// Wall-clock time of the solve, s.
         pub(crate) solve_time_s: f64,
         /// How the solve ended.
@@ -73,6 +74,13 @@ impl CachedLegRow {
         [self.momentum_x, self.momentum_y, self.momentum_z]
     }
 
+    /// No slew with its conditions takes less, s, proved; `None` where nothing is, and of bounds of
+    /// another version.
+    pub(crate) fn certified_lower_bound_s(&self) -> Option<f64> {
+        self.certified_lower_bound_s
+            .filter(|_| self.bound_version == Some(bounds::VERSION))
+    }
+
     /// The leg with what its row does not hold.
     fn stored(self, spacecraft: String, motion: Motion) -> Result<StoredLeg, StoreError> {
         Ok(StoredLeg {
@@ -85,7 +93,7 @@ impl CachedLegRow {
             body_momentum_nms: self.momentum(),
             reversible: self.reversible,
             duration_s: self.duration_s,
-            certified_lower_bound_s: self.certified_lower_bound_s,
+            certified_lower_bound_s: self.certified_lower_bound_s(),
             status: self.status,
             solve_time_s: self.solve_time_s,
             motion,
@@ -135,7 +143,8 @@ impl Store {
         .transpose()
     }
 
-    /// Stores legs, all of them or none. Returns how many this version had not stored before.
+    /// Stores legs, all of them or none. Returns how many were not stored by this version with bounds
+    /// of this version before.
     pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
         let mut new = 0;
@@ -228,13 +237,15 @@ async fn put_leg(
     let mut query = sqlx::query(
         "INSERT INTO legs (key, identity, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, \
          momentum_x, momentum_y, momentum_z, reversible, duration_s, certified_lower_bound_s, \
-         solve_time_s, status, solver_version, trajectory, created_us) \
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
+         bound_version, solve_time_s, status, solver_version, trajectory, created_us) \
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
          ON CONFLICT (key) DO UPDATE SET reversible = excluded.reversible, duration_s = excluded.duration_s, \
          certified_lower_bound_s = excluded.certified_lower_bound_s, \
-         solve_time_s = excluded.solve_time_s, status = excluded.status, \
+         bound_version = excluded.bound_version, solve_time_s = excluded.solve_time_s, \
+         status = excluded.status, \
          solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
-         created_us = excluded.created_us WHERE solver_version <> excluded.solver_version",
+         created_us = excluded.created_us WHERE solver_version <> excluded.solver_version \
+         OR bound_version IS NOT excluded.bound_version",
     )
     .bind(key(identity))
     .bind(identity)
@@ -247,6 +258,7 @@ async fn put_leg(
         .bind(leg.reversible)
         .bind(leg.duration_s)
         .bind(leg.certified_lower_bound_s)
+        .bind(bounds::VERSION)
         .bind(leg.solve_time_s)
         .bind(&leg.status)
         .bind(SOLVER_VERSION)

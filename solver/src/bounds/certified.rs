@@ -24,6 +24,21 @@
 //! through targets with free components only the first and last legs begin or end at rest, so the
 //! ramps of these components count in these legs only.
 //!
+//! # The tolerances
+//!
+//! The bounds hold for every flight that the checker accepts, not only for one that meets its
+//! conditions exactly. It may miss attitudes and rates and exceed limits by the tolerances of
+//! [`crate::model::tolerances`], which are given away:
+//!
+//! * both ends of a leg are missed by [`MISSED_ATTITUDE`] ([`SlewBound::missing`]);
+//! * conditions on rates at its ends are widened by [`MISSED_RATE`], body axes;
+//! * torques and wheel speeds are larger by [`EXCEEDED_LIMITS`], and so are the boxes, which are
+//!   linear in them, and limits of the body rate.
+//!
+//! The state at the start is met exactly. Its tolerance is given away nevertheless: one leg in a
+//! tour, and canonical legs do not tell their ends apart. What the checker allows of times is a
+//! matter of whole tours.
+//!
 //! # Limitations
 //!
 //! Without limits of speed there is no box of rates and no bound. Stored momentum has boxes of its
@@ -38,11 +53,26 @@ use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::{Dynamics, along};
 use crate::model::scenario::RateCondition;
+use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use crate::model::waypoint::Waypoint;
 use momentum::MomentumBounds;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Version of the mathematics of the bounds. A stored bound of another version is not used: raise it
+/// whenever a bound that was given before could be above one that is given now.
+pub const VERSION: u32 = 2;
+
+/// Tolerances are given away with a thousandth more, far above the rounding of turns and the errors of
+/// the checker's integration.
+const GIVEN: f64 = 1.001;
+/// Largest angle, rad, by which the attitude at an end of a leg is missed.
+const MISSED_ATTITUDE: f64 = GIVEN * ATTITUDE_TOLERANCE;
+/// Largest error of a body rate component at an end of a leg, rad/s.
+const MISSED_RATE: f64 = GIVEN * RATE_TOLERANCE;
+/// Torques, wheel speeds and body rates, relative to their limits.
+const EXCEEDED_LIMITS: f64 = 1.0 + GIVEN * LIMIT_TOLERANCE;
 
 /// Relative accuracy of the least times: a tenth of the gap that the ramps leave.
 const TOLERANCE: f64 = 1e-4;
@@ -183,10 +213,10 @@ impl BodyFrame {
         let acceleration = |axis: &Vector3<f64>| dynamics.reachable_acceleration(axis);
         Self {
             axes,
-            limits: SlewLimits {
+            limits: exceeded(SlewLimits {
                 rates_rad_s: along(&axes, rate),
                 accelerations_rad_s2: along(&axes, acceleration),
-            },
+            }),
         }
     }
 
@@ -196,7 +226,7 @@ impl BodyFrame {
             begin_rad_s: self.limits_in_axes(&ends[0]),
             end_rad_s: self.limits_in_axes(&ends[1]),
         };
-        SlewBound::new(self.limits, ends)
+        Some(SlewBound::new(self.limits, ends)?.missing(MISSED_ATTITUDE))
     }
 
     /// Limits of the components along the frame's axes, from limits along the body axes.
@@ -205,19 +235,29 @@ impl BodyFrame {
     }
 }
 
-/// Limits of the rate components at a waypoint, rad/s; infinite where they are free.
+/// What motions reach whose torques and speeds exceed their limits by the tolerance.
+fn exceeded(limits: SlewLimits) -> SlewLimits {
+    SlewLimits {
+        rates_rad_s: limits.rates_rad_s * EXCEEDED_LIMITS,
+        accelerations_rad_s2: limits.accelerations_rad_s2 * EXCEEDED_LIMITS,
+    }
+}
+
+/// Limits of the rate components at a waypoint, rad/s, with the tolerance; infinite where they are
+/// free.
 fn rate_limits(waypoint: &Waypoint) -> Vector3<f64> {
     Vector3::from(waypoint.rate.map(|condition| match condition {
-        RateCondition::Fixed(rate) => rate.abs(),
-        RateCondition::Within(low, high) => f64::max(low.abs(), high.abs()),
+        RateCondition::Fixed(rate) => rate.abs() + MISSED_RATE,
+        RateCondition::Within(low, high) => f64::max(low.abs(), high.abs()) + MISSED_RATE,
         RateCondition::Free => f64::INFINITY,
     }))
 }
 
-/// An end rate, rounded up to 0, to one of the [`SHARES`] of the largest rate, or to infinity.
+/// An end rate, rounded up to that of a stopped component, to one of the [`SHARES`] of the largest
+/// rate, or to infinity.
 fn rounded_up(rate: f64, largest: f64) -> f64 {
-    if rate == 0.0 {
-        return 0.0;
+    if rate <= MISSED_RATE {
+        return MISSED_RATE;
     }
     let mut steps = SHARES.iter().map(|share| share * largest);
     steps.find(|step| rate <= *step).unwrap_or(f64::INFINITY)

@@ -47,7 +47,8 @@
 //!    value, or the terminal arcs that close the sequence (`terminal_arcs`) are negative, too long,
 //!    or make the sequence as long as the bound. Sequences of many flips are refuted together
 //!    (`near_axis`).
-//! 2. **The link** to the duration: `s(T)` is bounded from above (`link`).
+//! 2. **The link** to the duration: `s(T)` is bounded from above, and what missed attitudes save too
+//!    (`link`).
 //!
 //! On a part of half-width `b` about its middle, the interior is enclosed by Taylor's theorem, with
 //! the derivative at the middle in intervals and, for a product of turns, a second derivative of at
@@ -88,7 +89,7 @@ pub enum Rejection {
     /// The least times of the turns do not imply the bound on the duration.
     #[error("least times of {least_s} s in all bound no duration with s(T) = {needed_s} s")]
     Link {
-        /// Sum of the turns' least times, s.
+        /// Sum of the turns' least times, less what missed attitudes save, s.
         least_s: f64,
         /// Sum that the bound on the duration requires, s.
         needed_s: f64,
@@ -124,6 +125,7 @@ pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
         ends,
         box_rad_s,
         turns,
+        attitude_tolerance_rad,
         duration_s,
     } = certificate;
     let malformed = |what| Err(Rejection::Malformed { what });
@@ -138,12 +140,17 @@ pub fn verify(certificate: &Certificate) -> Result<(), Rejection> {
     if !turns.iter().all(|turn| turn.least_s.is_finite()) || !duration_s.is_finite() {
         return malformed("times must be finite");
     }
+    if !(attitude_tolerance_rad.is_finite() && *attitude_tolerance_rad >= 0.0) {
+        return malformed("the angle of missed attitudes must be finite and not negative");
+    }
     let Some(mut prover) = Prover::new(box_rad_s) else {
         return malformed("the box must be positive and finite");
     };
     if *duration_s > 0.0 {
+        let missed_s = link::missed(box_rad_s, *attitude_tolerance_rad);
         let least_s = turns.iter().fold(Interval::ZERO, |sum, turn| {
-            sum + Interval::exactly(turn.least_s.max(0.0))
+            let left_s = Interval::exactly(turn.least_s) - missed_s;
+            sum + Interval::exactly(left_s.low.max(0.0))
         });
         let needed_s = link::at_most(limits, ends, box_rad_s, *duration_s);
         if needed_s > least_s.low {

@@ -290,6 +290,9 @@ pub enum Code {
     /// A scenario with an end and without targets (warning).
     #[strum(message = "List targets, unless a single slew to the end is meant.")]
     NoTargets,
+    /// A plan takes less time than its own lower bound, so that one of them is false.
+    #[strum(message = "Make the plan again, and do not trust what it says of itself.")]
+    BoundAboveTime,
     /// A boresight enters a keep-out cone (warning).
     #[strum(
         message = "Look at time and depth, and move targets or demand another order if the \

@@ -84,8 +84,8 @@ class Trajectory(TypedDict):
 
 class Verification(TypedDict):
     passed: bool
-    max_attitude_error_rad: float
-    max_rate_error_rad_s: float
+    max_attitude_error_rad: float | None
+    max_rate_error_rad_s: float | None
 
 
 class Problem(TypedDict):

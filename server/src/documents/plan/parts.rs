@@ -147,40 +147,51 @@ impl From<&State> for StateDocument {
     }
 }
 
-/// What is left of every limit.
+/// What is left of every limit. `null` where there is no limit, and where it could not be computed:
+/// then the verification has not passed.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Margins)]
 pub(crate) struct MarginsDocument {
-    torque: Number,
+    #[schema(required)]
+    torque: Option<Number>,
     wheel_speed: Option<Number>,
     body_rate: Option<Number>,
     wheel_zero_crossings: Vec<u32>,
-    keep_out_clearance_deg: Vec<Number>,
+    keep_out_clearance_deg: Vec<Option<Number>>,
 }
 
 impl From<&Margins> for MarginsDocument {
     fn from(margins: &Margins) -> Self {
         Self {
-            torque: Number(margins.torque),
-            wheel_speed: margins.wheel_speed.map(Number),
-            body_rate: margins.body_rate.map(Number),
+            torque: Number::computed(margins.torque),
+            wheel_speed: margins.wheel_speed.and_then(Number::computed),
+            body_rate: margins.body_rate.and_then(Number::computed),
             wheel_zero_crossings: margins.wheel_zero_crossings.clone(),
-            keep_out_clearance_deg: Number::all(&margins.keep_out_clearance_deg),
+            keep_out_clearance_deg: margins
+                .keep_out_clearance_deg
+                .iter()
+                .map(|angle| Number::computed(*angle))
+                .collect(),
         }
     }
 }
 
-/// The re-integration. Figures that could not be computed are very large, never `null`: in many
-/// languages `null` is below any tolerance.
+/// The re-integration. Figures that could not be computed are `null`: then `passed` is false, which
+/// alone says whether all of them are within the tolerances.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Verification)]
 pub(crate) struct VerificationDocument<'a> {
     passed: bool,
-    max_attitude_error_rad: Number,
-    max_rate_error_rad_s: Number,
-    max_wheel_speed_excess: Number,
-    max_torque_excess: Number,
-    max_rate_excess: Number,
+    #[schema(required)]
+    max_attitude_error_rad: Option<Number>,
+    #[schema(required)]
+    max_rate_error_rad_s: Option<Number>,
+    #[schema(required)]
+    max_wheel_speed_excess: Option<Number>,
+    #[schema(required)]
+    max_torque_excess: Option<Number>,
+    #[schema(required)]
+    max_rate_excess: Option<Number>,
     integrator: &'a str,
     failures: &'a [String],
 }
@@ -189,11 +200,11 @@ impl<'a> From<&'a Verification> for VerificationDocument<'a> {
     fn from(found: &'a Verification) -> Self {
         Self {
             passed: found.passed,
-            max_attitude_error_rad: Number(found.max_attitude_error_rad),
-            max_rate_error_rad_s: Number(found.max_rate_error_rad_s),
-            max_wheel_speed_excess: Number(found.max_wheel_speed_excess),
-            max_torque_excess: Number(found.max_torque_excess),
-            max_rate_excess: Number(found.max_rate_excess),
+            max_attitude_error_rad: Number::computed(found.max_attitude_error_rad),
+            max_rate_error_rad_s: Number::computed(found.max_rate_error_rad_s),
+            max_wheel_speed_excess: Number::computed(found.max_wheel_speed_excess),
+            max_torque_excess: Number::computed(found.max_torque_excess),
+            max_rate_excess: Number::computed(found.max_rate_excess),
             integrator: &found.integrator,
             failures: &found.failures,
         }

@@ -5,6 +5,9 @@ use slewplan_solver::model::plan::{Margins, Verification};
 use slewplan_solver::model::problem::Problem;
 use std::fmt::{Display, Write};
 
+/// Numbers from this size on are written with an exponent.
+const LARGEST_IN_DIGITS: f64 = 1e6;
+
 /// One labelled line.
 pub(super) fn line(label: &str, text: impl Display) -> String {
     format!("{label:<14}{text}\n")
@@ -38,10 +41,25 @@ pub(super) fn verification(found: &Verification) -> String {
 }
 
 fn error(value: f64) -> String {
-    if value >= NOT_COMPUTED {
+    computed(value, |value| format!("{value:.1e}"))
+}
+
+/// A number in words where it could not be computed.
+fn computed(value: f64, written: impl FnOnce(f64) -> String) -> String {
+    if value.abs() >= NOT_COMPUTED {
         "not computed".to_owned()
     } else {
-        format!("{value:.1e}")
+        written(value)
+    }
+}
+
+/// A share in per cent. What exceeds a limit many times over is not written out in digits.
+fn percent(share: f64) -> String {
+    let percent = share * 100.0;
+    if percent.abs() < LARGEST_IN_DIGITS {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.1e} %")
     }
 }
 
@@ -49,8 +67,7 @@ fn error(value: f64) -> String {
 pub(super) fn margins(margins: &Margins) -> String {
     let share = |value: Option<f64>| match value {
         None => "no limit".to_owned(),
-        Some(value) if value <= -NOT_COMPUTED => "not computed".to_owned(),
-        Some(value) => format!("{:.1} %", value * 100.0),
+        Some(value) => computed(value, percent),
     };
     let mut text = line(
         "margins",
@@ -75,7 +92,7 @@ pub(super) fn margins(margins: &Margins) -> String {
         let clearances: Vec<String> = margins
             .keep_out_clearance_deg
             .iter()
-            .map(|angle| format!("{angle:.2}"))
+            .map(|angle| computed(*angle, |angle| format!("{angle:.2}")))
             .collect();
         text += &line(
             "",
@@ -120,8 +137,13 @@ mod tests {
         assert_eq!(error(2.5e-9), "2.5e-9");
         let broken = Margins {
             torque: -NOT_COMPUTED,
+            body_rate: Some(-3e300),
+            keep_out_clearance_deg: vec![-NOT_COMPUTED, 12.5],
             ..Margins::default()
         };
-        assert!(margins(&broken).contains("torque not computed, wheel speed no limit"));
+        let text = margins(&broken);
+        let torque = "torque not computed, wheel speed no limit, body rate -3.0e302 %";
+        assert!(text.contains(torque), "{text}");
+        assert!(text.contains("[deg]: not computed, 12.50"), "{text}");
     }
 }

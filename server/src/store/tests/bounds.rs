@@ -72,6 +72,48 @@ fn legs_of_other_versions_are_deleted_in_batches() {
     });
 }
 
+/// The certified bound of the only stored leg, s, as it is listed and as it is found for a solve.
+async fn certified(store: &Store, leg: &NewLeg) -> [Option<f64>; 2] {
+    let all = LegFilter {
+        spacecraft: None,
+        turn: None,
+        after: None,
+        limit: 2,
+    };
+    let listed = store.legs(&all).await.expect("read");
+    let [listed] = &listed[..] else {
+        panic!("{listed:?}");
+    };
+    let found = store.known_leg(&leg.identity).await.expect("read");
+    let found = found.expect("the leg is there");
+    [
+        listed.certified_lower_bound_s(),
+        found.certified_lower_bound_s,
+    ]
+}
+
+#[test]
+fn certified_bounds_of_another_version_are_not_given_out_until_they_are_stored_again() {
+    on_a_store(|store| async move {
+        let mut bounded = leg(3, "a");
+        bounded.leg.certified_lower_bound_s = Some(2.5);
+        let legs = [bounded];
+        assert_eq!(store.put_legs(&legs, 1).await.expect("stored"), 1);
+        assert_eq!(certified(&store, &legs[0]).await, [Some(2.5); 2]);
+        for other in ["bound_version - 1", "bound_version + 1", "NULL"] {
+            let change = format!("UPDATE legs SET bound_version = {other}");
+            sqlx::query(sqlx::AssertSqlSafe(change))
+                .execute(&store.writer)
+                .await
+                .expect("changed");
+            assert_eq!(certified(&store, &legs[0]).await, [None; 2], "{other}");
+            assert_eq!(store.put_legs(&legs, 2).await.expect("stored"), 1);
+            assert_eq!(certified(&store, &legs[0]).await, [Some(2.5); 2]);
+            assert_eq!(store.put_legs(&legs, 3).await.expect("stored"), 0);
+        }
+    });
+}
+
 #[test]
 fn legs_are_found_by_their_rotation_within_the_tolerance() {
     on_a_store(|store| async move {

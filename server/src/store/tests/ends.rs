@@ -92,6 +92,26 @@ fn the_bound_never_falls() {
 }
 
 #[test]
+fn another_attempt_does_not_begin_with_a_bound_of_another_version() {
+    on_a_store(|store| async move {
+        submitted(&store).await;
+        let first = lease(&store, "first").await.job;
+        bounded(&store, &first, 20.0, 15.0).await;
+        sqlx::query("UPDATE jobs SET bound_version = bound_version - 1")
+            .execute(&store.writer)
+            .await
+            .expect("changed");
+        store.recover("second", 4).await.expect("recovered");
+        let second = lease(&store, "second").await.job;
+        assert_eq!(second.lower_bound_s, None);
+        bounded(&store, &second, 20.0, 11.0).await;
+        store.recover("third", 5).await.expect("recovered");
+        let third = lease(&store, "third").await.job;
+        assert_eq!(third.lower_bound_s, Some(11.0));
+    });
+}
+
+#[test]
 fn the_bound_never_exceeds_the_plan() {
     on_a_store(|store| async move {
         submitted(&store).await;

@@ -19,11 +19,11 @@
 //! whose second term along `d` is at most `|H| max_w |(J_eff^-1 d - k d) x w|`; this is convex in
 //! `w`, so its maximum is at a corner of the box of rates. Limits on `w` hold for `v` up to
 //! `k |H|`. Rest at an end means `v = -k R^T H`, which is known there. Slews with a drift are
-//! bounded in [`crate::bounds::kinematic`]. Any `k` is valid. The middle of the eigenvalues of
+//! bounded in [`crate::bounds::kinematic`]. The tolerances are given away as without momentum. Any `k` is valid. The middle of the eigenvalues of
 //! `J^-1` makes the box narrow; zero, with the box of all rates, is better where rates have limits
 //! of their own.
 
-use super::{BodyFrame, allowed_rate};
+use super::{BodyFrame, MISSED_ATTITUDE, allowed_rate, exceeded};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
@@ -80,7 +80,12 @@ impl MomentumBounds {
                     bound,
                 } = drifting;
                 let drifts = held.map(|held| frame.axes.tr_mul(&held) * *share);
-                let limits = [0, 1].map(|end| frame.limits_in_axes(&ends[end]) + drifts[end].abs());
+                // Where the attitude is missed by an angle, so is the direction of the drift.
+                let turned = drifts[0].norm() * MISSED_ATTITUDE;
+                let limits = [0, 1].map(|end| {
+                    let most = frame.limits_in_axes(&ends[end]) + drifts[end].abs();
+                    most.add_scalar(turned)
+                });
                 let ends = EndRates {
                     begin_rad_s: limits[0],
                     end_rad_s: limits[1],
@@ -103,14 +108,14 @@ impl DriftingFrame {
         let acceleration = |axis: &Vector3<f64>| {
             dynamics.reachable_acceleration(axis) + dynamics.gyroscopic_acceleration(axis, share)
         };
-        let limits = SlewLimits {
+        let limits = exceeded(SlewLimits {
             rates_rad_s: along(&axes, rate),
             accelerations_rad_s2: along(&axes, acceleration),
-        };
+        });
         Some(Self {
             frame: BodyFrame { axes, limits },
             share,
-            bound: SlewBound::new(limits, EndRates::at_rest())?,
+            bound: SlewBound::new(limits, EndRates::at_rest())?.missing(MISSED_ATTITUDE),
         })
     }
 }

@@ -49,6 +49,13 @@ pub(super) fn at_most(
     sum.high
 }
 
+/// By how much less time, s, a turn within the box takes whose ends are missed by an angle, rad: that
+/// of two turns about any axes by this angle.
+pub(super) fn missed(rates: &Vector3<f64>, angle: f64) -> Interval {
+    let once = Interval::exactly(angle) / Interval::exactly(rates.min());
+    once + once
+}
+
 impl LinkIntegrand<'_> {
     /// The three bounds on the rate of an axis, each linear in time.
     fn bounds(&self, axis: usize, at: f64) -> [Interval; 3] {

@@ -22,8 +22,9 @@ pub struct CertifiedTurn {
 /// premises.
 ///
 /// Every motion with rates and accelerations within `limits` and end rates within `ends` that makes
-/// the turns one after the other lasts at least `duration_s`: the turns within the box `box_rad_s`
-/// take at least their `least_s`, and [`super::ramps`] links these times to the duration.
+/// the turns one after the other, up to `attitude_tolerance_rad` at each end, lasts at least
+/// `duration_s`: the turns within the box `box_rad_s` take at least their `least_s`, and
+/// [`super::ramps`] links these times to the duration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// Limits that every motion of the spacecraft satisfies.
@@ -34,6 +35,8 @@ pub struct Certificate {
     pub box_rad_s: Vector3<f64>,
     /// The turns, each in the body axes where the one before ended.
     pub turns: Vec<CertifiedTurn>,
+    /// Largest angle by which the attitudes at both ends of every turn are missed, rad.
+    pub attitude_tolerance_rad: f64,
     /// The lower bound on the duration, s.
     pub duration_s: f64,
 }

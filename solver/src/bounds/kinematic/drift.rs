@@ -15,9 +15,12 @@
 //! with `l = max_i |W_f,i| / p_i`; by inversion the same holds with `W_0`. As `s` is nondecreasing,
 //! no slew has a duration in `[T, T']` if `s(T') + l (T' - T) < V_p(Q(T))`. Once all durations
 //! below `T` are excluded, by any box, the next step starts at `T`.
+//!
+//! Where attitudes are missed by `E_0` and `E_1`, the drift in body axes is `E_0^T W_0` at the
+//! beginning, and the turn to be made is `E_0^T Q(T) E_1`: as much less counts as without a drift.
 
 use super::limits::EndRates;
-use super::ramps::{DEFLATION, SlewBound, certifiable_time, rounded_down};
+use super::ramps::{DEFLATION, SlewBound, rounded_down};
 use super::rate_envelope::RateEnvelope;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
@@ -53,7 +56,7 @@ impl SlewBound {
         for _ in 0..MAX_STEPS {
             let left = Attitude::from_rotation_vector(-drift_rad_s * excluded).then_in_body(turn);
             let next = self.boxes.iter().fold(excluded, |next, (rates, table)| {
-                let least = certifiable_time(table, &left, tolerance);
+                let least = self.least_time(rates, table, &left, tolerance);
                 if least * rates.min() < NO_TURN {
                     return next;
                 }

@@ -34,6 +34,11 @@
 //! conditions of the tour. Where all components stop at every target, the legs are independent and
 //! their bounds are summed instead.
 //!
+//! **Missed attitudes.** Where the attitudes at the two ends of a turn `R` are met within an angle `d`
+//! only, the motion makes a turn `E_0^T R E_1` with `E_0`, `E_1` by at most `d`. A turn by `d` about any
+//! axis takes `d / min_i p_i` at most, at a constant rate about it, and `V_p` obeys the triangle
+//! inequality: `V_p(E_0^T R E_1) >= V_p(R) - 2 d / min_i p_i`. So much less of each turn counts.
+//!
 //! The boxes tried are those of the mean rates `1 / T int m_i dt` for some durations `T`, from `r`
 //! (long slews) to the shape of `a` (short slews at rest). Any choice is valid.
 
@@ -48,6 +53,8 @@ use nalgebra::Vector3;
 const DURATIONS: [f64; 4] = [0.5, 1.0, 2.0, 5.0];
 /// Relative difference of shapes below which two boxes are treated as one.
 const SAME_SHAPE: f64 = 0.02;
+/// Relative increase of the time of missed attitudes, for the rounding of what is left of a turn.
+const ROUNDING: f64 = 1e-12;
 /// Relative reduction of a duration for the rounding of `s`.
 pub(super) const DEFLATION: f64 = 1e-9;
 
@@ -58,6 +65,8 @@ pub struct SlewBound {
     /// Rate limits of the boxes with their extremals; the first box is that of the limits
     /// themselves.
     pub(super) boxes: Vec<(Vector3<f64>, RateBox)>,
+    /// Largest angle by which attitudes are missed, rad.
+    pub(super) attitude_tolerance_rad: f64,
 }
 
 impl SlewBound {
@@ -78,6 +87,7 @@ impl SlewBound {
         let mut bound = Self {
             envelope: RateEnvelope { limits, ends },
             boxes: vec![(rates, RateBox::new(rates)?)],
+            attitude_tolerance_rad: 0.0,
         };
         let longest = rates.component_div(&limits.accelerations_rad_s2).max();
         for duration in DURATIONS {
@@ -93,6 +103,16 @@ impl SlewBound {
             }
         }
         Some(bound)
+    }
+
+    /// The same for slews that may miss every attitude, those at their beginning included, by an
+    /// angle, rad.
+    #[must_use]
+    pub fn missing(self, attitude_tolerance_rad: f64) -> Self {
+        Self {
+            attitude_tolerance_rad,
+            ..self
+        }
     }
 
     /// Lower bound, s, on the duration of a slew that makes these turns one after the other, each
@@ -121,8 +141,22 @@ impl SlewBound {
             ends: self.envelope.ends,
             box_rad_s: *box_rad_s,
             turns: turns.iter().map(certified).collect(),
+            attitude_tolerance_rad: self.attitude_tolerance_rad,
             duration_s,
         }
+    }
+
+    /// Least time of any motion within a box, by its rates, that makes a turn up to the missed
+    /// angles at its ends, s; with the margin that its verification needs.
+    pub(super) fn least_time(
+        &self,
+        rates: &Vector3<f64>,
+        table: &RateBox,
+        turn: &Attitude,
+        tolerance: f64,
+    ) -> f64 {
+        let missed = 2.0 * self.attitude_tolerance_rad * (1.0 + ROUNDING) / rates.min();
+        (certifiable_time(table, turn, tolerance) - missed).max(0.0)
     }
 
     /// Index of the box with the best bound for the turns, and the bound, s.
@@ -131,7 +165,7 @@ impl SlewBound {
         for (index, (rates, table)) in self.boxes.iter().enumerate() {
             let least: f64 = turns
                 .iter()
-                .map(|turn| certifiable_time(table, turn, tolerance))
+                .map(|turn| self.least_time(rates, table, turn, tolerance))
                 .sum();
             let duration = self.envelope.duration_of(rates, least);
             if duration > best.1 {
@@ -143,7 +177,7 @@ impl SlewBound {
 }
 
 /// A lower bound on the least time of a turn, with the margin that its verification needs.
-pub(super) fn certifiable_time(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
+fn certifiable_time(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
     table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN)
 }
 

@@ -250,9 +250,12 @@ impl<'a> LegSolver<'a> {
         });
     }
 
-    /// A leg from the store, if its motion passes verification.
+    /// A leg from the store, if its motion passes verification. A bound that the store does not
+    /// vouch for is computed again.
     fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
-        let mut stored = from_store(self.run.legs.get(&leg.identity)?)?;
+        let row = self.run.legs.get(&leg.identity)?;
+        let unproved = row.certified_lower_bound_s.is_none().then(|| row.clone());
+        let mut stored = from_store(row)?;
         let faults = flight_faults(self.places, leg, &stored.solution.profile);
         if !faults.is_empty() {
             let identity = leg.identity.clone();
@@ -261,8 +264,27 @@ impl<'a> LegSolver<'a> {
                 .contradicted(&Contradiction::StoredLeg { identity, faults });
             return None;
         }
+        if let Some(row) = unproved {
+            self.prove_stored(leg, row, &mut stored);
+        }
         self.compare_with_bound(leg, &mut stored);
         Some(stored)
+    }
+
+    /// Computes the certified bound of a leg that is stored without one, or with one of another
+    /// version, and stores it.
+    fn prove_stored(&self, leg: &CanonicalLeg, row: StoredLeg, solved: &mut SolvedLeg) {
+        let known = lock(&self.certified).get(&leg.identity).copied();
+        let bound = known.unwrap_or_else(|| certify(self.places, leg));
+        solved.certified = bound.lower_bound;
+        if bound.lower_bound.is_some() {
+            let certified_lower_bound_s = bound.lower_bound;
+            let proved = StoredLeg {
+                certified_lower_bound_s,
+                ..row
+            };
+            self.run.legs.put(&leg.identity, &proved);
+        }
     }
 
     /// Drops the certified bound of a leg whose duration is below it, and reports the

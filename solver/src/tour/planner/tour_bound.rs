@@ -6,10 +6,15 @@
 //! search finds a bound on that path: exact up to
 //! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, and beyond that number the bound
 //! reached within a node limit.
+//!
+//! Times of passages may be off by the checker's tolerance of the flight's duration: an arrival lies
+//! before the departure by it, a stay is shorter by it. With three of them for every place, the sum of
+//! legs and stays is at most the duration and a small part of itself.
 
 use super::additive_tours::AdditiveTours;
 use super::places::Places;
 use super::tables::CertifiedTable;
+use crate::model::tolerances::TIME_TOLERANCE;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Progress;
 use crate::run::stop::StopSignal;
@@ -21,6 +26,9 @@ const NODES_TIMES_TARGETS_CUBED: u64 = 50_000_000;
 const GAP: f64 = 2e-4;
 /// Relative reduction of the bound, for orders that the search treats as ties and for rounding.
 const DEFLATION: f64 = 3e-9;
+/// Times of a flight at each place that may be off, with one for the rounding of passages onto
+/// controls.
+const TIMES_PER_PLACE: f64 = 4.0;
 
 /// Tours whose legs take as long as their certified bounds, and no time where nothing is proved.
 fn certified_tours<'a>(
@@ -49,7 +57,7 @@ pub(super) fn tour_bound(
     };
     let tours = certified_tours(places, bounds);
     let found = search(&tours, &[], &settings, pool, stop, &Unobserved);
-    Some(found.lower_bound_s * (1.0 - DEFLATION))
+    Some(within_tolerance(places, found.lower_bound_s))
 }
 
 /// The same for the tours along one route.
@@ -59,7 +67,14 @@ pub(super) fn route_bound(
     route: &[Place],
 ) -> Option<f64> {
     let sum = || certified_tours(places, bounds).along(route);
-    bounds.has_bounds().then(|| sum() * (1.0 - DEFLATION))
+    bounds.has_bounds().then(|| within_tolerance(places, sum()))
+}
+
+/// The bound on the duration of tours, s, whose legs and stays last at least so long, s.
+fn within_tolerance(places: &Places<'_>, sum: f64) -> f64 {
+    let count = places.all().len() as f64;
+    let off = TIMES_PER_PLACE * count * TIME_TOLERANCE;
+    sum * (1.0 - DEFLATION) / (1.0 + off)
 }
 
 /// Ignores the progress of this search.

@@ -4,10 +4,11 @@
 //! less than a time. Whether the slews of the scenario are within these limits is checked here from
 //! the scenario alone, by formulas other than those of [`crate::bounds::certified`]: largest
 //! components from the corners of boxes, inertias by solving linear systems, turns as products of
-//! matrices.
+//! matrices. What the checker tolerates has to be within them too.
 
 use crate::bounds::kinematic::certificate::Certificate;
 use crate::model::scenario::{RateCondition, Scenario};
+use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use crate::tour::order::Place;
 use nalgebra::{Matrix3, Vector3};
 
@@ -42,9 +43,13 @@ pub(super) fn check(
     if (expected - turn.turn.matrix()).amax() > SAME_TURN {
         return Err("another turn");
     }
-    let Some([rates, accelerations]) = reachable(scenario, axes) else {
+    if certificate.attitude_tolerance_rad < ATTITUDE_TOLERANCE {
+        return Err("attitudes that are met more exactly than they have to be");
+    }
+    let Some(reached) = reachable(scenario, axes) else {
         return Err("an inertia that cannot be inverted");
     };
+    let [rates, accelerations] = reached.map(|most| most * (1.0 + LIMIT_TOLERANCE));
     let within = |needed: Vector3<f64>, granted: &Vector3<f64>| {
         (0..3).all(|axis| needed[axis] <= granted[axis] * (1.0 + ROUNDING))
     };
@@ -65,8 +70,15 @@ pub(super) fn check(
 }
 
 /// The body axes in the reference frame, as columns, and the ranges of the rate components at a
-/// place, rad/s.
+/// place, rad/s, with the tolerance.
 fn conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, f64); 3]) {
+    let (attitude, ranges) = exact_conditions(scenario, place);
+    let tolerated = |(low, high)| (low - RATE_TOLERANCE, high + RATE_TOLERANCE);
+    (attitude, ranges.map(tolerated))
+}
+
+/// The same without the tolerance.
+fn exact_conditions(scenario: &Scenario, place: Place) -> (Matrix3<f64>, [(f64, f64); 3]) {
     let fixed = |rate: &Vector3<f64>| [0, 1, 2].map(|axis| (rate[axis], rate[axis]));
     match place {
         Place::Start => {

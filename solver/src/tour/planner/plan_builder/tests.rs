@@ -133,7 +133,7 @@ impl LegStore for FaultyStore {
 }
 
 /// Duration and certified bound, s, of the rest-to-rest leg to a target.
-fn leg_from(store: &FaultyStore, listener: &Listener, target: usize) -> (f64, Option<f64>) {
+fn leg_from(store: &dyn LegStore, listener: &Listener, target: usize) -> (f64, Option<f64>) {
     let (scenario, stop) = (scenario(), StopSignal::new());
     with_leg_solver(&scenario, listener, store, &stop, |legs, _| {
         let pair = (Place::Start, Place::Target(target));
@@ -171,6 +171,39 @@ fn a_stored_leg_with_another_motion_or_a_false_bound_is_reported_and_not_used() 
         matches!(&reported[..], [Contradiction::Leg { .. }]),
         "{reported:?}"
     );
+}
+
+/// A store that has forgotten what was proved of its only leg.
+#[derive(Default)]
+struct UnprovedStore(Mutex<Vec<StoredLeg>>);
+
+impl LegStore for UnprovedStore {
+    fn get(&self, _: &str) -> Option<StoredLeg> {
+        let known = self.0.lock().expect("no panic").first().cloned()?;
+        Some(StoredLeg {
+            certified_lower_bound_s: None,
+            ..known
+        })
+    }
+
+    fn put(&self, _: &str, leg: &StoredLeg) {
+        self.0.lock().expect("no panic").push(leg.clone());
+    }
+}
+
+#[test]
+fn the_bound_of_a_stored_leg_is_computed_again_where_the_store_has_none() {
+    let (store, listener) = (UnprovedStore::default(), Listener::default());
+    let leg = || leg_from(&store, &listener, 0);
+    let (duration_s, bound_s) = leg();
+    assert!(bound_s > Some(0.9 * duration_s));
+    assert_eq!(leg().1, bound_s);
+    let stored = store.0.into_inner().expect("no panic");
+    let [solved, proved] = &stored[..] else {
+        panic!("{} legs", stored.len());
+    };
+    assert_eq!(proved, solved);
+    assert_eq!(proved.certified_lower_bound_s, bound_s);
 }
 
 /// An empty store that records the identities it is asked for.

@@ -37,7 +37,10 @@ fn tightened_premises_are_rejected() {
     assert_eq!(check(&scenario, route, &axes, &good), Ok(()));
     let backwards = [route[1], route[0]];
     check(&scenario, backwards, &axes, &good).expect_err("another turn");
-    let cases: [Case; 5] = [
+    let cases: [Case; 8] = [
+        ("met more exactly", |c| c.attitude_tolerance_rad = 0.999e-6),
+        ("rates below", |c| c.limits.rates_rad_s /= 1.000_001_1),
+        ("at the beginning below", |c| c.ends.begin_rad_s.x = 0.0),
         ("rates below", |c| c.limits.rates_rad_s.z *= 0.999),
         ("accelerations below", |c| {
             c.limits.accelerations_rad_s2.x *= 0.999;

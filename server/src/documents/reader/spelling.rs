@@ -1,7 +1,7 @@
 //! Hints for unknown names: the known names, the most similar one first.
 
 /// A hint that lists the known names, the likely one first.
-pub(super) fn hint(written: &str, known: &[&str]) -> String {
+pub(crate) fn hint(written: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     match likely(written, known) {
         Some(name) => format!("did you mean {name:?}? Known here: {list}"),

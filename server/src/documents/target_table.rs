@@ -2,12 +2,14 @@
 //!
 //! Problems have a line and a column in place of a JSON pointer.
 
+mod cell;
 mod columns;
 
 pub(crate) use columns::AttitudeColumns;
 
 use super::document::{Member, Node};
 use super::reader::{Cursor, Sink};
+use cell::cell_problem;
 use columns::{Column, Columns};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use slewplan_solver::model::input::{InputForm, UpTo};
@@ -30,21 +32,6 @@ pub(crate) struct TargetTable {
     columns: Columns,
     lines: Vec<u64>,
     targets: Vec<Node>,
-}
-
-/// A problem of a line, or of the cell in the column of an index and a name.
-fn cell_problem(
-    line: u64,
-    column: Option<(usize, &str)>,
-    code: Code,
-    message: impl Into<String>,
-    hint: impl Into<String>,
-) -> Problem {
-    let place = match column {
-        Some((index, name)) => format!("line {line}, column {} ({name})", index + 1),
-        None => format!("line {line}"),
-    };
-    Problem::new(place, code, message, hint)
 }
 
 /// Reads a table.

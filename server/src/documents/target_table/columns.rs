@@ -1,6 +1,6 @@
 //! The columns of a table of targets, found by their names.
 
-use super::cell_problem;
+use super::cell::cell_problem;
 use crate::documents::reader::known_names_hint;
 use slewplan_solver::model::problem::{Code, Problem};
 

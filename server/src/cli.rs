@@ -5,11 +5,13 @@ use std::process::ExitCode;
 
 mod backup;
 mod certify;
+mod convert;
 mod export;
 mod failure;
 mod form;
 mod health;
 mod import;
+mod init;
 mod input;
 mod keys;
 mod legs;
@@ -34,6 +36,7 @@ pub(crate) use failure::Failure;
 /// Multi-target attitude scheduling for spacecraft with reaction wheels.
 #[derive(Debug, Parser)]
 #[command(
+    name = "slewplan",
     version,
     about,
     after_help = "A file name of - means standard input or output."
@@ -45,6 +48,10 @@ struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum CliCommand {
+    /// Write a scenario to begin with, and what its fields mean
+    Init(init::InitArguments),
+    /// Make targets of a table
+    Convert(convert::ConvertArguments),
     /// Find the visiting order and the wheel torques of minimum time
     Solve(solve::SolveArguments),
     /// Solve one slew, with a choice of objective and command
@@ -127,6 +134,8 @@ pub fn run() -> ExitCode {
 
 fn dispatch(command: &CliCommand) -> Result<Exit, Failure> {
     match command {
+        CliCommand::Init(arguments) => init::run(arguments),
+        CliCommand::Convert(arguments) => convert::run(arguments),
         CliCommand::Solve(arguments) => solve::run(arguments),
         CliCommand::Slew(arguments) => slew::run(arguments),
         CliCommand::Study(arguments) => study::run(arguments),

@@ -10,6 +10,7 @@ mod attitude;
 pub(crate) mod certification;
 pub(crate) mod claims;
 pub(crate) mod document;
+pub(crate) mod field_page;
 pub(crate) mod flight;
 pub(crate) mod jobs;
 pub(crate) mod kind;
@@ -29,6 +30,7 @@ pub(crate) mod slew;
 pub(crate) mod spacecraft;
 pub(crate) mod stored_legs;
 pub(crate) mod study;
+pub(crate) mod target_table;
 #[cfg(test)]
 mod unknown_members;
 pub(crate) mod verification;

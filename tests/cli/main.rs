@@ -1,10 +1,12 @@
 //! The command line from outside: exit codes, documents, messages.
 
 mod certify;
+mod convert;
 mod export;
 mod files;
 mod gallery;
 mod importing;
+mod init;
 mod invalid;
 mod keys;
 mod kinds;

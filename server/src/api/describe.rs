@@ -6,6 +6,7 @@
 mod examples;
 mod inputs;
 mod outcomes;
+mod yaml;
 
 pub(super) use examples::{
     authority_study, comparison_study, effort_sweep, envelope_study, experiment_a, flight_study,
@@ -18,3 +19,4 @@ pub(super) use inputs::{
 pub(super) use outcomes::{
     BodyErrors, Conflict, NotFound, ParameterErrors, QuotaErrors, ServerErrors,
 };
+pub(super) use yaml::yaml;

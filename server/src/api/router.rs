@@ -2,7 +2,7 @@
 
 use super::operations::docs::OpenApiPage;
 use super::{
-    App, access, legs, observe, operations, origin, page, plans, protect, slews, spacecraft,
+    App, access, describe, legs, observe, operations, origin, page, plans, protect, slews, spacecraft,
     studies, verify,
 };
 use crate::documents::jobs::EventDocument;
@@ -81,16 +81,11 @@ pub(crate) fn router(app: App) -> Router {
         .layer(from_fn(observe::envelop))
         .layer(from_fn_with_state(app.clone(), observe::observe))
         .layer(from_fn(protect::protect))
-        .layer(Extension(OpenApiPage::new(yaml(&description))))
+        .layer(Extension(OpenApiPage::new(describe::yaml(&description))))
         .with_state(app)
 }
 
 /// The description of the interface as YAML.
 pub(crate) fn openapi() -> String {
-    yaml(&routes().into_openapi())
-}
-
-fn yaml(description: &utoipa::openapi::OpenApi) -> String {
-    let yaml = description.to_yaml();
-    yaml.expect("all types of the description can be written as YAML")
+    describe::yaml(&routes().into_openapi())
 }

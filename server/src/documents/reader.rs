@@ -13,6 +13,7 @@ mod place;
 mod spelling;
 
 pub(crate) use fields::Fields;
+pub(crate) use spelling::hint as known_names_hint;
 
 /// Collects problems while cursors walk a document.
 #[derive(Debug, Default)]

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Holds the Python client against `openapi.yaml`, its types against mypy, and both against a service.
+"""Holds the client of the Python module against `openapi.yaml`, its types against mypy, and both against
+a service.
 
     python3 tests/clients/python/check.py
 
@@ -8,6 +9,7 @@ SLEWPLAN names a built binary.
 """
 
 import inspect
+import os
 import subprocess
 import sys
 import tempfile
@@ -16,7 +18,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parents[1]
-sys.path += [str(TESTS / "peers"), str(TESTS / "load")]
+PACKAGE = TESTS.parent / "server" / "python"
+# The module before the file of that name among the peers.
+sys.path[:0] = [str(PACKAGE), str(TESTS / "peers"), str(TESTS / "load")]
 from environment import Environment  # noqa: E402
 
 CLIENT = Environment("client", ("mypy==2.4.1", "PyYAML"), ("mypy", "yaml"), "CLIENT_VENV")
@@ -73,8 +77,12 @@ def used(folder):
     with Service(Path(folder, "client.db")) as service:
         address = f"http://{service.host}:{service.port}"
         scenario = TESTS / "fixtures" / "two-targets.json"
-        example = [sys.executable, HERE / "example.py", address, scenario, folder]
-        subprocess.run(example, check=True)
+        example = [sys.executable, HERE / "example.py"]
+        environment = {**os.environ, "PYTHONPATH": str(PACKAGE)}
+        subprocess.run([*example, address, scenario, folder], check=True, env=environment)
+        told = subprocess.run(example, capture_output=True, text=True, env=environment)
+        assert told.returncode == 2 and told.stderr.startswith("usage: example.py "), told
+        assert "ADDRESS" in told.stderr and "Traceback" not in told.stderr, told
         assert Path(folder, "plan.aem").read_text().startswith("CCSDS_AEM_VERS")
         client = slewplan.Client(address)
         model = fixture("two-targets")
@@ -108,7 +116,7 @@ def main():
     wrong = described(description)
     if wrong:
         sys.exit("\n".join(wrong))
-    strict = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", HERE / "slewplan.py"]
+    strict = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", PACKAGE / "slewplan"]
     subprocess.run(strict, check=True)
     with tempfile.TemporaryDirectory() as folder:
         used(folder)

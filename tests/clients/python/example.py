@@ -2,8 +2,11 @@
 """Plans a scenario with a service, shows the order, and writes plan and AEM beside each other.
 
     python3 tests/clients/python/example.py http://127.0.0.1:8080 tests/fixtures/olivares-a.json OUT
+
+Wants the module `slewplan`: install its wheel, or set PYTHONPATH=server/python.
 """
 
+import argparse
 import json
 import sys
 from pathlib import Path
@@ -33,4 +36,8 @@ def main(address, scenario, folder):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    parser = argparse.ArgumentParser(description="Plans a scenario with a service.")
+    parser.add_argument("address", metavar="ADDRESS", help="of the service, as http://127.0.0.1:8080")
+    parser.add_argument("scenario", metavar="SCENARIO", help="a file")
+    parser.add_argument("folder", metavar="FOLDER", help="for plan.json and plan.aem")
+    main(**vars(parser.parse_args()))

@@ -7,8 +7,8 @@
     plan = client.plan(job["id"])
     message = client.export(job["id"], "aem-kvn", object_id="2026-001A")
 
-Types name the members that programs usually read; documents have more. `check.py` holds methods and
-types against `openapi.yaml`.
+Types name the members that programs usually read; documents have more. Methods and types are held
+against `openapi.yaml` by a test.
 """
 
 from __future__ import annotations

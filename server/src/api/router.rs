@@ -70,7 +70,8 @@ fn routes() -> OpenApiRouter<App> {
 /// The whole service.
 pub(crate) fn router(app: App) -> Router {
     let (router, description) = routes().split_for_parts();
-    let docs = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
+    let docs = SwaggerUi::new("/docs")
+        .config(utoipa_swagger_ui::Config::from("/openapi.yaml").default_model_rendering("model"));
     let router = router.merge(docs).route(page::FILES, get(page::file));
     #[cfg(feature = "faults")]
     let router = router.layer(from_fn(observe::fault));

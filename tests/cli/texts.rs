@@ -2,7 +2,6 @@
 
 use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
-use std::process::Command;
 
 /// Asserts that a text has parts, and nothing that only a program likes.
 fn assert_text(text: &str, parts: &[&str]) {
@@ -148,6 +147,8 @@ fn json_and_summary_are_there_together_when_both_are_asked_for() {
     assert!(ended.stderr.contains("solved, "), "{ended:?}");
 }
 
+// `script` has other options elsewhere.
+#[cfg(target_os = "linux")]
 #[test]
 fn a_terminal_gets_the_summary() {
     let line = format!(
@@ -156,7 +157,7 @@ fn a_terminal_gets_the_summary() {
         fixture("two-targets.json")
     );
     // Gives the command a terminal of its own.
-    let output = Command::new("script")
+    let output = std::process::Command::new("script")
         .args(["-qec", &line, "/dev/null"])
         .output()
         .expect("script starts");

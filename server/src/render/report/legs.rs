@@ -11,20 +11,18 @@ pub(crate) fn table(table: &LegTable) -> String {
     let certified = table.kind == LegKind::Certified;
     let is_open = |row: &&LegRow| time(row, certified).is_none();
     let open = table.rows.iter().filter(is_open).count();
-    let mut head = format!(
-        "{} of kind {}",
-        count(table.rows.len(), "leg"),
-        <&str>::from(table.kind)
-    );
+    let kind = <&str>::from(table.kind);
+    let mut head = vec![format!("{} of kind {kind}", count(table.rows.len(), "leg"))];
     if table.shard.of > 1 {
-        head += &format!(", part {} of {}", table.shard.index + 1, table.shard.of);
+        let number = table.shard.index + 1;
+        head.push(format!("part {number} of {}", table.shard.of));
     }
     if open > 0 {
         let what = if certified { "bound" } else { "solution" };
-        head += &format!(", {open} without a {what}");
+        head.push(format!("{open} without a {what}"));
     }
     if !table.complete {
-        head += ", stopped before all were solved";
+        head.push("stopped before all were solved".to_owned());
     }
     let bound = if certified {
         "bound [s]"
@@ -42,7 +40,7 @@ pub(crate) fn table(table: &LegTable) -> String {
             format!("{:.3}", row.solve_time_s),
         ]
     }));
-    format!("{head}\n\n{}", aligned(3, &rows))
+    format!("{}\n\n{}", head.join(", "), aligned(3, &rows))
 }
 
 /// Duration of a leg, or its bound in a table of bounds, s.

@@ -46,12 +46,16 @@ pub(super) fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    if size < 1e-3 || size >= 1e6 {
+    if !(1e-3..1e6).contains(&size) {
         return format!("{value:.3e}");
     }
-    // From -3 to 5, by the range above.
-    let digits = 3 - size.log10().floor() as i32;
-    decimals(value, usize::try_from(digits).unwrap_or(0))
+    // Six from a thousandth on, and one less for every power of ten.
+    let (mut digits, mut bound) = (6_usize, 1e-2);
+    while size >= bound && digits > 0 {
+        digits -= 1;
+        bound *= 10.0;
+    }
+    decimals(value, digits)
 }
 
 #[cfg(test)]

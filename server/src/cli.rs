@@ -3,6 +3,7 @@
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+mod answer;
 mod backup;
 mod certify;
 mod convert;
@@ -39,7 +40,11 @@ pub(crate) use failure::Failure;
     name = "slewplan",
     version,
     about,
-    after_help = "A file name of - means standard input or output."
+    after_help = "A file name of - means standard input or output.\n\n\
+        Exit codes: 0 complete (optimal, valid, passed, confirmed); 1 no answer or an error of the \
+        program; 2 invalid input; 3 infeasible, not passed, not confirmed or refused; 4 stopped \
+        with the best answer so far; 5 a keep-out cone is violated (--strict); 130, 143 ended by a \
+        signal before there was an answer."
 )]
 struct CommandLine {
     #[command(subcommand)]
@@ -97,6 +102,8 @@ pub(crate) enum Exit {
     Negative,
     /// Stopped with the best answer so far.
     Stopped,
+    /// The answer violates a keep-out cone, and --strict asks to be told.
+    Violated,
     /// Ended by a signal without an answer.
     Signalled(u8),
 }
@@ -109,6 +116,7 @@ impl From<Exit> for ExitCode {
             Exit::Invalid => Self::from(2),
             Exit::Negative => Self::from(3),
             Exit::Stopped => Self::from(4),
+            Exit::Violated => Self::from(5),
             Exit::Signalled(code) => Self::from(code),
         }
     }

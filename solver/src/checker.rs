@@ -23,7 +23,6 @@ mod series;
 mod timeline;
 mod visits;
 
-pub use keep_out::Intrusion;
 pub(crate) use leg::{LegEnd, leg_faults};
 pub use propagated::PropagatedMotion;
 pub(crate) use ramped::{StepPart, TorqueRamp, propagate_ramps};
@@ -70,10 +69,9 @@ pub struct CheckReport {
     /// departure, and evenly in between so that no gap exceeds a 500th of the flight or a 20th of
     /// a leg. The sign of the quaternion is continuous from the start's.
     pub states: Vec<State>,
-    /// Keep-out violations, with time and depth: one warning per cone.
+    /// Keep-out violations, with time and depth: one warning per cone. The margins have them one by
+    /// one.
     pub keep_out: Vec<Problem>,
-    /// The same violations, each with its times, in order of cone and time.
-    pub intrusions: Vec<Intrusion>,
     /// Largest relative error of a prescribed final wheel speed; `None` when none is prescribed.
     pub end_wheel_speed_error: Option<f64>,
     /// Largest change of the total momentum in the reference frame relative to its parts: a measure of
@@ -203,6 +201,11 @@ impl<'a> FlightObserver<'a> {
                 body_rate: rate_usage.map(|usage| margin(usage, 1.0)),
                 wheel_zero_crossings: self.limits.zero_crossings(),
                 keep_out_clearance_deg: clearances.collect(),
+                keep_out_intrusions: self
+                    .observers
+                    .iter()
+                    .flat_map(|observer| observer.intrusions.iter().copied())
+                    .collect(),
             },
             verification: Verification {
                 passed: failures.is_empty(),
@@ -216,11 +219,6 @@ impl<'a> FlightObserver<'a> {
             },
             states: self.states.iter().filter_map(state).collect(),
             keep_out,
-            intrusions: self
-                .observers
-                .into_iter()
-                .flat_map(|w| w.intrusions)
-                .collect(),
             end_wheel_speed_error: misses.end_speed,
             momentum_drift: integration.momentum_drift,
             steps: integration.steps,
@@ -248,10 +246,10 @@ impl CheckReport {
                 body_rate: Some(-NOT_COMPUTED),
                 wheel_zero_crossings: Vec::new(),
                 keep_out_clearance_deg: vec![-NOT_COMPUTED; scenario.keep_out().len()],
+                keep_out_intrusions: Vec::new(),
             },
             states: Vec::new(),
             keep_out: Vec::new(),
-            intrusions: Vec::new(),
             end_wheel_speed_error: None,
             momentum_drift: NOT_COMPUTED,
             steps: 0,

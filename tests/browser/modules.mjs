@@ -47,6 +47,18 @@ export async function modules({ browser, service, must }) {
     const expected = ["1", '"x\\"}"', "[ ]", "null", '{"b/c": "x\\"}", "d": [ ]}', null];
     check(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
   });
+  await must("lines and columns in bytes lead to their letter", async () => {
+    const found = await inPage(async (folder) => {
+      const { characterAt, nameAt, placeInText } = await import(`${folder}/app/pointer.js`);
+      const text = '{\n  "ä": x,\n}';
+      const at = (message) => { const place = placeInText({ code: "malformed_json", message }); return place && text.slice(...characterAt(text, place)); };
+      const document = { targets: [{ id: "a" }, { id: 7 }], scenario: { targets: [{ id: "s" }] } };
+      return [at("line 2, column 9: expected value"), at("line 3, column 1: trailing comma"), at("elsewhere"),
+        ...["/targets/0/attitude", "/scenario/targets/0", "/targets/1", "/targets/9", "/start"].map((one) => nameAt(one, document))];
+    });
+    const expected = ["x", "}", null, "target a", "target s", null, null, null];
+    check(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
+  });
   await must("a stream that broke after the last event comes to its end", async () => {
     const [known, events] = await inPage(async (folder) => {
       const { follow } = await import(`${folder}/app/stream.js`);

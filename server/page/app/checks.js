@@ -6,8 +6,9 @@ import { small } from "./format.js";
 /** The tolerances that a verification passes with. */
 export const ALLOWED = { attitude: 1e-6, rate: 1e-7, excess: 1e-6 };
 
-/** Whether it passed, as a coloured word. */
-export function verdict(passed) {
+/** Whether it passed, as a coloured word; `doubt` says what is wrong all the same. */
+export function verdict(passed, doubt = null) {
+  if (passed && doubt) return el("span", { class: "chip waits" }, `Passed, but ${doubt}`);
   return el("span", { class: `chip ${passed ? "good" : "bad"}` }, passed ? "Passed" : "Not passed");
 }
 

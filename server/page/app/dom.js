@@ -41,19 +41,25 @@ export function table(caption, columns, rows) {
     column.head
       ? el("th", { scope: "row" }, content)
       : el("td", { class: column.number ? "number" : null }, content);
-  return el(
-    "div",
-    { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    el(
-      "table",
-      {},
-      el("caption", { class: "unseen" }, caption),
-      el("thead", {}, el("tr", {}, columns.map((column) =>
-        el("th", { scope: "col", class: column.number ? "number" : null }, column.title)))),
-      el("tbody", {}, rows.map((row) =>
-        el("tr", {}, row.map((content, index) => cell(columns[index], content))))),
-    ),
-  );
+  return scroller(caption, el(
+    "table",
+    {},
+    el("caption", { class: "unseen" }, caption),
+    el("thead", {}, el("tr", {}, columns.map((column) =>
+      el("th", { scope: "col", class: column.number ? "number" : null }, column.title)))),
+    el("tbody", {}, rows.map((row) =>
+      el("tr", {}, row.map((content, index) => cell(columns[index], content))))),
+  ));
+}
+
+/** A table in a place of its own, which says when there is more of it beside what is seen. */
+export function scroller(caption, content) {
+  const note = el("p", { class: "wider", hidden: true }, "There is more to the right: scroll this table sideways.");
+  const node = el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption }, note, content);
+  const watcher = new ResizeObserver(() => (note.hidden = content.offsetWidth <= node.clientWidth + 1));
+  watcher.observe(node);
+  watcher.observe(content);
+  return node;
 }
 
 /** Something that is made when it is opened for the first time: the data of a plot as a table. */

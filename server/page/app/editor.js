@@ -3,11 +3,34 @@
 import { request } from "./api.js";
 import { el } from "./dom.js";
 import { failure } from "./failure.js";
-import { locate } from "./pointer.js";
+import { characterAt, locate, placeInText } from "./pointer.js";
 import { pretty } from "./pretty.js";
 
 /** Lines above the place of a problem that stay in sight. */
 const ABOVE = 6;
+
+/** Selects a range of a field and scrolls field and page to it. */
+function lookAt(text, [begin, end]) {
+  const style = getComputedStyle(text);
+  const height = Number.parseFloat(style.lineHeight);
+  const before = text.value.slice(0, begin).split("\n");
+  const above = Number.parseFloat(style.paddingTop) + (before.length - 1) * height;
+  text.focus({ preventScroll: true });
+  text.setSelectionRange(begin, end);
+  text.scrollTop = Math.max(0, above - ABOVE * height);
+  const letter = measure(style.font);
+  const left = before.at(-1).length * letter;
+  text.scrollLeft = left + letter > text.clientWidth ? left - text.clientWidth / 2 : 0;
+  const top = text.getBoundingClientRect().top + text.clientTop + above - text.scrollTop;
+  if (top < 0 || top + height > innerHeight) scrollBy({ top: top - innerHeight / 3 });
+}
+
+/** Width of a letter of a font whose letters are all equally wide. */
+function measure(font) {
+  const ink = document.createElement("canvas").getContext("2d");
+  ink.font = font;
+  return ink.measureText("0").width;
+}
 
 /** A field for a JSON document, with buttons and what comes of them below it. */
 export function editor({ id, label, rows = 24, actions, signal }) {
@@ -21,19 +44,28 @@ export function editor({ id, label, rows = 24, actions, signal }) {
     onchange: () => take(file.files[0]),
   });
 
+  const lines = el("pre", { class: "lines", "aria-hidden": "true" });
+  const renumber = () => {
+    const number = text.value.split("\n").length;
+    if (Number(lines.dataset.number) !== number) {
+      lines.textContent = Array.from({ length: number }, (_, index) => index + 1).join("\n");
+      lines.dataset.number = String(number);
+    }
+    lines.scrollTop = text.scrollTop;
+  };
+  text.addEventListener("input", renumber);
+  text.addEventListener("scroll", () => (lines.scrollTop = text.scrollTop));
+
   const write = (document) => {
     text.value = document;
     text.scrollTop = 0;
+    renumber();
     outcome.replaceChildren();
   };
-  const show = (pointer) => {
-    const range = locate(text.value, pointer ?? "");
-    if (!range) return;
-    text.focus();
-    text.setSelectionRange(...range);
-    const line = text.value.slice(0, range[0]).split("\n").length;
-    const height = text.scrollHeight / text.value.split("\n").length;
-    text.scrollTop = Math.max(0, (line - ABOVE) * height);
+  const show = (problem) => {
+    const at = placeInText(problem);
+    const range = at ? characterAt(text.value, at) : locate(text.value, problem.pointer ?? "");
+    if (range) lookAt(text, range);
   };
 
   async function take(dropped) {
@@ -48,7 +80,7 @@ export function editor({ id, label, rows = 24, actions, signal }) {
     }
   }
 
-  const zone = el("div", { class: "drop" }, text);
+  const zone = el("div", { class: "drop numbered" }, lines, text);
   for (const [kind, over] of [["dragover", true], ["dragleave", false], ["drop", false]]) {
     zone.addEventListener(kind, (event) => {
       event.preventDefault();
@@ -56,6 +88,7 @@ export function editor({ id, label, rows = 24, actions, signal }) {
       if (kind === "drop") take(event.dataTransfer.files[0]);
     });
   }
+  renumber();
   const node = el(
     "div",
     { class: "editor" },
@@ -76,16 +109,27 @@ export function editor({ id, label, rows = 24, actions, signal }) {
     get text() {
       return text.value;
     },
+    /** The document in the field; null when it is no JSON. */
+    get document() {
+      try {
+        return JSON.parse(text.value);
+      } catch {
+        return null;
+      }
+    },
   };
 }
 
-/** Buttons for examples, each [name, title, note]; `choose` is called with a name. */
-export function examples(list, choose) {
+/**
+ * Buttons for examples, each [name, title, note]; `choose` is called with a name. `operation` is what
+ * takes the document, as "tag/identifier" in the description of the API.
+ */
+export function examples(list, choose, operation) {
   return [
     el("h2", { id: "examples-title" }, "Examples"),
     el("ul", { class: "examples" }, list.map(([name, title, note]) =>
       el("li", {}, el("button", { type: "button", onclick: () => choose(name), "data-example": name },
         el("strong", {}, title), el("span", {}, note))))),
-    el("p", { class: "quiet" }, el("a", { href: "/docs/" }, "All fields"), " are in the API description."),
+    el("p", { class: "quiet" }, el("a", { href: `/docs/#/${operation}` }, "All fields"), " are in the API description."),
   ];
 }

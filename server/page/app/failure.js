@@ -2,11 +2,15 @@
 
 import { el } from "./dom.js";
 import { count } from "./format.js";
+import { nameAt, placeInText } from "./pointer.js";
 
-/** A message for a failed request, with all problems of an input; `locate` shows the place of one. */
-export function failure(error, locate) {
-  const items = (error.errors ?? []).map((problem) => item(problem, locate));
-  const doubts = (error.warnings ?? []).map((problem) => item(problem, locate));
+/**
+ * A message for a failed request, with all problems of an input; `locate` shows the place of one, and
+ * `document`, where it is known, gives the names of targets.
+ */
+export function failure(error, locate, document) {
+  const items = (error.errors ?? []).map((problem) => item(problem, locate, document));
+  const doubts = (error.warnings ?? []).map((problem) => item(problem, locate, document));
   return el(
     "div",
     { class: "failure", role: "alert" },
@@ -19,25 +23,27 @@ export function failure(error, locate) {
 }
 
 /** A message for a request that succeeded, with the warnings about its input. */
-export function success(title, warnings, locate) {
+export function success(title, warnings, locate, document) {
   return el(
     "div",
-    { class: "success", role: "status" },
+    { class: warnings.length ? "success doubtful" : "success", role: "status" },
     el("p", { class: "success-title" }, warnings.length ? `${title}, with ${count(warnings.length, "warning")}` : title),
-    warnings.length ? el("ul", {}, warnings.map((warning) => item(warning, locate))) : null,
+    warnings.length ? el("ul", {}, warnings.map((warning) => item(warning, locate, document))) : null,
   );
 }
 
-/** Problems or warnings of an input: pointer, message and hint each. */
-export function item(problem, locate) {
-  const place = problem.pointer || "/";
+/** Problems or warnings of an input: target, pointer, message and hint each. */
+export function item(problem, locate, document) {
+  const at = placeInText(problem);
+  const place = at ? `line ${at.line}, column ${at.column}` : problem.pointer || "/";
   const pointer = locate
-    ? el("button", { type: "button", class: "pointer", onclick: () => locate(problem.pointer) }, place)
+    ? el("button", { type: "button", class: "pointer", onclick: () => locate(problem) }, place)
     : el("code", { class: "pointer" }, place);
+  const name = nameAt(problem.pointer, document);
   return el(
     "li",
     {},
-    pointer,
+    el("span", {}, name ? [el("strong", { class: "named-place" }, name), " "] : null, pointer),
     el("span", {}, problem.message),
     problem.hint ? el("span", { class: "hint" }, problem.hint) : null,
   );

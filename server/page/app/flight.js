@@ -1,5 +1,6 @@
 // What the plots draw: a motion together with the limits that were asked for.
 
+import { alarmsOf } from "./plan/keep-out.js";
 import { quaternion, slerp } from "./rotation.js";
 
 /** The flight of a plan; null when the plan has no trajectory. */
@@ -15,6 +16,7 @@ export function flightOf(plan, scenario) {
     torques: { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true },
     phases: phases(plan, scenario),
     stops: stops(plan),
+    alarms: alarmsOf(plan, scenario),
   };
 }
 
@@ -32,6 +34,7 @@ export function motion(states, asked) {
     limits: limits(asked),
     phases: [],
     stops: [],
+    alarms: [],
     attitudeAt: (time) => attitudeAt(times, attitudes, time),
   };
 }

@@ -43,14 +43,12 @@ export function significant(value, digits = 4) {
   return String(Number(value.toPrecision(Math.max(digits, String(Math.trunc(size)).length)))).replace("-", "−");
 }
 
-/** A moment in the time of the reader, the date only when it is not today. */
+/** A moment in the time of the reader, with its date. */
 export function moment(text) {
   if (!text) return DASH;
-  const at = new Date(text);
-  const today = at.toDateString() === new Date().toDateString();
   const time = { hour: "2-digit", minute: "2-digit", second: "2-digit", hour12: false };
   const date = { year: "numeric", month: "short", day: "numeric" };
-  return at.toLocaleString("en-GB", today ? time : { ...date, ...time });
+  return new Date(text).toLocaleString("en-GB", { ...date, ...time });
 }
 
 /** A count with its noun. */

@@ -11,6 +11,30 @@ export function locate(text, pointer) {
   }
 }
 
+/** Line and column of a text that is not valid JSON, both counted from 1; null for another problem. */
+export function placeInText({ code, message }) {
+  const [, line, column] = (code === "malformed_json" && /^line (\d+), column (\d+)/.exec(message)) || [];
+  return line ? { line: Number(line), column: Number(column) } : null;
+}
+
+/** Begin and end of the character at a line and a column, which counts bytes as the service does. */
+export function characterAt(text, { line, column }) {
+  const lines = text.split("\n");
+  const index = Math.min(line, lines.length) - 1;
+  const begin = lines.slice(0, index).reduce((length, one) => length + one.length + 1, 0);
+  const bytes = new TextEncoder().encode(lines[index]).slice(0, column);
+  const end = Math.min(begin + Math.max(1, new TextDecoder().decode(bytes).length), text.length);
+  return [Math.max(0, end - 1), end];
+}
+
+/** What a pointer leads to or into, by its name in a document: a target; null where it has none. */
+export function nameAt(pointer, document) {
+  const [, whole, index] = /^((?:\/scenario)?)\/targets\/(\d+)(?:\/|$)/.exec(pointer ?? "") ?? [];
+  const targets = (whole ? document?.scenario : document)?.targets;
+  const id = Array.isArray(targets) ? targets[index]?.id : undefined;
+  return typeof id === "string" && id ? `target ${id}` : null;
+}
+
 class Scanner {
   constructor(text) {
     this.text = text;

@@ -21,8 +21,9 @@ export function isFinal(state) {
   return state !== "queued" && state !== "running";
 }
 
-/** A state as a coloured word. */
-export function chip(state) {
+/** A state as a coloured word; `doubt` says what is wrong with a plan that is good otherwise. */
+export function chip(state, doubt = null) {
   const [kind, text] = STATES[state] ?? ["ended", state];
+  if (kind === "good" && doubt) return el("span", { class: "chip waits" }, `${text}, but ${doubt}`);
   return el("span", { class: `chip ${kind}` }, text);
 }

@@ -14,7 +14,7 @@ const ROWS = 16;
  * of {request, document, text}, with a signal for its drawings, and may be asynchronous. `head` stands
  * above the field, `aside` above the examples.
  */
-export function workbench({ title, id, label, verb, done, path, list, head, aside, draw, signal, query }) {
+export function workbench({ title, id, label, verb, done, path, operation, list, head, aside, draw, signal, query }) {
   const result = el("div", { class: "result", role: "region", "aria-label": "Result", tabindex: "-1", hidden: true });
   let drawing = new AbortController();
   signal.addEventListener("abort", () => drawing.abort());
@@ -31,14 +31,14 @@ export function workbench({ title, id, label, verb, done, path, list, head, asid
       const answer = { request: JSON.parse(given.replace(/^\ufeff/, "")), document: JSON.parse(text), text };
       const nodes = await draw(answer, drawing.signal);
       const title = `${done(answer.document)} in ${seconds(elapsed(), 1)}`;
-      field.outcome.replaceChildren(success(title, answer.document.warnings ?? [], field.show));
+      field.outcome.replaceChildren(success(title, answer.document.warnings ?? [], field.show, field.document));
       result.hidden = false;
       result.replaceChildren(...[nodes].flat().filter(Boolean));
       // Whoever waited is led to what came of it.
       result.focus({ preventScroll: true });
       result.scrollIntoView({ block: "start" });
     } catch (error) {
-      if (!waiting.aborted) field.outcome.replaceChildren(failure(error, field.show));
+      if (!waiting.aborted) field.outcome.replaceChildren(failure(error, field.show, field.document));
     }
   };
   const { nodes } = computation({ title: verb, signal, work });
@@ -50,7 +50,7 @@ export function workbench({ title, id, label, verb, done, path, list, head, asid
     { class: "view" },
     el("div", { class: "title" }, el("div", {}, el("h1", {}, title), head)),
     el("div", { class: "split" }, field.node,
-      el("aside", {}, aside, examples(list, field.loadExample))),
+      el("aside", {}, aside, examples(list, field.loadExample, operation))),
     result,
   );
 }

@@ -2,8 +2,8 @@
 
 use super::operations::docs::OpenApiPage;
 use super::{
-    App, access, describe, legs, observe, operations, origin, page, plans, protect, slews, spacecraft,
-    studies, verify,
+    App, access, describe, legs, observe, operations, origin, page, plans, protect, slews,
+    spacecraft, studies, verify,
 };
 use crate::documents::jobs::EventDocument;
 use axum::middleware::{from_fn, from_fn_with_state};
@@ -70,7 +70,8 @@ fn routes() -> OpenApiRouter<App> {
 /// The whole service.
 pub(crate) fn router(app: App) -> Router {
     let (router, description) = routes().split_for_parts();
-    let docs = SwaggerUi::new("/docs").config(utoipa_swagger_ui::Config::from("/openapi.yaml"));
+    let docs = SwaggerUi::new("/docs")
+        .config(utoipa_swagger_ui::Config::from("/openapi.yaml").default_model_rendering("model"));
     let router = router.merge(docs).route(page::FILES, get(page::file));
     #[cfg(feature = "faults")]
     let router = router.layer(from_fn(observe::fault));

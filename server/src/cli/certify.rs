@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &CertifyArguments) -> Result<Exit, Failure> {
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let observer = progress::observer(arguments.progress);
+    let observer = progress::observer(arguments.progress, None);
     let run = Run {
         pool: &pool,
         stop: &stop,

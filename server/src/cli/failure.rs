@@ -118,10 +118,15 @@ fn listings(problems: &[(Option<String>, Problem)]) -> String {
     parts.join("\n")
 }
 
-/// Problems as text: a head line and one paragraph each.
-pub(super) fn listing(name: &str, problems: &[Problem]) -> String {
+/// The head line of a list of problems.
+pub(super) fn heading(name: &str, problems: &[Problem]) -> String {
     let plural = if problems.len() == 1 { "" } else { "s" };
-    let mut text = format!("{name} is not valid: {} problem{plural}", problems.len());
+    format!("{name} is not valid: {} problem{plural}", problems.len())
+}
+
+/// Problems as text: a head line and one paragraph each.
+fn listing(name: &str, problems: &[Problem]) -> String {
+    let mut text = heading(name, problems);
     for problem in problems {
         // Writing into a text cannot fail.
         let _ = write!(text, "\n{problem}");

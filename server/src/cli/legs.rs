@@ -1,16 +1,17 @@
 //! `slewplan legs`: the table of leg times, whole, as a shard, or merged from shards.
 
+use super::answer::AnswerOptions;
 use super::failure::Failure;
-use super::output::{self, Destination};
 use super::remembered::CommandLegCache;
 use super::shard::ShardArgument;
 use super::solve::{Threads, start_pool};
-use super::{Exit, input};
+use super::{Exit, input, output};
 use crate::cli::progress::{self, ProgressMode};
 use crate::cli::signals::{self, Received};
 use crate::documents;
 use crate::documents::document::Node;
 use crate::documents::legs::{LegTable, LegTableDocument};
+use crate::render::report;
 use clap::ValueEnum;
 use recorder::Recorder;
 use slewplan_solver::model::scenario::Scenario;
@@ -45,9 +46,8 @@ pub(super) struct LegsArguments {
     /// Read known legs from this database of the service, and store new ones in it
     #[arg(long, value_name = "FILE")]
     database: Option<PathBuf>,
-    /// Write the table to this file instead of standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
-    output: PathBuf,
+    #[command(flatten)]
+    answer: AnswerOptions,
     #[command(flatten)]
     threads: Threads,
     /// How to show progress on standard error
@@ -80,7 +80,7 @@ impl From<TableKind> for LegKind {
 
 /// Solves the legs, or merges shards, and writes the table.
 pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
-    let destination = Destination::open(&arguments.output)?;
+    let answer = arguments.answer.open()?;
     let table = match &arguments.scenario {
         None => merge::table(&arguments.merge)?,
         Some(path) => {
@@ -94,7 +94,7 @@ pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
             let obstacles = planner::feasibility_problems(&scenario);
             if !obstacles.is_empty() {
                 for obstacle in &obstacles {
-                    output::complain(&obstacle.to_string());
+                    output::complain(&report::problem(obstacle, &scenario));
                 }
                 return Ok(Exit::Negative);
             }
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
     };
     let document = LegTableDocument::new(&table);
     let document = document.map_err(|error| Failure::Unspeakable(error.to_string()))?;
-    destination.write(&output::json(&document)?)?;
+    answer.write(&document, || report::legs(&table))?;
     Ok(exit(&table))
 }
 
@@ -127,7 +127,7 @@ fn solve(
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let observer = progress::observer(arguments.progress);
+    let observer = progress::observer(arguments.progress, scenario.options().time_limit_s);
     let database = arguments.database.as_deref();
     let remembered = database.map(CommandLegCache::open).transpose()?;
     let legs = remembered.as_ref();

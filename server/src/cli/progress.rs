@@ -1,7 +1,7 @@
 //! Progress on standard error: a bar for terminals, JSON lines for programs.
 
 use clap::ValueEnum;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use serde::Serialize;
 use slewplan_solver::run::contradiction::Contradiction;
 use slewplan_solver::run::progress::{Observer, Progress, Stage};
@@ -20,11 +20,15 @@ pub(crate) enum ProgressMode {
     None,
 }
 
-/// The observer for a mode.
-pub(crate) fn observer(mode: ProgressMode) -> Box<dyn Observer> {
+/// The observer for a mode; the time limit, s, is that of the work it observes.
+pub(crate) fn observer(mode: ProgressMode, time_limit_s: Option<f64>) -> Box<dyn Observer> {
+    let clock = Clock {
+        begin: Instant::now(),
+        limit_s: time_limit_s,
+    };
     match mode {
-        ProgressMode::Auto if std::io::stderr().is_terminal() => Box::new(Bar::new()),
-        ProgressMode::Json => Box::new(JsonLines::new()),
+        ProgressMode::Auto if std::io::stderr().is_terminal() => Box::new(Bar::new(clock)),
+        ProgressMode::Json => Box::new(JsonLines::new(clock)),
         ProgressMode::Auto | ProgressMode::None => Box::new(Quiet),
     }
 }
@@ -45,27 +49,62 @@ fn complain(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// A progress bar with incumbent, bound, gap and elapsed time.
-struct Bar(ProgressBar);
+/// The time of the work.
+#[derive(Debug, Clone, Copy)]
+struct Clock {
+    begin: Instant,
+    limit_s: Option<f64>,
+}
+
+impl Clock {
+    fn elapsed_s(&self, now: Instant) -> f64 {
+        (now - self.begin).as_secs_f64()
+    }
+
+    /// What is left of the time limit, s.
+    fn left_s(&self, now: Instant) -> Option<f64> {
+        Some((self.limit_s? - self.elapsed_s(now)).max(0.0))
+    }
+
+    /// Elapsed time and what is left of the limit, in whole seconds.
+    fn words(&self, now: Instant) -> String {
+        let elapsed = self.elapsed_s(now);
+        match self.left_s(now) {
+            Some(left) => format!("{elapsed:.0} s, {left:.0} s left"),
+            None => format!("{elapsed:.0} s"),
+        }
+    }
+}
+
+/// A progress bar with steps, time, incumbent, bound and gap.
+struct Bar(ProgressBar, Clock);
 
 impl Bar {
-    fn new() -> Self {
+    fn new(clock: Clock) -> Self {
         // Hidden counters until the first report.
         let bar = ProgressBar::new_spinner();
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self(bar)
+        Self(bar, clock)
     }
 }
 
 impl Observer for Bar {
     fn progress(&self, progress: Progress) {
-        let bar = &self.0;
+        let (bar, clock) = (&self.0, self.1);
         let template = match progress.total {
-            Some(_) => "{prefix:<6} [{bar:24}] {pos}/{len} {elapsed} {msg}",
-            None => "{prefix:<6} {spinner} {pos} {elapsed} {msg}",
+            Some(_) => "{prefix} [{bar:24}] {msg}  {time}{standing}",
+            None => "{prefix} {spinner} {msg}  {time}{standing}",
         };
         if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
+            let standing = standing(&progress);
+            // Asked for at every tick, so that the time goes on between two reports.
+            let time = move |_: &ProgressState, text: &mut dyn std::fmt::Write| {
+                let _ = text.write_str(&clock.words(Instant::now()));
+            };
+            let standing = move |_: &ProgressState, text: &mut dyn std::fmt::Write| {
+                let _ = text.write_str(&standing);
+            };
+            bar.set_style(style.with_key("time", time).with_key("standing", standing));
         }
         match progress.total {
             Some(total) => bar.set_length(total),
@@ -73,7 +112,7 @@ impl Observer for Bar {
         }
         bar.set_prefix(<&str>::from(progress.stage));
         bar.set_position(progress.done);
-        bar.set_message(status(&progress));
+        bar.set_message(steps(&progress));
     }
 
     fn contradicted(&self, contradiction: &Contradiction) {
@@ -87,23 +126,36 @@ impl Drop for Bar {
     }
 }
 
-fn status(progress: &Progress) -> String {
+/// The steps of a stage, with what they are.
+fn steps(progress: &Progress) -> String {
+    let (done, total) = (progress.done, progress.total);
+    let of = total.map_or_else(String::new, |total| format!(" of {total}"));
+    match progress.stage {
+        Stage::Legs => format!("{done}{of} legs"),
+        Stage::Search if done == 1 && total.is_none() => "1 node".to_owned(),
+        Stage::Search => format!("{done}{of} nodes"),
+        Stage::Verify => "integrating the plan again".to_owned(),
+    }
+}
+
+/// Best plan, bound and gap, as far as they are known.
+fn standing(progress: &Progress) -> String {
     let seconds = |label, value: Option<f64>| {
         value.map_or_else(String::new, |value| format!("  {label} {value:.3} s"))
     };
     let gap = progress
         .relative_gap()
         .map_or_else(String::new, |gap| format!("  gap {:.3} %", gap * 100.0));
-    let incumbent = seconds("best", progress.incumbent_s);
+    let incumbent = seconds("best plan", progress.incumbent_s);
     format!(
         "{incumbent}{}{gap}",
-        seconds("bound", progress.lower_bound_s)
+        seconds("lower bound", progress.lower_bound_s)
     )
 }
 
 /// JSON lines: every change of stage, incumbent or bound, else at most ten lines per second.
 struct JsonLines {
-    begin: Instant,
+    clock: Clock,
     last: Mutex<Option<(Instant, Progress)>>,
 }
 
@@ -116,14 +168,16 @@ struct ProgressLine {
     lower_bound_s: Option<f64>,
     relative_gap: Option<f64>,
     elapsed_s: f64,
+    /// What is left of the time limit; `null` without one.
+    time_left_s: Option<f64>,
 }
 
 const MIN_PAUSE: Duration = Duration::from_millis(100);
 
 impl JsonLines {
-    fn new() -> Self {
+    fn new(clock: Clock) -> Self {
         Self {
-            begin: Instant::now(),
+            clock,
             last: Mutex::new(None),
         }
     }
@@ -136,7 +190,8 @@ impl JsonLines {
             incumbent_s: progress.incumbent_s.filter(|value| value.is_finite()),
             lower_bound_s: progress.lower_bound_s.filter(|value| value.is_finite()),
             relative_gap: progress.relative_gap().filter(|value| value.is_finite()),
-            elapsed_s: (now - self.begin).as_secs_f64(),
+            elapsed_s: self.clock.elapsed_s(now),
+            time_left_s: self.clock.left_s(now),
         }
     }
 }
@@ -165,4 +220,41 @@ fn news(shown: &Progress, progress: &Progress) -> bool {
         (p.stage, p.incumbent_s, p.lower_bound_s)
     };
     key(shown) != key(progress)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(stage: Stage, done: u64, total: Option<u64>) -> Progress {
+        Progress {
+            stage,
+            done,
+            total,
+            incumbent_s: Some(50.0),
+            lower_bound_s: Some(40.0),
+        }
+    }
+
+    #[test]
+    fn the_numbers_of_a_stage_have_their_names() {
+        assert_eq!(steps(&at(Stage::Legs, 3, Some(42))), "3 of 42 legs");
+        assert_eq!(steps(&at(Stage::Search, 1, None)), "1 node");
+        assert_eq!(steps(&at(Stage::Search, 7, None)), "7 nodes");
+        let standing = standing(&at(Stage::Search, 7, None));
+        assert_eq!(
+            standing,
+            "  best plan 50.000 s  lower bound 40.000 s  gap 20.000 %"
+        );
+    }
+
+    #[test]
+    fn what_is_left_of_the_limit_is_never_below_zero() {
+        let begin = Instant::now();
+        let clock = |limit_s| Clock { begin, limit_s };
+        let now = begin + Duration::from_secs(20);
+        assert_eq!(clock(Some(60.0)).words(now), "20 s, 40 s left");
+        assert_eq!(clock(Some(15.0)).words(now), "20 s, 0 s left");
+        assert_eq!(clock(None).words(now), "20 s");
+    }
 }

@@ -1,11 +1,12 @@
 //! `slewplan slew`: solves one slew with a choice of objective and command.
 
+use super::answer::AnswerOptions;
 use super::failure::Failure;
-use super::output::{self, Destination};
-use super::{Exit, input};
+use super::{Exit, input, output};
 use crate::cli::signals;
 use crate::documents::slew::{self, SlewAnswerDocument};
 use crate::jobs::slews::{self, SlewSolutions};
+use crate::render::report;
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
@@ -14,14 +15,13 @@ use std::path::PathBuf;
 pub(super) struct SlewArguments {
     /// The slew, - for standard input
     slew: PathBuf,
-    /// Write the answer to this file instead of standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
-    output: PathBuf,
+    #[command(flatten)]
+    answer: AnswerOptions,
 }
 
 /// Solves the slew and writes the answer.
 pub(super) fn run(arguments: &SlewArguments) -> Result<Exit, Failure> {
-    let destination = Destination::open(&arguments.output)?;
+    let answer = arguments.answer.open()?;
     let bytes = input::read(&arguments.slew)?;
     let invalid = |problems| Failure::Invalid {
         name: input::name(&arguments.slew),
@@ -35,7 +35,9 @@ pub(super) fn run(arguments: &SlewArguments) -> Result<Exit, Failure> {
         return Ok(Exit::Signalled(code));
     }
     let document = SlewAnswerDocument::new(&request, &solved.outcomes, solved.complete);
-    destination.write(&output::json(&document)?)?;
+    answer.write(&document, || {
+        report::slews(&request, &solved.outcomes, solved.complete)
+    })?;
     Ok(exit(&solved))
 }
 

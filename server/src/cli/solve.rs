@@ -1,5 +1,6 @@
 //! `slewplan solve`: plans a scenario.
 
+use super::answer::Summary;
 use super::failure::Failure;
 use super::form::FormatOptions;
 use super::output::{self, Destination};
@@ -36,6 +37,9 @@ pub(super) struct SolveArguments {
     /// Print a summary as text, as on a terminal
     #[arg(long)]
     summary: bool,
+    /// Exit with 5 when the plan violates a keep-out cone; the plan is written all the same
+    #[arg(long)]
+    strict: bool,
     #[command(flatten)]
     threads: Threads,
     /// Stop with the best plan so far after this time, s, whatever the scenario says
@@ -87,14 +91,14 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<Exit, Failure> {
         return Ok(Exit::Signalled(code));
     }
     outlets.write(arguments, &outcome, &warnings, &scenario)?;
-    Ok(exit(&outcome))
+    Ok(exit(&outcome, arguments.strict))
 }
 
 fn solve(arguments: &SolveArguments, scenario: &Scenario) -> Result<(Outcome, Received), Failure> {
     let pool = start_pool(&arguments.threads)?;
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
-    let observer = progress::observer(arguments.progress);
+    let observer = progress::observer(arguments.progress, scenario.options().time_limit_s);
     let remembered = arguments
         .database
         .as_deref()
@@ -112,8 +116,12 @@ fn solve(arguments: &SolveArguments, scenario: &Scenario) -> Result<(Outcome, Re
     Ok((planner::solve(scenario, run), received))
 }
 
-fn exit(outcome: &Outcome) -> Exit {
+fn exit(outcome: &Outcome, strict: bool) -> Exit {
     match outcome {
+        Outcome::Planned(plan) if strict && !plan.margins.keep_out_intrusions.is_empty() => {
+            output::complain("the plan violates a keep-out cone (--strict)");
+            Exit::Violated
+        }
         Outcome::Planned(plan) => match plan.optimality {
             Optimality::Optimal => Exit::Complete,
             Optimality::Feasible => Exit::Stopped,
@@ -127,14 +135,6 @@ fn exit(outcome: &Outcome) -> Exit {
 struct Outlets {
     plan: Option<(Destination, Form)>,
     summary: Summary,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Summary {
-    None,
-    Output,
-    /// To standard error, because the plan goes to standard output.
-    Error,
 }
 
 impl Outlets {
@@ -155,13 +155,7 @@ impl Outlets {
             None if person || arguments.summary => None,
             None => Some(Destination::Stream),
         };
-        let taken = matches!(destination, Some(Destination::Stream));
-        let summary = match (arguments.summary, taken) {
-            (true, true) => Summary::Error,
-            (true, false) => Summary::Output,
-            (false, false) if person => Summary::Output,
-            (false, _) => Summary::None,
-        };
+        let summary = Summary::beside(destination.as_ref(), arguments.summary);
         Ok(Self {
             plan: destination.map(|destination| (destination, format)),
             summary,
@@ -200,19 +194,10 @@ impl Outlets {
             }
         }
         let text = report::outcome(outcome, warnings, scenario);
-        match self.summary {
-            Summary::Output => output::print(&text),
-            Summary::Error => {
-                output::remark(&text);
-                Ok(())
-            }
-            Summary::None => {
-                if !matches!(outcome, Outcome::Planned(_)) {
-                    output::remark(&text);
-                }
-                Ok(())
-            }
+        if self.summary == Summary::None && !matches!(outcome, Outcome::Planned(_)) {
+            output::remark(&text);
         }
+        self.summary.print(&text)
     }
 }
 

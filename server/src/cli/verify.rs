@@ -18,6 +18,9 @@ pub(super) struct VerifyArguments {
     /// Print text instead of JSON, as on a terminal
     #[arg(long)]
     summary: bool,
+    /// Exit with 5 when a plan that passes violates a keep-out cone
+    #[arg(long)]
+    strict: bool,
 }
 
 /// Prints the verification on standard output.
@@ -34,9 +37,13 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Exit, Failure> {
         let document = ReportDocument::new(&found.verification, &found.margins, &warnings);
         output::json(&document)?
     })?;
-    Ok(if found.verification.passed {
-        Exit::Complete
-    } else {
-        Exit::Negative
+    let violated = !found.margins.keep_out_intrusions.is_empty();
+    Ok(match (found.verification.passed, violated) {
+        (false, _) => Exit::Negative,
+        (true, true) if arguments.strict => {
+            output::complain("the plan violates a keep-out cone (--strict)");
+            Exit::Violated
+        }
+        (true, _) => Exit::Complete,
     })
 }

@@ -62,7 +62,10 @@ pub(crate) fn plan(
     }
     let lower = HEAD + UPPER + 46.0;
     let record = plan.record();
-    let panels = timeline::panels(&record, scenario.map(Scenario::spacecraft));
+    let mut panels = timeline::panels(&record, scenario.map(Scenario::spacecraft));
+    for panel in &mut panels {
+        panel.alarms = plan.intrusions();
+    }
     let height = lower + STRIP + timeline::height(&panels) + 24.0;
     let name = scenario.and_then(Scenario::name).unwrap_or("Plan");
     let mut canvas = Canvas::new(WIDTH, height, &described(name, plan));
@@ -113,6 +116,9 @@ fn summary(plan: &WrittenPlan) -> String {
     if let Some(verification) = &plan.verification {
         let passed = if verification.passed { "" } else { "not " };
         parts.push(format!("{passed}verified"));
+    }
+    if !plan.intrusions().is_empty() {
+        parts.push("keep-out violated where marked red".to_owned());
     }
     parts.join("  \u{b7}  ")
 }

@@ -7,11 +7,19 @@ use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate};
 
 mod blocks;
 mod certification;
+mod legs;
+mod numbers;
 mod published;
 #[cfg(test)]
 pub(crate) mod sample;
+mod slews;
+mod studies;
 mod summary;
 mod table;
+
+pub(crate) use legs::table as legs;
+pub(crate) use slews::answer as slews;
+pub(crate) use studies::{authority, comparison, envelopes, flight};
 
 /// The summary of an outcome.
 pub(crate) fn outcome(outcome: &Outcome, doubts: &[Problem], scenario: &Scenario) -> String {
@@ -21,16 +29,27 @@ pub(crate) fn outcome(outcome: &Outcome, doubts: &[Problem], scenario: &Scenario
             let warnings: Vec<Problem> = doubts.iter().chain(&plan.warnings).cloned().collect();
             let published = published::find(title)
                 .map_or_else(String::new, |known| known.comparison(plan, scenario));
-            summary::plan(title, plan) + &published + &blocks::warnings(&warnings)
+            summary::title(title, plan)
+                + &blocks::keep_out_banner(&warnings)
+                + &summary::plan(plan, scenario.targets())
+                + &published
+                + &blocks::warnings(&warnings, Some(scenario))
         }
         Outcome::Infeasible(reasons) => {
-            format!("{title}: infeasible, no plan can exist\n") + &blocks::reasons(reasons)
+            format!("{title}: infeasible, no plan can exist\n")
+                + &blocks::reasons(reasons, Some(scenario))
         }
         Outcome::Failed(reasons) => {
-            format!("{title}: failed, no plan was found\n") + &blocks::reasons(reasons)
+            format!("{title}: failed, no plan was found\n")
+                + &blocks::reasons(reasons, Some(scenario))
         }
         Outcome::StoppedEmpty => format!("{title}: stopped before a first plan was found\n"),
     }
+}
+
+/// A problem of a scenario, with the name of its target.
+pub(crate) fn problem(problem: &Problem, scenario: &Scenario) -> String {
+    blocks::named(problem, Some(scenario))
 }
 
 /// The text of a verification.
@@ -39,7 +58,10 @@ pub(crate) fn verification(
     margins: &Margins,
     warnings: &[Problem],
 ) -> String {
-    blocks::verification(found) + &blocks::margins(margins) + &blocks::warnings(warnings)
+    blocks::keep_out_banner(warnings)
+        + &blocks::verification(found, margins)
+        + &blocks::margins(margins)
+        + &blocks::warnings(warnings, None)
 }
 
 /// The text of the check of a plan's proved bounds.

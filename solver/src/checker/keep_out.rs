@@ -4,6 +4,7 @@ use super::dynamics::{QuaternionComponents, to_reference};
 use super::extremum::{critical_points, root};
 use super::integrator::IntegrationStep;
 use super::number_format::figure;
+use crate::model::plan::Intrusion;
 use crate::model::problem::{Code, Problem};
 use crate::model::scenario::KeepOut;
 
@@ -12,19 +13,6 @@ const TOUCH: f64 = super::ATTITUDE_TOLERANCE;
 
 /// Greatest number of time spans that a message lists.
 const MAX_SPANS: usize = 5;
-
-/// A span of time during which a boresight is inside a cone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Intrusion {
-    /// Index of the cone in the scenario.
-    pub keep_out: usize,
-    /// Entry, s.
-    pub from_s: f64,
-    /// Exit, s.
-    pub to_s: f64,
-    /// Largest angle to the cone's surface, rad.
-    pub depth_rad: f64,
-}
 
 /// Observer of one cone.
 #[derive(Debug)]

@@ -180,6 +180,21 @@ pub struct Margins {
     pub wheel_zero_crossings: Vec<u32>,
     /// Smallest angle between boresight and cone for each keep-out, degrees; negative inside.
     pub keep_out_clearance_deg: Vec<f64>,
+    /// Every stay of a boresight inside a cone, in order of cone and time.
+    pub keep_out_intrusions: Vec<Intrusion>,
+}
+
+/// A span of time during which a boresight is inside a cone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Intrusion {
+    /// Index of the cone in the scenario.
+    pub keep_out: usize,
+    /// Entry, s.
+    pub from_s: f64,
+    /// Exit, s.
+    pub to_s: f64,
+    /// Largest angle to the cone's surface, rad.
+    pub depth_rad: f64,
 }
 
 /// Result of the independent re-integration.

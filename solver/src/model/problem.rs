@@ -299,6 +299,13 @@ pub enum Code {
         plan cannot be flown so."
     )]
     KeepOutViolated,
+    /// An attitude of the scenario points a boresight into a keep-out cone, whatever the order
+    /// (warning).
+    #[strum(
+        message = "Turn the attitude about another axis or move it, or narrow the cone; no plan \
+        through this attitude keeps out of it."
+    )]
+    AttitudeInKeepOut,
     /// A file of another version of the program.
     #[strum(message = "Make the file again with this version.")]
     VersionMismatch,

@@ -138,6 +138,9 @@ impl Scenario {
     pub fn examine(spec: &ScenarioSpec) -> Result<Validated, Faults> {
         let mut findings = Findings::default();
         let scenario = Self::read(spec, &mut findings);
+        if let Some(scenario) = &scenario {
+            keep_out::warn_of_attitudes(scenario, &mut findings);
+        }
         let (scenario, warnings) = findings.judge(scenario)?;
         Ok(Validated { scenario, warnings })
     }

@@ -7,6 +7,8 @@ const COLUMNS = [
   { title: "Leg", head: true },
   { title: "Start, s", number: true },
   { title: "Duration, s", number: true },
+  { title: "Settle, s", number: true, rest: true },
+  { title: "Dwell, s", number: true, rest: true },
   { title: "Compared" },
   { title: "Eigenaxis, s", number: true },
   { title: "Saved, s", number: true },
@@ -15,8 +17,13 @@ const COLUMNS = [
   { title: "Proved bound, s", number: true },
 ];
 
-/** The section with all legs. */
-export function legs(plan) {
+/** The section with all legs; settle and dwell have columns where there are any. */
+export function legs(plan, flight) {
+  const rests = (leg, kind) => flight.phases
+    .filter((phase) => phase.kind === kind && phase.label === leg.to)
+    .reduce((total, phase) => total + phase.end - phase.begin, 0);
+  const rest = flight.phases.some((phase) => phase.kind !== "slew");
+  const columns = COLUMNS.filter((column) => rest || !column.rest);
   const longest = Math.max(...plan.legs.flatMap((leg) => [leg.duration_s, leg.eigenaxis_duration_s ?? 0]));
   const rows = plan.legs.map((leg) => {
     const eigenaxis = leg.eigenaxis_duration_s;
@@ -25,6 +32,7 @@ export function legs(plan) {
       `${leg.from} → ${leg.to}`,
       fixed(leg.start_s),
       fixed(leg.duration_s),
+      ...rest ? ["settle", "dwell"].map((kind) => fixed(rests(leg, kind) || null)) : [],
       bar(leg.duration_s / longest, (eigenaxis ?? 0) / longest),
       fixed(eigenaxis),
       fixed(saved),
@@ -34,7 +42,7 @@ export function legs(plan) {
     ];
   });
   return section("Legs", { class: "wide" },
-    table("Legs in flying order, with the same slew about its eigenaxis", COLUMNS, rows),
+    table("Legs in flying order, with the same slew about its eigenaxis", columns, rows),
     el("p", { class: "quiet" }, "The light bar is the same slew from rest to rest about its eigenaxis. ",
       "Rates left free at the targets count into what is saved."));
 }

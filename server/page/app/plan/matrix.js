@@ -1,7 +1,7 @@
 // Times from rest to rest between all places of a scenario, as far as they are known.
 
 import { post } from "../api.js";
-import { el, section } from "../dom.js";
+import { el, scroller, section } from "../dom.js";
 import { failure } from "../failure.js";
 import { count, fixed } from "../format.js";
 
@@ -67,7 +67,7 @@ function grid(places, legs) {
     if (time !== null) node.style.setProperty("--heat", String(high > low ? (time - low) / (high - low) : 0));
     return node;
   };
-  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Matrix of leg times" },
+  return scroller("Matrix of leg times",
     el("table", { class: "matrix" },
       el("caption", { class: "unseen" }, "Leg times from rest to rest, s; rows are where a leg begins"),
       el("thead", {}, el("tr", {}, el("td", {}), places.map(({ name }) => el("th", { scope: "col" }, name)))),

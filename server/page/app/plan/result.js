@@ -10,6 +10,7 @@ import { sphere } from "../sphere/sphere.js";
 import { timelines } from "../plots/timelines.js";
 import { downloads } from "./downloads.js";
 import { facts, order } from "./facts.js";
+import { banner } from "./keep-out.js";
 import { legs } from "./legs.js";
 import { matrix } from "./matrix.js";
 import { verification } from "./verification.js";
@@ -18,25 +19,27 @@ import { verification } from "./verification.js";
 export function result(job, plan, scenario, beside, signal) {
   const flight = flightOf(plan, scenario);
   if (!flight) {
-    return el("div", { class: "result" }, reasons(plan), beside, downloads(job.id, job.name));
+    return el("div", { class: "result" }, reasons(plan, scenario), beside,
+      downloads(job.id, job.name, { plan: "why there is none" }));
   }
   const cursor = new Cursor();
   return el(
     "div",
     { class: "result" },
+    banner(plan, scenario),
     job.detail ? el("p", { class: "quiet so-far" }, `The search ended without a plan of its own: ${job.detail}. The best before that:`) : null,
     isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
     order(plan, cursor),
     el("div", { class: "flight" }, sphere(flight, cursor, signal), timelines(flight, cursor, signal)),
-    legs(plan),
+    legs(plan, flight),
     el("div", { class: "cards" }, verification(plan, scenario), beside),
     matrix(plan, scenario, signal),
-    downloads(job.id, job.name),
+    downloads(job.id, job.name, { plan: "the whole plan", exports: true }),
   );
 }
 
-function reasons(plan) {
+function reasons(plan, scenario) {
   const list = plan.reasons ?? [];
   return section("Why there is no plan", { class: "card" },
-    list.length ? el("ul", { class: "problems" }, list.map((reason) => item(reason))) : el("p", {}, plan.status));
+    list.length ? el("ul", { class: "problems" }, list.map((reason) => item(reason, null, scenario))) : el("p", {}, plan.status));
 }

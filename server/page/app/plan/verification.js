@@ -3,6 +3,7 @@
 import { ALLOWED, checks, messages, verdict } from "../checks.js";
 import { el, section } from "../dom.js";
 import { fixed, percent } from "../format.js";
+import { VIOLATED, intrusionsOf, isKeepOut } from "./keep-out.js";
 
 /** The section with the verification, the margins and the warnings of a plan. */
 export function verification(plan, scenario) {
@@ -15,11 +16,11 @@ export function verification(plan, scenario) {
     ["torque excess", found.max_torque_excess, ALLOWED.excess],
     ["body rate excess", found.max_rate_excess, ALLOWED.excess],
   ];
-  return section("Verification", { head: verdict(found.passed), class: "card" },
+  return section("Verification", { head: verdict(found.passed, intrusionsOf(plan).length ? VIOLATED : null), class: "card" },
     checks(rows),
     margins(plan.margins, scenario),
     messages("Failures", found.failures),
-    messages("Warnings", plan.warnings),
+    messages("Warnings", plan.warnings?.filter((warning) => !isKeepOut(warning))),
     el("p", { class: "quiet" }, `Flown again from the start by code that shares nothing with the optimiser. ${found.integrator}.`));
 }
 

@@ -3,6 +3,8 @@
 import { colour } from "./palette.js";
 
 const ROOM = 0.08;
+/** Height of the mark of a violation at the upper edge, px. */
+const ALARM = 5;
 
 /** Limits of which the curves use less than this share are outside of a plot. */
 const USED = 0.2;
@@ -38,6 +40,7 @@ export function decorate(flight, group) {
   return {
     drawClear: [(drawn) => within(drawn, () => {
       shade(drawn, flight.phases);
+      alarm(drawn, flight.alarms);
       arrivals(drawn, flight.stops);
     })],
     draw: [(drawn) => within(drawn, () => values.forEach((value) => across(drawn, value)))],
@@ -66,6 +69,19 @@ function shade(drawn, phases) {
     ctx.fillStyle = colour(`${phase.kind}-shade`);
     const [begin, end] = [phase.begin, phase.end].map((time) => drawn.valToPos(time, "x", true));
     ctx.fillRect(begin, bbox.top, Math.max(end - begin, 1), bbox.height);
+  }
+}
+
+/** Marks where a boresight is inside a cone: a moment is to be seen too. */
+function alarm(drawn, alarms) {
+  const { ctx, bbox } = drawn;
+  for (const { begin, end } of alarms) {
+    const [from, to] = [begin, end].map((time) => drawn.valToPos(time, "x", true));
+    const width = Math.max(to - from, 2 * devicePixelRatio);
+    ctx.fillStyle = colour("alarm-shade");
+    ctx.fillRect(from, bbox.top, width, bbox.height);
+    ctx.fillStyle = colour("limit");
+    ctx.fillRect(from, bbox.top, width, ALARM * devicePixelRatio);
   }
 }
 

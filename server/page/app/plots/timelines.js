@@ -15,6 +15,8 @@ const SLIDER_STEPS = 2000 * (1 + 1e-9);
 const ZOOM_STEP = 2;
 /** More rows than this are for a program: the CSV has them. */
 const MOST_ROWS = 3000;
+/** A finger that moves farther than this scrolls, px. */
+const MOST_OF_A_TAP = 12;
 
 /**
  * The section with the timelines of a flight. More groups of curves stand below its own: {title, unit,
@@ -73,18 +75,24 @@ export function timelines(flight, cursor, signal, more = []) {
   );
 }
 
+/** The units of the plots of the command line, by what the documents have. */
+const DEGREES = 180 / Math.PI;
+const MILLI = 1000;
+
+const inUnit = (lists, factor) => lists.map((values) => values && values.map((value) => factor * value));
+
 /** The curves that every flight has; `column` and `digits` are those of the table of samples. */
 function groups({ times, rates, speeds, torques, limits }) {
   const wheels = speeds.map((_, wheel) => `wheel ${wheel}`);
   const numbers = speeds.map((_, wheel) => String(wheel));
   const group = (more, shown) => ({ times, text: (value) => fixed(value, shown), ...more });
   return [
-    group({ title: "Body rates", unit: "rad/s", names: ["x", "y", "z"], curves: rates, limits: limits.rates,
-      column: ["Rate", ["x", "y", "z"]], digits: 6 }, 4),
+    group({ title: "Body rates", unit: "deg/s", names: ["x", "y", "z"], curves: inUnit(rates, DEGREES),
+      limits: inUnit(limits.rates, DEGREES), column: ["Rate", ["x", "y", "z"]], digits: 4 }, 3),
     group({ title: "Wheel speeds", unit: "rad/s", names: wheels, curves: speeds, limits: limits.speeds,
       column: ["Speed", numbers], digits: 2 }, 1),
-    group({ title: "Wheel torques", unit: "N m", names: wheels, ...torques, limits: limits.torques,
-      column: ["Torque", numbers], digits: 6 }, 4),
+    group({ title: "Wheel torques", unit: "mN m", names: wheels, ...torques, curves: inUnit(torques.curves, MILLI),
+      limits: inUnit(limits.torques, MILLI), column: ["Torque", numbers], digits: 3 }, 2),
   ];
 }
 
@@ -161,9 +169,21 @@ function options(flight, group, cursor, one, charts, lane) {
           one.hovered = false;
           one.show(cursor.time ?? 0);
         });
+        listenToTaps(drawn.over, (x) => cursor.set(Math.max(0, Math.min(flight.total, drawn.posToVal(x, "x")))));
       }],
     },
   };
+}
+
+/** Calls back with the place of every tap: a finger does not hover, and what moves is a scroll. */
+function listenToTaps(place, tapped) {
+  let begun = null;
+  place.addEventListener("pointerdown", (event) => (begun = event.pointerType === "mouse" ? null : event));
+  place.addEventListener("pointerup", (event) => {
+    const moved = begun ? Math.hypot(event.clientX - begun.clientX, event.clientY - begun.clientY) : Infinity;
+    begun = null;
+    if (moved < MOST_OF_A_TAP) tapped(event.clientX - place.getBoundingClientRect().left);
+  });
 }
 
 function ticksOf(_, ticks) {

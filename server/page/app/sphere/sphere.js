@@ -156,6 +156,7 @@ function listenToKeys(picture, turn, zoom, reset) {
     "+": () => zoom(ZOOM_STEP), "=": () => zoom(ZOOM_STEP), "-": () => zoom(1 / ZOOM_STEP), 0: reset,
   };
   picture.addEventListener("keydown", (event) => {
+    picture.classList.remove("pointed");
     const act = !event.ctrlKey && !event.metaKey && !event.altKey && acts[event.key];
     if (!act) return;
     event.preventDefault();
@@ -164,9 +165,11 @@ function listenToKeys(picture, turn, zoom, reset) {
 }
 
 function listenToPointer(picture, pressed, dragged) {
-  let from = null;
+  let [from, begun] = [null, null];
   picture.addEventListener("pointerdown", (event) => {
-    from = event;
+    from = begun = event;
+    // Whoever points sees what is turned; the frame of the focus is for keys.
+    picture.classList.add("pointed");
     pressed(event.target);
     picture.setPointerCapture(event.pointerId);
   });
@@ -175,9 +178,15 @@ function listenToPointer(picture, pressed, dragged) {
     dragged(event.clientX - from.clientX, event.clientY - from.clientY);
     from = event;
   });
-  const end = () => (from = null);
-  picture.addEventListener("pointerup", end);
-  picture.addEventListener("pointercancel", end);
+  picture.addEventListener("focus", () => {
+    if (!from) picture.classList.remove("pointed");
+  });
+  picture.addEventListener("pointerup", () => (from = null));
+  // The browser takes the finger for a scroll: what it has turned until then is taken back.
+  picture.addEventListener("pointercancel", () => {
+    if (from) dragged(begun.clientX - from.clientX, begun.clientY - from.clientY);
+    from = null;
+  });
 }
 
 function legend(flight) {

@@ -92,7 +92,9 @@ export function list({ signal }) {
 
 function rows(plans) {
   return table("Plans, the newest first", COLUMNS, plans.map((job) => [
-    el("a", { href: `#/plans/${job.id}` }, job.name ?? "unnamed"),
+    // Where there is no room for its column the moment stands below the name.
+    [el("a", { href: `#/plans/${job.id}` }, job.name ?? "unnamed"),
+      el("time", { class: "below", datetime: job.submitted_at }, moment(job.submitted_at))],
     chip(job.state),
     String(job.targets),
     seconds(job.incumbent_s),

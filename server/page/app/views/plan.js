@@ -4,7 +4,9 @@ import { post, read, remove } from "../api.js";
 import { el, section } from "../dom.js";
 import { failure } from "../failure.js";
 import { count, moment } from "../format.js";
+import { downloads } from "../plan/downloads.js";
 import { standing } from "../plan/facts.js";
+import { VIOLATED, intrusionsOf } from "../plan/keep-out.js";
 import { result } from "../plan/result.js";
 import { convergence } from "../plots/convergence.js";
 import { chip, isFinal } from "../state.js";
@@ -27,7 +29,7 @@ class PlanPage {
   #job = null;
   #scenario = null;
   #begun = 0;
-  #shown = { incumbent: null, final: false };
+  #shown = { incumbent: null, final: false, violated: false };
   #drawing = new AbortController();
 
   #title = el("h1", {}, "Plan");
@@ -106,8 +108,10 @@ class PlanPage {
   #renew() {
     const { state } = this.#job;
     const ended = isFinal(state);
-    if (this.#state.dataset.state !== state) this.#state.replaceChildren(chip(state));
-    this.#state.dataset.state = state;
+    const doubt = this.#shown.violated ? VIOLATED : null;
+    const key = [state, doubt].join();
+    if (this.#state.dataset.shown !== key) this.#state.replaceChildren(chip(state, doubt));
+    this.#state.dataset.shown = key;
     this.#stop.hidden = state !== "running";
     this.#cancel.hidden = ended;
     this.#again.hidden = this.#delete.hidden = !ended;
@@ -126,13 +130,14 @@ class PlanPage {
     } catch (error) {
       if (this.#signal.aborted || (error.status === 409 && !final)) return;
       this.#news.replaceChildren();
-      this.#result.replaceChildren(failure(error.status === 409
-        ? { title: "There is no plan", message: this.#job.detail ?? error.message } : error));
+      const none = { title: "There is no plan", message: this.#job.detail ?? error.message };
+      this.#result.replaceChildren(failure(error.status === 409 ? none : error),
+        el("div", { class: "result" }, downloads(this.#id, this.#job.name)));
       return;
     }
     // An earlier plan that arrives late does not replace the last one.
     if (this.#shown.final) return;
-    this.#shown = { incumbent: found.total_time_s ?? null, final };
+    this.#shown = { incumbent: found.total_time_s ?? null, final, violated: intrusionsOf(found).length > 0 };
     this.#news.replaceChildren();
     this.#drawing.abort();
     this.#drawing = new AbortController();

@@ -17,6 +17,7 @@ const EXAMPLES = [
 export function slew({ signal, query }) {
   return workbench({
     title: "One slew", id: "slew", label: "Slew", verb: "Solve", done, path: "/v1/slews",
+    operation: "slews/solve_slew",
     list: EXAMPLES, signal, query,
     head: el("p", { class: "quiet" }, "A manoeuvre between two states, in least time or for another objective."),
     draw: async (answer, drawing) => slewResult({ ...answer, request: await writtenOut(answer.request, drawing) }, drawing),

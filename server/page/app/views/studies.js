@@ -13,6 +13,7 @@ export function studies({ id, signal, query }) {
     el("a", { href: `#/studies/${one.name}`, "aria-current": one === study ? "page" : null }, one.title)));
   return workbench({
     title: `${study.title} study`, id: "study", label: "Study", verb: "Run", done: () => "Done", path: study.path,
+    operation: `studies/study_${study.name}`,
     list: study.examples, signal, query,
     head: el("p", { class: "quiet" }, study.question),
     aside: el("nav", { "aria-label": "Studies" }, el("h2", {}, "Studies"), el("ul", { class: "choices" }, links)),

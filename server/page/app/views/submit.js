@@ -23,10 +23,10 @@ export function submit({ signal, query }) {
     check.disabled = go.disabled = true;
     try {
       const answer = await post(only ? "/v1/plans?validate_only=true" : "/v1/plans", field.text, signal);
-      if (only) field.outcome.replaceChildren(success("Valid", answer.warnings ?? [], field.show));
+      if (only) field.outcome.replaceChildren(success("Valid", answer.warnings ?? [], field.show, field.document));
       else location.hash = `#/plans/${answer.id}`;
     } catch (error) {
-      if (!signal.aborted) field.outcome.replaceChildren(failure(error, field.show));
+      if (!signal.aborted) field.outcome.replaceChildren(failure(error, field.show, field.document));
     }
     check.disabled = go.disabled = false;
   }
@@ -42,7 +42,7 @@ export function submit({ signal, query }) {
       "div",
       { class: "split" },
       field.node,
-      el("aside", { "aria-labelledby": "examples-title" }, examples(EXAMPLES, field.loadExample)),
+      el("aside", { "aria-labelledby": "examples-title" }, examples(EXAMPLES, field.loadExample, "plans/create_plan")),
     ),
   );
 }

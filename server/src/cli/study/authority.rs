@@ -4,8 +4,8 @@ use super::given::StudyFiles;
 use super::planning::Planning;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
-use crate::cli::output;
 use crate::documents::study::authority::{self, AuthorityAnswerDocument};
+use crate::render::report;
 
 /// Arguments of `study authority`.
 #[derive(Debug, clap::Args)]
@@ -19,11 +19,11 @@ pub(super) struct AuthorityStudyArguments {
 /// Plans and simulates for every pair of shares and writes the answer.
 pub(super) fn run(arguments: &AuthorityStudyArguments) -> Result<Exit, Failure> {
     let given = &arguments.given;
-    let (destination, study) = given.open(authority::read)?;
+    let (answer, study) = given.open(authority::read)?;
     let (rows, _) = arguments.planning.conduct(|run| study.conduct(run))?;
     let rows = rows.map_err(|problems| given.invalid(problems))?;
     let document = AuthorityAnswerDocument::new(&rows);
-    destination.write(&output::json(&document)?)?;
+    answer.write(&document, || report::authority(&rows))?;
     Ok(if document.is_complete() {
         Exit::Complete
     } else {

@@ -1,9 +1,10 @@
 //! `slewplan study comparison`: compares reaction wheels with control moment gyroscopes.
 
+use crate::cli::answer::AnswerOptions;
 use crate::cli::failure::Failure;
-use crate::cli::output::{self, Destination};
 use crate::cli::{Exit, input};
 use crate::documents::study::comparison::{self, ComparisonAnswerDocument};
+use crate::render::report;
 use slewplan_studies::comparison::{ComparisonStudy, ComparisonStudySpec};
 use std::path::PathBuf;
 
@@ -12,14 +13,13 @@ use std::path::PathBuf;
 pub(super) struct ComparisonStudyArguments {
     /// Differences from the published study, - for standard input [default: none]
     study: Option<PathBuf>,
-    /// Write the answer to this file instead of standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
-    output: PathBuf,
+    #[command(flatten)]
+    answer: AnswerOptions,
 }
 
 /// Runs the study and writes the answer.
 pub(super) fn run(arguments: &ComparisonStudyArguments) -> Result<Exit, Failure> {
-    let destination = Destination::open(&arguments.output)?;
+    let answer = arguments.answer.open()?;
     let spec = arguments.study.as_deref().map_or_else(
         || Ok(ComparisonStudySpec::default()),
         |path| {
@@ -34,7 +34,8 @@ pub(super) fn run(arguments: &ComparisonStudyArguments) -> Result<Exit, Failure>
         problems,
     })?;
     let study = study.ok_or_else(|| Failure::Unspeakable("a table has no law".to_owned()))?;
-    destination.write(&output::json(&ComparisonAnswerDocument::new(&study))?)?;
+    let document = ComparisonAnswerDocument::new(&study);
+    answer.write(&document, || report::comparison(&study))?;
     Ok(Exit::Complete)
 }
 

@@ -4,8 +4,8 @@ use super::given::StudyFiles;
 use super::planning::Planning;
 use crate::cli::Exit;
 use crate::cli::failure::Failure;
-use crate::cli::output;
 use crate::documents::study::flight::{self, FlightAnswerDocument};
+use crate::render::report;
 use slewplan_studies::flight::{FlightStudyOutcome, simulate};
 
 /// Arguments of `study flight`.
@@ -20,13 +20,14 @@ pub(super) struct FlightStudyArguments {
 /// Solves, simulates and writes the answer.
 pub(super) fn run(arguments: &FlightStudyArguments) -> Result<Exit, Failure> {
     let given = &arguments.given;
-    let (destination, study) = given.open(flight::read)?;
+    let (answer, study) = given.open(flight::read)?;
     let (outcome, received) = arguments.planning.conduct(|run| simulate(&study, run))?;
     let outcome = outcome.map_err(|problems| given.invalid(problems))?;
     if let (FlightStudyOutcome::Stopped, Some(code)) = (&outcome, received.exit_code()) {
         return Ok(Exit::Signalled(code));
     }
-    destination.write(&output::json(&FlightAnswerDocument::new(&study, &outcome))?)?;
+    let document = FlightAnswerDocument::new(&study, &outcome);
+    answer.write(&document, || report::flight(&study, &outcome))?;
     Ok(match outcome {
         FlightStudyOutcome::Simulated(_) => Exit::Complete,
         FlightStudyOutcome::NoPlan(_) => Exit::Negative,

@@ -1,8 +1,8 @@
 //! Input and output of a study.
 
+use crate::cli::answer::{Answer, AnswerOptions};
 use crate::cli::failure::Failure;
 use crate::cli::input;
-use crate::cli::output::Destination;
 use slewplan_solver::model::problem::Problem;
 use std::path::PathBuf;
 
@@ -11,9 +11,8 @@ use std::path::PathBuf;
 pub(super) struct StudyFiles {
     /// The document of the study, - for standard input
     study: PathBuf,
-    /// Write the answer to this file instead of standard output
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
-    output: PathBuf,
+    #[command(flatten)]
+    answer: AnswerOptions,
 }
 
 impl StudyFiles {
@@ -21,11 +20,11 @@ impl StudyFiles {
     pub(super) fn open<T>(
         &self,
         read: impl FnOnce(&[u8]) -> Result<T, Vec<Problem>>,
-    ) -> Result<(Destination, T), Failure> {
-        let destination = Destination::open(&self.output)?;
+    ) -> Result<(Answer, T), Failure> {
+        let answer = self.answer.open()?;
         let bytes = input::read(&self.study)?;
         let study = read(&bytes).map_err(|problems| self.invalid(problems))?;
-        Ok((destination, study))
+        Ok((answer, study))
     }
 
     /// The error for problems of the document.

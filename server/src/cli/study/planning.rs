@@ -28,7 +28,8 @@ impl Planning {
         let stop = StopSignal::new();
         let received = signals::listen(&stop).map_err(Failure::Signals)?;
         // Dropped here, so that the progress bar is removed before anything is written.
-        let observer = progress::observer(self.progress);
+        // Every plan of a study has a time limit of its own.
+        let observer = progress::observer(self.progress, None);
         let done = work(Run {
             pool: &pool,
             stop: &stop,

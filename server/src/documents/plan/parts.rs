@@ -3,7 +3,9 @@
 use crate::documents::number::Number;
 use serde::Serialize;
 use slewplan_solver::model::attitude::Attitude;
-use slewplan_solver::model::plan::{Control, Leg, Margins, Passage, State, Verification};
+use slewplan_solver::model::plan::{
+    Control, Intrusion, Leg, Margins, Passage, State, Verification,
+};
 use utoipa::ToSchema;
 
 /// A unit quaternion, scalar part `w`.
@@ -158,6 +160,31 @@ pub(crate) struct MarginsDocument {
     body_rate: Option<Number>,
     wheel_zero_crossings: Vec<u32>,
     keep_out_clearance_deg: Vec<Option<Number>>,
+    /// Every stay of a boresight inside a cone; empty where the plan keeps out of all cones.
+    keep_out_intrusions: Vec<IntrusionDocument>,
+}
+
+/// A boresight inside a keep-out cone.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = KeepOutIntrusion)]
+struct IntrusionDocument {
+    /// Position of the cone in `keep_out` of the scenario, counted from 0.
+    keep_out: usize,
+    from_s: Number,
+    to_s: Number,
+    /// Largest angle to the cone's surface.
+    depth_deg: Number,
+}
+
+impl From<&Intrusion> for IntrusionDocument {
+    fn from(intrusion: &Intrusion) -> Self {
+        Self {
+            keep_out: intrusion.keep_out,
+            from_s: Number(intrusion.from_s),
+            to_s: Number(intrusion.to_s),
+            depth_deg: Number(intrusion.depth_rad.to_degrees()),
+        }
+    }
 }
 
 impl From<&Margins> for MarginsDocument {
@@ -171,6 +198,11 @@ impl From<&Margins> for MarginsDocument {
                 .keep_out_clearance_deg
                 .iter()
                 .map(|angle| Number::computed(*angle))
+                .collect(),
+            keep_out_intrusions: margins
+                .keep_out_intrusions
+                .iter()
+                .map(IntrusionDocument::from)
                 .collect(),
         }
     }

@@ -61,7 +61,8 @@ pub(super) fn draw(
     for &(begin, end) in &panel.alarms {
         let mark = PlotArea {
             left: times.at(begin),
-            width: times.at(end) - times.at(begin),
+            // A moment is to be seen too.
+            width: (times.at(end) - times.at(begin)).max(1.0),
             height: ALARM_HEIGHT,
             ..frame
         };

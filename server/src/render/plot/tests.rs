@@ -70,6 +70,28 @@ fn the_scenario_adds_limits_and_the_cones_of_the_boresight() {
 }
 
 #[test]
+fn stays_inside_a_cone_are_marked_on_every_timeline() {
+    let mut document: Value = serde_json::from_slice(&written()).unwrap();
+    let x = DrawnBoresight::find(None, None).unwrap();
+    let marks = |document: &Value| {
+        let plan = WrittenPlan::read(document.to_string().as_bytes()).unwrap();
+        let picture = svg(&plan, None, &x).unwrap();
+        (picture.matches("fill=\"#C0392B\"").count(), picture)
+    };
+    let (before, picture) = marks(&document);
+    assert!(!picture.contains("keep-out violated"));
+    document["margins"]["keep_out_intrusions"] = json!([
+        {"keep_out": 0, "from_s": 3.0, "to_s": 6.0, "depth_deg": 2.0},
+        {"keep_out": 1, "from_s": 9.0, "to_s": 9.0, "depth_deg": 0.1},
+    ]);
+    let (after, picture) = marks(&document);
+    assert_eq!(after - before, 6);
+    assert!(picture.contains("keep-out violated where marked red"));
+    document["margins"] = json!(null);
+    assert_eq!(marks(&document).0, before);
+}
+
+#[test]
 fn the_svg_is_well_formed_and_has_finite_numbers() {
     let scenario = scenario();
     for picture in [drawn(None, Some("-y")), drawn(Some(&scenario), None)] {

@@ -14,6 +14,20 @@ pub(crate) struct WrittenPlan {
     pub(super) passages: Vec<WrittenPassage>,
     pub(super) trajectory: WrittenTrajectory,
     pub(super) verification: Option<WrittenVerification>,
+    margins: Option<WrittenMargins>,
+}
+
+#[derive(Debug, Deserialize)]
+struct WrittenMargins {
+    /// Plans of other origin may lack it.
+    #[serde(default)]
+    keep_out_intrusions: Vec<WrittenIntrusion>,
+}
+
+#[derive(Debug, Deserialize)]
+struct WrittenIntrusion {
+    from_s: f64,
+    to_s: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -125,6 +139,14 @@ impl WrittenPlan {
             torques: (0..self.wheels()).map(|i| torque(i).collect()).collect(),
             passages: &self.passages,
         }
+    }
+
+    /// Times, s, from which and to which a boresight is inside a keep-out cone.
+    pub(super) fn intrusions(&self) -> Vec<(f64, f64)> {
+        let margins = self.margins.iter();
+        let all = margins.flat_map(|margins| &margins.keep_out_intrusions);
+        all.map(|intrusion| (intrusion.from_s, intrusion.to_s))
+            .collect()
     }
 
     /// Number of wheels.

@@ -1,12 +1,10 @@
 //! Blocks of text that several reports share.
 
-use slewplan_solver::checker::NOT_COMPUTED;
+use super::numbers::{computed, decimals, percent, small};
 use slewplan_solver::model::plan::{Margins, Verification};
-use slewplan_solver::model::problem::Problem;
+use slewplan_solver::model::problem::{Code, Problem};
+use slewplan_solver::model::scenario::Scenario;
 use std::fmt::{Display, Write};
-
-/// Numbers from this size on are written with an exponent.
-const LARGEST_IN_DIGITS: f64 = 1e6;
 
 /// One labelled line.
 pub(super) fn line(label: &str, text: impl Display) -> String {
@@ -14,23 +12,27 @@ pub(super) fn line(label: &str, text: impl Display) -> String {
 }
 
 /// The verification in a few lines, with the tests that failed.
-pub(super) fn verification(found: &Verification) -> String {
-    let verdict = if found.passed { "passed" } else { "NOT PASSED" };
+pub(super) fn verification(found: &Verification, margins: &Margins) -> String {
+    let verdict = match (found.passed, violates(margins)) {
+        (true, false) => "passed",
+        (true, true) => "passed, but keep-out violated",
+        (false, _) => "NOT PASSED",
+    };
     let mut text = line(
         "verification",
         format_args!(
             "{verdict}: attitude error {} rad, rate error {} rad/s",
-            error(found.max_attitude_error_rad),
-            error(found.max_rate_error_rad_s)
+            small(found.max_attitude_error_rad),
+            small(found.max_rate_error_rad_s)
         ),
     );
     text += &line(
         "",
         format_args!(
             "limits exceeded by (relative): torque {}, wheel speed {}, body rate {}",
-            error(found.max_torque_excess),
-            error(found.max_wheel_speed_excess),
-            error(found.max_rate_excess)
+            small(found.max_torque_excess),
+            small(found.max_wheel_speed_excess),
+            small(found.max_rate_excess)
         ),
     );
     text += &line("", format_args!("propagated again by {}", found.integrator));
@@ -40,34 +42,11 @@ pub(super) fn verification(found: &Verification) -> String {
     text
 }
 
-fn error(value: f64) -> String {
-    computed(value, |value| format!("{value:.1e}"))
-}
-
-/// A number in words where it could not be computed.
-fn computed(value: f64, written: impl FnOnce(f64) -> String) -> String {
-    if value.abs() >= NOT_COMPUTED {
-        "not computed".to_owned()
-    } else {
-        written(value)
-    }
-}
-
-/// A share in per cent. What exceeds a limit many times over is not written out in digits.
-fn percent(share: f64) -> String {
-    let percent = share * 100.0;
-    if percent.abs() < LARGEST_IN_DIGITS {
-        format!("{percent:.1} %")
-    } else {
-        format!("{percent:.1e} %")
-    }
-}
-
 /// The margins to every limit.
 pub(super) fn margins(margins: &Margins) -> String {
     let share = |value: Option<f64>| match value {
         None => "no limit".to_owned(),
-        Some(value) => computed(value, percent),
+        Some(value) => computed(value, |value| percent(value, 1)),
     };
     let mut text = line(
         "margins",
@@ -92,7 +71,7 @@ pub(super) fn margins(margins: &Margins) -> String {
         let clearances: Vec<String> = margins
             .keep_out_clearance_deg
             .iter()
-            .map(|angle| computed(*angle, |angle| format!("{angle:.2}")))
+            .map(|angle| computed(*angle, |angle| decimals(angle, 2)))
             .collect();
         text += &line(
             "",
@@ -102,29 +81,76 @@ pub(super) fn margins(margins: &Margins) -> String {
     text
 }
 
-/// Warnings, or an empty text.
-pub(super) fn warnings(warnings: &[Problem]) -> String {
-    if warnings.is_empty() {
+/// Whether a boresight enters a keep-out cone.
+pub(super) fn violates(margins: &Margins) -> bool {
+    !margins.keep_out_intrusions.is_empty()
+}
+
+/// The warnings of violated keep-out cones, which stand above everything else; empty without any.
+pub(super) fn keep_out_banner(warnings: &[Problem]) -> String {
+    let violations: Vec<_> = warnings.iter().filter(|one| is_keep_out(one)).collect();
+    if violations.is_empty() {
         return String::new();
     }
-    let mut text = format!("\n{} to note:\n", count(warnings.len(), "warning"));
-    text += &reasons(warnings);
+    let mut text = "KEEP-OUT VIOLATED\n".to_owned();
+    for violation in violations {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {violation}");
+    }
+    text.push('\n');
     text
 }
 
-/// Problems, one paragraph each.
-pub(super) fn reasons(problems: &[Problem]) -> String {
+fn is_keep_out(warning: &Problem) -> bool {
+    matches!(
+        warning.code,
+        Code::KeepOutViolated | Code::AttitudeInKeepOut
+    )
+}
+
+/// All warnings but those of the banner, or an empty text.
+pub(super) fn warnings(warnings: &[Problem], scenario: Option<&Scenario>) -> String {
+    let others = warnings.iter().filter(|one| !is_keep_out(one)).cloned();
+    let others: Vec<Problem> = others.collect();
+    if others.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\n{} to note:\n", count(others.len(), "warning"));
+    text += &reasons(&others, scenario);
+    text
+}
+
+/// Problems, one paragraph each; a scenario adds the names of the targets that pointers lead to.
+pub(super) fn reasons(problems: &[Problem], scenario: Option<&Scenario>) -> String {
     let mut text = String::new();
     for problem in problems {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{problem}");
+        text += &named(problem, scenario);
+        text.push('\n');
     }
     text
+}
+
+/// A problem, after the name of the target that its pointer leads to.
+pub(super) fn named(problem: &Problem, scenario: Option<&Scenario>) -> String {
+    match scenario.and_then(|scenario| target_at(&problem.pointer, scenario)) {
+        Some(id) => format!("target \"{id}\", {problem}"),
+        None => problem.to_string(),
+    }
+}
+
+/// The identifier of the target that a pointer leads to, or into.
+fn target_at<'a>(pointer: &str, scenario: &'a Scenario) -> Option<&'a str> {
+    // Studies have their scenario as a member.
+    let inside = pointer.strip_prefix("/scenario").unwrap_or(pointer);
+    let index = inside.strip_prefix("/targets/")?.split('/').next()?;
+    let target = scenario.targets().get(index.parse::<usize>().ok()?)?;
+    Some(&target.id)
 }
 
 /// A number with a noun in singular or plural.
-pub(super) fn count(number: usize, thing: &str) -> String {
-    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+pub(super) fn count(number: impl Copy + Display + PartialEq + From<u8>, thing: &str) -> String {
+    let plural = if number == 1.into() { "" } else { "s" };
+    format!("{number} {thing}{plural}")
 }
 
 #[cfg(test)]
@@ -133,8 +159,6 @@ mod tests {
 
     #[test]
     fn values_not_computed_are_said_in_words() {
-        assert_eq!(error(NOT_COMPUTED), "not computed");
-        assert_eq!(error(2.5e-9), "2.5e-9");
         let broken = Margins {
             torque: -NOT_COMPUTED,
             body_rate: Some(-3e300),
@@ -145,5 +169,27 @@ mod tests {
         let torque = "torque not computed, wheel speed no limit, body rate -3.0e302 %";
         assert!(text.contains(torque), "{text}");
         assert!(text.contains("[deg]: not computed, 12.50"), "{text}");
+    }
+
+    #[test]
+    fn margins_that_round_to_zero_have_no_sign() {
+        let full = Margins {
+            torque: -1e-9,
+            ..Margins::default()
+        };
+        assert!(margins(&full).contains("torque 0.0 %"));
+    }
+
+    #[test]
+    fn violated_cones_stand_in_the_banner_only() {
+        let cone = Problem::new("/keep_out/0", Code::KeepOutViolated, "inside", "turn");
+        let other = Problem::new("/start", Code::AttitudeNormalized, "off", "");
+        let all = [cone, other];
+        let banner = keep_out_banner(&all);
+        assert!(banner.starts_with("KEEP-OUT VIOLATED\n  /keep_out/0: inside"));
+        assert!(banner.contains("hint: turn") && !banner.contains("/start"));
+        let noted = warnings(&all, None);
+        assert!(noted.contains("1 warning to note") && !noted.contains("/keep_out"));
+        assert_eq!(keep_out_banner(&all[1..]), "");
     }
 }

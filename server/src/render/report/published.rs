@@ -3,6 +3,7 @@
 //! Source: A. Olivares, E. Staffetti, "Time-optimal attitude scheduling of a spacecraft equipped
 //! with reaction wheels" (2018), experiments A, B and C.
 
+use super::numbers::difference;
 use slewplan_solver::model::plan::Plan;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::AttitudeEquivalence;
@@ -54,10 +55,10 @@ impl Published {
             AttitudeEquivalence::Rotation => format!("{WHY_QUATERNIONS}\n  {WHY_COARSE}"),
             AttitudeEquivalence::Quaternion => WHY_COARSE.to_owned(),
         };
-        let difference = (plan.total_time_s / self.total_time_s - 1.0) * 100.0;
+        let difference = difference(plan.total_time_s / self.total_time_s - 1.0, 1);
         format!(
             "\npublished     {:.2} s in the order {} (Olivares and Staffetti, 2018); \
-             this plan: {difference:+.1} %\n  {reasons}\n",
+             this plan: {difference}\n  {reasons}\n",
             self.total_time_s, self.order
         )
     }

@@ -1,20 +1,30 @@
 //! The summary of a plan.
 
-use super::blocks::{count, line, margins, verification};
+use super::blocks::{count, line, margins, verification, violates};
+use super::numbers::percent;
 use super::table::aligned;
 use crate::documents::plan::status;
-use slewplan_solver::model::plan::{Leg, LowerBoundKind, Plan};
+use slewplan_solver::model::plan::{Leg, LowerBoundKind, Passage, Plan};
+use slewplan_solver::model::scenario::Target;
 
-/// Title, legs, totals, bound, verification, comparison and work.
-pub(super) fn plan(title: &str, plan: &Plan) -> String {
-    let targets = plan.flight.passages.len();
-    let mut text = format!(
-        "{title}: {}, {:.3} s for {}\n\n",
+/// The first line: status, duration and number of targets.
+pub(super) fn title(name: &str, plan: &Plan) -> String {
+    let violated = if violates(&plan.margins) {
+        ", but keep-out violated"
+    } else {
+        ""
+    };
+    format!(
+        "{name}: {}{violated}, {:.3} s for {}\n\n",
         status(plan.optimality),
         plan.total_time_s,
-        count(targets, "target")
-    );
-    text += &legs(&plan.legs);
+        count(plan.flight.passages.len(), "target")
+    )
+}
+
+/// Legs, totals, bound, verification, comparison and work.
+pub(super) fn plan(plan: &Plan, targets: &[Target]) -> String {
+    let mut text = legs(plan, targets);
     text.push('\n');
     text += &line("order", order(plan));
     text += &line("total", format_args!("{:.3} s", plan.total_time_s));
@@ -22,44 +32,72 @@ pub(super) fn plan(title: &str, plan: &Plan) -> String {
     text += &alternatives(plan);
     text += &rest_to_rest(plan);
     text += &eigenaxis(plan);
-    text += &verification(&plan.verification);
+    text += &verification(&plan.verification, &plan.margins);
     text += &margins(&plan.margins);
     text += &work(plan);
     text
 }
 
-fn legs(legs: &[Leg]) -> String {
-    let head = [
+fn legs(plan: &Plan, targets: &[Target]) -> String {
+    let stays: Vec<_> = plan
+        .legs
+        .iter()
+        .map(|leg| stay(leg, plan, targets))
+        .collect();
+    let rests = stays.iter().any(|stay| stay.iter().any(|time| *time > 0.0));
+    let mut head = vec![
         "leg",
         "from",
         "to",
         "start [s]",
         "arrival [s]",
         "duration [s]",
-        "eigenaxis [s]",
-        "saved",
     ];
-    let row = |(index, leg): (usize, &Leg)| {
+    if rests {
+        head.extend(["settle [s]", "dwell [s]"]);
+    }
+    head.extend(["eigenaxis [s]", "saved"]);
+    let mut rows = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    for (index, (leg, stay)) in plan.legs.iter().zip(stays).enumerate() {
         let other = leg.eigenaxis_duration_s;
-        vec![
-            (index + 1).to_string(),
-            leg.from.clone(),
-            leg.to.clone(),
-            format!("{:.3}", leg.start_s),
-            format!("{:.3}", leg.start_s + leg.duration_s),
-            format!("{:.3}", leg.duration_s),
-            other.map_or_else(|| "-".into(), |time| format!("{time:.3}")),
-            other.map_or_else(|| "-".into(), |time| saved(leg.duration_s, time)),
-        ]
-    };
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
-    rows.extend(legs.iter().enumerate().map(row));
+        let mut row = vec![(index + 1).to_string(), leg.from.clone(), leg.to.clone()];
+        let times = [leg.start_s, leg.start_s + leg.duration_s, leg.duration_s];
+        row.extend(times.map(|time| format!("{time:.3}")));
+        if rests {
+            row.extend(stay.map(rest));
+        }
+        row.push(other.map_or_else(|| "-".into(), |time| format!("{time:.3}")));
+        row.push(other.map_or_else(|| "-".into(), |time| saved(leg.duration_s, time)));
+        rows.push(row);
+    }
     aligned(3, &rows)
+}
+
+/// Times to settle and to dwell at the end of a leg, s.
+fn stay(leg: &Leg, plan: &Plan, targets: &[Target]) -> [f64; 2] {
+    let is_here = |passage: &&Passage| passage.target == leg.to;
+    let Some(passage) = plan.flight.passages.iter().find(is_here) else {
+        return [0.0; 2];
+    };
+    let stay = passage.departure_s - passage.time_s;
+    let target = targets.iter().find(|target| target.id == leg.to);
+    let settle = target.map_or(0.0, |target| target.settle.min(stay));
+    [settle, stay - settle]
+}
+
+/// A time at rest; a dash where there is none.
+fn rest(time: f64) -> String {
+    // Departures are sums with rounding.
+    if time > 1e-9 {
+        format!("{time:.3}")
+    } else {
+        "-".to_owned()
+    }
 }
 
 fn saved(time: f64, other: f64) -> String {
     if other > 0.0 {
-        format!("{:.1} %", (1.0 - time / other) * 100.0)
+        percent(1.0 - time / other, 1)
     } else {
         "-".into()
     }
@@ -164,12 +202,12 @@ fn work(plan: &Plan) -> String {
     line(
         "work",
         format_args!(
-            "{:.2} s on {}: {} nodes, {} NLPs, {} legs solved and {} from the cache",
+            "{:.2} s on {}: {}, {}, {} solved and {} from the cache",
             work.wall_time_s,
             count(work.threads, "thread"),
-            work.nodes_explored,
-            work.nlp_solves,
-            work.legs_solved,
+            count(work.nodes_explored, "node"),
+            count(work.nlp_solves, "NLP"),
+            count(work.legs_solved, "leg"),
             work.legs_from_cache
         ),
     )
@@ -179,10 +217,14 @@ fn work(plan: &Plan) -> String {
 mod tests {
     use super::*;
     use crate::render::report::sample;
+    use slewplan_solver::model::attitude::Attitude;
+    use slewplan_solver::model::plan::Intrusion;
+    use slewplan_solver::model::scenario::RateCondition;
 
     #[test]
     fn the_summary_has_order_total_bound_and_saving() {
-        let text = plan("two targets", &sample::plan());
+        let sample = sample::plan();
+        let text = title("two targets", &sample) + &plan(&sample, &[]);
         for part in [
             "two targets: optimal, 30.000 s for 2 targets",
             "start > a > b > end",
@@ -201,6 +243,58 @@ mod tests {
     fn without_an_eigenaxis_slew_no_saving_is_stated() {
         let mut plan = sample::plan();
         plan.legs[1].eigenaxis_duration_s = None;
-        assert!(super::plan("x", &plan).contains("not every leg"));
+        assert!(super::plan(&plan, &[]).contains("not every leg"));
+    }
+
+    #[test]
+    fn settle_and_dwell_have_columns_where_there_are_any() {
+        let mut plan = sample::plan();
+        let mut target = Target {
+            id: "b".into(),
+            attitude: Attitude::identity(),
+            rate: [RateCondition::Fixed(0.0); 3],
+            settle: 2.0,
+            dwell: 3.0,
+        };
+        let text = legs(&plan, std::slice::from_ref(&target));
+        let cells: Vec<Vec<&str>> = text
+            .lines()
+            .map(|row| row.split_whitespace().collect())
+            .collect();
+        assert!(text.contains("settle [s]  dwell [s]"), "{text}");
+        assert_eq!(cells[1][6..8], ["-", "-"], "{text}");
+        assert_eq!(cells[2][6..8], ["2.000", "3.000"], "{text}");
+        target.settle = 0.0;
+        plan.flight.passages[1].departure_s = plan.flight.passages[1].time_s;
+        assert!(!legs(&plan, &[target]).contains("dwell"));
+    }
+
+    #[test]
+    fn a_violated_keep_out_is_in_the_first_line_and_the_verdict() {
+        let mut plan = sample::plan();
+        plan.margins.keep_out_intrusions.push(Intrusion {
+            keep_out: 0,
+            from_s: 1.0,
+            to_s: 2.0,
+            depth_rad: 0.1,
+        });
+        assert!(title("x", &plan).starts_with("x: optimal, but keep-out violated, 30.000 s"));
+        assert!(super::plan(&plan, &[]).contains("passed, but keep-out violated"));
+    }
+
+    #[test]
+    fn counts_agree_with_their_nouns_and_zeros_are_plain() {
+        let mut plan = sample::plan();
+        plan.statistics.legs_solved = 1;
+        plan.legs[0].eigenaxis_duration_s = Some(plan.legs[0].duration_s * (1.0 - 1e-9));
+        let text = super::plan(&plan, &[]);
+        assert!(
+            text.contains("1 leg solved") && !text.contains("1 legs"),
+            "{text}"
+        );
+        assert!(
+            !text.contains("0.0e0") && !text.contains("-0.0 %"),
+            "{text}"
+        );
     }
 }

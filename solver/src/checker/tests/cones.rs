@@ -26,8 +26,8 @@ fn with_cone(along: f64, off: f64, half_angle_deg: f64) -> ScenarioSpec {
 fn a_cone_between_clear_ends_is_found_with_its_times() {
     // The slew turns by 0.5 rad; the cone covers 0.10 to 0.20 rad of that.
     let report = accepted(&with_cone(0.15, 0.0, 0.05_f64.to_degrees()), &bang_bang());
-    assert_eq!(report.intrusions.len(), 1);
-    let intrusion = report.intrusions[0];
+    assert_eq!(report.margins.keep_out_intrusions.len(), 1);
+    let intrusion = report.margins.keep_out_intrusions[0];
     let time_of = |turned: f64| (2.0 * turned * EFFECTIVE_X / TORQUE).sqrt();
     assert!(
         (intrusion.from_s - time_of(0.10)).abs() < 1e-7,
@@ -54,16 +54,16 @@ fn a_cone_beside_the_path_is_clear_by_the_exact_angle() {
     let report = accepted(&with_cone(0.15, 0.12, 0.05_f64.to_degrees()), &bang_bang());
     let clearance = report.margins.keep_out_clearance_deg[0].to_radians();
     assert!((clearance - 0.07).abs() < 1e-12, "{clearance}");
-    assert!(report.keep_out.is_empty() && report.intrusions.is_empty());
+    assert!(report.keep_out.is_empty() && report.margins.keep_out_intrusions.is_empty());
 }
 
 #[test]
 fn a_cone_around_the_start_is_left_once() {
     let report = accepted(&with_cone(0.0, 0.0, 0.02_f64.to_degrees()), &bang_bang());
-    assert_eq!(report.intrusions.len(), 1);
-    assert!(report.intrusions[0].from_s == 0.0);
+    assert_eq!(report.margins.keep_out_intrusions.len(), 1);
+    assert!(report.margins.keep_out_intrusions[0].from_s == 0.0);
     let left = (2.0 * 0.02 * EFFECTIVE_X / TORQUE).sqrt();
-    assert!((report.intrusions[0].to_s - left).abs() < 1e-7);
+    assert!((report.margins.keep_out_intrusions[0].to_s - left).abs() < 1e-7);
 }
 
 #[test]
@@ -72,8 +72,8 @@ fn a_cone_around_the_end_is_never_left() {
         &with_cone(angle(HALF), 0.0, 0.02_f64.to_degrees()),
         &bang_bang(),
     );
-    let [intrusion] = report.intrusions[..] else {
-        panic!("{:?}", report.intrusions);
+    let [intrusion] = report.margins.keep_out_intrusions[..] else {
+        panic!("{:?}", report.margins.keep_out_intrusions);
     };
     let entered = 2.0 * HALF - (2.0 * 0.02 * EFFECTIVE_X / TORQUE).sqrt();
     assert!((intrusion.from_s - entered).abs() < 1e-6, "{intrusion:?}");
@@ -105,7 +105,10 @@ fn a_warning_lists_five_spans_and_counts_the_rest() {
         }
         flight.total_time_s = f64::from(times) * 2.0 * HALF;
         let report = accepted(&spec, &flight);
-        assert_eq!(report.intrusions.len(), usize::try_from(times).unwrap());
+        assert_eq!(
+            report.margins.keep_out_intrusions.len(),
+            usize::try_from(times).unwrap()
+        );
         let message = &report.keep_out[0].message;
         let more = format!("{} more times", times - 5);
         assert_eq!(message.contains("more times"), times > 5, "{message}");

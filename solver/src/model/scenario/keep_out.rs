@@ -1,11 +1,15 @@
 //! The keep-out cones.
 
-use super::KeepOut;
+use super::{KeepOut, Scenario};
+use crate::model::attitude::Attitude;
 use crate::model::boresights;
 use crate::model::findings::{Findings, unit};
 use crate::model::problem::Code;
 use crate::model::spec::{BoresightSpec, KeepOutSpec, MAX_CONES, ScenarioSpec};
 use nalgebra::Vector3;
+
+/// Depth, rad, up to which a boresight inside a cone is no violation for the checker.
+const TOUCH: f64 = 1e-6;
 
 pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
     if !findings.at_most("/keep_out", spec.keep_out.len(), MAX_CONES) {
@@ -59,4 +63,49 @@ fn read_half_angle(spec: &KeepOutSpec, pointer: &str, findings: &mut Findings) -
         "give the angle from the cone's axis to its surface, in degrees",
     );
     None
+}
+
+/// Warns of every attitude that itself points a boresight into a cone: no plan avoids that.
+pub(super) fn warn_of_attitudes(scenario: &Scenario, findings: &mut Findings) {
+    if scenario.keep_out.is_empty() {
+        return;
+    }
+    let mut warn = |pointer: &str, who: &str, attitude: &Attitude| {
+        for (index, cone) in scenario.keep_out.iter().enumerate() {
+            let depth = cone.depth(attitude);
+            if depth > TOUCH {
+                findings.warn(
+                    pointer,
+                    Code::AttitudeInKeepOut,
+                    format!(
+                        "{who} points boresight '{}' {:.3} degrees into the keep-out cone of {} \
+                         degrees (/keep_out/{index})",
+                        cone.boresight,
+                        depth.to_degrees(),
+                        // Rounding in the conversion to radians and back.
+                        (cone.half_angle.to_degrees() * 1e9).round() / 1e9
+                    ),
+                    "every plan through this attitude violates the cone: change the attitude, or \
+                     narrow the cone",
+                );
+            }
+        }
+    };
+    warn("/start", "the start", &scenario.start.attitude);
+    if let Some(end) = &scenario.end {
+        warn("/end", "the end", &end.attitude);
+    }
+    for (index, target) in scenario.targets.iter().enumerate() {
+        let who = format!("target \"{}\"", target.id);
+        warn(&format!("/targets/{index}"), &who, &target.attitude);
+    }
+}
+
+impl KeepOut {
+    /// Angle by which an attitude points the boresight into the cone, rad; negative outside.
+    fn depth(&self, attitude: &Attitude) -> f64 {
+        let boresight = attitude.to_reference(self.axis);
+        let sine = boresight.cross(&self.direction).norm();
+        self.half_angle - sine.atan2(boresight.dot(&self.direction))
+    }
 }

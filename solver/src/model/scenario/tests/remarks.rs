@@ -45,3 +45,33 @@ fn warnings_are_returned_with_the_problems() {
     assert_eq!(faults.warnings[0].code, Code::AttitudeNormalized);
     assert_eq!(Scenario::try_new(&spec).unwrap_err(), faults.problems);
 }
+
+#[test]
+fn attitudes_inside_a_cone_are_named_with_their_depth() {
+    let mut spec = valid();
+    // Target 1 looks along the cone's axis, 2 past it by 29 degrees, 3 by 31.
+    for (index, pitch) in [(1, 90.0), (2, 61.0), (3, 59.0)] {
+        spec.targets[index].attitude = AttitudeSpec::RollPitchYawDeg([0.0, pitch, 0.0]);
+    }
+    let warnings = Scenario::try_new(&spec).unwrap().warnings;
+    let found: Vec<_> = warnings
+        .iter()
+        .map(|warning| (warning.code, warning.pointer.as_str()))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            (Code::AttitudeInKeepOut, "/targets/1"),
+            (Code::AttitudeInKeepOut, "/targets/2")
+        ]
+    );
+    let id = &spec.targets[2].id;
+    let expected = format!(
+        "target \"{id}\" points boresight 'camera' 1.000 degrees into the keep-out cone of 30 \
+         degrees (/keep_out/0)"
+    );
+    assert_eq!(warnings[1].message, expected);
+    spec.start.attitude = AttitudeSpec::RollPitchYawDeg([0.0, 90.0, 0.0]);
+    let warnings = Scenario::try_new(&spec).unwrap().warnings;
+    assert_eq!(warnings[0].pointer, "/start");
+}

@@ -1,0 +1,102 @@
+//! Plans that violate a keep-out cone: what is said, and `--strict`.
+
+use crate::run::{Ended, fixture_json, slewplan, slewplan_fed};
+use serde_json::Value;
+
+/// Two targets, and a cone about where the camera looks at the second one.
+fn violating() -> Value {
+    let mut scenario = fixture_json("two-targets.json");
+    let (roll, yaw) = (25.0_f64.to_radians(), 50.0_f64.to_radians());
+    let towards = [roll.sin() * yaw.sin(), -roll.sin() * yaw.cos(), roll.cos()];
+    scenario["keep_out"][0]["direction"] = towards.to_vec().into();
+    scenario["keep_out"][0]["half_angle_deg"] = 5.into();
+    scenario
+}
+
+fn solve(scenario: &Value, options: &[&str]) -> Ended {
+    let line = [&["solve", "-"], options].concat();
+    slewplan_fed(&line, scenario.to_string().as_bytes())
+}
+
+#[test]
+fn a_target_inside_a_cone_is_named_by_validate() {
+    let scenario = violating().to_string();
+    let line = ["validate", "-", "--format", "json"];
+    let found = slewplan_fed(&line, scenario.as_bytes())
+        .expect_code(0)
+        .json();
+    let warning = &found["warnings"][0];
+    assert_eq!(warning["pointer"], "/targets/1");
+    assert_eq!(warning["code"], "attitude_in_keep_out");
+    let message = warning["message"].as_str().expect("a text");
+    assert!(message.starts_with("target \"b\" points boresight 'camera' 5.000 degrees into"));
+    assert_eq!(found["warnings"].as_array().map(Vec::len), Some(1));
+}
+
+#[test]
+fn the_times_inside_the_cone_are_in_the_margins() {
+    let plan = solve(&violating(), &[]).expect_code(0).json();
+    let stays = plan["margins"]["keep_out_intrusions"]
+        .as_array()
+        .expect("a list");
+    assert_eq!(stays.len(), 1, "{stays:?}");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let passage = &plan["passages"].as_array().expect("a list")[0];
+    let passage = if passage["target"] == "b" {
+        passage
+    } else {
+        &plan["passages"][1]
+    };
+    assert!(number(&stays[0]["from_s"]) < number(&passage["time_s"]));
+    assert!(number(&stays[0]["to_s"]) > number(&passage["departure_s"]));
+    assert!((number(&stays[0]["depth_deg"]) - 5.0).abs() < 1e-3);
+    let clear = slewplan(&["solve", &crate::run::fixture("two-targets.json")]);
+    let clear = clear.expect_code(0).json();
+    assert_eq!(
+        clear["margins"]["keep_out_intrusions"],
+        serde_json::json!([])
+    );
+}
+
+#[test]
+fn the_summary_begins_with_the_violation_and_its_hint() {
+    let text = solve(&violating(), &["--summary"]).expect_code(0).stdout;
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(
+        lines[0].starts_with("two-targets: optimal, but keep-out violated, "),
+        "{text}"
+    );
+    assert_eq!(lines[2], "KEEP-OUT VIOLATED");
+    assert!(
+        lines[3].contains("target \"b\"") && lines[4].contains("hint: "),
+        "{text}"
+    );
+    assert!(
+        text.contains("verification  passed, but keep-out violated"),
+        "{text}"
+    );
+    assert!(!text.contains("to note"), "{text}");
+}
+
+#[test]
+fn strict_has_an_exit_code_of_its_own_and_writes_the_plan() {
+    let scenario = violating();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (given, plan) = (path("scenario.json"), path("plan.json"));
+    std::fs::write(&given, scenario.to_string()).expect("written");
+    let ended = solve(&scenario, &["--strict", "-o", &plan]).expect_code(5);
+    assert!(ended.stderr.contains("--strict"), "{ended:?}");
+    let verified = slewplan(&["verify", &given, &plan]).expect_code(0).json();
+    assert_eq!(verified["passed"], true);
+    let strict = slewplan(&["verify", &given, &plan, "--strict", "--summary"]).expect_code(5);
+    assert!(
+        strict.stdout.starts_with("KEEP-OUT VIOLATED\n"),
+        "{strict:?}"
+    );
+    // A plan without a violation is not different with it.
+    let clear = fixture_json("two-targets.json");
+    solve(&clear, &["--strict"]).expect_code(0);
+    let help = slewplan(&["--help"]).expect_code(0).stdout;
+    assert!(help.contains("5 a keep-out cone is violated"), "{help}");
+}

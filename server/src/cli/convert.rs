@@ -49,15 +49,14 @@ pub(super) fn run(arguments: &ConvertArguments) -> Result<Exit, Failure> {
         problems,
     };
     let table = target_table::read(&input::read(&arguments.table)?, &reading).map_err(invalid)?;
-    let document = match scenario {
-        Some(scenario) => filled(arguments, scenario, &table)?,
-        None => {
-            let problems = table.problems();
-            if !problems.is_empty() {
-                return Err(invalid(problems));
-            }
-            table.list()
+    let document = if let Some(scenario) = scenario {
+        filled(arguments, scenario, &table)?
+    } else {
+        let problems = table.problems();
+        if !problems.is_empty() {
+            return Err(invalid(problems));
         }
+        table.list()
     };
     destination.write(&output::json(&document)?)?;
     let is_assumed = arguments.boresight.is_none() && arguments.into.is_none();

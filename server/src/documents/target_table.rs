@@ -301,9 +301,9 @@ impl TargetTable {
     /// A problem of a scenario that has the list, by line and column where it is one of the list.
     pub(crate) fn located(&self, problem: Problem) -> Problem {
         let mut parts = problem.pointer.split('/').skip(1);
-        let index = match (parts.next(), parts.next().map(str::parse::<usize>)) {
-            (Some("targets"), Some(Ok(index))) => index,
-            _ => return problem,
+        let (list, index) = (parts.next(), parts.next().map(str::parse::<usize>));
+        let (Some("targets"), Some(Ok(index))) = (list, index) else {
+            return problem;
         };
         let Some(line) = self.lines.get(index) else {
             return problem;

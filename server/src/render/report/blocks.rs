@@ -156,6 +156,7 @@ pub(super) fn count(number: impl Copy + Display + PartialEq + From<u8>, thing: &
 #[cfg(test)]
 mod tests {
     use super::*;
+    use slewplan_solver::checker::NOT_COMPUTED;
 
     #[test]
     fn values_not_computed_are_said_in_words() {

@@ -150,7 +150,7 @@ fn target_at<'a>(pointer: &str, scenario: &'a Scenario) -> Option<&'a str> {
 }
 
 /// A number with a noun in singular or plural.
-pub(super) fn count(number: impl Display + PartialEq + From<u8>, thing: &str) -> String {
+pub(super) fn count(number: impl Copy + Display + PartialEq + From<u8>, thing: &str) -> String {
     let plural = if number == 1.into() { "" } else { "s" };
     format!("{number} {thing}{plural}")
 }

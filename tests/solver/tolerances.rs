@@ -124,7 +124,7 @@ fn random_tour(generator: &mut Generator) -> ScenarioSpec {
     let far = if generator.below(10) == 0 { 0.5 } else { 1e-4 };
     let size = generator.logarithmic(1e-7, far);
     let line = generator.coin().then(|| generator.direction());
-    for stop in 0..1 + generator.below(5) {
+    for stop in 0..=generator.below(5) {
         let direction = Vector3::from(line.unwrap_or_else(|| generator.direction()));
         let from = generator.between(-size, size);
         let kind = generator.below(4);

@@ -1,7 +1,8 @@
 //! Every SQL statement of the store is valid for the schema that the migrations make.
 //!
-//! The statements are read from the sources, with the macros that lists of columns are written as. So
-//! a misspelt name in a statement that no other test runs fails here.
+//! The statements are read from the sources, with the macros that lists of columns are written as, and
+//! the lists that `row!` makes of fields. So a misspelt name in a statement that no other test runs
+//! fails here.
 
 use super::on_a_store;
 use sqlx::{AssertSqlSafe, Executor, SqlSafeStr};
@@ -10,7 +11,15 @@ use std::path::{Path, PathBuf};
 
 const VERBS: [&str; 6] = ["DELETE", "INSERT", "PRAGMA", "SELECT", "UPDATE", "VACUUM"];
 
-/// The sources of the store, tests left out.
+/// What a macro of the sources stands for.
+struct Expansion<'a> {
+    parameter: &'a str,
+    body: String,
+}
+
+type Macros<'a> = BTreeMap<&'a str, Expansion<'a>>;
+
+/// The sources of the store, tests and the definition of `row!` left out.
 fn sources() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/store");
     let (mut folders, mut text) = (vec![root], String::new());
@@ -19,7 +28,7 @@ fn sources() -> String {
             let path: PathBuf = entry.expect("an entry").path();
             if path.is_dir() && !path.ends_with("tests") {
                 folders.push(path);
-            } else if path.is_file() && !path.ends_with("tests.rs") {
+            } else if path.is_file() && !path.ends_with("tests.rs") && !path.ends_with("row.rs") {
                 text += &std::fs::read_to_string(path).expect("a source");
             }
         }
@@ -44,24 +53,43 @@ fn literal(source: &str) -> (String, &str) {
     }
 }
 
-/// The macros of the sources that stand for text: parameter and body.
-fn macros(sources: &str) -> BTreeMap<&str, (&str, &str)> {
-    let definitions = sources.split("macro_rules! ").skip(1);
-    let parts = definitions.map(|text| {
+/// The macros of the sources that stand for text.
+fn macros(sources: &str) -> Macros<'_> {
+    let definitions = sources.split("macro_rules! ").skip(1).map(|text| {
         let (name, rest) = text.split_once(" {").expect("a name");
         let (parameter, rest) = rest.split_once("=>").expect("a parameter");
         let (body, _) = rest.split_once("};").expect("a body");
         let parameter = parameter.trim().trim_matches(['(', ')']);
-        (
-            name,
-            (parameter.split(':').next().unwrap_or_default(), body),
-        )
+        let expansion = Expansion {
+            parameter: parameter.split(':').next().unwrap_or_default(),
+            body: body.to_owned(),
+        };
+        (name, expansion)
     });
-    parts.collect()
+    definitions.chain(column_lists(sources)).collect()
+}
+
+/// The lists of columns that `row!` makes of the fields of a struct.
+fn column_lists(sources: &str) -> impl Iterator<Item = (&str, Expansion<'_>)> {
+    sources.split("\n    columns ").skip(1).map(|text| {
+        let (name, rest) = text.split_once(";\n").expect("a name");
+        let (_, rest) = rest.split_once("struct ").expect("a struct");
+        let (fields, _) = rest.split_once("\n    }\n").expect("fields");
+        let columns: Vec<&str> = fields
+            .lines()
+            .filter(|line| line.ends_with(','))
+            .filter_map(|line| line.split_once(": ")?.0.split_whitespace().last())
+            .collect();
+        let expansion = Expansion {
+            parameter: "",
+            body: format!("{:?}", columns.join(", ")),
+        };
+        (name, expansion)
+    })
 }
 
 /// All literals of an expression in a row, macros expanded, until its parenthesis is closed.
-fn joined(source: &str, macros: &BTreeMap<&str, (&str, &str)>) -> String {
+fn joined(source: &str, macros: &Macros) -> String {
     let (mut text, mut rest, mut depth) = (String::new(), source, 0);
     while let Some(next) = rest.chars().next() {
         let name = rest
@@ -71,14 +99,14 @@ fn joined(source: &str, macros: &BTreeMap<&str, (&str, &str)>) -> String {
         if next == '"' {
             let (part, after) = literal(rest);
             (text, rest) = (text + &part, after);
-        } else if let Some((parameter, body)) = macros.get(name) {
+        } else if let Some(Expansion { parameter, body }) = macros.get(name) {
             let argument = &rest[name.len() + "!(".len()..];
             let end = if parameter.is_empty() {
                 text += &joined(body, macros);
                 0
             } else {
                 let end = argument.len() - literal(argument).1.len();
-                text += &joined(&body.replace(parameter, &argument[..end]), macros);
+                text += &joined(&body.replace(*parameter, &argument[..end]), macros);
                 end
             };
             rest = &argument[end + ")".len()..];

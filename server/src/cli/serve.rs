@@ -134,10 +134,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
 }
 
 fn start_log(arguments: &ServeArguments) -> Result<(), Failure> {
-    let filter: Targets = arguments.log.parse().map_err(|error| Failure::Setting {
-        name: "--log",
-        what: format!("{error}"),
-    })?;
+    let filter = log_filter(&arguments.log)?;
     let log = tracing_subscriber::fmt::layer()
         // A log that cannot be written, because its disk is full, must not become a panic.
         .log_internal_errors(false)
@@ -156,4 +153,36 @@ fn start_log(arguments: &ServeArguments) -> Result<(), Failure> {
         tracing::error!(message, place, "panic");
     }));
     Ok(())
+}
+
+/// An empty filter, as of a variable that is set to nothing, must not hide errors.
+fn log_filter(filter: &str) -> Result<Targets, Failure> {
+    let filter = if filter.trim().is_empty() {
+        "error"
+    } else {
+        filter
+    };
+    filter.parse().map_err(|error| Failure::Setting {
+        name: "--log",
+        what: format!("{error}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracing::Level;
+
+    #[test]
+    fn an_empty_log_filter_shows_errors() {
+        for empty in ["", " "] {
+            let filter = log_filter(empty).unwrap();
+            assert!(filter.would_enable("slewplan_server", &Level::ERROR));
+            assert!(!filter.would_enable("slewplan_server", &Level::WARN));
+        }
+        let filter = log_filter("warn,slewplan_server::store=debug").unwrap();
+        assert!(filter.would_enable("slewplan_server::store", &Level::DEBUG));
+        assert!(!filter.would_enable("slewplan_server::api", &Level::INFO));
+        assert!(log_filter("loudly=often").is_err());
+    }
 }

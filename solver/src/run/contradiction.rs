@@ -1,15 +1,11 @@
 //! Contradictions between solutions and proofs, which only a defect of the program can cause.
 //!
-//! A certified bound holds for every motion. A solution that is faster by more than its tolerances
-//! allow refutes the proof: then no answer may rest on it. A stored leg that does not meet its
+//! A certified bound holds for every motion within the tolerances of the checker. A solution that is
+//! faster refutes the proof: then no answer may rest on it. A stored leg that does not meet its
 //! conditions when it is propagated is a contradiction too.
 
+use crate::model::tolerances::TIME_TOLERANCE;
 use std::fmt;
-
-/// Relative excess of a bound over a duration that the tolerances of limits allow.
-const TOLERANCE: f64 = 1e-5;
-/// Largest angle, rad, by which solutions of the optimiser miss their targets.
-const MISS: f64 = 1e-8;
 
 /// A contradiction, with what is needed to reproduce it.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,11 +75,9 @@ impl fmt::Display for Contradiction {
     }
 }
 
-/// By how much a leg may undercut its bound, s, within the tolerances. Targets are missed by a
-/// small angle, which matters where the turn, rad, is small.
-pub(crate) fn slack(bound_s: f64, turn: f64) -> f64 {
-    let missed = if turn > MISS { MISS / turn } else { 1.0 };
-    bound_s * (TOLERANCE + missed).min(1.0)
+/// Whether a solution is faster than its bound by more than the rounding of times.
+pub(crate) fn refutes(duration_s: f64, bound_s: f64) -> bool {
+    bound_s > duration_s * (1.0 + TIME_TOLERANCE)
 }
 
 #[cfg(test)]
@@ -91,10 +85,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn smaller_turns_have_more_slack_but_never_more_than_the_bound() {
-        assert!((slack(100.0, 1.0) - 1e-3).abs() < 2e-6);
-        assert!(slack(1.0, 1e-6) > 0.01 && slack(1.0, 1e-6) < 0.011);
-        assert!((slack(3.0, 0.0) - 3.0).abs() < 1e-15);
+    fn solutions_as_fast_as_their_bounds_do_not_refute_them() {
+        assert!(!refutes(100.0, 100.0) && !refutes(100.0, 100.0 * (1.0 + 1e-12)));
+        assert!(refutes(100.0, 100.0 * (1.0 + 1e-8)) && refutes(0.0, 1e-3));
     }
 
     #[test]

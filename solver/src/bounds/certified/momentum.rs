@@ -19,9 +19,9 @@
 //! whose second term along `d` is at most `|H| max_w |(J_eff^-1 d - k d) x w|`; this is convex in
 //! `w`, so its maximum is at a corner of the box of rates. Limits on `w` hold for `v` up to
 //! `k |H|`. Rest at an end means `v = -k R^T H`, which is known there. Slews with a drift are
-//! bounded in [`crate::bounds::kinematic`]. The tolerances are given away as without momentum. Any `k` is valid. The middle of the eigenvalues of
-//! `J^-1` makes the box narrow; zero, with the box of all rates, is better where rates have limits
-//! of their own.
+//! bounded in [`crate::bounds::kinematic`]. The tolerances are given away as without momentum. Any
+//! `k` is valid. The middle of the eigenvalues of `J^-1` makes the box narrow; zero, with the box of
+//! all rates, is better where rates have limits of their own.
 
 use super::{BodyFrame, MISSED_ATTITUDE, allowed_rate, exceeded};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};

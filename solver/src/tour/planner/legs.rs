@@ -13,7 +13,7 @@ use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
-use crate::run::contradiction::{Contradiction, slack};
+use crate::run::contradiction::{Contradiction, refutes};
 use crate::run::progress::{Progress, Stage};
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::legs::{LegKind, SegmentStore, StoredLeg};
@@ -293,8 +293,7 @@ impl<'a> LegSolver<'a> {
         let Some((bound_s, solved_s)) = solved.certified.zip(solved.solution.duration()) else {
             return;
         };
-        let turn = leg.arrival.turn(&leg.from.attitude, &leg.to.attitude);
-        if bound_s - slack(bound_s, turn) > solved_s {
+        if refutes(solved_s, bound_s) {
             self.contradicted(&Contradiction::Leg {
                 identity: leg.identity.clone(),
                 bound_s,

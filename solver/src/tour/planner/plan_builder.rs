@@ -13,7 +13,7 @@ use crate::model::plan::{
     Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Statistics,
 };
 use crate::model::problem::{Code, Problem};
-use crate::run::contradiction::{Contradiction, slack};
+use crate::run::contradiction::{Contradiction, refutes};
 use crate::run::progress::{Progress, Stage};
 use crate::tour::legs::LegKind;
 use crate::tour::order::{
@@ -342,21 +342,17 @@ impl PlanBuilder<'_> {
                 duration_s: flown_s,
             });
         };
-        let mut all_slack = 0.0;
         for (leg, pair) in verified.legs.iter().zip(route.windows(2)) {
             let Some(bound_s) = tours.certified_bound(pair[0], pair[1]) else {
                 continue;
             };
-            let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place).attitude);
-            let slack = slack(bound_s, places.arrival.turn(&from, &to));
-            all_slack += slack;
-            if bound_s - slack > leg.duration_s {
+            if refutes(leg.duration_s, bound_s) {
                 let ends = [pair[0], pair[1]].map(|place| places.name(place));
                 contradicted(Some(ends), bound_s, leg.duration_s);
             }
         }
         if let Some(bound_s) = self.certified
-            && bound_s - slack(bound_s, f64::INFINITY) - all_slack > total
+            && refutes(total, bound_s)
         {
             contradicted(None, bound_s, total);
         }

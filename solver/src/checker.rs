@@ -130,7 +130,7 @@ struct FlightObserver<'a> {
 impl<'a> FlightObserver<'a> {
     fn new(scenario: &'a Scenario) -> Self {
         let start = Snapshot::at_start(scenario);
-        let observers = scenario.keep_out().iter().enumerate();
+        let observers = scenario.cones().iter().enumerate();
         Self {
             observers: observers
                 .map(|(index, cone)| ConeObserver::new(index, cone, &start.quaternion))
@@ -245,7 +245,7 @@ impl CheckReport {
                 wheel_speed: Some(-NOT_COMPUTED),
                 body_rate: Some(-NOT_COMPUTED),
                 wheel_zero_crossings: Vec::new(),
-                keep_out_clearance_deg: vec![-NOT_COMPUTED; scenario.keep_out().len()],
+                keep_out_clearance_deg: vec![-NOT_COMPUTED; scenario.cones().len()],
                 keep_out_intrusions: Vec::new(),
             },
             states: Vec::new(),

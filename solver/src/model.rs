@@ -3,6 +3,7 @@
 
 pub mod attitude;
 pub(crate) mod boresights;
+pub mod cone;
 pub mod drive;
 pub(crate) mod dynamics;
 pub mod epoch;

@@ -4,9 +4,9 @@ use super::dynamics::{QuaternionComponents, to_reference};
 use super::extremum::{critical_points, root};
 use super::integrator::IntegrationStep;
 use super::number_format::figure;
+use crate::model::cone::Cone;
 use crate::model::plan::Intrusion;
 use crate::model::problem::{Code, Problem};
-use crate::model::scenario::KeepOut;
 
 /// Depth, rad, up to which a boresight inside a cone is no violation: the attitude tolerance.
 const TOUCH: f64 = super::ATTITUDE_TOLERANCE;
@@ -18,7 +18,7 @@ const MAX_SPANS: usize = 5;
 #[derive(Debug)]
 pub(super) struct ConeObserver<'a> {
     index: usize,
-    cone: &'a KeepOut,
+    cone: &'a Cone,
     /// Smallest angle between boresight and cone so far, rad.
     pub(super) clearance: f64,
     inside: Option<Intrusion>,
@@ -28,7 +28,7 @@ pub(super) struct ConeObserver<'a> {
 
 impl<'a> ConeObserver<'a> {
     /// An observer that has seen the attitude at time zero.
-    pub(super) fn new(index: usize, cone: &'a KeepOut, start: &QuaternionComponents) -> Self {
+    pub(super) fn new(index: usize, cone: &'a Cone, start: &QuaternionComponents) -> Self {
         let mut observer = Self {
             index,
             cone,

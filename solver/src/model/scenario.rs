@@ -4,7 +4,7 @@
 //! and continues after a fault. A part that depends on an earlier one takes it as optional, or
 //! reads the description instead, so that one run lists all problems.
 
-mod keep_out;
+mod cones;
 mod labels;
 mod limits;
 mod options;
@@ -14,6 +14,7 @@ mod target;
 mod unit_slips;
 
 use crate::model::attitude::{Attitude, AttitudeContext};
+use crate::model::cone::Cone;
 use crate::model::findings::Findings;
 use crate::model::order_rules::OrderRules;
 use crate::model::problem::{Faults, Problem};
@@ -90,19 +91,6 @@ pub struct Target {
     pub dwell: f64,
 }
 
-/// A cone that a boresight should avoid.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KeepOut {
-    /// Name of the boresight.
-    pub boresight: String,
-    /// Unit direction of the boresight in body axes.
-    pub axis: Vector3<f64>,
-    /// Unit direction of the cone's axis in the reference frame.
-    pub direction: Vector3<f64>,
-    /// Half angle, rad.
-    pub half_angle: f64,
-}
-
 /// A valid planning problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
@@ -115,7 +103,7 @@ pub struct Scenario {
     end: Option<End>,
     targets: Vec<Target>,
     order_rules: OrderRules,
-    keep_out: Vec<KeepOut>,
+    cones: Vec<Cone>,
     options: OptionsSpec,
 }
 
@@ -139,7 +127,7 @@ impl Scenario {
         let mut findings = Findings::default();
         let scenario = Self::read(spec, &mut findings);
         if let Some(scenario) = &scenario {
-            keep_out::warn_of_attitudes(scenario, &mut findings);
+            cones::warn_of_attitudes(scenario, &mut findings);
         }
         let (scenario, warnings) = findings.judge(scenario)?;
         Ok(Validated { scenario, warnings })
@@ -171,7 +159,7 @@ impl Scenario {
         });
         let targets = target::read_all(spec, context, &limits, findings);
         let order_rules = order::read(spec, findings);
-        let keep_out = keep_out::read_all(spec, findings);
+        let cones = cones::read_all(spec, findings);
         let options_valid = options::check(&spec.options, findings);
         unit_slips::check_targets(spec, findings);
         if let Some((spacecraft, start)) = spacecraft.as_ref().zip(start.as_ref()) {
@@ -190,7 +178,7 @@ impl Scenario {
             },
             targets: targets?,
             order_rules: order_rules?,
-            keep_out: keep_out?,
+            cones: cones?,
             options: options_valid.then(|| spec.options.clone())?,
         })
     }
@@ -249,10 +237,10 @@ impl Scenario {
         &self.order_rules
     }
 
-    /// The keep-out cones.
+    /// The cones that bound where boresights point.
     #[must_use]
-    pub fn keep_out(&self) -> &[KeepOut] {
-        &self.keep_out
+    pub fn cones(&self) -> &[Cone] {
+        &self.cones
     }
 
     /// Options of the solve.

@@ -4,7 +4,8 @@ use super::canvas::{ALARM, Canvas, FAINT, Ink, LINE, Pen, PlotArea, SERIES};
 use super::view::DrawnBoresight;
 use super::written::{WrittenPlan, WrittenState};
 use nalgebra::Vector3;
-use slewplan_solver::model::scenario::{KeepOut, Scenario};
+use slewplan_solver::model::cone::Cone;
+use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ReferenceFrame;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -178,7 +179,7 @@ fn axes(canvas: &mut Canvas, view: &SphereView) {
 }
 
 /// The part of the sphere excluded by a cone.
-fn cap(canvas: &mut Canvas, view: &SphereView, cone: &KeepOut) {
+fn cap(canvas: &mut Canvas, view: &SphereView, cone: &Cone) {
     let (rise, flat) = cone.half_angle.sin_cos();
     // Any two directions perpendicular to the axis.
     let helper = if cone.direction.z.abs() < 0.9 {

@@ -70,7 +70,7 @@ fn a_valid_description_becomes_a_scenario() {
     let [x, y, z] = scenario.targets()[0].rate;
     assert_eq!([x, y], [RateCondition::Free; 2]);
     assert_eq!(z, RateCondition::Fixed(0.0));
-    assert_eq!(scenario.keep_out()[0].direction, Vector3::x());
+    assert_eq!(scenario.cones()[0].direction, Vector3::x());
     assert!(scenario.momentum().norm() < f64::MIN_POSITIVE);
 }
 

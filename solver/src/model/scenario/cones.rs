@@ -1,8 +1,9 @@
-//! The keep-out cones.
+//! The cones that bound where boresights point.
 
-use super::{KeepOut, Scenario};
+use super::Scenario;
 use crate::model::attitude::Attitude;
 use crate::model::boresights;
+use crate::model::cone::{Applies, Cone, Side};
 use crate::model::findings::{Findings, unit};
 use crate::model::problem::Code;
 use crate::model::spec::{BoresightSpec, KeepOutSpec, MAX_CONES, ScenarioSpec};
@@ -11,7 +12,7 @@ use nalgebra::Vector3;
 /// Depth, rad, up to which a boresight inside a cone is no violation for the checker.
 const TOUCH: f64 = 1e-6;
 
-pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<KeepOut>> {
+pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Vec<Cone>> {
     if !findings.at_most("/keep_out", spec.keep_out.len(), MAX_CONES) {
         return None;
     }
@@ -20,29 +21,26 @@ pub(super) fn read_all(spec: &ScenarioSpec, findings: &mut Findings) -> Option<V
         .keep_out
         .iter()
         .enumerate()
-        .map(|(i, cone)| {
-            read(
-                cone,
-                &spec.spacecraft.boresights,
-                &format!("/keep_out/{i}"),
-                findings,
-            )
-        })
+        .map(|(i, cone)| read(cone, i, &spec.spacecraft.boresights, findings))
         .collect();
     cones.into_iter().collect()
 }
 
 fn read(
     spec: &KeepOutSpec,
+    index: usize,
     boresights: &[BoresightSpec],
-    pointer: &str,
     findings: &mut Findings,
-) -> Option<KeepOut> {
+) -> Option<Cone> {
+    let pointer = format!("/keep_out/{index}");
     let boresight_pointer = format!("{pointer}/boresight");
     let boresight = boresights::find(&spec.boresight, boresights, &boresight_pointer, findings);
     let direction = findings.direction(&format!("{pointer}/direction"), spec.direction);
     let half_angle = read_half_angle(spec, &format!("{pointer}/half_angle_deg"), findings);
-    Some(KeepOut {
+    Some(Cone {
+        side: Side::Out,
+        index,
+        applies: Applies::Report,
         boresight: spec.boresight.clone(),
         axis: unit(Vector3::from(boresight?.axis)),
         direction: direction?,
@@ -67,23 +65,24 @@ fn read_half_angle(spec: &KeepOutSpec, pointer: &str, findings: &mut Findings) -
 
 /// Warns of every attitude that itself points a boresight into a cone: no plan avoids that.
 pub(super) fn warn_of_attitudes(scenario: &Scenario, findings: &mut Findings) {
-    if scenario.keep_out.is_empty() {
+    if scenario.cones.is_empty() {
         return;
     }
     let mut warn = |pointer: &str, who: &str, attitude: &Attitude| {
-        for (index, cone) in scenario.keep_out.iter().enumerate() {
-            let depth = cone.depth(attitude);
+        for cone in &scenario.cones {
+            let depth = -cone.clearance(attitude);
             if depth > TOUCH {
                 findings.warn(
                     pointer,
                     Code::AttitudeInKeepOut,
                     format!(
                         "{who} points boresight '{}' {:.3} degrees into the keep-out cone of {} \
-                         degrees (/keep_out/{index})",
+                         degrees ({})",
                         cone.boresight,
                         depth.to_degrees(),
                         // Rounding in the conversion to radians and back.
-                        (cone.half_angle.to_degrees() * 1e9).round() / 1e9
+                        (cone.half_angle.to_degrees() * 1e9).round() / 1e9,
+                        cone.pointer()
                     ),
                     "every plan through this attitude violates the cone: change the attitude, or \
                      narrow the cone",
@@ -98,14 +97,5 @@ pub(super) fn warn_of_attitudes(scenario: &Scenario, findings: &mut Findings) {
     for (index, target) in scenario.targets.iter().enumerate() {
         let who = format!("target \"{}\"", target.id);
         warn(&format!("/targets/{index}"), &who, &target.attitude);
-    }
-}
-
-impl KeepOut {
-    /// Angle by which an attitude points the boresight into the cone, rad; negative outside.
-    fn depth(&self, attitude: &Attitude) -> f64 {
-        let boresight = attitude.to_reference(self.axis);
-        let sine = boresight.cross(&self.direction).norm();
-        self.half_angle - sine.atan2(boresight.dot(&self.direction))
     }
 }

@@ -1,0 +1,111 @@
+//! Cones that bound where boresights point.
+
+use super::attitude::Attitude;
+use nalgebra::Vector3;
+
+/// On which side of its cone a boresight has to stay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Outside, as a camera of the Sun.
+    Out,
+    /// Inside, as a solar panel's normal.
+    In,
+}
+
+/// When a cone is enforced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Applies {
+    /// Along the whole flight.
+    #[default]
+    Always,
+    /// From arrival to departure at targets.
+    AtTargets,
+    /// Never: intrusions are reported.
+    Report,
+}
+
+/// A cone that bounds where a boresight points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cone {
+    /// On which side the boresight has to stay.
+    pub side: Side,
+    /// Position among the scenario's cones of the same side.
+    pub index: usize,
+    /// Name of the boresight.
+    pub boresight: String,
+    /// Unit direction of the boresight in body axes.
+    pub axis: Vector3<f64>,
+    /// Unit direction of the cone's axis in the reference frame.
+    pub direction: Vector3<f64>,
+    /// Half angle, rad.
+    pub half_angle: f64,
+    /// When it is enforced.
+    pub applies: Applies,
+}
+
+impl Cone {
+    /// The JSON pointer of the cone in its scenario.
+    #[must_use]
+    pub fn pointer(&self) -> String {
+        let list = match self.side {
+            Side::Out => "keep_out",
+            Side::In => "keep_in",
+        };
+        format!("/{list}/{}", self.index)
+    }
+
+    /// Angle between the boresight and the cone's surface at an attitude, rad; negative on the wrong
+    /// side.
+    #[must_use]
+    pub fn clearance(&self, attitude: &Attitude) -> f64 {
+        let boresight = attitude.to_reference(self.axis);
+        let sine = boresight.cross(&self.direction).norm();
+        let beyond = sine.atan2(boresight.dot(&self.direction)) - self.half_angle;
+        match self.side {
+            Side::Out => beyond,
+            Side::In => -beyond,
+        }
+    }
+
+    /// Axis and half angle, rad, of the cone that the boresight has to stay out of: what is inside a
+    /// cone is outside the one around the opposite direction with the supplementary angle.
+    #[must_use]
+    pub fn forbidden(&self) -> (Vector3<f64>, f64) {
+        match self.side {
+            Side::Out => (self.direction, self.half_angle),
+            Side::In => (-self.direction, std::f64::consts::PI - self.half_angle),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inside_a_cone_is_outside_the_opposite_one() {
+        let cone = Cone {
+            side: Side::In,
+            index: 2,
+            boresight: "panel".into(),
+            axis: Vector3::z(),
+            direction: Vector3::z(),
+            half_angle: 0.5,
+            applies: Applies::Always,
+        };
+        let (direction, half_angle) = cone.forbidden();
+        let opposite = Cone {
+            side: Side::Out,
+            direction,
+            half_angle,
+            ..cone.clone()
+        };
+        for angle in [0.0, 0.3, 0.5, 0.7, 3.0] {
+            let attitude = Attitude::identity().retract(Vector3::x() * angle);
+            let clearance = cone.clearance(&attitude);
+            assert!((clearance - (0.5 - angle)).abs() < 1e-12, "{angle}");
+            assert!((opposite.clearance(&attitude) - clearance).abs() < 1e-12);
+        }
+        assert_eq!(cone.pointer(), "/keep_in/2");
+    }
+}

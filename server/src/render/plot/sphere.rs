@@ -98,7 +98,7 @@ pub(super) fn draw(
     let rim = Pen::new(LINE, 1.2);
     canvas.circle(view.centre, view.radius, "#F7F9FB", rim);
     graticule(canvas, &view);
-    let cones = scenario.map_or(&[][..], Scenario::keep_out);
+    let cones = scenario.map_or(&[][..], Scenario::cones);
     let cones = cones.iter().filter(|cone| cone.boresight == boresight.name);
     let mut forbidden = 0;
     for cone in cones {

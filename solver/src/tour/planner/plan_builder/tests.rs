@@ -71,9 +71,9 @@ fn a_certified_bound_above_the_duration_is_reported_and_not_in_the_plan() {
     let expected = (Optimality::Optimal, Vec::new());
     assert_eq!((plan.optimality, reported), expected);
     assert!(plan.certified_lower_bound_s.is_some() && plan.warnings.is_empty());
-    // An excess within the tolerances of a flight is no contradiction.
-    assert_eq!(plan_with_bound(1.0 + 3e-6).1, []);
-    let (plan, reported) = plan_with_bound(1.001);
+    // A bound gives the tolerances of a flight away, so that only rounding remains.
+    assert_eq!(plan_with_bound(1.0 + 1e-10).1, []);
+    let (plan, reported) = plan_with_bound(1.0 + 3e-6);
     let [
         Contradiction::Tour {
             route,

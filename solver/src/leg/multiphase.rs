@@ -11,6 +11,7 @@ mod solution;
 #[cfg(test)]
 mod tests;
 
+use crate::leg::detour::guess::longest_intervals;
 use crate::leg::profile::Profile;
 use crate::leg::transcription::{MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
@@ -18,8 +19,8 @@ use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
 use crate::run::stop::StopReason;
-use between_nodes::excess_between_nodes;
-pub(crate) use between_nodes::{excess_inside, keeps_limits_inside};
+pub(crate) use between_nodes::{attitudes_inside, excess_inside, keeps_limits_inside};
+use between_nodes::{depths_between_nodes, excess_between_nodes};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
 use passes::{POLISHING, Pass, from_a_guess};
@@ -50,6 +51,10 @@ pub(crate) const LARGE_MISS: f64 = 1e-3;
 /// Relative excess over a limit between nodes that is accepted; the checker's tolerance is ten
 /// times this.
 pub(crate) const LIMIT_TOLERANCE: f64 = 1e-7;
+
+/// Angle, rad, by which a motion may enter a cone between nodes; the checker's tolerance is three
+/// times this.
+pub(crate) const CONE_TOLERANCE: f64 = 3e-7;
 
 /// Solves for the motion through waypoints, from a guess whose nodes are split into legs by
 /// `intervals`.
@@ -117,7 +122,10 @@ impl<'a> MultiphaseSolve<'a> {
         let leg = guess.duration() / intervals.len() as f64;
         let leg = leg.max(dynamics.least_duration());
         let scales = Scales::for_legs(dynamics, typical_angle(dynamics, waypoints), leg);
-        let chain = Transcription::new(dynamics, scales, waypoints, intervals);
+        let mut chain = Transcription::new(dynamics, scales, waypoints, intervals);
+        if !dynamics.cones.is_empty() {
+            chain.limit_lengths(&longest_intervals(dynamics, guess));
+        }
         Self {
             dynamics,
             scales,
@@ -147,7 +155,9 @@ impl<'a> MultiphaseSolve<'a> {
             let missed = self.chain.correct(&self.iterate);
             let excesses = excess_between_nodes(self.dynamics, &self.solution.profile);
             let excess = excesses.iter().copied().fold(0.0, f64::max);
-            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
+            let depths = depths_between_nodes(self.dynamics, &self.solution.profile);
+            let depth = depths.iter().copied().fold(0.0, f64::max);
+            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE && depth <= CONE_TOLERANCE {
                 return self.solution;
             }
             if missed > LARGE_MISS {
@@ -159,7 +169,12 @@ impl<'a> MultiphaseSolve<'a> {
                 } else {
                     reserves.raise_all(RESERVE_FACTOR * excess);
                 }
-                self.tighten(&reserves, excess);
+            }
+            if depth > CONE_TOLERANCE {
+                reserves.raise_cones(&depths, RESERVE_FACTOR);
+            }
+            if excess > LIMIT_TOLERANCE || depth > CONE_TOLERANCE {
+                self.tighten(&reserves, excess.max(depth));
             }
             if !self.converges(stop) {
                 return self.solution;

@@ -1,5 +1,6 @@
 //! One leg between two waypoints: guesses, solves, the best solution.
 
+pub(crate) mod around_cones;
 pub(crate) mod arrival;
 mod centred;
 pub(crate) mod eigenaxis;
@@ -68,6 +69,9 @@ pub(crate) fn solve(
     bound: Option<f64>,
     stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegOutcome {
+    if !leg.dynamics.cones.is_empty() {
+        return around_cones::solve_with_cones(leg, bound, stop);
+    }
     if let Some(solution) = zero_length(leg) {
         return LegOutcome {
             solution,

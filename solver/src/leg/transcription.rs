@@ -22,6 +22,7 @@
 //! [`crate::leg::kinematics`].
 
 mod attitude_link;
+mod cones;
 mod demands;
 mod middle;
 mod nodes;
@@ -98,6 +99,8 @@ pub(crate) struct Transcription {
     middle_rows: Vec<MiddleRow>,
     /// The components of the body rate, rad/s.
     rates: [Row; 3],
+    /// Longest intervals, scaled; empty where they are not limited.
+    longest: Vec<f64>,
     /// Reserve kept from every limit at every node.
     reserves: Reserves,
     nodes: Vec<Node>,
@@ -142,6 +145,7 @@ impl Transcription {
             limits: Vec::new(),
             middle_rows: Vec::new(),
             rates: Default::default(),
+            longest: Vec::new(),
             reserves: Reserves::none(dynamics, intervals.iter().sum()),
             nodes: Vec::new(),
             dynamics: dynamics.clone(),
@@ -225,8 +229,9 @@ impl Transcription {
 
     /// Number of inequalities on the state at a node.
     pub(crate) fn state_inequalities(&self, node: usize) -> usize {
+        let cones = self.cones_at(node).len();
         let node = &self.nodes[node];
-        self.inequality_rows(node).count() + usize::from(self.has_norm_row(node))
+        self.inequality_rows(node).count() + usize::from(self.has_norm_row(node)) + cones
     }
 
     fn torque_margins<'a>(&'a self, control: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
@@ -297,6 +302,10 @@ impl Transcription {
             out.inequality[count] = self.norm_margin(&state, reserves[norm]);
             count += 1;
         }
+        for margin in self.cone_margins(at, point) {
+            out.inequality[count] = margin;
+            count += 1;
+        }
         count
     }
 
@@ -337,7 +346,8 @@ impl Transcription {
             count += 1;
         }
         self.add_momentum_curvature(&curvature, &state, out);
-        count
+        self.write_cone_rows((link.node, count), link.point, duals.inequality, out);
+        count + self.cones_at(link.node).len()
     }
 }
 
@@ -365,7 +375,7 @@ impl Chain for Transcription {
 
     fn inequalities(&self, node: usize) -> usize {
         let of_interval = if node < self.intervals() {
-            2 * self.wheels() + self.middle_limits()
+            2 * self.wheels() + self.middle_limits() + usize::from(!self.longest.is_empty())
         } else {
             0
         };
@@ -405,6 +415,10 @@ impl Chain for Transcription {
             for (out, margin) in out.inequality[count..].iter_mut().zip(margins) {
                 *out = margin;
             }
+            if let Some(longest) = self.longest_at(link.node) {
+                let last = count + self.middle_limits();
+                out.inequality[last] = 1.0 - link.control[self.wheels()] / longest;
+            }
         }
     }
 
@@ -437,6 +451,10 @@ impl Chain for Transcription {
                 out.inequality_jacobian[row * out.vars + states + i] = -bound.recip();
                 out.inequality_jacobian[row * out.vars + tau] = 1.0;
             }
+        }
+        if let Some(longest) = self.longest_at(link.node) {
+            let last = middle + self.middle_limits();
+            out.inequality_jacobian[last * out.vars + tau] = -longest.recip();
         }
     }
 }

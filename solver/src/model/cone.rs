@@ -58,23 +58,43 @@ impl Cone {
     /// side.
     #[must_use]
     pub fn clearance(&self, attitude: &Attitude) -> f64 {
-        let boresight = attitude.to_reference(self.axis);
-        let sine = boresight.cross(&self.direction).norm();
-        let beyond = sine.atan2(boresight.dot(&self.direction)) - self.half_angle;
-        match self.side {
-            Side::Out => beyond,
-            Side::In => -beyond,
-        }
+        -self.forbidden().depth(attitude)
     }
 
-    /// Axis and half angle, rad, of the cone that the boresight has to stay out of: what is inside a
-    /// cone is outside the one around the opposite direction with the supplementary angle.
+    /// The cone that the boresight has to stay out of: what is inside a cone is outside the one around
+    /// the opposite direction with the supplementary angle.
     #[must_use]
-    pub fn forbidden(&self) -> (Vector3<f64>, f64) {
-        match self.side {
+    pub fn forbidden(&self) -> ForbiddenCone {
+        let (direction, half_angle) = match self.side {
             Side::Out => (self.direction, self.half_angle),
             Side::In => (-self.direction, std::f64::consts::PI - self.half_angle),
+        };
+        ForbiddenCone {
+            axis: self.axis,
+            direction,
+            half_angle,
         }
+    }
+}
+
+/// A cone that a direction of the body has to stay out of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForbiddenCone {
+    /// Unit direction in body axes.
+    pub axis: Vector3<f64>,
+    /// Unit direction of the cone's axis in the reference frame.
+    pub direction: Vector3<f64>,
+    /// Half angle, rad.
+    pub half_angle: f64,
+}
+
+impl ForbiddenCone {
+    /// By how much an attitude is inside, rad; negative outside.
+    #[must_use]
+    pub fn depth(&self, attitude: &Attitude) -> f64 {
+        let boresight = attitude.to_reference(self.axis);
+        let sine = boresight.cross(&self.direction).norm();
+        self.half_angle - sine.atan2(boresight.dot(&self.direction))
     }
 }
 
@@ -93,18 +113,12 @@ mod tests {
             half_angle: 0.5,
             applies: Applies::Always,
         };
-        let (direction, half_angle) = cone.forbidden();
-        let opposite = Cone {
-            side: Side::Out,
-            direction,
-            half_angle,
-            ..cone.clone()
-        };
+        let opposite = cone.forbidden();
         for angle in [0.0, 0.3, 0.5, 0.7, 3.0] {
             let attitude = Attitude::identity().retract(Vector3::x() * angle);
             let clearance = cone.clearance(&attitude);
             assert!((clearance - (0.5 - angle)).abs() < 1e-12, "{angle}");
-            assert!((opposite.clearance(&attitude) - clearance).abs() < 1e-12);
+            assert!((opposite.depth(&attitude) + clearance).abs() < 1e-12);
         }
         assert_eq!(cone.pointer(), "/keep_in/2");
     }

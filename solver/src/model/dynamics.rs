@@ -12,6 +12,7 @@
 //! by the shares that a plan may use ([`Authority`]), and nowhere else.
 
 use crate::model::attitude::Attitude;
+use crate::model::cone::ForbiddenCone;
 use crate::model::scenario::Start;
 use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::OptionsSpec;
@@ -79,6 +80,8 @@ pub(crate) struct Dynamics {
     pub(crate) max_rate: Vector3<f64>,
     /// Limit of the rate's norm, rad/s; may be infinite.
     pub(crate) max_rate_norm: f64,
+    /// Cones, in the reference frame, that limit the attitude.
+    pub(crate) cones: Vec<ForbiddenCone>,
 }
 
 /// Total momentum below this fraction of the sum of its terms counts as zero, so that rounding in
@@ -135,6 +138,15 @@ impl Dynamics {
             momentum,
             max_rate: spacecraft.max_rate(),
             max_rate_norm: spacecraft.max_rate_norm(),
+            cones: Vec::new(),
+        }
+    }
+
+    /// The same with these cones instead of its own.
+    pub(crate) fn with_cones(&self, cones: Vec<ForbiddenCone>) -> Self {
+        Self {
+            cones,
+            ..self.clone()
         }
     }
 

@@ -2,7 +2,10 @@
 
 use super::LIMIT_TOLERANCE;
 use crate::leg::profile::Profile;
+use crate::model::attitude::Attitude;
+use crate::model::cone::ForbiddenCone;
 use crate::model::dynamics::Dynamics;
+use nalgebra::DVector;
 
 /// Equal parts of an interval at whose ends the limits are evaluated: the body may turn by a radian
 /// on a long interval, and the stored momentum turns with it in body axes.
@@ -28,6 +31,28 @@ pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Ve
         .collect()
 }
 
+/// Depth, rad, of the motion inside every cone between the ends of every interval, the cones of one
+/// interval after the other; zero where an end is as deep.
+pub(super) fn depths_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Vec<f64> {
+    if dynamics.cones.is_empty() {
+        return Vec::new();
+    }
+    let inside = |k: usize| {
+        let states = states_inside(dynamics, profile, k);
+        let deepest = |cone: &ForbiddenCone| {
+            let depths: Vec<f64> = states.iter().map(|(q, _)| cone.depth(q)).collect();
+            let peak = peak(&depths);
+            if peak > depths[0].max(depths[SAMPLES]) {
+                peak.max(0.0)
+            } else {
+                0.0
+            }
+        };
+        dynamics.cones.iter().map(deepest).collect::<Vec<_>>()
+    };
+    (0..profile.intervals()).flat_map(inside).collect()
+}
+
 /// Excess over one of the peak of a share's absolute value, where the peak lies between the ends;
 /// `shares` are samples at even times, both ends included.
 pub(crate) fn excess_inside(shares: &[f64]) -> f64 {
@@ -45,6 +70,32 @@ pub(crate) fn excess_inside(shares: &[f64]) -> f64 {
 
 /// Every limit's share at even times of an interval, both ends included.
 fn shares_inside(dynamics: &Dynamics, profile: &Profile, k: usize) -> Vec<Vec<f64>> {
+    let mut shares = vec![Vec::with_capacity(SAMPLES + 1); dynamics.wheel_count() + 4];
+    for (q, wheels) in states_inside(dynamics, profile, k) {
+        let rate = dynamics.rate(&q, &wheels);
+        for (series, share) in shares.iter_mut().zip(dynamics.limit_shares(&rate, &wheels)) {
+            series.push(share);
+        }
+    }
+    shares
+}
+
+/// Attitudes at even times of an interval, without its begin.
+pub(crate) fn attitudes_inside(
+    dynamics: &Dynamics,
+    profile: &Profile,
+    k: usize,
+) -> impl Iterator<Item = Attitude> {
+    let states = states_inside(dynamics, profile, k).into_iter();
+    states.skip(1).map(|(attitude, _)| attitude)
+}
+
+/// Attitudes and wheel momenta at even times of an interval, both ends included.
+fn states_inside(
+    dynamics: &Dynamics,
+    profile: &Profile,
+    k: usize,
+) -> Vec<(Attitude, DVector<f64>)> {
     let (from, to) = (&profile.wheels[k], &profile.wheels[k + 1]);
     let step = profile.lengths[k] / SAMPLES as f64;
     let wheels = |at: f64| from + (to - from) * (at / SAMPLES as f64);
@@ -59,16 +110,13 @@ fn shares_inside(dynamics: &Dynamics, profile: &Profile, k: usize) -> Vec<Vec<f6
     // Spread the small drift of the midpoint rule, known at the end, over the samples.
     let drift = attitudes[SAMPLES]
         .signed_turn_to(&profile.attitudes[k + 1].nearest_sign(&attitudes[SAMPLES]));
-    let mut shares = vec![Vec::with_capacity(SAMPLES + 1); dynamics.wheel_count() + 4];
-    for (i, q) in attitudes.iter().enumerate() {
-        let at = i as f64;
-        let (q, wheels) = (q.retract(drift * (at / SAMPLES as f64)), wheels(at));
-        let rate = dynamics.rate(&q, &wheels);
-        for (series, share) in shares.iter_mut().zip(dynamics.limit_shares(&rate, &wheels)) {
-            series.push(share);
-        }
-    }
-    shares
+    let nodes = attitudes.iter().enumerate();
+    nodes
+        .map(|(i, q)| {
+            let at = i as f64;
+            (q.retract(drift * (at / SAMPLES as f64)), wheels(at))
+        })
+        .collect()
 }
 
 /// Greatest value of samples and of the parabolas through each three of them.

@@ -1,5 +1,6 @@
 //! Legs with known answers.
 
+mod cones;
 mod steered;
 
 use super::*;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::model::attitude::Attitude;
+use crate::model::cone::ForbiddenCone;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 use crate::nlp::Iterate;
@@ -50,10 +51,25 @@ fn dynamics(biased: bool) -> Dynamics {
         }],
         ..ScenarioSpec::default()
     };
-    Scenario::try_new(&spec)
+    let mut dynamics = Scenario::try_new(&spec)
         .expect("a valid scenario")
         .scenario
-        .dynamics()
+        .dynamics();
+    let cone = |axis: Vector3<f64>, direction: Vector3<f64>, half_angle| ForbiddenCone {
+        axis: axis.normalize(),
+        direction: direction.normalize(),
+        half_angle,
+    };
+    dynamics.cones = vec![
+        cone(Vector3::x(), Vector3::new(0.3, -0.5, 0.9), 0.4),
+        cone(
+            Vector3::new(0.2, 0.4, -1.0),
+            Vector3::new(-0.7, 0.1, 0.2),
+            1.9,
+        ),
+        cone(Vector3::y(), Vector3::z(), 0.01),
+    ];
+    dynamics
 }
 
 fn transcription(dynamics: &Dynamics) -> Transcription {
@@ -85,6 +101,10 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
         length: 0.3,
         change: 0.2,
     };
+    chain.limit_lengths(&[70.0, 40.0]);
+    let mut reserves = Reserves::none(dynamics, 2);
+    reserves.raise_cones(&[0.01, 0.02, 0.0, 0.03, 0.0, 0.04], 1.0);
+    chain.keep(&reserves);
     chain.draw_controls_to(&Iterate::cold(Vec::new(), [0.6; 10].into()), penalty);
     chain
 }

@@ -40,7 +40,7 @@ fn read(
     Some(Cone {
         side: Side::Out,
         index,
-        applies: Applies::Report,
+        applies: Applies::Always,
         boresight: spec.boresight.clone(),
         axis: unit(Vector3::from(boresight?.axis)),
         direction: direction?,

@@ -6,6 +6,7 @@ use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
 use crate::model::attitude::Attitude;
+use crate::model::cone::ForbiddenCone;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
@@ -41,13 +42,22 @@ pub(super) struct CanonicalLeg {
 }
 
 impl CanonicalLeg {
-    /// The canonical form of the leg between two waypoints.
+    /// The canonical form of the leg between two waypoints, without cones.
     pub(super) fn of(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
-        let forth = Self::directed(places, from, to, false);
+        Self::within(&places.dynamics, places, [from, to])
+    }
+
+    /// The same with the cones that the scenario enforces.
+    pub(super) fn around_cones(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
+        Self::within(&places.with_cones, places, [from, to])
+    }
+
+    fn within(dynamics: &Dynamics, places: &Places<'_>, [from, to]: [&Waypoint; 2]) -> Self {
+        let forth = Self::directed(dynamics, places, [from, to], false);
         if !forth.reversible {
             return forth;
         }
-        let back = Self::directed(places, to, from, true);
+        let back = Self::directed(dynamics, places, [to, from], true);
         if back.identity < forth.identity {
             back
         } else {
@@ -55,14 +65,22 @@ impl CanonicalLeg {
         }
     }
 
-    fn directed(places: &Places<'_>, from: &Waypoint, to: &Waypoint, mirrored: bool) -> Self {
+    fn directed(
+        dynamics: &Dynamics,
+        places: &Places<'_>,
+        [from, to]: [&Waypoint; 2],
+        mirrored: bool,
+    ) -> Self {
         let reversible = places.reversible([from, to]);
         let mut turn = rounded_attitude(&from.attitude.turn_to(&to.attitude));
         if places.arrival == Arrival::Rotation {
             turn = upper_hemisphere(&turn);
         }
-        let mut dynamics = places.dynamics.clone();
+        let mut dynamics = dynamics.clone();
         dynamics.momentum = rounded_vector(from.attitude.to_body(dynamics.momentum));
+        for cone in &mut dynamics.cones {
+            cone.direction = rounded_vector(from.attitude.to_body(cone.direction));
+        }
         let from = settled(&dynamics, Attitude::identity(), from);
         let to = settled(&dynamics, turn, to);
         let spacecraft = describe_spacecraft(&dynamics);
@@ -75,6 +93,7 @@ impl CanonicalLeg {
         for place in [&from, &to] {
             describe_conditions(&mut identity, place);
         }
+        describe_cones(&mut identity, &dynamics.cones);
         Self {
             identity,
             spacecraft,
@@ -173,6 +192,15 @@ fn describe_spacecraft(dynamics: &Dynamics) -> String {
     push_numbers(&mut text, dynamics.max_rate.as_slice());
     push_numbers(&mut text, &[dynamics.max_rate_norm]);
     text
+}
+
+fn describe_cones(text: &mut String, cones: &[ForbiddenCone]) {
+    for cone in cones {
+        text.push_str("cone ");
+        push_numbers(text, cone.axis.as_slice());
+        push_numbers(text, cone.direction.as_slice());
+        push_numbers(text, &[cone.half_angle]);
+    }
 }
 
 fn describe_conditions(text: &mut String, place: &Waypoint) {

@@ -5,6 +5,7 @@ use super::legs::LegSolver;
 use super::places::Places;
 use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
+use crate::leg::solve::around_cones::is_clear;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::nlp::NlpStatus;
 use crate::tour::legs::LegKind;
@@ -20,6 +21,8 @@ pub(super) enum InitialGuess {
     Eigenaxes,
     /// Extremals of the kinematic problem.
     Extremals,
+    /// Legs around cones, each with only the conditions of its own ends.
+    AroundCones,
     /// Legs from rest to rest: feasible as they are where every place admits rest.
     AtRest,
 }
@@ -35,6 +38,9 @@ pub(super) fn constructed(places: &Places<'_>, route: &[Place]) -> Option<Vec<Ar
         for pair in segment.windows(2) {
             let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place));
             let leg = places.slew(&from, &to).constructed()?;
+            if !is_clear(&places.with_cones, &leg.profile) {
+                return None;
+            }
             whole.profile.append(&leg.profile);
             whole.intervals.extend(leg.intervals);
         }
@@ -70,8 +76,13 @@ pub(super) fn joined(
             InitialGuess::Extremals => slew
                 .extremal()
                 .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
-            InitialGuess::AtRest => {
-                let leg = legs.leg(LegKind::RestToRest, pair[0], pair[1]);
+            InitialGuess::AroundCones | InitialGuess::AtRest => {
+                let leg_kind = if kind == InitialGuess::AtRest {
+                    LegKind::RestToRest
+                } else {
+                    LegKind::LowerBound
+                };
+                let leg = legs.leg(leg_kind, pair[0], pair[1]);
                 leg.duration()?;
                 leg.profile
             }

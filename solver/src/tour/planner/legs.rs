@@ -11,6 +11,7 @@ use super::tables::{CertifiedLeg, CertifiedTable, SolvedLeg, SolvedTable, Table,
 use super::verified::{flight_faults, is_feasible};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
+use crate::leg::solve::around_cones::is_clear;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
 use crate::run::contradiction::{Contradiction, refutes};
@@ -143,8 +144,18 @@ impl<'a> LegSolver<'a> {
         pairs: &[(Place, Place)],
         tell: impl Fn(u64, u64) + Sync,
     ) -> SolvedTable {
-        let canonical = self.all_canonical(kind, pairs);
-        self.solve_missing(kind, &canonical, tell);
+        let mut canonical = self.all_canonical(kind, pairs);
+        self.solve_missing(kind, &canonical, &tell);
+        if !self.places.with_cones.cones.is_empty() {
+            let around = self
+                .run
+                .pool
+                .map(pairs, |pair| self.around_cones(kind, *pair));
+            self.solve_missing(kind, &around, &tell);
+            for (leg, around) in canonical.iter_mut().zip(around) {
+                *leg = around.or(leg.take());
+            }
+        }
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
@@ -160,13 +171,19 @@ impl<'a> LegSolver<'a> {
 
     /// The leg of a kind between two places, solved if it is not known.
     pub(super) fn leg(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
-        let canonical = self.canonical(kind, from, to);
+        let free = self.placed(kind, from, &self.canonical(kind, from, to));
+        self.around_cones(kind, (from, to))
+            .map_or(free, |around| self.placed(kind, from, &around))
+    }
+
+    /// A leg, solved if it is not known, that begins at a place.
+    fn placed(&self, kind: LegKind, from: Place, canonical: &CanonicalLeg) -> LegSolution {
         let known = lock(&self.known).get(&canonical.identity).cloned();
         let leg = known.unwrap_or_else(|| {
-            let stored = self.load(&canonical);
+            let stored = self.load(canonical);
             let from_store = stored.is_some();
-            let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, &canonical)));
-            self.keep(&canonical, &leg, from_store);
+            let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, canonical)));
+            self.keep(canonical, &leg, from_store);
             leg
         });
         let placed = TabulatedLeg {
@@ -174,6 +191,26 @@ impl<'a> LegSolver<'a> {
             mirrored: canonical.mirrored,
         };
         placed.beginning_at(&self.places.waypoint(from).attitude)
+    }
+
+    /// The leg with cones, where the known one without them enters a cone.
+    fn around_cones(&self, kind: LegKind, (from, to): (Place, Place)) -> Option<CanonicalLeg> {
+        let with_cones = &self.places.with_cones;
+        if with_cones.cones.is_empty() || self.is_abandoned() {
+            return None;
+        }
+        let canonical = self.canonical(kind, from, to);
+        let leg = lock(&self.known).get(&canonical.identity).cloned()?;
+        let placed = TabulatedLeg {
+            leg,
+            mirrored: canonical.mirrored,
+        };
+        let free = placed.beginning_at(&self.places.waypoint(from).attitude);
+        if free.duration().is_none() || is_clear(with_cones, &free.profile) {
+            return None;
+        }
+        let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
+        Some(CanonicalLeg::around_cones(self.places, &from, &to))
     }
 
     /// A table of [`Self::certified_legs`].

@@ -6,6 +6,7 @@ use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
+use crate::model::cone::{Applies, Cone};
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::AttitudeEquivalence;
@@ -17,8 +18,10 @@ use nalgebra::{DVector, Vector3};
 pub(super) struct Places<'a> {
     /// The scenario.
     pub(super) scenario: &'a Scenario,
-    /// Its dynamics.
+    /// Its dynamics, without cones.
     pub(super) dynamics: Dynamics,
+    /// The same with the cones that hold along the whole flight.
+    pub(super) with_cones: Dynamics,
     /// Which quaternion signs count as arrived.
     pub(super) arrival: Arrival,
     /// Null-space momentum of the wheels at the start, N m s; rest-to-rest legs hold it at both
@@ -37,6 +40,8 @@ impl<'a> Places<'a> {
         let start = scenario.start();
         let authority = Authority::of(scenario.options());
         let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
+        let enforced = scenario.cones().iter();
+        let enforced = enforced.filter(|cone| cone.applies == Applies::Always);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
         Self {
@@ -49,6 +54,7 @@ impl<'a> Places<'a> {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,
                 AttitudeEquivalence::Quaternion => Arrival::Quaternion,
             },
+            with_cones: dynamics.with_cones(enforced.map(Cone::forbidden).collect()),
             dynamics,
             scenario,
         }

@@ -15,6 +15,7 @@ use super::solved_segments::SolvedSegments;
 use super::tables::{CertifiedTable, SolvedTable};
 use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
+use crate::leg::solve::around_cones::is_clear;
 use crate::model::order_rules::OrderRules;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
@@ -277,8 +278,13 @@ impl<'a> Tours<'a> {
                 best = solution;
             }
         }
+        let with_cones = &self.places.with_cones;
+        let mut dynamics = &self.places.dynamics;
+        if !is_clear(with_cones, &best.profile) && !best.status.is_interrupted() {
+            best = self.solve_from(route, InitialGuess::AroundCones);
+            dynamics = with_cones;
+        }
         if self.places.resolution.polished {
-            let dynamics = &self.places.dynamics;
             let intervals = best.intervals.clone();
             let waypoints = self.signed_waypoints(route, &best.profile, &intervals);
             best = polish(dynamics, &waypoints, &intervals, best, &|| {
@@ -293,12 +299,17 @@ impl<'a> Tours<'a> {
             return LegSolution::nowhere();
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
-        let dynamics = &self.places.dynamics;
+        let dynamics = match kind {
+            InitialGuess::AroundCones | InitialGuess::AtRest => &self.places.with_cones,
+            _ => &self.places.dynamics,
+        };
         let waypoints = self.signed_waypoints(route, &guess, &intervals);
         let solve = match kind {
             InitialGuess::Shorter => solve_extended,
             InitialGuess::Eigenaxes => solve_rolling,
-            InitialGuess::Extremals | InitialGuess::AtRest => solve_through,
+            InitialGuess::Extremals | InitialGuess::AroundCones | InitialGuess::AtRest => {
+                solve_through
+            }
         };
         let solution = solve(dynamics, &waypoints, &intervals, &guess, &|| {
             self.stop.reason()

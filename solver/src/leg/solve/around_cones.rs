@@ -1,0 +1,118 @@
+//! Legs whose fastest motion would enter cones: starting guesses on either side of them.
+//!
+//! The leg is solved without cones first. Where that motion is clear, it is the leg. Otherwise its
+//! path, and the one the long way round, are pushed out of the cones that they enter to either side
+//! of each ([`crate::leg::detour`]), and the program with cones is solved from there; the best
+//! solution counts.
+
+use super::arrival::Arrival;
+use super::eigenaxis::Perturbation;
+use super::{LegOutcome, LegProblem};
+use crate::leg::detour::guess::along;
+use crate::leg::detour::{AttitudePath, Side};
+use crate::leg::multiphase::{LegSolution, attitudes_inside, solve_through};
+use crate::leg::profile::Profile;
+use crate::model::dynamics::Dynamics;
+use crate::model::waypoint::Waypoint;
+use crate::run::stop::StopReason;
+
+/// Entered cones whose sides are tried in all combinations; others are passed on the shorter side.
+const MAX_BOTH_SIDES: usize = 2;
+/// Depth, rad, up to which a motion is clear.
+const CLEAR: f64 = crate::leg::multiphase::CONE_TOLERANCE;
+/// Relative excess over the motion without cones at which no other guess is tried.
+const NEAR_FREE: f64 = 1e-3;
+
+/// Solves a leg with cones.
+pub(super) fn solve_with_cones(
+    leg: &LegProblem<'_>,
+    bound: Option<f64>,
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> LegOutcome {
+    let without = leg.dynamics.with_cones(Vec::new());
+    let free_leg = LegProblem {
+        dynamics: &without,
+        ..*leg
+    };
+    let free = super::solve(&free_leg, bound, stop);
+    if is_clear(leg.dynamics, &free.solution.profile) || free.solution.status.is_interrupted() {
+        return free;
+    }
+    let mut best = LegSolution::nowhere();
+    let mut solves = free.solves;
+    let least = free.solution.duration();
+    for path in paths(&free_leg, leg.dynamics, &free.solution) {
+        let guess = along(leg.dynamics, &path, leg.null, leg.intervals());
+        let waypoints = leg.waypoints(&guess);
+        let solution = solve_through(leg.dynamics, &waypoints, &[guess.intervals()], &guess, stop);
+        solves += 1;
+        let interrupted = solution.status.is_interrupted();
+        if solution.improves(&best) || best.profile.intervals() == 0 {
+            best = solution;
+        }
+        let near = |(duration, least): (f64, f64)| duration <= (1.0 + NEAR_FREE) * least;
+        if interrupted || best.duration().zip(least).is_some_and(near) {
+            break;
+        }
+    }
+    LegOutcome {
+        solution: best,
+        solves,
+    }
+}
+
+/// Whether a motion stays out of all cones, between its nodes too.
+pub(crate) fn is_clear(dynamics: &Dynamics, profile: &Profile) -> bool {
+    let path = path_of(dynamics, profile);
+    path.depth(&dynamics.cones) <= CLEAR
+}
+
+/// The attitudes of a motion, between its nodes too.
+pub(crate) fn path_of(dynamics: &Dynamics, profile: &Profile) -> AttitudePath {
+    let inside = (0..profile.intervals()).flat_map(|k| attitudes_inside(dynamics, profile, k));
+    AttitudePath::through(profile.attitudes.first().copied().into_iter().chain(inside))
+}
+
+/// Clear paths of a leg, the more promising ones first.
+fn paths(free_leg: &LegProblem<'_>, dynamics: &Dynamics, free: &LegSolution) -> Vec<AttitudePath> {
+    let mut sources = Vec::new();
+    if free.duration().is_some() {
+        sources.push(path_of(dynamics, &free.profile));
+    } else {
+        let direct = free_leg.perturbed_eigenaxis(Perturbation::Far);
+        sources.push(AttitudePath::through(direct.attitudes));
+    }
+    if free_leg.arrival == Arrival::Rotation {
+        let near = &free_leg.from.attitude;
+        let short = free_leg.arrival.signed(&free_leg.to.attitude, near);
+        let there = Waypoint {
+            attitude: short.negated(),
+            ..free_leg.to.clone()
+        };
+        let long = LegProblem {
+            to: &there,
+            arrival: Arrival::Quaternion,
+            ..*free_leg
+        };
+        let long = long.perturbed_eigenaxis(Perturbation::Far);
+        sources.push(AttitudePath::through(long.attitudes));
+    }
+    let cones = &dynamics.cones;
+    let mut paths = Vec::new();
+    for source in sources {
+        let entered: Vec<usize> = (0..cones.len())
+            .filter(|i| source.depth_in(&cones[*i]) > 0.0)
+            .take(MAX_BOTH_SIDES)
+            .collect();
+        for choice in 0..1 << entered.len() {
+            let mut sides = vec![Side::Shorter; cones.len()];
+            for (bit, cone) in entered.iter().enumerate() {
+                if choice >> bit & 1 == 1 {
+                    sides[*cone] = Side::Longer;
+                }
+            }
+            paths.extend(source.pushed_out(cones, &sides));
+        }
+    }
+    paths
+}

@@ -27,6 +27,10 @@ use passes::{POLISHING, Pass, from_a_guess};
 pub(crate) use rolling::solve_rolling;
 pub(crate) use solution::LegSolution;
 
+/// Ratio of a rough duration to that of a converged motion above which its refinement will not be
+/// faster.
+const MAX_ROUGH: f64 = 1.05;
+
 /// Limit of the rounds of the proximal point method, and the relative gain that ends it.
 const POLISH_ROUNDS: usize = 6;
 const POLISHED: f64 = 1e-8;
@@ -66,6 +70,28 @@ pub(crate) fn solve_through(
     stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(from_a_guess(dynamics), stop)
+}
+
+/// The same unless the rough motion after the first pass takes much longer than one that is known,
+/// s: then that motion, not converged.
+pub(crate) fn solve_faster(
+    dynamics: &Dynamics,
+    waypoints: &[Waypoint],
+    (intervals, guess): (&[usize], &Profile),
+    known: Option<f64>,
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> LegSolution {
+    let mut solve = MultiphaseSolve::new(dynamics, waypoints, intervals, guess);
+    let passes = from_a_guess(dynamics);
+    if !solve.run_passes(&passes[..1], stop) {
+        return solve.solution;
+    }
+    let rough = solve.solution.profile.duration();
+    if known.is_some_and(|known| rough > MAX_ROUGH * known) {
+        solve.solution.status = NlpStatus::IterationLimit;
+        return solve.solution;
+    }
+    solve.run(&passes[1..], stop)
 }
 
 /// Frees a solution of the penalty on uneven interval lengths and solves it more exactly.

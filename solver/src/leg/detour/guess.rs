@@ -73,6 +73,20 @@ pub(crate) fn longest_intervals(dynamics: &Dynamics, profile: &Profile) -> Vec<f
     longest
 }
 
+/// Duration, s, of a motion along a path at the mean pace of all directions in which it turns: what
+/// its fastest neighbour takes, roughly.
+pub(crate) fn expected_duration(dynamics: &Dynamics, path: &AttitudePath) -> f64 {
+    let track = Track::of(path);
+    let (mut slowness, mut length) = ([0.0; 2], 0.0);
+    for turn in track.turns.iter().filter(|turn| turn.norm() > 0.0) {
+        let (angle, axis) = (turn.norm(), turn.normalize());
+        slowness[0] += angle / dynamics.axis_acceleration(&axis);
+        slowness[1] += angle / dynamics.axis_rate(&axis);
+        length += angle;
+    }
+    BangCoastBang::fastest(length, length / slowness[0], length / slowness[1]).duration()
+}
+
 fn is_near(dynamics: &Dynamics, attitude: &Attitude) -> bool {
     dynamics
         .cones

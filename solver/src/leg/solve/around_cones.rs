@@ -8,9 +8,9 @@
 use super::arrival::Arrival;
 use super::eigenaxis::Perturbation;
 use super::{LegOutcome, LegProblem};
-use crate::leg::detour::guess::along;
+use crate::leg::detour::guess::{along, expected_duration};
 use crate::leg::detour::{AttitudePath, Side};
-use crate::leg::multiphase::{LegSolution, attitudes_inside, solve_through};
+use crate::leg::multiphase::{LegSolution, attitudes_inside, solve_faster};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
@@ -20,6 +20,9 @@ use crate::run::stop::StopReason;
 const MAX_BOTH_SIDES: usize = 2;
 /// Depth, rad, up to which a motion is clear.
 const CLEAR: f64 = crate::leg::multiphase::CONE_TOLERANCE;
+/// Expected duration, relative to the least, up to which a path is tried: on 60 random slews the best
+/// path of all was within 1.3.
+const MAX_EXPECTED: f64 = 1.4;
 /// Relative excess over the motion without cones at which no other guess is tried.
 const NEAR_FREE: f64 = 1e-3;
 
@@ -41,10 +44,11 @@ pub(super) fn solve_with_cones(
     let mut best = LegSolution::nowhere();
     let mut solves = free.solves;
     let least = free.solution.duration();
-    for path in paths(&free_leg, leg.dynamics, &free.solution) {
+    for path in promising(leg.dynamics, paths(&free_leg, leg.dynamics, &free.solution)) {
         let guess = along(leg.dynamics, &path, leg.null, leg.intervals());
-        let waypoints = leg.waypoints(&guess);
-        let solution = solve_through(leg.dynamics, &waypoints, &[guess.intervals()], &guess, stop);
+        let (waypoints, intervals) = (leg.waypoints(&guess), [guess.intervals()]);
+        let most = best.duration();
+        let solution = solve_faster(leg.dynamics, &waypoints, (&intervals, &guess), most, stop);
         solves += 1;
         let interrupted = solution.status.is_interrupted();
         if solution.improves(&best) || best.profile.intervals() == 0 {
@@ -59,6 +63,20 @@ pub(super) fn solve_with_cones(
         solution: best,
         solves,
     }
+}
+
+/// The paths that are not expected to take much longer than the fastest, that one first.
+fn promising(dynamics: &Dynamics, paths: Vec<AttitudePath>) -> impl Iterator<Item = AttitudePath> {
+    let expected = paths
+        .into_iter()
+        .map(|path| (expected_duration(dynamics, &path), path));
+    let mut expected: Vec<_> = expected.collect();
+    expected.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let least = expected.first().map_or(0.0, |(duration, _)| *duration);
+    let near = expected
+        .into_iter()
+        .take_while(move |(duration, _)| *duration <= MAX_EXPECTED * least);
+    near.map(|(_, path)| path)
 }
 
 /// Whether a motion stays out of all cones, between its nodes too.

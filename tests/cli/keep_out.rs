@@ -3,13 +3,14 @@
 use crate::run::{Ended, fixture_json, slewplan, slewplan_fed};
 use serde_json::Value;
 
-/// Two targets, and a cone about where the camera looks at the second one.
+/// Two targets, and a cone about where the camera looks at the second one; it is only reported.
 fn violating() -> Value {
     let mut scenario = fixture_json("two-targets.json");
     let (roll, yaw) = (25.0_f64.to_radians(), 50.0_f64.to_radians());
     let towards = [roll.sin() * yaw.sin(), -roll.sin() * yaw.cos(), roll.cos()];
     scenario["keep_out"][0]["direction"] = towards.to_vec().into();
     scenario["keep_out"][0]["half_angle_deg"] = 5.into();
+    scenario["keep_out"][0]["applies"] = "report".into();
     scenario
 }
 

@@ -69,7 +69,8 @@ async function violatedKeepOut({ browser, service, must }) {
       const reds = Array.from({ length: canvas.height }, (_, y) => column.slice(4 * y, 4 * y + 3).join());
       return reds.filter((pixel) => pixel === "196,72,60").length;
     }), begin);
-    check(colours.length === 3 && colours.every((count) => count >= 3), colours.join());
+    // Rates, speeds, torques and clearance.
+    check(colours.length === 4 && colours.every((count) => count >= 3), colours.join());
     await page.locator("summary", { hasText: "Phases as a table" }).click();
     await page.getByRole("region", { name: "Phases of the flight" }).getByText("camera inside /keep_out/0").waitFor();
   });

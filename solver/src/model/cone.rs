@@ -1,7 +1,7 @@
 //! Cones that bound where boresights point.
 
 use super::attitude::Attitude;
-use super::input::input_choice;
+pub use super::spec::Applies;
 use nalgebra::Vector3;
 
 /// On which side of its cone a boresight has to stay.
@@ -11,18 +11,6 @@ pub enum Side {
     Out,
     /// Inside, as a solar panel's normal.
     In,
-}
-
-input_choice! {
-    /// When a cone is enforced.
-    pub enum Applies as "ConeApplies" {
-        /// Along the whole flight.
-        Always = "always",
-        /// From arrival to departure at targets.
-        AtTargets = "at_targets",
-        /// Never: intrusions are reported.
-        Report = "report",
-    }
 }
 
 impl Side {

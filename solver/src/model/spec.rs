@@ -11,7 +11,7 @@ mod labels;
 mod spacecraft;
 
 pub use attitude::{AttitudeSpec, BoresightChoice, PairSpec};
-pub use cones::{CelestialBody, ConeSpec, DirectionSpec};
+pub use cones::{Applies, CelestialBody, ConeSpec, DirectionSpec};
 pub use labels::{ReferenceFrame, TimeSystem};
 pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
 

@@ -169,7 +169,7 @@ pub(crate) struct MarginsDocument {
 /// The closest approach of a boresight to the surface of a cone.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = ConeClearance)]
-struct ClearanceDocument {
+pub(crate) struct ClearanceDocument {
     boresight: String,
     /// JSON pointer of the cone in the scenario, such as `/keep_out/0`.
     cone: String,

@@ -67,6 +67,11 @@ fn the_scenario_adds_limits_and_the_cones_of_the_boresight() {
     // 0.6 rad/s and 0.5 N m.
     assert!(picture.contains("limit \u{b1}34.377") && picture.contains("limit \u{b1}500"));
     assert!(picture.contains(">no limit<"));
+    assert!(picture.contains("Clearance of cones, deg</text>"));
+    assert!(
+        picture.contains(">camera /keep_out/0</text>") && picture.contains(">at least 0</text>")
+    );
+    assert!(!drawn(None, None).contains("Clearance of cones"));
     // The cones of other boresights are not drawn.
     assert!(!drawn(Some(&scenario), Some("x2")).contains("by cones"));
     assert!(!drawn(Some(&scenario), Some("-z")).contains("by cones"));

@@ -1,6 +1,5 @@
 //! Cones that bound where boresights point, as a caller writes them.
 
-use crate::model::cone::Applies;
 use crate::model::input::{
     InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_choice, input_object, or,
     required, required_or,
@@ -18,6 +17,18 @@ input_object! {
         pub half_angle_deg: f64 = required_or(1.0).above(0.0).below(180.0),
         /// When the cone is enforced; `always` without it.
         pub applies: Applies = or(Applies::Always),
+    }
+}
+
+input_choice! {
+    /// When a cone is enforced.
+    pub enum Applies as "ConeApplies" {
+        /// Along the whole flight.
+        Always = "always",
+        /// From arrival to departure at targets.
+        AtTargets = "at_targets",
+        /// Never: intrusions are reported.
+        Report = "report",
     }
 }
 

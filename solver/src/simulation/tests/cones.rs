@@ -73,7 +73,8 @@ fn a_flight_tells_how_close_boresights_came() {
         // The end, which no sample has, may be closer still.
         let at_end = found.time_s >= 20.0;
         assert!(
-            (found.clearance_deg - clearance_deg).abs() < 1e-6 && found.time_s == time_s
+            (found.clearance_deg - clearance_deg).abs() < 1e-6
+                && (found.time_s - time_s).abs() < 1e-9
                 || at_end && found.clearance_deg <= clearance_deg,
             "{found:?}: {clearance_deg} at {time_s}"
         );

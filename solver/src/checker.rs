@@ -8,10 +8,10 @@
 //! A flight may be of any origin. Everything wrong with it is reported as a sentence in
 //! [`Verification::failures`], never by a panic.
 
+mod cones;
 mod dynamics;
 mod extremum;
 mod integrator;
-mod keep_out;
 mod leg;
 mod limits;
 mod number_format;
@@ -23,21 +23,23 @@ mod series;
 mod timeline;
 mod visits;
 
+pub(crate) use cones::ForbiddenCone;
 pub(crate) use leg::{LegEnd, leg_faults};
 pub use propagated::PropagatedMotion;
 pub(crate) use ramped::{StepPart, TorqueRamp, propagate_ramps};
 
 use crate::model::attitude::Attitude;
-use crate::model::plan::{Flight, Margins, State, Verification};
+use crate::model::cone::Cone;
+use crate::model::plan::{ConeClearance, Flight, Margins, State, Verification};
 use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 pub use crate::model::tolerances::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE,
     REST_TORQUE_TOLERANCE, TIME_TOLERANCE,
 };
+use cones::ConeObservers;
 use dynamics::{Body, Snapshot};
 use integrator::{Integration, STEP_TOLERANCE, TorqueSpan};
-use keep_out::ConeObserver;
 use limits::{LimitObserver, excess, margin};
 use samples::Sampler;
 use visits::{Misses, Visit};
@@ -69,8 +71,8 @@ pub struct CheckReport {
     /// departure, and evenly in between so that no gap exceeds a 500th of the flight or a 20th of
     /// a leg. The sign of the quaternion is continuous from the start's.
     pub states: Vec<State>,
-    /// Keep-out violations, with time and depth: one warning per cone. The margins have them one by
-    /// one.
+    /// Violations of cones that are only reported, with time and depth: one warning per cone. The
+    /// margins have them one by one.
     pub keep_out: Vec<Problem>,
     /// Largest relative error of a prescribed final wheel speed; `None` when none is prescribed.
     pub end_wheel_speed_error: Option<f64>,
@@ -103,7 +105,8 @@ pub fn verify(scenario: &Scenario, flight: &Flight) -> CheckReport {
     let (torque_usage, torque_failures) = limits::torque(scenario, flight);
     failures.extend(torque_failures);
     failures.extend(visits::driven_rests(scenario, &visits, &intervals));
-    let mut observed = FlightObserver::new(scenario);
+    let stays = cones::stays(&visits);
+    let mut observed = FlightObserver::new(scenario, &stays);
     match observed.integrate(&body, &intervals, &visits, flight.total_time_s) {
         Ok(integration) => {
             let misses = visits::inspect(scenario, &visits, &observed.states);
@@ -124,17 +127,15 @@ struct FlightObserver<'a> {
     start: Snapshot,
     states: Vec<Snapshot>,
     limits: LimitObserver<'a>,
-    observers: Vec<ConeObserver<'a>>,
+    cones: ConeObservers<'a>,
 }
 
 impl<'a> FlightObserver<'a> {
-    fn new(scenario: &'a Scenario) -> Self {
+    /// `stays` are those at targets.
+    fn new(scenario: &'a Scenario, stays: &'a [[f64; 2]]) -> Self {
         let start = Snapshot::at_start(scenario);
-        let observers = scenario.cones().iter().enumerate();
         Self {
-            observers: observers
-                .map(|(index, cone)| ConeObserver::new(index, cone, &start.quaternion))
-                .collect(),
+            cones: ConeObservers::new(scenario.cones(), stays, &start.quaternion),
             limits: LimitObserver::new(scenario),
             states: Vec::new(),
             start,
@@ -150,7 +151,7 @@ impl<'a> FlightObserver<'a> {
     ) -> Result<Integration, String> {
         let times = samples::times(intervals, visits, total_s);
         let mut sampler = Sampler::new(&times, &self.start);
-        let (limits, observers) = (&mut self.limits, &mut self.observers);
+        let (limits, cones) = (&mut self.limits, &mut self.cones);
         let integration = integrator::integrate(
             body,
             self.start.clone(),
@@ -159,9 +160,7 @@ impl<'a> FlightObserver<'a> {
             |step| {
                 sampler.observe(step);
                 limits.observe(step);
-                for observer in observers.iter_mut() {
-                    observer.observe(step);
-                }
+                cones.observe(step);
             },
         );
         self.states = sampler.states;
@@ -177,6 +176,8 @@ impl<'a> FlightObserver<'a> {
         mut failures: Vec<String>,
     ) -> CheckReport {
         failures.extend(self.limits.failures());
+        let cones = self.cones.finish();
+        failures.extend(cones.failures);
         if integration.momentum_drift > MOMENTUM_TOLERANCE {
             failures.push(format!(
                 "the integration lost momentum ({} of it), so that its results are invalid",
@@ -185,27 +186,14 @@ impl<'a> FlightObserver<'a> {
         }
         let options = scenario.options();
         let (wheel_usage, rate_usage) = (self.limits.wheel_usage(), self.limits.rate_usage());
-        let keep_out: Vec<Problem> = self
-            .observers
-            .iter_mut()
-            .filter_map(ConeObserver::finish)
-            .collect();
-        let clearances = self
-            .observers
-            .iter()
-            .map(|observer| observer.clearance.to_degrees());
         CheckReport {
             margins: Margins {
                 torque: margin(torque_usage, options.torque_authority),
                 wheel_speed: wheel_usage.map(|usage| margin(usage, options.momentum_authority)),
                 body_rate: rate_usage.map(|usage| margin(usage, 1.0)),
                 wheel_zero_crossings: self.limits.zero_crossings(),
-                keep_out_clearance_deg: clearances.collect(),
-                keep_out_intrusions: self
-                    .observers
-                    .iter()
-                    .flat_map(|observer| observer.intrusions.iter().copied())
-                    .collect(),
+                keep_out_clearance_deg: cones.clearances,
+                keep_out_intrusions: cones.intrusions,
             },
             verification: Verification {
                 passed: failures.is_empty(),
@@ -218,7 +206,7 @@ impl<'a> FlightObserver<'a> {
                 failures,
             },
             states: self.states.iter().filter_map(state).collect(),
-            keep_out,
+            keep_out: cones.warnings,
             end_wheel_speed_error: misses.end_speed,
             momentum_drift: integration.momentum_drift,
             steps: integration.steps,
@@ -229,6 +217,13 @@ impl<'a> FlightObserver<'a> {
 impl CheckReport {
     /// The report of a flight that cannot be propagated: the worst value of every number.
     fn not_propagated(scenario: &Scenario, failures: Vec<String>) -> Self {
+        let unknown = |cone: &Cone| ConeClearance {
+            boresight: cone.boresight.clone(),
+            cone: cone.pointer(),
+            direction: cone.direction,
+            clearance_deg: -NOT_COMPUTED,
+            time_s: 0.0,
+        };
         Self {
             verification: Verification {
                 passed: false,
@@ -245,7 +240,7 @@ impl CheckReport {
                 wheel_speed: Some(-NOT_COMPUTED),
                 body_rate: Some(-NOT_COMPUTED),
                 wheel_zero_crossings: Vec::new(),
-                keep_out_clearance_deg: vec![-NOT_COMPUTED; scenario.cones().len()],
+                keep_out_clearance_deg: scenario.cones().iter().map(unknown).collect(),
                 keep_out_intrusions: Vec::new(),
             },
             states: Vec::new(),

@@ -19,6 +19,7 @@ pub mod scenario;
 pub mod spacecraft;
 pub mod spec;
 pub mod spelling;
+pub(crate) mod sun;
 pub mod tolerances;
 pub(crate) mod waypoint;
 pub(crate) mod wheel_axes;

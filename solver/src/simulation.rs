@@ -17,6 +17,7 @@
 
 mod allocation;
 mod closed_loop;
+mod cones;
 mod controller;
 mod draws;
 mod gains;

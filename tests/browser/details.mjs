@@ -24,6 +24,7 @@ function violating() {
   scenario.name = "into-the-cone";
   scenario.keep_out[0].direction = [Math.sin(roll) * Math.sin(yaw), -Math.sin(roll) * Math.cos(yaw), Math.cos(roll)];
   scenario.keep_out[0].half_angle_deg = 5;
+  scenario.keep_out[0].applies = "report";
   return scenario;
 }
 
@@ -68,9 +69,10 @@ async function violatedKeepOut({ browser, service, must }) {
       const reds = Array.from({ length: canvas.height }, (_, y) => column.slice(4 * y, 4 * y + 3).join());
       return reds.filter((pixel) => pixel === "196,72,60").length;
     }), begin);
-    check(colours.length === 3 && colours.every((count) => count >= 3), colours.join());
+    // Rates, speeds, torques and clearance.
+    check(colours.length === 4 && colours.every((count) => count >= 3), colours.join());
     await page.locator("summary", { hasText: "Phases as a table" }).click();
-    await page.getByRole("region", { name: "Phases of the flight" }).getByText("camera inside cone 0").waitFor();
+    await page.getByRole("region", { name: "Phases of the flight" }).getByText("camera inside /keep_out/0").waitFor();
   });
   await must("a check names the target that is inside", async () => {
     await page.goto(`${service.address}/#/new`);

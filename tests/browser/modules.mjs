@@ -37,6 +37,24 @@ export async function modules({ browser, service, must }) {
     });
     check(errors.every((error) => error < 1e-12), String(errors));
   });
+  await must("clearances are angles to what cones exclude", async () => {
+    const found = await inPage(async (folder) => {
+      const { clearanceCurves, excludedBy } = await import(`${folder}/app/plan/keep-out.js`);
+      const cone = (direction) => ({ boresight: "camera", direction, half_angle_deg: 30 });
+      const scenario = {
+        spacecraft: { boresights: [{ name: "camera", axis: [2, 0, 0] }] },
+        keep_out: [cone([0, 3, 0]), cone({ ra_dec_deg: [180, 0] })], keep_in: [cone({ body: "sun" })],
+      };
+      const known = { boresight: "camera", cone: "/keep_in/0", direction: [0, 0, 1] };
+      const plan = { margins: { keep_out_clearance_deg: [known] } };
+      const about = (angle) => [0, 0, Math.sin(angle / 2), Math.cos(angle / 2)];
+      const curves = clearanceCurves(excludedBy(scenario, plan), scenario, [about(0), about(Math.PI / 3)]);
+      return [curves.map(({ name, values }) => [name, ...values.map(Math.round)].join(" ")), excludedBy(scenario).length];
+    });
+    // Nearest first; where the Sun is, only a plan tells.
+    const expected = [["camera /keep_in/0 -60 -60", "camera /keep_out/0 60 0", "camera /keep_out/1 150 90"], 2];
+    check(JSON.stringify(found) === JSON.stringify(expected), JSON.stringify(found));
+  });
   await must("pointers lead to their place in a text", async () => {
     const found = await inPage(async (folder) => {
       const { locate } = await import(`${folder}/app/pointer.js`);

@@ -315,6 +315,48 @@ fn duplicate_and_unknown_names_are_refused() {
 }
 
 #[test]
+fn directions_have_one_form_of_three() {
+    let place = "/keep_out/0/direction";
+    let cases = [
+        (json!(5), "", "wrong_type"),
+        (json!({}), "", "wrong_type"),
+        (json!([1, 0]), "", "wrong_length"),
+        (
+            json!({"ra_dec_deg": [1, 2, 3]}),
+            "/ra_dec_deg",
+            "wrong_length",
+        ),
+        (
+            json!({"ra_dec_deg": [1, -91]}),
+            "/ra_dec_deg/1",
+            "out_of_range",
+        ),
+        (json!({"body": "moon"}), "/body", "unknown_choice"),
+        (
+            json!({"body": "sun", "ra_dec_deg": [1, 2]}),
+            "",
+            "conflicting_fields",
+        ),
+        (json!({"body": "sun"}), "", "epoch_required"),
+    ];
+    for (direction, below, code) in cases {
+        expect_refused(
+            &with(&[(place, direction)]),
+            &[(&format!("{place}{below}"), code)],
+        );
+    }
+    // An epoch that cannot be read is one, and the only thing that is wrong.
+    expect_refused(
+        &with(&[("/epoch", json!(5)), (place, json!({"body": "sun"}))]),
+        &[("/epoch", "wrong_type")],
+    );
+    expect_refused(
+        &with(&[("/keep_out/0/applies", json!("never"))]),
+        &[("/keep_out/0/applies", "unknown_choice")],
+    );
+}
+
+#[test]
 fn contradictory_positions_and_precedences_are_refused() {
     for place in [json!(0), json!(3), json!(u64::MAX)] {
         let place = ("/targets/1/position", place);

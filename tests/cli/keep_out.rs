@@ -3,13 +3,14 @@
 use crate::run::{Ended, fixture_json, slewplan, slewplan_fed};
 use serde_json::Value;
 
-/// Two targets, and a cone about where the camera looks at the second one.
+/// Two targets, and a cone about where the camera looks at the second one; it is only reported.
 fn violating() -> Value {
     let mut scenario = fixture_json("two-targets.json");
     let (roll, yaw) = (25.0_f64.to_radians(), 50.0_f64.to_radians());
     let towards = [roll.sin() * yaw.sin(), -roll.sin() * yaw.cos(), roll.cos()];
     scenario["keep_out"][0]["direction"] = towards.to_vec().into();
     scenario["keep_out"][0]["half_angle_deg"] = 5.into();
+    scenario["keep_out"][0]["applies"] = "report".into();
     scenario
 }
 
@@ -31,6 +32,80 @@ fn a_target_inside_a_cone_is_named_by_validate() {
     let message = warning["message"].as_str().expect("a text");
     assert!(message.starts_with("target \"b\" points boresight 'camera' 5.000 degrees into"));
     assert_eq!(found["warnings"].as_array().map(Vec::len), Some(1));
+}
+
+/// The same with the cone enforced.
+fn enforced(applies: &str) -> Value {
+    let mut scenario = violating();
+    scenario["keep_out"][0]["applies"] = applies.into();
+    scenario
+}
+
+#[test]
+fn a_target_inside_an_enforced_cone_is_infeasible() {
+    for applies in ["always", "at_targets"] {
+        let scenario = enforced(applies);
+        let line = ["validate", "-", "--format", "json"];
+        let found = slewplan_fed(&line, scenario.to_string().as_bytes());
+        let found = found.expect_code(2).json();
+        let error = &found["errors"][0];
+        assert_eq!(error["pointer"], "/targets/1");
+        assert_eq!(error["code"], "attitude_violates_cone");
+        let message = error["message"].as_str().expect("a text");
+        assert!(message.contains("boresight 'camera'"), "{message}");
+        assert!(message.contains("/keep_out/0"), "{message}");
+        assert_eq!(found["warnings"], serde_json::json!([]));
+        let plan = solve(&scenario, &[]).expect_code(3).json();
+        assert_eq!(plan["status"], "infeasible");
+        assert_eq!(plan["reasons"][0]["code"], "attitude_violates_cone");
+    }
+    let mut panel = violating();
+    panel["keep_in"] = panel["keep_out"].take();
+    panel["keep_out"] = serde_json::json!([]);
+    panel["keep_in"][0]["applies"] = "at_targets".into();
+    let plan = solve(&panel, &[]).expect_code(3).json();
+    assert_eq!(plan["reasons"][0]["pointer"], "/targets/0");
+}
+
+#[test]
+fn a_plan_that_enters_an_enforced_cone_is_not_passed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (given, plan) = (path("scenario.json"), path("plan.json"));
+    solve(&violating(), &["-o", &plan]).expect_code(0);
+    for (applies, place) in [("always", ""), ("at_targets", " at targets")] {
+        std::fs::write(&given, enforced(applies).to_string()).expect("written");
+        let found = slewplan(&["verify", &given, &plan]).expect_code(3).json();
+        assert_eq!(found["passed"], false);
+        assert_eq!(found["warnings"], serde_json::json!([]));
+        let failures = found["failures"].as_array().expect("a list");
+        assert_eq!(failures.len(), 1, "{failures:?}");
+        let expected = format!(
+            "/keep_out/0: boresight 'camera' is inside the keep-out cone of 5 degrees{place} by up \
+             to 5 degrees: "
+        );
+        let failure = failures[0].as_str().expect("a text");
+        assert!(failure.starts_with(&expected), "{failure}");
+        let text = slewplan(&["verify", &given, &plan, "--summary"]).expect_code(3);
+        assert!(text.stdout.contains("NOT PASSED"), "{text:?}");
+    }
+}
+
+#[test]
+fn a_reported_sun_is_where_the_epoch_says() {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["epoch"] = "2026-03-20T14:46:00Z".into();
+    scenario["keep_out"][0]["direction"] = serde_json::json!({"body": "sun"});
+    scenario["keep_out"][0]["applies"] = "report".into();
+    let plan = solve(&scenario, &[]).expect_code(0).json();
+    let nearest = &plan["margins"]["keep_out_clearance_deg"][0];
+    assert_eq!(nearest["boresight"], "camera");
+    assert_eq!(nearest["cone"], "/keep_out/0");
+    assert!(nearest["clearance_deg"].as_f64().expect("a number") > 0.0);
+    let time = nearest["time_s"].as_f64().expect("a number");
+    assert!(time >= 0.0 && time <= plan["total_time_s"].as_f64().expect("a number"));
+    // Equinox.
+    assert!(nearest["direction"][0].as_f64().expect("a number") > 0.9999);
 }
 
 #[test]

@@ -14,7 +14,7 @@ fn a_plan_is_drawn_with_and_without_its_scenario() {
     let line = ["plot", "-", "--scenario", &scenario];
     let whole = slewplan_fed(&line, plan.as_bytes()).expect_code(0).stdout;
     assert!(whole.contains("two-targets") && whole.contains("Where camera points"));
-    assert!(whole.contains("red: keep-out") && whole.contains("limit \u{b1}710"));
+    assert!(whole.contains("red: excluded by cones") && whole.contains("limit \u{b1}710"));
 }
 
 #[test]

@@ -1,13 +1,13 @@
 // What the plots draw: a motion together with the limits that were asked for.
 
-import { alarmsOf } from "./plan/keep-out.js";
+import { alarmsOf, clearanceCurves, excludedBy } from "./plan/keep-out.js";
 import { quaternion, slerp } from "./rotation.js";
 
 /** The flight of a plan; null when the plan has no trajectory. */
 export function flightOf(plan, scenario) {
   const { states, controls } = plan.trajectory ?? {};
   if (!states?.length) return null;
-  const moved = motion(states, scenario);
+  const moved = motion(states, scenario, plan);
   const wheels = scenario.spacecraft.wheels;
   const inForce = torques(moved.times, controls, wheels.length);
   return {
@@ -16,14 +16,15 @@ export function flightOf(plan, scenario) {
     torques: { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true },
     phases: phases(plan, scenario),
     stops: stops(plan),
-    alarms: alarmsOf(plan, scenario),
+    alarms: alarmsOf(plan),
   };
 }
 
-/** What every motion has, from sampled states and what was asked for: curves with their limits. */
-export function motion(states, asked) {
+/** What every motion has, from sampled states and what was asked for, and perhaps a plan: curves with their limits. */
+export function motion(states, asked, plan) {
   const times = states.map((state) => state.time_s);
   const attitudes = states.map((state) => quaternion(state.quaternion));
+  const excluded = excludedBy(asked, plan);
   return {
     scenario: asked,
     total: times.at(-1),
@@ -35,6 +36,8 @@ export function motion(states, asked) {
     phases: [],
     stops: [],
     alarms: [],
+    excluded,
+    clearances: clearanceCurves(excluded, asked, attitudes),
     attitudeAt: (time) => attitudeAt(times, attitudes, time),
   };
 }

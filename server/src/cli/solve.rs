@@ -37,7 +37,7 @@ pub(super) struct SolveArguments {
     /// Print a summary as text, as on a terminal
     #[arg(long)]
     summary: bool,
-    /// Exit with 5 when the plan violates a keep-out cone; the plan is written all the same
+    /// Exit with 5 when the plan violates a cone that is only reported; it is written all the same
     #[arg(long)]
     strict: bool,
     #[command(flatten)]

@@ -18,7 +18,7 @@ pub(super) struct VerifyArguments {
     /// Print text instead of JSON, as on a terminal
     #[arg(long)]
     summary: bool,
-    /// Exit with 5 when a plan that passes violates a keep-out cone
+    /// Exit with 5 when a plan that passes violates a cone that is only reported
     #[arg(long)]
     strict: bool,
 }

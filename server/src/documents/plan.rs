@@ -13,7 +13,8 @@ mod statistics;
 
 pub(crate) use interruption::Interruption;
 pub(crate) use parts::{
-    ControlDocument, MarginsDocument, QuaternionDocument, StateDocument, VerificationDocument,
+    ClearanceDocument, ControlDocument, MarginsDocument, QuaternionDocument, StateDocument,
+    VerificationDocument,
 };
 use parts::{LegDocument, PassageDocument};
 use statistics::StatisticsDocument;

@@ -115,6 +115,7 @@ fn follows_from_a_substitute(found: &Problem, replaced: &[String]) -> bool {
         Code::RateLimitUnreachable
         | Code::WheelSpeedImplausible
         | Code::AccelerationImplausible => any_related("/spacecraft") || any_related("/start"),
+        Code::EpochRequired => any_related(&found.pointer) || any_related("/epoch"),
         // A locked wheel must end as it starts.
         Code::ConflictingFields => any_related(&found.pointer) || any_related("/start"),
         _ => any_related(&found.pointer),

@@ -45,7 +45,7 @@ const UPPER: f64 = 400.0;
 const STRIP: f64 = 34.0;
 const BELOW_STRIP: f64 = 33.0;
 
-/// The picture of a plan. The scenario adds limits and keep-out cones, which a plan does not have.
+/// The picture of a plan. The scenario adds limits and cones, which a plan does not have.
 ///
 /// # Errors
 ///
@@ -63,6 +63,7 @@ pub(crate) fn plan(
     let lower = HEAD + UPPER + 46.0;
     let record = plan.record();
     let mut panels = timeline::panels(&record, scenario.map(Scenario::spacecraft));
+    panels.extend(scenario.and_then(|it| timeline::clearances(&record, it.cones())));
     for panel in &mut panels {
         panel.alarms = plan.intrusions();
     }

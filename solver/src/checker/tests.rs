@@ -3,6 +3,7 @@
 mod build;
 mod cones;
 mod dense;
+mod enforced_cones;
 mod flights;
 mod limits;
 mod motion;

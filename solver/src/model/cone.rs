@@ -1,6 +1,7 @@
 //! Cones that bound where boresights point.
 
 use super::attitude::Attitude;
+pub use super::spec::Applies;
 use nalgebra::Vector3;
 
 /// On which side of its cone a boresight has to stay.
@@ -12,16 +13,15 @@ pub enum Side {
     In,
 }
 
-/// When a cone is enforced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Applies {
-    /// Along the whole flight.
-    #[default]
-    Always,
-    /// From arrival to departure at targets.
-    AtTargets,
-    /// Never: intrusions are reported.
-    Report,
+impl Side {
+    /// The name of the scenario's list of such cones.
+    #[must_use]
+    pub fn list(self) -> &'static str {
+        match self {
+            Self::Out => "keep_out",
+            Self::In => "keep_in",
+        }
+    }
 }
 
 /// A cone that bounds where a boresight points.
@@ -47,11 +47,7 @@ impl Cone {
     /// The JSON pointer of the cone in its scenario.
     #[must_use]
     pub fn pointer(&self) -> String {
-        let list = match self.side {
-            Side::Out => "keep_out",
-            Side::In => "keep_in",
-        };
-        format!("/{list}/{}", self.index)
+        format!("/{}/{}", self.side.list(), self.index)
     }
 
     /// Angle between the boresight and the cone's surface at an attitude, rad; negative on the wrong

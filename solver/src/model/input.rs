@@ -61,6 +61,9 @@ pub trait InputPlace: Sized {
     /// Whether a text stands there; that it does not is no problem.
     fn is_text(&self) -> bool;
 
+    /// Whether a list stands there; that it does not is no problem.
+    fn is_list(&self) -> bool;
+
     /// A number.
     fn number(&self) -> Option<f64>;
 
@@ -142,6 +145,10 @@ impl InputPlace for Nothing {
     }
 
     fn is_text(&self) -> bool {
+        false
+    }
+
+    fn is_list(&self) -> bool {
         false
     }
 

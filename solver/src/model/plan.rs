@@ -178,17 +178,35 @@ pub struct Margins {
     pub body_rate: Option<f64>,
     /// How often each wheel's speed passes through zero.
     pub wheel_zero_crossings: Vec<u32>,
-    /// Smallest angle between boresight and cone for each keep-out, degrees; negative inside.
-    pub keep_out_clearance_deg: Vec<f64>,
-    /// Every stay of a boresight inside a cone, in order of cone and time.
+    /// The closest approach to each cone, keep-out and keep-in, that applied at some time.
+    pub keep_out_clearance_deg: Vec<ConeClearance>,
+    /// Every time span on the wrong side of a cone while it applied, in order of cone and time.
     pub keep_out_intrusions: Vec<Intrusion>,
 }
 
-/// A span of time during which a boresight is inside a cone.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The closest approach of a boresight to the surface of a cone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConeClearance {
+    /// Name of the boresight.
+    pub boresight: String,
+    /// JSON pointer of the cone in the scenario.
+    pub cone: String,
+    /// Unit vector along the cone's axis in the reference frame: where the Sun was taken to be.
+    pub direction: Vector3<f64>,
+    /// Smallest angle to the cone's surface while the cone applied, degrees; negative on the wrong
+    /// side.
+    pub clearance_deg: f64,
+    /// When, s.
+    pub time_s: f64,
+}
+
+/// A span of time during which a boresight is on the wrong side of a cone.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Intrusion {
-    /// Index of the cone in the scenario.
-    pub keep_out: usize,
+    /// Name of the boresight.
+    pub boresight: String,
+    /// JSON pointer of the cone in the scenario.
+    pub cone: String,
     /// Entry, s.
     pub from_s: f64,
     /// Exit, s.

@@ -293,19 +293,29 @@ pub enum Code {
     /// A plan takes less time than its own lower bound, so that one of them is false.
     #[strum(message = "Make the plan again, and do not trust what it says of itself.")]
     BoundAboveTime,
-    /// A boresight enters a keep-out cone (warning).
+    /// A boresight enters a keep-out cone, or leaves a keep-in cone, that is only reported (warning).
     #[strum(
         message = "Look at time and depth, and move targets or demand another order if the \
         plan cannot be flown so."
     )]
     KeepOutViolated,
-    /// An attitude of the scenario points a boresight into a keep-out cone, whatever the order
-    /// (warning).
+    /// An attitude of the scenario points a boresight to the wrong side of a cone that is only
+    /// reported (warning).
     #[strum(
-        message = "Turn the attitude about another axis or move it, or narrow the cone; no plan \
-        through this attitude keeps out of it."
+        message = "Turn the attitude about another axis or move it, or change the cone; every plan \
+        through this attitude violates it."
     )]
     AttitudeInKeepOut,
+    /// An attitude of the scenario points a boresight to the wrong side of a cone that is enforced
+    /// there, so that there is no plan.
+    #[strum(
+        message = "Turn the attitude about another axis or move it, change the cone, or only have \
+        it reported."
+    )]
+    AttitudeViolatesCone,
+    /// A direction of a body of the sky in a scenario without an epoch.
+    #[strum(message = "Give the epoch of time zero, or the direction as a vector.")]
+    EpochRequired,
     /// A file of another version of the program.
     #[strum(message = "Make the file again with this version.")]
     VersionMismatch,

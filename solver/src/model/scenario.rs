@@ -4,7 +4,9 @@
 //! and continues after a fault. A part that depends on an earlier one takes it as optional, or
 //! reads the description instead, so that one run lists all problems.
 
+mod cone_conflicts;
 mod cones;
+mod directions;
 mod labels;
 mod limits;
 mod options;
@@ -20,6 +22,8 @@ use crate::model::order_rules::OrderRules;
 use crate::model::problem::{Faults, Problem};
 use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::{OptionsSpec, ReferenceFrame, ScenarioSpec, TimeSystem};
+pub(crate) use cone_conflicts::cone_problems;
+use directions::Sky;
 use jiff::civil::DateTime;
 use limits::Limits;
 use nalgebra::Vector3;
@@ -127,7 +131,7 @@ impl Scenario {
         let mut findings = Findings::default();
         let scenario = Self::read(spec, &mut findings);
         if let Some(scenario) = &scenario {
-            cones::warn_of_attitudes(scenario, &mut findings);
+            cone_conflicts::warn_of_reported(scenario, &mut findings);
         }
         let (scenario, warnings) = findings.judge(scenario)?;
         Ok(Validated { scenario, warnings })
@@ -159,7 +163,8 @@ impl Scenario {
         });
         let targets = target::read_all(spec, context, &limits, findings);
         let order_rules = order::read(spec, findings);
-        let cones = cones::read_all(spec, findings);
+        let sky = Sky::of(spec, epoch);
+        let cones = cones::read_all(spec, sky, findings);
         let options_valid = options::check(&spec.options, findings);
         unit_slips::check_targets(spec, findings);
         if let Some((spacecraft, start)) = spacecraft.as_ref().zip(start.as_ref()) {
@@ -189,19 +194,19 @@ impl Scenario {
         self.name.as_deref()
     }
 
-    /// Epoch of time zero in the time system; only labels exports.
+    /// Epoch of time zero in the time system.
     #[must_use]
     pub fn epoch(&self) -> Option<DateTime> {
         self.epoch
     }
 
-    /// Time system of the epoch; only labels exports.
+    /// Time system of the epoch.
     #[must_use]
     pub fn time_system(&self) -> Option<TimeSystem> {
         self.time_system
     }
 
-    /// The reference frame; only labels exports.
+    /// The reference frame.
     #[must_use]
     pub fn reference_frame(&self) -> Option<ReferenceFrame> {
         self.reference_frame

@@ -6,10 +6,12 @@
 //! that of the JSON document and of its description, see [`crate::model::input`].
 
 mod attitude;
+mod cones;
 mod labels;
 mod spacecraft;
 
 pub use attitude::{AttitudeSpec, BoresightChoice, PairSpec};
+pub use cones::{Applies, CelestialBody, ConeSpec, DirectionSpec};
 pub use labels::{ReferenceFrame, TimeSystem};
 pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
 
@@ -22,7 +24,7 @@ use super::input::{
 /// Limit of the targets of a scenario, far above what can be planned: legs between that many exceed
 /// any disk.
 pub const MAX_TARGETS: usize = 10_000;
-/// Limit of the keep-out cones of a scenario.
+/// Limit of the cones of a scenario, keep-out and keep-in together.
 pub const MAX_CONES: usize = 1000;
 
 input_object! {
@@ -31,11 +33,12 @@ input_object! {
     pub struct ScenarioSpec as "Scenario" {
         /// Free text that names the scenario.
         pub name: Option<String> = optional(),
-        /// Epoch of time zero in the time system, such as `2026-01-31T12:00:00.5Z`; only labels exports.
+        /// Epoch of time zero in the time system, such as `2026-01-31T12:00:00.5Z`; labels exports, and
+        /// says where the Sun is.
         pub epoch: Option<String> = optional().pattern(epoch::PATTERN),
-        /// Time system of the epoch, UTC without it; only labels exports.
+        /// Time system of the epoch, UTC without it.
         pub time_system: Option<TimeSystem> = optional(),
-        /// Reference frame of all attitudes and directions, EME2000 without it; only labels exports.
+        /// Reference frame of all attitudes and directions, EME2000 without it.
         pub reference_frame: Option<ReferenceFrame> = optional(),
         /// The spacecraft.
         pub spacecraft: SpacecraftSpec as SpacecraftOrReference
@@ -48,7 +51,9 @@ input_object! {
         /// not matter.
         pub targets: Vec<TargetSpec> as UpTo<MAX_TARGETS, TargetSpec> = required_or(Vec::new()),
         /// Cones in which a boresight must not point.
-        pub keep_out: Vec<KeepOutSpec> as UpTo<MAX_CONES, KeepOutSpec> = or(Vec::new()),
+        pub keep_out: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
+        /// Cones in which a boresight must point, as a solar panel's normal around the Sun.
+        pub keep_in: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
         /// Options of the solve.
         pub options: OptionsSpec = or(OptionsSpec::default()),
     }
@@ -91,18 +96,6 @@ input_object! {
         /// Identifiers of targets that must have been visited before. Some order has to keep all
         /// positions and precedences.
         pub after: Vec<String> = or(Vec::new()),
-    }
-}
-
-input_object! {
-    /// A cone that a boresight should avoid.
-    pub struct KeepOutSpec as "KeepOut" {
-        /// Name of the boresight.
-        pub boresight: String = required_or(String::new()),
-        /// Axis of the cone in the reference frame, any length.
-        pub direction: [f64; 3] = required_or([1.0, 0.0, 0.0]),
-        /// Half angle of the cone.
-        pub half_angle_deg: f64 = required_or(1.0).above(0.0).below(180.0),
     }
 }
 

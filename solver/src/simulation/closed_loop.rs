@@ -1,5 +1,6 @@
 //! One simulated flight: on-board computer, wheel loops and integration in turn.
 
+use super::cones::ConeApproaches;
 use super::controller::{FeedbackController, Measured};
 use super::draws::{DrawnFlight, draw, normals};
 use super::outcome::{FlightLog, SimulatedFlight, SimulatedState, TrackingError};
@@ -36,6 +37,7 @@ impl Simulation<'_> {
         let mut craft = SimulatedSpacecraft::new(&truth, start, wheels);
         let mut computer = self.on_board_computer(noise);
         let mut log = FlightLog::open(self.flight, wheels);
+        let mut cones = ConeApproaches::new(self.scenario, self.flight);
         log.reach(
             &self.sampled_plan,
             0.0,
@@ -55,6 +57,7 @@ impl Simulation<'_> {
             }
             let error = TrackingError::of(&attitude, &rate, &sample.desired);
             log.sample(error);
+            cones.sample(sample.time_s, &attitude);
             if keep_every.is_some_and(|every| index % every.max(1) == 0) {
                 log.keep(SimulatedState {
                     time_s: sample.time_s,
@@ -75,7 +78,10 @@ impl Simulation<'_> {
                 &mut log,
             )?;
         }
-        Some(log.close())
+        if let Some((attitude, _)) = craft.pose() {
+            cones.sample(self.flight_time_s(), &attitude);
+        }
+        Some(log.close(cones.clearances()))
     }
 
     fn on_board_computer(&self, noise: SplitMix) -> OnBoardComputer<'_> {

@@ -5,7 +5,7 @@ use super::sampled_plan::{MarkEvent, SampledPlan};
 use super::wheel_loop::MotorCycle;
 use crate::checker::NOT_COMPUTED;
 use crate::model::attitude::Attitude;
-use crate::model::plan::Flight;
+use crate::model::plan::{ConeClearance, Flight};
 use nalgebra::Vector3;
 
 /// Difference of the true state from a desired one.
@@ -74,6 +74,9 @@ pub struct SimulatedFlight {
     pub peak: TrackingError,
     /// One entry per wheel.
     pub saturation: Vec<Saturation>,
+    /// The closest approach to each cone of the scenario at the samples of the on-board computer, and
+    /// at the end.
+    pub cones: Vec<ConeClearance>,
     /// States at every so many samples of the on-board computer, when asked for.
     pub states: Vec<SimulatedState>,
 }
@@ -126,6 +129,7 @@ impl FlightLog {
                 passages: passages.collect(),
                 peak: still,
                 saturation: vec![Saturation::default(); wheels],
+                cones: Vec::new(),
                 states: Vec::new(),
             },
             seconds: 0.0,
@@ -186,7 +190,8 @@ impl FlightLog {
         self.flight.peak = TrackingError::UNKNOWN;
     }
 
-    pub(super) fn close(mut self) -> SimulatedFlight {
+    pub(super) fn close(mut self, cones: Vec<ConeClearance>) -> SimulatedFlight {
+        self.flight.cones = cones;
         for saturation in &mut self.flight.saturation {
             let seconds = self.seconds.max(f64::MIN_POSITIVE);
             saturation.torque = (saturation.torque / seconds).min(1.0);

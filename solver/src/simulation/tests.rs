@@ -1,6 +1,7 @@
 //! Simulated flights against closed forms, plans and each other.
 
 mod build;
+mod cones;
 mod control;
 mod random;
 mod stopping;

@@ -27,7 +27,7 @@ mod verified;
 
 use crate::model::plan::Outcome;
 use crate::model::problem::{Code, Problem};
-use crate::model::scenario::Scenario;
+use crate::model::scenario::{Scenario, cone_problems};
 use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::run::stop::StopSignal;
@@ -264,10 +264,12 @@ fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Optio
 }
 
 /// Problems of a valid scenario that are found without solving it: for example a required rest
-/// whose momentum the wheels cannot hold.
+/// whose momentum the wheels cannot hold, or a target inside an enforced keep-out cone.
 #[must_use]
 pub fn feasibility_problems(scenario: &Scenario) -> Vec<Problem> {
-    momentum_problems(scenario)
+    let mut problems = momentum_problems(scenario);
+    problems.extend(cone_problems(scenario));
+    problems
 }
 
 /// The stop signal with the scenario's own time limit added.

@@ -1,19 +1,28 @@
-// Keep-out cones that a plan enters, and attitudes that are in one from the beginning.
+// Cones that a plan violates, and attitudes that violate one from the beginning.
 
 import { el, section } from "../dom.js";
 import { item } from "../failure.js";
+import { dot, rotate, unit } from "../rotation.js";
 
 /** What is said beside a plan that is good otherwise. */
 export const VIOLATED = "keep-out violated";
 
+/** More curves than these in one plot are hard to tell apart. */
+const MOST_CURVES = 6;
+
 const CODES = ["keep_out_violated", "attitude_in_keep_out"];
 
-/** Whether a warning is about a keep-out cone. */
+/** Whether a warning is about a cone that is only reported. */
 export const isKeepOut = (warning) => CODES.includes(warning.code);
 
-/** Every stay of a boresight inside a cone. */
+/** Every stay of a boresight on the wrong side of a cone. */
 export function intrusionsOf(plan) {
   return plan.margins?.keep_out_intrusions ?? [];
+}
+
+/** The closest approach to every cone; plans of former versions have only the angles. */
+export function clearancesOf(plan) {
+  return (plan.margins?.keep_out_clearance_deg ?? []).filter((one) => one?.cone);
 }
 
 /** The warnings about cones with what to do about them, before anything else; null without any. */
@@ -24,10 +33,52 @@ export function banner(plan, scenario) {
     el("ul", { class: "problems" }, list.map((warning) => item(warning, null, scenario))));
 }
 
-/** The spans of time inside cones, for the timelines. */
-export function alarmsOf(plan, scenario) {
+/** The spans of time on the wrong side of cones, for the timelines. */
+export function alarmsOf(plan) {
   return intrusionsOf(plan).map((one) => {
-    const cone = scenario.keep_out?.[one.keep_out];
-    return { begin: one.from_s, end: one.to_s, depth: one.depth_deg, name: `${cone?.boresight ?? "boresight"} inside cone ${one.keep_out}` };
+    const cone = one.cone ?? `/keep_out/${one.keep_out}`;
+    const side = cone.startsWith("/keep_in") ? "outside" : "inside";
+    return { begin: one.from_s, end: one.to_s, depth: one.depth_deg, name: `${one.boresight ?? "boresight"} ${side} ${cone}` };
   });
+}
+
+/** What the cones of a scenario exclude: around the opposite direction, what is outside a keep-in cone. */
+export function excludedBy(scenario, plan) {
+  const known = new Map(clearancesOf(plan ?? {}).map((one) => [one.cone, one.direction]));
+  const cap = (list, cone, index) => {
+    const direction = directionOf(cone.direction) ?? known.get(`/${list}/${index}`);
+    if (!direction) return [];
+    const half = (cone.half_angle_deg * Math.PI) / 180;
+    const inward = list === "keep_in";
+    return [{
+      name: `${inward ? "keep-in" : "keep-out"} of ${cone.boresight}, ${cone.half_angle_deg}°`,
+      boresight: cone.boresight,
+      cone: `/${list}/${index}`,
+      direction: inward ? direction.map((part) => -part) : direction,
+      halfAngle: inward ? Math.PI - half : half,
+    }];
+  };
+  return ["keep_out", "keep_in"].flatMap((list) => (scenario[list] ?? []).flatMap((cone, index) => cap(list, cone, index)));
+}
+
+/** The angle to the nearest cones over time, degrees: {name, values}; negative on the wrong side. */
+export function clearanceCurves(excluded, scenario, attitudes) {
+  const axes = new Map((scenario.spacecraft.boresights ?? []).map(({ name, axis }) => [name, unit(axis)]));
+  const curves = excluded.filter((cap) => axes.has(cap.boresight)).map((cap) => {
+    const values = attitudes.map((attitude) => {
+      const cosine = dot(rotate(attitude, axes.get(cap.boresight)), cap.direction);
+      return ((Math.acos(Math.max(-1, Math.min(1, cosine))) - cap.halfAngle) * 180) / Math.PI;
+    });
+    return { name: `${cap.boresight} ${cap.cone}`, values, least: values.reduce((a, b) => Math.min(a, b), Infinity) };
+  });
+  return curves.sort((a, b) => a.least - b.least).slice(0, MOST_CURVES);
+}
+
+/** The unit vector of a direction; nothing for a body of the sky, whose place a plan tells. */
+function directionOf(direction) {
+  if (Array.isArray(direction)) return unit(direction);
+  if (!direction.ra_dec_deg) return undefined;
+  const [ascension, declination] = direction.ra_dec_deg.map((angle) => (angle * Math.PI) / 180);
+  const flat = Math.cos(declination);
+  return [flat * Math.cos(ascension), flat * Math.sin(ascension), Math.sin(declination)];
 }

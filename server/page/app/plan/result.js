@@ -32,7 +32,7 @@ export function result(job, plan, scenario, beside, signal) {
     order(plan, cursor),
     el("div", { class: "flight" }, sphere(flight, cursor, signal), timelines(flight, cursor, signal)),
     legs(plan, flight),
-    el("div", { class: "cards" }, verification(plan, scenario), beside),
+    el("div", { class: "cards" }, verification(plan), beside),
     matrix(plan, scenario, signal),
     downloads(job.id, job.name, { plan: "the whole plan", exports: true }),
   );

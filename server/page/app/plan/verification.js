@@ -3,10 +3,10 @@
 import { ALLOWED, checks, messages, verdict } from "../checks.js";
 import { el, section } from "../dom.js";
 import { fixed, percent } from "../format.js";
-import { VIOLATED, intrusionsOf, isKeepOut } from "./keep-out.js";
+import { VIOLATED, clearancesOf, intrusionsOf, isKeepOut } from "./keep-out.js";
 
 /** The section with the verification, the margins and the warnings of a plan. */
-export function verification(plan, scenario) {
+export function verification(plan) {
   const found = plan.verification;
   if (!found) return null;
   const rows = [
@@ -18,16 +18,17 @@ export function verification(plan, scenario) {
   ];
   return section("Verification", { head: verdict(found.passed, intrusionsOf(plan).length ? VIOLATED : null), class: "card" },
     checks(rows),
-    margins(plan.margins, scenario),
+    margins(plan),
     messages("Failures", found.failures),
     messages("Warnings", plan.warnings?.filter((warning) => !isKeepOut(warning))),
     el("p", { class: "quiet" }, `Flown again from the start by code that shares nothing with the optimiser. ${found.integrator}.`));
 }
 
-function margins(margins, scenario) {
+function margins(plan) {
+  const { margins } = plan;
   if (!margins) return null;
-  const cones = (scenario.keep_out ?? []).map((cone, index) =>
-    [`Clearance of ${cone.boresight}`, `${fixed(margins.keep_out_clearance_deg?.[index], 1)}°`]);
+  const cones = clearancesOf(plan).map((one) =>
+    [`${one.boresight} from ${one.cone}`, `${fixed(one.clearance_deg, 1)}° at ${fixed(one.time_s, 1)} s`]);
   const items = [
     ["Torque left", percent(margins.torque, 1)],
     ["Wheel speed left", percent(margins.wheel_speed, 1)],

@@ -82,7 +82,7 @@ const MILLI = 1000;
 const inUnit = (lists, factor) => lists.map((values) => values && values.map((value) => factor * value));
 
 /** The curves that every flight has; `column` and `digits` are those of the table of samples. */
-function groups({ times, rates, speeds, torques, limits }) {
+function groups({ times, rates, speeds, torques, limits, clearances }) {
   const wheels = speeds.map((_, wheel) => `wheel ${wheel}`);
   const numbers = speeds.map((_, wheel) => String(wheel));
   const group = (more, shown) => ({ times, text: (value) => fixed(value, shown), ...more });
@@ -93,6 +93,9 @@ function groups({ times, rates, speeds, torques, limits }) {
       column: ["Speed", numbers], digits: 2 }, 1),
     group({ title: "Wheel torques", unit: "mN m", names: wheels, ...torques, curves: inUnit(torques.curves, MILLI),
       limits: inUnit(limits.torques, MILLI), column: ["Torque", numbers], digits: 3 }, 2),
+    ...(clearances.length ? [group({ title: "Clearance of cones", unit: "deg", names: clearances.map(({ name }) => name),
+      curves: clearances.map(({ values }) => values), limits: clearances.map(() => null),
+      column: ["Clearance", clearances.map(({ name }) => name)], digits: 2 }, 1)] : []),
   ];
 }
 

@@ -110,12 +110,7 @@ function contentOf(flight, axis) {
   const direction = (attitude) => rotate(attitude, axis.direction);
   const stops = flight.stops.map((stop) => ({ ...stop, direction: direction(stop.attitude), reached: false }));
   const ends = endsOf(flight).map((end) => ({ ...end, direction: direction(end.attitude) }));
-  const caps = (flight.scenario.keep_out ?? []).map((cone) => ({
-    name: `keep-out of ${cone.boresight}, ${cone.half_angle_deg}°`,
-    direction: cone.direction,
-    halfAngle: (cone.half_angle_deg * Math.PI) / 180,
-    applies: cone.boresight === axis.boresight,
-  }));
+  const caps = flight.excluded.map((cap) => ({ ...cap, applies: cap.boresight === axis.boresight }));
   return { trace: trace(flight, axis), stops, ends, caps, now: null };
 }
 
@@ -190,11 +185,11 @@ function listenToPointer(picture, pressed, dragged) {
 }
 
 function legend(flight) {
-  const cones = flight.scenario.keep_out?.length > 0;
+  const cones = flight.excluded.length > 0;
   const frame = flight.scenario.reference_frame ?? "the reference frame";
   const marks = flight.stops.length ? "Numbers give the visiting order" : "Rings are the start and the end";
   return el("p", { class: "quiet" }, `Seen from outside, in ${frame}. ${marks}`,
-    cones ? "; red are keep-out cones, of other boresights dashed." : ".");
+    cones ? "; red is what cones exclude, of other boresights dashed." : ".");
 }
 
 function directions(flight, axis) {

@@ -4,7 +4,7 @@ use crate::documents::number::Number;
 use serde::Serialize;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::{
-    Control, Intrusion, Leg, Margins, Passage, State, Verification,
+    ConeClearance, Control, Intrusion, Leg, Margins, Passage, State, Verification,
 };
 use utoipa::ToSchema;
 
@@ -159,17 +159,48 @@ pub(crate) struct MarginsDocument {
     wheel_speed: Option<Number>,
     body_rate: Option<Number>,
     wheel_zero_crossings: Vec<u32>,
-    keep_out_clearance_deg: Vec<Option<Number>>,
-    /// Every stay of a boresight inside a cone; empty where the plan keeps out of all cones.
+    /// The closest approach to each cone of `keep_out` and `keep_in` that applied at some time.
+    keep_out_clearance_deg: Vec<ClearanceDocument>,
+    /// Every time span on the wrong side of a cone while it applied; empty where the plan keeps all
+    /// cones.
     keep_out_intrusions: Vec<IntrusionDocument>,
 }
 
-/// A boresight inside a keep-out cone.
+/// The closest approach of a boresight to the surface of a cone.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = ConeClearance)]
+pub(crate) struct ClearanceDocument {
+    boresight: String,
+    /// JSON pointer of the cone in the scenario, such as `/keep_out/0`.
+    cone: String,
+    /// Unit vector along the cone's axis in the reference frame: where the Sun was taken to be.
+    direction: [Number; 3],
+    /// Least angle between boresight and surface while the cone applied (from arrival to departure at
+    /// targets, or all along), negative on the wrong side.
+    #[schema(required)]
+    clearance_deg: Option<Number>,
+    time_s: Number,
+}
+
+impl From<&ConeClearance> for ClearanceDocument {
+    fn from(nearest: &ConeClearance) -> Self {
+        Self {
+            boresight: nearest.boresight.clone(),
+            cone: nearest.cone.clone(),
+            direction: <[f64; 3]>::from(nearest.direction).map(Number),
+            clearance_deg: Number::computed(nearest.clearance_deg),
+            time_s: Number(nearest.time_s),
+        }
+    }
+}
+
+/// A boresight inside a keep-out cone, or outside a keep-in cone.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = KeepOutIntrusion)]
 struct IntrusionDocument {
-    /// Position of the cone in `keep_out` of the scenario, counted from 0.
-    keep_out: usize,
+    boresight: String,
+    /// JSON pointer of the cone in the scenario, such as `/keep_out/0`.
+    cone: String,
     from_s: Number,
     to_s: Number,
     /// Largest angle to the cone's surface.
@@ -179,7 +210,8 @@ struct IntrusionDocument {
 impl From<&Intrusion> for IntrusionDocument {
     fn from(intrusion: &Intrusion) -> Self {
         Self {
-            keep_out: intrusion.keep_out,
+            boresight: intrusion.boresight.clone(),
+            cone: intrusion.cone.clone(),
             from_s: Number(intrusion.from_s),
             to_s: Number(intrusion.to_s),
             depth_deg: Number(intrusion.depth_rad.to_degrees()),
@@ -197,7 +229,7 @@ impl From<&Margins> for MarginsDocument {
             keep_out_clearance_deg: margins
                 .keep_out_clearance_deg
                 .iter()
-                .map(|angle| Number::computed(*angle))
+                .map(ClearanceDocument::from)
                 .collect(),
             keep_out_intrusions: margins
                 .keep_out_intrusions

@@ -26,6 +26,10 @@ impl InputPlace for Cursor<'_> {
         matches!(self.node, Node::Text(_))
     }
 
+    fn is_list(&self) -> bool {
+        matches!(self.node, Node::List(_))
+    }
+
     fn number(&self) -> Option<f64> {
         Cursor::number(self)
     }

@@ -174,15 +174,17 @@ impl Panel {
         if !self.has_one_limit() {
             return (!self.lines().is_empty()).then(|| "limits dashed".to_owned());
         }
-        if !high.is_finite() {
-            return Some("no limit".to_owned());
-        }
         let rounded = |value: f64| {
             format!("{value:.3}")
                 .trim_end_matches('0')
                 .trim_end_matches('.')
                 .to_owned()
         };
+        if !high.is_finite() {
+            let least = || format!("at least {}", minus(&rounded(low)));
+            let words = low.is_finite().then(least);
+            return Some(words.unwrap_or_else(|| "no limit".to_owned()));
+        }
         let words = if !low.is_finite() {
             format!("limit {}", rounded(high))
         } else if (low + high).abs() < 1e-12 * high {

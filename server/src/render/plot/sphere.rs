@@ -85,7 +85,7 @@ impl SphereView {
     }
 }
 
-/// Draws the sphere with trace, targets and the keep-out cones of the boresight.
+/// Draws the sphere with trace, targets and the cones of the boresight.
 pub(super) fn draw(
     canvas: &mut Canvas,
     frame: PlotArea,
@@ -113,7 +113,7 @@ pub(super) fn draw(
     let of = frame_name.map_or("the reference frame", ReferenceFrame::name);
     let cones = match forbidden {
         0 => "",
-        _ => "; red: keep-out",
+        _ => "; red: excluded by cones",
     };
     let caption = format!(
         "Where {} points in {of}; dashed: far side{cones}",
@@ -180,24 +180,25 @@ fn axes(canvas: &mut Canvas, view: &SphereView) {
 
 /// The part of the sphere excluded by a cone.
 fn cap(canvas: &mut Canvas, view: &SphereView, cone: &Cone) {
-    let (rise, flat) = cone.half_angle.sin_cos();
+    let (direction, half_angle) = cone.forbidden();
+    let (rise, flat) = half_angle.sin_cos();
     // Any two directions perpendicular to the axis.
-    let helper = if cone.direction.z.abs() < 0.9 {
+    let helper = if direction.z.abs() < 0.9 {
         Vector3::z()
     } else {
         Vector3::x()
     };
-    let across = cone.direction.cross(&helper).normalize();
-    let other = cone.direction.cross(&across);
+    let across = direction.cross(&helper).normalize();
+    let other = direction.cross(&across);
     let edge: Vec<Vector3<f64>> = (0..=CIRCLE)
         .map(|index| {
             let (sine, cosine) = (TAU * f64::from(index) / f64::from(CIRCLE)).sin_cos();
-            cone.direction * flat + (across * cosine + other * sine) * rise
+            direction * flat + (across * cosine + other * sine) * rise
         })
         .collect();
     let pen = Pen::new(ALARM, 1.2);
     // A cone wider than a hemisphere leaves only its outside allowed; then only the edge is drawn.
-    if edge.iter().any(|point| view.is_near(point)) && cone.half_angle < FRAC_PI_2 {
+    if edge.iter().any(|point| view.is_near(point)) && half_angle < FRAC_PI_2 {
         let outline: Vec<_> = edge.iter().map(|point| view.at_or_rim(point)).collect();
         canvas.area(&outline, ALARM, Pen::new("none", 0.0).faded(0.16));
     }

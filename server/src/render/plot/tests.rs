@@ -52,7 +52,7 @@ fn a_plan_alone_is_drawn_without_limits() {
     ] {
         assert!(picture.contains(&format!(">{words}</text>")), "{words}");
     }
-    assert!(!picture.contains("limit") && !picture.contains("keep-out"));
+    assert!(!picture.contains("limit") && !picture.contains("by cones"));
 }
 
 #[test]
@@ -60,13 +60,21 @@ fn the_scenario_adds_limits_and_the_cones_of_the_boresight() {
     let scenario = scenario();
     let picture = drawn(Some(&scenario), None);
     assert!(picture.contains("a &lt; b &amp; \"c\""));
-    assert!(picture.contains("Where camera points in EME2000; dashed: far side; red: keep-out"));
+    assert!(
+        picture
+            .contains("Where camera points in EME2000; dashed: far side; red: excluded by cones")
+    );
     // 0.6 rad/s and 0.5 N m.
     assert!(picture.contains("limit \u{b1}34.377") && picture.contains("limit \u{b1}500"));
     assert!(picture.contains(">no limit<"));
+    assert!(picture.contains("Clearance of cones, deg</text>"));
+    assert!(
+        picture.contains(">camera /keep_out/0</text>") && picture.contains(">at least 0</text>")
+    );
+    assert!(!drawn(None, None).contains("Clearance of cones"));
     // The cones of other boresights are not drawn.
-    assert!(!drawn(Some(&scenario), Some("x2")).contains("keep-out"));
-    assert!(!drawn(Some(&scenario), Some("-z")).contains("keep-out"));
+    assert!(!drawn(Some(&scenario), Some("x2")).contains("by cones"));
+    assert!(!drawn(Some(&scenario), Some("-z")).contains("by cones"));
 }
 
 #[test]
@@ -81,8 +89,8 @@ fn stays_inside_a_cone_are_marked_on_every_timeline() {
     let (before, picture) = marks(&document);
     assert!(!picture.contains("keep-out violated"));
     document["margins"]["keep_out_intrusions"] = json!([
-        {"keep_out": 0, "from_s": 3.0, "to_s": 6.0, "depth_deg": 2.0},
-        {"keep_out": 1, "from_s": 9.0, "to_s": 9.0, "depth_deg": 0.1},
+        {"boresight": "camera", "cone": "/keep_out/0", "from_s": 3.0, "to_s": 6.0, "depth_deg": 2.0},
+        {"boresight": "camera", "cone": "/keep_out/1", "from_s": 9.0, "to_s": 9.0, "depth_deg": 0.1},
     ]);
     let (after, picture) = marks(&document);
     assert_eq!(after - before, 6);

@@ -2,8 +2,12 @@
 
 use super::canvas::{Canvas, Ink, Pen, PlotArea, WARM};
 use super::panel::{self, Panel};
-use super::written::{Record, WrittenPlan};
+use super::written::{Record, WrittenPlan, WrittenState};
+use slewplan_solver::model::cone::Cone;
 use slewplan_solver::model::spacecraft::Spacecraft;
+
+/// Greatest number of cones whose clearance is drawn: more names than these would overlap.
+const MAX_CONES_DRAWN: usize = 4;
 
 /// Panels of body rates, wheel speeds and wheel torques; a spacecraft adds the limits.
 pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Panel> {
@@ -63,6 +67,32 @@ pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Pan
             alarms: Vec::new(),
         },
     ]
+}
+
+/// The clearance of the cones that the motion comes closest to, if there are any.
+pub(super) fn clearances(record: &Record<'_>, cones: &[Cone]) -> Option<Panel> {
+    let curve = |cone: &Cone| {
+        let clearance = |s: &WrittenState| (s.time_s, cone.clearance(&s.attitude()).to_degrees());
+        let curve: Vec<(f64, f64)> = record.states.iter().map(clearance).collect();
+        let least = curve.iter().map(|(_, angle)| *angle).reduce(f64::min);
+        let name = format!("{} {}", cone.boresight, cone.pointer());
+        (least.unwrap_or(f64::INFINITY), name, curve)
+    };
+    let mut nearest: Vec<_> = cones.iter().map(curve).collect();
+    nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.truncate(MAX_CONES_DRAWN);
+    let (names, curves): (Vec<_>, Vec<_>) = nearest
+        .into_iter()
+        .map(|(_, name, curve)| (name, curve))
+        .unzip();
+    (!names.is_empty()).then(|| Panel {
+        title: "Clearance of cones",
+        unit: "deg",
+        limits: vec![(0.0, f64::INFINITY); names.len()],
+        names,
+        curves,
+        alarms: Vec::new(),
+    })
 }
 
 /// Draws panels one below the other, beginning at a height.

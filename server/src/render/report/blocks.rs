@@ -1,7 +1,7 @@
 //! Blocks of text that several reports share.
 
 use super::numbers::{computed, decimals, percent, small};
-use slewplan_solver::model::plan::{Margins, Verification};
+use slewplan_solver::model::plan::{ConeClearance, Margins, Verification};
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
 use std::fmt::{Display, Write};
@@ -71,22 +71,34 @@ pub(super) fn margins(margins: &Margins) -> String {
         let clearances: Vec<String> = margins
             .keep_out_clearance_deg
             .iter()
-            .map(|angle| computed(*angle, |angle| decimals(angle, 2)))
+            .map(clearance)
             .collect();
         text += &line(
             "",
-            format_args!("keep-out clearance [deg]: {}", list(&clearances)),
+            format_args!("clearance of cones [deg]: {}", list(&clearances)),
         );
     }
     text
 }
 
-/// Whether a boresight enters a keep-out cone.
+/// How close a boresight comes to the surface of a cone, and when.
+fn clearance(nearest: &ConeClearance) -> String {
+    let ConeClearance {
+        boresight, cone, ..
+    } = nearest;
+    let when = || decimals(nearest.time_s, 2);
+    let angle = computed(nearest.clearance_deg, |angle| {
+        format!("{} at {} s", decimals(angle, 2), when())
+    });
+    format!("{boresight} ({cone}) {angle}")
+}
+
+/// Whether a boresight is on the wrong side of a cone.
 pub(super) fn violates(margins: &Margins) -> bool {
     !margins.keep_out_intrusions.is_empty()
 }
 
-/// The warnings of violated keep-out cones, which stand above everything else; empty without any.
+/// The warnings of violated cones, which stand above everything else; empty without any.
 pub(super) fn keep_out_banner(warnings: &[Problem]) -> String {
     let violations: Vec<_> = warnings.iter().filter(|one| is_keep_out(one)).collect();
     if violations.is_empty() {
@@ -160,16 +172,25 @@ mod tests {
 
     #[test]
     fn values_not_computed_are_said_in_words() {
+        let nearest = |index: usize, clearance_deg: f64| ConeClearance {
+            boresight: "camera".into(),
+            cone: format!("/keep_out/{index}"),
+            direction: [0.0, 0.0, 1.0].into(),
+            clearance_deg,
+            time_s: 3.0,
+        };
         let broken = Margins {
             torque: -NOT_COMPUTED,
             body_rate: Some(-3e300),
-            keep_out_clearance_deg: vec![-NOT_COMPUTED, 12.5],
+            keep_out_clearance_deg: vec![nearest(0, -NOT_COMPUTED), nearest(1, 12.5)],
             ..Margins::default()
         };
         let text = margins(&broken);
         let torque = "torque not computed, wheel speed no limit, body rate -3.0e302 %";
         assert!(text.contains(torque), "{text}");
-        assert!(text.contains("[deg]: not computed, 12.50"), "{text}");
+        let cones =
+            "[deg]: camera (/keep_out/0) not computed, camera (/keep_out/1) 12.50 at 3.00 s";
+        assert!(text.contains(cones), "{text}");
     }
 
     #[test]

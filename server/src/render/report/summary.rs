@@ -273,7 +273,8 @@ mod tests {
     fn a_violated_keep_out_is_in_the_first_line_and_the_verdict() {
         let mut plan = sample::plan();
         plan.margins.keep_out_intrusions.push(Intrusion {
-            keep_out: 0,
+            boresight: "camera".into(),
+            cone: "/keep_out/0".into(),
             from_s: 1.0,
             to_s: 2.0,
             depth_rad: 0.1,

@@ -242,7 +242,7 @@ fn an_integration_that_loses_momentum_fails_the_verification() {
             steps: 1,
             momentum_drift: share * MOMENTUM_TOLERANCE,
         };
-        let verification = FlightObserver::new(&scenario)
+        let verification = FlightObserver::new(&scenario, &[])
             .report(&scenario, 0.0, integration, &Misses::default(), Vec::new())
             .verification;
         assert_eq!(verification.passed, passed, "{verification:?}");

@@ -154,6 +154,19 @@ impl<F: InputForm> InputForm for Unread<F> {
     }
 }
 
+/// Two angles.
+impl InputForm for [f64; 2] {
+    type Value = Self;
+
+    fn read<P: InputPlace>(place: &P) -> Option<Self> {
+        array::<f64, 2, P>(place)
+    }
+
+    fn schema() -> Schema {
+        list::<f64>(Some(2), Some(2))
+    }
+}
+
 /// A vector in body or reference axes.
 impl InputForm for [f64; 3] {
     type Value = Self;

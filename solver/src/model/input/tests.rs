@@ -112,6 +112,10 @@ impl InputPlace for Reader<'_> {
         matches!(self.value, Text(_))
     }
 
+    fn is_list(&self) -> bool {
+        matches!(self.value, List(_))
+    }
+
     fn number(&self) -> Option<f64> {
         match self.value {
             Number(value) => Some(*value),

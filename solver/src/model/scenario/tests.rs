@@ -1,3 +1,4 @@
+mod cones;
 mod labels;
 mod remarks;
 mod sky;
@@ -5,10 +6,9 @@ mod unit_slips;
 
 use super::reference::experiment_a;
 use super::*;
+use crate::model::cone::Applies;
 use crate::model::problem::Code;
-use crate::model::spec::{
-    AttitudeEquivalence, AttitudeSpec, BoresightSpec, KeepOutSpec, StateSpec,
-};
+use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, BoresightSpec, ConeSpec, StateSpec};
 
 /// A change of a valid description, and the code and pointer that are expected.
 type Fault = (fn(&mut ScenarioSpec), Code, &'static str);
@@ -19,10 +19,11 @@ fn valid() -> ScenarioSpec {
         name: "camera".to_owned(),
         axis: [0.0, 0.0, 1.0],
     });
-    spec.keep_out.push(KeepOutSpec {
+    spec.keep_out.push(ConeSpec {
         boresight: "camera".to_owned(),
-        direction: [3.0, 0.0, 0.0],
+        direction: [3.0, 0.0, 0.0].into(),
         half_angle_deg: 30.0,
+        applies: Applies::Report,
     });
     spec
 }
@@ -267,7 +268,7 @@ fn faults_of_cones_and_options_are_found() {
             "/keep_out/0/boresight",
         ),
         (
-            |s| s.keep_out[0].direction = [0.0; 3],
+            |s| s.keep_out[0].direction = [0.0; 3].into(),
             Code::ZeroDirection,
             "/keep_out/0/direction",
         ),

@@ -3,12 +3,15 @@
 use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::torques::{MIN_PIECE_SHARE, torques};
-use crate::checker::{ATTITUDE_TOLERANCE, LegEnd, leg_faults};
+use crate::checker::{ATTITUDE_TOLERANCE, ForbiddenCone, LegEnd, leg_faults};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Control, Flight, State};
 use crate::model::scenario::RateCondition;
 use nalgebra::{DVector, Vector3};
+
+/// Legs are solved and verified without cones.
+const NO_CONES: &[ForbiddenCone] = &[];
 
 /// Whether the checker integrates a solved leg from its begin to the attitude and rates of its end
 /// within all limits.
@@ -34,7 +37,7 @@ pub(super) fn flight_faults(
         }),
     };
     let flight = flight(places, profile);
-    leg_faults(places.scenario, &begin, &flight, &arrival)
+    leg_faults(places.scenario, &begin, &flight, &arrival, NO_CONES)
 }
 
 /// Intervals whose end node is not reached from their begin node under the leg's torques: every
@@ -62,7 +65,13 @@ pub(super) fn node_faults(
             quaternion: next.xyzw(),
             rate: [end.x, end.y, end.z].map(Some),
         };
-        let found = leg_faults(places.scenario, &begin, &flight(places, &part), &arrival);
+        let found = leg_faults(
+            places.scenario,
+            &begin,
+            &flight(places, &part),
+            &arrival,
+            NO_CONES,
+        );
         let located = |fault: String| format!("between nodes {k} and {}: {fault}", k + 1);
         faults.extend(found.into_iter().map(located));
     }

@@ -1,7 +1,7 @@
 //! One flight of a plan in closed loop: the answer.
 
 use crate::documents::number::Number;
-use crate::documents::plan::{self, QuaternionDocument};
+use crate::documents::plan::{self, ClearanceDocument, QuaternionDocument};
 use crate::documents::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::model::plan::Passage;
@@ -45,6 +45,9 @@ struct FlightDocument<'a> {
     passages: Vec<PassageDocument<'a>>,
     /// Shares of the time that wheels were at a limit; one entry per wheel.
     saturation: Vec<SharesDocument>,
+    /// The closest approach of the true attitude to every cone of the scenario, at the samples of the
+    /// on-board computer and at the end.
+    keep_out_clearance_deg: Vec<ClearanceDocument>,
     /// Time between two samples of the on-board computer.
     sample_period_s: Number,
     /// `samples` has one out of so many.
@@ -139,6 +142,11 @@ impl<'a> FlightDocument<'a> {
                 .saturation
                 .iter()
                 .map(SharesDocument::from)
+                .collect(),
+            keep_out_clearance_deg: simulated
+                .cones
+                .iter()
+                .map(ClearanceDocument::from)
                 .collect(),
             sample_period_s: Number(plan.sample_s),
             keep_every: plan.keep_every,

@@ -1,10 +1,11 @@
 //! Which fields of a scenario enter the identity of a leg.
 
 use super::*;
+use crate::model::cone::Applies;
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
 use crate::model::spec::{
-    Accuracy, AttitudeEquivalence, AttitudeSpec, BoresightSpec, KeepOutSpec, OptionsSpec,
+    Accuracy, AttitudeEquivalence, AttitudeSpec, BoresightSpec, ConeSpec, OptionsSpec,
     ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
 };
 use crate::tour::order::Place;
@@ -57,6 +58,9 @@ const TABLE: &[Row] = &[
     }),
     ("ScenarioSpec.keep_out", Effect::None, |s| {
         s.keep_out.clear();
+    }),
+    ("ScenarioSpec.keep_in", Effect::None, |s| {
+        s.keep_in = s.keep_out.clone();
     }),
     ("ScenarioSpec.options", Effect::Both, |s| {
         s.options.torque_authority = 0.8;
@@ -149,18 +153,21 @@ const TABLE: &[Row] = &[
     ("TargetSpec.after", Effect::None, |s| {
         s.targets[2].after.clear();
     }),
-    ("KeepOutSpec.boresight", Effect::None, |s| {
+    ("ConeSpec.boresight", Effect::None, |s| {
         s.spacecraft.boresights.push(BoresightSpec {
             name: "two".into(),
             axis: [1.0, 0.0, 0.0],
         });
         s.keep_out[0].boresight = "two".into();
     }),
-    ("KeepOutSpec.direction", Effect::None, |s| {
-        s.keep_out[0].direction = [0.0, 1.0, 0.0];
+    ("ConeSpec.direction", Effect::None, |s| {
+        s.keep_out[0].direction = [0.0, 1.0, 0.0].into();
     }),
-    ("KeepOutSpec.half_angle_deg", Effect::None, |s| {
+    ("ConeSpec.half_angle_deg", Effect::None, |s| {
         s.keep_out[0].half_angle_deg = 11.0;
+    }),
+    ("ConeSpec.applies", Effect::None, |s| {
+        s.keep_out[0].applies = Applies::AtTargets;
     }),
     ("OptionsSpec.accuracy", Effect::Both, |s| {
         s.options.accuracy = Accuracy::Tight;
@@ -219,10 +226,11 @@ fn everything() -> ScenarioSpec {
         name: "camera".into(),
         axis: [0.0, 0.0, 1.0],
     }];
-    spec.keep_out = vec![KeepOutSpec {
+    spec.keep_out = vec![ConeSpec {
         boresight: "camera".into(),
-        direction: [1.0, 0.0, 0.0],
+        direction: [1.0, 0.0, 0.0].into(),
         half_angle_deg: 10.0,
+        applies: Applies::Report,
     }];
     spec.start.wheel_speed_rad_s = Some(vec![30.0, -40.0, 20.0, 10.0, 60.0]);
     spec.targets.truncate(3);
@@ -271,7 +279,7 @@ fn every_field_changes_the_identities_that_it_should_and_no_other() {
 fn the_table_lists_every_field() {
     let mut all = fields! {
         ScenarioSpec {
-            name, epoch, time_system, reference_frame, spacecraft, start, end, targets, keep_out, options,
+            name, epoch, time_system, reference_frame, spacecraft, start, end, targets, keep_out, keep_in, options,
         }
         SpacecraftSpec {
             inertia_kg_m2, max_body_rate_rad_s, max_body_rate_norm_rad_s, wheels, boresights,
@@ -285,7 +293,7 @@ fn the_table_lists_every_field() {
             id, attitude, zero_rate_axes, rate_min_rad_s, rate_max_rad_s, dwell_s, settle_s, position,
             after,
         }
-        KeepOutSpec { boresight, direction, half_angle_deg }
+        ConeSpec { boresight, direction, half_angle_deg, applies }
         OptionsSpec {
             accuracy, attitude_equivalence, time_limit_s, node_limit, relative_gap, alternatives,
             torque_authority, momentum_authority, seed,

@@ -1,6 +1,8 @@
 //! Minimum-time legs: the program between two waypoints, and the one through several of them in a
 //! given order.
 
+#[cfg(test)]
+mod clear_path;
 pub(crate) mod kinematics;
 pub(crate) mod multiphase;
 pub(crate) mod profile;

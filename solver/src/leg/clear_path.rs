@@ -31,7 +31,8 @@
 //! points. It holds the middle of the side and, of a cell of radius up to `r`, the centre; of a free
 //! cell the ball around its own centre holds the arc from the centre to the middle of the side.
 //! The same balls around the ends of the path connect them with the centres of their cells.
-//! An end with less clearance first [retreats](retreat) to where it has that much, or to a local
+//! The arcs of the second search that skip cells only shorten what it finds. An end with less
+//! clearance first [retreats](retreat) to where it has that much, or to a local
 //! maximum.
 //!
 //! Cells are limited in number, and with them memory and time; the resolution that the answer states
@@ -79,7 +80,7 @@ const ATTITUDE_LIMITS: Limits = Limits {
     coarsest: 3,
     finest: 8,
     compared: 5,
-    cells: 80_000,
+    cells: 100_000,
 };
 /// Searches over attitudes beside that for a boresight's direction.
 const COARSE_LIMITS: Limits = Limits {

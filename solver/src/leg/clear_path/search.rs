@@ -272,8 +272,19 @@ impl<'a, const D: usize, F: Cosine<D>> Search<'a, D, F> {
 
     /// Whether the middle of a leaf can be reached from a point of it.
     fn joins(&self, x: &Point<D>, leaf: usize) -> bool {
-        let node = self.tree.node(leaf);
-        node.kind == Kind::Free || (node.passable && self.tree.space.is_clear(x, &node.centre))
+        let (space, node) = (self.tree.space, self.tree.node(leaf));
+        node.kind == Kind::Free
+            || (node.clearance >= 0.0
+                && (space.turn(x, &node.centre) <= node.clearance
+                    || space.is_clear(x, &node.centre)))
+    }
+
+    /// Whether the arc between the middles of two leaves, of so much rotation, is clear. It is where
+    /// the clearances of both make it up, since along it they fall no faster than it turns.
+    fn sees(&self, leaf: usize, other: usize, turn: f64) -> bool {
+        let [here, there] = [leaf, other].map(|leaf| self.tree.node(leaf));
+        turn <= here.clearance + there.clearance
+            || self.tree.space.is_clear(&here.centre, &there.centre)
     }
 
     /// Goes from a leaf to its neighbour through the middle of the side that they share, if that is
@@ -298,15 +309,16 @@ impl<'a, const D: usize, F: Cosine<D>> Search<'a, D, F> {
             }
             return;
         }
-        if !next.passable {
+        if next.clearance < 0.0 {
             return;
         }
         let left = space.turn(&next.centre, &self.goal);
         let previous = self.records[leaf].previous;
         if previous != usize::MAX {
             let earlier = &self.tree.node(previous).centre;
-            let cost = self.records[previous].cost + space.turn(earlier, &next.centre);
-            if cost < self.records[other].cost && space.is_clear(earlier, &next.centre) {
+            let turn = space.turn(earlier, &next.centre);
+            let cost = self.records[previous].cost + turn;
+            if cost < self.records[other].cost && self.sees(previous, other, turn) {
                 self.enter(previous, other, cost, cost + left);
                 self.records[other].straight = true;
                 return;

@@ -27,8 +27,8 @@ pub(super) struct Node<const D: usize> {
     pub(super) centre: Point<D>,
     /// What the cones leave of it.
     pub(super) kind: Kind,
-    /// Whether its middle is allowed.
-    pub(super) passable: bool,
+    /// Clearance of its middle, rad.
+    pub(super) clearance: f64,
     /// Position of its first child; 0 where it is not divided.
     children: usize,
 }
@@ -93,7 +93,7 @@ impl<'a, const D: usize, F: Cosine<D>> Tree<'a, D, F> {
             cell,
             centre,
             kind,
-            passable: clearance >= 0.0,
+            clearance,
             children: 0,
         });
     }

@@ -72,28 +72,59 @@ fn roadmap_connects(given: &Random, seed: u64) -> bool {
     reached[1]
 }
 
-#[test]
-fn what_a_random_roadmap_connects_is_solved_and_what_is_disconnected_it_does_not_connect() {
-    let (mut solved, mut proved) = (0, 0);
-    for seed in 0..90 {
-        let given = problem_of(seed, 1 + usize::try_from(seed % 2).expect("0 or 1"));
-        let problem = problem(&given.cones, given.from, given.to);
-        let search = find(&problem);
-        match &search.outcome {
-            PathOutcome::Found { attitudes, turn } => {
-                keeps_clear(&problem, attitudes, *turn);
-                solved += 1;
-            }
-            PathOutcome::Disconnected => {
-                assert!(!roadmap_connects(&given, seed), "{seed}");
-                proved += 1;
-            }
-            PathOutcome::Unknown { .. } => assert!(!roadmap_connects(&given, seed), "{seed}"),
+/// Solves a problem and compares with a roadmap: what that connects is solved, and what is proved to
+/// be disconnected it does not connect.
+fn compared(given: &Random, seed: u64) -> PathOutcome {
+    let problem = problem(&given.cones, given.from, given.to);
+    let search = find(&problem);
+    match &search.outcome {
+        PathOutcome::Found { attitudes, turn } => keeps_clear(&problem, attitudes, *turn),
+        PathOutcome::Disconnected | PathOutcome::Unknown { .. } => {
+            assert!(!roadmap_connects(given, seed), "{seed}");
         }
-        // One refusal over attitudes may use all cells, with those of two proofs.
-        assert!(search.cells <= 160_000, "{seed}: {}", search.cells);
     }
-    assert!(solved > 80, "{solved} {proved}");
+    // One refusal over attitudes may use all cells, with those of the proofs.
+    assert!(search.cells <= 160_000, "{seed}: {}", search.cells);
+    search.outcome
+}
+
+#[test]
+fn what_a_random_roadmap_connects_is_solved() {
+    let mut solved = 0;
+    for seed in 0..90 {
+        let boresights = 1 + usize::try_from(seed % 3).expect("below 3");
+        let outcome = compared(&problem_of(seed, boresights), seed);
+        solved += usize::from(matches!(outcome, PathOutcome::Found { .. }));
+    }
+    assert!(solved > 80, "{solved}");
+}
+
+#[test]
+fn crowded_problems_are_solved_or_proved_to_have_no_path() {
+    let (mut solved, mut proved) = (0, 0);
+    for seed in 0..40 {
+        let mut random = SplitMix::member(64, seed);
+        let axes = [unit_vector(&mut random), unit_vector(&mut random)];
+        let boresights = 1 + random.below(2);
+        let given = loop {
+            let cones: Vec<_> = (0..18 * boresights)
+                .map(|i| {
+                    let half_angle = 25.0 + 25.0 * uniform(&mut random);
+                    cone(axes[i % boresights], unit_vector(&mut random), half_angle)
+                })
+                .collect();
+            let (from, to) = (attitude(&mut random), attitude(&mut random));
+            if [from, to].iter().all(|q| clearance(&cones, q) >= 0.0) {
+                break Random { cones, from, to };
+            }
+        };
+        match compared(&given, seed) {
+            PathOutcome::Found { .. } => solved += 1,
+            PathOutcome::Disconnected => proved += 1,
+            PathOutcome::Unknown { .. } => {}
+        }
+    }
+    assert!(solved > 8 && proved > 8, "{solved} {proved}");
 }
 
 #[test]

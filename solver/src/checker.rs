@@ -23,7 +23,6 @@ mod series;
 mod timeline;
 mod visits;
 
-pub(crate) use cones::ForbiddenCone;
 pub(crate) use leg::{LegEnd, leg_faults};
 pub use propagated::PropagatedMotion;
 pub(crate) use ramped::{StepPart, TorqueRamp, propagate_ramps};

@@ -5,10 +5,9 @@ use super::extremum::{critical_points, root};
 use super::integrator::IntegrationStep;
 use super::number_format::figure;
 use super::visits::Visit;
-use crate::model::cone::{Applies, Cone, Side};
+use crate::model::cone::{Applies, Cone, ForbiddenCone, Side};
 use crate::model::plan::{ConeClearance, Intrusion};
 use crate::model::problem::{Code, Problem};
-use nalgebra::Vector3;
 
 /// Depth, rad, up to which a boresight inside a cone is no violation: the attitude tolerance.
 const TOUCH: f64 = super::ATTITUDE_TOLERANCE;
@@ -16,35 +15,11 @@ const TOUCH: f64 = super::ATTITUDE_TOLERANCE;
 /// Greatest number of time spans that a message lists.
 const MAX_SPANS: usize = 5;
 
-/// A cone that a body axis must stay out of.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ForbiddenCone {
-    /// Unit vector in body axes.
-    pub(crate) axis: Vector3<f64>,
-    /// Unit vector along the cone's axis, in the frame of the attitudes.
-    pub(crate) direction: Vector3<f64>,
-    /// Half angle, rad.
-    pub(crate) half_angle: f64,
-}
-
-impl From<&Cone> for ForbiddenCone {
-    fn from(cone: &Cone) -> Self {
-        let (direction, half_angle) = cone.forbidden();
-        Self {
-            axis: cone.axis,
-            direction,
-            half_angle,
-        }
-    }
-}
-
-impl ForbiddenCone {
-    /// Angle between the axis and the cone's surface, rad; negative inside.
-    fn clearance(&self, q: &QuaternionComponents) -> f64 {
-        let boresight = to_reference(q, &self.axis);
-        let sine = boresight.cross(&self.direction).norm();
-        sine.atan2(boresight.dot(&self.direction)) - self.half_angle
-    }
+/// Angle between the axis and the cone's surface, rad; negative inside.
+fn clearance(cone: &ForbiddenCone, q: &QuaternionComponents) -> f64 {
+    let boresight = to_reference(q, &cone.axis);
+    let sine = boresight.cross(&cone.direction).norm();
+    sine.atan2(boresight.dot(&cone.direction)) - cone.half_angle
 }
 
 /// A time span inside a cone.
@@ -85,7 +60,7 @@ impl<'a> ConeObserver<'a> {
         };
         let first = during.map_or(Some(0.0), |spans| Some(spans.first()?[0]));
         if first.is_some_and(|first| first <= 0.0) {
-            observer.note(cone.clearance(start), 0.0, 0.0);
+            observer.note(clearance(&cone, start), 0.0, 0.0);
         }
         observer
     }
@@ -107,7 +82,7 @@ impl<'a> ConeObserver<'a> {
     /// Observes part of a step, given by its grid.
     fn observe_at(&mut self, step: &IntegrationStep<'_>, grid: &[f64]) {
         let cone = self.cone;
-        let clearance = |s: f64| cone.clearance(&step.motion.quaternion(s));
+        let clearance = |s: f64| clearance(&cone, &step.motion.quaternion(s));
         // Derivative of the cosine of the angle between boresight and the cone's axis.
         let slope = |s: f64| {
             let turn = step.motion.rate(s).cross(&cone.axis);
@@ -227,7 +202,7 @@ impl<'a> ConeObservers<'a> {
     ) -> Self {
         let observer = |cone: &'a Cone| {
             let during = (cone.applies == Applies::AtTargets).then_some(stays);
-            (cone, ConeObserver::new(cone.into(), during, start))
+            (cone, ConeObserver::new(cone.forbidden(), during, start))
         };
         Self {
             observed: cones.iter().map(observer).collect(),

@@ -1,11 +1,12 @@
 //! Verification of one leg, from any state instead of the start of a scenario.
 
-use super::cones::{ConeObserver, ForbiddenCone};
+use super::cones::ConeObserver;
 use super::dynamics::{Body, QuaternionComponents, Snapshot, conjugate, product};
 use super::integrator::{STEP_TOLERANCE, integrate};
 use super::limits::{self, LimitObserver};
 use super::number_format::figure;
 use super::{ATTITUDE_TOLERANCE, RATE_TOLERANCE, timeline};
+use crate::model::cone::ForbiddenCone;
 use crate::model::plan::{Flight, State};
 use crate::model::scenario::Scenario;
 

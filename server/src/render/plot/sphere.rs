@@ -4,7 +4,7 @@ use super::canvas::{ALARM, Canvas, FAINT, Ink, LINE, Pen, PlotArea, SERIES};
 use super::view::DrawnBoresight;
 use super::written::{WrittenPlan, WrittenState};
 use nalgebra::Vector3;
-use slewplan_solver::model::cone::Cone;
+use slewplan_solver::model::cone::{Cone, ForbiddenCone};
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ReferenceFrame;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -180,7 +180,11 @@ fn axes(canvas: &mut Canvas, view: &SphereView) {
 
 /// The part of the sphere excluded by a cone.
 fn cap(canvas: &mut Canvas, view: &SphereView, cone: &Cone) {
-    let (direction, half_angle) = cone.forbidden();
+    let ForbiddenCone {
+        direction,
+        half_angle,
+        ..
+    } = cone.forbidden();
     let (rise, flat) = half_angle.sin_cos();
     // Any two directions perpendicular to the axis.
     let helper = if direction.z.abs() < 0.9 {

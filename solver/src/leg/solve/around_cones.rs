@@ -8,6 +8,7 @@
 use super::arrival::Arrival;
 use super::eigenaxis::Perturbation;
 use super::{LegOutcome, LegProblem};
+use crate::leg::clear_path::{self, PathOutcome, PathProblem};
 use crate::leg::detour::guess::{along, expected_duration};
 use crate::leg::detour::{AttitudePath, Side};
 use crate::leg::multiphase::{LegSolution, attitudes_inside, solve_faster};
@@ -44,7 +45,13 @@ pub(super) fn solve_with_cones(
     let mut best = LegSolution::nowhere();
     let mut solves = free.solves;
     let least = free.solution.duration();
-    for path in promising(leg.dynamics, paths(&free_leg, leg.dynamics, &free.solution)) {
+    let mut paths = pushed_out(&free_leg, leg.dynamics, &free.solution);
+    if paths.len() != 2 {
+        // Of two ways around one cone one is the best. Around several, or where none was found, a
+        // search knows more.
+        paths.extend(searched(leg));
+    }
+    for path in promising(leg.dynamics, paths) {
         let guess = along(leg.dynamics, &path, leg.null, leg.intervals());
         let (waypoints, intervals) = (leg.waypoints(&guess), [guess.intervals()]);
         let most = best.duration();
@@ -91,8 +98,26 @@ pub(crate) fn path_of(dynamics: &Dynamics, profile: &Profile) -> AttitudePath {
     AttitudePath::through(profile.attitudes.first().copied().into_iter().chain(inside))
 }
 
-/// Clear paths of a leg, the more promising ones first.
-fn paths(free_leg: &LegProblem<'_>, dynamics: &Dynamics, free: &LegSolution) -> Vec<AttitudePath> {
+/// The shortest path that a search over attitudes finds.
+fn searched(leg: &LegProblem<'_>) -> Option<AttitudePath> {
+    let search = clear_path::find(&PathProblem {
+        cones: &leg.dynamics.cones,
+        from: leg.from.attitude,
+        to: leg.to.attitude,
+        signed: leg.arrival == Arrival::Quaternion,
+    });
+    match search.outcome {
+        PathOutcome::Found { attitudes, .. } => Some(AttitudePath::through(attitudes)),
+        PathOutcome::Disconnected | PathOutcome::Unknown { .. } => None,
+    }
+}
+
+/// The paths of the motion without cones and of the long way round, pushed out of the cones.
+fn pushed_out(
+    free_leg: &LegProblem<'_>,
+    dynamics: &Dynamics,
+    free: &LegSolution,
+) -> Vec<AttitudePath> {
     let mut sources = Vec::new();
     if free.duration().is_some() {
         sources.push(path_of(dynamics, &free.profile));

@@ -3,15 +3,12 @@
 use super::canonical::CanonicalLeg;
 use super::places::Places;
 use super::torques::{MIN_PIECE_SHARE, torques};
-use crate::checker::{ATTITUDE_TOLERANCE, ForbiddenCone, LegEnd, leg_faults};
+use crate::checker::{ATTITUDE_TOLERANCE, LegEnd, leg_faults};
 use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::model::plan::{Control, Flight, State};
 use crate::model::scenario::RateCondition;
 use nalgebra::{DVector, Vector3};
-
-/// Legs are solved and verified without cones.
-const NO_CONES: &[ForbiddenCone] = &[];
 
 /// Whether the checker integrates a solved leg from its begin to the attitude and rates of its end
 /// within all limits.
@@ -37,7 +34,13 @@ pub(super) fn flight_faults(
         }),
     };
     let flight = flight(places, profile);
-    leg_faults(places.scenario, &begin, &flight, &arrival, NO_CONES)
+    leg_faults(
+        places.scenario,
+        &begin,
+        &flight,
+        &arrival,
+        &leg.dynamics.cones,
+    )
 }
 
 /// Intervals whose end node is not reached from their begin node under the leg's torques: every
@@ -70,7 +73,7 @@ pub(super) fn node_faults(
             &begin,
             &flight(places, &part),
             &arrival,
-            NO_CONES,
+            &leg.dynamics.cones,
         );
         let located = |fault: String| format!("between nodes {k} and {}: {fault}", k + 1);
         faults.extend(found.into_iter().map(located));

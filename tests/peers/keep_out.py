@@ -143,8 +143,9 @@ def compare(suite, runs, peers):
     )
     yield f"worst ratio {max(ratios):.5f} <= {WORST_RATIO}", max(ratios) <= WORST_RATIO
     yield f"median ratio {np.median(ratios):.6f} <= {MEDIAN_RATIO}", np.median(ratios) <= MEDIAN_RATIO
-    speed = solve[0] / process[0]
-    yield f"times as fast as one solve {speed:.1f} >= {LEAST_SPEED}", speed >= LEAST_SPEED
+    # What else the machine did, perhaps when the peers' results were kept, counts for neither.
+    speed = solve[1] / process[1]
+    yield f"times as fast as one solve, by processors {speed:.1f} >= {LEAST_SPEED}", speed >= LEAST_SPEED
 
 
 def main():

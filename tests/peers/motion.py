@@ -7,7 +7,7 @@ and cone is a cubic through its values and derivatives, the extremes of which ar
 
 import numpy as np
 
-from cones import attitude, product, rotated, unit
+from cones import attitude, rotated, unit
 
 # Most that the attitude turns, or the rate is carried round by the momentum, in a step, rad.
 MOST_TURN = 0.01
@@ -24,13 +24,20 @@ class Craft:
         self.inertia = np.array(spacecraft["inertia_kg_m2"], float)
         self.body = self.inertia - (self.axes * self.spin) @ self.axes.T
         self.inverse = np.linalg.inv(self.body)
+        self.least_moment = np.linalg.eigvalsh(self.body)[0]
 
     def slope(self, state, torque):
-        q, rate, momenta = state[:4], state[4:7], state[7:]
-        held = self.body @ rate + self.axes @ momenta
-        turning = 0.5 * product(q, np.append(rate, 0.0))
-        speeding = self.inverse @ (-np.cross(rate, held) - self.axes @ torque)
-        return np.concatenate([turning, speeding, torque])
+        x, y, z, w, a, b, c = state[:7].tolist()
+        d, e, f = (self.body @ state[4:7] + self.axes @ state[7:]).tolist()
+        # Half the Hamilton product of attitude and rate, and the rate across the momentum.
+        turning = (
+            (w * a + y * c - z * b) / 2,
+            (w * b + z * a - x * c) / 2,
+            (w * c + x * b - y * a) / 2,
+            -(x * a + y * b + z * c) / 2,
+        )
+        across = np.array((b * f - c * e, c * d - a * f, a * e - b * d))
+        return np.concatenate((turning, self.inverse @ (-across - self.axes @ torque), torque))
 
     def step(self, state, torque, length):
         a = self.slope(state, torque)
@@ -42,7 +49,7 @@ class Craft:
     def pace(self, state):
         """How fast the attitude or the rate's direction turns at most nearby, rad/s."""
         held = self.body @ state[4:7] + self.axes @ state[7:]
-        return np.linalg.norm(state[4:7]) + np.linalg.norm(held) / np.linalg.eigvalsh(self.body)[0]
+        return np.linalg.norm(state[4:7]) + np.linalg.norm(held) / self.least_moment
 
 
 def start_of(scenario, craft):

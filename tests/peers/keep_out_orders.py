@@ -46,7 +46,7 @@ def place(generator, middle, name=None):
 
 def posed(generator, number):
     """A tour whose turns about the eigenaxes are in the way of its cones, or none."""
-    craft, speeds = spacecraft(generator, 3 + number % 2, number % 4 >= 2)
+    craft, speeds = spacecraft(generator, 3 + number % 2, number % 4 in (1, 2))
     axis = rounded(unit(generator.normal(size=3)))
     craft["boresights"] = [{"name": "camera", "axis": axis}]
     middle = unit(generator.normal(size=4))
@@ -62,7 +62,7 @@ def posed(generator, number):
     for _ in range(200):
         pair = attitudes[generator.permutation(len(attitudes))[:2]]
         path = between(*pair, 100)
-        made = [cone(generator, ("camera", unit(axis)), path, False) for _ in range(1 + number % 2)]
+        made = [cone(generator, ("camera", unit(axis)), path, False) for _ in range(1 + (number // 4) % 2)]
         if None in made:
             continue
         scenario["keep_out"] = made

@@ -66,13 +66,16 @@ class Craft:
 
 
 class Model:
-    """The nonlinear program of slews of one spacecraft from rest to rest."""
+    """The nonlinear program of slews of one spacecraft from rest to rest.
 
-    def __init__(self, craft, angle, intervals=INTERVALS):
+    `margins` makes of an attitude what must not be negative, at the nodes and half-way between them.
+    """
+
+    def __init__(self, craft, angle, intervals=INTERVALS, margins=None):
         self.craft, count, self.intervals = craft, len(craft.spin), intervals
         self.time, self.rate = craft.units(angle)
         self.momentum = craft.spin * craft.speed
-        step = self.integrator(count)
+        step = self.step = self.integrator(count)
         start, goal = ca.MX.sym("start", 7 + count), ca.MX.sym("goal", 4)
         duration = ca.MX.sym("duration")
         variables, low, high = [duration], [1e-3], [np.inf]
@@ -90,6 +93,8 @@ class Model:
             low += [-1.0] * count
             high += [1.0] * count
             arrived = step(state, torque, duration / intervals)
+            if margins:
+                require(margins(step(state, torque, duration / intervals / 2)[:4]), 0.0, np.inf)
             state = ca.MX.sym(f"state{k}", 7 + count)
             variables.append(state)
             caps = craft.caps / self.rate
@@ -97,6 +102,8 @@ class Model:
             high += [np.inf] * 4 + list(caps) + [np.inf] * count
             require(arrived - state, 0.0, 0.0)
             require(self.wheel_speed(state), -1.0, 1.0)
+            if margins and k < intervals - 1:
+                require(margins(state[:4]), 0.0, np.inf)
             if craft.norm < np.inf:
                 require(ca.sumsqr(state[4:7]), 0.0, (craft.norm / self.rate) ** 2)
         missed = product(conjugate(goal), state[:4])

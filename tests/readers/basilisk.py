@@ -7,7 +7,9 @@ Installs Basilisk (`bsk`) from PyPI first where it is not there (READERS_BASILIS
 place). For every scenario the plan's torques drive Basilisk's spacecraft with its reaction wheel
 effector, from the scenario's start on; nothing is put right on the way. At the end and at every
 state of the plan, attitude, rate and wheel speeds are compared. The same plan as waypoints goes
-through Basilisk's `waypointReference`. SLEWPLAN names a built binary.
+through Basilisk's `waypointReference`. Without fixtures, experiment C with a Sun that a camera must not
+see is flown too, and the attitudes that Basilisk's spacecraft reports on the way have to be clear of it.
+SLEWPLAN names a built binary.
 """
 
 import sys
@@ -26,6 +28,10 @@ SCENARIOS = [
 STEP_NS = 50_000_000
 # Times at which waypoints are compared.
 LOOKS = 200
+# The Sun of experiment C: the plan without it comes within a degree of its centre.
+CAMERA, SUN, HALF_ANGLE_DEG = [1.0, 0.0, 0.0], [-0.822, -0.481, 0.305], 30.0
+# Deepest intrusion, rad: the promise, and as much again for the time between two reports.
+INTRUSION = 2e-6
 BASILISK = Environment("basilisk", ("bsk==2.12.1",), ("Basilisk",), "READERS_BASILISK_VENV")
 
 
@@ -72,7 +78,7 @@ class Craft:
         self.wheels.rwMotorCmdInMsg.subscribeTo(self.command)
         self.sim.AddModelToTask("task", self.wheels)
         self.sim.AddModelToTask("task", self.body)
-        self.now = 0
+        self.now, self.reports = 0, []
         self.drive([0.0] * len(craft["wheels"]))
         self.sim.InitializeSimulation()
 
@@ -90,6 +96,7 @@ class Craft:
             self.wheels.UpdateState(self.now)
             self.now = begin + (until - begin) * part // parts
             self.body.UpdateState(self.now)
+            self.reports.append(self.body.scStateOutMsg.read().sigma_BN)
 
     def state(self):
         """Attitude as modified Rodrigues parameters, rates rad/s, wheel speeds rad/s."""
@@ -135,7 +142,30 @@ def flown(files, judge, name):
         judge.compare(f"{name}: attitude {label}", figures[0], 1e-4, "rad")
         judge.compare(f"{name}: body rate {label}", figures[1], 1e-6, "rad/s")
         judge.compare(f"{name}: wheel speed {label}", figures[2], 1e-3, "of the limit")
-    return craft.state()[0]
+    return craft
+
+
+def off_the_sun(sigma):
+    """Angle between the camera and the cone's surface, rad."""
+    seen = rbk.MRP2C(np.array(sigma)) @ (np.array(SUN) / np.linalg.norm(SUN))
+    return np.arctan2(np.linalg.norm(np.cross(seen, CAMERA)), seen @ CAMERA) - np.radians(HALF_ANGLE_DEG)
+
+
+def sunlit(program, judge):
+    """Experiment C with a Sun: what Basilisk reports on the way."""
+    name, base = "olivares-c with a Sun", "olivares-c"
+    without = Files.of(program, base)
+    craft = without.model()["spacecraft"] | {"boresights": [{"name": "camera", "axis": CAMERA}]}
+    cone = {"boresight": "camera", "direction": SUN, "half_angle_deg": HALF_ANGLE_DEG}
+    rows = [state["quaternion"] for state in without.plan()["trajectory"]["states"]]
+    nearest = min(off_the_sun(rbk.EP2MRP(scalar_first(row))) for row in rows)
+    judge.demand(f"{name}: in the way of the plan without it", nearest < -np.radians(5))
+    files = Files.of(program, base, {"spacecraft": craft, "keep_out": [cone]})
+    reports = flown(files, judge, name).reports
+    nearest = min(map(off_the_sun, reports))
+    judge.demand(f"{name}: {len(reports)} reports", len(reports) > files.plan()["total_time_s"] * 1e9 / STEP_NS)
+    judge.compare(f"{name}: deepest reported intrusion", max(0.0, -nearest), INTRUSION, "rad")
+    print(f"     {name}: clear by {np.degrees(nearest):.6f} deg", flush=True)
 
 
 def referenced(files, judge, name):
@@ -173,10 +203,12 @@ def main():
     program, judge = str(binary()), Judge()
     for name in sys.argv[1:] or SCENARIOS:
         files = Files.of(program, name)
-        sigma = flown(files, judge, name)
+        sigma = flown(files, judge, name).state()[0]
         referenced(files, judge, name)
         if name == "quarter-turn":
             golden(judge, sigma)
+    if not sys.argv[1:]:
+        sunlit(program, judge)
     judge.end()
 
 

@@ -23,8 +23,13 @@ class Files:
     folder: tempfile.TemporaryDirectory
 
     @classmethod
-    def of(cls, program, fixture):
+    def of(cls, program, fixture, changes=None):
+        """Of a committed scenario, some members of which are replaced."""
         files = cls(program, FIXTURES / f"{fixture}.json", tempfile.TemporaryDirectory())
+        if changes:
+            changed = files.model() | changes
+            files.scenario = files.path("scenario.json")
+            files.scenario.write_text(json.dumps(changed), encoding="utf-8")
         ran = files._run("solve", files.scenario, "-o", files.path("plan.json"), "--progress", "none")
         if ran not in PLANNED:
             sys.exit(f"slewplan solve {fixture} ended with code {ran}")

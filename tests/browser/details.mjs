@@ -241,7 +241,7 @@ async function fingers({ browser, service, must }) {
       const lines = await page.locator(".timelines .u-cursor-x").evaluateAll((all) => all.map((line) => line.getBoundingClientRect().right));
       const marker = await page.locator(".lane-marker").evaluate((line) => line.getBoundingClientRect().left);
       const wanted = box.x + 0.6 * box.width;
-      check(lines.length === 3 && [...lines, marker].every((x) => Math.abs(x - wanted) < 3), [...lines, marker, wanted].join());
+      check(lines.length === 4 && [...lines, marker].every((x) => Math.abs(x - wanted) < 3), [...lines, marker, wanted].join());
       const text = await page.locator(".moment").textContent();
       check(!text.startsWith("0.0 s"), text);
       return text;

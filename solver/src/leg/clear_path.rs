@@ -107,14 +107,9 @@ pub(crate) struct PathProblem<'a> {
 /// What a search for a path found.
 #[derive(Debug, Clone)]
 pub(crate) enum PathOutcome {
-    /// Attitudes in steps of at most three degrees, with continuous signs, and the sum of the
-    /// steps, rad. All arcs between them are clear, as far as the ends are.
-    Found {
-        /// The attitudes, both ends included.
-        attitudes: Vec<Attitude>,
-        /// Angle of rotation along the path, rad.
-        turn: f64,
-    },
+    /// Attitudes in steps of at most three degrees, both ends included, with continuous signs. All arcs
+    /// between them are clear, as far as the ends are.
+    Found(Vec<Attitude>),
     /// It is proved that there is no path.
     Disconnected,
     /// Not found.
@@ -233,10 +228,7 @@ fn not_found(outcome: PathOutcome, cells: usize) -> PathSearch {
 fn found(path: &Path<'_, 4, Quadratic>, cells: usize) -> PathSearch {
     let attitudes = path.points.iter().copied();
     PathSearch {
-        outcome: PathOutcome::Found {
-            attitudes: attitudes.filter_map(Attitude::from_xyzw).collect(),
-            turn: path.turn(),
-        },
+        outcome: PathOutcome::Found(attitudes.filter_map(Attitude::from_xyzw).collect()),
         cells,
     }
 }

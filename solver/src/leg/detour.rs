@@ -6,6 +6,7 @@
 
 pub(crate) mod guess;
 
+use crate::math::rounding::parts_of;
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
 use nalgebra::Vector3;
@@ -13,8 +14,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Clearance, rad, of a path that was pushed out, where there is room.
 const MARGIN: f64 = 0.03;
-/// Longest step of a path, rad.
+/// Longest step of a path, rad, and the most steps of half a turn and less.
 const STEP: f64 = 0.05;
+const MAX_STEPS: usize = 130;
 /// Share of a way around a cone over which an end inside the margin reaches it.
 const RISE: f64 = 0.25;
 /// Times that all cones are visited: leaving one may lead into another.
@@ -47,9 +49,9 @@ impl AttitudePath {
             };
             let next = attitude.nearest_sign(&last);
             let turn = last.signed_turn_to(&next);
-            let steps = (turn.norm() / STEP).ceil().max(1.0);
-            for step in 1..steps as usize {
-                path.push(last.retract(turn * (step as f64 / steps)));
+            let steps = parts_of(turn.norm(), STEP, MAX_STEPS).max(1);
+            for step in 1..steps {
+                path.push(last.retract(turn * (step as f64 / steps as f64)));
             }
             path.push(next);
         }

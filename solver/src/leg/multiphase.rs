@@ -29,7 +29,7 @@ pub(crate) use solution::LegSolution;
 
 /// Ratio of a rough duration to that of a converged motion above which its refinement will not be
 /// faster.
-const MAX_ROUGH: f64 = 1.05;
+const MAX_ROUGH: f64 = 1.2;
 
 /// Limit of the rounds of the proximal point method, and the relative gain that ends it.
 const POLISH_ROUNDS: usize = 6;

@@ -16,6 +16,18 @@ pub(crate) fn rounded(number: f64, scale: f64) -> f64 {
     (number / size * RESOLUTION).round() / RESOLUTION * size + 0.0
 }
 
+/// Turn, rad, that rounding may add without adding a part.
+const SAME_TURN: f64 = 1e-9;
+
+/// Into how many parts a turn is cut so that none is longer than `longest`; at most `most`.
+pub(crate) fn parts_of(turn: f64, longest: f64, most: usize) -> usize {
+    if longest == f64::INFINITY {
+        return 0;
+    }
+    let enough = |parts: &usize| *parts as f64 * longest >= turn - SAME_TURN;
+    (0..most).find(enough).unwrap_or(most)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -257,6 +257,11 @@ pub enum Code {
         the conditions at the ends."
     )]
     SlewNotSolved,
+    /// No way around the cones was found between two attitudes, or there is none.
+    #[strum(
+        message = "Narrow the cones, move an attitude, or put a target where the way leads around."
+    )]
+    NoClearPath,
     /// The solve was stopped, by its time limit or on request, before there was a first plan.
     #[strum(message = "Allow more time, or plan fewer targets at once.")]
     StoppedWithoutPlan,

@@ -23,17 +23,18 @@ mod tests;
 mod torques;
 mod tour_bound;
 mod tours;
+mod unsolved;
 mod verified;
 
 use crate::model::plan::Outcome;
-use crate::model::problem::{Code, Problem};
+use crate::model::problem::Problem;
 use crate::model::scenario::{Scenario, cone_problems};
 use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
 use crate::tour::order::{Place, SearchSettings, SolvedOrder, exhaustive, search};
-use crate::wheels::envelope::{OutsideEnvelope, momentum_problems, outside_envelope};
+use crate::wheels::envelope::momentum_problems;
 use first_tour::{first_order, first_tour};
 use legs::LegSolver;
 use places::Places;
@@ -42,6 +43,7 @@ use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
 use tour_bound::tour_bound;
 use tours::Tours;
+use unsolved::unsolved;
 
 pub use certificate::{
     CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict,
@@ -156,7 +158,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
                 if stop.is_set() {
                     Outcome::StoppedEmpty
                 } else {
-                    Outcome::Failed(unsolved(&tours))
+                    unsolved(&tours)
                 }
             }),
     }
@@ -298,60 +300,4 @@ fn tour_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
         .filter(|(from, to)| from != to && *from != Place::End && *to != Place::Start)
         .filter(|(from, to)| alone || !(*from == Place::Start && *to == Place::End))
         .collect()
-}
-
-/// Problems for a scenario no order of which has a solution: the legs that were not solved.
-fn unsolved(tours: &Tours<'_>) -> Vec<Problem> {
-    let all = tours.places.all();
-    let mut problems: Vec<_> = all
-        .iter()
-        .flat_map(|from| all.iter().map(move |to| (*from, *to)))
-        .filter_map(|(from, to)| {
-            let leg = &tours.free_legs()?.get(from, to)?.leg;
-            leg.solution.duration().is_none().then(|| {
-                let reason = outside_on_turn(tours, from, to).map(|place| format!("; {place}"));
-                let message = format!(
-                    "the slew from {} to {} ended with status {} after {} iterations, its \
-                     conditions violated by {:.1e} (scaled){}",
-                    tours.places.name(from),
-                    tours.places.name(to),
-                    leg.solution.status,
-                    leg.solution.iterations,
-                    leg.solution.infeasibility,
-                    reason.unwrap_or_default(),
-                );
-                Problem::new(pointer_of(to), Code::SlewNotSolved, message, SLEW_HINT)
-            })
-        })
-        .collect();
-    if problems.is_empty() {
-        let message = "every leg has a solution, but no whole order converged";
-        problems.push(Problem::new(
-            "/targets",
-            Code::SlewNotSolved,
-            message,
-            SLEW_HINT,
-        ));
-    }
-    problems
-}
-
-/// The point of the eigenaxis turn between two places at which the momentum lies outside the
-/// envelope of the wheels, if there is one.
-fn outside_on_turn(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
-    let places = &tours.places;
-    let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);
-    let turn = from.signed_turn_to(&places.arrival.signed(&to, &from));
-    outside_envelope(places.scenario, &from, turn)
-}
-
-const SLEW_HINT: &str =
-    "check that the wheels can hold the stored momentum along the way, or relax the conditions";
-
-fn pointer_of(place: Place) -> String {
-    match place {
-        Place::Start => "/start".into(),
-        Place::Target(i) => format!("/targets/{i}"),
-        Place::End => "/end".into(),
-    }
 }

@@ -7,6 +7,7 @@
 use super::AttitudePath;
 use crate::leg::profile::Profile;
 use crate::math::bang_coast_bang::BangCoastBang;
+use crate::math::rounding::parts_of;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use nalgebra::{DVector, Vector3};
@@ -15,6 +16,8 @@ use nalgebra::{DVector, Vector3};
 const NEAR: f64 = 0.2;
 /// Longest turn over an interval near a cone, rad.
 const SHORT_TURN: f64 = 0.06;
+/// Most parts of an even interval.
+const MAX_PARTS: usize = 40;
 /// How much longer than in the guess an interval may become, near a cone and elsewhere.
 const STRETCH: [f64; 2] = [1.4, 3.0];
 
@@ -109,12 +112,12 @@ fn node_times(
         let inside = (0..=4).map(|part| track.at(from + (to - from) * f64::from(part) / 4.0).0);
         let near = inside.into_iter().any(|q| is_near(dynamics, &q));
         let parts = if near {
-            ((to - from) / SHORT_TURN).ceil().max(1.0)
+            parts_of(to - from, SHORT_TURN, MAX_PARTS).max(1)
         } else {
-            1.0
+            1
         };
-        for part in 1..=parts as usize {
-            times.push(begin + even * part as f64 / parts);
+        for part in 1..=parts {
+            times.push(begin + even * part as f64 / parts as f64);
         }
     }
     times

@@ -1,5 +1,6 @@
 //! How finely legs are solved: the number of intervals.
 
+use crate::math::rounding::parts_of;
 use crate::model::dynamics::Dynamics;
 use crate::model::spec::Accuracy;
 
@@ -47,15 +48,6 @@ impl Resolution {
     }
 }
 
-/// Into how many parts a turn is cut so that none is longer than `longest`; at most `most`.
-pub(super) fn parts_of(turn: f64, longest: f64, most: usize) -> usize {
-    if longest == f64::INFINITY {
-        return 0;
-    }
-    let enough = |parts: &usize| *parts as f64 * longest >= turn - SAME_TURN;
-    (0..most).find(enough).unwrap_or(most)
-}
-
 /// Intervals of a leg with three wheels and without momentum: more of them shorten legs by less
 /// than 1e-4 of the duration.
 const MIN_INTERVALS: usize = 12;
@@ -68,7 +60,5 @@ const WITH_MOMENTUM: usize = 6;
 const MAX_STRAY: f64 = 1.1e-2;
 /// Angle of the fastest motion relative to that about the eigenaxis, approximately.
 pub(super) const DETOUR: f64 = 1.3;
-/// Turn, rad, that rounding may add without adding a part.
-const SAME_TURN: f64 = 1e-9;
 /// Most intervals added for rate limits. Momentum that would need more is handled by reserves.
 const MAX_ALONG_LIMITS: usize = 240;

@@ -11,11 +11,11 @@
 
 use super::LegProblem;
 use super::centred::centred;
-use super::resolution::parts_of;
 use crate::leg::kinematics::{TurnInputs, exact_turn};
 use crate::leg::multiphase::{LegSolution, keeps_limits_inside};
 use crate::leg::profile::Profile;
 use crate::math::bang_coast_bang::BangCoastBang;
+use crate::math::rounding::parts_of;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;

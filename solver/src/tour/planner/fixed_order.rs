@@ -5,7 +5,8 @@ use super::places::Places;
 use super::plan_builder::PlanBuilder;
 use super::tour_bound::route_bound;
 use super::tours::Tours;
-use super::{Run, feasibility_problems, limited, unsolved};
+use super::unsolved::unsolved;
+use super::{Run, feasibility_problems, limited};
 use crate::model::plan::Outcome;
 use crate::model::scenario::Scenario;
 use crate::tour::legs::LegKind;
@@ -99,7 +100,7 @@ fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: R
             builder.fixed_order_outcome(&solved, lower_bound_s)
         }
         TourEvaluation::Stopped => Outcome::StoppedEmpty,
-        TourEvaluation::Unresolved => Outcome::Failed(unsolved(&tours)),
+        TourEvaluation::Unresolved => unsolved(&tours),
     }
 }
 

@@ -7,6 +7,7 @@ use super::guesses::constructed;
 use super::history::{History, search_work};
 use super::tables::SolvedTable;
 use super::tours::Tours;
+use super::unsolved::SLEW_HINT;
 use crate::checker;
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
@@ -423,7 +424,7 @@ fn search_warnings(
         let message = format!(
             "the programs of {unresolved} orders found no solution; these orders are not ruled out"
         );
-        Problem::new("/targets", Code::SlewNotSolved, message, super::SLEW_HINT)
+        Problem::new("/targets", Code::SlewNotSolved, message, SLEW_HINT)
     });
     contradicted.into_iter().chain(unresolved)
 }

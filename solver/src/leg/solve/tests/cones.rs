@@ -35,23 +35,17 @@ fn around(
     };
     let outcome = solve(&leg, None, &|| None);
     let duration = outcome.solution.duration().expect("the leg converges");
-    println!(
-        "{duration} {} {} {}",
-        outcome.solves,
-        outcome.solution.profile.intervals(),
-        outcome.solution.iterations
-    );
     [
         duration,
         path_of(&dynamics, &outcome.solution.profile).depth(cones),
     ]
 }
 
-/// CasADi with IPOPT, best of six starts, 115.19 s; without the cone 113.39 s.
+/// `CasADi` with IPOPT, best of twelve starts, 115.187 s; without the cone 113.39 s.
 #[test]
 fn a_camera_passes_a_bright_body() {
     let quarter = Vector3::z() * std::f64::consts::FRAC_PI_2;
-    let bright = cone([0.7071, 0.7071, 0.05], 25.0);
+    let bright = cone([1.0, 1.0, 0.0707], 25.0);
     let free = around(|_| {}, quarter, &[cone([-1.0, 0.0, 0.0], 25.0)]);
     assert!((free[0] - 113.39).abs() < 0.02, "{free:?}");
     let [duration, depth] = around(|_| {}, quarter, &[bright]);

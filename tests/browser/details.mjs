@@ -210,7 +210,10 @@ async function unitsAndColumns({ browser, service, must }) {
     check(texts.includes("Body rates deg/s") && texts.includes("Wheel torques mN m"), texts);
     const plan = await (await fetch(`${service.address}/v1/plans/${id}/result`)).json();
     await page.locator("summary", { hasText: "Samples as a table" }).click();
-    const cells = await page.getByRole("region", { name: "Samples of the trajectory" }).locator("tbody tr").nth(1).locator("td").allTextContents();
+    const row = page.getByRole("region", { name: "Samples of the trajectory" }).locator("tbody tr").nth(1);
+    // The table is made when it is opened; reading texts does not wait for it.
+    await row.waitFor();
+    const cells = await row.locator("td").allTextContents();
     const number = (text) => Number(text.replace("−", "-"));
     const [state, control] = [plan.trajectory.states[1], plan.trajectory.controls[0]];
     check(Math.abs(number(cells[1]) - (state.body_rate_rad_s[0] * 180) / Math.PI) < 1e-4, cells.join());

@@ -84,8 +84,7 @@ fn promising(dynamics: &Dynamics, paths: Vec<AttitudePath>) -> impl Iterator<Ite
 
 /// Whether a motion stays out of all cones, between its nodes too.
 pub(crate) fn is_clear(dynamics: &Dynamics, profile: &Profile) -> bool {
-    let path = path_of(dynamics, profile);
-    path.depth(&dynamics.cones) <= CLEAR
+    dynamics.cones.is_empty() || path_of(dynamics, profile).depth(&dynamics.cones) <= CLEAR
 }
 
 /// The attitudes of a motion, between its nodes too.

@@ -71,21 +71,17 @@ pub(super) fn joined(
         let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
         let slew = places.slew(&from, &to);
         let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
+        let solved = |kind| {
+            let leg = legs.leg(kind, pair[0], pair[1]);
+            leg.duration().map(|_| leg.profile)
+        };
         let leg = match kind {
             InitialGuess::Shorter | InitialGuess::Eigenaxes => perturbed_eigenaxis(),
             InitialGuess::Extremals => slew
                 .extremal()
                 .unwrap_or_else(|| slew.perturbed_eigenaxis(Perturbation::Far)),
-            InitialGuess::AroundCones | InitialGuess::AtRest => {
-                let leg_kind = if kind == InitialGuess::AtRest {
-                    LegKind::RestToRest
-                } else {
-                    LegKind::LowerBound
-                };
-                let leg = legs.leg(leg_kind, pair[0], pair[1]);
-                leg.duration()?;
-                leg.profile
-            }
+            InitialGuess::AroundCones => solved(LegKind::LowerBound)?,
+            InitialGuess::AtRest => solved(LegKind::RestToRest)?,
         };
         guess.append(&leg);
         intervals.push(leg.intervals());

@@ -147,10 +147,11 @@ impl<'a> LegSolver<'a> {
         let mut canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, &tell);
         if !self.places.with_cones.cones.is_empty() {
-            let around = self
-                .run
-                .pool
-                .map(pairs, |pair| self.around_cones(kind, *pair));
+            let legs: Vec<_> = pairs.iter().zip(&canonical).collect();
+            let around = self.run.pool.map(&legs, |(pair, canonical)| {
+                let free = self.known(pair.0, canonical.as_ref()?)?;
+                self.around_cones(kind, **pair, &free)
+            });
             self.solve_missing(kind, &around, &tell);
             for (leg, around) in canonical.iter_mut().zip(around) {
                 *leg = around.or(leg.take());
@@ -171,42 +172,42 @@ impl<'a> LegSolver<'a> {
 
     /// The leg of a kind between two places, solved if it is not known.
     pub(super) fn leg(&self, kind: LegKind, from: Place, to: Place) -> LegSolution {
-        let free = self.placed(kind, from, &self.canonical(kind, from, to));
-        self.around_cones(kind, (from, to))
-            .map_or(free, |around| self.placed(kind, from, &around))
+        let free = self.known_or_solved(kind, from, &self.canonical(kind, from, to));
+        self.around_cones(kind, (from, to), &free)
+            .map_or(free, |around| self.known_or_solved(kind, from, &around))
     }
 
-    /// A leg, solved if it is not known, that begins at a place.
-    fn placed(&self, kind: LegKind, from: Place, canonical: &CanonicalLeg) -> LegSolution {
-        let known = lock(&self.known).get(&canonical.identity).cloned();
-        let leg = known.unwrap_or_else(|| {
+    /// A known leg that begins at a place.
+    fn known(&self, from: Place, canonical: &CanonicalLeg) -> Option<LegSolution> {
+        let leg = lock(&self.known).get(&canonical.identity).cloned()?;
+        Some(self.placed(from, leg, canonical.mirrored))
+    }
+
+    /// A leg that begins at a place, solved if it is not known.
+    fn known_or_solved(&self, kind: LegKind, from: Place, canonical: &CanonicalLeg) -> LegSolution {
+        self.known(from, canonical).unwrap_or_else(|| {
             let stored = self.load(canonical);
             let from_store = stored.is_some();
             let leg = Arc::new(stored.unwrap_or_else(|| self.solve(kind, canonical)));
             self.keep(canonical, &leg, from_store);
-            leg
-        });
-        let placed = TabulatedLeg {
-            leg,
-            mirrored: canonical.mirrored,
-        };
-        placed.beginning_at(&self.places.waypoint(from).attitude)
+            self.placed(from, leg, canonical.mirrored)
+        })
     }
 
-    /// The leg with cones, where the known one without them enters a cone.
-    fn around_cones(&self, kind: LegKind, (from, to): (Place, Place)) -> Option<CanonicalLeg> {
-        let with_cones = &self.places.with_cones;
-        if with_cones.cones.is_empty() || self.is_abandoned() {
-            return None;
-        }
-        let canonical = self.canonical(kind, from, to);
-        let leg = lock(&self.known).get(&canonical.identity).cloned()?;
-        let placed = TabulatedLeg {
-            leg,
-            mirrored: canonical.mirrored,
-        };
-        let free = placed.beginning_at(&self.places.waypoint(from).attitude);
-        if free.duration().is_none() || is_clear(with_cones, &free.profile) {
+    fn placed(&self, from: Place, leg: Arc<SolvedLeg>, mirrored: bool) -> LegSolution {
+        let leg = TabulatedLeg { leg, mirrored };
+        leg.beginning_at(&self.places.waypoint(from).attitude)
+    }
+
+    /// The leg with cones, where the one without them enters a cone.
+    fn around_cones(
+        &self,
+        kind: LegKind,
+        (from, to): (Place, Place),
+        free: &LegSolution,
+    ) -> Option<CanonicalLeg> {
+        // After the stop signal too: a leg that is not solved is missing, one through a cone is wrong.
+        if free.duration().is_none() || is_clear(&self.places.with_cones, &free.profile) {
             return None;
         }
         let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));

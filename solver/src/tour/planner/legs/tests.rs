@@ -3,9 +3,11 @@
 use super::*;
 use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
+use crate::model::spec::{Applies, BoresightSpec, ConeSpec};
 use crate::run::progress::Observer;
 use crate::tour::legs::NoStore;
 use crate::tour::planner::tests::with_leg_solver;
+use nalgebra::Vector3;
 
 /// Counts contradictions.
 #[derive(Default)]
@@ -57,5 +59,44 @@ fn a_leg_is_solved_once_however_often_it_is_asked_for() {
         assert!(first.is_some() && programs > 0);
         assert_eq!((solved, stored), (1, 0));
         assert_eq!((ask(), legs.work()), (first, [1, 0, programs]));
+    });
+}
+
+/// Experiment A with a cone on the way of the camera from the start to the first target.
+fn with_a_cone_between() -> Scenario {
+    let mut spec = experiment_a();
+    let free = Scenario::try_new(&spec).expect("valid").scenario;
+    let ends = [free.start().attitude, free.targets()[0].attitude];
+    let [from, to] = ends.map(|attitude| attitude.to_reference(Vector3::x()));
+    let halfway: [f64; 3] = (from + to).into();
+    spec.spacecraft.boresights.push(BoresightSpec {
+        name: "camera".into(),
+        axis: [1.0, 0.0, 0.0],
+    });
+    spec.keep_out.push(ConeSpec {
+        boresight: "camera".into(),
+        direction: halfway.into(),
+        half_angle_deg: 4.0,
+        applies: Applies::Always,
+    });
+    Scenario::try_new(&spec).expect("valid").scenario
+}
+
+#[test]
+fn a_stopped_solve_has_no_leg_rather_than_one_through_a_cone() {
+    let scenario = with_a_cone_between();
+    let (counter, stop) = (Counter::default(), StopSignal::new());
+    with_leg_solver(&scenario, &counter, &NoStore, &stop, |legs, _| {
+        let kind = LegKind::LowerBound;
+        let free = legs.canonical(kind, ENDS[0], ENDS[1]);
+        let free = legs.known_or_solved(kind, ENDS[0], &free);
+        assert!(free.duration().is_some() && !is_clear(&legs.places.with_cones, &free.profile));
+        stop.cancel();
+        assert_eq!(legs.leg(kind, ENDS[0], ENDS[1]).duration(), None);
+        assert!(
+            legs.table(kind, &[(ENDS[0], ENDS[1])])
+                .get(ENDS[0], ENDS[1])
+                .is_none()
+        );
     });
 }

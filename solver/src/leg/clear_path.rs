@@ -131,12 +131,20 @@ pub(crate) struct PathSearch {
     pub(crate) cells: usize,
 }
 
+/// Least clearance, rad, of the arcs between attitudes; negative inside a cone.
+pub(crate) fn least_clearance(cones: &[ForbiddenCone], path: &[Attitude]) -> f64 {
+    let space = attitudes(cones, false);
+    let arcs = path.windows(2);
+    let clearances = arcs.map(|ends| space.arc_clearance(&ends[0].xyzw(), &ends[1].xyzw()));
+    clearances.fold(PI, f64::min)
+}
+
 /// Searches a path.
 pub(crate) fn find(problem: &PathProblem<'_>) -> PathSearch {
     let Some(cones) = within_reach(problem) else {
         return not_found(PathOutcome::Disconnected, 0);
     };
-    let attitudes = attitudes(&cones, problem);
+    let attitudes = attitudes(&cones, !problem.signed);
     let [from, to] = [problem.from, problem.to].map(|end| end.xyzw());
     if attitudes.is_clear(&from, &to) {
         return found(&Path::through(&attitudes, &[from, to]), 0);
@@ -255,15 +263,15 @@ fn within_reach(problem: &PathProblem<'_>) -> Option<Vec<ForbiddenCone>> {
     reduced.collect()
 }
 
-/// All attitudes.
-fn attitudes(cones: &[ForbiddenCone], problem: &PathProblem<'_>) -> Attitudes {
+/// All attitudes; `projective` where either sign of a quaternion is the same.
+fn attitudes(cones: &[ForbiddenCone], projective: bool) -> Attitudes {
     let cones = cones.iter().map(|cone| {
         let cosine = Quadratic::new(&cone.axis, &cone.direction);
         Forbidden::new(cosine, cone.half_angle)
     });
     Space {
         cones: cones.collect(),
-        projective: !problem.signed,
+        projective,
     }
 }
 

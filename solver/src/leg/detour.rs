@@ -6,11 +6,13 @@
 
 pub(crate) mod guess;
 
+use crate::leg::clear_path::least_clearance;
 use crate::math::rounding::parts_of;
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
+use std::slice;
 
 /// Clearance, rad, of a path that was pushed out, where there is room.
 const MARGIN: f64 = 0.03;
@@ -19,6 +21,8 @@ const STEP: f64 = 0.05;
 const MAX_STEPS: usize = 130;
 /// Share of a way around a cone over which an end inside the margin reaches it.
 const RISE: f64 = 0.25;
+/// Depth, rad, that rounding leaves on a surface.
+const TOUCH: f64 = 1e-12;
 /// Times that all cones are visited: leaving one may lead into another.
 const ROUNDS: usize = 4;
 
@@ -63,16 +67,15 @@ impl AttitudePath {
         &self.attitudes
     }
 
-    /// Greatest depth, rad, inside any of these cones.
+    /// Greatest depth, rad, inside any of these cones, between the attitudes too: a narrow cone fits
+    /// there.
     pub(crate) fn depth(&self, cones: &[ForbiddenCone]) -> f64 {
-        let depths = cones.iter().map(|cone| self.depth_in(cone));
-        depths.fold(f64::NEG_INFINITY, f64::max)
+        -least_clearance(cones, &self.attitudes)
     }
 
     /// Greatest depth, rad, inside a cone.
     pub(crate) fn depth_in(&self, cone: &ForbiddenCone) -> f64 {
-        let depths = self.attitudes.iter().map(|attitude| cone.depth(attitude));
-        depths.fold(f64::NEG_INFINITY, f64::max)
+        self.depth(slice::from_ref(cone))
     }
 
     /// The path pushed out of all cones, to the side given for each; `None` where some cone is
@@ -81,11 +84,11 @@ impl AttitudePath {
         let mut path = self.clone();
         for _ in 0..ROUNDS {
             for (cone, side) in cones.iter().zip(sides) {
-                if path.depth_in(cone) > 0.0 {
+                if path.depth_in(cone) > TOUCH {
                     path = path.pushed_out_of(cone, *side);
                 }
             }
-            if path.depth(cones) <= 0.0 {
+            if path.depth(cones) <= TOUCH {
                 return Some(path);
             }
         }

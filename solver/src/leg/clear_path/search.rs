@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 /// Bound on cells times cones.
 const MAX_WORK: usize = 2_000_000;
 /// Cells that are allowed with any number of cones.
-const LEAST_CELLS: usize = 5_000;
+const MIN_CELLS: usize = 5_000;
 
 /// How finely is searched.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +32,7 @@ impl Limits {
     /// first search.
     fn cells_for(self, cones: usize) -> usize {
         let affordable = MAX_WORK / cones.max(1);
-        self.cells.min(affordable.max(LEAST_CELLS))
+        self.cells.min(affordable.max(MIN_CELLS))
     }
 }
 

@@ -54,3 +54,16 @@ fn a_direction_against_another_is_half_a_turn_away() {
         assert!(smallest_rotation(&direction, &direction).norm() < 1e-12);
     }
 }
+
+#[test]
+fn a_cone_between_two_attitudes_of_a_path_is_entered() {
+    let narrow = cone(1e-3);
+    let path = about_z(1.6);
+    let deepest = path.attitudes.iter().map(|q| narrow.depth(q));
+    assert!(deepest.fold(f64::MIN, f64::max) < 0.0);
+    let across = ForbiddenCone {
+        direction: Vector3::new(1.0, 1.0, 0.0).normalize(),
+        ..narrow
+    };
+    assert!((path.depth_in(&across) - 1e-3).abs() < 1e-6);
+}

@@ -30,7 +30,7 @@ fn the_deepest_point_of_an_arc_is_that_of_dense_samples() {
             signed,
             ..problem(&cones, from, to)
         };
-        let space = attitudes(&cones, &problem);
+        let space = attitudes(&cones, !signed);
         let found = space.arc_clearance(&from.xyzw(), &to.xyzw());
         let to = if signed { to } else { to.nearest_sign(&from) };
         let least = sampled(&cones, &from, &to, 2000);
@@ -72,7 +72,7 @@ fn a_retreat_gains_clearance_step_by_step_until_there_is_enough() {
         // A cone on whose surface the attitude is.
         let far = from.to_reference(boresight).angle(&axis);
         let cones = [cone(boresight, axis, far.to_degrees().min(150.0))];
-        let space = attitudes(&cones, &problem(&cones, from, from));
+        let space = attitudes(&cones, true);
         let way = retreat(&space, &from.xyzw(), 0.15);
         let clearances: Vec<f64> = way.iter().map(|x| space.clearance(x)).collect();
         assert!(clearances.windows(2).all(|pair| pair[1] > pair[0]));
@@ -88,7 +88,7 @@ fn a_retreat_gains_clearance_step_by_step_until_there_is_enough() {
 fn a_detour_is_pulled_tight_to_the_arc_where_nothing_is_in_the_way() {
     let cones = [cone(Vector3::x(), Vector3::z(), 20.0)];
     let (from, to) = (toward(0.0, -30.0), toward(50.0, -20.0));
-    let space = attitudes(&cones, &problem(&cones, from, to));
+    let space = attitudes(&cones, true);
     let detour = [from, toward(100.0, 40.0), toward(-50.0, 0.0), to].map(|q| q.xyzw());
     let mut path = Path::through(&space, &detour);
     let before = path.turn();
@@ -108,8 +108,7 @@ fn a_path_along_a_cone_is_given_room() {
     let along: Vec<_> = (0..=60)
         .map(|i| toward(2.0 * f64::from(i), 49.95).xyzw())
         .collect();
-    let first = Attitude::from_xyzw(along[0]).expect("a direction");
-    let space = attitudes(&cones, &problem(&cones, first, first));
+    let space = attitudes(&cones, true);
     let mut path = Path::through(&space, &along);
     path.make_room();
     let inner = &path.points[5..path.points.len() - 5];

@@ -18,7 +18,7 @@ const USUAL: usize = 60;
 /// Number of tours whose bounds are computed at once.
 const BATCH: usize = 50;
 /// Largest number of stops of a tour.
-const MOST_STOPS: usize = 6;
+const MAX_STOPS: usize = 6;
 
 /// An axis of the published spacecraft: without momentum a turn about it is that of a point on a line.
 struct Axis {
@@ -99,7 +99,7 @@ struct Stop {
 fn stops(generator: &mut Generator) -> Vec<Stop> {
     let far = if generator.below(10) == 0 { 1.0 } else { 1e-4 };
     let size = generator.logarithmic(1e-7, far);
-    let count = 1 + generator.below(MOST_STOPS);
+    let count = 1 + generator.below(MAX_STOPS);
     let mut angles = vec![0.0];
     angles.extend((0..count).map(|_| generator.between(-size, size)));
     let stop = |index: usize| {
@@ -174,7 +174,7 @@ fn compare(generator: &mut Generator, count: usize) -> (usize, f64) {
     };
     let none = all.clone();
     let axis = Axis::of(&all, generator.below(3));
-    let (mut passed, mut pairs, mut flown) = (0, Vec::new(), Vec::new());
+    let (mut passed, mut pairs, mut durations) = (0, Vec::new(), Vec::new());
     for tour in 0..count {
         let stops = stops(generator);
         let targets = targets(tour, &axis, &stops);
@@ -191,7 +191,7 @@ fn compare(generator: &mut Generator, count: usize) -> (usize, f64) {
             all.targets.push(target);
             if found.passed {
                 pairs.push((from, to));
-                flown.push(duration_s);
+                durations.push(duration_s);
             }
             from = to;
         }
@@ -199,7 +199,7 @@ fn compare(generator: &mut Generator, count: usize) -> (usize, f64) {
     let scenario = scenario_of(&all);
     let rows = on_threads(1, |run| certified_legs(&scenario, &pairs, run));
     let mut open = f64::INFINITY;
-    for (row, duration_s) in rows.into_iter().flatten().zip(flown) {
+    for (row, duration_s) in rows.into_iter().flatten().zip(durations) {
         let bound_s = row.certified_lower_bound_s.expect("a bound");
         // Durations are differences of times.
         let slack_s = 1e-12 * (1.0 + duration_s);

@@ -8,6 +8,7 @@ mod extended;
 mod passes;
 mod rolling;
 mod solution;
+mod staged;
 #[cfg(test)]
 mod tests;
 
@@ -20,16 +21,13 @@ use crate::model::waypoint::Waypoint;
 use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
 use crate::run::stop::StopReason;
 pub(crate) use between_nodes::{attitudes_inside, excess_inside, keeps_limits_inside};
-use between_nodes::{depths_between_nodes, excess_between_nodes};
+use between_nodes::{deepest, depths_between_nodes, excess_between_nodes};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
 use passes::{POLISHING, Pass, from_a_guess};
 pub(crate) use rolling::solve_rolling;
 pub(crate) use solution::LegSolution;
-
-/// Ratio of a rough duration to that of a converged motion above which its refinement will not be
-/// faster.
-const MAX_ROUGH: f64 = 1.2;
+pub(crate) use staged::StagedSolve;
 
 /// Limit of the rounds of the proximal point method, and the relative gain that ends it.
 const POLISH_ROUNDS: usize = 6;
@@ -41,6 +39,10 @@ const MAX_ROUNDS: usize = 12;
 /// they do. Smaller excesses become reserves everywhere, which costs half of them in duration.
 pub(crate) const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
+/// Rounds that fit the angles kept from cones to the bend of the motion, before others raise them.
+const FITTED_ROUNDS: usize = 3;
+/// Angle kept per bend towards a cone: above one, since the motion changes.
+const BEND_FACTOR: f64 = 1.02;
 /// Reserve per excess: above one, since the motion changes when limits are tightened.
 pub(crate) const RESERVE_FACTOR: f64 = 1.1;
 /// Relative excess up to which the multipliers are near those of the tightened program, and the
@@ -70,28 +72,6 @@ pub(crate) fn solve_through(
     stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegSolution {
     MultiphaseSolve::new(dynamics, waypoints, intervals, guess).run(from_a_guess(dynamics), stop)
-}
-
-/// The same unless the rough motion after the first pass takes much longer than one that is known,
-/// s: then that motion, not converged.
-pub(crate) fn solve_faster(
-    dynamics: &Dynamics,
-    waypoints: &[Waypoint],
-    (intervals, guess): (&[usize], &Profile),
-    known: Option<f64>,
-    stop: &dyn Fn() -> Option<StopReason>,
-) -> LegSolution {
-    let mut solve = MultiphaseSolve::new(dynamics, waypoints, intervals, guess);
-    let passes = from_a_guess(dynamics);
-    if !solve.run_passes(&passes[..1], stop) {
-        return solve.solution;
-    }
-    let rough = solve.solution.profile.duration();
-    if known.is_some_and(|known| rough > MAX_ROUGH * known) {
-        solve.solution.status = NlpStatus::IterationLimit;
-        return solve.solution;
-    }
-    solve.run(&passes[1..], stop)
 }
 
 /// Frees a solution of the penalty on uneven interval lengths and solves it more exactly.
@@ -170,19 +150,25 @@ impl<'a> MultiphaseSolve<'a> {
         }
     }
 
-    /// Runs the passes, and then corrects turns and reserves until the exact motion arrives and
-    /// keeps its limits between nodes too.
+    /// Runs the passes, and then corrects turns and reserves.
     fn run(mut self, passes: &[Pass], stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
-        if !self.run_passes(passes, stop) {
+        self.run_passes(passes, stop);
+        self.exact(stop)
+    }
+
+    /// Corrects the turns and the reserves of a converged motion until the exact motion arrives and
+    /// keeps its limits between nodes too.
+    fn exact(mut self, stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
+        if self.solution.status != NlpStatus::Converged {
             return self.solution;
         }
-        let mut reserves = Reserves::none(self.dynamics, self.solution.profile.intervals());
+        let mut reserves = self.chain.reserves().clone();
         for round in 0..MAX_ROUNDS {
             let missed = self.chain.correct(&self.iterate);
             let excesses = excess_between_nodes(self.dynamics, &self.solution.profile);
             let excess = excesses.iter().copied().fold(0.0, f64::max);
             let depths = depths_between_nodes(self.dynamics, &self.solution.profile);
-            let depth = depths.iter().copied().fold(0.0, f64::max);
+            let depth = deepest(&depths);
             if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE && depth <= CONE_TOLERANCE {
                 return self.solution;
             }
@@ -197,7 +183,11 @@ impl<'a> MultiphaseSolve<'a> {
                 }
             }
             if depth > CONE_TOLERANCE {
-                reserves.raise_cones(&depths, RESERVE_FACTOR);
+                if round < FITTED_ROUNDS {
+                    reserves.fit_cones(&depths, BEND_FACTOR);
+                } else {
+                    reserves.raise_cones(&depths, RESERVE_FACTOR);
+                }
             }
             if excess > LIMIT_TOLERANCE || depth > CONE_TOLERANCE {
                 self.tighten(&reserves, excess.max(depth));
@@ -232,6 +222,18 @@ impl<'a> MultiphaseSolve<'a> {
             self.engine.settings = pass.settings;
             self.converges(stop)
         })
+    }
+
+    /// Corrects turns and reserves of a rough motion with cones, so that fewer rounds are left.
+    fn anticipate(&mut self) {
+        let depths = depths_between_nodes(self.dynamics, &self.solution.profile);
+        if depths.is_empty() {
+            return;
+        }
+        self.chain.correct(&self.iterate);
+        let mut reserves = self.chain.reserves().clone();
+        reserves.fit_cones(&depths, BEND_FACTOR);
+        self.chain.keep(&reserves);
     }
 
     /// Multipliers of the links that end between two legs. They are the multipliers of the

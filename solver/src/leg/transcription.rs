@@ -33,7 +33,7 @@ mod scales;
 mod tests;
 
 use crate::model::waypoint::{Waypoint, WheelCondition};
-pub(crate) use reserves::Reserves;
+pub(crate) use reserves::{ConeDepth, Reserves};
 pub(crate) use rows::{Drift, Row};
 pub(crate) use scales::{MIN_TURN, Scales};
 
@@ -156,6 +156,11 @@ impl Transcription {
         transcription.middle_rows = transcription.middle_rows_of(&transcription.limits);
         transcription.nodes = transcription.lay_out(waypoints, intervals);
         transcription
+    }
+
+    /// The reserves kept from the limits at nodes.
+    pub(crate) fn reserves(&self) -> &Reserves {
+        &self.reserves
     }
 
     /// Sets the reserves from speed and rate limits.

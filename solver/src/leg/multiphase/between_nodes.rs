@@ -2,6 +2,7 @@
 
 use super::LIMIT_TOLERANCE;
 use crate::leg::profile::Profile;
+use crate::leg::transcription::ConeDepth;
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
 use crate::model::dynamics::Dynamics;
@@ -31,26 +32,32 @@ pub(super) fn excess_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Ve
         .collect()
 }
 
-/// Depth, rad, of the motion inside every cone between the ends of every interval, the cones of one
-/// interval after the other; zero where an end is as deep.
-pub(super) fn depths_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Vec<f64> {
+/// Depths, rad, of the motion inside every cone at both ends of every interval, and of the deepest
+/// point between them where no end is as deep; the cones of one interval after the other.
+pub(super) fn depths_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Vec<ConeDepth> {
     if dynamics.cones.is_empty() {
         return Vec::new();
     }
     let inside = |k: usize| {
         let states = states_inside(dynamics, profile, k);
-        let deepest = |cone: &ForbiddenCone| {
+        let depth = |cone: &ForbiddenCone| {
             let depths: Vec<f64> = states.iter().map(|(q, _)| cone.depth(q)).collect();
+            let at_ends = [depths[0], depths[SAMPLES]];
             let peak = peak(&depths);
-            if peak > depths[0].max(depths[SAMPLES]) {
-                peak.max(0.0)
-            } else {
-                0.0
+            ConeDepth {
+                at_ends,
+                between: (peak > at_ends[0].max(at_ends[1])).then_some(peak),
             }
         };
-        dynamics.cones.iter().map(deepest).collect::<Vec<_>>()
+        dynamics.cones.iter().map(depth).collect::<Vec<_>>()
     };
     (0..profile.intervals()).flat_map(inside).collect()
+}
+
+/// Greatest depth between nodes, rad, at least zero.
+pub(super) fn deepest(depths: &[ConeDepth]) -> f64 {
+    let between = depths.iter().filter_map(|depth| depth.between);
+    between.fold(0.0, f64::max)
 }
 
 /// Excess over one of the peak of a share's absolute value, where the peak lies between the ends;

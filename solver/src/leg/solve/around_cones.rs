@@ -11,7 +11,7 @@ use super::{LegOutcome, LegProblem};
 use crate::leg::clear_path::{self, PathOutcome, PathProblem};
 use crate::leg::detour::guess::{along, expected_duration};
 use crate::leg::detour::{AttitudePath, Side};
-use crate::leg::multiphase::{LegSolution, attitudes_inside, solve_faster};
+use crate::leg::multiphase::{LegSolution, StagedSolve, attitudes_inside};
 use crate::leg::profile::Profile;
 use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
@@ -24,6 +24,11 @@ const CLEAR: f64 = crate::leg::multiphase::CONE_TOLERANCE;
 /// Expected duration, relative to the least, up to which a path is tried: on random slews the best
 /// path of all was within 1.61.
 const MAX_EXPECTED: f64 = 1.7;
+/// Ratio of a rough duration to that of an optimal motion above which it will not become faster.
+const MAX_ROUGH: f64 = 1.2;
+/// Relative difference of durations below which two motions are taken for the same: what is left to
+/// correct between nodes.
+const SAME_DURATION: f64 = 3e-5;
 /// Relative excess over the motion without cones at which no other guess is tried.
 const NEAR_FREE: f64 = 1e-3;
 
@@ -42,30 +47,63 @@ pub(super) fn solve_with_cones(
     if is_clear(leg.dynamics, &free.solution.profile) || free.solution.status.is_interrupted() {
         return free;
     }
-    let mut best = LegSolution::nowhere();
-    let mut solves = free.solves;
-    let least = free.solution.duration();
     let mut paths = pushed_out(&free_leg, leg.dynamics, &free.solution);
     paths.extend(searched(leg));
+    let mut starts = Vec::new();
     for path in promising(leg.dynamics, paths) {
         let guess = along(leg.dynamics, &path, leg.null, leg.intervals());
         let (waypoints, intervals) = (leg.waypoints(&guess), [guess.intervals()]);
-        let most = best.duration();
-        let solution = solve_faster(leg.dynamics, &waypoints, (&intervals, &guess), most, stop);
-        solves += 1;
-        let interrupted = solution.status.is_interrupted();
+        starts.push(StagedSolve::rough(
+            leg.dynamics,
+            &waypoints,
+            &intervals,
+            &guess,
+            stop,
+        ));
+    }
+    LegOutcome {
+        solves: free.solves + starts.len() as u64,
+        solution: best_of(starts, free.solution.duration(), stop),
+    }
+}
+
+/// The best exact solution of starts of which there are rough motions: only those are continued
+/// that may still become the fastest, a motion without cones taking this time, s, at least.
+fn best_of(
+    mut starts: Vec<StagedSolve<'_>>,
+    least: Option<f64>,
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> LegSolution {
+    let duration = |start: &StagedSolve<'_>| start.duration().unwrap_or(f64::INFINITY);
+    let by_duration =
+        |one: &StagedSolve<'_>, other: &StagedSolve<'_>| duration(one).total_cmp(&duration(other));
+    starts.sort_by(by_duration);
+    let mut fastest = f64::INFINITY;
+    for start in &mut starts {
+        if duration(start) <= MAX_ROUGH * fastest {
+            start.refine(stop);
+            fastest = fastest.min(duration(start));
+        }
+    }
+    starts.sort_by(by_duration);
+    let mut best = LegSolution::nowhere();
+    for mut start in starts {
+        let better = |best: f64| duration(&start) < (1.0 - SAME_DURATION) * best;
+        let near = |(duration, least): (f64, f64)| duration <= (1.0 + NEAR_FREE) * least;
+        let settled = best.duration().zip(least).is_some_and(near);
+        if settled || !best.duration().is_none_or(better) {
+            break;
+        }
+        start.refine(stop);
+        let solution = start.exact(stop);
         if solution.improves(&best) || best.profile.intervals() == 0 {
             best = solution;
         }
-        let near = |(duration, least): (f64, f64)| duration <= (1.0 + NEAR_FREE) * least;
-        if interrupted || best.duration().zip(least).is_some_and(near) {
+        if best.status.is_interrupted() {
             break;
         }
     }
-    LegOutcome {
-        solution: best,
-        solves,
-    }
+    best
 }
 
 /// The paths that are not expected to take much longer than the fastest, that one first.

@@ -2,6 +2,26 @@
 
 use crate::model::dynamics::Dynamics;
 
+/// Clearance, rad, of a motion up to which it runs close to a cone.
+const CLOSE: f64 = 0.03;
+
+/// Depths, rad, of a motion inside a cone along an interval.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ConeDepth {
+    /// At both ends.
+    pub(crate) at_ends: [f64; 2],
+    /// At the deepest point between them; `None` where an end is as deep.
+    pub(crate) between: Option<f64>,
+}
+
+impl ConeDepth {
+    /// How far, rad, the motion bends towards the cone between the ends, where it runs close to it.
+    fn bend(&self) -> f64 {
+        let close = self.between.filter(|between| *between > -CLOSE);
+        close.map_or(0.0, |between| between - self.at_ends[0].max(self.at_ends[1]))
+    }
+}
+
 /// Relative reserves, one per node and per share of [`Dynamics::limit_shares`], and angles, rad, one
 /// per node and cone.
 #[derive(Debug, Clone)]
@@ -34,10 +54,37 @@ impl Reserves {
         &self.angles[node * self.cones..(node + 1) * self.cones]
     }
 
-    /// Raises the angles kept from cones at both ends of every interval by the depth, rad, found
-    /// inside it, times a factor; `depths` lists the cones of one interval after the other.
-    pub(crate) fn raise_cones(&mut self, depths: &[f64], factor: f64) {
-        raise_both_ends(&mut self.angles, self.cones, depths, factor);
+    /// Sets the angles kept from cones to what a motion that runs close to them bends towards them
+    /// between nodes, times a factor; `depths` lists the cones of one interval after the other.
+    ///
+    /// The bend hardly depends on the angles kept, so that a motion with these will touch the cones
+    /// between its nodes.
+    pub(crate) fn fit_cones(&mut self, depths: &[ConeDepth], factor: f64) {
+        self.angles.fill(0.0);
+        for (i, depth) in depths.iter().enumerate() {
+            let kept = factor * depth.bend();
+            for end in [i, i + self.cones] {
+                self.angles[end] = self.angles[end].max(kept);
+            }
+        }
+    }
+
+    /// Raises the angles kept from cones where the motion enters them between nodes, by its depth
+    /// times a factor.
+    pub(crate) fn raise_cones(&mut self, depths: &[ConeDepth], factor: f64) {
+        let before = self.angles.clone();
+        for (i, depth) in depths.iter().enumerate() {
+            let between = depth.between.map_or(0.0, |between| between.max(0.0));
+            let nearest = depth.at_ends[0].max(depth.at_ends[1]);
+            for (end, at_end) in [i, i + self.cones].into_iter().zip(depth.at_ends) {
+                // A node that keeps away farther than its reserve would not notice a small one more.
+                let near = at_end >= nearest - between;
+                let kept = if near { before[end].max(-at_end) } else { before[end] };
+                if between > 0.0 {
+                    self.angles[end] = self.angles[end].max(kept + factor * between);
+                }
+            }
+        }
     }
 
     /// Raises the reserves at both ends of every interval by the excess found inside it, times a

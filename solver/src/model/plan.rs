@@ -144,10 +144,10 @@ pub struct Leg {
     /// Proved: no leg between these two places under the scenario's conditions takes less, s, in
     /// any tour. Rates that the plan chose are not used. `None` where nothing is proved.
     pub certified_lower_bound_s: Option<f64>,
-    /// Time of the rest-to-rest eigenaxis slew, s, when that slew keeps all limits.
+    /// Time of the rest-to-rest eigenaxis slew, s, when that slew keeps all limits; cones aside.
     pub eigenaxis_duration_s: Option<f64>,
     /// Minimum time of the leg from rest to rest between the same attitudes, s: its duration if it
-    /// stood alone. `None` when it was not solved, as in plans of searches that were stopped or go
+    /// stood alone and there were no cones. `None` when it was not solved, as in plans of searches that were stopped or go
     /// on.
     pub rest_to_rest_duration_s: Option<f64>,
     /// How the NLP that shaped this leg ended.

@@ -1,6 +1,7 @@
 //! What a solve of one or several legs returns.
 
 use crate::leg::profile::Profile;
+use crate::model::attitude::Attitude;
 use crate::nlp::NlpStatus;
 use nalgebra::DVector;
 
@@ -48,6 +49,16 @@ impl LegSolution {
             costates: self.costates.iter().rev().cloned().collect(),
             ..*self
         }
+    }
+
+    /// The same motion from another first attitude.
+    pub(crate) fn beginning_at(mut self, begin: &Attitude) -> Self {
+        if let Some(first) = self.profile.attitudes.first().copied() {
+            for attitude in &mut self.profile.attitudes {
+                *attitude = begin.then_in_body(&first.turn_to(attitude));
+            }
+        }
+        self
     }
 
     /// Duration, s, where there is a motion that meets all conditions.

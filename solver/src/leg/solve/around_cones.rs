@@ -47,7 +47,20 @@ pub(super) fn solve_with_cones(
     if is_clear(leg.dynamics, &free.solution.profile) || free.solution.status.is_interrupted() {
         return free;
     }
-    let mut paths = pushed_out(&free_leg, leg.dynamics, &free.solution);
+    let around = solve_around(leg, &free.solution, stop);
+    LegOutcome {
+        solves: free.solves + around.solves,
+        ..around
+    }
+}
+
+/// The same where the solution without cones is known, and enters some of them.
+pub(crate) fn solve_around(
+    leg: &LegProblem<'_>,
+    free: &LegSolution,
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> LegOutcome {
+    let mut paths = pushed_out(leg, free);
     paths.extend(searched(leg));
     let mut starts = Vec::new();
     for path in promising(leg.dynamics, paths) {
@@ -62,8 +75,8 @@ pub(super) fn solve_with_cones(
         ));
     }
     LegOutcome {
-        solves: free.solves + starts.len() as u64,
-        solution: best_of(starts, free.solution.duration(), stop),
+        solves: starts.len() as u64,
+        solution: best_of(starts, free.duration(), stop),
     }
 }
 
@@ -146,34 +159,30 @@ fn searched(leg: &LegProblem<'_>) -> Option<AttitudePath> {
 }
 
 /// The paths of the motion without cones and of the long way round, pushed out of the cones.
-fn pushed_out(
-    free_leg: &LegProblem<'_>,
-    dynamics: &Dynamics,
-    free: &LegSolution,
-) -> Vec<AttitudePath> {
+fn pushed_out(leg: &LegProblem<'_>, free: &LegSolution) -> Vec<AttitudePath> {
     let mut sources = Vec::new();
     if free.duration().is_some() {
-        sources.push(path_of(dynamics, &free.profile));
+        sources.push(path_of(leg.dynamics, &free.profile));
     } else {
-        let direct = free_leg.perturbed_eigenaxis(Perturbation::Far);
+        let direct = leg.perturbed_eigenaxis(Perturbation::Far);
         sources.push(AttitudePath::through(direct.attitudes));
     }
-    if free_leg.arrival == Arrival::Rotation {
-        let near = &free_leg.from.attitude;
-        let short = free_leg.arrival.signed(&free_leg.to.attitude, near);
+    if leg.arrival == Arrival::Rotation {
+        let near = &leg.from.attitude;
+        let short = leg.arrival.signed(&leg.to.attitude, near);
         let there = Waypoint {
             attitude: short.negated(),
-            ..free_leg.to.clone()
+            ..leg.to.clone()
         };
         let long = LegProblem {
             to: &there,
             arrival: Arrival::Quaternion,
-            ..*free_leg
+            ..*leg
         };
         let long = long.perturbed_eigenaxis(Perturbation::Far);
         sources.push(AttitudePath::through(long.attitudes));
     }
-    let cones = &dynamics.cones;
+    let cones = &leg.dynamics.cones;
     let mut paths = Vec::new();
     for source in sources {
         let entered: Vec<usize> = (0..cones.len())

@@ -1,6 +1,7 @@
 //! The canonical form of a leg: what makes two legs the same problem.
 
 use super::places::Places;
+use crate::leg::multiphase::LegSolution;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{LegProblem, Resolution};
@@ -39,6 +40,8 @@ pub(super) struct CanonicalLeg {
     null: DVector<f64>,
     /// How finely it is solved.
     pub(super) resolution: Resolution,
+    /// With cones: the solution without them in this frame.
+    pub(super) free: Option<LegSolution>,
 }
 
 impl CanonicalLeg {
@@ -47,9 +50,21 @@ impl CanonicalLeg {
         Self::within(&places.dynamics, places, [from, to])
     }
 
-    /// The same with the cones that the scenario enforces.
-    pub(super) fn around_cones(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
-        Self::within(&places.with_cones, places, [from, to])
+    /// The same with the cones that the scenario enforces, which the solution without them enters.
+    pub(super) fn around_cones(
+        places: &Places<'_>,
+        from: &Waypoint,
+        to: &Waypoint,
+        free: &LegSolution,
+    ) -> Self {
+        let mut leg = Self::within(&places.with_cones, places, [from, to]);
+        let free = if leg.mirrored {
+            free.reversed()
+        } else {
+            free.clone()
+        };
+        leg.free = Some(free.beginning_at(&leg.from.attitude));
+        leg
     }
 
     fn within(dynamics: &Dynamics, places: &Places<'_>, [from, to]: [&Waypoint; 2]) -> Self {
@@ -105,6 +120,7 @@ impl CanonicalLeg {
             arrival: places.arrival,
             null: places.null.clone(),
             resolution: places.resolution,
+            free: None,
         }
     }
 

@@ -11,7 +11,7 @@ use super::tables::{CertifiedLeg, CertifiedTable, SolvedLeg, SolvedTable, Table,
 use super::verified::{flight_faults, is_feasible};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
-use crate::leg::solve::around_cones::is_clear;
+use crate::leg::solve::around_cones::{self, is_clear};
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{Breakdown, NlpStatus, Quantity};
 use crate::run::contradiction::{Contradiction, refutes};
@@ -124,39 +124,40 @@ impl<'a> LegSolver<'a> {
     /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal
     /// are missing from the table.
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
-        self.fill(kind, pairs, |done, total| {
-            self.report_progress(done, Some(total));
-        })
-    }
-
-    /// The same without reports of progress, for use after the stage of the legs.
-    pub(super) fn table_without_progress(
-        &self,
-        kind: LegKind,
-        pairs: &[(Place, Place)],
-    ) -> SolvedTable {
-        self.fill(kind, pairs, |_, _| {})
-    }
-
-    fn fill(
-        &self,
-        kind: LegKind,
-        pairs: &[(Place, Place)],
-        tell: impl Fn(u64, u64) + Sync,
-    ) -> SolvedTable {
+        let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
-        self.solve_missing(kind, &canonical, &tell);
+        self.solve_missing(kind, &canonical, tell);
         if !self.places.with_cones.cones.is_empty() {
             let legs: Vec<_> = pairs.iter().zip(&canonical).collect();
             let around = self.run.pool.map(&legs, |(pair, canonical)| {
                 let free = self.known(pair.0, canonical.as_ref()?)?;
                 self.around_cones(kind, **pair, &free)
             });
-            self.solve_missing(kind, &around, &tell);
+            self.solve_missing(kind, &around, tell);
             for (leg, around) in canonical.iter_mut().zip(around) {
                 *leg = around.or(leg.take());
             }
         }
+        self.tabulated(pairs, &canonical)
+    }
+
+    /// The same without cones, and without reports of progress: for use after the stage of the legs.
+    pub(super) fn table_without_cones(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> SolvedTable {
+        let canonical = self.all_canonical(kind, pairs);
+        self.solve_missing(kind, &canonical, |_, _| {});
+        self.tabulated(pairs, &canonical)
+    }
+
+    /// The legs between pairs of places, as far as they are known.
+    fn tabulated(
+        &self,
+        pairs: &[(Place, Place)],
+        canonical: &[Option<CanonicalLeg>],
+    ) -> SolvedTable {
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
@@ -165,7 +166,7 @@ impl<'a> LegSolver<'a> {
                 mirrored: canonical.mirrored,
             })
         };
-        let legs = pairs.iter().zip(&canonical);
+        let legs = pairs.iter().zip(canonical);
         let entries = legs.map(|(pair, leg)| (*pair, entry(leg)));
         Table::new(self.places, entries)
     }
@@ -211,7 +212,7 @@ impl<'a> LegSolver<'a> {
             return None;
         }
         let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
-        Some(CanonicalLeg::around_cones(self.places, &from, &to))
+        Some(CanonicalLeg::around_cones(self.places, &from, &to, free))
     }
 
     /// A table of [`Self::certified_legs`].
@@ -418,7 +419,11 @@ fn solve(
         .unwrap_or_else(|| certify(places, leg))
         .lower_bound;
     let problem = leg.problem(&places.extremals);
-    let mut solved = solve::solve(&problem, certified, &|| stop.reason());
+    let stop = || stop.reason();
+    let mut solved = match &leg.free {
+        Some(free) => around_cones::solve_around(&problem, free, &stop),
+        None => solve::solve(&problem, certified, &stop),
+    };
     if solved.solution.duration().is_some() && !is_feasible(places, leg, &solved.solution.profile) {
         solved.solution.status = NlpStatus::NumericalError(Breakdown {
             stage: solved.solution.profile.intervals(),

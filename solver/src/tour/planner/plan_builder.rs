@@ -124,8 +124,8 @@ impl<'a> PlanBuilder<'a> {
         });
     }
 
-    /// Solves the rest-to-rest legs of the final order, with which its plan compares the tour's
-    /// legs; skipped when the solve is to stop.
+    /// Solves the rest-to-rest legs of the final order without cones, with which its plan compares
+    /// the tour's legs; skipped when the solve is to stop.
     pub(super) fn compare_with_rest(&mut self, order: &SolvedOrder) {
         if self.tours.stop.is_set() {
             return;
@@ -135,7 +135,7 @@ impl<'a> PlanBuilder<'a> {
         self.rest = Some(
             self.tours
                 .legs
-                .table_without_progress(LegKind::RestToRest, &pairs),
+                .table_without_cones(LegKind::RestToRest, &pairs),
         );
     }
 

@@ -41,21 +41,14 @@ impl TabulatedLeg {
     /// The solution with a motion that begins at the given attitude.
     pub(super) fn beginning_at(&self, begin: &Attitude) -> LegSolution {
         let solution = &self.leg.solution;
-        let mut profile = if self.mirrored {
-            solution.profile.reversed()
+        let placed = if self.mirrored {
+            solution.reversed()
         } else {
-            solution.profile.clone()
+            solution.clone()
         };
-        if let Some(first) = profile.attitudes.first().copied() {
-            for attitude in &mut profile.attitudes {
-                *attitude = begin.then_in_body(&first.turn_to(attitude));
-            }
-        }
         LegSolution {
-            profile,
-            intervals: solution.intervals.clone(),
             costates: Vec::new(),
-            ..*solution
+            ..placed.beginning_at(begin)
         }
     }
 }

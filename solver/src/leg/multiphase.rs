@@ -39,6 +39,9 @@ const MAX_ROUNDS: usize = 12;
 /// they do. Smaller excesses become reserves everywhere, which costs half of them in duration.
 pub(crate) const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
+/// How much longer an interval near a cone may become than in a guess, and than in a rough motion.
+const GUESS_STRETCH: f64 = 1.4;
+const ROUGH_STRETCH: f64 = 1.1;
 /// Rounds that fit the angles kept from cones to the bend of the motion, before others raise them.
 const FITTED_ROUNDS: usize = 3;
 /// Angle kept per bend towards a cone: above one, since the motion changes.
@@ -130,7 +133,7 @@ impl<'a> MultiphaseSolve<'a> {
         let scales = Scales::for_legs(dynamics, typical_angle(dynamics, waypoints), leg);
         let mut chain = Transcription::new(dynamics, scales, waypoints, intervals);
         if !dynamics.cones.is_empty() {
-            chain.limit_lengths(&longest_intervals(dynamics, guess));
+            chain.limit_lengths(&longest_intervals(dynamics, guess, GUESS_STRETCH));
         }
         Self {
             dynamics,
@@ -224,12 +227,19 @@ impl<'a> MultiphaseSolve<'a> {
         })
     }
 
-    /// Corrects turns and reserves of a rough motion with cones, so that fewer rounds are left.
+    /// Corrects the turns of a rough motion with cones, keeps its intervals near them from growing,
+    /// and its nodes from cones as far as it bends there, so that fewer rounds are left.
+    ///
+    /// Free to grow, intervals beside a cone would do so where no angle is kept yet, in every round
+    /// others.
     fn anticipate(&mut self) {
-        let depths = depths_between_nodes(self.dynamics, &self.solution.profile);
+        let rough = &self.solution.profile;
+        let depths = depths_between_nodes(self.dynamics, rough);
         if depths.is_empty() {
             return;
         }
+        let longest = longest_intervals(self.dynamics, rough, ROUGH_STRETCH);
+        self.chain.limit_lengths(&longest);
         self.chain.correct(&self.iterate);
         let mut reserves = self.chain.reserves().clone();
         reserves.fit_cones(&depths, BEND_FACTOR);

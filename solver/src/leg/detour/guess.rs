@@ -18,8 +18,8 @@ const NEAR: f64 = 0.2;
 const SHORT_TURN: f64 = 0.06;
 /// Most parts of an even interval.
 const MAX_PARTS: usize = 40;
-/// How much longer than in the guess an interval may become, near a cone and elsewhere.
-const STRETCH: [f64; 2] = [1.4, 3.0];
+/// How much longer an interval may become where no cone is near.
+const FAR_STRETCH: f64 = 3.0;
 
 /// The motion along a path with this null-space momentum, N m s, of the wheels, and so many intervals
 /// where no cone is near.
@@ -55,8 +55,9 @@ pub(crate) fn along(
     profile
 }
 
-/// Longest lengths, s, of the intervals of a motion such that none leads through a cone.
-pub(crate) fn longest_intervals(dynamics: &Dynamics, profile: &Profile) -> Vec<f64> {
+/// Longest lengths, s, of the intervals of a motion such that none leads through a cone; those near
+/// one may become longer by this factor, or as long as a turn that is not long takes.
+pub(crate) fn longest_intervals(dynamics: &Dynamics, profile: &Profile, stretch: f64) -> Vec<f64> {
     let mean = profile.duration() / profile.intervals() as f64;
     let mut longest = Vec::with_capacity(profile.intervals());
     for (pair, length) in profile.attitudes.windows(2).zip(&profile.lengths) {
@@ -68,9 +69,9 @@ pub(crate) fn longest_intervals(dynamics: &Dynamics, profile: &Profile) -> Vec<f
             mean
         };
         longest.push(if near {
-            STRETCH[0] * length.max(for_turn.min(mean))
+            stretch * length.max(for_turn.min(mean))
         } else {
-            STRETCH[1] * length.max(mean)
+            FAR_STRETCH * length.max(mean)
         });
     }
     longest

@@ -18,7 +18,9 @@ impl ConeDepth {
     /// How far, rad, the motion bends towards the cone between the ends, where it runs close to it.
     fn bend(&self) -> f64 {
         let close = self.between.filter(|between| *between > -CLOSE);
-        close.map_or(0.0, |between| between - self.at_ends[0].max(self.at_ends[1]))
+        close.map_or(0.0, |between| {
+            between - self.at_ends[0].max(self.at_ends[1])
+        })
     }
 }
 
@@ -79,7 +81,11 @@ impl Reserves {
             for (end, at_end) in [i, i + self.cones].into_iter().zip(depth.at_ends) {
                 // A node that keeps away farther than its reserve would not notice a small one more.
                 let near = at_end >= nearest - between;
-                let kept = if near { before[end].max(-at_end) } else { before[end] };
+                let kept = if near {
+                    before[end].max(-at_end)
+                } else {
+                    before[end]
+                };
                 if between > 0.0 {
                     self.angles[end] = self.angles[end].max(kept + factor * between);
                 }
@@ -108,5 +114,54 @@ fn raise_both_ends(values: &mut [f64], per_node: usize, found: &[f64], factor: f
         for end in [i, i + per_node] {
             values[end] = values[end].max(before[end] + factor * found);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keeping(angles: &[f64]) -> Reserves {
+        Reserves {
+            shares: 0,
+            values: Vec::new(),
+            cones: 1,
+            angles: angles.to_vec(),
+        }
+    }
+
+    fn assert_keeps(reserves: &Reserves, angles: &[f64]) {
+        for (kept, expected) in reserves.angles.iter().zip(angles) {
+            assert!((kept - expected).abs() < 1e-12, "{:?}", reserves.angles);
+        }
+    }
+
+    fn depth(at_ends: [f64; 2], between: f64) -> ConeDepth {
+        ConeDepth {
+            at_ends,
+            between: Some(between),
+        }
+    }
+
+    #[test]
+    fn nodes_beside_a_bend_keep_its_height_and_far_from_cones_nothing() {
+        let mut reserves = keeping(&[0.5; 4]);
+        let bends = [
+            depth([-0.004, -0.002], 0.003),
+            depth([-0.002, -0.3], -0.001),
+            depth([-0.3, -0.4], -0.2),
+        ];
+        reserves.fit_cones(&bends, 2.0);
+        assert_keeps(&reserves, &[0.01, 0.01, 0.002, 0.0]);
+    }
+
+    #[test]
+    fn only_the_nodes_that_notice_it_are_raised_from_where_they_are() {
+        let mut reserves = keeping(&[0.001, 0.02, 0.0]);
+        let entered = [depth([-0.001, -0.25], 0.01), depth([-0.25, -0.3], -0.2)];
+        reserves.raise_cones(&entered, 1.0);
+        assert_keeps(&reserves, &[0.011, 0.03, 0.0]);
+        reserves.raise_cones(&[depth([-0.2, -0.25], 0.06), entered[1]], 1.0);
+        assert_keeps(&reserves, &[0.26, 0.31, 0.0]);
     }
 }

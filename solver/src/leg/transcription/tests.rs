@@ -103,7 +103,11 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
     };
     chain.limit_lengths(&[70.0, 40.0]);
     let mut reserves = Reserves::none(dynamics, 2);
-    reserves.raise_cones(&[0.01, 0.02, 0.0, 0.03, 0.0, 0.04], 1.0);
+    let depth = |between| ConeDepth {
+        at_ends: [0.0; 2],
+        between: Some(between),
+    };
+    reserves.raise_cones(&[0.01, 0.02, 0.0, 0.03, 0.0, 0.04].map(depth), 1.0);
     chain.keep(&reserves);
     chain.draw_controls_to(&Iterate::cold(Vec::new(), [0.6; 10].into()), penalty);
     chain

@@ -19,7 +19,9 @@ use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
 use crate::run::stop::StopReason;
-pub(crate) use between_nodes::{attitudes_inside, excess_inside, keeps_limits_inside};
+pub(crate) use between_nodes::{
+    attitudes_inside, depths_inside, excess_inside, keeps_limits_inside,
+};
 use between_nodes::{depths_between_nodes, excess_between_nodes};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;

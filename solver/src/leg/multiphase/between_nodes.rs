@@ -38,19 +38,28 @@ pub(super) fn depths_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Ve
         return Vec::new();
     }
     let inside = |k: usize| {
-        let states = states_inside(dynamics, profile, k);
-        let deepest = |cone: &ForbiddenCone| {
-            let depths: Vec<f64> = states.iter().map(|(q, _)| cone.depth(q)).collect();
-            let peak = peak(&depths);
-            if peak > depths[0].max(depths[SAMPLES]) {
-                peak.max(0.0)
-            } else {
-                0.0
-            }
-        };
-        dynamics.cones.iter().map(deepest).collect::<Vec<_>>()
+        let begin = std::iter::once(profile.attitudes[k]);
+        let attitudes: Vec<_> = begin
+            .chain(attitudes_inside(dynamics, profile, k))
+            .collect();
+        depths_inside(&dynamics.cones, &attitudes)
     };
     (0..profile.intervals()).flat_map(inside).collect()
+}
+
+/// Depth, rad, inside every cone between the ends of an interval, of which these are the attitudes at
+/// even times, both ends included; zero where an end is as deep.
+pub(crate) fn depths_inside(cones: &[ForbiddenCone], attitudes: &[Attitude]) -> Vec<f64> {
+    let deepest = |cone: &ForbiddenCone| {
+        let depths: Vec<f64> = attitudes.iter().map(|q| cone.depth(q)).collect();
+        let peak = peak(&depths);
+        if peak > depths[0].max(depths[depths.len() - 1]) {
+            peak.max(0.0)
+        } else {
+            0.0
+        }
+    };
+    cones.iter().map(deepest).collect()
 }
 
 /// Excess over one of the peak of a share's absolute value, where the peak lies between the ends;

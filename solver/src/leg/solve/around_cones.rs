@@ -45,10 +45,8 @@ pub(super) fn solve_with_cones(
     let mut best = LegSolution::nowhere();
     let mut solves = free.solves;
     let least = free.solution.duration();
-    let mut paths = pushed_out(&free_leg, leg.dynamics, &free.solution);
-    paths.extend(searched(leg));
-    for path in promising(leg.dynamics, paths) {
-        let guess = along(leg.dynamics, &path, leg.null, leg.intervals());
+    let direct = least.map(|_| path_of(leg.dynamics, &free.solution.profile));
+    for guess in guesses(leg, direct) {
         let (waypoints, intervals) = (leg.waypoints(&guess), [guess.intervals()]);
         let most = best.duration();
         let solution = solve_faster(leg.dynamics, &waypoints, (&intervals, &guess), most, stop);
@@ -66,6 +64,24 @@ pub(super) fn solve_with_cones(
         solution: best,
         solves,
     }
+}
+
+/// Motions along ways around the cones, from rest to rest: along a direct path, or that about the
+/// eigenaxis, and the long way round, pushed out of the cones, and along the shortest path of a search;
+/// the one that is expected to be fastest first.
+pub(crate) fn guesses(
+    leg: &LegProblem<'_>,
+    direct: Option<AttitudePath>,
+) -> impl Iterator<Item = Profile> {
+    let without = leg.dynamics.with_cones(Vec::new());
+    let free_leg = LegProblem {
+        dynamics: &without,
+        ..*leg
+    };
+    let mut paths = pushed_out(&free_leg, leg.dynamics, direct);
+    paths.extend(searched(leg));
+    let promising = promising(leg.dynamics, paths);
+    promising.map(|path| along(leg.dynamics, &path, leg.null, leg.intervals()))
 }
 
 /// The paths that are not expected to take much longer than the fastest, that one first.
@@ -107,19 +123,17 @@ fn searched(leg: &LegProblem<'_>) -> Option<AttitudePath> {
     }
 }
 
-/// The paths of the motion without cones and of the long way round, pushed out of the cones.
+/// A direct path, or that about the eigenaxis, and the long way round, pushed out of the cones.
 fn pushed_out(
     free_leg: &LegProblem<'_>,
     dynamics: &Dynamics,
-    free: &LegSolution,
+    direct: Option<AttitudePath>,
 ) -> Vec<AttitudePath> {
     let mut sources = Vec::new();
-    if free.duration().is_some() {
-        sources.push(path_of(dynamics, &free.profile));
-    } else {
+    sources.push(direct.unwrap_or_else(|| {
         let direct = free_leg.perturbed_eigenaxis(Perturbation::Far);
-        sources.push(AttitudePath::through(direct.attitudes));
-    }
+        AttitudePath::through(direct.attitudes)
+    }));
     if free_leg.arrival == Arrival::Rotation {
         let near = &free_leg.from.attitude;
         let short = free_leg.arrival.signed(&free_leg.to.attitude, near);

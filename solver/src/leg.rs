@@ -5,6 +5,7 @@ pub(crate) mod clear_path;
 pub(crate) mod detour;
 pub(crate) mod kinematics;
 pub(crate) mod multiphase;
+pub(crate) mod no_way;
 pub(crate) mod profile;
 pub(crate) mod solve;
 pub(crate) mod transcription;

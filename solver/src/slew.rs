@@ -13,6 +13,12 @@
 //! Every combination is one nonlinear program (`program`) with other variables (`shape`) and other
 //! weights (`cost_weights`).
 //!
+//! # Cones
+//!
+//! A slew with cones is solved without them first. Where that motion enters one, the program of every
+//! objective and command gets the rows of [`crate::leg::transcription`], and its guesses are those of
+//! the legs of tours. Where a clear motion needs more intervals than a command has, there is none.
+//!
 //! # Drives
 //!
 //! Torques are those that change the wheels' momenta. Where the wheel's inner loop compensates
@@ -33,6 +39,7 @@
 //! The bill has many local minima, some per cent apart. It is minimised from the optimum of the proxy
 //! and from the usual guesses, and the bills of the propagated solutions are compared.
 
+mod around_cones;
 mod attempts;
 mod choices;
 mod continuous;
@@ -104,12 +111,14 @@ pub fn trade_curve(
 /// Solves from the motion of a neighbouring slew, and from the usual guesses where there is none or the
 /// solve from it does not converge.
 fn solve_from(slew: &Slew, neighbour: Option<&SlewMotion>, stop: &StopSignal) -> SlewOutcome {
-    let stop = &|| stop.reason();
-    let found = match slew.command() {
-        TorqueCommand::Sampled { period_s, hold } => {
-            sampled::solve(slew, period_s, hold, neighbour, stop)
-        }
-        _ => continuous::solve(slew, neighbour, stop),
-    };
-    SlewOutcome::of(slew, found)
+    let reason = &|| stop.reason();
+    around_cones::solve(slew, stop, |slew| {
+        let found = match slew.command() {
+            TorqueCommand::Sampled { period_s, hold } => {
+                sampled::solve(slew, period_s, hold, neighbour, reason)
+            }
+            _ => continuous::solve(slew, neighbour, reason),
+        };
+        SlewOutcome::of(slew, found)
+    })
 }

@@ -1,5 +1,6 @@
 //! `slewplan import`.
 
+use crate::legs::past_a_bright_body;
 use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -54,6 +55,28 @@ fn a_plan_with_imported_legs_is_the_same() {
         plan["statistics"] = Value::Null;
     }
     assert_eq!(warm, cold);
+}
+
+#[test]
+fn legs_around_cones_are_imported_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("legs.db");
+    let tabulated = |applies, line: &[&str]| {
+        let scenario = past_a_bright_body(applies).to_string();
+        let line = [&["legs", "-", "--trajectories"], line].concat();
+        slewplan_fed(&line, scenario.as_bytes())
+            .expect_code(0)
+            .json()
+    };
+    let count = |file: &Value| file["trajectories"].as_array().map(Vec::len);
+    let file = tabulated("always", &[]);
+    assert!(count(&file) > count(&tabulated("report", &[])));
+    let found = import(&file, &database, 0);
+    assert_eq!(found["refused"], json!([]));
+    assert_eq!(found["imported"].as_u64(), count(&file).map(|n| n as u64));
+    let database = database.to_str().expect("UTF-8");
+    let again = tabulated("always", &["--database", database]);
+    assert_eq!(again["trajectories"], file["trajectories"]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `slewplan legs`.
 
 use crate::run::{Ended, binary, fixture, fixture_json, slewplan, slewplan_fed};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 fn rows(table: &Value) -> BTreeSet<(String, String)> {
@@ -147,6 +147,61 @@ fn all_shards_together_are_the_table() {
         first.union(&second).cloned().collect::<BTreeSet<_>>(),
         whole
     );
+}
+
+/// Two targets, between which a camera passes a bright body; where it applies.
+pub(crate) fn past_a_bright_body(applies: &str) -> Value {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["spacecraft"]["boresights"][0]["axis"] = json!([1, 0, 0]);
+    let attitudes = [[10, 0, 0], [0, 0, 90]];
+    for (target, angles) in attitudes.iter().enumerate() {
+        scenario["targets"][target]["attitude"] = json!({"roll_pitch_yaw_deg": angles});
+    }
+    scenario["keep_out"] = json!([{
+        "boresight": "camera", "direction": [1, 1, 0.05], "half_angle_deg": 25, "applies": applies,
+    }]);
+    scenario
+}
+
+#[test]
+fn a_table_has_the_legs_around_cones() {
+    let table = |applies, kind| {
+        let scenario = past_a_bright_body(applies).to_string();
+        let line = ["legs", "-", "--kind", kind];
+        slewplan_fed(&line, scenario.as_bytes())
+            .expect_code(0)
+            .json()
+    };
+    for kind in ["rest_to_rest", "lower_bound"] {
+        let (around, through) = (table("always", kind), table("report", kind));
+        assert_eq!(rows(&around), rows(&through));
+        for (from, to) in [("a", "b"), ("b", "a"), ("start", "b")] {
+            let (with, without) = (duration(&around, from, to), duration(&through, from, to));
+            assert!(with > 1.001 * without, "{from} to {to}: {with} {without}");
+        }
+        // Clear without doing anything about it.
+        let same = |table| duration(table, "start", "a").to_bits();
+        assert_eq!(same(&around), same(&through));
+    }
+}
+
+#[test]
+fn a_table_says_where_cones_leave_no_way() {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["targets"][1]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
+    let belt = (0..12).map(|step| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": 20})
+    });
+    scenario["keep_out"] = belt.collect();
+    let ended = slewplan_fed(&["legs", "-"], scenario.to_string().as_bytes());
+    let table = ended.expect_code(1).json();
+    for row in table["legs"].as_array().expect("a list") {
+        let parted = row["from"] == "b" || row["to"] == "b";
+        let status = if parted { "infeasible" } else { "converged" };
+        assert_eq!(row["status"], status, "{row}");
+        assert_eq!(row["duration_s"].is_null(), parted, "{row}");
+    }
 }
 
 #[test]

@@ -173,6 +173,122 @@ fn a_leg_is_listed_by_its_attitudes_in_both_directions_if_reversible() {
     assert_eq!(found_between(&service, ends[1], ends[0]), [symmetric, back]);
 }
 
+/// A query for a quarter turn from a yaw angle, whose camera passes a bright body halfway.
+fn past_a_bright_body(from_yaw: f64) -> Value {
+    let mut spacecraft = small()["spacecraft"].clone();
+    spacecraft["boresights"] = json!([{"name": "camera", "axis": [1, 0, 0]}]);
+    let (y, x) = (from_yaw + 45.0).to_radians().sin_cos();
+    json!({
+        "spacecraft": spacecraft, "mode": "compute",
+        "pairs": [{"from": attitude(0.0, from_yaw), "to": attitude(0.0, from_yaw + 90.0)}],
+        "keep_out": [{"boresight": "camera", "direction": [x, y, 0.05], "half_angle_deg": 25}],
+    })
+}
+
+#[test]
+fn legs_lead_around_cones_and_are_shared_by_equal_situations() {
+    let service = Service::start();
+    let ask = |query: &Value| {
+        let answer = service.post("/v1/legs/query", query).expect(200).json();
+        answer["legs"][0].clone()
+    };
+    let query = past_a_bright_body(0.0);
+    let mut free = query.clone();
+    free["keep_out"][0]["applies"] = json!("at_targets");
+    let through = ask(&free);
+    assert_eq!(through["source"], "computed");
+    // The leg without the cone is known, and is not the answer.
+    let mut cached = query.clone();
+    cached["mode"] = json!("cached_only");
+    let missing = ask(&cached);
+    assert_eq!(missing["source"], "missing");
+    assert!(missing["key"].is_null() && missing["duration_s"].is_null());
+    let around = ask(&query);
+    assert_eq!(around["source"], "computed");
+    assert_ne!(around["key"], through["key"]);
+    let time = |leg: &Value| leg["duration_s"].as_f64().expect("a time");
+    assert!(time(&around) > 1.001 * time(&through));
+    assert!(around["certified_lower_bound_s"].as_f64() <= Some(time(&around)));
+    for (leg, count) in [(&through, 0), (&around, 1)] {
+        let key = leg["key"].as_str().expect("a key");
+        let stored = service.get(&format!("/v1/legs/{key}")).expect(200).json();
+        assert_eq!(stored["cones"], count);
+        assert_eq!(stored["keep_out"].as_array().map(Vec::len), Some(count));
+        if count == 1 {
+            let cone = &stored["keep_out"][0];
+            assert_eq!(cone["boresight_axis"], json!([1.0, 0.0, 0.0]));
+            let angle = cone["half_angle_deg"].as_f64().expect("a number");
+            assert!((angle - 25.0).abs() < 1e-9, "{cone}");
+        }
+    }
+    // The same turn past the same cone elsewhere.
+    for yaw in [0.0, 30.0] {
+        let mut elsewhere = past_a_bright_body(yaw);
+        elsewhere["mode"] = json!("cached_only");
+        let found = ask(&elsewhere);
+        assert_eq!(
+            (&found["source"], &found["key"]),
+            (&json!("cached"), &around["key"])
+        );
+    }
+}
+
+#[test]
+fn queries_without_a_way_and_with_wrong_cones_are_told() {
+    let service = Service::start();
+    let mut enclosed = past_a_bright_body(0.0);
+    enclosed["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
+    enclosed["pairs"] = json!([{"from": attitude(0.0, 0.0), "to": attitude(180.0, 0.0)}]);
+    let belt = (0..12).map(|step| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": 20})
+    });
+    enclosed["keep_out"] = belt.collect();
+    let answer = service.post("/v1/legs/query", &enclosed).expect(200).json();
+    let leg = &answer["legs"][0];
+    assert_eq!(leg["status"], "infeasible");
+    assert!(leg["duration_s"].is_null() && leg["key"].is_null(), "{leg}");
+    assert_eq!(leg["source"], "missing");
+
+    let refused = |query: &Value| {
+        let problem = service.post("/v1/legs/query", query);
+        let problem = problem.expect_problem(422, "invalid_input");
+        problem["errors"][0].clone()
+    };
+    for applies in ["always", "at_targets"] {
+        let mut query = past_a_bright_body(0.0);
+        query["keep_out"][0]["direction"] = json!([0, 1, 0]);
+        query["keep_out"][0]["applies"] = json!(applies);
+        let error = refused(&query);
+        assert_eq!(error["pointer"], "/pairs/0/to");
+        assert_eq!(error["code"], "attitude_violates_cone");
+    }
+    let mut query = past_a_bright_body(0.0);
+    query["keep_in"] =
+        json!([{"boresight": "camera", "direction": {"body": "sun"}, "half_angle_deg": 0}]);
+    let found: Vec<Value> = {
+        let problem = service.post("/v1/legs/query", &query);
+        let problem = problem.expect_problem(422, "invalid_input");
+        problem["errors"].as_array().expect("a list").clone()
+    };
+    let codes: Vec<_> = found
+        .iter()
+        .map(|error| (&error["pointer"], &error["code"]))
+        .collect();
+    assert_eq!(
+        codes,
+        [
+            (&json!("/keep_in/0/direction"), &json!("epoch_required")),
+            (&json!("/keep_in/0/half_angle_deg"), &json!("out_of_range")),
+        ]
+    );
+    // No leg begins at the start, which only says what the momentum is.
+    let mut beside = past_a_bright_body(100.0);
+    beside["keep_out"][0]["direction"] = json!([1, 0, 0]);
+    let answer = service.post("/v1/legs/query", &beside).expect(200).json();
+    assert_eq!(sources(&answer), ["computed"]);
+}
+
 #[test]
 fn wrong_queries_are_refused_with_pointers() {
     let service = Service::start();

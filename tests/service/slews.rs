@@ -76,3 +76,114 @@ fn the_pseudo_inverse_has_evidence_and_excludes_given_speeds() {
     let problem = problem.expect_problem(422, "invalid_input");
     assert_eq!(problem["errors"][0]["pointer"], "/allocation");
 }
+
+/// The quarter turn of a camera past a bright body.
+fn past_a_bright_body() -> Value {
+    let mut slew = quarter();
+    slew["spacecraft"]["boresights"] = json!([{"name": "camera", "axis": [1, 0, 0]}]);
+    slew["keep_out"] = json!([
+        {"boresight": "camera", "direction": [1, 1, 0.05], "half_angle_deg": 25},
+    ]);
+    slew
+}
+
+#[test]
+fn a_slew_keeps_out_of_a_cone() {
+    let service = Service::start();
+    let solved = |slew: &Value| {
+        let answer = service.post("/v1/slews", slew).expect(200).json();
+        assert_eq!(answer["slews"][0]["solved"], true, "{answer}");
+        answer["slews"][0].clone()
+    };
+    let around = solved(&past_a_bright_body());
+    let nearest = &around["flight"]["keep_out_clearance_deg"][0];
+    assert_eq!(nearest["boresight"], "camera");
+    assert_eq!(nearest["cone"], "/keep_out/0");
+    let clearance = nearest["clearance_deg"].as_f64().expect("a number");
+    assert!((-6e-5..0.1).contains(&clearance), "{nearest}");
+    let time = |slew: &Value| slew["time_s"].as_f64().expect("a time");
+    let when = nearest["time_s"].as_f64().expect("a time");
+    assert!(0.0 < when && when < time(&around), "{nearest}");
+    assert_eq!(around["flight"]["keep_out_intrusions"], json!([]));
+    assert_eq!(around["reasons"], json!([]));
+
+    let mut reported = past_a_bright_body();
+    reported["keep_out"][0]["applies"] = json!("report");
+    let through = solved(&reported);
+    assert!(time(&through) < time(&around));
+    let flight = &through["flight"];
+    let intrusion = &flight["keep_out_intrusions"][0];
+    assert!(intrusion["depth_deg"].as_f64() > Some(3.0), "{flight}");
+    let warning = &flight["warnings"][0];
+    assert_eq!(
+        (&warning["pointer"], &warning["code"]),
+        (&json!("/keep_out/0"), &json!("keep_out_violated"))
+    );
+}
+
+#[test]
+fn a_slew_without_a_way_and_wrong_cones_are_told() {
+    let service = Service::start();
+    let mut enclosed = past_a_bright_body();
+    enclosed["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
+    enclosed["end"]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
+    let belt = (0..12).map(|step| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": 20})
+    });
+    enclosed["keep_out"] = belt.collect();
+    let answer = service.post("/v1/slews", &enclosed).expect(200).json();
+    let slew = &answer["slews"][0];
+    assert_eq!(
+        (&slew["solved"], &slew["status"]),
+        (&json!(false), &json!("infeasible"))
+    );
+    let reason = &slew["reasons"][0];
+    assert_eq!(
+        (&reason["pointer"], &reason["code"]),
+        (&json!("/end"), &json!("no_clear_path"))
+    );
+    let wrong = [
+        (
+            "half_angle_deg",
+            json!(180),
+            "half_angle_deg",
+            "out_of_range",
+        ),
+        (
+            "boresight",
+            json!("mirror"),
+            "boresight",
+            "unknown_reference",
+        ),
+        (
+            "applies",
+            json!("at_targets"),
+            "applies",
+            "conflicting_fields",
+        ),
+        (
+            "direction",
+            json!({"body": "sun"}),
+            "direction",
+            "epoch_required",
+        ),
+        ("direction", json!([0, 1, 0]), "", "attitude_violates_cone"),
+    ];
+    for (field, value, place, code) in wrong {
+        let mut slew = past_a_bright_body();
+        slew["keep_out"][0][field] = value;
+        let problem = service.post("/v1/slews", &slew);
+        let problem = problem.expect_problem(422, "invalid_input");
+        let pointer = match place {
+            "" => "/end".to_owned(),
+            place => format!("/keep_out/0/{place}"),
+        };
+        let error = &problem["errors"][0];
+        assert_eq!(
+            (&error["pointer"], &error["code"]),
+            (&json!(pointer), &json!(code)),
+            "{problem}"
+        );
+    }
+}

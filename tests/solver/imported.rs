@@ -1,7 +1,9 @@
 //! Legs that were solved elsewhere: taken bit for bit when they pass verification, otherwise refused.
 
 use slewplan_solver::model::motion::Motion;
-use slewplan_solver::model::spec::{AttitudeEquivalence, ScenarioSpec};
+use slewplan_solver::model::spec::{
+    Applies, AttitudeEquivalence, AttitudeSpec, BoresightSpec, ConeSpec, ScenarioSpec,
+};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::{LegKind, LegStore, StoredLeg};
 use slewplan_solver::tour::planner::{LegCheck, Run, Shard, leg_table};
@@ -76,6 +78,44 @@ fn a_solved_leg_is_imported_unchanged() {
         }
     }
     assert!(count > 40, "{count} legs");
+}
+
+/// A quarter turn on whose way a camera passes a bright body.
+fn past_a_bright_body() -> ScenarioSpec {
+    let mut spec = schedule(Region::Sphere, RateConditions::AllZero, 1, 1);
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    spec.targets[0].attitude = AttitudeSpec::Quaternion([0.0, 0.0, half, half]);
+    spec.spacecraft.boresights = vec![BoresightSpec {
+        name: "camera".into(),
+        axis: [1.0, 0.0, 0.0],
+    }];
+    spec.keep_out = vec![ConeSpec {
+        boresight: "camera".into(),
+        direction: [1.0, 1.0, 0.05].into(),
+        half_angle_deg: 25.0,
+        applies: Applies::Always,
+    }];
+    spec
+}
+
+#[test]
+fn a_leg_around_a_cone_is_imported_and_one_through_it_refused() {
+    let (spec, kind) = (past_a_bright_body(), LegKind::RestToRest);
+    let legs = solved(&spec, kind);
+    let (mut free, around): (Vec<_>, Vec<_>) = legs
+        .iter()
+        .partition(|(identity, _)| !identity.contains("cone"));
+    assert!(!around.is_empty(), "{legs:?}");
+    for (identity, leg) in &around {
+        assert_eq!(judged(&spec, kind, identity, leg).as_ref(), Ok(*leg));
+    }
+    let (identity, leg) = around[0];
+    let bits = |leg: &StoredLeg| leg.turn_xyzw.map(f64::to_bits);
+    free.retain(|(_, other)| bits(other) == bits(leg));
+    let through = free.pop().expect("solved before").1;
+    assert!(through.duration_s < leg.duration_s);
+    let faults = judged(&spec, kind, identity, through).expect_err("refused");
+    assert!(faults[0].contains("cone 0 is entered"), "{faults:?}");
 }
 
 #[test]

@@ -4,14 +4,15 @@ use super::document::Node;
 use super::number::Number;
 use super::reader::{Cursor, Sink};
 use serde::Serialize;
+use slewplan_solver::model::epoch;
 use slewplan_solver::model::input::{
-    InputForm, InputPlace, input_choice, input_object, optional, or, required_or,
+    InputForm, InputPlace, UpTo, input_choice, input_object, optional, or, required_or,
 };
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::{
-    AttitudeSpec, OptionsSpec, PairSpec, RateAxes, ScenarioSpec, SpacecraftOrReference,
-    SpacecraftSpec, StateSpec, TargetSpec,
+    AttitudeSpec, ConeSpec, MAX_CONES, OptionsSpec, PairSpec, RateAxes, ReferenceFrame,
+    ScenarioSpec, SpacecraftOrReference, SpacecraftSpec, StateSpec, TargetSpec, TimeSystem,
 };
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::planner;
@@ -20,6 +21,12 @@ use utoipa::ToSchema;
 input_object! {
     /// A query for leg times: of `attitudes` and `pairs` exactly one.
     pub(crate) struct LegQuerySpec as "LegQueryBody" {
+        /// Epoch of time zero in the time system, which says where the Sun is.
+        epoch: Option<String> = optional().pattern(epoch::PATTERN),
+        /// Time system of the epoch, UTC without it.
+        time_system: Option<TimeSystem> = optional(),
+        /// Reference frame of all attitudes and directions, EME2000 without it.
+        reference_frame: Option<ReferenceFrame> = optional(),
         /// The spacecraft.
         spacecraft: SpacecraftSpec as SpacecraftOrReference
             = required_or(SpacecraftSpec::substitute()),
@@ -29,6 +36,11 @@ input_object! {
         options: OptionsSpec = or(OptionsSpec::default()),
         /// For `lower_bound`: which rate components vanish at both ends; all without it.
         zero_rate_axes: Option<[bool; 3]> as Option<RateAxes> = optional(),
+        /// Cones in which a boresight must not point: along legs those that apply `always`, at their ends
+        /// those `at_targets` too. `report` changes nothing. Cones do not change what is `certified`.
+        keep_out: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
+        /// Cones in which a boresight must point; likewise.
+        keep_in: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
         /// The legs between all of these, both directions.
         attitudes: Option<Vec<AttitudeSpec>> = optional().min_length(2),
         /// The legs of these pairs.
@@ -74,8 +86,6 @@ pub(crate) struct Pair {
     pub(crate) to: usize,
     /// The targets of the query's scenario between which the leg is.
     pub(crate) targets: (usize, usize),
-    /// A scenario of which the leg is that from the first target to the second.
-    pub(crate) scenario: Scenario,
 }
 
 /// The attitudes of a query, and where they stand in it.
@@ -97,15 +107,16 @@ impl QueriedAttitudes {
         });
         let attitudes = spec.attitudes.iter().flatten().enumerate();
         let listed = attitudes.map(|(i, attitude)| (format!("/attitudes/{i}"), attitude));
-        let (pointers, attitudes): (_, Vec<_>) = listed.chain(ends).unzip();
-        let target = |(index, attitude): (usize, &AttitudeSpec)| TargetSpec {
-            id: index.to_string(),
+        let (pointers, attitudes): (Vec<String>, Vec<_>) = listed.chain(ends).unzip();
+        // Messages name targets by their identifiers.
+        let target = |(id, attitude): (&String, &AttitudeSpec)| TargetSpec {
+            id: id.clone(),
             attitude: attitude.clone(),
             zero_rate_axes: spec.zero_rate_axes,
             ..TargetSpec::default()
         };
         Self {
-            targets: attitudes.into_iter().enumerate().map(target).collect(),
+            targets: pointers.iter().zip(attitudes).map(target).collect(),
             pointers,
             all_pairs: spec.attitudes.is_some(),
         }
@@ -200,54 +211,46 @@ fn check_lists(node: &Node, root: &Cursor<'_>) {
     }
 }
 
-/// A valid query, with a scenario for each leg.
+/// A valid query.
 fn build(spec: &LegQuerySpec) -> Result<LegQuery, Vec<Problem>> {
-    let base = ScenarioSpec {
-        spacecraft: spec.spacecraft.clone(),
-        start: spec.start.clone(),
-        options: spec.options.clone(),
-        ..ScenarioSpec::default()
-    };
     let places = QueriedAttitudes::of(spec);
-    let scenario = check(&base, &places)?;
+    let scenario = check(spec, &places)?;
     let pairs = places.pairs();
-    let pairs = pairs.into_iter().enumerate().map(|(index, (from, to))| {
-        let between = (from, to);
-        let targets = vec![places.targets[from].clone(), places.targets[to].clone()];
-        let spec = ScenarioSpec {
-            targets,
-            ..base.clone()
-        };
+    let pairs = pairs.into_iter().enumerate().map(|(index, targets)| {
         let (from, to) = if places.all_pairs {
-            (from, to)
+            targets
         } else {
             (index, index)
         };
-        Ok(Pair {
-            from,
-            to,
-            targets: between,
-            scenario: Scenario::try_new(&spec)?.scenario,
-        })
+        Pair { from, to, targets }
     });
     Ok(LegQuery {
         kind: spec.kind,
         compute: spec.mode == LegQueryMode::Compute,
-        pairs: pairs.collect::<Result<_, Vec<Problem>>>()?,
+        pairs: pairs.collect(),
         scenario,
     })
 }
 
-/// A scenario with all attitudes as targets, or what is wrong with spacecraft and attitudes, or keeps
-/// the wheels from holding a rest.
-fn check(base: &ScenarioSpec, places: &QueriedAttitudes) -> Result<Scenario, Vec<Problem>> {
+/// A scenario with all attitudes as targets, or what is wrong with spacecraft, attitudes and
+/// cones, or keeps the wheels from holding a rest.
+fn check(query: &LegQuerySpec, places: &QueriedAttitudes) -> Result<Scenario, Vec<Problem>> {
     let spec = ScenarioSpec {
+        epoch: query.epoch.clone(),
+        time_system: query.time_system,
+        reference_frame: query.reference_frame,
+        spacecraft: query.spacecraft.clone(),
+        start: query.start.clone(),
         targets: places.targets.clone(),
-        ..base.clone()
+        keep_out: query.keep_out.clone(),
+        keep_in: query.keep_in.clone(),
+        options: query.options.clone(),
+        ..ScenarioSpec::default()
     };
     let problems = match Scenario::try_new(&spec) {
         Ok(valid) => {
-            let problems = planner::feasibility_problems(&valid.scenario);
+            let mut problems = planner::feasibility_problems(&valid.scenario);
+            problems.retain(|problem| !is_of_start(problem));
             if problems.is_empty() {
                 return Ok(valid.scenario);
             }
@@ -259,6 +262,11 @@ fn check(base: &ScenarioSpec, places: &QueriedAttitudes) -> Result<Scenario, Vec
         .into_iter()
         .map(|problem| moved(problem, &places.pointers))
         .collect())
+}
+
+/// Whether a cone is violated at the start, from which no leg leads.
+fn is_of_start(problem: &Problem) -> bool {
+    problem.code == Code::AttitudeViolatesCone && problem.pointer == "/start"
 }
 
 /// A problem of a scenario's target with a pointer into the query.
@@ -302,8 +310,9 @@ pub(crate) struct LegAnswerDocument {
     /// No slew between these attitudes under the conditions of the kind takes less, s, proved, for
     /// `certified` those of `rest_to_rest`; `null` where nothing is proved or nothing is known.
     pub(crate) certified_lower_bound_s: Option<Number>,
-    /// How the solve ended (for `certified`: `proved`, or `none` without a bound); `null` when it was
-    /// not tried.
+    /// How the solve ended (for `certified`: `proved`, or `none` without a bound); `no_clear_path` where
+    /// no way around the cones was found, `infeasible` where it is proved that there is none; `null`
+    /// when it was not tried.
     pub(crate) status: Option<String>,
     /// Where the time comes from.
     pub(crate) source: Source,

@@ -13,8 +13,8 @@ mod statistics;
 
 pub(crate) use interruption::Interruption;
 pub(crate) use parts::{
-    ClearanceDocument, ControlDocument, MarginsDocument, QuaternionDocument, StateDocument,
-    VerificationDocument,
+    ClearanceDocument, ControlDocument, IntrusionDocument, MarginsDocument, QuaternionDocument,
+    StateDocument, VerificationDocument,
 };
 use parts::{LegDocument, PassageDocument};
 use statistics::StatisticsDocument;

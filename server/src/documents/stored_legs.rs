@@ -5,6 +5,7 @@ use super::plan::{ControlDocument, QuaternionDocument};
 use crate::base::clock::rfc3339;
 use crate::store::CachedLegRow;
 use serde::Serialize;
+use slewplan_solver::model::cone::ForbiddenCone;
 use slewplan_solver::model::motion::Motion;
 use utoipa::ToSchema;
 
@@ -22,6 +23,9 @@ pub(crate) struct StoredLegDocument {
     turn: QuaternionDocument,
     /// Total angular momentum in body axes at the begin, N m s.
     body_momentum_nms: [Number; 3],
+    /// Number of cones that it keeps out of, `keep_out` of the leg: zero where its motion is the fastest
+    /// without any.
+    cones: usize,
     /// Whether it can be flown backwards: it then is the leg from its end to its begin too.
     reversible: bool,
     /// Minimum time, s.
@@ -46,7 +50,30 @@ pub(crate) struct StoredLegDocument {
 pub(crate) struct FlownLegDocument {
     #[serde(flatten)]
     leg: StoredLegDocument,
+    /// The cones that it keeps out of. To stay inside a cone is to keep out of the opposite one.
+    keep_out: Vec<LegConeDocument>,
     trajectory: LegTrajectoryDocument,
+}
+
+/// A cone that a leg keeps out of.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = LegCone)]
+struct LegConeDocument {
+    /// Unit vector of the boresight in body axes.
+    boresight_axis: [Number; 3],
+    /// Unit vector along the cone's axis, relative to the attitude at the begin.
+    direction: [Number; 3],
+    half_angle_deg: Number,
+}
+
+impl From<&ForbiddenCone> for LegConeDocument {
+    fn from(cone: &ForbiddenCone) -> Self {
+        Self {
+            boresight_axis: <[f64; 3]>::from(cone.axis).map(Number),
+            direction: <[f64; 3]>::from(cone.direction).map(Number),
+            half_angle_deg: Number(cone.half_angle.to_degrees()),
+        }
+    }
 }
 
 /// The motion of a leg.
@@ -89,6 +116,7 @@ impl From<&CachedLegRow> for StoredLegDocument {
             kind: row.kind.clone(),
             turn: row.turn_xyzw().into(),
             body_momentum_nms: row.momentum().map(Number),
+            cones: row.cones().len(),
             reversible: row.reversible,
             duration_s: Number(row.duration_s),
             certified_lower_bound_s: row.certified_lower_bound_s().map(Number),
@@ -109,6 +137,7 @@ impl FlownLegDocument {
         let intervals = motion.lengths_s.iter().zip(momenta);
         Self {
             leg: row.into(),
+            keep_out: row.cones().iter().map(LegConeDocument::from).collect(),
             trajectory: LegTrajectoryDocument {
                 controls: begins
                     .iter()

@@ -4,8 +4,10 @@ mod upkeep;
 
 use super::{Store, StoreError};
 use slewplan_solver::bounds;
+use slewplan_solver::model::cone::ForbiddenCone;
 use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{LegKind, StoredLeg};
+use slewplan_solver::tour::planner;
 use sqlx::{FromRow as _, Row, SqliteConnection};
 use std::str::FromStr;
 
@@ -35,6 +37,7 @@ row! {
         pub(crate) sequence: i64,
         /// SHA-256 of the identity, hex.
         pub(crate) key: String,
+        identity: String,
         /// SHA-256 of the spacecraft's canonical text, hex.
         pub(crate) spacecraft: String,
         /// The kind of table for which it was solved.
@@ -79,6 +82,11 @@ impl CachedLegRow {
     pub(crate) fn certified_lower_bound_s(&self) -> Option<f64> {
         self.certified_lower_bound_s
             .filter(|_| self.bound_version == Some(bounds::VERSION))
+    }
+
+    /// The cones that it keeps out of, in the frame in which it begins at the identity attitude.
+    pub(crate) fn cones(&self) -> Vec<ForbiddenCone> {
+        planner::cones_of(&self.identity)
     }
 
     /// The leg with what its row does not hold.

@@ -3,12 +3,14 @@
 //! Tours have constant torques and ideal drives; the commands of a single slew may be linear in time,
 //! some of its wheels may follow a speed law, and motors may compensate friction.
 
+use super::cones::ConeObservers;
 use super::dynamics::{Body, Snapshot};
 use super::integrator::{IntegrationStep, STEP_TOLERANCE, TorqueSpan, integrate};
 use super::limits::LimitObserver;
 use super::state;
 use crate::model::drive::Drive;
-use crate::model::plan::State;
+use crate::model::plan::{ConeClearance, Intrusion, State};
+use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 
 /// Torques that change linearly over a time.
@@ -37,7 +39,13 @@ pub(crate) struct RampedFlight {
     pub(crate) rate_usage: Option<f64>,
     /// Largest relative change of the total momentum: a measure of the integration.
     pub(crate) momentum_drift: f64,
-    /// Sentences about exceeded limits of wheel speeds and rates.
+    /// Closest approach to every cone.
+    pub(crate) clearances: Vec<ConeClearance>,
+    /// Times on the wrong side of cones.
+    pub(crate) intrusions: Vec<Intrusion>,
+    /// Warnings about cones that are only reported.
+    pub(crate) warnings: Vec<Problem>,
+    /// Sentences about exceeded limits of wheel speeds and rates, and about enforced cones.
     pub(crate) failures: Vec<String>,
 }
 
@@ -113,9 +121,12 @@ pub(crate) fn propagate_ramps(
     let mut limits = LimitObserver::new(scenario);
     let mut torque_usage = 0.0_f64;
     let mut last = Snapshot::at_start(scenario);
+    // A flight of ramps stays at no target.
+    let mut cones = ConeObservers::new(scenario.cones(), &[], &last.quaternion);
     let mut states: Vec<State> = state(&last).into_iter().collect();
     let integration = integrate(&body, last.clone(), &intervals, STEP_TOLERANCE, |step| {
         limits.observe(step);
+        cones.observe(step);
         for pair in step.grid.windows(2) {
             let part = StepPart {
                 step,
@@ -131,13 +142,19 @@ pub(crate) fn propagate_ramps(
             states.extend(state(&last));
         }
     })?;
+    let cones = cones.finish();
+    let mut failures = limits.failures();
+    failures.extend(cones.failures);
     Ok(RampedFlight {
         states,
+        clearances: cones.clearances,
+        intrusions: cones.intrusions,
+        warnings: cones.warnings,
         torque_usage,
         wheel_usage: limits.wheel_usage(),
         rate_usage: limits.rate_usage(),
         momentum_drift: integration.momentum_drift,
-        failures: limits.failures(),
+        failures,
     })
 }
 

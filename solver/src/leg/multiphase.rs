@@ -12,7 +12,7 @@ mod staged;
 #[cfg(test)]
 mod tests;
 
-use crate::leg::detour::guess::longest_intervals;
+use crate::leg::detour::guess::{GUESS_STRETCH, longest_intervals};
 use crate::leg::profile::Profile;
 use crate::leg::transcription::{MIN_TURN, Reserves, Scales, Transcription};
 use crate::model::attitude::Attitude;
@@ -20,8 +20,10 @@ use crate::model::dynamics::Dynamics;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::{InteriorPoint, Iterate, NlpStatus, Settings};
 use crate::run::stop::StopReason;
-pub(crate) use between_nodes::{attitudes_inside, excess_inside, keeps_limits_inside};
-use between_nodes::{deepest, depths_between_nodes, excess_between_nodes};
+pub(crate) use between_nodes::{
+    attitudes_inside, deepest, depths_inside, excess_inside, keeps_limits_inside,
+};
+use between_nodes::{depths_between_nodes, excess_between_nodes};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
 use passes::{POLISHING, Pass, from_a_guess};
@@ -39,8 +41,7 @@ const MAX_ROUNDS: usize = 12;
 /// they do. Smaller excesses become reserves everywhere, which costs half of them in duration.
 pub(crate) const LOCAL_ROUNDS: usize = 6;
 const LOCAL_EXCESS: f64 = 1e-3;
-/// How much longer an interval near a cone may become than in a guess, and than in a rough motion.
-const GUESS_STRETCH: f64 = 1.4;
+/// How much longer than in a rough motion an interval may become near a cone.
 const ROUGH_STRETCH: f64 = 1.1;
 /// Rounds that fit the angles kept from cones to the bend of the motion, before others raise them.
 const FITTED_ROUNDS: usize = 3;

@@ -73,6 +73,12 @@ impl Cone {
     }
 }
 
+/// What boresights have to stay out of along the whole flight.
+pub(crate) fn forbidden_always(cones: &[Cone]) -> Vec<ForbiddenCone> {
+    let enforced = cones.iter().filter(|cone| cone.applies == Applies::Always);
+    enforced.map(Cone::forbidden).collect()
+}
+
 /// A cone that a direction of the body has to stay out of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForbiddenCone {

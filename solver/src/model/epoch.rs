@@ -3,7 +3,7 @@
 use jiff::civil::DateTime;
 
 /// The form of an epoch, for descriptions.
-pub(crate) const PATTERN: &str = r"^[0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])T([01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9](\.[0-9]{1,9})?Z?$";
+pub const PATTERN: &str = r"^[0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])T([01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9](\.[0-9]{1,9})?Z?$";
 /// The part that every epoch has; `0` stands for a digit.
 const SHAPE: &[u8] = b"0000-00-00T00:00:00";
 

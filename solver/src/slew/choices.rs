@@ -3,8 +3,10 @@
 use super::spec::{
     EnergyMeasure, FinalWheels, Objective, SampleHold, SlewSpec, TorqueCommand, WheelAllocation,
 };
+use crate::model::cone::{Applies, Side};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
+use crate::model::spec::ConeSpec;
 use crate::nlp::{MAX_CONTROLS, MAX_STATES};
 
 /// Greatest number of intervals of a slew.
@@ -28,6 +30,7 @@ pub(super) fn check(spec: &SlewSpec, findings: &mut Findings) -> bool {
         check_final_wheels(spec, findings),
         check_laws(spec, findings),
         check_allocation(spec, findings),
+        check_cones(spec, findings),
     ];
     checks.iter().all(|passed| *passed)
 }
@@ -231,6 +234,24 @@ fn check_allocation(spec: &SlewSpec, findings: &mut Findings) -> bool {
              for the end",
             "leave the wheels free at the end: attitude, rate and start settle their speeds",
         );
+    }
+    valid
+}
+
+/// A cone that holds at targets would never hold.
+fn check_cones(spec: &SlewSpec, findings: &mut Findings) -> bool {
+    let mut valid = true;
+    for (side, cones) in [(Side::Out, &spec.keep_out), (Side::In, &spec.keep_in)] {
+        let at_targets = |cone: &ConeSpec| cone.applies == Applies::AtTargets;
+        for index in (0..cones.len()).filter(|index| at_targets(&cones[*index])) {
+            valid = false;
+            findings.refuse(
+                format!("/{}/{index}/applies", side.list()),
+                Code::ConflictingFields,
+                "a slew has no targets at which the cone could hold",
+                "write \"always\", or \"report\" for a cone that is not enforced",
+            );
+        }
     }
     valid
 }

@@ -3,7 +3,8 @@
 use super::motion::SlewMotion;
 use super::vehicle::Vehicle;
 use crate::leg::kinematics::exact_flow;
-use crate::leg::multiphase::excess_inside;
+use crate::leg::multiphase::{deepest, depths_inside, excess_inside};
+use crate::leg::transcription::ConeDepth;
 use crate::math::quaternion::{Quat, rotate_back};
 use crate::model::attitude::Attitude;
 use nalgebra::{DVector, Vector3};
@@ -15,6 +16,8 @@ const SAMPLES: usize = 32;
 /// The motion at one time.
 #[derive(Debug, Clone)]
 pub(super) struct MotionSample {
+    /// Attitude.
+    pub(super) attitude: Attitude,
     /// Body rate, rad/s.
     pub(super) rate: Vector3<f64>,
     /// Total momentum in body axes, N m s.
@@ -29,20 +32,27 @@ pub(super) struct MotionSample {
     pub(super) drift_rate: Vector3<f64>,
 }
 
-/// Relative excesses over limits between nodes.
+/// Excesses over limits between nodes.
 pub(super) struct Excesses {
-    /// Over the limits of [`Dynamics::limit_shares`](crate::model::dynamics::Dynamics::limit_shares),
+    /// Relative, over the limits of [`Dynamics::limit_shares`](crate::model::dynamics::Dynamics::limit_shares),
     /// interval by interval, where the peak inside is larger than at both ends.
     pub(super) shares: Vec<f64>,
-    /// Over the motor torques, one per interval.
+    /// Relative, over the motor torques, one per interval.
     pub(super) torques: Vec<f64>,
+    /// Depths inside cones, rad, interval by interval.
+    pub(super) depths: Vec<ConeDepth>,
 }
 
 impl Excesses {
-    /// The greatest of all; zero where no limit is exceeded.
+    /// The greatest relative excess; zero where no limit is exceeded.
     pub(super) fn greatest(&self) -> f64 {
         let all = self.shares.iter().chain(&self.torques);
         all.copied().fold(0.0, f64::max)
+    }
+
+    /// The greatest depth inside a cone, rad.
+    pub(super) fn depth(&self) -> f64 {
+        deepest(&self.depths)
     }
 }
 
@@ -114,6 +124,7 @@ impl Vehicle {
             let actuators = self.dynamics.actuators.iter().zip(momenta.iter());
             let speeds = actuators.map(|(wheel, h)| h / wheel.inertia - wheel.axis.dot(&rate));
             samples.push(MotionSample {
+                attitude,
                 speeds: speeds.collect(),
                 torques: &motion.begin[k] * (1.0 - s) + &motion.end[k] * s,
                 drift_rate: self.speed_law_wheels.drift(begin + motion.lengths[k] * s)[1],
@@ -128,7 +139,7 @@ impl Vehicle {
     /// The excesses over limits inside the intervals of a motion.
     pub(super) fn excesses(&self, motion: &SlewMotion) -> Excesses {
         let times = motion.times();
-        let (mut shares, mut torques) = (Vec::new(), Vec::new());
+        let (mut shares, mut torques, mut depths) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..motion.lengths.len() {
             let samples = self.samples(motion, k, times[k], SAMPLES);
             let usages: Vec<Vec<f64>> = samples
@@ -141,8 +152,14 @@ impl Vehicle {
             }
             let motors: Vec<f64> = samples.iter().map(|at| self.motor_usage(at)).collect();
             torques.push(excess_inside(&motors));
+            let attitudes: Vec<Attitude> = samples.iter().map(|at| at.attitude).collect();
+            depths.extend(depths_inside(&self.dynamics.cones, &attitudes));
         }
-        Excesses { shares, torques }
+        Excesses {
+            shares,
+            torques,
+            depths,
+        }
     }
 
     /// The greatest motor torque as a share of its limit.

@@ -44,6 +44,15 @@ impl SlewMotion {
         }
     }
 
+    /// The states at the nodes.
+    pub(super) fn as_profile(&self) -> Profile {
+        Profile {
+            attitudes: self.attitudes.clone(),
+            wheels: self.momenta.clone(),
+            lengths: self.lengths.clone(),
+        }
+    }
+
     /// Duration, s.
     pub(super) fn duration(&self) -> f64 {
         self.lengths.iter().sum()

@@ -5,6 +5,8 @@ use super::propagation::{self, PropagatedSlew};
 use super::solving::ProgramSolution;
 use super::spec::Objective;
 use super::validated::Slew;
+use crate::leg::no_way::NoWay;
+use crate::model::problem::Problem;
 use crate::nlp::NlpStatus;
 
 /// Relative excess over the allowed energy that is not a failure.
@@ -13,8 +15,11 @@ const BUDGET_TOLERANCE: f64 = 1e-4;
 /// The outcome of a solve: the propagated solution, and how it was found.
 #[derive(Debug, Clone)]
 pub struct SlewOutcome {
-    /// Status of the last program: `converged`, or why it did not converge.
+    /// Status of the last program: `converged`, or why it did not converge; where cones leave no way,
+    /// `no_clear_path`, and `infeasible` where that is proved.
     pub status: String,
+    /// What was searched for a way around the cones, where none was found.
+    pub reasons: Vec<Problem>,
     /// Whether a local minimum was found, and its propagation keeps all limits and reaches the end.
     pub solved: bool,
     /// The value of the objective, in its own unit: s, or J.
@@ -59,6 +64,7 @@ impl SlewOutcome {
         let converged = found.solved.status == NlpStatus::Converged;
         Self {
             status: found.solved.status.to_string(),
+            reasons: Vec::new(),
             solved: converged && propagated.failures.is_empty(),
             objective,
             time_s,
@@ -68,6 +74,15 @@ impl SlewOutcome {
             iterations: found.iterations,
             continuous_time_s: found.continuous_time,
             solution: found.solved,
+        }
+    }
+
+    /// The outcome of the same solve where cones leave no way.
+    pub(super) fn without_way(self, parted: &NoWay) -> Self {
+        Self {
+            status: parted.status().to_owned(),
+            reasons: vec![parted.problem.clone()],
+            ..self
         }
     }
 }

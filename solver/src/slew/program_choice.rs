@@ -90,6 +90,10 @@ impl ProgramChoice {
             {
                 guess.on_finer_mesh(self.intervals)
             }
+            // Near cones the guess has more nodes than the caller asked for.
+            IntervalLengths::Free if !dynamics.cones.is_empty() => {
+                guess.on_finer_mesh(self.intervals)
+            }
             _ => guess.on_equal_mesh(self.intervals),
         }
     }

@@ -8,7 +8,8 @@ use crate::checker::{
     StepPart, TorqueRamp, propagate_ramps,
 };
 use crate::model::drive::Drive;
-use crate::model::plan::State;
+use crate::model::plan::{ConeClearance, Intrusion, State};
+use crate::model::problem::Problem;
 use crate::model::waypoint::WheelCondition;
 
 /// Bisections for the time at which the power of a wheel changes its sign.
@@ -77,7 +78,13 @@ pub struct PropagatedSlew {
     pub rate_excess: f64,
     /// Greatest error of a prescribed final wheel speed, rad/s; zero where none is.
     pub wheel_speed_error_rad_s: f64,
-    /// Every limit or end condition that is violated, as a sentence; empty when there is none.
+    /// Closest approach to every cone, also to those that are only reported.
+    pub clearances: Vec<ConeClearance>,
+    /// Times on the wrong side of cones.
+    pub intrusions: Vec<Intrusion>,
+    /// Warnings about cones that are only reported.
+    pub warnings: Vec<Problem>,
+    /// Every limit, cone or end condition that is violated, as a sentence; empty when there is none.
     pub failures: Vec<String>,
 }
 
@@ -113,6 +120,9 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
         wheel_speed_excess: f64::MAX,
         rate_excess: f64::MAX,
         wheel_speed_error_rad_s: f64::MAX,
+        clearances: Vec::new(),
+        intrusions: Vec::new(),
+        warnings: Vec::new(),
         failures: Vec::new(),
     };
     let flight = match flight {
@@ -130,6 +140,9 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     propagated.torque_excess = excess(flight.torque_usage);
     propagated.wheel_speed_excess = excess(flight.wheel_usage.unwrap_or(0.0));
     propagated.rate_excess = excess(flight.rate_usage.unwrap_or(0.0));
+    propagated.clearances = flight.clearances;
+    propagated.intrusions = flight.intrusions;
+    propagated.warnings = flight.warnings;
     propagated.failures = flight.failures;
     propagated
         .failures
@@ -150,7 +163,7 @@ fn excess(usage: f64) -> f64 {
 }
 
 /// Sentences about attitude, rate and torques that are out of tolerance; [`propagate_ramps`] reports
-/// those about speeds and rates.
+/// those about speeds, rates and cones.
 fn faults(propagated: &PropagatedSlew, momentum_drift: f64) -> Vec<String> {
     let too_large = [
         (

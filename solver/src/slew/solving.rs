@@ -7,9 +7,10 @@ use super::motion::SlewMotion;
 use super::program::{LengthPenalty, Program, ProgramSetup, ProgramUnits};
 use super::shape::{IntervalLengths, ProgramShape};
 use super::vehicle::Vehicle;
+use crate::leg::detour::guess::{GUESS_STRETCH, longest_intervals};
 use crate::leg::multiphase::{
-    LARGE_MISS, LIMIT_TOLERANCE, LOCAL_ROUNDS, MISS_TOLERANCE, NEAR_BARRIER, NEAR_EXCESS,
-    RESERVE_FACTOR,
+    CONE_TOLERANCE, LARGE_MISS, LIMIT_TOLERANCE, LOCAL_ROUNDS, MISS_TOLERANCE, NEAR_BARRIER,
+    NEAR_EXCESS, RESERVE_FACTOR,
 };
 use crate::leg::transcription::{Reserves, Scales};
 use crate::model::waypoint::Waypoint;
@@ -205,6 +206,11 @@ impl ProgramTask<'_> {
             units,
         };
         let mut program = Program::new(self.vehicle, setup);
+        if self.shape.lengths == IntervalLengths::Free && !dynamics.cones.is_empty() {
+            // Nodes alone would let one long interval lead through a cone.
+            let longest = longest_intervals(dynamics, &guess.as_profile(), GUESS_STRETCH);
+            program.base.limit_lengths(&longest);
+        }
         let energy = program.energy_of(&program.iterate_at(guess));
         let wheels = dynamics.wheel_count() as f64;
         if energy > 0.0 {
@@ -254,14 +260,15 @@ impl SolveLoop<'_> {
             let missed = self.correct();
             let excesses = self.vehicle.excesses(&self.solved.motion);
             let excess = excesses.greatest();
-            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE {
+            let enters = excesses.depth() > CONE_TOLERANCE;
+            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE && !enters {
                 return;
             }
             if missed > LARGE_MISS {
                 self.solved.program.base.use_finer_map();
                 self.correct();
             }
-            if excess > LIMIT_TOLERANCE {
+            if excess > LIMIT_TOLERANCE || enters {
                 self.keep_reserves(round, &mut reserves, &excesses);
             }
             if !self.converges(stop) {
@@ -296,12 +303,12 @@ impl SolveLoop<'_> {
         missed
     }
 
-    fn keep_reserves(
-        &mut self,
-        round: usize,
-        reserves: &mut Reserves,
-        Excesses { shares, torques }: &Excesses,
-    ) {
+    fn keep_reserves(&mut self, round: usize, reserves: &mut Reserves, excesses: &Excesses) {
+        let Excesses {
+            shares,
+            torques,
+            depths,
+        } = excesses;
         let program = &mut self.solved.program;
         let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max) * RESERVE_FACTOR;
         if round < LOCAL_ROUNDS {
@@ -320,8 +327,9 @@ impl SolveLoop<'_> {
                 .iter_mut()
                 .for_each(|r| *r += most(torques));
         }
+        reserves.raise_cones(depths, RESERVE_FACTOR);
         program.base.keep(reserves);
-        if most(shares).max(most(torques)) <= NEAR_EXCESS {
+        if excesses.greatest().max(excesses.depth()) <= NEAR_EXCESS {
             self.solved.iterate.recentre(NEAR_BARRIER);
             self.engine.settings.initial_barrier = NEAR_BARRIER;
         } else {

@@ -1,12 +1,16 @@
 //! A slew as a caller describes it: plain, unvalidated.
 
 use crate::model::drive::DriveSpec;
+use crate::model::epoch;
 use crate::model::input::{
-    self, InputForm, InputPlace, MemberSchema, NamedSchema, Schema, input_choice, input_object,
-    input_union, nullable, optional, or, required, required_elsewhere, required_or,
+    self, InputForm, InputPlace, MemberSchema, NamedSchema, Schema, UpTo, input_choice,
+    input_object, input_union, nullable, optional, or, required, required_elsewhere, required_or,
 };
 use crate::model::problem::Code;
-use crate::model::spec::{AttitudeEquivalence, SpacecraftOrReference, SpacecraftSpec, StateSpec};
+use crate::model::spec::{
+    AttitudeEquivalence, ConeSpec, MAX_CONES, ReferenceFrame, SpacecraftOrReference,
+    SpacecraftSpec, StateSpec, TimeSystem,
+};
 
 /// Number of intervals of a command that gives none.
 pub const DEFAULT_INTERVALS: usize = 24;
@@ -19,6 +23,12 @@ input_object! {
     pub struct SlewSpec as "SlewBody" {
         /// Free text.
         pub name: Option<String> = optional(),
+        /// Epoch of time zero in the time system, which says where the Sun is.
+        pub epoch: Option<String> = optional().pattern(epoch::PATTERN),
+        /// Time system of the epoch, UTC without it.
+        pub time_system: Option<TimeSystem> = optional(),
+        /// Reference frame of all attitudes and directions, EME2000 without it.
+        pub reference_frame: Option<ReferenceFrame> = optional(),
         /// Values for which the slew is solved one after the other; the objective's own is not used.
         pub sweep: Option<Sweep> = optional(),
         /// The spacecraft.
@@ -30,6 +40,10 @@ input_object! {
         pub start: StateSpec = required_or(StateSpec::default()),
         /// State at the end; its wheel speeds count with `final_wheels` `given` only.
         pub end: StateSpec = required_or(StateSpec::default()),
+        /// Cones in which a boresight must not point; `at_targets` is refused, as a slew has no targets.
+        pub keep_out: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
+        /// Cones in which a boresight must point; likewise.
+        pub keep_in: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
         /// Condition on the wheels at the end; `free` without it.
         pub final_wheels: FinalWheels = or(FinalWheels::default()),
         /// What is minimised; `minimum_time` without it.

@@ -1,13 +1,18 @@
-//! Guesses for a slew: the fastest motion, and eigenaxis slews perturbed to either side.
+//! Guesses for a slew: the fastest motion, and eigenaxis slews perturbed to either side, or motions along
+//! ways around cones.
 
 use super::cost_weights::CostWeights;
 use super::motion::SlewMotion;
 use super::validated::Slew;
+use crate::leg::solve::around_cones;
 use crate::leg::solve::eigenaxis::Perturbation;
 use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::{self, LegProblem, Resolution};
 use crate::model::spec::Accuracy;
 use crate::run::stop::StopReason;
+
+/// Most guesses along ways around cones beside the fastest motion.
+const MAX_AROUND_CONES: usize = 3;
 
 /// The guesses, best first. For minimum time the fastest motion is enough, since it is itself the best
 /// of several solutions; other objectives may have several local minima.
@@ -37,10 +42,16 @@ pub(super) fn of(
         None => fastest,
     }];
     // The fastest motion uses torques that the pseudo-inverse cannot give.
-    if !converged || !cost_weights.is_time_only() || vehicle.pinned_null.is_some() {
+    if converged && cost_weights.is_time_only() && vehicle.pinned_null.is_none() {
+        return guesses;
+    }
+    if dynamics.cones.is_empty() {
         let perturbed_eigenaxis = [Perturbation::Far, Perturbation::Near]
             .map(|side| SlewMotion::of_profile(&problem.perturbed_eigenaxis(side)));
         guesses.extend(perturbed_eigenaxis);
+    } else {
+        let around = around_cones::guesses(&problem, None).take(MAX_AROUND_CONES);
+        guesses.extend(around.map(|guess| SlewMotion::of_profile(&guess)));
     }
     guesses
 }

@@ -1,6 +1,7 @@
 //! Slews with published results, combinations without any, and the derivatives of their programs.
 
 mod allocation;
+mod cones;
 mod craft;
 mod derivatives;
 mod drifting;

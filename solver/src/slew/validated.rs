@@ -8,11 +8,12 @@ use super::spec::{FinalWheels, Objective, SlewSpec, TorqueCommand, WheelAllocati
 use super::vehicle::{SpeedLawWheels, Vehicle};
 use crate::leg::solve::arrival::Arrival;
 use crate::model::attitude::Attitude;
+use crate::model::cone::forbidden_always;
 use crate::model::drive::Drive;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
-use crate::model::scenario::{RateCondition, Scenario};
+use crate::model::scenario::{RateCondition, Scenario, cone_problems};
 use crate::model::spec::{AttitudeEquivalence, OptionsSpec, ScenarioSpec};
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
@@ -41,7 +42,8 @@ pub struct ValidatedSlew {
 
 impl Slew {
     /// Validates a description and collects every problem. Pointers are those of the fields:
-    /// `/spacecraft`, `/drives`, `/start`, `/end`, `/objective`, `/command`, `/allocation`, `/options`.
+    /// `/spacecraft`, `/drives`, `/start`, `/end`, `/keep_out`, `/keep_in`, `/objective`, `/command`,
+    /// `/allocation`, `/options`.
     ///
     /// # Errors
     ///
@@ -61,6 +63,10 @@ impl Slew {
         let (Ok(scenario), Ok(drives), true) = (scenario, drives, problems.is_empty()) else {
             return Err(problems);
         };
+        let enclosed = cone_problems(&scenario.scenario);
+        if !enclosed.is_empty() {
+            return Err(enclosed);
+        }
         let mut warnings = scenario.warnings;
         // A slew never has any.
         warnings.retain(|warning| warning.code != Code::NoTargets);
@@ -74,6 +80,7 @@ impl Slew {
         let start = scenario.start();
         let authority = Authority::of(scenario.options());
         let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
+        let dynamics = dynamics.with_cones(forbidden_always(scenario.cones()));
         let mut speed_law_wheels = SpeedLawWheels::default();
         let wheels = scenario.spacecraft().wheels().iter();
         for ((wheel, drive), speed) in wheels.zip(&drives).zip(&start.wheel_speed) {
@@ -231,6 +238,13 @@ impl Slew {
         }
     }
 
+    /// The same slew without cones, which its propagation still observes.
+    pub(super) fn without_cones(&self) -> Self {
+        let mut free = self.clone();
+        free.vehicle.dynamics.cones.clear();
+        free
+    }
+
     /// The same slew with another objective.
     pub(super) fn with_objective(&self, objective: Objective) -> Self {
         Self {
@@ -255,6 +269,11 @@ fn scenario_spec(spec: &SlewSpec) -> ScenarioSpec {
         end.wheel_speed_rad_s = None;
     }
     ScenarioSpec {
+        epoch: spec.epoch.clone(),
+        time_system: spec.time_system,
+        reference_frame: spec.reference_frame,
+        keep_out: spec.keep_out.clone(),
+        keep_in: spec.keep_in.clone(),
         spacecraft,
         start: spec.start.clone(),
         end: Some(end),

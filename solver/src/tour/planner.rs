@@ -43,8 +43,9 @@ use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
 use tour_bound::tour_bound;
 use tours::Tours;
-use unsolved::unsolved;
+use unsolved::{leg_status, unsolved};
 
+pub use canonical::cones_of;
 pub use certificate::{
     CheckedCertificate, LegCertificate, Objection, Obstacle, PlanCertificate, Verdict,
     verify_certificate,
@@ -209,42 +210,50 @@ pub fn leg_table(
         .map(|(_, pair)| pair)
         .collect();
     let solver = LegSolver::new(&places, run, &stop);
-    let rows: Vec<_> = if kind == LegKind::Certified {
-        let rows = certified_rows(&solver, &pairs);
-        rows.into_iter().flatten().collect()
-    } else {
-        let table = solver.table(kind, &pairs);
-        let row = |(from, to): &(Place, Place)| {
-            let leg = &table.get(*from, *to)?.leg;
-            Some(LegRow {
-                from: places.name(*from),
-                to: places.name(*to),
-                kind,
-                duration_s: leg.solution.duration(),
-                certified_lower_bound_s: leg.certified,
-                solve_time_s: leg.solve_time,
-                status: leg.solution.status.into_str().into(),
-            })
-        };
-        pairs.iter().filter_map(row).collect()
-    };
+    let rows = rows(&solver, run.pool, kind, &pairs);
+    let rows: Vec<_> = rows.into_iter().flatten().collect();
     let complete = rows.len() == pairs.len();
     (rows, complete)
 }
 
-/// Certified bounds on the legs between pairs of places at full rest; no leg is solved. `None` for
-/// pairs that were not reached before the stop signal.
-///
-/// The places must be those of the scenario.
+/// The legs of a kind between pairs of places, which must be those of the scenario. `None` for pairs
+/// that were not reached before the stop signal.
 #[must_use]
-pub fn certified_legs(
+pub fn legs_between(
     scenario: &Scenario,
+    kind: LegKind,
     pairs: &[(Place, Place)],
     run: Run<'_>,
 ) -> Vec<Option<LegRow>> {
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    certified_rows(&LegSolver::new(&places, run, &stop), pairs)
+    rows(&LegSolver::new(&places, run, &stop), run.pool, kind, pairs)
+}
+
+/// The rows of a table of legs; of [`LegKind::Certified`] no leg is solved.
+fn rows(
+    solver: &LegSolver<'_>,
+    pool: &SolverPool,
+    kind: LegKind,
+    pairs: &[(Place, Place)],
+) -> Vec<Option<LegRow>> {
+    if kind == LegKind::Certified {
+        return certified_rows(solver, pairs);
+    }
+    let (places, table) = (solver.places(), solver.table(kind, pairs));
+    // Where cones leave no way, finding out that they do takes as long as a solve.
+    pool.map(pairs, |(from, to)| {
+        let leg = &table.get(*from, *to)?.leg;
+        Some(LegRow {
+            from: places.name(*from),
+            to: places.name(*to),
+            kind,
+            duration_s: leg.solution.duration(),
+            certified_lower_bound_s: leg.certified,
+            solve_time_s: leg.solve_time,
+            status: leg_status(places, [*from, *to], &leg.solution).into(),
+        })
+    })
 }
 
 /// The rows of a table of certified bounds.

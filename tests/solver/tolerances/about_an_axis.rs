@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use slewplan_solver::checker::{self, ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use slewplan_solver::model::plan::{Control, Flight, Passage};
 use slewplan_solver::model::spec::{ScenarioSpec, TargetSpec};
+use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::order::Place;
-use slewplan_solver::tour::planner::certified_legs;
+use slewplan_solver::tour::planner::legs_between;
 use slewplan_tests::published_targets_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, scenario_of};
@@ -197,7 +198,8 @@ fn compare(generator: &mut Generator, count: usize) -> (usize, f64) {
         }
     }
     let scenario = scenario_of(&all);
-    let rows = on_threads(1, |run| certified_legs(&scenario, &pairs, run));
+    let kind = LegKind::Certified;
+    let rows = on_threads(1, |run| legs_between(&scenario, kind, &pairs, run));
     let mut open = f64::INFINITY;
     for (row, duration_s) in rows.into_iter().flatten().zip(durations) {
         let bound_s = row.certified_lower_bound_s.expect("a bound");

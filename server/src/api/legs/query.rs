@@ -17,14 +17,12 @@ use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore, StoredLeg};
 use slewplan_solver::tour::order::Place;
-use slewplan_solver::tour::planner::{self, LegRow, Run, Shard};
+use slewplan_solver::tour::planner::{self, LegRow, Run};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
 
 /// Maximum number of legs of one query: the full matrix of 32 attitudes.
 pub(in crate::api) const MAX_PAIRS: usize = 1000;
-/// With a start and two targets, the fourth of six pairs leads from the first target to the second.
-const BETWEEN_TARGETS: Shard = Shard { index: 3, of: 6 };
 
 /// Query leg times
 ///
@@ -94,9 +92,7 @@ fn answers(
     let answered = if query.kind == LegKind::Certified {
         certified(query, pool, stop)
     } else {
-        pool.map(&query.pairs, |pair| {
-            answer(pair, query.kind, pool, stop, cache)
-        })
+        pool.map(&query.pairs, |pair| answer(query, pair, pool, stop, cache))
     };
     let spacecraft_key = answered
         .iter()
@@ -115,11 +111,7 @@ fn certified(
     pool: &SolverPool,
     stop: &StopSignal,
 ) -> Vec<(LegAnswerDocument, Option<String>)> {
-    let place = |pair: &Pair| {
-        let (from, to) = pair.targets;
-        (Place::Target(from), Place::Target(to))
-    };
-    let places: Vec<_> = query.pairs.iter().map(place).collect();
+    let places: Vec<_> = query.pairs.iter().map(places).collect();
     let run = Run {
         pool,
         stop,
@@ -127,7 +119,7 @@ fn certified(
         legs: &NoStore,
         segments: &NoStore,
     };
-    let rows = planner::certified_legs(&query.scenario, &places, run);
+    let rows = planner::legs_between(&query.scenario, query.kind, &places, run);
     let answer = |(pair, row): (&Pair, Option<LegRow>)| {
         let source = row.as_ref().map_or(Source::Missing, |_| Source::Computed);
         (document(pair, row, source, None), None)
@@ -135,10 +127,16 @@ fn certified(
     query.pairs.iter().zip(rows).map(answer).collect()
 }
 
+/// The places of the query's scenario between which a leg is.
+fn places(pair: &Pair) -> (Place, Place) {
+    let (from, to) = pair.targets;
+    (Place::Target(from), Place::Target(to))
+}
+
 /// The answer for a leg and the key of its spacecraft.
 fn answer(
+    query: &LegQuery,
     pair: &Pair,
-    kind: LegKind,
     pool: &SolverPool,
     stop: &StopSignal,
     cache: &dyn LegStore,
@@ -154,12 +152,12 @@ fn answer(
         legs: &store,
         segments: &NoStore,
     };
-    let (rows, _) = planner::leg_table(&pair.scenario, kind, BETWEEN_TARGETS, run);
+    let rows = planner::legs_between(&query.scenario, query.kind, &[places(pair)], run);
     let seen = store
         .seen
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
-    let row = rows.into_iter().next();
+    let row = rows.into_iter().flatten().next();
     let source = match (&row, &seen) {
         (Some(_), Some(seen)) if seen.found => Source::Cached,
         (Some(row), _) if row.duration_s.is_some() => Source::Computed,
@@ -189,7 +187,8 @@ fn document(
     }
 }
 
-/// A leg store that records the leg that the solver read or wrote.
+/// A leg store that records the last leg that the solver looked for, if it read or wrote it: where the
+/// leg without cones enters one, the leg around it comes after it.
 struct ObservedStore<'a> {
     cache: &'a dyn LegStore,
     seen: Mutex<Option<Seen>>,
@@ -201,26 +200,32 @@ struct Seen {
     found: bool,
 }
 
-impl ObservedStore<'_> {
-    fn note(&self, identity: &str, leg: &StoredLeg, found: bool) {
-        let seen = Seen {
+impl Seen {
+    fn of(identity: &str, leg: &StoredLeg, found: bool) -> Self {
+        Self {
             key: leg_key(identity),
             spacecraft: leg_key(&leg.spacecraft),
             found,
-        };
-        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = Some(seen);
+        }
+    }
+}
+
+impl ObservedStore<'_> {
+    fn note(&self, seen: Option<Seen>) {
+        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = seen;
     }
 }
 
 impl LegStore for ObservedStore<'_> {
     fn get(&self, identity: &str) -> Option<StoredLeg> {
-        let leg = self.cache.get(identity)?;
-        self.note(identity, &leg, true);
-        Some(leg)
+        let leg = self.cache.get(identity);
+        let seen = leg.as_ref().map(|leg| Seen::of(identity, leg, true));
+        self.note(seen);
+        leg
     }
 
     fn put(&self, identity: &str, leg: &StoredLeg) {
         self.cache.put(identity, leg);
-        self.note(identity, leg, false);
+        self.note(Some(Seen::of(identity, leg, false)));
     }
 }

@@ -171,7 +171,7 @@ pub(crate) struct MarginsDocument {
 #[schema(as = ConeClearance)]
 pub(crate) struct ClearanceDocument {
     boresight: String,
-    /// JSON pointer of the cone in the scenario, such as `/keep_out/0`.
+    /// JSON pointer of the cone in the input, such as `/keep_out/0`.
     cone: String,
     /// Unit vector along the cone's axis in the reference frame: where the Sun was taken to be.
     direction: [Number; 3],
@@ -197,9 +197,9 @@ impl From<&ConeClearance> for ClearanceDocument {
 /// A boresight inside a keep-out cone, or outside a keep-in cone.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = KeepOutIntrusion)]
-struct IntrusionDocument {
+pub(crate) struct IntrusionDocument {
     boresight: String,
-    /// JSON pointer of the cone in the scenario, such as `/keep_out/0`.
+    /// JSON pointer of the cone in the input, such as `/keep_out/0`.
     cone: String,
     from_s: Number,
     to_s: Number,

@@ -2,7 +2,7 @@
 
 use super::SlewRequest;
 use crate::documents::number::Number;
-use crate::documents::plan::StateDocument;
+use crate::documents::plan::{ClearanceDocument, IntrusionDocument, StateDocument};
 use crate::documents::problems::{ProblemDocument, documents};
 use serde::Serialize;
 use slewplan_solver::model::problem::Problem;
@@ -34,8 +34,11 @@ struct SlewDocument<'a> {
     swept: Option<Number>,
     /// Whether a local minimum was found and its flight keeps all limits and arrives.
     solved: bool,
-    /// How the last program ended: `converged`, or why not.
+    /// How the last program ended: `converged`, or why not. `no_clear_path` where no way around the cones
+    /// was found, `infeasible` where it is proved that there is none.
     status: &'a str,
+    /// Of `no_clear_path` and `infeasible`: what was searched.
+    reasons: Vec<ProblemDocument<'a>>,
     /// The value of the objective, in `objective_unit`.
     objective: Number,
     objective_unit: &'static str,
@@ -67,6 +70,12 @@ struct FlightDocument<'a> {
     torque_excess: Number,
     wheel_speed_excess: Number,
     rate_excess: Number,
+    /// The closest approach to each cone of `keep_out` and `keep_in`.
+    keep_out_clearance_deg: Vec<ClearanceDocument>,
+    /// Every time span on the wrong side of a cone.
+    keep_out_intrusions: Vec<IntrusionDocument>,
+    /// Cones that are only reported, where they are violated.
+    warnings: Vec<ProblemDocument<'a>>,
     failures: &'a [String],
 }
 
@@ -174,6 +183,7 @@ impl<'a> SlewDocument<'a> {
             swept: swept.map(Number),
             solved: outcome.solved,
             status: &outcome.status,
+            reasons: documents(&outcome.reasons),
             objective: Number(outcome.objective),
             objective_unit: match request.slew.objective() {
                 Objective::Energy { .. } => "J",
@@ -207,6 +217,9 @@ impl<'a> From<&'a PropagatedSlew> for FlightDocument<'a> {
             torque_excess: Number(propagated.torque_excess),
             wheel_speed_excess: Number(propagated.wheel_speed_excess),
             rate_excess: Number(propagated.rate_excess),
+            keep_out_clearance_deg: propagated.clearances.iter().map(Into::into).collect(),
+            keep_out_intrusions: propagated.intrusions.iter().map(Into::into).collect(),
+            warnings: documents(&propagated.warnings),
             failures: &propagated.failures,
         }
     }

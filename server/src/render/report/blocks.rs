@@ -67,18 +67,17 @@ pub(super) fn margins(margins: &Margins) -> String {
         "",
         format_args!("zero crossings of the wheels: {}", list(&crossings)),
     );
-    if !margins.keep_out_clearance_deg.is_empty() {
-        let clearances: Vec<String> = margins
-            .keep_out_clearance_deg
-            .iter()
-            .map(clearance)
-            .collect();
-        text += &line(
-            "",
-            format_args!("clearance of cones [deg]: {}", list(&clearances)),
-        );
+    text + &clearances(&margins.keep_out_clearance_deg)
+}
+
+/// How close boresights come to cones; empty without cones.
+pub(super) fn clearances(nearest: &[ConeClearance]) -> String {
+    if nearest.is_empty() {
+        return String::new();
     }
-    text
+    let clearances: Vec<String> = nearest.iter().map(clearance).collect();
+    let list = clearances.join(", ");
+    line("", format_args!("clearance of cones [deg]: {list}"))
 }
 
 /// How close a boresight comes to the surface of a cone, and when.

@@ -1,6 +1,6 @@
 //! Slews, as text.
 
-use super::blocks::{count, keep_out_banner, line, warnings};
+use super::blocks::{clearances, count, keep_out_banner, line, reasons, warnings};
 use super::numbers::{significant, small};
 use super::table::aligned;
 use crate::documents::slew::SlewRequest;
@@ -25,7 +25,10 @@ pub(crate) fn answer(
     };
     let stopped = if complete { "" } else { ", stopped early" };
     let mut text = format!("{title}: {state}{stopped}\n\n");
-    text += &keep_out_banner(&request.warnings);
+    let mut violated = request.warnings.clone();
+    let flown = outcomes.iter().map(|(outcome, _)| &outcome.propagated);
+    violated.extend(flown.flat_map(|flown| flown.warnings.iter().cloned()));
+    text += &keep_out_banner(&violated);
     match (outcomes, &request.sweep) {
         ([(only, evidence)], None) => text += &single(request, only, evidence.as_ref()),
         (_, sweep) => text += &rows(request, outcomes, sweep.as_ref()),
@@ -64,6 +67,7 @@ fn single(request: &SlewRequest, slew: &SlewOutcome, evidence: Option<&Evidence>
         );
     }
     text += &flown(slew);
+    text += &reasons(&slew.reasons, None);
     if let Some(evidence) = evidence {
         text += &line(
             "evidence",
@@ -109,6 +113,7 @@ fn flown(slew: &SlewOutcome) -> String {
             small(found.rate_excess)
         ),
     );
+    text += &clearances(&found.clearances);
     for failure in &found.failures {
         text += &line("", format_args!("failed: {failure}"));
     }

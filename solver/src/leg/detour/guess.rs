@@ -18,6 +18,8 @@ const NEAR: f64 = 0.2;
 const SHORT_TURN: f64 = 0.06;
 /// Most parts of an even interval.
 const MAX_PARTS: usize = 40;
+/// How much longer than in a guess an interval may become near a cone.
+pub(crate) const GUESS_STRETCH: f64 = 1.4;
 /// How much longer an interval may become where no cone is near.
 const FAR_STRETCH: f64 = 3.0;
 

@@ -39,23 +39,32 @@ pub(super) fn depths_between_nodes(dynamics: &Dynamics, profile: &Profile) -> Ve
         return Vec::new();
     }
     let inside = |k: usize| {
-        let states = states_inside(dynamics, profile, k);
-        let depth = |cone: &ForbiddenCone| {
-            let depths: Vec<f64> = states.iter().map(|(q, _)| cone.depth(q)).collect();
-            let at_ends = [depths[0], depths[SAMPLES]];
-            let peak = peak(&depths);
-            ConeDepth {
-                at_ends,
-                between: (peak > at_ends[0].max(at_ends[1])).then_some(peak),
-            }
-        };
-        dynamics.cones.iter().map(depth).collect::<Vec<_>>()
+        let begin = std::iter::once(profile.attitudes[k]);
+        let attitudes: Vec<_> = begin
+            .chain(attitudes_inside(dynamics, profile, k))
+            .collect();
+        depths_inside(&dynamics.cones, &attitudes)
     };
     (0..profile.intervals()).flat_map(inside).collect()
 }
 
+/// Depths, rad, inside every cone along an interval, of which these are the attitudes at even times,
+/// both ends included.
+pub(crate) fn depths_inside(cones: &[ForbiddenCone], attitudes: &[Attitude]) -> Vec<ConeDepth> {
+    let depth = |cone: &ForbiddenCone| {
+        let depths: Vec<f64> = attitudes.iter().map(|q| cone.depth(q)).collect();
+        let at_ends = [depths[0], depths[depths.len() - 1]];
+        let peak = peak(&depths);
+        ConeDepth {
+            at_ends,
+            between: (peak > at_ends[0].max(at_ends[1])).then_some(peak),
+        }
+    };
+    cones.iter().map(depth).collect()
+}
+
 /// Greatest depth between nodes, rad, at least zero.
-pub(super) fn deepest(depths: &[ConeDepth]) -> f64 {
+pub(crate) fn deepest(depths: &[ConeDepth]) -> f64 {
     let between = depths.iter().filter_map(|depth| depth.between);
     between.fold(0.0, f64::max)
 }

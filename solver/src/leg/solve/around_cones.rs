@@ -60,11 +60,10 @@ pub(crate) fn solve_around(
     free: &LegSolution,
     stop: &dyn Fn() -> Option<StopReason>,
 ) -> LegOutcome {
-    let mut paths = pushed_out(leg, free);
-    paths.extend(searched(leg));
+    let direct = free.duration();
+    let direct = direct.map(|_| path_of(leg.dynamics, &free.profile));
     let mut starts = Vec::new();
-    for path in promising(leg.dynamics, paths) {
-        let guess = along(leg.dynamics, &path, leg.null, leg.intervals());
+    for guess in guesses(leg, direct) {
         let (waypoints, intervals) = (leg.waypoints(&guess), [guess.intervals()]);
         starts.push(StagedSolve::rough(
             leg.dynamics,
@@ -119,6 +118,19 @@ fn best_of(
     best
 }
 
+/// Motions along ways around the cones, from rest to rest: along a direct path, or that about the
+/// eigenaxis, and the long way round, pushed out of the cones, and along the shortest path of a search;
+/// the one that is expected to be fastest first.
+pub(crate) fn guesses(
+    leg: &LegProblem<'_>,
+    direct: Option<AttitudePath>,
+) -> impl Iterator<Item = Profile> {
+    let mut paths = pushed_out(leg, direct);
+    paths.extend(searched(leg));
+    let promising = promising(leg.dynamics, paths);
+    promising.map(|path| along(leg.dynamics, &path, leg.null, leg.intervals()))
+}
+
 /// The paths that are not expected to take much longer than the fastest, that one first.
 fn promising(dynamics: &Dynamics, paths: Vec<AttitudePath>) -> impl Iterator<Item = AttitudePath> {
     let expected = paths
@@ -158,15 +170,13 @@ fn searched(leg: &LegProblem<'_>) -> Option<AttitudePath> {
     }
 }
 
-/// The paths of the motion without cones and of the long way round, pushed out of the cones.
-fn pushed_out(leg: &LegProblem<'_>, free: &LegSolution) -> Vec<AttitudePath> {
+/// A direct path, or that about the eigenaxis, and the long way round, pushed out of the cones.
+fn pushed_out(leg: &LegProblem<'_>, direct: Option<AttitudePath>) -> Vec<AttitudePath> {
     let mut sources = Vec::new();
-    if free.duration().is_some() {
-        sources.push(path_of(leg.dynamics, &free.profile));
-    } else {
+    sources.push(direct.unwrap_or_else(|| {
         let direct = leg.perturbed_eigenaxis(Perturbation::Far);
-        sources.push(AttitudePath::through(direct.attitudes));
-    }
+        AttitudePath::through(direct.attitudes)
+    }));
     if leg.arrival == Arrival::Rotation {
         let near = &leg.from.attitude;
         let short = leg.arrival.signed(&leg.to.attitude, near);

@@ -31,7 +31,7 @@ impl Transcription {
     }
 
     /// The limit of an interval's length, scaled, where there is one.
-    pub(super) fn longest_at(&self, interval: usize) -> Option<f64> {
+    pub(crate) fn longest_at(&self, interval: usize) -> Option<f64> {
         self.longest.get(interval).copied()
     }
 

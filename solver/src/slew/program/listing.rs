@@ -1,8 +1,8 @@
 //! The terms of a program: what each wheel, and each linear variable, adds to cost, links and limits.
 //!
 //! The inequalities of a node come in this order: the conditions on the state; those of each wheel
-//! (torque, then energy against its slack); the length or the budget; the slacks; the body rates in
-//! the middle of the interval.
+//! (torque, then energy against its slack); the least and the greatest length, or the budget; the slacks;
+//! the body rates in the middle of the interval.
 
 use super::{Program, TermTarget, WheelTerm};
 use crate::nlp::{Chain, Link};
@@ -113,6 +113,7 @@ impl Program {
             usize::from(self.cost_weights.budget.is_some())
         } else {
             usize::from(self.limits_length())
+                + usize::from(self.base.longest_at(node).is_some())
                 + if self.shape.slacks {
                     self.shape.wheels
                 } else {
@@ -151,6 +152,12 @@ impl Program {
                 self.shape.length_variable(),
                 1.0,
             );
+            row += 1;
+        }
+        if let Some(longest) = self.base.longest_at(node) {
+            let target = TermTarget::Inequality(row);
+            show(target, None, 1.0);
+            show(target, self.shape.length_variable(), -longest.recip());
             row += 1;
         }
         if self.shape.slacks {

@@ -1,7 +1,9 @@
 //! The spacecraft of the sources.
 
 use crate::model::drive::{DriveSpec, MotorSpec, SpeedLawSpec};
-use crate::model::spec::{AttitudeSpec, SpacecraftSpec, StateSpec, WheelSpec};
+use crate::model::spec::{
+    Applies, AttitudeSpec, BoresightSpec, ConeSpec, SpacecraftSpec, StateSpec, WheelSpec,
+};
 use crate::run::stop::StopSignal;
 use crate::slew::{Slew, SlewOutcome, SlewSpec, solve};
 
@@ -14,6 +16,23 @@ pub(super) fn wheel(axis: [f64; 3], inertia: f64, torque: f64, speed: Option<f64
         min_torque_nm: None,
         max_speed_rad_s: speed,
         enabled: true,
+    }
+}
+
+pub(super) fn camera(axis: [f64; 3]) -> BoresightSpec {
+    BoresightSpec {
+        name: "camera".into(),
+        axis,
+    }
+}
+
+/// An enforced cone of the camera.
+pub(super) fn cone(direction: [f64; 3], half_angle_deg: f64) -> ConeSpec {
+    ConeSpec {
+        boresight: "camera".into(),
+        direction: direction.into(),
+        half_angle_deg,
+        applies: Applies::Always,
     }
 }
 

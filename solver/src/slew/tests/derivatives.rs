@@ -1,6 +1,6 @@
 //! Derivatives of programs of every shape against finite differences.
 
-use super::craft::{biros, lro_drives, wheel};
+use super::craft::{biros, camera, cone, lro_drives, wheel};
 use crate::leg::profile::Profile;
 use crate::leg::transcription::Scales;
 use crate::model::drive::{DriveSpec, SpeedLawSpec};
@@ -13,7 +13,7 @@ use crate::slew::shape::{IntervalLengths, ProgramShape, TorqueCourse};
 use crate::slew::{EnergyMeasure, Slew, SlewSpec, WheelAllocation};
 use nalgebra::{DVector, Vector3};
 
-/// Four wheels with friction and motors, one under a speed law, stored momentum, rate limits.
+/// Four wheels with friction and motors, one under a speed law, stored momentum, rate limits, a cone.
 fn slew(allocation: WheelAllocation) -> Slew {
     let mut drives = lro_drives();
     for drive in &mut drives {
@@ -40,9 +40,10 @@ fn slew(allocation: WheelAllocation) -> Slew {
                 small([0.0, -0.8, 0.6]),
                 small([0.6, 0.0, 0.8]),
             ],
-            ..SpacecraftSpec::default()
+            boresights: vec![camera([0.6, 0.0, 0.8])],
         },
         drives,
+        keep_out: vec![cone([1.0, 1.0, 0.3], 35.0)],
         start: StateSpec {
             wheel_speed_rad_s: Some(vec![1.0, -2.0, 0.5, 40.0, 50.0]),
             ..StateSpec::default()
@@ -153,6 +154,9 @@ impl Fixture {
             weight: 0.3,
             lengths: vec![0.6; 2],
         };
+        if program.shape.lengths == IntervalLengths::Free {
+            program.base.limit_lengths(&[20.0, 30.0]);
+        }
         program.torque_reserve = vec![0.01, 0.02, 0.03];
         let iterate = program.iterate_at(&motion);
         let weights = |n: usize, seed: f64| (0..n).map(|i| (seed + i as f64).sin()).collect();

@@ -50,21 +50,20 @@ impl CanonicalLeg {
         Self::within(&places.dynamics, places, [from, to])
     }
 
-    /// The same with the cones that the scenario enforces, which the solution without them enters.
-    pub(super) fn around_cones(
-        places: &Places<'_>,
-        from: &Waypoint,
-        to: &Waypoint,
-        free: &LegSolution,
-    ) -> Self {
-        let mut leg = Self::within(&places.with_cones, places, [from, to]);
-        let free = if leg.mirrored {
+    /// The same with the cones that the scenario enforces.
+    pub(super) fn around_cones(places: &Places<'_>, from: &Waypoint, to: &Waypoint) -> Self {
+        Self::within(&places.with_cones, places, [from, to])
+    }
+
+    /// The same leg with what is known of it without cones, from wherever that begins.
+    pub(super) fn knowing(mut self, free: &LegSolution) -> Self {
+        let free = if self.mirrored {
             free.reversed()
         } else {
             free.clone()
         };
-        leg.free = Some(free.beginning_at(&leg.from.attitude));
-        leg
+        self.free = Some(free.beginning_at(&self.from.attitude));
+        self
     }
 
     fn within(dynamics: &Dynamics, places: &Places<'_>, [from, to]: [&Waypoint; 2]) -> Self {
@@ -96,6 +95,8 @@ impl CanonicalLeg {
         for cone in &mut dynamics.cones {
             cone.direction = rounded_vector(from.attitude.to_body(cone.direction));
         }
+        // In what order they are listed does not matter.
+        dynamics.cones.sort_by_cached_key(described);
         let from = settled(&dynamics, Attitude::identity(), from);
         let to = settled(&dynamics, turn, to);
         let spacecraft = describe_spacecraft(&dynamics);
@@ -210,13 +211,39 @@ fn describe_spacecraft(dynamics: &Dynamics) -> String {
     text
 }
 
+const CONE: &str = "cone ";
+
 fn describe_cones(text: &mut String, cones: &[ForbiddenCone]) {
     for cone in cones {
-        text.push_str("cone ");
-        push_numbers(text, cone.axis.as_slice());
-        push_numbers(text, cone.direction.as_slice());
-        push_numbers(text, &[cone.half_angle]);
+        text.push_str(&described(cone));
     }
+}
+
+fn described(cone: &ForbiddenCone) -> String {
+    let mut text = CONE.to_owned();
+    push_numbers(&mut text, cone.axis.as_slice());
+    push_numbers(&mut text, cone.direction.as_slice());
+    push_numbers(&mut text, &[cone.half_angle]);
+    text
+}
+
+/// The cones that a leg keeps out of, in the frame in which it begins at the identity attitude, from its
+/// identity.
+#[must_use]
+pub fn cones_of(identity: &str) -> Vec<ForbiddenCone> {
+    let cone = |text: &str| {
+        let numbers = text.split([';', ',']).filter(|number| !number.is_empty());
+        let numbers: Vec<f64> = numbers.filter_map(|number| number.parse().ok()).collect();
+        let &[a, b, c, x, y, z, half_angle] = &numbers[..] else {
+            return None;
+        };
+        Some(ForbiddenCone {
+            axis: Vector3::new(a, b, c),
+            direction: Vector3::new(x, y, z),
+            half_angle,
+        })
+    };
+    identity.split(CONE).skip(1).filter_map(cone).collect()
 }
 
 fn describe_conditions(text: &mut String, place: &Waypoint) {

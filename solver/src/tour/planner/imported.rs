@@ -40,7 +40,8 @@ pub struct LegCheck<'a> {
 }
 
 impl<'a> LegCheck<'a> {
-    /// The wanted ones of the legs of a scenario, told by their identity; `None` when stopped.
+    /// The wanted ones of the legs of a scenario, those around its cones too, told by their identity;
+    /// `None` when stopped.
     ///
     /// The scenario must be one of which
     /// [`feasibility_problems`](super::feasibility_problems) finds nothing.
@@ -58,9 +59,12 @@ impl<'a> LegCheck<'a> {
                 return None;
             }
             let [from, to] = [from, to].map(|place| end_of(&places, kind, *place));
-            let leg = CanonicalLeg::of(&places, &from, &to);
-            wanted(&leg.identity).then(|| (leg.identity.clone(), leg))
+            let forms = [CanonicalLeg::of, CanonicalLeg::around_cones];
+            let legs = forms.map(|form| form(&places, &from, &to)).into_iter();
+            let wanted = legs.filter(|leg| wanted(&leg.identity));
+            Some(wanted.map(|leg| (leg.identity.clone(), leg)).collect())
         });
+        let legs: Vec<Vec<_>> = legs.into_iter().flatten().collect();
         (!stop.is_set()).then(|| Self {
             legs: legs.into_iter().flatten().collect(),
             places,
@@ -128,8 +132,9 @@ impl<'a> LegCheck<'a> {
             faults.extend(wheel_fault(leg, end, wheels, name));
         }
         let slew = leg.problem(&self.places.extremals);
-        // With momentum the solver does not promise it either.
-        if slew.begins_and_ends_at_rest() && !leg.dynamics.has_momentum() {
+        // With momentum the solver does not promise it either, and the eigenaxis may lead through cones.
+        let promised = !leg.dynamics.has_momentum() && leg.dynamics.cones.is_empty();
+        if promised && slew.begins_and_ends_at_rest() {
             let eigenaxis = slew.eigenaxis();
             let (duration, usual) = (profile.duration(), eigenaxis.course.duration());
             if eigenaxis.flyable && duration > usual * (1.0 + EIGENAXIS_TOLERANCE) {

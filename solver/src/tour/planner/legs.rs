@@ -212,7 +212,7 @@ impl<'a> LegSolver<'a> {
             return None;
         }
         let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
-        Some(CanonicalLeg::around_cones(self.places, &from, &to, free))
+        Some(CanonicalLeg::around_cones(self.places, &from, &to).knowing(free))
     }
 
     /// A table of [`Self::certified_legs`].

@@ -6,7 +6,7 @@ use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
-use crate::model::cone::{Applies, Cone};
+use crate::model::cone::forbidden_always;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::AttitudeEquivalence;
@@ -40,8 +40,6 @@ impl<'a> Places<'a> {
         let start = scenario.start();
         let authority = Authority::of(scenario.options());
         let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
-        let enforced = scenario.cones().iter();
-        let enforced = enforced.filter(|cone| cone.applies == Applies::Always);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
         Self {
@@ -54,7 +52,7 @@ impl<'a> Places<'a> {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,
                 AttitudeEquivalence::Quaternion => Arrival::Quaternion,
             },
-            with_cones: dynamics.with_cones(enforced.map(Cone::forbidden).collect()),
+            with_cones: dynamics.with_cones(forbidden_always(scenario.cones())),
             dynamics,
             scenario,
         }

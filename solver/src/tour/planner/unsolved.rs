@@ -5,7 +5,9 @@
 
 use super::places::Places;
 use super::tours::Tours;
-use crate::leg::clear_path::{self, PathOutcome, PathProblem, PathSearch};
+use crate::leg::clear_path::PathProblem;
+use crate::leg::multiphase::LegSolution;
+use crate::leg::no_way::{NoWay, no_way};
 use crate::leg::solve::arrival::Arrival;
 use crate::model::plan::Outcome;
 use crate::model::problem::{Code, Problem};
@@ -14,8 +16,6 @@ use crate::wheels::envelope::{OutsideEnvelope, outside_envelope};
 
 pub(super) const SLEW_HINT: &str =
     "check that the wheels can hold the stored momentum along the way, or relax the conditions";
-const PATH_HINT: &str =
-    "narrow the cones, move the attitude, or put a target where the way leads around";
 
 /// The outcome where no order could be solved.
 pub(super) fn unsolved(tours: &Tours<'_>) -> Outcome {
@@ -30,29 +30,40 @@ pub(super) fn unsolved(tours: &Tours<'_>) -> Outcome {
 /// Places that no way around the cones connects with the start, which is proved.
 fn enclosed(places: &Places<'_>) -> Vec<Problem> {
     let parted = |place: &Place| {
-        let search = way(places, Place::Start, *place)?;
-        matches!(search.outcome, PathOutcome::Disconnected).then(|| {
-            let message = format!(
-                "no way leads from the start to {} around the cones: this is proved",
-                places.name(*place)
-            );
-            Problem::new(pointer_of(*place), Code::NoClearPath, message, PATH_HINT)
-        })
+        let names = ["the start", &*places.name(*place)];
+        let parted = way_between(places, [Place::Start, *place], names)?;
+        parted.is_proved.then_some(parted.problem)
     };
     places.all().iter().filter_map(parted).collect()
 }
 
-/// The search for a way around the cones between two places; `None` without cones.
-fn way(places: &Places<'_>, from: Place, to: Place) -> Option<PathSearch> {
-    let cones = &places.with_cones.cones;
+/// What is said where the cones leave no way between two places.
+fn way_between(places: &Places<'_>, [from, to]: [Place; 2], names: [&str; 2]) -> Option<NoWay> {
+    let pointer = pointer_of(to);
     let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);
-    let problem = PathProblem {
-        cones,
+    let between = PathProblem {
+        cones: &places.with_cones.cones,
         from,
         to,
         signed: places.arrival == Arrival::Quaternion,
     };
-    (!cones.is_empty()).then(|| clear_path::find(&problem))
+    no_way(&between, names, pointer)
+}
+
+/// How the solve of a leg between two places ended; where it has no solution, whether the cones leave
+/// no way.
+pub(super) fn leg_status(
+    places: &Places<'_>,
+    [from, to]: [Place; 2],
+    solution: &LegSolution,
+) -> &'static str {
+    let status = solution.status.into_str();
+    if solution.duration().is_some() {
+        return status;
+    }
+    let names = [from, to].map(|place| places.name(place));
+    let parted = way_between(places, [from, to], [&names[0], &names[1]]);
+    parted.map_or(status, |parted| parted.status())
 }
 
 /// What is known of slews without a solution.
@@ -83,29 +94,8 @@ fn unsolved_slew(tours: &Tours<'_>, from: Place, to: Place) -> Option<Problem> {
         return None;
     }
     let names = [from, to].map(|place| places.name(place));
-    if let Some(PathSearch {
-        outcome: PathOutcome::Unknown {
-            resolution,
-            closest,
-        },
-        cells,
-    }) = way(places, from, to)
-    {
-        let message = format!(
-            "no way from {} to {} around the cones was found; one with a clearance of {:.2} degrees \
-             would have been, among {cells} cells. The nearest point that was reached is {:.2} degrees \
-             away",
-            names[0],
-            names[1],
-            resolution.to_degrees(),
-            closest.to_degrees(),
-        );
-        return Some(Problem::new(
-            pointer_of(to),
-            Code::NoClearPath,
-            message,
-            PATH_HINT,
-        ));
+    if let Some(parted) = way_between(places, [from, to], [&names[0], &names[1]]) {
+        return Some(parted.problem);
     }
     let reason = outside_on_turn(tours, from, to).map(|place| format!("; {place}"));
     let message = format!(

@@ -258,6 +258,33 @@ fn identities(spec: &ScenarioSpec) -> [String; 2] {
 }
 
 #[test]
+fn the_identity_tells_the_cones_in_any_order() {
+    let mut spec = everything();
+    let second = ConeSpec {
+        boresight: "camera".into(),
+        direction: [0.0, 1.0, 0.5].into(),
+        half_angle_deg: 20.0,
+        applies: Applies::Always,
+    };
+    spec.keep_out[0].applies = Applies::Always;
+    spec.keep_out.push(second);
+    let around = |spec: &ScenarioSpec| {
+        let scenario = Scenario::try_new(spec).expect("valid").scenario;
+        let places = Places::of(&scenario);
+        let ends = [0, 1].map(|target| places.waypoint(Place::Target(target)));
+        CanonicalLeg::around_cones(&places, &ends[0], &ends[1])
+    };
+    let leg = around(&spec);
+    assert_eq!(leg.dynamics.cones.len(), 2);
+    assert_eq!(cones_of(&leg.identity), leg.dynamics.cones);
+    assert_eq!(cones_of(&identities(&spec)[1]), []);
+    spec.keep_out.reverse();
+    assert_eq!(around(&spec).identity, leg.identity);
+    spec.keep_in.push(spec.keep_out.remove(0));
+    assert_ne!(around(&spec).identity, leg.identity);
+}
+
+#[test]
 fn every_field_changes_the_identities_that_it_should_and_no_other() {
     let unchanged = identities(&everything());
     for (field, effect, change) in TABLE {

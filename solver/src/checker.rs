@@ -216,13 +216,7 @@ impl<'a> FlightObserver<'a> {
 impl CheckReport {
     /// The report of a flight that cannot be propagated: the worst value of every number.
     fn not_propagated(scenario: &Scenario, failures: Vec<String>) -> Self {
-        let unknown = |cone: &Cone| ConeClearance {
-            boresight: cone.boresight.clone(),
-            cone: cone.pointer(),
-            direction: cone.direction,
-            clearance_deg: -NOT_COMPUTED,
-            time_s: 0.0,
-        };
+        let unknown = |cone: &Cone| ConeClearance::new(cone, -NOT_COMPUTED, 0.0);
         Self {
             verification: Verification {
                 passed: false,

@@ -237,13 +237,8 @@ impl ConeFindings {
     fn include(&mut self, cone: &Cone, observer: &ConeObserver<'_>) {
         let (clearance, time_s) = observer.nearest;
         if clearance.is_finite() {
-            self.clearances.push(ConeClearance {
-                boresight: cone.boresight.clone(),
-                cone: cone.pointer(),
-                direction: cone.direction,
-                clearance_deg: clearance.to_degrees(),
-                time_s,
-            });
+            let nearest = ConeClearance::new(cone, clearance, time_s);
+            self.clearances.push(nearest);
         }
         let intrusions = observer.entered.iter().map(|inside| Intrusion {
             boresight: cone.boresight.clone(),

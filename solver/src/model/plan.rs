@@ -1,6 +1,7 @@
 //! The answer: order, passage times, wheel torques, bound and verification.
 
 use crate::model::attitude::Attitude;
+use crate::model::cone::Cone;
 use crate::model::problem::Problem;
 use nalgebra::Vector3;
 
@@ -198,6 +199,21 @@ pub struct ConeClearance {
     pub clearance_deg: f64,
     /// When, s.
     pub time_s: f64,
+}
+
+impl ConeClearance {
+    /// An angle between the boresight and the surface, rad, negative on the wrong side, at a time, s.
+    /// What could not be computed, a number of the largest size, stays one.
+    #[must_use]
+    pub fn new(cone: &Cone, clearance: f64, time_s: f64) -> Self {
+        Self {
+            boresight: cone.boresight.clone(),
+            cone: cone.pointer(),
+            direction: cone.direction,
+            clearance_deg: clearance.to_degrees().clamp(f64::MIN, f64::MAX),
+            time_s,
+        }
+    }
 }
 
 /// A span of time during which a boresight is on the wrong side of a cone.

@@ -46,13 +46,7 @@ impl<'a> ConeApproaches<'a> {
     pub(super) fn clearances(&self) -> Vec<ConeClearance> {
         let each = self.scenario.cones().iter().zip(&self.nearest);
         let met = each.filter(|(_, (clearance, _))| clearance.is_finite());
-        let written = met.map(|(cone, (clearance, time_s))| ConeClearance {
-            boresight: cone.boresight.clone(),
-            cone: cone.pointer(),
-            direction: cone.direction,
-            clearance_deg: clearance.to_degrees(),
-            time_s: *time_s,
-        });
-        written.collect()
+        met.map(|(cone, &(clearance, time_s))| ConeClearance::new(cone, clearance, time_s))
+            .collect()
     }
 }

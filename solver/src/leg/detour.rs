@@ -23,6 +23,8 @@ const MAX_STEPS: usize = 130;
 const RISE: f64 = 0.25;
 /// Depth, rad, that rounding leaves on a surface.
 const TOUCH: f64 = 1e-12;
+/// Turn, rad, by which attitudes of the same path differ at most.
+const SAME_TURN: f64 = 1e-9;
 /// Times that all cones are visited: leaving one may lead into another.
 const ROUNDS: usize = 4;
 
@@ -78,17 +80,24 @@ impl AttitudePath {
         self.depth(slice::from_ref(cone))
     }
 
-    /// The path pushed out of all cones, to the side given for each; `None` where some cone is
-    /// still entered in the end.
-    pub(crate) fn pushed_out(&self, cones: &[ForbiddenCone], sides: &[Side]) -> Option<Self> {
+    /// Whether this is the same path as another.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        let pairs = || self.attitudes.iter().zip(&other.attitudes);
+        self.attitudes.len() == other.attitudes.len()
+            && pairs().all(|(one, other)| one.signed_turn_to(other).norm() <= SAME_TURN)
+    }
+
+    /// The path pushed out of cones, one after the other, each to the side given with it; `None`
+    /// where some cone is still entered in the end.
+    pub(crate) fn pushed_out(&self, passed: &[(ForbiddenCone, Side)]) -> Option<Self> {
         let mut path = self.clone();
         for _ in 0..ROUNDS {
-            for (cone, side) in cones.iter().zip(sides) {
+            for (cone, side) in passed {
                 if path.depth_in(cone) > TOUCH {
                     path = path.pushed_out_of(cone, *side);
                 }
             }
-            if path.depth(cones) <= TOUCH {
+            if passed.iter().all(|(cone, _)| path.depth_in(cone) <= TOUCH) {
                 return Some(path);
             }
         }

@@ -19,7 +19,7 @@ fn a_path_is_pushed_out_to_either_side() {
     let path = about_z(1.6);
     assert!(path.depth_in(&cone) > 0.3);
     let heights = [Side::Shorter, Side::Longer].map(|side| {
-        let pushed = path.pushed_out(&[cone], &[side]).expect("there is room");
+        let pushed = path.pushed_out(&[(cone, side)]).expect("there is room");
         assert!(pushed.depth_in(&cone) <= 0.0);
         let ends = [pushed.attitudes.first(), pushed.attitudes.last()].map(Option::unwrap);
         assert_eq!(*ends[0], Attitude::identity());
@@ -42,7 +42,7 @@ fn an_end_on_the_surface_stays_there() {
     let to_surface = Vector3::x().angle(&cone(0.1).direction);
     let cone = cone(to_surface);
     let path = about_z(1.6);
-    let pushed = path.pushed_out(&[cone], &[Side::Shorter]).expect("room");
+    let pushed = path.pushed_out(&[(cone, Side::Shorter)]).expect("room");
     assert_eq!(pushed.attitudes[0], Attitude::identity());
     assert!(pushed.depth_in(&cone) < 1e-9);
 }

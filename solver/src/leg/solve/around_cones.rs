@@ -138,6 +138,7 @@ fn promising(dynamics: &Dynamics, paths: Vec<AttitudePath>) -> impl Iterator<Ite
         .map(|path| (expected_duration(dynamics, &path), path));
     let mut expected: Vec<_> = expected.collect();
     expected.sort_by(|one, other| one.0.total_cmp(&other.0));
+    expected.dedup_by(|(_, later), (_, earlier)| later.is(earlier));
     let least = expected.first().map_or(0.0, |(duration, _)| *duration);
     let near = expected
         .into_iter()
@@ -200,13 +201,22 @@ fn pushed_out(leg: &LegProblem<'_>, direct: Option<AttitudePath>) -> Vec<Attitud
             .take(MAX_BOTH_SIDES)
             .collect();
         for choice in 0..1 << entered.len() {
-            let mut sides = vec![Side::Shorter; cones.len()];
-            for (bit, cone) in entered.iter().enumerate() {
-                if choice >> bit & 1 == 1 {
-                    sides[*cone] = Side::Longer;
+            let side = |cone| {
+                let bit = entered.iter().position(|entered| *entered == cone);
+                match bit.filter(|bit| choice >> bit & 1 == 1) {
+                    Some(_) => Side::Longer,
+                    None => Side::Shorter,
                 }
-            }
-            paths.extend(source.pushed_out(cones, &sides));
+            };
+            let mut passed: Vec<_> = cones
+                .iter()
+                .enumerate()
+                .map(|(i, cone)| (*cone, side(i)))
+                .collect();
+            paths.extend(source.pushed_out(&passed));
+            // Where one cone leads into another, the way depends on which is left first.
+            passed.reverse();
+            paths.extend(source.pushed_out(&passed));
         }
     }
     paths

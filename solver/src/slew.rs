@@ -16,7 +16,7 @@
 //! # Cones
 //!
 //! A slew with cones is solved without them first. Where that motion enters one, the program of every
-//! objective and command gets the rows of [`crate::leg::transcription`], and its guesses are those of
+//! objective and command gets the rows of `leg::transcription`, and its guesses are those of
 //! the legs of tours. Where a clear motion needs more intervals than a command has, there is none.
 //!
 //! # Drives

@@ -175,3 +175,32 @@ fn strict_has_an_exit_code_of_its_own_and_writes_the_plan() {
     let help = slewplan(&["--help"]).expect_code(0).stdout;
     assert!(help.contains("5 a keep-out cone is violated"), "{help}");
 }
+
+/// So many cones of 0.2 degrees, evenly on the sphere.
+fn narrow_cones(count: u32) -> Value {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let cone = |i: u32| {
+        let height = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+        let (around, width) = (golden * f64::from(i), (1.0 - height * height).sqrt());
+        serde_json::json!({
+            "boresight": "camera",
+            "direction": [width * around.cos(), width * around.sin(), height],
+            "half_angle_deg": 0.2,
+        })
+    };
+    (0..count).map(cone).collect()
+}
+
+#[test]
+fn a_thousand_cones_are_kept_and_one_more_is_refused() {
+    let mut scenario = fixture_json("two-targets.json");
+    scenario["keep_out"] = narrow_cones(1000);
+    let plan = solve(&scenario, &[]).expect_code(0).json();
+    let margins = &plan["margins"];
+    assert_eq!(margins["keep_out_intrusions"], serde_json::json!([]));
+    let clearances = margins["keep_out_clearance_deg"].as_array();
+    assert_eq!(clearances.map(Vec::len), Some(1000));
+    scenario["keep_out"] = narrow_cones(1001);
+    let refused = solve(&scenario, &[]).expect_code(2).stderr;
+    assert!(refused.contains("the list has 1001 entries"), "{refused}");
+}

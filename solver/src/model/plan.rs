@@ -148,8 +148,8 @@ pub struct Leg {
     /// Time of the rest-to-rest eigenaxis slew, s, when that slew keeps all limits; cones aside.
     pub eigenaxis_duration_s: Option<f64>,
     /// Minimum time of the leg from rest to rest between the same attitudes, s: its duration if it
-    /// stood alone and there were no cones. `None` when it was not solved, as in plans of searches that were stopped or go
-    /// on.
+    /// stood alone and there were no cones. `None` when it was not solved, as in plans of searches
+    /// that were stopped or go on.
     pub rest_to_rest_duration_s: Option<f64>,
     /// How the NLP that shaped this leg ended.
     pub solver_status: String,

@@ -51,14 +51,19 @@ impl LegSolution {
         }
     }
 
-    /// The same motion from another first attitude.
-    pub(crate) fn beginning_at(mut self, begin: &Attitude) -> Self {
-        if let Some(first) = self.profile.attitudes.first().copied() {
-            for attitude in &mut self.profile.attitudes {
+    /// The same motion, or the one reversed in time, from another first attitude.
+    pub(crate) fn placed(&self, reversed: bool, begin: &Attitude) -> Self {
+        let mut placed = if reversed {
+            self.reversed()
+        } else {
+            self.clone()
+        };
+        if let Some(first) = placed.profile.attitudes.first().copied() {
+            for attitude in &mut placed.profile.attitudes {
                 *attitude = begin.then_in_body(&first.turn_to(attitude));
             }
         }
-        self
+        placed
     }
 
     /// Duration, s, where there is a motion that meets all conditions.

@@ -173,11 +173,11 @@ fn searched(leg: &LegProblem<'_>) -> Option<AttitudePath> {
 
 /// A direct path, or that about the eigenaxis, and the long way round, pushed out of the cones.
 fn pushed_out(leg: &LegProblem<'_>, direct: Option<AttitudePath>) -> Vec<AttitudePath> {
-    let mut sources = Vec::new();
-    sources.push(direct.unwrap_or_else(|| {
+    let direct = direct.unwrap_or_else(|| {
         let direct = leg.perturbed_eigenaxis(Perturbation::Far);
         AttitudePath::through(direct.attitudes)
-    }));
+    });
+    let mut sources = vec![direct];
     if leg.arrival == Arrival::Rotation {
         let near = &leg.from.attitude;
         let short = leg.arrival.signed(&leg.to.attitude, near);

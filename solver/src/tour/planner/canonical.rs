@@ -57,12 +57,7 @@ impl CanonicalLeg {
 
     /// The same leg with what is known of it without cones, from wherever that begins.
     pub(super) fn knowing(mut self, free: &LegSolution) -> Self {
-        let free = if self.mirrored {
-            free.reversed()
-        } else {
-            free.clone()
-        };
-        self.free = Some(free.beginning_at(&self.from.attitude));
+        self.free = Some(free.placed(self.mirrored, &self.from.attitude));
         self
     }
 

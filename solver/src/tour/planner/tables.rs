@@ -40,15 +40,9 @@ pub(super) struct TabulatedLeg {
 impl TabulatedLeg {
     /// The solution with a motion that begins at the given attitude.
     pub(super) fn beginning_at(&self, begin: &Attitude) -> LegSolution {
-        let solution = &self.leg.solution;
-        let placed = if self.mirrored {
-            solution.reversed()
-        } else {
-            solution.clone()
-        };
         LegSolution {
             costates: Vec::new(),
-            ..placed.beginning_at(begin)
+            ..self.leg.solution.placed(self.mirrored, begin)
         }
     }
 }

@@ -90,8 +90,9 @@ impl CanonicalLeg {
         for cone in &mut dynamics.cones {
             cone.direction = rounded_vector(from.attitude.to_body(cone.direction));
         }
-        // In what order they are listed does not matter.
+        // In what order and how often they are listed does not matter.
         dynamics.cones.sort_by_cached_key(described);
+        dynamics.cones.dedup();
         let from = settled(&dynamics, Attitude::identity(), from);
         let to = settled(&dynamics, turn, to);
         let spacecraft = describe_spacecraft(&dynamics);

@@ -258,7 +258,7 @@ fn identities(spec: &ScenarioSpec) -> [String; 2] {
 }
 
 #[test]
-fn the_identity_tells_the_cones_in_any_order() {
+fn the_identity_tells_the_cones_in_any_order_and_repeated() {
     let mut spec = everything();
     let second = ConeSpec {
         boresight: "camera".into(),
@@ -280,6 +280,10 @@ fn the_identity_tells_the_cones_in_any_order() {
     assert_eq!(cones_of(&identities(&spec)[1]), []);
     spec.keep_out.reverse();
     assert_eq!(around(&spec).identity, leg.identity);
+    spec.keep_out.push(spec.keep_out[0].clone());
+    assert_eq!(around(&spec).dynamics.cones, leg.dynamics.cones);
+    assert_eq!(around(&spec).identity, leg.identity);
+    spec.keep_out.pop();
     spec.keep_in.push(spec.keep_out.remove(0));
     assert_ne!(around(&spec).identity, leg.identity);
 }

@@ -94,6 +94,8 @@ pub(crate) struct CertifiedBounds {
     frames: Vec<BodyFrame>,
     /// Bounds with momentum, used in place of the frames.
     momentum: Option<MomentumBounds>,
+    /// Norm of the body rate that no motion exceeds, rad/s; infinite without limits of speed.
+    largest_rate: f64,
     prepared: Mutex<HashMap<EndKey, Arc<[Option<SlewBound>]>>>,
 }
 
@@ -125,7 +127,10 @@ impl CertifiedBounds {
                 .map(|axes| BodyFrame::of(dynamics, *axes))
                 .collect()
         };
+        let norms = frames.iter().map(BodyFrame::largest_rate);
+        let largest_rate = norms.chain(momentum.as_ref().map(MomentumBounds::largest_rate));
         Self {
+            largest_rate: largest_rate.fold(f64::INFINITY, f64::min),
             frames,
             momentum,
             prepared: Mutex::default(),
@@ -151,6 +156,13 @@ impl CertifiedBounds {
         self.seen(&turn, &prepared)
             .map(|(_, bound, turn)| bound.lower_bound_s(&[turn], TOLERANCE))
             .reduce(f64::max)
+    }
+
+    /// A smaller bound that is known at once, s: the angle of the turn at the largest rate of all
+    /// motions. 0 without limits of speed.
+    pub(crate) fn at_largest_rate(&self, from: &Attitude, to: &Attitude) -> f64 {
+        let angle = from.angle_to(to) - 2.0 * MISSED_ATTITUDE;
+        (angle / self.largest_rate).max(0.0)
     }
 
     /// The certificate of the bound [`Self::leg`] and the axes in which it is expressed; `None`
@@ -218,6 +230,11 @@ impl BodyFrame {
                 accelerations_rad_s2: along(&axes, acceleration),
             }),
         }
+    }
+
+    /// Norm of the rate that no motion exceeds, rad/s.
+    fn largest_rate(&self) -> f64 {
+        self.limits.rates_rad_s.norm()
     }
 
     /// Bounds on slews with end rates within these limits, body axes.

@@ -64,12 +64,14 @@ mod search;
 mod table;
 #[cfg(test)]
 mod tests;
+mod tightening;
 pub mod triple_bounds;
 
 pub use exhaustive::exhaustive;
 pub use heuristics::short_order;
 pub use search::search;
 pub use table::PairTable;
+pub(crate) use tightening::least_bound;
 
 use crate::model::order_rules::OrderRules;
 use crate::run::progress::Progress;
@@ -132,9 +134,20 @@ pub trait TourModel: Sync {
     }
 
     /// Lower bound, s, of the time from leaving `from` to leaving `to` in any tour; settling and
-    /// dwelling at `to` are included. Called once for every pair. A value that is not finite means
-    /// that no bound is known and is read as 0.
+    /// dwelling at `to` are included. Called once for every pair, and again where it was raised. A
+    /// value that is not finite means that no bound is known and is read as 0.
     fn pair_bound(&self, from: Place, to: Place) -> f64;
+
+    /// Whether [`Self::raise_pair_bounds`] may raise the bound of a pair.
+    fn is_open(&self, from: Place, to: Place) -> bool {
+        let _ = (from, to);
+        false
+    }
+
+    /// Raises the bounds of some open pairs, as far as the stop signal allows. Expensive.
+    fn raise_pair_bounds(&self, pairs: &[(Place, Place)]) {
+        let _ = pairs;
+    }
 
     /// Lower bound, s, of the time from the start to leaving the last target of a prefix, in any
     /// tour that begins with it: the last target has its own conditions only. Expensive. The prefix

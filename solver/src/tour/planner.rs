@@ -15,6 +15,7 @@ mod legs;
 mod memory;
 mod places;
 mod plan_builder;
+mod proved_legs;
 mod segment_key;
 mod solved_segments;
 mod tables;
@@ -35,13 +36,14 @@ use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
 use crate::tour::order::{Place, SearchSettings, SolvedOrder, exhaustive, search};
 use crate::wheels::envelope::momentum_problems;
+use additive_tours::LegTimes;
 use first_tour::{first_order, first_tour};
 use legs::LegSolver;
 use places::Places;
 use plan_builder::PlanBuilder;
 use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
-use tour_bound::tour_bound;
+use tour_bound::{MAX_TARGETS_ALL_LEGS, tour_bound};
 use tours::Tours;
 use unsolved::{leg_status, unsolved};
 
@@ -99,10 +101,6 @@ pub struct Shard {
     pub of: usize,
 }
 
-/// Number of targets up to which the certified bounds of all legs are computed before the first
-/// tour; with more targets they take longer than the first tour and come after it.
-const MAX_TARGETS_BOUNDED_FIRST: usize = 40;
-
 /// Solves a scenario: order, torques, lower bound and verification.
 #[must_use]
 pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
@@ -118,33 +116,32 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let tours = Tours::new(&places, &solver, &stop);
     let mut builder = PlanBuilder::new(&tours, run, begin);
     solver.report_begin();
-    let certify = || {
-        let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
-        let certified = tour_bound(&places, &bounds, run.pool, &stop);
-        tours.set_certified_bounds(bounds);
-        certified
-    };
+    let bound_tours = || tour_bound(&places, &tours.certified, run.pool, &stop);
     let order = first_order(&tours, &stop);
+    let few = scenario.targets().len() <= MAX_TARGETS_ALL_LEGS;
     if let Some(order) = order.clone()
-        && places.dynamics.has_momentum()
+        && (places.dynamics.has_momentum() || !few)
     {
-        // With momentum the program of a first tour may take long or fail.
+        // With momentum the program of a first tour may take long or fail; with many targets it takes
+        // long.
         builder.construct(order);
     }
-    let bounds_first = scenario.targets().len() <= MAX_TARGETS_BOUNDED_FIRST;
-    if bounds_first {
-        builder.set_certified_bound(certify());
+    if few {
+        tours.certified.raise(&pairs);
+        builder.set_certified_bound(bound_tours());
     }
     let first = order.and_then(|order| first_tour(&tours, order));
     if let Some(first) = &first {
         builder.announce(first);
         solver.report_bounds(Some(first.duration_s), builder.certified_bound());
     }
-    if !bounds_first {
-        builder.set_certified_bound(certify());
+    if !few {
+        builder.set_certified_bound(bound_tours());
     }
     solver.report_bounds(None, builder.certified_bound());
-    tours.set_free_legs(solver.table(LegKind::LowerBound, &pairs));
+    if few {
+        tours.solve_free_legs(&pairs);
+    }
     let known: Vec<_> = first.into_iter().collect();
     let settings = search_settings(scenario);
     let found = search(&tours, &known, &settings, run.pool, &stop, &builder);

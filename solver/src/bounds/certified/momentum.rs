@@ -62,6 +62,13 @@ impl MomentumBounds {
         }
     }
 
+    /// Norm of the body rate that no motion exceeds, rad/s.
+    pub(super) fn largest_rate(&self) -> f64 {
+        let without_drift = self.frames.iter().filter(|drifting| drifting.share == 0.0);
+        let norms = without_drift.map(|drifting| drifting.frame.largest_rate());
+        norms.fold(f64::INFINITY, f64::min)
+    }
+
     /// Lower bound, s, on the duration of a slew that makes a turn, with the momentum, N m s, and
     /// limits of the rates at its two ends, all in body axes there.
     pub(super) fn leg(

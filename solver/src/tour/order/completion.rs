@@ -4,6 +4,7 @@ pub(super) mod least_tree;
 mod spanning_tree;
 pub(super) mod subsets;
 
+pub(super) use spanning_tree::Ascent;
 pub use spanning_tree::SpanningTrees;
 pub use subsets::SubsetTable;
 

@@ -36,7 +36,7 @@ mod paths;
 pub use paths::LagrangianPaths;
 
 use super::completion::MAX_EXACT_TARGETS;
-use super::{Evaluation, PairTable, PassageCostate, Place, TourModel};
+use super::{Evaluation, PairTable, PassageCostate, TourModel};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use std::collections::{BTreeMap, BTreeSet};
@@ -199,7 +199,7 @@ impl LagrangianLegs {
         let cost = if at_ends == [None; 2] {
             Evaluation::Value(self.table.bound(from, to))
         } else {
-            model.lagrangian_leg([from, to].map(|place| self.place(place)), at_ends)
+            model.lagrangian_leg([from, to].map(|place| self.table.place(place)), at_ends)
         };
         match cost {
             Evaluation::Value(cost) => Some(cost),
@@ -256,16 +256,6 @@ impl LagrangianLegs {
             path.min(self.backwards(path))
         } else {
             path
-        }
-    }
-
-    fn place(&self, number: usize) -> Place {
-        if number < self.table.targets() {
-            Place::Target(number)
-        } else if number == self.table.start() {
-            Place::Start
-        } else {
-            Place::End
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Place, TourModel};
 use crate::model::order_rules::OrderRules;
+use std::collections::BTreeSet;
 
 /// Lower bounds of all legs, s, between places that are numbered: targets `0..n`, then the start,
 /// then the end.
@@ -11,7 +12,10 @@ use crate::model::order_rules::OrderRules;
 #[derive(Debug, Clone)]
 pub struct PairTable {
     targets: usize,
+    has_end: bool,
     bounds: Vec<f64>,
+    /// Whether the model can raise a bound.
+    open: Vec<bool>,
     rules: OrderRules,
 }
 
@@ -20,46 +24,81 @@ impl PairTable {
     #[must_use]
     pub fn new(model: &dyn TourModel) -> Self {
         let targets = model.target_count();
+        let entries = (targets + 2) * (targets + 2);
         let mut table = Self {
             targets,
-            bounds: vec![0.0; (targets + 2) * (targets + 2)],
+            has_end: model.has_end(),
+            bounds: vec![0.0; entries],
+            open: vec![false; entries],
             rules: model.rules().clone(),
         };
-        for to in 0..targets {
-            table.set(
-                table.start(),
-                to,
-                model.pair_bound(Place::Start, Place::Target(to)),
-            );
-            for from in (0..targets).filter(|&from| from != to) {
-                let bound = model.pair_bound(Place::Target(from), Place::Target(to));
-                table.set(from, to, bound);
-            }
-        }
-        if model.has_end() {
-            for from in 0..targets {
-                table.set(
-                    from,
-                    table.end(),
-                    model.pair_bound(Place::Target(from), Place::End),
-                );
-            }
-            if targets == 0 {
-                let bound = model.pair_bound(Place::Start, Place::End);
-                table.set(table.start(), table.end(), bound);
+        for from in (0..targets).chain([table.start()]) {
+            for to in (0..targets).chain([table.end()]) {
+                table.update(model, [from, to]);
             }
         }
         table
     }
 
-    /// Sets a bound; one that is negative or not finite is replaced by 0.
-    fn set(&mut self, from: usize, to: usize, bound: f64) {
-        let place = from * (self.targets + 2) + to;
-        self.bounds[place] = if bound.is_finite() {
+    /// Takes the bound of a leg from the model, if a tour can have this leg.
+    fn update(&mut self, model: &dyn TourModel, leg: [usize; 2]) {
+        if !self.is_leg(leg) {
+            return;
+        }
+        let entry = self.entry(leg);
+        let [from, to] = leg.map(|number| self.place(number));
+        let bound = model.pair_bound(from, to);
+        self.bounds[entry] = if bound.is_finite() {
             bound.max(0.0)
         } else {
             0.0
         };
+        self.open[entry] = model.is_open(from, to);
+    }
+
+    /// Whether a tour can have this leg, and the end is a prescribed one.
+    fn is_leg(&self, [from, to]: [usize; 2]) -> bool {
+        let alone = self.targets == 0;
+        let (from_start, to_end) = (from == self.start(), to == self.end());
+        from != to
+            && from != self.end()
+            && to != self.start()
+            && (!to_end || self.has_end)
+            && (!(from_start && to_end) || alone)
+    }
+
+    /// Whether the model can raise the bound of a leg or of its reverse.
+    #[must_use]
+    pub fn can_raise(&self, from: usize, to: usize) -> bool {
+        self.open[self.entry([from, to])] || self.open[self.entry([to, from])]
+    }
+
+    /// Lets the model raise the bounds of these legs and of their reverses where it can.
+    pub fn raise(&mut self, model: &dyn TourModel, legs: &[[usize; 2]]) {
+        let both = legs.iter().flat_map(|&[from, to]| [[from, to], [to, from]]);
+        let open: BTreeSet<[usize; 2]> = both
+            .filter(|&leg| self.open[self.entry(leg)])
+            .collect();
+        let place = |number| self.place(number);
+        let pairs: Vec<_> = open.iter().map(|&[a, b]| (place(a), place(b))).collect();
+        model.raise_pair_bounds(&pairs);
+        for leg in open {
+            self.update(model, leg);
+        }
+    }
+
+    /// The place with a number.
+    #[must_use]
+    pub fn place(&self, number: usize) -> Place {
+        match number.checked_sub(self.targets) {
+            None => Place::Target(number),
+            Some(0) => Place::Start,
+            Some(_) => Place::End,
+        }
+    }
+
+    fn entry(&self, [from, to]: [usize; 2]) -> usize {
+        from * (self.targets + 2) + to
     }
 
     /// Number of targets.
@@ -89,7 +128,7 @@ impl PairTable {
     /// Lower bound, s, from leaving one place to leaving the other.
     #[must_use]
     pub fn bound(&self, from: usize, to: usize) -> f64 {
-        self.bounds[from * (self.targets + 2) + to]
+        self.bounds[self.entry([from, to])]
     }
 
     /// Number of the last place of a prefix: the start, if it has no targets.

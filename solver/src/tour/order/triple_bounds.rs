@@ -150,7 +150,27 @@ impl TripleBounds {
             unknown.extend(triples.filter(|triple| self.coupling_gaps.is_open(triple)));
         }
         let unknown: Vec<ShortPath> = unknown.into_iter().collect();
-        self.coupling_gaps.ask(&unknown, table, model, pool, stop);
+        self.ask(&unknown, model, pool, stop);
+    }
+
+    /// Asks the model for the gaps of paths. The bounds of their legs, over which the gaps are
+    /// counted, are raised first.
+    fn ask(
+        &mut self,
+        paths: &[ShortPath],
+        model: &dyn TourModel,
+        pool: &SolverPool,
+        stop: &StopSignal,
+    ) {
+        let legs = paths.iter().flat_map(ShortPath::legs);
+        let open = legs.filter(|&[from, to]| self.table().can_raise(from, to));
+        let open: BTreeSet<[usize; 2]> = open.collect();
+        if !open.is_empty() {
+            let open: Vec<_> = open.into_iter().collect();
+            self.legs.raise(model, &open);
+        }
+        let table = self.legs.table();
+        self.coupling_gaps.ask(paths, table, model, pool, stop);
     }
 
     /// Known coupling gap of a target between two places, s. An estimate of an order's duration

@@ -4,16 +4,39 @@ use super::places::Places;
 use crate::model::order_rules::OrderRules;
 use crate::tour::order::{Evaluation, Place, TourEvaluation, TourModel};
 
-/// Tours over legs of given durations, s, with settle and dwell times.
-pub(super) struct AdditiveTours<'a, F> {
-    places: &'a Places<'a>,
-    leg_s: F,
+/// Durations of legs, s, or lower bounds on them.
+pub(super) trait LegTimes: Sync {
+    /// What is known of the leg between two places, s.
+    fn leg_s(&self, from: Place, to: Place) -> f64;
+
+    /// Whether more is known of it after [`Self::raise`].
+    fn is_open(&self, from: Place, to: Place) -> bool {
+        let _ = (from, to);
+        false
+    }
+
+    /// Finds out what there is to know of some open legs.
+    fn raise(&self, legs: &[(Place, Place)]) {
+        let _ = legs;
+    }
 }
 
-impl<'a, F: Fn(Place, Place) -> f64 + Sync> AdditiveTours<'a, F> {
-    /// Tours over the places of a scenario; `leg_s` gives the duration of a leg, s.
-    pub(super) fn new(places: &'a Places<'a>, leg_s: F) -> Self {
-        Self { places, leg_s }
+impl<F: Fn(Place, Place) -> f64 + Sync> LegTimes for F {
+    fn leg_s(&self, from: Place, to: Place) -> f64 {
+        self(from, to)
+    }
+}
+
+/// Tours over legs of given durations, with settle and dwell times.
+pub(super) struct AdditiveTours<'a, T> {
+    places: &'a Places<'a>,
+    legs: T,
+}
+
+impl<'a, T: LegTimes> AdditiveTours<'a, T> {
+    /// Tours over the places of a scenario.
+    pub(super) fn new(places: &'a Places<'a>, legs: T) -> Self {
+        Self { places, legs }
     }
 
     /// Time from leaving the first place of a route to leaving its last one, s.
@@ -23,7 +46,7 @@ impl<'a, F: Fn(Place, Place) -> f64 + Sync> AdditiveTours<'a, F> {
     }
 }
 
-impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for AdditiveTours<'_, F> {
+impl<T: LegTimes> TourModel for AdditiveTours<'_, T> {
     fn target_count(&self) -> usize {
         self.places.scenario.targets().len()
     }
@@ -37,7 +60,15 @@ impl<F: Fn(Place, Place) -> f64 + Sync> TourModel for AdditiveTours<'_, F> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        (self.leg_s)(from, to) + self.places.service_time(to)
+        self.legs.leg_s(from, to) + self.places.service_time(to)
+    }
+
+    fn is_open(&self, from: Place, to: Place) -> bool {
+        self.legs.is_open(from, to)
+    }
+
+    fn raise_pair_bounds(&self, pairs: &[(Place, Place)]) {
+        self.legs.raise(pairs);
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {

@@ -5,7 +5,9 @@
 //! it, and [`crate::bounds::certify`] proves it in interval arithmetic or says why it cannot. The
 //! bound on all tours rests on every leg that can be part of a tour: their bounds are verified in
 //! the same way, legs that cannot be verified count as 0, and the plan's bound must not exceed the
-//! shortest path through the table of these bounds.
+//! shortest path through the table of these bounds. With many targets only those legs are verified on
+//! which the bound depends ([`super::tour_bound`]); the others count with their turn at the largest
+//! rate.
 //!
 //! The premises of a certificate (box, turn, end rates) are compared with the scenario by formulas
 //! other than those that made them (`premises`). The search for the shortest path runs in ordinary
@@ -14,10 +16,12 @@
 mod premises;
 
 use super::Run;
+use super::additive_tours::LegTimes;
 use super::canonical::CanonicalLeg;
 use super::places::Places;
-use super::tables::{CertifiedLeg, CertifiedTable, Table};
-use super::tour_bound::tour_bound;
+use super::proved_legs::ProvedLegs;
+use super::tables::CertifiedLeg;
+use super::tour_bound::{MAX_TARGETS_ALL_LEGS, tour_bound};
 use super::tour_pairs;
 use crate::bounds::certify::{self, Rejection};
 use crate::model::scenario::Scenario;
@@ -25,6 +29,7 @@ use crate::run::progress::{Progress, Stage};
 use crate::tour::order::Place;
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// The certified bounds of a plan.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -148,10 +153,6 @@ pub fn verify_certificate(
 ) -> CheckedCertificate {
     let places = Places::of(scenario);
     let pairs = tour_pairs(&places);
-    let distinct = match certificate.lower_bound_s {
-        Some(_) if !places.dynamics.has_momentum() => DistinctLegs::of(&places, &pairs),
-        _ => DistinctLegs::default(),
-    };
     let verifier = CertificateVerifier {
         places: &places,
         named: places
@@ -162,39 +163,16 @@ pub fn verify_certificate(
         tour_legs: pairs.iter().copied().collect(),
         run,
         done: AtomicU64::new(0),
-        total: (certificate.legs.len() + distinct.legs.len()) as u64,
+        total: AtomicU64::new(certificate.legs.len() as u64),
+        known: Mutex::default(),
     };
     let legs = run.pool.map(&certificate.legs, |leg| {
         let verdict = verifier.verify_leg(leg);
         verifier.report_progress();
         verdict
     });
-    let tour = verifier.verify_tour_bound(certificate, &pairs, &distinct);
+    let tour = verifier.verify_tour_bound(certificate, &pairs);
     CheckedCertificate { legs, tour }
-}
-
-/// The legs between pairs of places; legs with equal canonical forms are listed once.
-#[derive(Default)]
-struct DistinctLegs {
-    legs: Vec<((Place, Place), CanonicalLeg)>,
-    /// Index of the leg of each pair.
-    of_pair: Vec<usize>,
-}
-
-impl DistinctLegs {
-    fn of(places: &Places<'_>, pairs: &[(Place, Place)]) -> Self {
-        let (mut distinct, mut known) = (Self::default(), HashMap::new());
-        for pair in pairs {
-            let leg = canonical(places, *pair);
-            let next = distinct.legs.len();
-            let index = *known.entry(leg.identity.clone()).or_insert(next);
-            distinct.of_pair.push(index);
-            if index == next {
-                distinct.legs.push((*pair, leg));
-            }
-        }
-        distinct
-    }
 }
 
 /// Verifies bounds on the legs and tours of a scenario.
@@ -204,8 +182,12 @@ struct CertificateVerifier<'a> {
     /// The pairs of places that can be a leg of a tour.
     tour_legs: HashSet<(Place, Place)>,
     run: Run<'a>,
+    /// Number of proofs attempted.
     done: AtomicU64,
-    total: u64,
+    /// Number of proofs asked for so far.
+    total: AtomicU64,
+    /// Proved bounds by the identity of the leg, s; `None` where the proof failed.
+    known: Mutex<HashMap<String, Option<f64>>>,
 }
 
 impl CertificateVerifier<'_> {
@@ -233,7 +215,6 @@ impl CertificateVerifier<'_> {
         &self,
         certificate: &PlanCertificate,
         pairs: &[(Place, Place)],
-        distinct: &DistinctLegs,
     ) -> Verdict {
         let Some(bound) = certificate.lower_bound_s else {
             return Verdict::NoBound;
@@ -241,21 +222,11 @@ impl CertificateVerifier<'_> {
         if let Some(early) = self.early_verdict(bound, certificate.total_time_s) {
             return early;
         }
-        let bounds = self.run.pool.map(&distinct.legs, |(pair, leg)| {
-            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(*pair, leg, None).ok());
-            self.report_progress();
-            bound.flatten()
-        });
-        let entry = |index: &usize| CertifiedLeg {
-            lower_bound: bounds[*index],
-            solve_time: 0.0,
-        };
-        let entries = pairs.iter().zip(&distinct.of_pair);
-        let table: CertifiedTable = Table::new(
-            self.places,
-            entries.map(|(pair, index)| (*pair, Some(entry(index)))),
-        );
-        let supported_s = tour_bound(self.places, &table, self.run.pool, self.run.stop);
+        let bounds = ProvedLegs::new(self.places, Box::new(|pairs| self.prove_legs(pairs)));
+        if self.places.scenario.targets().len() <= MAX_TARGETS_ALL_LEGS {
+            bounds.raise(pairs);
+        }
+        let supported_s = tour_bound(self.places, &bounds, self.run.pool, self.run.stop);
         if self.run.stop.is_set() {
             return Verdict::NotChecked(Obstacle::Stopped);
         }
@@ -265,12 +236,41 @@ impl CertificateVerifier<'_> {
         if bound <= supported_s {
             return Verdict::Confirmed;
         }
-        let proved = distinct.of_pair.iter().filter(|i| bounds[**i].is_some());
+        let proved = pairs.iter().filter(|(a, b)| bounds.bound(*a, *b).is_some());
         Verdict::Rejected(Objection::AboveTourBound {
             supported_s,
             proved: proved.count(),
             legs: pairs.len(),
         })
+    }
+
+    /// Proves the bounds of the legs between pairs of places; legs with equal canonical forms once.
+    fn prove_legs(&self, pairs: &[(Place, Place)]) -> Vec<Option<CertifiedLeg>> {
+        let legs = pairs.iter().map(|pair| (*pair, canonical(self.places, *pair)));
+        let legs: Vec<_> = legs.collect();
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut listed: HashSet<String> = known().keys().cloned().collect();
+        let fresh = |(_, leg): &&(_, CanonicalLeg)| listed.insert(leg.identity.clone());
+        let missing: Vec<_> = legs.iter().filter(fresh).collect();
+        self.total.fetch_add(missing.len() as u64, Ordering::Relaxed);
+        let bounds = self.run.pool.map(&missing, |(pair, leg)| {
+            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(*pair, leg, None).ok());
+            self.report_progress();
+            bound
+        });
+        let mut known = known();
+        for ((_, leg), bound) in missing.into_iter().zip(bounds) {
+            if let Some(bound) = bound {
+                known.insert(leg.identity.clone(), bound);
+            }
+        }
+        let entry = |(_, leg): &(_, CanonicalLeg)| {
+            Some(CertifiedLeg {
+                lower_bound: *known.get(&leg.identity)?,
+                solve_time: 0.0,
+            })
+        };
+        legs.iter().map(entry).collect()
     }
 
     /// The verdict on a bound, s, where it needs no proof. `duration_s` is the duration in the plan
@@ -311,7 +311,7 @@ impl CertificateVerifier<'_> {
         self.run.observer.progress(Progress {
             stage: Stage::Legs,
             done: self.done.fetch_add(1, Ordering::Relaxed) + 1,
-            total: Some(self.total),
+            total: Some(self.total.load(Ordering::Relaxed)),
             incumbent_s: None,
             lower_bound_s: None,
         });

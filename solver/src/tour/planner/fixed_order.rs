@@ -1,5 +1,6 @@
 //! Solves a scenario for a prescribed order of its targets.
 
+use super::additive_tours::LegTimes;
 use super::legs::LegSolver;
 use super::places::Places;
 use super::plan_builder::PlanBuilder;
@@ -9,7 +10,6 @@ use super::unsolved::unsolved;
 use super::{Run, feasibility_problems, limited};
 use crate::model::plan::Outcome;
 use crate::model::scenario::Scenario;
-use crate::tour::legs::LegKind;
 use crate::tour::order::{Place, SolvedOrder, TourEvaluation, TourModel};
 use std::time::Instant;
 
@@ -77,13 +77,12 @@ fn solve_admitted(scenario: &Scenario, order: &[usize], bound: BoundFrom, run: R
     let route = places.route(order, true);
     let solver = LegSolver::new(&places, run, &stop);
     let pairs = legs_of(&places, &route);
-    let bounds = solver.certified_table(LegKind::LowerBound, &pairs);
-    let certified = route_bound(&places, &bounds, &route);
-    solver.report_bounds(None, certified);
     let tours = Tours::new(&places, &solver, &stop);
-    tours.set_certified_bounds(bounds);
+    tours.certified.raise(&pairs);
+    let certified = route_bound(&places, &tours.certified, &route);
+    solver.report_bounds(None, certified);
     if bound == BoundFrom::Legs {
-        tours.set_free_legs(solver.table(LegKind::LowerBound, &pairs));
+        tours.solve_free_legs(&pairs);
     }
     match tours.tour(order) {
         TourEvaluation::Solved(duration_s) => {

@@ -7,7 +7,7 @@ use super::Run;
 use super::canonical::CanonicalLeg;
 use super::from_store::leg_from_store;
 use super::places::Places;
-use super::tables::{CertifiedLeg, CertifiedTable, SolvedLeg, SolvedTable, Table, TabulatedLeg};
+use super::tables::{CertifiedLeg, SolvedLeg, SolvedTable, Table, TabulatedLeg};
 use super::verified::{flight_faults, is_feasible};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::solve;
@@ -121,9 +121,19 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
-    /// Solves the legs of a kind between pairs of places. Legs not reached before the stop signal
-    /// are missing from the table.
+    /// A table of [`Self::solved_legs`].
     pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
+        let legs = self.solved_legs(kind, pairs);
+        Table::new(self.places, pairs.iter().copied().zip(legs))
+    }
+
+    /// Solves the legs of a kind between pairs of places; `None` for legs not reached before the stop
+    /// signal.
+    pub(super) fn solved_legs(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> Vec<Option<TabulatedLeg>> {
         let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
@@ -138,7 +148,7 @@ impl<'a> LegSolver<'a> {
                 *leg = around.or(leg.take());
             }
         }
-        self.tabulated(pairs, &canonical)
+        self.tabulated(&canonical)
     }
 
     /// The same without cones, and without reports of progress: for use after the stage of the legs.
@@ -149,15 +159,12 @@ impl<'a> LegSolver<'a> {
     ) -> SolvedTable {
         let canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, |_, _| {});
-        self.tabulated(pairs, &canonical)
+        let legs = self.tabulated(&canonical);
+        Table::new(self.places, pairs.iter().copied().zip(legs))
     }
 
-    /// The legs between pairs of places, as far as they are known.
-    fn tabulated(
-        &self,
-        pairs: &[(Place, Place)],
-        canonical: &[Option<CanonicalLeg>],
-    ) -> SolvedTable {
+    /// Legs as far as they are known.
+    fn tabulated(&self, canonical: &[Option<CanonicalLeg>]) -> Vec<Option<TabulatedLeg>> {
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
@@ -166,9 +173,7 @@ impl<'a> LegSolver<'a> {
                 mirrored: canonical.mirrored,
             })
         };
-        let legs = pairs.iter().zip(canonical);
-        let entries = legs.map(|(pair, leg)| (*pair, entry(leg)));
-        Table::new(self.places, entries)
+        canonical.iter().map(entry).collect()
     }
 
     /// The leg of a kind between two places, solved if it is not known.
@@ -213,16 +218,6 @@ impl<'a> LegSolver<'a> {
         }
         let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
         Some(CanonicalLeg::around_cones(self.places, &from, &to).knowing(free))
-    }
-
-    /// A table of [`Self::certified_legs`].
-    pub(super) fn certified_table(
-        &self,
-        kind: LegKind,
-        pairs: &[(Place, Place)],
-    ) -> CertifiedTable {
-        let legs = self.certified_legs(kind, pairs);
-        Table::new(self.places, pairs.iter().copied().zip(legs))
     }
 
     /// Certified bounds on the legs of a kind between pairs of places; no leg is solved. `None` for

@@ -6,6 +6,7 @@ use crate::leg::solve::extremal::KinematicExtremals;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
+use crate::model::attitude::Attitude;
 use crate::model::cone::forbidden_always;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario};
@@ -113,6 +114,15 @@ impl<'a> Places<'a> {
         }
     }
 
+    /// The attitude of a place.
+    pub(super) fn attitude(&self, place: Place) -> Attitude {
+        match place {
+            Place::Start => self.scenario.start().attitude,
+            Place::Target(i) => self.scenario.targets()[i].attitude,
+            Place::End => self.waypoint(place).attitude,
+        }
+    }
+
     /// A place as a waypoint with its own conditions.
     pub(super) fn waypoint(&self, place: Place) -> Waypoint {
         let wheels = |rate: &Vector3<f64>, speeds: &[f64]| {
@@ -157,7 +167,7 @@ impl<'a> Places<'a> {
     /// A place at full rest with the null-space momentum of the start.
     pub(super) fn at_rest(&self, place: Place) -> Waypoint {
         Waypoint {
-            attitude: self.waypoint(place).attitude,
+            attitude: self.attitude(place),
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
             costates: None,

@@ -314,7 +314,7 @@ impl PlanBuilder<'_> {
     fn annotate_legs(&self, legs: &mut [Leg], route: &[Place]) {
         for (leg, pair) in legs.iter_mut().zip(route.windows(2)) {
             let rest = self.rest.as_ref();
-            let proved = self.tours.certified_bound(pair[0], pair[1]);
+            let proved = self.tours.certified.bound(pair[0], pair[1]);
             leg.certified_lower_bound_s = proved.filter(|_| self.tours.legs.bounds_are_trusted());
             leg.rest_to_rest_duration_s = rest.and_then(|table| table.duration(pair[0], pair[1]));
         }
@@ -344,7 +344,7 @@ impl PlanBuilder<'_> {
             });
         };
         for (leg, pair) in verified.legs.iter().zip(route.windows(2)) {
-            let Some(bound_s) = tours.certified_bound(pair[0], pair[1]) else {
+            let Some(bound_s) = tours.certified.bound(pair[0], pair[1]) else {
                 continue;
             };
             if refutes(leg.duration_s, bound_s) {

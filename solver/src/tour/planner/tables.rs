@@ -90,10 +90,16 @@ impl<T> Table<T> {
             places: count,
             entries: (0..count * count).map(|_| None).collect(),
         };
-        for ((from, to), entry) in entries {
-            table.entries[index(from, count) * count + index(to, count)] = entry;
+        for (leg, entry) in entries {
+            table.set(leg, entry);
         }
         table
+    }
+
+    /// Sets the entry of the leg between two places.
+    pub(super) fn set(&mut self, (from, to): (Place, Place), entry: Option<T>) {
+        let (from, to) = (index(from, self.places), index(to, self.places));
+        self.entries[from * self.places + to] = entry;
     }
 
     /// The entry of the leg between two places, when there is one.

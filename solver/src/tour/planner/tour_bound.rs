@@ -4,8 +4,8 @@
 //! after the leg. So the shortest path through all targets in the table of these bounds, with
 //! settle and dwell times added, bounds all tours in all orders that the scenario admits. The order
 //! search finds a bound on that path: exact up to
-//! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, and beyond that number the bound
-//! reached within a node limit.
+//! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, beyond that number the bound
+//! reached within a node limit, and for many targets that of spanning trees.
 //!
 //! Times of passages may be off by the checker's tolerance of the flight's duration: an arrival lies
 //! before the departure by it, a stay is shorter by it. With three of them for every place, the sum of
@@ -13,13 +13,18 @@
 
 use super::additive_tours::AdditiveTours;
 use super::places::Places;
-use super::tables::CertifiedTable;
+use super::proved_legs::ProvedLegs;
 use crate::model::tolerances::TIME_TOLERANCE;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Progress;
 use crate::run::stop::StopSignal;
-use crate::tour::order::{Incumbent, Place, SearchObserver, SearchSettings, search};
+use crate::tour::order::{
+    Incumbent, Place, SearchObserver, SearchSettings, least_bound, search,
+};
 
+/// Number of targets up to which all legs are proved and solved before a search begins. With more,
+/// almost none of them can be part of a good tour, and only those are on which a bound depends.
+pub(super) const MAX_TARGETS_ALL_LEGS: usize = 40;
 /// Node limit of the search times the cube of the number of targets: a fraction of a second.
 const NODES_TIMES_TARGETS_CUBED: u64 = 50_000_000;
 /// Relative gap at which the search may end; small beside the gap of the certified bounds.
@@ -30,43 +35,37 @@ const DEFLATION: f64 = 3e-9;
 /// controls.
 const TIMES_PER_PLACE: f64 = 4.0;
 
-/// Tours whose legs take as long as their certified bounds, and no time where nothing is proved.
-fn certified_tours<'a>(
-    places: &'a Places<'a>,
-    bounds: &'a CertifiedTable,
-) -> AdditiveTours<'a, impl Fn(Place, Place) -> f64 + Sync> {
-    AdditiveTours::new(places, |from, to| bounds.bound(from, to).unwrap_or(0.0))
-}
-
 /// Certified lower bound on the duration of all tours, s, over all orders that the scenario admits.
 /// A leg without a proved bound counts as 0; `None` when no leg has one.
 pub(super) fn tour_bound(
     places: &Places<'_>,
-    bounds: &CertifiedTable,
+    bounds: &ProvedLegs<'_>,
     pool: &SolverPool,
     stop: &StopSignal,
 ) -> Option<f64> {
-    if !bounds.has_bounds() {
-        return None;
-    }
-    let targets = places.scenario.targets().len() as u64;
-    let settings = SearchSettings {
-        node_limit: Some(NODES_TIMES_TARGETS_CUBED / targets.pow(3).max(1)),
-        relative_gap: GAP,
-        ..SearchSettings::default()
+    let tours = AdditiveTours::new(places, bounds);
+    let targets = places.scenario.targets().len();
+    let bound = if targets > MAX_TARGETS_ALL_LEGS {
+        least_bound(&tours, stop)
+    } else {
+        let settings = SearchSettings {
+            node_limit: Some(NODES_TIMES_TARGETS_CUBED / (targets as u64).pow(3).max(1)),
+            relative_gap: GAP,
+            ..SearchSettings::default()
+        };
+        search(&tours, &[], &settings, pool, stop, &Unobserved).lower_bound_s
     };
-    let tours = certified_tours(places, bounds);
-    let found = search(&tours, &[], &settings, pool, stop, &Unobserved);
-    Some(within_tolerance(places, found.lower_bound_s))
+    let proved = bounds.has_bounds();
+    proved.then(|| within_tolerance(places, bound))
 }
 
 /// The same for the tours along one route.
 pub(super) fn route_bound(
     places: &Places<'_>,
-    bounds: &CertifiedTable,
+    bounds: &ProvedLegs<'_>,
     route: &[Place],
 ) -> Option<f64> {
-    let sum = || certified_tours(places, bounds).along(route);
+    let sum = || AdditiveTours::new(places, bounds).along(route);
     bounds.has_bounds().then(|| within_tolerance(places, sum()))
 }
 

@@ -6,13 +6,15 @@
 //! without its last place. The result depends on the places alone: a solution that the cache has
 //! dropped is solved again in the same way.
 
+use super::additive_tours::LegTimes;
 use super::from_store::{segment_from_store, stored_segment};
 use super::guesses::{InitialGuess, admits_rest, extended, joined};
 use super::legs::LegSolver;
 use super::places::Places;
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
 use super::solved_segments::SolvedSegments;
-use super::tables::{CertifiedTable, SolvedTable};
+use super::proved_legs::ProvedLegs;
+use super::tables::{SolvedTable, Table, TabulatedLeg};
 use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::leg::solve::around_cones::is_clear;
@@ -23,7 +25,7 @@ use crate::run::stop::StopSignal;
 use crate::tour::legs::LegKind;
 use crate::tour::order::{Evaluation, PassageCostate, Place, TourEvaluation, TourModel};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// Initial guesses of a piece, in the order in which they are tried.
 const PIECE_GUESSES: [InitialGuess; 2] = [InitialGuess::Eigenaxes, InitialGuess::Extremals];
@@ -43,11 +45,10 @@ const MIN_GUESSES_OF_SHORT: usize = 2;
 pub(super) struct Tours<'a> {
     pub(super) places: &'a Places<'a>,
     pub(super) legs: &'a LegSolver<'a>,
-    /// Certified bounds of the legs, each end with its own conditions only, once they are computed.
-    certified: OnceLock<CertifiedTable>,
-    /// Legs solved with only the conditions of their own ends, once they are known: their durations
-    /// are lower bounds.
-    free: OnceLock<SolvedTable>,
+    /// Certified bounds of the legs, each end with its own conditions only.
+    pub(super) certified: ProvedLegs<'a>,
+    /// Legs solved with only the conditions of their own ends: their durations are lower bounds.
+    free: RwLock<SolvedTable>,
     /// Whether every order takes as long as its reverse.
     symmetric: bool,
     pub(super) stop: &'a StopSignal,
@@ -64,8 +65,11 @@ impl<'a> Tours<'a> {
         Self {
             places,
             legs,
-            certified: OnceLock::new(),
-            free: OnceLock::new(),
+            certified: ProvedLegs::new(
+                places,
+                Box::new(|pairs| legs.certified_legs(LegKind::LowerBound, pairs)),
+            ),
+            free: RwLock::new(Table::new(places, std::iter::empty())),
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
@@ -73,25 +77,20 @@ impl<'a> Tours<'a> {
         }
     }
 
-    /// Sets the certified bounds of the legs. Later calls have no effect.
-    pub(super) fn set_certified_bounds(&self, certified: CertifiedTable) {
-        self.certified.get_or_init(|| certified);
+    /// Solves legs with only the conditions of their own ends.
+    pub(super) fn solve_free_legs(&self, pairs: &[(Place, Place)]) {
+        let solved = self.legs.solved_legs(LegKind::LowerBound, pairs);
+        let mut free = self.free.write().unwrap_or_else(PoisonError::into_inner);
+        for (leg, entry) in pairs.iter().zip(solved) {
+            free.set(*leg, entry);
+        }
     }
 
-    /// Certified lower bound on any leg between two places, s; `None` where nothing is proved.
-    pub(super) fn certified_bound(&self, from: Place, to: Place) -> Option<f64> {
-        self.certified.get().and_then(|legs| legs.bound(from, to))
-    }
-
-    /// Sets the legs with free ends, whose durations are tighter bounds than the certified ones.
-    /// Later calls have no effect.
-    pub(super) fn set_free_legs(&self, free: SolvedTable) {
-        self.free.get_or_init(|| free);
-    }
-
-    /// The legs with free ends, when they are known.
-    pub(super) fn free_legs(&self) -> Option<&SolvedTable> {
-        self.free.get()
+    /// A leg that was solved with only the conditions of its own ends.
+    pub(super) fn known_free_leg(&self, from: Place, to: Place) -> Option<TabulatedLeg> {
+        // A panic under the lock leaves the table consistent.
+        let free = self.free.read().unwrap_or_else(PoisonError::into_inner);
+        free.get(from, to).cloned()
     }
 
     /// Number of intervals of every leg of a route.
@@ -201,8 +200,7 @@ impl<'a> Tours<'a> {
 
     /// The leg with free ends between two places: from the table, if it is known, or solved now.
     pub(super) fn free_leg(&self, from: Place, to: Place) -> LegSolution {
-        let known = self.free_legs().and_then(|free| free.get(from, to));
-        known.map_or_else(
+        self.known_free_leg(from, to).map_or_else(
             || self.legs.leg(LegKind::LowerBound, from, to),
             |leg| leg.beginning_at(&self.places.waypoint(from).attitude),
         )
@@ -411,10 +409,22 @@ impl TourModel for Tours<'_> {
     }
 
     fn pair_bound(&self, from: Place, to: Place) -> f64 {
-        let solved = self.free_legs().and_then(|free| free.duration(from, to));
-        let proved = self.certified_bound(from, to);
-        let known = solved.into_iter().chain(proved).reduce(f64::max);
-        known.map_or(f64::NAN, |duration| duration + self.places.service_time(to))
+        let solved = self.known_free_leg(from, to);
+        let solved = solved.and_then(|leg| leg.leg.solution.least_duration());
+        let proved = self.certified.leg_s(from, to);
+        solved.map_or(proved, |solved| solved.max(proved)) + self.places.service_time(to)
+    }
+
+    fn is_open(&self, from: Place, to: Place) -> bool {
+        self.known_free_leg(from, to).is_none()
+    }
+
+    /// Proves the bounds of legs that have none, and solves the others.
+    fn raise_pair_bounds(&self, pairs: &[(Place, Place)]) {
+        let unproved = |pair: &&(Place, Place)| self.certified.is_open(pair.0, pair.1);
+        let (unproved, proved): (Vec<_>, Vec<_>) = pairs.iter().partition(unproved);
+        self.certified.raise(&unproved);
+        self.solve_free_legs(&proved);
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {

@@ -89,7 +89,7 @@ fn unsolved_slews(tours: &Tours<'_>) -> Vec<Problem> {
 
 fn unsolved_slew(tours: &Tours<'_>, from: Place, to: Place) -> Option<Problem> {
     let places = tours.places;
-    let leg = &tours.free_legs()?.get(from, to)?.leg;
+    let leg = tours.known_free_leg(from, to)?.leg;
     if leg.solution.duration().is_some() {
         return None;
     }

@@ -16,12 +16,22 @@
 use super::least_tree::{cheapest, least_tree};
 use crate::tour::order::PairTable;
 
-/// Steps of the ascent; with [`STEP_DECAY`] the last step is a tenth of a percent of the first.
-const ASCENT_STEPS: usize = 230;
-/// Ratio of each step to the one before.
+/// Ratio of each step of an ascent to the one before.
 const STEP_DECAY: f64 = 0.97;
-/// First step, relative to the mean leg of the tree.
-const FIRST_STEP: f64 = 0.5;
+/// From zero potentials. The last step is a tenth of a percent of the first.
+const FULL_ASCENT: Ascent = Ascent {
+    first_step: 0.5,
+    steps: 230,
+};
+
+/// An ascent in the potentials.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::tour::order) struct Ascent {
+    /// First step, relative to the mean leg of the tree.
+    pub(in crate::tour::order) first_step: f64,
+    /// Number of steps.
+    pub(in crate::tour::order) steps: usize,
+}
 
 /// Entry offsets and potentials of every target, s.
 #[derive(Debug)]
@@ -38,29 +48,45 @@ struct OuterTree {
     bound: f64,
     /// Number of edges at each of the remaining targets.
     degrees: Vec<u32>,
+    /// The edges, from one place to another, the outer ones first.
+    edges: Vec<[usize; 2]>,
 }
 
 impl SpanningTrees {
     /// Computes entry offsets and potentials for paths from the start through all targets.
     #[must_use]
     pub fn new(table: &PairTable) -> Self {
+        let potentials = vec![0.0; table.targets()];
+        Self::ascended(table, potentials, FULL_ASCENT, |_| ())
+    }
+
+    /// The same from known potentials; `visit` is called with the edges of every tree, between places
+    /// numbered as in the table.
+    pub(in crate::tour::order) fn ascended(
+        table: &PairTable,
+        potentials: Vec<f64>,
+        ascent: Ascent,
+        mut visit: impl FnMut(&[[usize; 2]]),
+    ) -> Self {
         let targets = table.targets();
         let entry_offsets = entry_offsets(table);
         let mut trees = Self {
             edges: undirected(table, &entry_offsets),
             entry_offsets,
-            potentials: vec![0.0; targets],
+            potentials,
         };
         let all: Vec<usize> = (0..targets).collect();
         let tree = trees.outer_tree(table, table.start(), &all);
+        visit(&tree.edges);
         let mut best = (tree.bound, trees.potentials.clone());
-        let mut step = FIRST_STEP * tree.bound.abs() / (targets + 1) as f64;
+        let mut step = ascent.first_step * tree.bound.abs() / (targets + 1) as f64;
         let mut degrees = tree.degrees;
-        for _ in 0..ASCENT_STEPS {
+        for _ in 0..ascent.steps {
             for (potential, &degree) in trees.potentials.iter_mut().zip(&degrees) {
                 *potential += step * (f64::from(degree) - 2.0);
             }
             let tree = trees.outer_tree(table, table.start(), &all);
+            visit(&tree.edges);
             if tree.bound > best.0 {
                 best = (tree.bound, trees.potentials.clone());
             }
@@ -94,28 +120,34 @@ impl SpanningTrees {
     fn outer_tree(&self, table: &PairTable, from: usize, remaining: &[usize]) -> OuterTree {
         let count = remaining.len();
         let mut degrees = vec![0; count];
+        let mut edges = Vec::with_capacity(count + 1);
         let mut bound: f64 = remaining
             .iter()
             .map(|&target| self.entry_offsets[target] - 2.0 * self.potentials[target])
             .sum();
-        for outer in [
-            cheapest(remaining, |to| {
-                table.bound(from, to) - self.entry_offsets[to] + self.potentials[to]
-            }),
-            cheapest(remaining, |last| {
-                table.bound(last, table.end()) + self.potentials[last]
-            }),
-        ] {
-            degrees[outer.0] += 1;
-            bound += outer.1;
+        let first = cheapest(remaining, |to| {
+            table.bound(from, to) - self.entry_offsets[to] + self.potentials[to]
+        });
+        let last = cheapest(remaining, |last| {
+            table.bound(last, table.end()) + self.potentials[last]
+        });
+        for (place, (position, weight)) in [(from, first), (table.end(), last)] {
+            degrees[position] += 1;
+            bound += weight;
+            edges.push([remaining[position], place]);
         }
         let edge = |a: usize, b: usize| self.edge(remaining[a], remaining[b]);
         for edge in least_tree(count, edge) {
             bound += edge.weight;
             degrees[edge.ends[0]] += 1;
             degrees[edge.ends[1]] += 1;
+            edges.push(edge.ends.map(|position| remaining[position]));
         }
-        OuterTree { bound, degrees }
+        OuterTree {
+            bound,
+            degrees,
+            edges,
+        }
     }
 
     /// Weight of an edge between two targets, s.

@@ -9,6 +9,7 @@ use crate::tour::order::frontier::Frontier;
 use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::incumbents::Incumbents;
 use crate::tour::order::node::SearchNode;
+use crate::tour::order::tightening::tighten;
 use crate::tour::order::triple_bounds::TripleBounds;
 use crate::tour::order::{
     PairTable, SearchSettings, SearchStatistics, SolvedOrder, TourEvaluation, TourModel,
@@ -49,7 +50,8 @@ pub(super) struct SearchTree {
 impl SearchTree {
     /// A tree whose root is not open yet.
     pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings, stop: &StopSignal) -> Self {
-        let table = PairTable::new(model);
+        let mut table = PairTable::new(model);
+        tighten(&mut table, model, stop);
         let symmetric = model.is_symmetric();
         let mut rules = table.rules().clone();
         if let (true, Some(nearest)) = (symmetric, nearest_to_start(&table)) {

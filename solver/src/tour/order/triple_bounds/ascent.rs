@@ -116,10 +116,7 @@ impl TripleBounds {
         stop: &StopSignal,
     ) -> AscentWork {
         let ask = |triple_bounds: &mut Self, paths: &[ShortPath]| {
-            let table = triple_bounds.legs.table();
-            triple_bounds
-                .coupling_gaps
-                .ask(paths, table, model, pool, stop);
+            triple_bounds.ask(paths, model, pool, stop);
         };
         let triples = self.climb(Width::Triples, effort.triples, effort.steps, ask, stop);
         if effort.fives == 0 || stop.is_set() {

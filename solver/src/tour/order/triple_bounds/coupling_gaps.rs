@@ -20,6 +20,11 @@ impl ShortPath {
         }
         Self(places)
     }
+
+    /// Its legs, in the direction in which it is listed.
+    pub(super) fn legs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.0.windows(2).map(|leg| [leg[0], leg[1]])
+    }
 }
 
 /// Coupling gaps of triples, and of five places in a row, over their pair bounds.
@@ -94,7 +99,7 @@ impl CouplingGaps {
                 if stop.is_set() {
                     return None;
                 }
-                let places: Vec<Place> = path.iter().map(|&number| self.place(number)).collect();
+                let places: Vec<Place> = path.iter().map(|&number| table.place(number)).collect();
                 let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
                 match model.path_bound(&places) {
                     Evaluation::Value(bound) if bound.is_finite() => {
@@ -126,14 +131,6 @@ impl CouplingGaps {
             let possible = from != end && to != start && (to != end || self.has_end);
             possible.then_some(path)
         })
-    }
-
-    fn place(&self, number: usize) -> Place {
-        match number.checked_sub(self.targets) {
-            None => Place::Target(number),
-            Some(0) => Place::Start,
-            Some(_) => Place::End,
-        }
     }
 
     fn known_triple(&self, from: usize, via: usize, to: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! Undirected reduced legs, and the cost of passing a target between two of them.
 
 use super::coupling_gaps::CouplingGaps;
-use crate::tour::order::PairTable;
+use crate::tour::order::{PairTable, TourModel};
 
 /// Legs reduced by the entry offsets of [`crate::tour::order::completion::SpanningTrees`], as
 /// undirected edges with their slacks, s.
@@ -28,18 +28,40 @@ impl UndirectedLegs {
             slack: vec![0.0; places * places],
         };
         for a in 0..targets {
-            for b in (0..targets).filter(|&b| b != a) {
-                let (forth, back) = (legs.reduced(a, b), legs.reduced(b, a));
-                legs.edges[a * places + b] = forth.min(back);
-                legs.slack[a * places + b] = forth - forth.min(back);
+            for b in 0..a {
+                legs.update(a, b);
             }
-            let (first, last) = (legs.reduced(table.start(), a), table.bound(a, table.end()));
-            for (place, edge) in [(table.start(), first), (table.end(), last)] {
-                legs.edges[a * places + place] = edge;
-                legs.edges[place * places + a] = edge;
+            for outer in [table.start(), table.end()] {
+                legs.update(a, outer);
             }
         }
         legs
+    }
+
+    /// Sets the edge between a target and another place, and its slacks, from the pair bounds.
+    fn update(&mut self, a: usize, b: usize) {
+        let (start, end, places) = (self.table.start(), self.table.end(), self.table.targets() + 2);
+        let [forth, back] = if b == start {
+            [self.reduced(b, a); 2]
+        } else if b == end {
+            [self.table.bound(a, b); 2]
+        } else {
+            [self.reduced(a, b), self.reduced(b, a)]
+        };
+        let edge = forth.min(back);
+        for (from, to, leg) in [(a, b, forth), (b, a, back)] {
+            self.edges[from * places + to] = edge;
+            self.slack[from * places + to] = leg - edge;
+        }
+    }
+
+    /// Lets the model raise the bounds of open legs.
+    pub(super) fn raise(&mut self, model: &dyn TourModel, legs: &[[usize; 2]]) {
+        self.table.raise(model, legs);
+        for &[from, to] in legs {
+            let (outer, target) = (from.max(to), from.min(to));
+            self.update(target, outer);
+        }
     }
 
     /// The pair bounds.

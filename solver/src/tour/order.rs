@@ -165,6 +165,15 @@ pub trait TourModel: Sync {
     /// the sum of those of its parts and is not asked for.
     fn couples(&self, via: usize) -> bool;
 
+    /// The states in which the leg between two places would begin and end if no other leg coupled
+    /// with it, scaled so that the largest component of the difference of two states is the time, s,
+    /// that the change from one to the other takes. Estimates the bounds of paths that nobody has
+    /// asked for.
+    fn free_ends(&self, from: Place, to: Place) -> [[f64; 3]; 2] {
+        let _ = (from, to);
+        [[0.0; 3]; 2]
+    }
+
     /// Solves the tour of a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
 

@@ -20,6 +20,9 @@ use local_search::OrderTask;
 const ALTERNATIVES: usize = 3;
 /// Kicks per target for the candidates: about half a second at 200 targets.
 const CANDIDATE_KICKS: usize = 100;
+/// Largest number of kicks for the first order and for the candidates.
+const MAX_FIRST_KICKS: usize = 20_000;
+const MAX_CANDIDATE_KICKS: usize = 60_000;
 /// Kicks per target for the completion of a prefix: about fifty milliseconds at 200 targets.
 const COMPLETION_KICKS: usize = 10;
 /// Seed of all searches of this file, so that they are reproducible.
@@ -30,7 +33,8 @@ const SEED: u64 = 0;
 pub fn short_order(model: &dyn TourModel, stop: &StopSignal) -> Option<Vec<usize>> {
     let table = PairTable::new(model);
     let all: Vec<usize> = (0..table.targets()).collect();
-    searched(&table, &all, 0, stop).into_iter().next()
+    let found = searched(&table, &all, 0, MAX_FIRST_KICKS, stop);
+    found.into_iter().next()
 }
 
 /// A few different orders that are short in the pair table, shortest first except for the reverse
@@ -44,7 +48,9 @@ pub(super) fn candidates(
     let mut orders = match completion {
         _ if all.is_empty() => return Vec::new(),
         CompletionBound::Exact(subsets) => vec![subsets.shortest_order(table, table.start(), &all)],
-        CompletionBound::Relaxed(_) => searched(table, &all, ALTERNATIVES, stop),
+        CompletionBound::Relaxed(_) => {
+            searched(table, &all, ALTERNATIVES, MAX_CANDIDATE_KICKS, stop)
+        }
     };
     // Tours are nearly symmetric in time, while the table of legs with free ends is not: the
     // reverse of the table's shortest order is often the shorter tour.
@@ -64,8 +70,8 @@ pub(super) fn candidates(
 /// Length and seed of a heuristic search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SearchEffort {
-    /// Number of kicks divided by the number of targets.
-    pub(super) kicks_per_target: usize,
+    /// Number of kicks.
+    pub(super) kicks: usize,
     /// Number of orders to list besides the best.
     pub(super) alternatives: usize,
     /// Seed of the random kicks.
@@ -88,9 +94,14 @@ pub(super) fn shorter_orders(
         admits: (!rules.is_free()).then_some(&admits),
     };
     let mut search = IteratedSearch::new(&task, order, effort.alternatives, effort.seed);
-    search.run(effort.kicks_per_target * order.len(), stop);
+    search.run(effort.kicks, stop);
     let best = search.best().iter();
     best.map(|best| best.order.clone()).collect()
+}
+
+/// Estimated duration of an order, s.
+pub(super) fn estimated(costs: &TripleBounds, order: &[usize]) -> f64 {
+    cost::length(costs, costs.table().start(), order)
 }
 
 /// Orders found by iterated search from the nearest-neighbour order, best first.
@@ -98,10 +109,11 @@ fn searched(
     table: &PairTable,
     all: &[usize],
     alternatives: usize,
+    max_kicks: usize,
     stop: &StopSignal,
 ) -> Vec<Vec<usize>> {
     let built = nearest_neighbours(table, &[], all);
-    let kicks = CANDIDATE_KICKS * all.len();
+    let kicks = max_kicks.min(CANDIDATE_KICKS * all.len());
     iterated(table, &[], &built, alternatives, kicks, stop)
 }
 

@@ -117,8 +117,12 @@ pub fn search(
 }
 
 impl OrderSearch<'_> {
-    /// Evaluates the orders that are short in the pair table, for a first incumbent.
+    /// Evaluates the orders that are short in the pair table, for a first incumbent. Where one is
+    /// known and couplings count, there are better orders to evaluate.
     fn evaluate_candidates(&mut self) -> Option<SearchEnd> {
+        if self.tree.best_s().is_some() && self.has_many_couplings() {
+            return None;
+        }
         let candidates = self.tree.candidates(self.stop);
         let interrupted = self.evaluate_new(&candidates);
         interrupted.then(|| self.stopped())

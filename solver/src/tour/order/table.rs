@@ -57,7 +57,7 @@ impl PairTable {
     }
 
     /// Whether a tour can have this leg, and the end is a prescribed one.
-    fn is_leg(&self, [from, to]: [usize; 2]) -> bool {
+    pub(super) fn is_leg(&self, [from, to]: [usize; 2]) -> bool {
         let alone = self.targets == 0;
         let (from_start, to_end) = (from == self.start(), to == self.end());
         from != to
@@ -76,9 +76,7 @@ impl PairTable {
     /// Lets the model raise the bounds of these legs and of their reverses where it can.
     pub fn raise(&mut self, model: &dyn TourModel, legs: &[[usize; 2]]) {
         let both = legs.iter().flat_map(|&[from, to]| [[from, to], [to, from]]);
-        let open: BTreeSet<[usize; 2]> = both
-            .filter(|&leg| self.open[self.entry(leg)])
-            .collect();
+        let open: BTreeSet<[usize; 2]> = both.filter(|&leg| self.open[self.entry(leg)]).collect();
         let place = |number| self.place(number);
         let pairs: Vec<_> = open.iter().map(|&[a, b]| (place(a), place(b))).collect();
         model.raise_pair_bounds(&pairs);

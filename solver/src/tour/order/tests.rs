@@ -5,6 +5,7 @@ mod exactness;
 mod lagrangian;
 mod models;
 mod rules;
+mod tightening;
 mod triple_bounds;
 
 use models::SplitMix;

@@ -81,13 +81,20 @@ fn nearest(table: &PairTable) -> Vec<[usize; 2]> {
     for target in 0..targets {
         let distance = |place: usize| {
             let (there, back) = (table.bound(target, place), table.bound(place, target));
-            if place < targets { there.min(back) } else { there.max(back) }
+            if place < targets {
+                there.min(back)
+            } else {
+                there.max(back)
+            }
         };
         let mut near: Vec<usize> = (0..targets + 2).collect();
         near.retain(|&place| place != target && table.can_raise(target, place));
         near.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b)));
         near.truncate(NEAREST);
-        legs.extend(near.into_iter().map(|place| [target.min(place), target.max(place)]));
+        legs.extend(
+            near.into_iter()
+                .map(|place| [target.min(place), target.max(place)]),
+        );
     }
     legs.into_iter().collect()
 }

@@ -53,6 +53,7 @@
 mod ascent;
 mod choice;
 mod coupling_gaps;
+mod gap_estimates;
 mod multipliers;
 mod ranking;
 mod subsets;
@@ -99,7 +100,7 @@ impl TripleBounds {
         }
         let mut triple_bounds = Self {
             legs: UndirectedLegs::new(table, trees.entry_offsets()),
-            coupling_gaps: CouplingGaps::new(model),
+            coupling_gaps: CouplingGaps::new(model, table),
             multipliers: Multipliers::of_potentials(trees.potentials()),
             near: Ranking::new(targets),
             far: Ranking::new(targets),
@@ -165,19 +166,22 @@ impl TripleBounds {
         let legs = paths.iter().flat_map(ShortPath::legs);
         let open = legs.filter(|&[from, to]| self.table().can_raise(from, to));
         let open: BTreeSet<[usize; 2]> = open.collect();
+        let open: Vec<_> = open.into_iter().collect();
         if !open.is_empty() {
-            let open: Vec<_> = open.into_iter().collect();
             self.legs.raise(model, &open);
         }
         let table = self.legs.table();
+        for leg in open {
+            self.coupling_gaps.update(model, table, leg);
+        }
         self.coupling_gaps.ask(paths, table, model, pool, stop);
     }
 
-    /// Known coupling gap of a target between two places, s. An estimate of an order's duration
-    /// adds the whole gap, where a bound adds half: the legs before and after a leg may delay it
-    /// independently.
+    /// Coupling gap of a target between two places, s, known or estimated. An estimate of an order's
+    /// duration adds the whole gap, where a bound adds half: the legs before and after a leg may
+    /// delay it independently.
     pub(super) fn coupling_gap(&self, from: usize, via: usize, to: usize) -> f64 {
-        self.coupling_gaps.triple(from, via, to)
+        self.coupling_gaps.estimate(from, via, to)
     }
 
     /// Whether every triple has the same gap as its reverse.

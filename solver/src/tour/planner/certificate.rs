@@ -246,13 +246,16 @@ impl CertificateVerifier<'_> {
 
     /// Proves the bounds of the legs between pairs of places; legs with equal canonical forms once.
     fn prove_legs(&self, pairs: &[(Place, Place)]) -> Vec<Option<CertifiedLeg>> {
-        let legs = pairs.iter().map(|pair| (*pair, canonical(self.places, *pair)));
+        let legs = pairs
+            .iter()
+            .map(|pair| (*pair, canonical(self.places, *pair)));
         let legs: Vec<_> = legs.collect();
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let mut listed: HashSet<String> = known().keys().cloned().collect();
         let fresh = |(_, leg): &&(_, CanonicalLeg)| listed.insert(leg.identity.clone());
         let missing: Vec<_> = legs.iter().filter(fresh).collect();
-        self.total.fetch_add(missing.len() as u64, Ordering::Relaxed);
+        self.total
+            .fetch_add(missing.len() as u64, Ordering::Relaxed);
         let bounds = self.run.pool.map(&missing, |(pair, leg)| {
             let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(*pair, leg, None).ok());
             self.report_progress();

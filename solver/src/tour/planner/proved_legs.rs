@@ -7,8 +7,7 @@ use crate::tour::order::Place;
 use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 
 /// Computes the bounds of legs; `None` for those not reached before the stop signal.
-pub(super) type Prove<'a> =
-    Box<dyn Fn(&[(Place, Place)]) -> Vec<Option<CertifiedLeg>> + Sync + 'a>;
+pub(super) type Prove<'a> = Box<dyn Fn(&[(Place, Place)]) -> Vec<Option<CertifiedLeg>> + Sync + 'a>;
 
 /// Certified bounds of legs, each end with its own conditions only.
 ///
@@ -85,3 +84,6 @@ impl LegTimes for &ProvedLegs<'_> {
         (**self).raise(legs);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,9 +18,7 @@ use crate::model::tolerances::TIME_TOLERANCE;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Progress;
 use crate::run::stop::StopSignal;
-use crate::tour::order::{
-    Incumbent, Place, SearchObserver, SearchSettings, least_bound, search,
-};
+use crate::tour::order::{Incumbent, Place, SearchObserver, SearchSettings, least_bound, search};
 
 /// Number of targets up to which all legs are proved and solved before a search begins. With more,
 /// almost none of them can be part of a good tour, and only those are on which a bound depends.

@@ -11,19 +11,21 @@ use super::from_store::{segment_from_store, stored_segment};
 use super::guesses::{InitialGuess, admits_rest, extended, joined};
 use super::legs::LegSolver;
 use super::places::Places;
+use super::proved_legs::ProvedLegs;
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
 use super::solved_segments::SolvedSegments;
-use super::proved_legs::ProvedLegs;
 use super::tables::{SolvedTable, Table, TabulatedLeg};
 use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::leg::solve::around_cones::is_clear;
 use crate::model::order_rules::OrderRules;
+use crate::model::scenario::RateCondition;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::LegKind;
 use crate::tour::order::{Evaluation, PassageCostate, Place, TourEvaluation, TourModel};
+use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -49,6 +51,9 @@ pub(super) struct Tours<'a> {
     pub(super) certified: ProvedLegs<'a>,
     /// Legs solved with only the conditions of their own ends: their durations are lower bounds.
     free: RwLock<SolvedTable>,
+    /// Largest body rates, rad/s, and accelerations, rad/s², about each axis.
+    largest_rates: Vector3<f64>,
+    largest_accelerations: Vector3<f64>,
     /// Whether every order takes as long as its reverse.
     symmetric: bool,
     pub(super) stop: &'a StopSignal,
@@ -70,6 +75,12 @@ impl<'a> Tours<'a> {
                 Box::new(|pairs| legs.certified_legs(LegKind::LowerBound, pairs)),
             ),
             free: RwLock::new(Table::new(places, std::iter::empty())),
+            largest_rates: places.dynamics.reachable_rates(),
+            largest_accelerations: Vector3::from_fn(|axis, _| {
+                places
+                    .dynamics
+                    .reachable_acceleration(&Vector3::ith(axis, 1.0))
+            }),
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
@@ -454,6 +465,37 @@ impl TourModel for Tours<'_> {
         }
     }
 
+    /// The rates at the ends of the leg on its own, relative to the reachable accelerations. A leg that
+    /// is not solved turns about its eigenaxis as fast as the wheels allow.
+    fn free_ends(&self, from: Place, to: Place) -> [[f64; 3]; 2] {
+        let dynamics = &self.places.dynamics;
+        let begin = self.places.attitude(from);
+        let solved = self.known_free_leg(from, to);
+        let solved = solved.filter(|leg| leg.leg.solution.duration().is_some());
+        let rates = if let Some(leg) = solved {
+            let motion = leg.beginning_at(&begin).profile;
+            let last = motion.intervals();
+            [0, last].map(|node| dynamics.rate(&motion.attitudes[node], &motion.wheels[node]))
+        } else {
+            let end = self
+                .places
+                .arrival
+                .signed(&self.places.attitude(to), &begin);
+            let turn = begin.signed_turn_to(&end);
+            let fastest = self
+                .largest_rates
+                .zip_map(&turn, |most, part| most / part.abs())
+                .min();
+            let rate = if fastest.is_finite() {
+                turn * fastest
+            } else {
+                Vector3::zeros()
+            };
+            [from, to].map(|place| kept(&self.places.waypoint(place).rate, &rate))
+        };
+        rates.map(|rate| rate.component_div(&self.largest_accelerations).into())
+    }
+
     fn couples(&self, via: usize) -> bool {
         let waypoint = self.places.waypoint(Place::Target(via));
         !waypoint.is_fixed(&self.places.dynamics)
@@ -475,6 +517,14 @@ impl TourModel for Tours<'_> {
             Err(_) => TourEvaluation::Unresolved,
         }
     }
+}
+
+/// A rate where the conditions on it, rad/s, leave it free, and the nearest admitted one elsewhere.
+fn kept(conditions: &[RateCondition; 3], rate: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| {
+        let [low, high] = conditions[axis].range();
+        rate[axis].clamp(low, high)
+    })
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::completion::{MAX_EXACT_TARGETS, SpanningTrees};
-use crate::tour::order::heuristics::SearchEffort;
+use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::lagrangian::LagrangianPaths;
 use crate::tour::order::triple_bounds::{AscentEffort, TripleBoundSubsets, TripleBounds};
 use crate::tour::order::{PairTable, SearchEnd, TourModel};
@@ -22,17 +22,24 @@ const MAX_STEPS: usize = 400;
 const TRIPLES_OF_FEW: usize = 30;
 /// Paths of five places solved per target in a search over few targets.
 const FIVES_OF_FEW: usize = 20;
-/// Rounds in which the bound for many targets is raised and orders are improved.
-const ROUNDS: u64 = 6;
+/// Largest number of rounds in which orders are improved and the bound for many targets is raised.
+const MAX_ROUNDS: u64 = 100;
+/// The rounds end when so many in a row gain nothing.
+const ROUNDS_WITHOUT_GAIN: u64 = 2;
+/// Relative rise of the bound in a round that counts as none.
+const MIN_RELATIVE_GAIN: f64 = 2e-4;
 /// Triples solved per target in a round.
 const TRIPLES_OF_MANY: usize = 12;
 /// Paths of five places solved per target in a round.
 const FIVES_OF_MANY: usize = 8;
-/// Heuristic searches for orders in a round.
-const ORDERS_PER_ROUND: u64 = 4;
-/// Kicks per target of a heuristic search.
-const KICKS: usize = 60;
-/// Orders of a heuristic search that are evaluated.
+/// Passes of a round: each learns the couplings along the orders that it finds.
+const PASSES: u64 = 2;
+/// Heuristic searches for orders in a pass.
+const ORDERS_PER_PASS: u64 = 2;
+/// Kicks per target of a heuristic search, and at most.
+const KICKS_PER_TARGET: usize = 40;
+const MAX_KICKS: usize = 10_000;
+/// Orders of a pass that are evaluated.
 const ORDERS_EVALUATED: usize = 2;
 
 /// Bounds that take couplings into account.
@@ -89,16 +96,28 @@ impl CoupledBounds {
 }
 
 impl OrderSearch<'_> {
-    /// For many targets, raises the triple bounds and improves orders in turn, before the root is
-    /// opened.
+    /// Whether there are many targets, some of which couple their legs.
+    pub(super) fn has_many_couplings(&self) -> bool {
+        let targets = self.tree.table().targets();
+        targets > MAX_EXACT_TARGETS && (0..targets).any(|via| self.model.couples(via))
+    }
+
+    /// For many targets, improves orders and raises the triple bounds in turn, before the root is
+    /// opened, until neither gains much.
     pub(super) fn bound_and_improve_orders(&mut self) -> Option<SearchEnd> {
-        if self.tree.table().targets() <= MAX_EXACT_TARGETS {
+        if !self.has_many_couplings() {
             return None;
         }
         let table = self.tree.table();
         let targets = table.targets();
         let mut triple_bounds = TripleBounds::new(self.model, table, &SpanningTrees::new(table))?;
-        for round in 0..ROUNDS {
+        let mut without_gain = 0;
+        for round in 0..MAX_ROUNDS {
+            let before = (self.tree.best_s(), triple_bounds.root_bound());
+            self.improve_orders(&mut triple_bounds, round);
+            if self.stop.is_set() {
+                break;
+            }
             let effort = AscentEffort {
                 triples: TRIPLES_OF_MANY * targets,
                 fives: FIVES_OF_MANY * targets,
@@ -107,13 +126,10 @@ impl OrderSearch<'_> {
             triple_bounds.raise(self.model, &effort, self.pool, self.stop);
             self.tree.bound_root(triple_bounds.root_bound());
             self.reporter.report(&self.tree);
-            for order in 0..ORDERS_PER_ROUND {
-                self.improve_orders(&mut triple_bounds, round * ORDERS_PER_ROUND + order);
-                if self.stop.is_set() {
-                    break;
-                }
-            }
-            if self.stop.is_set() {
+            let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
+            let gained = raised || self.tree.best_s() < before.0;
+            without_gain = if gained { 0 } else { without_gain + 1 };
+            if self.stop.is_set() || without_gain >= ROUNDS_WITHOUT_GAIN {
                 break;
             }
         }
@@ -122,19 +138,34 @@ impl OrderSearch<'_> {
         self.stop.is_set().then(|| self.stopped())
     }
 
-    /// Searches for orders that are short in the known couplings, evaluates them, and solves their
-    /// unknown triples.
-    fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, seed: u64) {
-        let effort = SearchEffort {
-            kicks_per_target: KICKS,
-            alternatives: ORDERS_EVALUATED - 1,
-            seed,
-        };
-        let orders = self.tree.short_orders(triple_bounds, &effort, self.stop);
-        triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
-        self.evaluate_new(&orders);
-        self.reporter.announce(&self.tree);
-        self.reporter.report(&self.tree);
+    /// Searches for orders that are short in the known and estimated couplings, solves their unknown
+    /// triples, and evaluates those that are shortest then.
+    fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, round: u64) {
+        let kicks = MAX_KICKS.min(KICKS_PER_TARGET * self.tree.table().targets());
+        for pass in 0..PASSES {
+            let first = (round * PASSES + pass) * ORDERS_PER_PASS;
+            let seeds: Vec<u64> = (first..first + ORDERS_PER_PASS).collect();
+            let found = self.pool.map(&seeds, |&seed| {
+                let effort = SearchEffort {
+                    kicks,
+                    alternatives: 0,
+                    seed,
+                };
+                self.tree.short_orders(triple_bounds, &effort, self.stop)
+            });
+            let mut orders: Vec<Vec<usize>> = found.into_iter().flatten().collect();
+            triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
+            let estimated = |order: &Vec<usize>| heuristics::estimated(triple_bounds, order);
+            orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
+            orders.dedup();
+            orders.truncate(ORDERS_EVALUATED);
+            self.evaluate_new(&orders);
+            self.reporter.announce(&self.tree);
+            self.reporter.report(&self.tree);
+            if self.stop.is_set() {
+                break;
+            }
+        }
     }
 
     /// Computes the triple bounds of a long search over few targets.

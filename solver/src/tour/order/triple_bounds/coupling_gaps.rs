@@ -1,6 +1,7 @@
 //! Coupling gaps: by how much the bound of a path exceeds the sum of the bounds of its parts, as
 //! far as the model has solved them.
 
+use super::gap_estimates::GapEstimates;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{Evaluation, PairTable, Place, TourModel};
@@ -38,11 +39,12 @@ pub(super) struct CouplingGaps {
     triples: Vec<Option<Box<[f64]>>>,
     /// Excess of five places over their four pair bounds, s.
     fives: HashMap<[usize; 5], f64>,
+    estimates: GapEstimates,
 }
 
 impl CouplingGaps {
     /// No gap is known yet.
-    pub(super) fn new(model: &dyn TourModel) -> Self {
+    pub(super) fn new(model: &dyn TourModel, table: &PairTable) -> Self {
         let targets = model.target_count();
         Self {
             targets,
@@ -50,6 +52,25 @@ impl CouplingGaps {
             couples: (0..targets).map(|via| model.couples(via)).collect(),
             triples: vec![None; targets * (targets + 2)],
             fives: HashMap::new(),
+            estimates: GapEstimates::new(model, table),
+        }
+    }
+
+    /// Takes note that the model knows more of a leg.
+    pub(super) fn update(&mut self, model: &dyn TourModel, table: &PairTable, [a, b]: [usize; 2]) {
+        self.estimates.update(model, table, [a, b]);
+        self.estimates.update(model, table, [b, a]);
+    }
+
+    /// The gap of a triple, s, as far as it is known, or an estimate; no bound.
+    pub(super) fn estimate(&self, from: usize, via: usize, to: usize) -> f64 {
+        let known = self.known_triple(from, via, to);
+        if !known.is_nan() {
+            known
+        } else if self.couples.get(via) == Some(&true) {
+            self.estimates.gap(from, via, to)
+        } else {
+            0.0
         }
     }
 
@@ -113,7 +134,10 @@ impl CouplingGaps {
         });
         for (path, coupling_gap) in answers.into_iter().flatten().flatten() {
             match path[..] {
-                [a, b, c] => self.set_triple(a, b, c, coupling_gap),
+                [a, b, c] => {
+                    self.estimates.learn([a, b, c], coupling_gap);
+                    self.set_triple(a, b, c, coupling_gap);
+                }
                 [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], coupling_gap),
                 _ => {}
             }

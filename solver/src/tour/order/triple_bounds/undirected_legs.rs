@@ -40,7 +40,11 @@ impl UndirectedLegs {
 
     /// Sets the edge between a target and another place, and its slacks, from the pair bounds.
     fn update(&mut self, a: usize, b: usize) {
-        let (start, end, places) = (self.table.start(), self.table.end(), self.table.targets() + 2);
+        let (start, end, places) = (
+            self.table.start(),
+            self.table.end(),
+            self.table.targets() + 2,
+        );
         let [forth, back] = if b == start {
             [self.reduced(b, a); 2]
         } else if b == end {

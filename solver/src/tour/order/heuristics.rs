@@ -170,7 +170,7 @@ fn nearest_neighbours(table: &PairTable, prefix: &[usize], targets: &[usize]) ->
         let from = table.last_place(&path);
         // Sorted first, since the rules are more expensive to evaluate than distances.
         left.sort_by(|&a, &b| {
-            let distance = |target| table.bound(from, target);
+            let distance = |target| table.estimate(from, target);
             distance(a).total_cmp(&distance(b)).then(a.cmp(&b))
         });
         let admitted = |target: &usize| {

@@ -4,6 +4,9 @@ use super::{Place, TourModel};
 use crate::model::order_rules::OrderRules;
 use std::collections::BTreeSet;
 
+/// By how much, relative, a leg is estimated to exceed a bound that can still be raised.
+const OPEN_EXCESS: f64 = 0.5;
+
 /// Lower bounds of all legs, s, between places that are numbered: targets `0..n`, then the start,
 /// then the end.
 ///
@@ -127,6 +130,15 @@ impl PairTable {
     #[must_use]
     pub fn bound(&self, from: usize, to: usize) -> f64 {
         self.bounds[self.entry([from, to])]
+    }
+
+    /// Estimated time, s, from leaving one place to leaving the other: longer than a bound that can
+    /// still be raised, so that short orders are not drawn to legs of which little is known.
+    #[must_use]
+    pub fn estimate(&self, from: usize, to: usize) -> f64 {
+        let entry = self.entry([from, to]);
+        let excess = if self.open[entry] { OPEN_EXCESS } else { 0.0 };
+        (1.0 + excess) * self.bounds[entry]
     }
 
     /// Number of the last place of a prefix: the start, if it has no targets.

@@ -88,6 +88,25 @@ impl<'a> Tours<'a> {
         }
     }
 
+    /// Time of the slowest component of the turn between two places, s, from rest to rest at the
+    /// largest rate and acceleration about its axis: an estimate without any search.
+    pub(super) fn ramped_turn_s(&self, from: Place, to: Place) -> f64 {
+        let begin = self.places.attitude(from);
+        let end = self.places.arrival.signed(&self.places.attitude(to), &begin);
+        let turn = begin.signed_turn_to(&end);
+        let component = |axis: usize| {
+            let (angle, most) = (turn[axis].abs(), self.largest_rates[axis]);
+            let acceleration = self.largest_accelerations[axis];
+            let peak = (angle * acceleration).sqrt();
+            if peak <= most {
+                2.0 * peak / acceleration
+            } else {
+                angle / most + most / acceleration
+            }
+        };
+        (0..3).map(component).fold(0.0, f64::max)
+    }
+
     /// Solves legs with only the conditions of their own ends.
     pub(super) fn solve_free_legs(&self, pairs: &[(Place, Place)]) {
         let solved = self.legs.solved_legs(LegKind::LowerBound, pairs);

@@ -35,7 +35,7 @@ impl OrderCost for TripleBounds {
     }
 
     fn leg(&self, from: usize, to: usize) -> f64 {
-        self.table().bound(from, to)
+        self.table().estimate(from, to)
     }
 
     fn coupling(&self, from: usize, via: usize, to: usize) -> f64 {
@@ -53,7 +53,7 @@ impl OrderCost for PairTable {
     }
 
     fn leg(&self, from: usize, to: usize) -> f64 {
-        self.bound(from, to)
+        self.estimate(from, to)
     }
 }
 

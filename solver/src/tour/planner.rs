@@ -34,7 +34,7 @@ use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
-use crate::tour::order::{Place, SearchSettings, SolvedOrder, exhaustive, search};
+use crate::tour::order::{Place, SearchSettings, SolvedOrder, TourModel, exhaustive, search};
 use crate::wheels::envelope::momentum_problems;
 use additive_tours::LegTimes;
 use first_tour::{first_order, first_tour};
@@ -130,7 +130,10 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
         tours.certified.raise(&pairs);
         builder.set_certified_bound(bound_tours());
     }
-    let first = order.and_then(|order| first_tour(&tours, order));
+    // The program of a tour of many targets whose legs couple takes longer than to find a better order.
+    let coupled = !few && (0..scenario.targets().len()).any(|target| tours.couples(target));
+    let first = order.clone().filter(|_| !coupled);
+    let first = first.and_then(|order| first_tour(&tours, order));
     if let Some(first) = &first {
         builder.announce(first);
         solver.report_bounds(Some(first.duration_s), builder.certified_bound());
@@ -144,7 +147,8 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     let known: Vec<_> = first.into_iter().collect();
     let settings = search_settings(scenario);
-    let found = search(&tours, &known, &settings, run.pool, &stop, &builder);
+    let order = order.as_deref();
+    let found = search(&tours, &known, order, &settings, run.pool, &stop, &builder);
     match &found.best {
         Some(best) => {
             builder.compare_with_rest(best);

@@ -75,11 +75,13 @@ struct OrderSearch<'a> {
     reporter: SearchReporter<'a>,
 }
 
-/// Searches the best orders. `known` lists orders whose duration is known already.
+/// Searches the best orders. `known` lists orders whose duration is known already; the search for
+/// shorter ones begins at the best of them, or at `first`.
 #[must_use]
 pub fn search(
     model: &dyn TourModel,
     known: &[SolvedOrder],
+    first: Option<&[usize]>,
     settings: &SearchSettings,
     pool: &SolverPool,
     stop: &StopSignal,
@@ -93,7 +95,7 @@ pub fn search(
         next_probe: PROBE_NODES,
         tightened: false,
         lagrangian: false,
-        tree: SearchTree::new(model, settings, stop),
+        tree: SearchTree::new(model, first, settings, stop),
         reporter: SearchReporter::new(observer),
     };
     for order in known {
@@ -120,7 +122,7 @@ impl OrderSearch<'_> {
     /// Evaluates the orders that are short in the pair table, for a first incumbent. Where one is
     /// known and couplings count, there are better orders to evaluate.
     fn evaluate_candidates(&mut self) -> Option<SearchEnd> {
-        if self.tree.best_s().is_some() && self.has_many_couplings() {
+        if self.tree.has_first_order() && self.has_many_couplings() {
             return None;
         }
         let candidates = self.tree.candidates(self.stop);

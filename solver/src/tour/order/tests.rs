@@ -36,5 +36,6 @@ fn alternatives(count: usize) -> SearchSettings {
 
 /// Searches on two threads without limits or observers.
 fn run(model: &dyn TourModel, settings: &SearchSettings) -> SearchResult {
-    search(model, &[], settings, &pool(2), &StopSignal::new(), &Silent)
+    let (pool, stop) = (pool(2), StopSignal::new());
+    search(model, &[], None, settings, &pool, &stop, &Silent)
 }

@@ -51,7 +51,7 @@ pub(super) fn tour_bound(
             relative_gap: GAP,
             ..SearchSettings::default()
         };
-        search(&tours, &[], &settings, pool, stop, &Unobserved).lower_bound_s
+        search(&tours, &[], None, &settings, pool, stop, &Unobserved).lower_bound_s
     };
     let proved = bounds.has_bounds();
     proved.then(|| within_tolerance(places, bound))

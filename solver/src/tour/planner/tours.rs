@@ -92,7 +92,10 @@ impl<'a> Tours<'a> {
     /// largest rate and acceleration about its axis: an estimate without any search.
     pub(super) fn ramped_turn_s(&self, from: Place, to: Place) -> f64 {
         let begin = self.places.attitude(from);
-        let end = self.places.arrival.signed(&self.places.attitude(to), &begin);
+        let end = self
+            .places
+            .arrival
+            .signed(&self.places.attitude(to), &begin);
         let turn = begin.signed_turn_to(&end);
         let component = |axis: usize| {
             let (angle, most) = (turn[axis].abs(), self.largest_rates[axis]);

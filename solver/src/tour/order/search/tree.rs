@@ -35,6 +35,8 @@ pub(super) struct SearchTree {
     root_is_open: bool,
     frontier: Frontier,
     incumbents: Incumbents,
+    /// Where the search for short orders begins while none has been evaluated.
+    first: Option<Vec<usize>>,
     /// Evaluated orders with their duration, s; `None` for those that did not resolve.
     tried: BTreeMap<Vec<usize>, Option<f64>>,
     /// Smallest bound of the nodes that were ruled out, s: they cannot be among the best, up to the
@@ -49,7 +51,12 @@ pub(super) struct SearchTree {
 
 impl SearchTree {
     /// A tree whose root is not open yet.
-    pub(super) fn new(model: &dyn TourModel, settings: &SearchSettings, stop: &StopSignal) -> Self {
+    pub(super) fn new(
+        model: &dyn TourModel,
+        first: Option<&[usize]>,
+        settings: &SearchSettings,
+        stop: &StopSignal,
+    ) -> Self {
         let mut table = PairTable::new(model);
         tighten(&mut table, model, stop);
         let symmetric = model.is_symmetric();
@@ -59,6 +66,7 @@ impl SearchTree {
         }
         Self {
             symmetric,
+            first: first.map(<[usize]>::to_vec),
             completion: CompletionBound::new(&table, &rules, stop),
             rules,
             couplings: None,
@@ -127,6 +135,11 @@ impl SearchTree {
         }
     }
 
+    /// Whether there is an order at which a search for short ones can begin.
+    pub(super) fn has_first_order(&self) -> bool {
+        self.first.is_some() || self.best_s().is_some()
+    }
+
     /// Orders that are short by some costs, best first; the search begins at the best evaluated
     /// order.
     pub(super) fn short_orders(
@@ -135,10 +148,11 @@ impl SearchTree {
         effort: &SearchEffort,
         stop: &StopSignal,
     ) -> Vec<Vec<usize>> {
-        let Some(best) = self.incumbents.orders().first() else {
+        let best = self.incumbents.orders().first().map(|best| &best.order);
+        let Some(order) = best.or(self.first.as_ref()) else {
             return Vec::new();
         };
-        heuristics::shorter_orders(costs, self.table.rules(), &best.order, effort, stop)
+        heuristics::shorter_orders(costs, self.table.rules(), order, effort, stop)
     }
 
     /// Whether an order has not been evaluated.

@@ -140,7 +140,15 @@ fn a_search_stopped_between_rounds_returns_the_best_so_far() {
     let model = RandomModel::new(7, false, 12);
     let recorder = Recorder::new(4);
     let stop = recorder.stop.clone();
-    let result = search(&model, &[], &alternatives(1), &pool(2), &stop, &recorder);
+    let result = search(
+        &model,
+        &[],
+        None,
+        &alternatives(1),
+        &pool(2),
+        &stop,
+        &recorder,
+    );
     assert_eq!(result.end, SearchEnd::Stopped(StopReason::Requested));
     assert!(!result.complete);
     let optimum = optimum(&model);
@@ -158,7 +166,15 @@ fn a_search_stopped_during_an_evaluation_keeps_the_bound_of_that_node() {
             evaluations: AtomicUsize::new(0),
             stop_at,
         };
-        let result = search(&model, &[], &alternatives(0), &pool(2), &stop, &Silent);
+        let result = search(
+            &model,
+            &[],
+            None,
+            &alternatives(0),
+            &pool(2),
+            &stop,
+            &Silent,
+        );
         let optimum = optimum(&model.inner);
         assert_eq!(result.end, SearchEnd::Stopped(StopReason::Cancelled));
         assert!(!result.complete && result.lower_bound_s <= optimum + 1e-9);
@@ -171,7 +187,15 @@ fn a_search_stopped_before_it_begins_has_a_bound_and_no_order() {
     let stop = StopSignal::new();
     stop.cancel();
     let model = RandomModel::new(5, true, 14);
-    let result = search(&model, &[], &alternatives(0), &pool(1), &stop, &Silent);
+    let result = search(
+        &model,
+        &[],
+        None,
+        &alternatives(0),
+        &pool(1),
+        &stop,
+        &Silent,
+    );
     assert_eq!(result.end, SearchEnd::Stopped(StopReason::Cancelled));
     assert_eq!(result.best, None);
     assert!(result.lower_bound_s > 0.0 && result.lower_bound_s <= optimum(&model));
@@ -255,6 +279,7 @@ fn reported_incumbents_never_rise_and_bounds_never_fall() {
         let result = search(
             &model,
             &[],
+            None,
             &alternatives(2),
             &pool(2),
             &StopSignal::new(),
@@ -302,7 +327,15 @@ fn every_better_order_is_announced_once_before_its_progress() {
         let recorder = Recorder::new(usize::MAX);
         let model = RandomModel::new(7, seed % 2 == 0, seed);
         let stop = StopSignal::new();
-        let result = search(&model, &[], &alternatives(1), &pool(2), &stop, &recorder);
+        let result = search(
+            &model,
+            &[],
+            None,
+            &alternatives(1),
+            &pool(2),
+            &stop,
+            &recorder,
+        );
         assert!(result.complete);
         let improved = recorder
             .improved

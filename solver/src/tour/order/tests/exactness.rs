@@ -128,6 +128,7 @@ fn results_and_counts_do_not_depend_on_threads() {
         let reference = search(
             &model,
             &[],
+            None,
             &settings,
             &pool(1),
             &StopSignal::new(),
@@ -137,6 +138,7 @@ fn results_and_counts_do_not_depend_on_threads() {
             let result = search(
                 &model,
                 &[],
+                None,
                 &settings,
                 &pool(threads),
                 &StopSignal::new(),

@@ -276,6 +276,10 @@ fn a_search_over_many_coupled_targets_has_a_valid_bound() {
     let found = run(&opened, &settings);
     let best = found.best.expect("an order");
     assert!(found.lower_bound_s <= best.duration_s);
-    assert!(found.lower_bound_s > 0.93 * best.duration_s, "{}", found.lower_bound_s);
+    assert!(
+        found.lower_bound_s > 0.93 * best.duration_s,
+        "{}",
+        found.lower_bound_s
+    );
     assert!(opened.raised() * 2 < 45 * 46, "{}", opened.raised());
 }

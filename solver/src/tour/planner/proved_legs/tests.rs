@@ -57,5 +57,8 @@ fn without_limits_of_speed_nothing_is_known() {
         wheel.max_speed_rad_s = None;
     }
     let bounds = bounds(&spec);
-    assert!(bounds.iter().all(|bounds| *bounds == [0.0; 2]), "{bounds:?}");
+    assert!(
+        bounds.iter().all(|bounds| *bounds == [0.0; 2]),
+        "{bounds:?}"
+    );
 }

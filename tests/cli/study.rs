@@ -125,6 +125,28 @@ fn a_study_of_shares_tells_how_many_flights_stay_clear_of_cones() {
 }
 
 #[test]
+fn the_summary_of_a_flight_tells_how_close_it_came_to_cones() {
+    let study =
+        json!({"scenario": near_cones(), "simulation": {"errors": {"inertia_3_sigma": 0.1}}});
+    let line = ["study", "flight", "-"];
+    let answer = slewplan_fed(&line, study.to_string().as_bytes());
+    let document = answer.expect_code(0);
+    let cones = document.json()["flight"]["keep_out_clearance_deg"].clone();
+    let line = [&line[..], &["--summary"]].concat();
+    let text = slewplan_fed(&line, study.to_string().as_bytes());
+    let text = text.expect_code(0).stdout;
+    for one in cones.as_array().expect("a list") {
+        let words = format!(
+            "camera ({}) {:.2} at {:.2} s",
+            one["cone"].as_str().expect("a pointer"),
+            number(one, "/clearance_deg"),
+            number(one, "/time_s")
+        );
+        assert!(text.contains(&words), "{words} not in {text}");
+    }
+}
+
+#[test]
 fn problems_are_listed_with_pointers() {
     let study = json!({
         "scenario": fixture_json("two-targets.json"),

@@ -1,6 +1,6 @@
 //! Studies of wheels and of one flight, as text.
 
-use super::blocks::{keep_out_banner, line, reasons, warnings};
+use super::blocks::{clearances, keep_out_banner, line, reasons, warnings};
 use super::numbers::{percent, significant};
 use super::table::aligned;
 use slewplan_solver::model::problem::Problem;
@@ -82,7 +82,7 @@ fn flown(title: &str, plan: &SimulatedPlan) -> String {
     );
     text += &error("largest", found.peak.attitude_rad, found.peak.rate_rad_s);
     text.extend(saturated);
-    text
+    text + &clearances(&found.cones)
 }
 
 /// Envelopes, turns and demands.

@@ -144,6 +144,16 @@ fn the_summary_of_a_flight_tells_how_close_it_came_to_cones() {
         );
         assert!(text.contains(&words), "{words} not in {text}");
     }
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = folder.path().join("scenario.json");
+    std::fs::write(&scenario, near_cones().to_string()).expect("written");
+    let line = ["plot", "-", "--scenario", scenario.to_str().expect("UTF-8")];
+    let drawn = slewplan_fed(&line, document.stdout.as_bytes())
+        .expect_code(0)
+        .stdout;
+    assert!(drawn.contains("Clearance of cones, deg</text>"));
+    let alone = slewplan_fed(&["plot", "-"], document.stdout.as_bytes());
+    assert!(!alone.expect_code(0).stdout.contains("Clearance of cones"));
 }
 
 #[test]

@@ -17,12 +17,14 @@
 
 mod allocation;
 mod closed_loop;
+mod cone_spread;
 mod cones;
 mod controller;
 mod draws;
 mod gains;
 mod monte_carlo;
 mod outcome;
+mod percentiles;
 mod preparation;
 mod sampled_plan;
 mod settings;
@@ -31,9 +33,11 @@ mod stop_poll;
 mod truth;
 mod wheel_loop;
 
+pub use cone_spread::ConeSpread;
 pub use gains::QuaternionGains;
-pub use monte_carlo::{PassageSpread, Percentiles, SaturationSpread, Spread};
+pub use monte_carlo::{PassageSpread, SaturationSpread, Spread};
 pub use outcome::{PassageError, Saturation, SimulatedFlight, SimulatedState, TrackingError};
+pub use percentiles::{LowPercentiles, Percentiles};
 pub use settings::check;
 pub use spec::{
     ControllerSpec, ErrorsSpec, FeedForwardMode, GainsSpec, PidGainsSpec, SimulationSpec,

@@ -11,6 +11,7 @@ const SOON_MS = 20_000;
 export async function answers(given) {
   await quarterTurn(given);
   await tradeCurve(given);
+  await throughACone(given);
   await wrongAndGivenUp(given);
   await study(given);
 }
@@ -148,6 +149,37 @@ async function tradeCurve({ browser, service, must }) {
   await leave();
 }
 
+/** The quarter turn through a cone around the Sun, which is only reported. */
+function past() {
+  const slew = fixture("slews/quarter-turn");
+  slew.spacecraft.boresights = [{ name: "camera", axis: [1, 0, 0] }];
+  slew.epoch = "2026-05-05T00:00:00Z";
+  slew.keep_out = [{ boresight: "camera", direction: { body: "sun" }, half_angle_deg: 30, applies: "report" }];
+  return slew;
+}
+
+async function throughACone({ browser, service, must }) {
+  const { page, complaints, close: leave } = await openPage(browser, service);
+  await must("a slew through a reported cone is amber, with its clearance", async () => {
+    await page.goto(`${service.address}/#/slew`);
+    await page.getByLabel("Slew", { exact: true }).fill(JSON.stringify(past(), null, 2));
+    await page.getByRole("button", { name: "Solve" }).click();
+    await page.locator(".chip.waits", { hasText: "Passed, but keep-out violated" }).waitFor();
+    const { document: { slews: [slew] } } = await downloaded(page);
+    const [{ clearance_deg: least }] = slew.flight.keep_out_clearance_deg;
+    check(least < -5 && slew.flight.keep_out_intrusions.length === 1, String(least));
+    const shown = await page.locator("dl.pairs > div", { hasText: "camera from /keep_out/0" }).locator("dd").textContent();
+    check(shown.startsWith(`−${(-least).toFixed(1)}° at `), shown);
+    // The Sun's place is in the answer only.
+    await page.locator(".timelines h3", { hasText: "Clearance of cones" }).waitFor();
+    const found = await findings(page);
+    check(found.length === 0, found.join("\n"));
+    return shown;
+  });
+  await must("no error of the console with a cone", () => check(complaints.length === 0, complaints.join("\n")));
+  await leave();
+}
+
 async function wrongAndGivenUp({ browser, service, must }) {
   const { page, complaints, close: leave } = await openPage(browser, service, { expected: REFUSED });
   await must("problems of a slew are shown with their places", async () => {
@@ -205,6 +237,10 @@ async function study({ browser, service, must }) {
     check(cells.includes(rows[0].total_time_s.toFixed(2)) && cells.includes(share), cells.join());
     await eventually(async () => check(await page.locator(".curves .uplot").count() === 3, "three plots"));
     await page.locator("summary", { hasText: "Targets and wheels" }).first().click();
+    const cones = page.getByRole("region", { name: /^Clearance of cones that so many flights keep/ }).first();
+    const [cone] = rows[0].flights.keep_out_clearance_deg;
+    const least = await cones.locator("tbody tr").first().locator("th, td").allTextContents();
+    check(least[0] === "camera from /keep_out/0" && least.includes(cone.clearance_deg.min.toFixed(2)), least.join());
     const found = await findings(page);
     check(found.length === 0, found.join("\n"));
     return `${share} within the tolerance at ${cells[0]}`;

@@ -74,6 +74,11 @@ async function violatedKeepOut({ browser, service, must }) {
     await page.locator("summary", { hasText: "Phases as a table" }).click();
     await page.getByRole("region", { name: "Phases of the flight" }).getByText("camera inside /keep_out/0").waitFor();
   });
+  await must("the list marks the plan too", async () => {
+    await page.goto(`${service.address}/#/`);
+    const row = page.getByRole("row").filter({ has: page.locator(`a[href="#/plans/${id}"]`) });
+    await row.locator(".chip.waits", { hasText: "Optimal, but keep-out violated" }).waitFor();
+  });
   await must("a check names the target that is inside", async () => {
     await page.goto(`${service.address}/#/new`);
     await fillScenario(page, JSON.stringify(violating(), null, 2));

@@ -185,23 +185,48 @@ fn a_table_has_the_legs_around_cones() {
     }
 }
 
-#[test]
-fn a_table_says_where_cones_leave_no_way() {
+/// Two targets on both sides of a belt of cones 30 degrees apart.
+fn with_a_belt(half_angle_deg: f64) -> Value {
     let mut scenario = fixture_json("two-targets.json");
     scenario["targets"][1]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
     let belt = (0..12).map(|step| {
         let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": 20})
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
     });
     scenario["keep_out"] = belt.collect();
-    let ended = slewplan_fed(&["legs", "-"], scenario.to_string().as_bytes());
-    let table = ended.expect_code(1).json();
-    for row in table["legs"].as_array().expect("a list") {
-        let parted = row["from"] == "b" || row["to"] == "b";
-        let status = if parted { "infeasible" } else { "converged" };
-        assert_eq!(row["status"], status, "{row}");
-        assert_eq!(row["duration_s"].is_null(), parted, "{row}");
+    scenario
+}
+
+#[test]
+fn a_table_says_where_cones_leave_no_way() {
+    // Closed, and closed by less than the search resolves.
+    for (half_angle_deg, without) in [(20.0, "infeasible"), (15.0005, "no_clear_path")] {
+        let scenario = with_a_belt(half_angle_deg).to_string();
+        let ended = slewplan_fed(&["legs", "-"], scenario.as_bytes());
+        let table = ended.expect_code(1).json();
+        for row in table["legs"].as_array().expect("a list") {
+            let parted = row["from"] == "b" || row["to"] == "b";
+            let status = if parted { without } else { "converged" };
+            assert_eq!(row["status"], status, "{row}");
+            assert_eq!(row["duration_s"].is_null(), parted, "{row}");
+        }
     }
+}
+
+#[test]
+fn a_plan_whose_way_is_not_found_has_failed_and_says_what_was_searched() {
+    let scenario = with_a_belt(15.0005).to_string();
+    let ended = slewplan_fed(&["solve", "-"], scenario.as_bytes());
+    let answer = ended.expect_code(1).json();
+    assert_eq!(answer["status"], "failed");
+    let reasons = answer["reasons"].as_array().expect("a list");
+    let is_told = |reason: &Value| {
+        let message = reason["message"].as_str().unwrap_or_default();
+        reason["code"] == "no_clear_path"
+            && message.contains("a clearance of")
+            && message.contains("nearest point that was reached")
+    };
+    assert!(reasons.iter().any(is_told), "{reasons:?}");
 }
 
 #[test]

@@ -50,6 +50,28 @@ fn a_slew_is_drawn_over_time_with_the_limits_of_its_request() {
 }
 
 #[test]
+fn a_slew_is_drawn_with_the_clearance_of_the_cones_of_its_request() {
+    let mut slew = fixture_json("slews/quarter-turn.json");
+    slew["spacecraft"]["boresights"] = serde_json::json!([{"name": "camera", "axis": [1, 0, 0]}]);
+    slew["keep_out"] = serde_json::json!([{"boresight": "camera", "direction": [1, 1, 0.05],
+        "half_angle_deg": 25, "applies": "report"}]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let request = folder.path().join("slew.json");
+    std::fs::write(&request, slew.to_string()).expect("written");
+    let request = request.to_str().expect("UTF-8");
+    let answer = slewplan(&["slew", request]).expect_code(0).stdout;
+    let line = ["plot", "-", "--scenario", request];
+    let drawn = slewplan_fed(&line, answer.as_bytes()).expect_code(0).stdout;
+    assert!(drawn.contains("Clearance of cones, deg</text>"));
+    assert!(drawn.contains("camera /keep_out/0"));
+    // The stay inside is marked on the timelines of rates, speeds, torques and clearance.
+    assert!(drawn.contains("keep-out violated where marked red"));
+    assert_eq!(drawn.matches("rx=\"0\" fill=\"#C0392B\"").count(), 4);
+    let alone = slewplan_fed(&["plot", "-"], answer.as_bytes());
+    assert!(!alone.expect_code(0).stdout.contains("Clearance of cones"));
+}
+
+#[test]
 fn answers_with_a_sweep_are_drawn_together() {
     let folder = tempfile::tempdir().expect("a folder");
     let answer = |name: &str| {

@@ -181,3 +181,37 @@ fn excesses_over_subnormal_limits_are_finite() {
     assert_eq!(stopped["slews"][0]["solved"], false);
     assert!(number(&stopped["slews"][0], "/flight/wheel_speed_excess") > 1e300);
 }
+
+/// From pole to pole across a belt of cones 30 degrees apart.
+fn across_a_belt(half_angle_deg: f64) -> Value {
+    let mut slew = fixture_json("slews/quarter-turn.json");
+    slew["spacecraft"]["boresights"] = json!([{"name": "camera", "axis": [0, 0, 1]}]);
+    slew["end"]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
+    let belt = (0..12).map(|step| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
+    });
+    slew["keep_out"] = belt.collect();
+    slew
+}
+
+#[test]
+fn a_slew_that_is_proved_infeasible_has_its_exit_code() {
+    // Closed, and closed by less than the search resolves.
+    for (half_angle_deg, code, status) in [(20.0, 3, "infeasible"), (15.0005, 1, "no_clear_path")] {
+        let slew = across_a_belt(half_angle_deg).to_string();
+        let ended = slewplan_fed(&["slew", "-"], slew.as_bytes()).expect_code(code);
+        assert!(
+            ended.stderr.contains("1 of 1 slews could not be solved"),
+            "{ended:?}"
+        );
+        let answer = ended.json();
+        assert_eq!(answer["slews"][0]["status"], status);
+        assert_eq!(answer["slews"][0]["reasons"][0]["code"], "no_clear_path");
+        let text = slewplan_fed(&["slew", "-", "--summary"], slew.as_bytes()).expect_code(code);
+        assert!(
+            text.stdout.contains(&format!("NOT SOLVED: {status}")),
+            "{text:?}"
+        );
+    }
+}

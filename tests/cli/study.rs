@@ -34,6 +34,128 @@ fn a_study_of_shares_answers_for_every_pair() {
     );
 }
 
+/// Two targets with a cone far away, one that the plan enters, and the edge of a third at a target.
+fn near_cones() -> Value {
+    let mut scenario = fixture_json("two-targets.json");
+    let cone = |direction: [f64; 3], half_angle_deg: f64, applies: &str| {
+        json!({"boresight": "camera",
+        "direction": direction, "half_angle_deg": half_angle_deg, "applies": applies})
+    };
+    scenario["keep_out"] = json!([
+        cone([-1.0, 0.0, 0.0], 30.0, "always"),
+        cone([0.0, 0.0, 1.0], 10.0, "report"),
+    ]);
+    // The camera is 25 degrees from z at the target b.
+    scenario["keep_in"] = json!([cone([0.0, 0.0, 1.0], 25.0005, "at_targets")]);
+    scenario
+}
+
+#[test]
+fn a_study_of_shares_tells_how_many_flights_stay_clear_of_cones() {
+    let study = |scenario: &Value| {
+        json!({
+            "scenario": scenario,
+            "simulation": {"errors": {"inertia_3_sigma": 0.1}, "runs": 20},
+            "authorities": [{"torque_authority": 0.9, "momentum_authority": 0.9}],
+        })
+        .to_string()
+    };
+    let line = ["study", "authority", "-"];
+    let near = study(&near_cones());
+    let answer = slewplan_fed(&line, near.as_bytes()).expect_code(0).json();
+    let flights = &answer["rows"][0]["flights"];
+    let cones = flights["keep_out_clearance_deg"].as_array();
+    let cones = cones.expect("a list");
+    let named: Vec<_> = cones
+        .iter()
+        .map(|one| (&one["cone"], &one["applies"]))
+        .collect();
+    assert_eq!(
+        json!(named),
+        json!([
+            ["/keep_out/0", "always"],
+            ["/keep_out/1", "report"],
+            ["/keep_in/0", "at_targets"]
+        ])
+    );
+    let [far, entered, edge] = &cones[..] else {
+        panic!("{cones:?}")
+    };
+    assert_eq!(
+        (&far["share_clear"], &far["boresight"]),
+        (&json!(1.0), &json!("camera"))
+    );
+    assert_eq!(far["direction"], json!([-1.0, 0.0, 0.0]));
+    assert!(number(far, "/clearance_deg/min") > 10.0, "{far}");
+    assert_eq!(entered["share_clear"], 0.0);
+    assert!(number(entered, "/clearance_deg/p50") < -9.0, "{entered}");
+    // Flights are on both sides of the edge. Only this one divides them: the other is not enforced.
+    let share = number(edge, "/share_clear");
+    assert!(share > 0.0 && share < 1.0, "{edge}");
+    assert!((number(flights, "/share_clear") - share).abs() < 1e-12);
+    let quantiles =
+        ["min", "p1", "p10", "p50"].map(|name| number(edge, &format!("/clearance_deg/{name}")));
+    assert!(quantiles.is_sorted() && quantiles[0] < 0.0, "{quantiles:?}");
+
+    let line = ["study", "authority", "-", "--summary"];
+    let text = slewplan_fed(&line, near.as_bytes()).expect_code(0).stdout;
+    let table = "Clearance of cones that so many flights keep [deg]";
+    assert!(
+        text.contains("clear of cones") && text.contains(table),
+        "{text}"
+    );
+    assert!(
+        text.contains("camera (/keep_in/0)") && text.contains("at targets"),
+        "{text}"
+    );
+
+    let mut none = near_cones();
+    (none["keep_out"], none["keep_in"]) = (json!([]), json!([]));
+    let none = study(&none);
+    let answer = slewplan_fed(&line[..3], none.as_bytes())
+        .expect_code(0)
+        .json();
+    let flights = &answer["rows"][0]["flights"];
+    assert_eq!(
+        (&flights["share_clear"], &flights["keep_out_clearance_deg"]),
+        (&Value::Null, &json!([]))
+    );
+    let text = slewplan_fed(&line, none.as_bytes()).expect_code(0).stdout;
+    assert!(!text.contains("cone"), "{text}");
+}
+
+#[test]
+fn the_summary_of_a_flight_tells_how_close_it_came_to_cones() {
+    let study =
+        json!({"scenario": near_cones(), "simulation": {"errors": {"inertia_3_sigma": 0.1}}});
+    let line = ["study", "flight", "-"];
+    let answer = slewplan_fed(&line, study.to_string().as_bytes());
+    let document = answer.expect_code(0);
+    let cones = document.json()["flight"]["keep_out_clearance_deg"].clone();
+    let line = [&line[..], &["--summary"]].concat();
+    let text = slewplan_fed(&line, study.to_string().as_bytes());
+    let text = text.expect_code(0).stdout;
+    for one in cones.as_array().expect("a list") {
+        let words = format!(
+            "camera ({}) {:.2} at {:.2} s",
+            one["cone"].as_str().expect("a pointer"),
+            number(one, "/clearance_deg"),
+            number(one, "/time_s")
+        );
+        assert!(text.contains(&words), "{words} not in {text}");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = folder.path().join("scenario.json");
+    std::fs::write(&scenario, near_cones().to_string()).expect("written");
+    let line = ["plot", "-", "--scenario", scenario.to_str().expect("UTF-8")];
+    let drawn = slewplan_fed(&line, document.stdout.as_bytes())
+        .expect_code(0)
+        .stdout;
+    assert!(drawn.contains("Clearance of cones, deg</text>"));
+    let alone = slewplan_fed(&["plot", "-"], document.stdout.as_bytes());
+    assert!(!alone.expect_code(0).stdout.contains("Clearance of cones"));
+}
+
 #[test]
 fn problems_are_listed_with_pointers() {
     let study = json!({

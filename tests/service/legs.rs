@@ -236,19 +236,22 @@ fn legs_lead_around_cones_and_are_shared_by_equal_situations() {
 #[test]
 fn queries_without_a_way_and_with_wrong_cones_are_told() {
     let service = Service::start();
-    let mut enclosed = past_a_bright_body(0.0);
-    enclosed["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
-    enclosed["pairs"] = json!([{"from": attitude(0.0, 0.0), "to": attitude(180.0, 0.0)}]);
-    let belt = (0..12).map(|step| {
-        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": 20})
-    });
-    enclosed["keep_out"] = belt.collect();
-    let answer = service.post("/v1/legs/query", &enclosed).expect(200).json();
-    let leg = &answer["legs"][0];
-    assert_eq!(leg["status"], "infeasible");
-    assert!(leg["duration_s"].is_null() && leg["key"].is_null(), "{leg}");
-    assert_eq!(leg["source"], "missing");
+    // Closed, and closed by less than the search resolves.
+    for (half_angle_deg, status) in [(20.0, "infeasible"), (15.0005, "no_clear_path")] {
+        let mut enclosed = past_a_bright_body(0.0);
+        enclosed["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
+        enclosed["pairs"] = json!([{"from": attitude(0.0, 0.0), "to": attitude(180.0, 0.0)}]);
+        let belt = (0..12).map(|step| {
+            let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+            json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
+        });
+        enclosed["keep_out"] = belt.collect();
+        let answer = service.post("/v1/legs/query", &enclosed).expect(200).json();
+        let leg = &answer["legs"][0];
+        assert_eq!(leg["status"], status);
+        assert!(leg["duration_s"].is_null() && leg["key"].is_null(), "{leg}");
+        assert_eq!(leg["source"], "missing");
+    }
 
     let refused = |query: &Value| {
         let problem = service.post("/v1/legs/query", query);

@@ -29,6 +29,39 @@ fn a_job_ends_with_a_verified_plan() {
 }
 
 #[test]
+fn the_list_says_which_plans_violate_a_cone() {
+    let service = Service::start();
+    let clear = service.submit(&small());
+    let mut scenario = small();
+    // Around where the camera looks at the begin.
+    scenario["keep_out"] = json!([{"boresight": "camera", "direction": [0, 0, 1],
+        "half_angle_deg": 5, "applies": "report"}]);
+    let violated = service.submit(&scenario);
+    scenario["keep_out"][0]["applies"] = json!("always");
+    let infeasible = service.submit(&scenario);
+    let expected = [
+        (&clear, "succeeded", json!(false)),
+        (&violated, "succeeded", json!(true)),
+        (&infeasible, "infeasible", json!(null)),
+    ];
+    for (id, state, flag) in &expected {
+        let job = service.wait_end(id);
+        assert_eq!(
+            (&job["state"], &job["keep_out_violated"]),
+            (&json!(state), flag)
+        );
+    }
+    let page = service.get("/v1/plans").expect(200).json();
+    for job in page["plans"].as_array().expect("a list") {
+        let (_, _, flag) = expected
+            .iter()
+            .find(|(id, ..)| job["id"] == **id)
+            .expect("one of them");
+        assert_eq!(&job["keep_out_violated"], flag, "{job}");
+    }
+}
+
+#[test]
 fn a_second_run_solves_no_leg_and_gives_the_same_plan() {
     let service = Service::start();
     let plan = || {

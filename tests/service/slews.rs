@@ -121,17 +121,46 @@ fn a_slew_keeps_out_of_a_cone() {
     );
 }
 
+/// From pole to pole across a belt of cones 30 degrees apart.
+fn across_a_belt(half_angle_deg: f64) -> Value {
+    let mut slew = past_a_bright_body();
+    slew["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
+    slew["end"]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
+    let belt = (0..12).map(|step| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
+    });
+    slew["keep_out"] = belt.collect();
+    slew
+}
+
+#[test]
+fn a_slew_whose_way_is_not_found_is_not_called_infeasible() {
+    let service = Service::start();
+    // The cones overlap by less than the search resolves.
+    let slew = across_a_belt(15.0005);
+    let answer = service.post("/v1/slews", &slew).expect(200).json();
+    assert_eq!(answer["complete"], true);
+    let slew = &answer["slews"][0];
+    assert_eq!(
+        (&slew["solved"], &slew["status"]),
+        (&json!(false), &json!("no_clear_path"))
+    );
+    let reason = &slew["reasons"][0];
+    assert_eq!(
+        (&reason["pointer"], &reason["code"]),
+        (&json!("/end"), &json!("no_clear_path"))
+    );
+    let message = reason["message"].as_str().expect("a text");
+    for words in ["a clearance of", "nearest point that was reached", "cells"] {
+        assert!(message.contains(words), "{message}");
+    }
+}
+
 #[test]
 fn a_slew_without_a_way_and_wrong_cones_are_told() {
     let service = Service::start();
-    let mut enclosed = past_a_bright_body();
-    enclosed["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
-    enclosed["end"]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
-    let belt = (0..12).map(|step| {
-        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": 20})
-    });
-    enclosed["keep_out"] = belt.collect();
+    let enclosed = across_a_belt(20.0);
     let answer = service.post("/v1/slews", &enclosed).expect(200).json();
     let slew = &answer["slews"][0];
     assert_eq!(

@@ -45,6 +45,43 @@ fn smaller_shares_take_longer_and_are_simulated_as_often_as_requested() {
 }
 
 #[test]
+fn many_flights_have_a_share_that_stays_clear_of_cones() {
+    let service = Service::start();
+    let ask = |body: &Value| {
+        let answer = service.post("/v1/studies/authority", body);
+        answer.expect(200).json()["rows"][0]["flights"].clone()
+    };
+    let mut body = study(&[(0.9, 0.9)]);
+    body["scenario"]["keep_out"] = json!([]);
+    let bare = ask(&body);
+    assert_eq!(
+        (&bare["share_clear"], &bare["keep_out_clearance_deg"]),
+        (&Value::Null, &json!([]))
+    );
+    // The same direction, once so wide that the flights begin inside, only to be reported.
+    let cone = |half_angle_deg: f64, applies: &str| {
+        json!({"boresight": "camera",
+        "direction": [0, 0, -1], "half_angle_deg": half_angle_deg, "applies": applies})
+    };
+    body["scenario"]["keep_out"] = json!([cone(1.0, "always"), cone(179.5, "report")]);
+    let flights = ask(&body);
+    assert_eq!(flights["share_clear"], 1.0);
+    let shares: Vec<_> = flights["keep_out_clearance_deg"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|one| (&one["cone"], &one["applies"], &one["share_clear"]))
+        .collect();
+    assert_eq!(
+        json!(shares),
+        json!([
+            ["/keep_out/0", "always", 1.0],
+            ["/keep_out/1", "report", 0.0]
+        ])
+    );
+}
+
+#[test]
 fn problems_of_scenario_and_study_have_pointers() {
     let service = Service::start();
     let mut body = study(&[(1.5, 1.0)]);

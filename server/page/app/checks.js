@@ -25,3 +25,9 @@ export function messages(title, list) {
   const text = (entry) => (typeof entry === "string" ? entry : entry.message ?? JSON.stringify(entry));
   return el("div", { class: "messages" }, el("h3", {}, title), el("ul", {}, list.map((entry) => el("li", {}, text(entry)))));
 }
+
+/** Names with their values; nothing without any. */
+export function pairs(items) {
+  if (!items.length) return null;
+  return el("dl", { class: "pairs" }, items.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
+}

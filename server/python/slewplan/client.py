@@ -42,6 +42,7 @@ class Job(TypedDict):
     targets: int
     incumbent_s: NotRequired[float | None]
     lower_bound_s: NotRequired[float | None]
+    keep_out_violated: NotRequired[bool | None]
     detail: NotRequired[str | None]
     code: NotRequired[str | None]
     submitted_at: str

@@ -113,8 +113,8 @@ fn draw_slew(answer: &WrittenSlews, arguments: &PlotArguments) -> Result<String,
         })
     });
     let request = request.transpose()?;
-    let craft = request.as_ref().map(|it| it.slew.scenario().spacecraft());
-    plot::slew(answer, craft).map_err(wrong("DOCUMENT"))
+    let scenario = request.as_ref().map(|it| it.slew.scenario());
+    plot::slew(answer, scenario).map_err(wrong("DOCUMENT"))
 }
 
 fn draw_flight(flight: &WrittenFlight, arguments: &PlotArguments) -> Result<String, Failure> {
@@ -122,8 +122,7 @@ fn draw_flight(flight: &WrittenFlight, arguments: &PlotArguments) -> Result<Stri
     arguments.refuse_turn()?;
     arguments.refuse_boresight()?;
     let scenario = arguments.scenario()?;
-    let craft = scenario.as_ref().map(Scenario::spacecraft);
-    plot::flight(flight, craft).map_err(wrong("DOCUMENT"))
+    plot::flight(flight, scenario.as_ref()).map_err(wrong("DOCUMENT"))
 }
 
 fn draw_comparison(

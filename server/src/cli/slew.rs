@@ -8,6 +8,7 @@ use crate::documents::slew::{self, SlewAnswerDocument};
 use crate::jobs::slews::{self, SlewSolutions};
 use crate::render::report;
 use slewplan_solver::run::stop::StopSignal;
+use slewplan_solver::slew::SlewOutcome;
 use std::path::PathBuf;
 
 /// Arguments of `slew`.
@@ -45,17 +46,20 @@ fn exit(solved: &SlewSolutions) -> Exit {
     if !solved.complete {
         return Exit::Stopped;
     }
-    let unsolved = solved
-        .outcomes
-        .iter()
-        .filter(|(outcome, _)| !outcome.solved);
-    let unsolved = unsolved.count();
-    if unsolved == 0 {
+    let outcomes = solved.outcomes.iter().map(|(outcome, _)| outcome);
+    let unsolved: Vec<&SlewOutcome> = outcomes.filter(|outcome| !outcome.solved).collect();
+    if unsolved.is_empty() {
         return Exit::Complete;
     }
     output::complain(&format!(
-        "{unsolved} of {} slews could not be solved",
+        "{} of {} slews could not be solved",
+        unsolved.len(),
         solved.outcomes.len()
     ));
-    Exit::Failed
+    // One that failed might exist.
+    if unsolved.iter().all(|outcome| outcome.proved_infeasible) {
+        Exit::Negative
+    } else {
+        Exit::Failed
+    }
 }

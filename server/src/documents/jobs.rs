@@ -20,6 +20,9 @@ pub(crate) struct JobDocument {
     targets: i64,
     #[serde(flatten)]
     standing: Standing,
+    /// Whether the plan that the job ended with violates a cone that is only reported; `null` before it
+    /// has ended, without a plan, and for jobs of former versions.
+    keep_out_violated: Option<bool>,
     /// How often the solve has been begun; more than once only after the service was killed.
     attempt: i64,
     /// Whether the job was asked to finish with the best plan so far.
@@ -93,6 +96,7 @@ impl JobDocument {
             name: job.name.clone(),
             targets: job.targets,
             standing: Standing::of(job),
+            keep_out_violated: job.keep_out_violated,
             attempt: job.attempt,
             stop_requested: job.stop_requested_us.is_some(),
             cancel_requested: job.cancel_requested_us.is_some(),

@@ -64,6 +64,7 @@ impl Observer for ReportingObserver<'_> {
             document,
             total_time_s: plan.total_time_s,
             lower_bound_s: plan.lower_bound_s,
+            keep_out_violated: plan.margins.violates_cones(),
         });
         // The next progress wakes the recorder, which records both together.
         self.reports.send_if_modified(|report| {

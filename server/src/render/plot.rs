@@ -43,6 +43,8 @@ const MARGIN: f64 = 36.0;
 const HEAD: f64 = 84.0;
 const UPPER: f64 = 400.0;
 const STRIP: f64 = 34.0;
+/// What the title says of a motion with a boresight on the wrong side of a cone.
+const VIOLATED: &str = "keep-out violated where marked red";
 const BELOW_STRIP: f64 = 33.0;
 
 /// The picture of a plan. The scenario adds limits and cones, which a plan does not have.
@@ -62,8 +64,7 @@ pub(crate) fn plan(
     }
     let lower = HEAD + UPPER + 46.0;
     let record = plan.record();
-    let mut panels = timeline::panels(&record, scenario.map(Scenario::spacecraft));
-    panels.extend(scenario.and_then(|it| timeline::clearances(&record, it.cones())));
+    let mut panels = timeline::panels(&record, scenario);
     for panel in &mut panels {
         panel.alarms = plan.intrusions();
     }
@@ -119,7 +120,7 @@ fn summary(plan: &WrittenPlan) -> String {
         parts.push(format!("{passed}verified"));
     }
     if !plan.intrusions().is_empty() {
-        parts.push("keep-out violated where marked red".to_owned());
+        parts.push(VIOLATED.to_owned());
     }
     parts.join("  \u{b7}  ")
 }

@@ -5,6 +5,7 @@ use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::tour::planner::{CheckedCertificate, PlanCertificate};
 
+mod authority;
 mod blocks;
 mod certification;
 mod legs;
@@ -17,9 +18,10 @@ mod studies;
 mod summary;
 mod table;
 
+pub(crate) use authority::rows as authority;
 pub(crate) use legs::table as legs;
 pub(crate) use slews::answer as slews;
-pub(crate) use studies::{authority, comparison, envelopes, flight};
+pub(crate) use studies::{comparison, envelopes, flight};
 
 /// The summary of an outcome.
 pub(crate) fn outcome(outcome: &Outcome, doubts: &[Problem], scenario: &Scenario) -> String {

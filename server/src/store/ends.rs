@@ -14,6 +14,9 @@ pub(crate) struct Ended {
     pub(crate) incumbent_s: Option<f64>,
     /// Lower bound on the duration, s.
     pub(crate) lower_bound_s: Option<f64>,
+    /// Whether the plan violates a cone; `None` without a plan, or where it was stored before this
+    /// was noted.
+    pub(crate) keep_out_violated: Option<bool>,
     /// Why the job ended without a plan.
     pub(crate) detail: Option<String>,
     /// The same reason as a stable code.

@@ -168,8 +168,8 @@ impl Store {
              code = CASE WHEN cancel_requested_us IS NULL THEN ?2 END, detail = ?3, \
              incumbent_s = coalesce(?4, incumbent_s), lower_bound_s = ",
             bound_beside!("?4, incumbent_s"),
-            ", finished_us = ?6, boot_id = NULL, lease_until_us = NULL \
-             WHERE sequence = ?7 AND fence = ?8 AND state = 'running' RETURNING ",
+            ", finished_us = ?6, keep_out_violated = ?7, boot_id = NULL, lease_until_us = NULL \
+             WHERE sequence = ?8 AND fence = ?9 AND state = 'running' RETURNING ",
             job_columns!()
         ))
         .bind(ended.state.into_str())
@@ -178,6 +178,7 @@ impl Store {
         .bind(ended.incumbent_s)
         .bind(ended.lower_bound_s)
         .bind(now_us)
+        .bind(ended.keep_out_violated)
         .bind(lease.sequence)
         .bind(lease.fence);
         let Some(job) = update_leased(&mut transaction, update, "state", now_us).await? else {

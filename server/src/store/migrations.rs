@@ -18,7 +18,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 11] = [
+const HISTORY: [(&str, &str, &str); 12] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -30,6 +30,7 @@ const HISTORY: [(&str, &str, &str); 11] = [
     migration!("0021", "legs_by_version"),
     migration!("0030", "packed_plans"),
     migration!("0031", "bound_versions"),
+    migration!("0040", "keep_out_violated"),
 ];
 
 /// What brings a database to the schema of this version.

@@ -29,6 +29,8 @@ pub(crate) struct NewIncumbent {
     pub(crate) total_time_s: f64,
     /// Lower bound on the duration when it was found, s.
     pub(crate) lower_bound_s: f64,
+    /// Whether it violates a cone.
+    pub(crate) keep_out_violated: bool,
 }
 
 macro_rules! results_of_job {
@@ -45,15 +47,16 @@ pub(super) async fn store_incumbent(
     incumbent: &NewIncumbent,
 ) -> Result<(), StoreError> {
     sqlx::query(
-        "INSERT INTO incumbents (job, total_time_s, lower_bound_s, document, packed, digest) \
-         VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
+        "INSERT INTO incumbents (job, total_time_s, lower_bound_s, keep_out_violated, document, \
+         packed, digest) VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
          total_time_s = excluded.total_time_s, lower_bound_s = excluded.lower_bound_s, \
-         document = excluded.document, packed = excluded.packed, digest = excluded.digest \
+         keep_out_violated = excluded.keep_out_violated, document = excluded.document, packed = excluded.packed, digest = excluded.digest \
          WHERE excluded.total_time_s < total_time_s",
     )
     .bind(job)
     .bind(incumbent.total_time_s)
     .bind(incumbent.lower_bound_s)
+    .bind(incumbent.keep_out_violated)
     .bind(&incumbent.document.document)
     .bind(incumbent.document.packed)
     .bind(&incumbent.document.digest)
@@ -70,7 +73,8 @@ pub(super) async fn better_incumbent(
     ended: &Ended,
 ) -> Result<Option<Ended>, StoreError> {
     let kept = sqlx::query(
-        "SELECT document, packed, digest, total_time_s, lower_bound_s FROM incumbents \
+        "SELECT document, packed, digest, total_time_s, lower_bound_s, keep_out_violated \
+         FROM incumbents \
          WHERE job = ?1 AND (?2 IS NULL OR total_time_s < ?2)",
     )
     .bind(job)
@@ -85,6 +89,7 @@ pub(super) async fn better_incumbent(
         document: Some(PackedPlan::from_row(&row)?),
         incumbent_s: row.try_get("total_time_s")?,
         lower_bound_s: row.try_get("lower_bound_s")?,
+        keep_out_violated: row.try_get("keep_out_violated")?,
         detail: None,
         code: None,
         early: true,

@@ -84,6 +84,8 @@ row! {
         pub(crate) incumbent_s: Option<f64>,
         /// Lower bound on the duration, s.
         pub(crate) lower_bound_s: Option<f64>,
+        /// Whether the plan that the job ended with violates a cone.
+        pub(crate) keep_out_violated: Option<bool>,
         /// Why the job ended without a plan.
         pub(crate) detail: Option<String>,
         /// The same reason as a stable code.

@@ -23,6 +23,8 @@ fn plan(total_time_s: f64) -> NewIncumbent {
         document: PackedPlan::of(json(total_time_s).as_bytes()),
         total_time_s,
         lower_bound_s: 10.0,
+        // Some are, some are not.
+        keep_out_violated: total_time_s > 50.0,
     }
 }
 
@@ -45,6 +47,7 @@ fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
         state,
         incumbent_s: plan.as_ref().map(|plan| plan.total_time_s),
         lower_bound_s: plan.as_ref().map(|plan| plan.lower_bound_s),
+        keep_out_violated: plan.as_ref().map(|plan| plan.keep_out_violated),
         document: plan.map(|plan| plan.document),
         detail: None,
         code: None,

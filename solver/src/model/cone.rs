@@ -50,6 +50,12 @@ impl Cone {
         format!("/{}/{}", self.side.list(), self.index)
     }
 
+    /// Whether a plan has to keep it, always or at targets.
+    #[must_use]
+    pub fn is_enforced(&self) -> bool {
+        self.applies != Applies::Report
+    }
+
     /// Angle between the boresight and the cone's surface at an attitude, rad; negative on the wrong
     /// side.
     #[must_use]

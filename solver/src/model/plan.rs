@@ -185,6 +185,14 @@ pub struct Margins {
     pub keep_out_intrusions: Vec<Intrusion>,
 }
 
+impl Margins {
+    /// Whether a boresight is on the wrong side of a cone at some time.
+    #[must_use]
+    pub fn violates_cones(&self) -> bool {
+        !self.keep_out_intrusions.is_empty()
+    }
+}
+
 /// The closest approach of a boresight to the surface of a cone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConeClearance {

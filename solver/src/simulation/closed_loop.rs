@@ -1,6 +1,5 @@
 //! One simulated flight: on-board computer, wheel loops and integration in turn.
 
-use super::cones::ConeApproaches;
 use super::controller::{FeedbackController, Measured};
 use super::draws::{DrawnFlight, draw, normals};
 use super::outcome::{FlightLog, SimulatedFlight, SimulatedState, TrackingError};
@@ -36,8 +35,7 @@ impl Simulation<'_> {
         } = draw(self.scenario, &self.settings, &self.nominal, number);
         let mut craft = SimulatedSpacecraft::new(&truth, start, wheels);
         let mut computer = self.on_board_computer(noise);
-        let mut log = FlightLog::open(self.flight, wheels);
-        let mut cones = ConeApproaches::new(self.scenario, self.flight);
+        let mut log = FlightLog::open(self.scenario, self.flight);
         log.reach(
             &self.sampled_plan,
             0.0,
@@ -45,19 +43,18 @@ impl Simulation<'_> {
         );
         for (index, sample) in self.sampled_plan.samples.iter().enumerate() {
             let Some((attitude, rate)) = craft.pose() else {
-                log.break_off();
+                log.break_off(sample.time_s);
                 break;
             };
             craft.read_speeds();
             self.compute(&mut computer, attitude, rate, sample, &craft);
             // Very large gains overflow.
             if !computer.feedback.iter().all(|torque| torque.is_finite()) {
-                log.break_off();
+                log.break_off(sample.time_s);
                 break;
             }
             let error = TrackingError::of(&attitude, &rate, &sample.desired);
-            log.sample(error);
-            cones.sample(sample.time_s, &attitude);
+            log.sample(sample.time_s, &attitude, error);
             if keep_every.is_some_and(|every| index % every.max(1) == 0) {
                 log.keep(SimulatedState {
                     time_s: sample.time_s,
@@ -78,10 +75,7 @@ impl Simulation<'_> {
                 &mut log,
             )?;
         }
-        if let Some((attitude, _)) = craft.pose() {
-            cones.sample(self.flight_time_s(), &attitude);
-        }
-        Some(log.close(cones.clearances()))
+        Some(log.close())
     }
 
     fn on_board_computer(&self, noise: SplitMix) -> OnBoardComputer<'_> {
@@ -123,7 +117,7 @@ impl Simulation<'_> {
         sample: &ControlSample,
         feedback: &[f64],
         stop_poll: &mut StopPoll<'_>,
-        log: &mut FlightLog,
+        log: &mut FlightLog<'_>,
     ) -> Option<()> {
         let wheels = self.scenario.spacecraft().wheels();
         craft.missing.fill(0.0);

@@ -1,22 +1,13 @@
 //! Many simulated flights of one plan, and statistics over them.
 
 use super::Simulation;
+use super::cone_spread::{self, ConeSpread};
+use super::cones::applicable;
 use super::outcome::{SimulatedFlight, TrackingError};
+use super::percentiles::Percentiles;
+use crate::model::cone::Cone;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-
-/// Percentiles over the flights, by nearest rank.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Percentiles {
-    /// 50th percentile.
-    pub p50: f64,
-    /// 90th percentile.
-    pub p90: f64,
-    /// 99th percentile.
-    pub p99: f64,
-    /// Greatest value.
-    pub max: f64,
-}
 
 /// Errors at an arrival over all flights.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +48,9 @@ pub struct Spread {
     pub share_within: f64,
     /// Share of the flights that are within the tolerance at every arrival.
     pub share_within_at_passages: f64,
+    /// Share of the flights that stay clear of all enforced cones, at targets only or always as each
+    /// applies; `None` where the scenario enforces none.
+    pub share_clear: Option<f64>,
     /// Attitude errors at the end of the flight, rad.
     pub end_attitude_rad: Percentiles,
     /// Rate errors at the end of the flight, rad/s.
@@ -69,6 +63,8 @@ pub struct Spread {
     pub passages: Vec<PassageSpread>,
     /// One entry per wheel.
     pub saturation: Vec<SaturationSpread>,
+    /// One entry per cone that applies at some time of the plan, in order of the scenario.
+    pub cones: Vec<ConeSpread>,
 }
 
 impl Simulation<'_> {
@@ -92,12 +88,16 @@ impl Simulation<'_> {
             let mut passages = flight.passages.iter();
             passages.all(|passage| within(&passage.error))
         };
+        let cones: Vec<&Cone> = applicable(self.scenario, self.flight).collect();
+        let enforces = self.scenario.cones().iter().any(Cone::is_enforced);
         Spread {
             runs: simulated.len(),
             runs_asked: self.settings.runs,
             tolerance_rad: tolerance,
             share_within: share(simulated, |flight| within(&flight.end)),
             share_within_at_passages: share(simulated, |flight| arrivals(&flight)),
+            share_clear: enforces
+                .then(|| share(simulated, |flight| cone_spread::is_clear(&cones, flight))),
             end_attitude_rad: percentiles(simulated, |flight| flight.end.attitude_rad),
             end_rate_rad_s: percentiles(simulated, |flight| flight.end.rate_rad_s),
             plan_end_attitude_rad: percentiles(simulated, |flight| flight.plan_end.attitude_rad),
@@ -106,6 +106,7 @@ impl Simulation<'_> {
             saturation: (0..self.scenario.spacecraft().wheels().len())
                 .map(|wheel| saturation(simulated, wheel))
                 .collect(),
+            cones: cone_spread::of(&cones, simulated),
         }
     }
 
@@ -134,23 +135,6 @@ fn percentiles(
     Percentiles::of(simulated.iter().map(value).collect())
 }
 
-impl Percentiles {
-    /// Of values in any order; all zero of none.
-    fn of(mut values: Vec<f64>) -> Self {
-        values.sort_by(f64::total_cmp);
-        let rank = |percent: usize| {
-            let rank = (values.len() * percent).div_ceil(100).max(1);
-            values.get(rank - 1).copied().unwrap_or(0.0)
-        };
-        Self {
-            p50: rank(50),
-            p90: rank(90),
-            p99: rank(99),
-            max: rank(100),
-        }
-    }
-}
-
 fn saturation(simulated: &[SimulatedFlight], wheel: usize) -> SaturationSpread {
     let count = simulated.len().max(1) as f64;
     let mut spread = SaturationSpread::default();
@@ -161,24 +145,4 @@ fn saturation(simulated: &[SimulatedFlight], wheel: usize) -> SaturationSpread {
         spread.speed_max = spread.speed_max.max(saturation.speed);
     }
     spread
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn percentiles_are_the_values_of_nearest_rank() {
-        let values: Vec<f64> = (1..=200).rev().map(f64::from).collect();
-        let found = Percentiles::of(values);
-        let expected = Percentiles {
-            p50: 100.0,
-            p90: 180.0,
-            p99: 198.0,
-            max: 200.0,
-        };
-        assert_eq!(found, expected);
-        assert_eq!(Percentiles::of(Vec::new()), Percentiles::default());
-        assert!((Percentiles::of(vec![3.0]).p50 - 3.0).abs() <= 0.0);
-    }
 }

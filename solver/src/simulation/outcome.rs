@@ -1,11 +1,13 @@
 //! The result of a simulated flight, and its recording.
 
+use super::cones::ConeApproaches;
 use super::controller::Desired;
 use super::sampled_plan::{MarkEvent, SampledPlan};
 use super::wheel_loop::MotorCycle;
 use crate::checker::NOT_COMPUTED;
 use crate::model::attitude::Attitude;
 use crate::model::plan::{ConeClearance, Flight};
+use crate::model::scenario::Scenario;
 use nalgebra::Vector3;
 
 /// Difference of the true state from a desired one.
@@ -74,8 +76,9 @@ pub struct SimulatedFlight {
     pub peak: TrackingError,
     /// One entry per wheel.
     pub saturation: Vec<Saturation>,
-    /// The closest approach to each cone of the scenario at the samples of the on-board computer, and
-    /// at the end.
+    /// The closest approach to each cone that applies at some time, in order of the scenario: at the
+    /// samples of the on-board computer, at arrivals and at the end. Of a flight that broke off it is
+    /// minus [`NOT_COMPUTED`] or less, at the time at which the motion ceased to be finite.
     pub cones: Vec<ConeClearance>,
     /// States at every so many samples of the on-board computer, when asked for.
     pub states: Vec<SimulatedState>,
@@ -105,14 +108,16 @@ impl TrackingError {
 
 /// Recorder of a simulated flight.
 #[derive(Debug)]
-pub(super) struct FlightLog {
+pub(super) struct FlightLog<'a> {
     flight: SimulatedFlight,
+    cones: ConeApproaches<'a>,
     seconds: f64,
     next_mark: usize,
 }
 
-impl FlightLog {
-    pub(super) fn open(flight: &Flight, wheels: usize) -> Self {
+impl<'a> FlightLog<'a> {
+    pub(super) fn open(scenario: &'a Scenario, flight: &'a Flight) -> Self {
+        let wheels = scenario.spacecraft().wheels().len();
         let passages = flight.passages.iter().map(|passage| PassageError {
             target: passage.target.clone(),
             time_s: passage.time_s,
@@ -132,13 +137,19 @@ impl FlightLog {
                 cones: Vec::new(),
                 states: Vec::new(),
             },
+            cones: ConeApproaches::new(scenario, flight),
             seconds: 0.0,
             next_mark: 0,
         }
     }
 
-    /// Records the error at a sample.
-    pub(super) fn sample(&mut self, error: TrackingError) {
+    /// Records the true attitude and its error at a sample, s.
+    pub(super) fn sample(&mut self, time_s: f64, attitude: &Attitude, error: TrackingError) {
+        self.cones.sample(time_s, attitude);
+        self.note_peak(error);
+    }
+
+    fn note_peak(&mut self, error: TrackingError) {
         let peak = &mut self.flight.peak;
         peak.attitude_rad = peak.attitude_rad.max(error.attitude_rad);
         peak.rate_rad_s = peak.rate_rad_s.max(error.rate_rad_s);
@@ -173,25 +184,34 @@ impl FlightLog {
             let error = state.map_or(TrackingError::UNKNOWN, |(attitude, rate)| {
                 TrackingError::of(attitude, rate, &mark.planned)
             });
+            match (mark.event, state) {
+                (MarkEvent::Arrival(_), Some((attitude, _))) => {
+                    self.cones.arrive(mark.time_s, attitude);
+                }
+                (MarkEvent::End, Some((attitude, _))) => self.cones.sample(mark.time_s, attitude),
+                (_, None) => self.cones.break_off(mark.time_s),
+                (MarkEvent::PlanEnd, Some(_)) => {}
+            }
             match mark.event {
                 MarkEvent::Arrival(index) => self.flight.passages[index].error = error,
                 MarkEvent::PlanEnd => self.flight.plan_end = error,
                 MarkEvent::End => {
                     self.flight.end = error;
-                    self.sample(error);
+                    self.note_peak(error);
                 }
             }
             self.next_mark += 1;
         }
     }
 
-    /// Records that the motion is not finite any more.
-    pub(super) fn break_off(&mut self) {
+    /// Records that the motion is not finite any more from a time, s, on.
+    pub(super) fn break_off(&mut self, time_s: f64) {
+        self.cones.break_off(time_s);
         self.flight.peak = TrackingError::UNKNOWN;
     }
 
-    pub(super) fn close(mut self, cones: Vec<ConeClearance>) -> SimulatedFlight {
-        self.flight.cones = cones;
+    pub(super) fn close(mut self) -> SimulatedFlight {
+        self.flight.cones = self.cones.clearances();
         for saturation in &mut self.flight.saturation {
             let seconds = self.seconds.max(f64::MIN_POSITIVE);
             saturation.torque = (saturation.torque / seconds).min(1.0);

@@ -20,6 +20,8 @@ pub struct SlewOutcome {
     pub status: String,
     /// What was searched for a way around the cones, where none was found.
     pub reasons: Vec<Problem>,
+    /// Whether it is proved that no way leads around the cones, so that there is no such slew.
+    pub proved_infeasible: bool,
     /// Whether a local minimum was found, and its propagation keeps all limits and reaches the end.
     pub solved: bool,
     /// The value of the objective, in its own unit: s, or J.
@@ -65,6 +67,7 @@ impl SlewOutcome {
         Self {
             status: found.solved.status.to_string(),
             reasons: Vec::new(),
+            proved_infeasible: false,
             solved: converged && propagated.failures.is_empty(),
             objective,
             time_s,
@@ -82,6 +85,7 @@ impl SlewOutcome {
         Self {
             status: parted.status().to_owned(),
             reasons: vec![parted.problem.clone()],
+            proved_infeasible: parted.is_proved,
             ..self
         }
     }

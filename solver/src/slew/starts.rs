@@ -34,8 +34,13 @@ pub(super) fn of(
         extremals: &KinematicExtremals::of(dynamics),
         resolution: Resolution::of(Accuracy::Standard, dynamics),
     };
-    let fastest = solve::solve(&problem, None, stop).solution;
+    let mut fastest = solve::solve(&problem, None, stop).solution;
     let converged = fastest.duration().is_some();
+    if fastest.profile.intervals() == 0 {
+        // No way around the cones is known. What the program makes of the way through them tells by
+        // how much they are violated.
+        fastest.profile = problem.perturbed_eigenaxis(Perturbation::Far);
+    }
     let fastest = SlewMotion::of_profile(&fastest.profile);
     let mut guesses = vec![match &vehicle.pinned_null {
         Some(null) => fastest.with_null_space(null, dynamics),

@@ -2,6 +2,7 @@
 
 import { el, section } from "../dom.js";
 import { item } from "../failure.js";
+import { fixed } from "../format.js";
 import { dot, rotate, unit } from "../rotation.js";
 
 /** What is said beside a plan that is good otherwise. */
@@ -23,6 +24,12 @@ export function intrusionsOf(plan) {
 /** The closest approach to every cone; plans of former versions have only the angles. */
 export function clearancesOf(plan) {
   return (plan.margins?.keep_out_clearance_deg ?? []).filter((one) => one?.cone);
+}
+
+/** The closest approach to every cone, as names and values. */
+export function clearanceItems(plan) {
+  return clearancesOf(plan).map((one) =>
+    [`${one.boresight} from ${one.cone}`, `${fixed(one.clearance_deg, 1)}° at ${fixed(one.time_s, 1)} s`]);
 }
 
 /** The warnings about cones with what to do about them, before anything else; null without any. */

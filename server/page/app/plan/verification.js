@@ -1,9 +1,9 @@
 // What the independent flight of a plan showed.
 
-import { ALLOWED, checks, messages, verdict } from "../checks.js";
+import { ALLOWED, checks, messages, pairs, verdict } from "../checks.js";
 import { el, section } from "../dom.js";
-import { fixed, percent } from "../format.js";
-import { VIOLATED, clearancesOf, intrusionsOf, isKeepOut } from "./keep-out.js";
+import { percent } from "../format.js";
+import { VIOLATED, clearanceItems, intrusionsOf, isKeepOut } from "./keep-out.js";
 
 /** The section with the verification, the margins and the warnings of a plan. */
 export function verification(plan) {
@@ -27,14 +27,12 @@ export function verification(plan) {
 function margins(plan) {
   const { margins } = plan;
   if (!margins) return null;
-  const cones = clearancesOf(plan).map((one) =>
-    [`${one.boresight} from ${one.cone}`, `${fixed(one.clearance_deg, 1)}° at ${fixed(one.time_s, 1)} s`]);
   const items = [
     ["Torque left", percent(margins.torque, 1)],
     ["Wheel speed left", percent(margins.wheel_speed, 1)],
     ["Body rate left", percent(margins.body_rate, 1)],
     ["Zero crossings", (margins.wheel_zero_crossings ?? []).join(", ")],
-    ...cones,
+    ...clearanceItems(plan),
   ];
-  return el("dl", { class: "pairs" }, items.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
+  return pairs(items);
 }

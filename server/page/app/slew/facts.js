@@ -1,9 +1,11 @@
 // The figures of a slew that are read first, and what its independent flight found.
 
-import { ALLOWED, checks, messages, verdict } from "../checks.js";
+import { ALLOWED, checks, messages, pairs, verdict } from "../checks.js";
 import { el, section } from "../dom.js";
 import { count, fixed, seconds, significant } from "../format.js";
+import { VIOLATED, clearanceItems, intrusionsOf } from "../plan/keep-out.js";
 import { strip } from "../strip.js";
+import { conesOf } from "./cones.js";
 
 /** What is minimised where it is not the duration. */
 const OBJECTIVES = {
@@ -28,8 +30,11 @@ export function slewFacts(slew, request) {
 }
 
 /** The section with the errors of the flight. */
-export function slewVerification({ flight }) {
-  return section("Verification", { head: verdict(flight.failures.length === 0), class: "card" },
+export function slewVerification(slew) {
+  const { flight } = slew;
+  const cones = conesOf(slew);
+  const doubt = intrusionsOf(cones).length ? VIOLATED : null;
+  return section("Verification", { head: verdict(flight.failures.length === 0, doubt), class: "card" },
     checks([
       ["attitude error, rad", flight.attitude_error_rad, ALLOWED.attitude],
       ["rate error, rad/s", flight.rate_error_rad_s, ALLOWED.rate],
@@ -38,6 +43,8 @@ export function slewVerification({ flight }) {
       ["body rate excess", flight.rate_excess, ALLOWED.excess],
       ["final wheel speed error, rad/s", flight.wheel_speed_error_rad_s, "10⁻⁶ of limit"],
     ]),
+    pairs(clearanceItems(cones)),
     messages("Failures", flight.failures),
+    messages("Warnings", flight.warnings),
     el("p", { class: "quiet" }, "Flown from the start by code that shares nothing with the optimiser."));
 }

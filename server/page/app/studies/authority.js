@@ -8,6 +8,10 @@ import { curveChart } from "../plots/curves.js";
 const DEGREES = 180 / Math.PI;
 const ERRORS = [["p50", "half of the flights"], ["p90", "90 %"], ["p99", "99 %"], ["max", "all"]];
 
+/** The same shares of the flights for what should be large. */
+const LEAST = [["p50", "half of the flights"], ["p10", "90 %"], ["p1", "99 %"], ["min", "all"]];
+const APPLIES = { always: "always", at_targets: "at targets", report: "reported only" };
+
 /** The nodes of an answer. */
 export function authority({ document }, signal) {
   const { rows, complete } = document;
@@ -42,6 +46,12 @@ function axis(rows) {
   return { title: "Row", unit: "", values: rows.map((_, index) => index + 1) };
 }
 
+/** The share of flights that stay clear of all enforced cones, where there are any. */
+function clearCurve(rows) {
+  if (!rows.every((row) => row.flights.share_clear !== null)) return [];
+  return [{ name: "clear of all cones", values: rows.map((row) => 100 * row.flights.share_clear), colour: 3 }];
+}
+
 function charts(rows, signal) {
   const against = axis(rows);
   const tolerance = DEGREES * rows[0].flights.tolerance_rad;
@@ -52,6 +62,7 @@ function charts(rows, signal) {
       curves: [
         { name: "at the end", values: within("share_within"), colour: 1 },
         { name: "at every arrival", values: within("share_within_at_passages"), colour: 2 },
+        ...clearCurve(rows),
       ],
     }, signal),
     curveChart({
@@ -74,11 +85,12 @@ function summary(rows) {
   const columns = [
     { title: "Torque", number: true }, { title: "Wheel speed", number: true }, { title: "Duration, s", number: true },
     { title: "Within at the end", number: true }, { title: "Within at every arrival", number: true },
-    { title: "Flights", number: true }, { title: "Plan" }, { title: "Order" },
+    { title: "Clear of all cones", number: true }, { title: "Flights", number: true }, { title: "Plan" }, { title: "Order" },
   ];
   return table("Plans and flights for every pair of shares", columns, rows.map((row) => [
     share(row.torque_authority), share(row.momentum_authority), fixed(row.total_time_s),
     percent(row.flights?.share_within, 1), percent(row.flights?.share_within_at_passages, 1),
+    percent(row.flights?.share_clear, 1),
     row.flights ? flights(row.flights) : "–",
     { flown: row.plan_status, no_plan: "no plan", stopped: "not reached" }[row.status], row.sequence.join(" "),
   ]));
@@ -115,12 +127,25 @@ function details(row) {
     { title: "Wheel", head: true }, { title: "At the torque limit, mean", number: true }, { title: "largest", number: true },
     { title: "At the speed limit, mean", number: true }, { title: "largest", number: true },
   ];
-  const { passages, saturation } = row.flights;
+  const { passages, saturation, keep_out_clearance_deg: cones } = row.flights;
   return el("div", {},
     table(`Attitude errors at the arrivals, ${shares(row)}`, arrivals, passages.map((one) => [
       one.target, fixed(one.time_s), ...ERRORS.map(([which]) => degrees(one.attitude_rad[which])),
     ])),
     table(`Share of the time at limits, ${shares(row)}`, wheels, saturation.map((one, index) => [
       String(index), ...[one.torque_mean, one.torque_max, one.speed_mean, one.speed_max].map((value) => percent(value, 1)),
-    ])));
+    ])),
+    cones.length ? clearances(cones, row) : null);
+}
+
+/** How close the flights of one row come to cones. */
+function clearances(cones, row) {
+  const columns = [
+    { title: "Cone", head: true }, { title: "Applies" }, { title: "Clear", number: true },
+    ...LEAST.map(([, name]) => ({ title: `${name}, °`, number: true })),
+  ];
+  return table(`Clearance of cones that so many flights keep, ${shares(row)}`, columns, cones.map((one) => [
+    `${one.boresight} from ${one.cone}`, APPLIES[one.applies], percent(one.share_clear, 1),
+    ...LEAST.map(([which]) => fixed(one.clearance_deg[which], 2)),
+  ]));
 }

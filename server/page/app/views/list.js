@@ -4,6 +4,7 @@ import { read } from "../api.js";
 import { el, table } from "../dom.js";
 import { failure } from "../failure.js";
 import { moment, percent, seconds } from "../format.js";
+import { VIOLATED } from "../plan/keep-out.js";
 import { chip, isFinal, states } from "../state.js";
 
 const PAGE = 25;
@@ -95,7 +96,7 @@ function rows(plans) {
     // Where there is no room for its column the moment stands below the name.
     [el("a", { href: `#/plans/${job.id}` }, job.name ?? "unnamed"),
       el("time", { class: "below", datetime: job.submitted_at }, moment(job.submitted_at))],
-    chip(job.state),
+    chip(job.state, job.keep_out_violated ? VIOLATED : null),
     String(job.targets),
     seconds(job.incumbent_s),
     percent(job.relative_gap),

@@ -5,21 +5,21 @@ use super::panel::Panel;
 use super::timeline;
 use super::written_flight::{Off, WrittenFlight, WrittenSample};
 use super::{HEAD, MARGIN, WIDTH};
-use slewplan_solver::model::spacecraft::Spacecraft;
+use slewplan_solver::model::scenario::Scenario;
 
 /// Errors beyond this, rad or rad/s, are drawn as this value: the flight has failed.
 const LOST: f64 = 1e3;
 
-/// The picture of a flight; the spacecraft adds the limits.
+/// The picture of a flight; the scenario adds limits and cones.
 ///
 /// # Errors
 ///
-/// A message, when there is nothing to draw, or the spacecraft has another number of wheels.
-pub(crate) fn draw(written: &WrittenFlight, craft: Option<&Spacecraft>) -> Result<String, String> {
+/// A message, when there is nothing to draw, or the scenario has another number of wheels.
+pub(crate) fn draw(written: &WrittenFlight, scenario: Option<&Scenario>) -> Result<String, String> {
     let flight = &written.flight;
     let record = flight.record()?;
     let wheels = record.torques.len();
-    let expected = craft.map_or(wheels, |craft| craft.wheels().len());
+    let expected = scenario.map_or(wheels, |it| it.spacecraft().wheels().len());
     if wheels != expected {
         return Err(format!("it has {expected} wheels, the flight {wheels}"));
     }
@@ -43,14 +43,14 @@ pub(crate) fn draw(written: &WrittenFlight, craft: Option<&Spacecraft>) -> Resul
             errors(|off| off.rate_rad_s, rate.factor),
         ),
     ];
-    let mut motion = timeline::panels(&record, craft);
+    let mut motion = timeline::panels(&record, scenario);
     let spans: Vec<(f64, f64)> = flight.spans().collect();
     let met = |of: fn(&WrittenSample) -> &[bool]| {
         let samples = flight.samples.iter().zip(&spans);
         let met = samples.filter(|(sample, _)| of(sample).contains(&true));
         joined(met.map(|(_, span)| *span))
     };
-    if let [_, speeds, torques] = &mut motion[..] {
+    if let [_, speeds, torques, ..] = &mut motion[..] {
         speeds.alarms = met(|sample| &sample.speed_limited);
         torques.alarms = met(|sample| &sample.torque_limited);
     }

@@ -5,8 +5,8 @@ use super::canvas::{Canvas, PlotArea, SERIES};
 use super::chart::{self, Chart, Curve, Stroke};
 use super::timeline;
 use super::written_slews::{Swept, WrittenSlew, WrittenSlews};
-use super::{HEAD, MARGIN, WIDTH};
-use slewplan_solver::model::spacecraft::Spacecraft;
+use super::{HEAD, MARGIN, VIOLATED, WIDTH};
+use slewplan_solver::model::scenario::Scenario;
 use std::fmt::Write;
 
 const CHART: f64 = 400.0;
@@ -24,22 +24,25 @@ pub(crate) struct Marks {
 /// A function of a slew that is drawn.
 type SlewQuantity = fn(&WrittenSlew) -> Option<f64>;
 
-/// The picture of a single slew over time; the spacecraft adds the limits.
+/// The picture of a single slew over time; the scenario of its request adds limits and cones.
 ///
 /// # Errors
 ///
-/// A message, when there is nothing to draw, or the spacecraft has another number of wheels.
-pub(crate) fn single(answer: &WrittenSlews, craft: Option<&Spacecraft>) -> Result<String, String> {
+/// A message, when there is nothing to draw, or the scenario has another number of wheels.
+pub(crate) fn single(answer: &WrittenSlews, scenario: Option<&Scenario>) -> Result<String, String> {
     let [slew] = &answer.slews[..] else {
         return Err(format!("there are {} slews to draw", answer.slews.len()));
     };
     let record = slew.record()?;
     let wheels = record.torques.len();
-    let expected = craft.map_or(wheels, |craft| craft.wheels().len());
+    let expected = scenario.map_or(wheels, |it| it.spacecraft().wheels().len());
     if wheels != expected {
         return Err(format!("it has {expected} wheels, the slew {wheels}"));
     }
-    let panels = timeline::panels(&record, craft);
+    let mut panels = timeline::panels(&record, scenario);
+    for panel in &mut panels {
+        panel.alarms = slew.intrusions();
+    }
     let frame = PlotArea {
         left: MARGIN + 60.0,
         top: HEAD + 26.0,
@@ -200,6 +203,9 @@ fn summary(slew: &WrittenSlew) -> String {
     }
     if !slew.solved {
         parts.push("not solved".to_owned());
+    }
+    if !slew.intrusions().is_empty() {
+        parts.push(VIOLATED.to_owned());
     }
     parts.join("  \u{b7}  ")
 }

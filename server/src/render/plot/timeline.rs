@@ -4,13 +4,22 @@ use super::canvas::{Canvas, Ink, Pen, PlotArea, WARM};
 use super::panel::{self, Panel};
 use super::written::{Record, WrittenPlan, WrittenState};
 use slewplan_solver::model::cone::Cone;
+use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spacecraft::Spacecraft;
 
 /// Greatest number of cones whose clearance is drawn: more names than these would overlap.
 const MAX_CONES_DRAWN: usize = 4;
 
-/// Panels of body rates, wheel speeds and wheel torques; a spacecraft adds the limits.
-pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Panel> {
+/// Panels of body rates, wheel speeds and wheel torques, in this order; a scenario adds the limits, and
+/// a panel of the clearance of its cones where it has any.
+pub(super) fn panels(record: &Record<'_>, scenario: Option<&Scenario>) -> Vec<Panel> {
+    let mut panels = of_motion(record, scenario.map(Scenario::spacecraft));
+    panels.extend(scenario.and_then(|it| clearances(record, it.cones())));
+    panels
+}
+
+/// Panels of body rates, wheel speeds and wheel torques.
+fn of_motion(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Panel> {
     let states = record.states;
     let wheels = record.torques.len();
     let names = |word: &str| (0..wheels).map(|i| format!("{word} {i}")).collect();
@@ -70,7 +79,7 @@ pub(super) fn panels(record: &Record<'_>, craft: Option<&Spacecraft>) -> Vec<Pan
 }
 
 /// The clearance of the cones that the motion comes closest to, if there are any.
-pub(super) fn clearances(record: &Record<'_>, cones: &[Cone]) -> Option<Panel> {
+fn clearances(record: &Record<'_>, cones: &[Cone]) -> Option<Panel> {
     let curve = |cone: &Cone| {
         let clearance = |s: &WrittenState| (s.time_s, cone.clearance(&s.attitude()).to_degrees());
         let curve: Vec<(f64, f64)> = record.states.iter().map(clearance).collect();

@@ -24,10 +24,16 @@ struct WrittenMargins {
     keep_out_intrusions: Vec<WrittenIntrusion>,
 }
 
+/// A stay of a boresight on the wrong side of a cone.
 #[derive(Debug, Deserialize)]
-struct WrittenIntrusion {
+pub(super) struct WrittenIntrusion {
     from_s: f64,
     to_s: f64,
+}
+
+/// Times, s, from which and to which boresights are on the wrong side of cones.
+pub(super) fn spans(stays: &[WrittenIntrusion]) -> Vec<(f64, f64)> {
+    stays.iter().map(|stay| (stay.from_s, stay.to_s)).collect()
 }
 
 #[derive(Debug, Deserialize)]
@@ -141,12 +147,10 @@ impl WrittenPlan {
         }
     }
 
-    /// Times, s, from which and to which a boresight is inside a keep-out cone.
+    /// Times, s, from which and to which a boresight is on the wrong side of a cone.
     pub(super) fn intrusions(&self) -> Vec<(f64, f64)> {
-        let margins = self.margins.iter();
-        let all = margins.flat_map(|margins| &margins.keep_out_intrusions);
-        all.map(|intrusion| (intrusion.from_s, intrusion.to_s))
-            .collect()
+        let margins = self.margins.as_ref();
+        margins.map_or_else(Vec::new, |margins| spans(&margins.keep_out_intrusions))
     }
 
     /// Number of wheels.

@@ -1,6 +1,6 @@
 //! The part of an answer to slews that is drawn, read from its JSON.
 
-use super::written::{Record, WrittenState};
+use super::written::{Record, WrittenIntrusion, WrittenState, spans};
 use serde::Deserialize;
 
 /// The part of the answer that is read.
@@ -30,6 +30,15 @@ pub(super) struct WrittenSlew {
     pub(super) energy_proxy_j: Option<f64>,
     pub(super) energy_bill_j: Option<f64>,
     trajectory: SlewTrajectoryJson,
+    /// Answers of former versions may lack it.
+    #[serde(default)]
+    flight: SlewFlightJson,
+}
+
+#[derive(Debug, Default, Deserialize)]
+struct SlewFlightJson {
+    #[serde(default)]
+    keep_out_intrusions: Vec<WrittenIntrusion>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -79,5 +88,10 @@ impl WrittenSlew {
             torques: (0..wheels).map(|i| torque(i).collect()).collect(),
             passages: &[],
         })
+    }
+
+    /// Times, s, from which and to which a boresight is on the wrong side of a cone.
+    pub(super) fn intrusions(&self) -> Vec<(f64, f64)> {
+        spans(&self.flight.keep_out_intrusions)
     }
 }

@@ -13,7 +13,7 @@ pub(super) fn line(label: &str, text: impl Display) -> String {
 
 /// The verification in a few lines, with the tests that failed.
 pub(super) fn verification(found: &Verification, margins: &Margins) -> String {
-    let verdict = match (found.passed, violates(margins)) {
+    let verdict = match (found.passed, margins.violates_cones()) {
         (true, false) => "passed",
         (true, true) => "passed, but keep-out violated",
         (false, _) => "NOT PASSED",
@@ -90,11 +90,6 @@ fn clearance(nearest: &ConeClearance) -> String {
         format!("{} at {} s", decimals(angle, 2), when())
     });
     format!("{boresight} ({cone}) {angle}")
-}
-
-/// Whether a boresight is on the wrong side of a cone.
-pub(super) fn violates(margins: &Margins) -> bool {
-    !margins.keep_out_intrusions.is_empty()
 }
 
 /// The warnings of violated cones, which stand above everything else; empty without any.

@@ -1,18 +1,16 @@
-//! Studies, as text.
+//! Studies of wheels and of one flight, as text.
 
-use super::blocks::{count, keep_out_banner, line, reasons, warnings};
+use super::blocks::{clearances, keep_out_banner, line, reasons, warnings};
 use super::numbers::{percent, significant};
 use super::table::aligned;
-use crate::documents::plan::status;
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::wheels::array::EnvelopedArray;
-use slewplan_studies::authority::{AuthorityRow, RowOutcome};
 use slewplan_studies::comparison::{ComparisonStudy, SizeComparison};
 use slewplan_studies::envelope_study::{EnvelopeReport, TurnReport};
 use slewplan_studies::flight::{FlightStudy, FlightStudyOutcome, SimulatedPlan};
 
 /// A table under a title.
-fn titled(
+pub(super) fn titled(
     title: &str,
     left: usize,
     head: &[&str],
@@ -21,58 +19,6 @@ fn titled(
     let mut all = vec![head.iter().map(|&name| name.to_owned()).collect()];
     all.extend(rows);
     format!("{title}\n\n{}", aligned(left, &all))
-}
-
-/// Pairs of shares with what they lead to.
-pub(crate) fn authority(rows: &[AuthorityRow]) -> String {
-    let head = [
-        "plan",
-        "torque",
-        "wheel speed",
-        "duration [s]",
-        "flights",
-        "within at the end",
-        "within at every arrival",
-        "error of 90 % [deg]",
-    ];
-    let row = |row: &AuthorityRow| {
-        let shares = [
-            percent(row.authorities.torque_authority, 1),
-            percent(row.authorities.momentum_authority, 1),
-        ];
-        let (plan, figures) = match &row.outcome {
-            RowOutcome::Simulated {
-                total_time_s,
-                optimality,
-                spread,
-                ..
-            } => (
-                status(*optimality),
-                [
-                    format!("{total_time_s:.3}"),
-                    format!("{} of {}", spread.runs, spread.runs_asked),
-                    percent(spread.share_within, 1),
-                    percent(spread.share_within_at_passages, 1),
-                    significant(spread.end_attitude_rad.p90.to_degrees()),
-                ],
-            ),
-            RowOutcome::NoPlan(_) => ("no plan", ["-"; 5].map(str::to_owned)),
-            RowOutcome::Stopped => ("stopped", ["-"; 5].map(str::to_owned)),
-        };
-        let mut cells = vec![plan.to_owned()];
-        cells.extend(shares);
-        cells.extend(figures);
-        cells
-    };
-    let title = format!("{} of torque and wheel speed", count(rows.len(), "pair"));
-    let mut text = titled(&title, 1, &head, rows.iter().map(row));
-    for row in rows {
-        if let RowOutcome::NoPlan(problems) = &row.outcome {
-            text += "\n";
-            text += &reasons(problems, None);
-        }
-    }
-    text
 }
 
 /// One flight in closed loop.
@@ -136,7 +82,7 @@ fn flown(title: &str, plan: &SimulatedPlan) -> String {
     );
     text += &error("largest", found.peak.attitude_rad, found.peak.rate_rad_s);
     text.extend(saturated);
-    text
+    text + &clearances(&found.cones)
 }
 
 /// Envelopes, turns and demands.

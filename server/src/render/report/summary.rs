@@ -1,6 +1,6 @@
 //! The summary of a plan.
 
-use super::blocks::{count, line, margins, verification, violates};
+use super::blocks::{count, line, margins, verification};
 use super::numbers::percent;
 use super::table::aligned;
 use crate::documents::plan::status;
@@ -9,7 +9,7 @@ use slewplan_solver::model::scenario::Target;
 
 /// The first line: status, duration and number of targets.
 pub(super) fn title(name: &str, plan: &Plan) -> String {
-    let violated = if violates(&plan.margins) {
+    let violated = if plan.margins.violates_cones() {
         ", but keep-out violated"
     } else {
         ""

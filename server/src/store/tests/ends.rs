@@ -39,6 +39,32 @@ async fn kept_plans(store: &Store) -> i64 {
     count.fetch_one(&store.readers).await.expect("counted")
 }
 
+/// Plans of more than 50 s violate a cone.
+#[test]
+fn the_end_says_whether_the_plan_violates_a_cone() {
+    for (seconds, violated) in [(20.0, false), (60.0, true)] {
+        on_a_store(|store| async move {
+            submitted(&store).await;
+            let first = lease(&store, "first").await.job;
+            assert!(improve(&store, &first, seconds).await);
+            assert_eq!(job(&store).await.keep_out_violated, None);
+            // Cut short without a plan: that of before is the result.
+            let end = ended(JobState::Failed, None);
+            assert!(store.finish(&first, &end, 4).await.expect("written"));
+            let job = job(&store).await;
+            assert_eq!(job.state().expect("known"), JobState::Stopped);
+            assert_eq!(job.keep_out_violated, Some(violated));
+        });
+        on_a_store(|store| async move {
+            submitted(&store).await;
+            let lease = lease(&store, "first").await.job;
+            let end = ended(JobState::Succeeded, Some(plan(seconds)));
+            assert!(store.finish(&lease, &end, 4).await.expect("written"));
+            assert_eq!(job(&store).await.keep_out_violated, Some(violated));
+        });
+    }
+}
+
 #[test]
 fn a_failure_keeps_the_best_plan() {
     on_a_store(|store| async move {

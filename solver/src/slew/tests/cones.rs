@@ -234,26 +234,33 @@ fn a_slew_around_a_cone_has_evidence() {
     assert!(evidence.switching_agreement > 0.99);
 }
 
-/// Cones of 20 degrees around the equator, 30 degrees apart: closed.
-fn belt() -> Vec<ConeSpec> {
+/// Cones around the equator, 30 degrees apart: closed from 15 degrees on.
+fn belt(half_angle_deg: f64) -> Vec<ConeSpec> {
     let around = (0..12).map(|i| f64::from(30 * i).to_radians());
     around
-        .map(|angle| cone([angle.cos(), angle.sin(), 0.0], 20.0))
+        .map(|angle| cone([angle.cos(), angle.sin(), 0.0], half_angle_deg))
         .collect()
+}
+
+/// A half turn of the camera from pole to pole, across a belt of cones.
+fn across(belt: Vec<ConeSpec>) -> SlewSpec {
+    let mut spec = quarter();
+    spec.spacecraft.boresights = vec![camera([0.0, 0.0, 1.0])];
+    spec.end = turn([1.0, 0.0, 0.0], std::f64::consts::PI);
+    spec.keep_out = belt;
+    spec
+}
+
+fn ended(spec: &SlewSpec) -> SlewOutcome {
+    let slew = Slew::try_new(spec).expect("valid").slew;
+    solve(&slew, &StopSignal::new())
 }
 
 #[test]
 fn a_slew_without_a_way_is_proved_infeasible() {
-    let mut spec = quarter();
-    spec.spacecraft.boresights = vec![camera([0.0, 0.0, 1.0])];
-    spec.end = turn([1.0, 0.0, 0.0], std::f64::consts::PI);
-    spec.keep_out = belt();
-    let ended = |spec: &SlewSpec| {
-        let slew = Slew::try_new(spec).expect("valid").slew;
-        solve(&slew, &StopSignal::new())
-    };
+    let mut spec = across(belt(20.0));
     let enclosed = ended(&spec);
-    assert!(!enclosed.solved);
+    assert!(!enclosed.solved && enclosed.proved_infeasible);
     assert_eq!(enclosed.status, "infeasible");
     let reason = &enclosed.reasons[0];
     assert_eq!((&*reason.pointer, reason.code), ("/end", Code::NoClearPath));
@@ -265,7 +272,36 @@ fn a_slew_without_a_way_is_proved_infeasible() {
         "{} {:?}",
         open.status, open.propagated.failures
     );
-    assert!(open.reasons.is_empty());
+    assert!(open.reasons.is_empty() && !open.proved_infeasible);
+}
+
+/// Neighbours overlap by a thousandth of a degree: no way leads through, but cells are too coarse to
+/// prove it.
+#[test]
+fn a_slew_whose_way_is_neither_found_nor_excluded_says_what_was_searched() {
+    let unknown = ended(&across(belt(15.0005)));
+    assert!(!unknown.solved && !unknown.proved_infeasible);
+    assert_eq!(unknown.status, "no_clear_path");
+    let [reason] = &unknown.reasons[..] else {
+        panic!("{:?}", unknown.reasons)
+    };
+    assert_eq!((&*reason.pointer, reason.code), ("/end", Code::NoClearPath));
+    let message = &reason.message;
+    assert!(!message.contains("proved"), "{message}");
+    // The way through would have been found if it were wider than the resolution.
+    let (_, after) = message
+        .split_once("a clearance of ")
+        .expect("the resolution");
+    let (resolution, rest) = after.split_once(" degrees").expect("degrees");
+    let resolution: f64 = resolution.parse().expect("a number");
+    assert!((0.001..1.0).contains(&resolution), "{message}");
+    // From one pole to the belt, or from the other: 90 degrees are left to go, and a little.
+    let (_, nearest) = rest
+        .split_once("reached is ")
+        .expect("the closest approach");
+    let (nearest, _) = nearest.split_once(" degrees").expect("degrees");
+    let nearest: f64 = nearest.parse().expect("a number");
+    assert!((90.0..91.0).contains(&nearest), "{message}");
 }
 
 #[test]

@@ -219,6 +219,15 @@ pub struct Incumbent<'a> {
     pub statistics: SearchStatistics,
 }
 
+/// Orders that are known before a search.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct KnownOrders<'a> {
+    /// Orders with their durations.
+    pub solved: &'a [SolvedOrder],
+    /// Where the search for short orders begins while none is solved.
+    pub first: Option<&'a [usize]>,
+}
+
 /// What to search for, and when to end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {

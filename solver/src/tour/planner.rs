@@ -34,7 +34,9 @@ use crate::run::pool::SolverPool;
 use crate::run::progress::Observer;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::{LegKind, LegStore, SegmentStore};
-use crate::tour::order::{Place, SearchSettings, SolvedOrder, TourModel, exhaustive, search};
+use crate::tour::order::{
+    KnownOrders, Place, SearchSettings, SolvedOrder, TourModel, exhaustive, search,
+};
 use crate::wheels::envelope::momentum_problems;
 use additive_tours::LegTimes;
 use first_tour::{first_order, first_tour};
@@ -147,8 +149,11 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     let known: Vec<_> = first.into_iter().collect();
     let settings = search_settings(scenario);
-    let order = order.as_deref();
-    let found = search(&tours, &known, order, &settings, run.pool, &stop, &builder);
+    let known = KnownOrders {
+        solved: &known,
+        first: order.as_deref(),
+    };
+    let found = search(&tours, known, &settings, run.pool, &stop, &builder);
     match &found.best {
         Some(best) => {
             builder.compare_with_rest(best);

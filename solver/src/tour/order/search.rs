@@ -7,7 +7,7 @@ mod tree;
 
 use super::node::SearchNode;
 use super::{
-    Evaluation, SearchEnd, SearchObserver, SearchResult, SearchSettings, SolvedOrder,
+    Evaluation, KnownOrders, SearchEnd, SearchObserver, SearchResult, SearchSettings, SolvedOrder,
     TourEvaluation, TourModel,
 };
 use crate::run::pool::SolverPool;
@@ -75,13 +75,11 @@ struct OrderSearch<'a> {
     reporter: SearchReporter<'a>,
 }
 
-/// Searches the best orders. `known` lists orders whose duration is known already; the search for
-/// shorter ones begins at the best of them, or at `first`.
+/// Searches the best orders.
 #[must_use]
 pub fn search(
     model: &dyn TourModel,
-    known: &[SolvedOrder],
-    first: Option<&[usize]>,
+    known: KnownOrders<'_>,
     settings: &SearchSettings,
     pool: &SolverPool,
     stop: &StopSignal,
@@ -95,10 +93,10 @@ pub fn search(
         next_probe: PROBE_NODES,
         tightened: false,
         lagrangian: false,
-        tree: SearchTree::new(model, first, settings, stop),
+        tree: SearchTree::new(model, known.first, settings, stop),
         reporter: SearchReporter::new(observer),
     };
-    for order in known {
+    for order in known.solved {
         let answer = TourEvaluation::Solved(order.duration_s);
         search.tree.record_candidate(&order.order, answer);
         search.reporter.skip(order.duration_s);

@@ -11,7 +11,9 @@ mod triple_bounds;
 use models::SplitMix;
 pub(super) use models::{RandomModel, unit};
 
-use super::{Incumbent, SearchObserver, SearchResult, SearchSettings, TourModel, search};
+use super::{
+    Incumbent, KnownOrders, SearchObserver, SearchResult, SearchSettings, TourModel, search,
+};
 use crate::run::pool::SolverPool;
 use crate::run::progress::{Progress, Silent};
 use crate::run::stop::StopSignal;
@@ -37,5 +39,12 @@ fn alternatives(count: usize) -> SearchSettings {
 /// Searches on two threads without limits or observers.
 fn run(model: &dyn TourModel, settings: &SearchSettings) -> SearchResult {
     let (pool, stop) = (pool(2), StopSignal::new());
-    search(model, &[], None, settings, &pool, &stop, &Silent)
+    search(
+        model,
+        KnownOrders::default(),
+        settings,
+        &pool,
+        &stop,
+        &Silent,
+    )
 }

@@ -18,7 +18,9 @@ use crate::model::tolerances::TIME_TOLERANCE;
 use crate::run::pool::SolverPool;
 use crate::run::progress::Progress;
 use crate::run::stop::StopSignal;
-use crate::tour::order::{Incumbent, Place, SearchObserver, SearchSettings, least_bound, search};
+use crate::tour::order::{
+    Incumbent, KnownOrders, Place, SearchObserver, SearchSettings, least_bound, search,
+};
 
 /// Number of targets up to which all legs are proved and solved before a search begins. With more,
 /// almost none of them can be part of a good tour, and only those are on which a bound depends.
@@ -51,7 +53,8 @@ pub(super) fn tour_bound(
             relative_gap: GAP,
             ..SearchSettings::default()
         };
-        search(&tours, &[], None, &settings, pool, stop, &Unobserved).lower_bound_s
+        let nothing = KnownOrders::default();
+        search(&tours, nothing, &settings, pool, stop, &Unobserved).lower_bound_s
     };
     let proved = bounds.has_bounds();
     proved.then(|| within_tolerance(places, bound))

@@ -142,8 +142,7 @@ fn a_search_stopped_between_rounds_returns_the_best_so_far() {
     let stop = recorder.stop.clone();
     let result = search(
         &model,
-        &[],
-        None,
+        KnownOrders::default(),
         &alternatives(1),
         &pool(2),
         &stop,
@@ -168,8 +167,7 @@ fn a_search_stopped_during_an_evaluation_keeps_the_bound_of_that_node() {
         };
         let result = search(
             &model,
-            &[],
-            None,
+            KnownOrders::default(),
             &alternatives(0),
             &pool(2),
             &stop,
@@ -189,8 +187,7 @@ fn a_search_stopped_before_it_begins_has_a_bound_and_no_order() {
     let model = RandomModel::new(5, true, 14);
     let result = search(
         &model,
-        &[],
-        None,
+        KnownOrders::default(),
         &alternatives(0),
         &pool(1),
         &stop,
@@ -278,8 +275,7 @@ fn reported_incumbents_never_rise_and_bounds_never_fall() {
         let model = RandomModel::new(7, seed % 2 == 0, seed);
         let result = search(
             &model,
-            &[],
-            None,
+            KnownOrders::default(),
             &alternatives(2),
             &pool(2),
             &StopSignal::new(),
@@ -329,8 +325,7 @@ fn every_better_order_is_announced_once_before_its_progress() {
         let stop = StopSignal::new();
         let result = search(
             &model,
-            &[],
-            None,
+            KnownOrders::default(),
             &alternatives(1),
             &pool(2),
             &stop,

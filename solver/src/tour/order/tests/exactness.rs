@@ -127,8 +127,7 @@ fn results_and_counts_do_not_depend_on_threads() {
         };
         let reference = search(
             &model,
-            &[],
-            None,
+            KnownOrders::default(),
             &settings,
             &pool(1),
             &StopSignal::new(),
@@ -137,8 +136,7 @@ fn results_and_counts_do_not_depend_on_threads() {
         for threads in [2, 3, 8] {
             let result = search(
                 &model,
-                &[],
-                None,
+                KnownOrders::default(),
                 &settings,
                 &pool(threads),
                 &StopSignal::new(),

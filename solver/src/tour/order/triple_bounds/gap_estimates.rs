@@ -7,6 +7,7 @@
 //! to triples that nobody has asked for. The estimates are no bounds.
 
 use crate::tour::order::{PairTable, TourModel};
+use nalgebra::Vector3;
 
 /// Factor while no gap is known, that of slews in a strip; weighs no more than a change of 30 ms.
 const FIRST_FACTOR: f64 = 0.35;
@@ -44,7 +45,7 @@ impl GapEstimates {
         if table.is_leg(leg) {
             let [from, to] = leg.map(|number| table.place(number));
             // Estimates need no more digits.
-            let single = |state: [f64; 3]| state.map(|component| component as f32);
+            let single = |state: [f64; 3]| Vector3::from(state).cast::<f32>().into();
             self.ends[leg[0] * self.places + leg[1]] = model.free_ends(from, to).map(single);
         }
     }

@@ -7,7 +7,7 @@ mod tree;
 
 use super::node::SearchNode;
 use super::{
-    Evaluation, KnownOrders, SearchEnd, SearchObserver, SearchResult, SearchSettings, SolvedOrder,
+    Evaluation, KnownOrders, SearchEnd, SearchObserver, SearchResult, SearchSettings,
     TourEvaluation, TourModel,
 };
 use crate::run::pool::SolverPool;

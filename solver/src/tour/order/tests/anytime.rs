@@ -5,8 +5,8 @@ use crate::model::order_rules::OrderRules;
 use crate::run::progress::{Progress, Silent, Stage};
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::order::{
-    Evaluation, Incumbent, Place, SearchEnd, SearchObserver, SearchSettings, SolvedOrder,
-    TourEvaluation, TourModel, exhaustive, search,
+    Evaluation, Incumbent, KnownOrders, Place, SearchEnd, SearchObserver, SearchSettings,
+    SolvedOrder, TourEvaluation, TourModel, exhaustive, search,
 };
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -5,8 +5,8 @@ use crate::model::order_rules::OrderRules;
 use crate::run::progress::Silent;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{
-    Evaluation, Place, SearchEnd, SearchResult, SearchSettings, SolvedOrder, TourEvaluation,
-    TourModel, exhaustive, search,
+    Evaluation, KnownOrders, Place, SearchEnd, SearchResult, SearchSettings, SolvedOrder,
+    TourEvaluation, TourModel, exhaustive, search,
 };
 use std::collections::BTreeMap;
 use std::sync::Mutex;

@@ -122,7 +122,7 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let order = first_order(&tours, &stop);
     let few = scenario.targets().len() <= MAX_TARGETS_ALL_LEGS;
     if let Some(order) = order.clone()
-        && (places.dynamics.has_momentum() || !few)
+        && (places.dynamics.has_momentum() || !(few || stop.is_set()))
     {
         // With momentum the program of a first tour may take long or fail; with many targets it takes
         // long.

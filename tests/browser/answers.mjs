@@ -239,6 +239,7 @@ async function study({ browser, service, must }) {
     await page.locator("summary", { hasText: "Targets and wheels" }).first().click();
     const cones = page.getByRole("region", { name: /^Clearance of cones that so many flights keep/ }).first();
     const [cone] = rows[0].flights.keep_out_clearance_deg;
+    await cones.locator("tbody tr").first().waitFor();
     const least = await cones.locator("tbody tr").first().locator("th, td").allTextContents();
     check(least[0] === "camera from /keep_out/0" && least.includes(cone.clearance_deg.min.toFixed(2)), least.join());
     const found = await findings(page);

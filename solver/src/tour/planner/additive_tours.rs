@@ -72,7 +72,11 @@ impl<T: LegTimes> TourModel for AdditiveTours<'_, T> {
     }
 
     fn prefix_bound(&self, prefix: &[usize]) -> Evaluation {
-        Evaluation::Value(self.along(&self.places.route(prefix, false)))
+        let route = self.places.route(prefix, false);
+        let legs = route.windows(2).map(|leg| (leg[0], leg[1]));
+        let open: Vec<_> = legs.filter(|(from, to)| self.is_open(*from, *to)).collect();
+        self.raise_pair_bounds(&open);
+        Evaluation::Value(self.along(&route))
     }
 
     fn path_bound(&self, path: &[Place]) -> Evaluation {

@@ -5,7 +5,7 @@
 //! settle and dwell times added, bounds all tours in all orders that the scenario admits. The order
 //! search finds a bound on that path: exact up to
 //! [`crate::tour::order::completion::MAX_EXACT_TARGETS`] targets, beyond that number the bound
-//! reached within a node limit, and for many targets that of spanning trees.
+//! reached within a node limit, and for so many that the limit is 0 that of spanning trees.
 //!
 //! Times of passages may be off by the checker's tolerance of the flight's duration: an arrival lies
 //! before the departure by it, a stay is shorter by it. With three of them for every place, the sum of
@@ -44,12 +44,13 @@ pub(super) fn tour_bound(
     stop: &StopSignal,
 ) -> Option<f64> {
     let tours = AdditiveTours::new(places, bounds);
-    let targets = places.scenario.targets().len();
-    let bound = if targets > MAX_TARGETS_ALL_LEGS {
+    let targets = places.scenario.targets().len() as u64;
+    let nodes = NODES_TIMES_TARGETS_CUBED / targets.pow(3).max(1);
+    let bound = if nodes == 0 {
         least_bound(&tours, stop)
     } else {
         let settings = SearchSettings {
-            node_limit: Some(NODES_TIMES_TARGETS_CUBED / (targets as u64).pow(3).max(1)),
+            node_limit: Some(nodes),
             relative_gap: GAP,
             ..SearchSettings::default()
         };
@@ -85,3 +86,6 @@ impl SearchObserver for Unobserved {
 
     fn improved(&self, _: &Incumbent<'_>) {}
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! `slewplan legs`.
 
-use crate::run::{Ended, binary, fixture, fixture_json, slewplan, slewplan_fed};
+use crate::run::{Ended, belt_of_cones, binary, fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
@@ -189,11 +189,7 @@ fn a_table_has_the_legs_around_cones() {
 fn with_a_belt(half_angle_deg: f64) -> Value {
     let mut scenario = fixture_json("two-targets.json");
     scenario["targets"][1]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
-    let belt = (0..12).map(|step| {
-        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
-    });
-    scenario["keep_out"] = belt.collect();
+    scenario["keep_out"] = belt_of_cones(half_angle_deg);
     scenario
 }
 

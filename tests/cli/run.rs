@@ -1,6 +1,6 @@
 //! Runs the built binary.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -86,6 +86,15 @@ pub(crate) fn fixture(name: &str) -> String {
 pub(crate) fn fixture_json(name: &str) -> Value {
     let text = std::fs::read_to_string(fixture(name)).expect("the fixture is there");
     serde_json::from_str(&text).expect("the fixture is JSON")
+}
+
+/// Cones of the camera around the equator, 30 degrees apart: closed from 15 degrees on.
+pub(crate) fn belt_of_cones(half_angle_deg: f64) -> Value {
+    let cone = |step: i32| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
+    };
+    (0..12).map(cone).collect()
 }
 
 /// The names in a folder, sorted.

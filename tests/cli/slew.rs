@@ -1,6 +1,6 @@
 //! `slewplan slew` on published slews.
 
-use crate::run::{fixture, fixture_json, slewplan, slewplan_fed};
+use crate::run::{belt_of_cones, fixture, fixture_json, slewplan, slewplan_fed};
 use serde_json::{Value, json};
 
 /// The slews of an answer, all of them solved.
@@ -187,11 +187,7 @@ fn across_a_belt(half_angle_deg: f64) -> Value {
     let mut slew = fixture_json("slews/quarter-turn.json");
     slew["spacecraft"]["boresights"] = json!([{"name": "camera", "axis": [0, 0, 1]}]);
     slew["end"]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
-    let belt = (0..12).map(|step| {
-        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
-    });
-    slew["keep_out"] = belt.collect();
+    slew["keep_out"] = belt_of_cones(half_angle_deg);
     slew
 }
 

@@ -1,6 +1,6 @@
 //! Leg times.
 
-use crate::running::{Service, small};
+use crate::running::{Service, belt_of_cones, small};
 use serde_json::{Value, json};
 
 fn attitude(roll: f64, yaw: f64) -> Value {
@@ -241,11 +241,7 @@ fn queries_without_a_way_and_with_wrong_cones_are_told() {
         let mut enclosed = past_a_bright_body(0.0);
         enclosed["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
         enclosed["pairs"] = json!([{"from": attitude(0.0, 0.0), "to": attitude(180.0, 0.0)}]);
-        let belt = (0..12).map(|step| {
-            let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-            json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
-        });
-        enclosed["keep_out"] = belt.collect();
+        enclosed["keep_out"] = belt_of_cones(half_angle_deg);
         let answer = service.post("/v1/legs/query", &enclosed).expect(200).json();
         let leg = &answer["legs"][0];
         assert_eq!(leg["status"], status);

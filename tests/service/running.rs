@@ -149,6 +149,15 @@ pub(crate) fn small() -> Value {
     fixture("two-targets.json")
 }
 
+/// Cones of the camera around the equator, 30 degrees apart: closed from 15 degrees on.
+pub(crate) fn belt_of_cones(half_angle_deg: f64) -> Value {
+    let cone = |step: i32| {
+        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
+        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
+    };
+    (0..12).map(cone).collect()
+}
+
 /// A scenario whose search runs until it is stopped: many close targets have many orders of similar
 /// time, and their short legs have loose bounds.
 pub(crate) fn large() -> Value {

@@ -1,7 +1,7 @@
 //! Single slews over HTTP.
 
 use crate::client::Request;
-use crate::running::Service;
+use crate::running::{Service, belt_of_cones};
 use serde_json::{Value, json};
 
 fn quarter() -> Value {
@@ -126,11 +126,7 @@ fn across_a_belt(half_angle_deg: f64) -> Value {
     let mut slew = past_a_bright_body();
     slew["spacecraft"]["boresights"][0]["axis"] = json!([0, 0, 1]);
     slew["end"]["attitude"] = json!({"roll_pitch_yaw_deg": [180, 0, 0]});
-    let belt = (0..12).map(|step| {
-        let (y, x) = f64::from(30 * step).to_radians().sin_cos();
-        json!({"boresight": "camera", "direction": [x, y, 0], "half_angle_deg": half_angle_deg})
-    });
-    slew["keep_out"] = belt.collect();
+    slew["keep_out"] = belt_of_cones(half_angle_deg);
     slew
 }
 

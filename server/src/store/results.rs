@@ -50,7 +50,8 @@ pub(super) async fn store_incumbent(
         "INSERT INTO incumbents (job, total_time_s, lower_bound_s, keep_out_violated, document, \
          packed, digest) VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
          total_time_s = excluded.total_time_s, lower_bound_s = excluded.lower_bound_s, \
-         keep_out_violated = excluded.keep_out_violated, document = excluded.document, packed = excluded.packed, digest = excluded.digest \
+         keep_out_violated = excluded.keep_out_violated, document = excluded.document, \
+         packed = excluded.packed, digest = excluded.digest \
          WHERE excluded.total_time_s < total_time_s",
     )
     .bind(job)

@@ -240,6 +240,11 @@ impl Dynamics {
         Vector3::from_fn(|axis, _| self.reachable_rate(&Vector3::ith(axis, 1.0)))
     }
 
+    /// Greatest acceleration about each body axis, rad/s², see [`Self::reachable_acceleration`].
+    pub(crate) fn reachable_accelerations(&self) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| self.reachable_acceleration(&Vector3::ith(axis, 1.0)))
+    }
+
     /// Greatest component of the acceleration along a direction in body axes, rad/s² times its
     /// length, by wheel torques within their limits without momentum, to either side:
     /// `J_eff w' = -A u`, so every torque is at the limit of the sign that increases it.

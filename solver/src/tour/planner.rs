@@ -24,6 +24,7 @@ mod tests;
 mod torques;
 mod tour_bound;
 mod tours;
+mod turn_estimates;
 mod unsolved;
 mod verified;
 
@@ -45,7 +46,7 @@ use places::Places;
 use plan_builder::PlanBuilder;
 use std::time::{Duration, Instant};
 use tables::CertifiedLeg;
-use tour_bound::{MAX_TARGETS_ALL_LEGS, tour_bound};
+use tour_bound::tour_bound;
 use tours::Tours;
 use unsolved::{leg_status, unsolved};
 
@@ -119,8 +120,8 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let mut builder = PlanBuilder::new(&tours, run, begin);
     solver.report_begin();
     let bound_tours = || tour_bound(&places, &tours.certified, run.pool, &stop);
-    let order = first_order(&tours, &stop);
-    let few = scenario.targets().len() <= MAX_TARGETS_ALL_LEGS;
+    let order = first_order(&places, &stop);
+    let few = places.needs_all_legs();
     if let Some(order) = order.clone()
         && (places.dynamics.has_momentum() || !(few || stop.is_set()))
     {

@@ -1,6 +1,7 @@
 //! The quaternion sign with which a motion has to arrive at its target.
 
 use crate::model::attitude::Attitude;
+use nalgebra::Vector3;
 
 /// Which quaternion signs of the target count as arrived.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,8 +21,14 @@ impl Arrival {
         }
     }
 
-    /// The turn between two attitudes as far as signs count, rad.
+    /// The rotation vector of the turn between two attitudes as far as signs count, rad, body axes of
+    /// the first.
+    pub(crate) fn turn_vector(self, from: &Attitude, to: &Attitude) -> Vector3<f64> {
+        from.signed_turn_to(&self.signed(to, from))
+    }
+
+    /// Its angle, rad.
     pub(crate) fn turn(self, from: &Attitude, to: &Attitude) -> f64 {
-        from.signed_turn_to(&self.signed(to, from)).norm()
+        self.turn_vector(from, to).norm()
     }
 }

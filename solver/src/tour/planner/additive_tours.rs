@@ -30,12 +30,12 @@ impl<F: Fn(Place, Place) -> f64 + Sync> LegTimes for F {
 /// Tours over legs of given durations, with settle and dwell times.
 pub(super) struct AdditiveTours<'a, T> {
     places: &'a Places<'a>,
-    legs: T,
+    legs: &'a T,
 }
 
 impl<'a, T: LegTimes> AdditiveTours<'a, T> {
     /// Tours over the places of a scenario.
-    pub(super) fn new(places: &'a Places<'a>, legs: T) -> Self {
+    pub(super) fn new(places: &'a Places<'a>, legs: &'a T) -> Self {
         Self { places, legs }
     }
 

@@ -18,10 +18,11 @@ mod premises;
 use super::Run;
 use super::additive_tours::LegTimes;
 use super::canonical::CanonicalLeg;
+use super::legs::missing_from;
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
 use super::tables::CertifiedLeg;
-use super::tour_bound::{MAX_TARGETS_ALL_LEGS, tour_bound};
+use super::tour_bound::tour_bound;
 use super::tour_pairs;
 use crate::bounds::certify::{self, Rejection};
 use crate::model::scenario::Scenario;
@@ -223,7 +224,7 @@ impl CertificateVerifier<'_> {
             return early;
         }
         let bounds = ProvedLegs::new(self.places, Box::new(|pairs| self.prove_legs(pairs)));
-        if self.places.scenario.targets().len() <= MAX_TARGETS_ALL_LEGS {
+        if self.places.needs_all_legs() {
             bounds.raise(pairs);
         }
         let supported_s = tour_bound(self.places, &bounds, self.run.pool, self.run.stop);
@@ -246,18 +247,15 @@ impl CertificateVerifier<'_> {
 
     /// Proves the bounds of the legs between pairs of places; legs with equal canonical forms once.
     fn prove_legs(&self, pairs: &[(Place, Place)]) -> Vec<Option<CertifiedLeg>> {
-        let legs = pairs
-            .iter()
-            .map(|pair| (*pair, canonical(self.places, *pair)));
-        let legs: Vec<_> = legs.collect();
+        let canonical = pairs.iter().map(|pair| Some(canonical(self.places, *pair)));
+        let legs: Vec<_> = canonical.collect();
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut listed: HashSet<String> = known().keys().cloned().collect();
-        let fresh = |(_, leg): &&(_, CanonicalLeg)| listed.insert(leg.identity.clone());
-        let missing: Vec<_> = legs.iter().filter(fresh).collect();
+        let missing = missing_from(&known(), &legs);
         self.total
             .fetch_add(missing.len() as u64, Ordering::Relaxed);
-        let bounds = self.run.pool.map(&missing, |(pair, leg)| {
-            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(*pair, leg, None).ok());
+        let bounds = self.run.pool.map(&missing, |(index, leg)| {
+            let pair = pairs[*index];
+            let bound = (!self.run.stop.is_set()).then(|| self.prove_leg(pair, leg, None).ok());
             self.report_progress();
             bound
         });
@@ -267,9 +265,9 @@ impl CertificateVerifier<'_> {
                 known.insert(leg.identity.clone(), bound);
             }
         }
-        let entry = |(_, leg): &(_, CanonicalLeg)| {
+        let entry = |leg: &Option<CanonicalLeg>| {
             Some(CertifiedLeg {
-                lower_bound: *known.get(&leg.identity)?,
+                lower_bound: *known.get(&leg.as_ref()?.identity)?,
                 solve_time: 0.0,
             })
         };

@@ -229,11 +229,11 @@ impl<'a> LegSolver<'a> {
     ) -> Vec<Option<CertifiedLeg>> {
         let canonical = self.all_canonical(kind, pairs);
         let missing = missing_from(&lock(&self.certified), &canonical);
-        let bounds = self.run.pool.map(&missing, |leg| {
+        let bounds = self.run.pool.map(&missing, |(_, leg)| {
             (!self.stop.is_set()).then(|| certify(self.places, leg))
         });
         let mut certified = lock(&self.certified);
-        for (leg, bound) in missing.into_iter().zip(bounds) {
+        for ((_, leg), bound) in missing.into_iter().zip(bounds) {
             if let Some(bound) = bound {
                 certified.insert(leg.identity.clone(), bound);
             }
@@ -270,7 +270,7 @@ impl<'a> LegSolver<'a> {
         let missing = missing_from(&lock(&self.known), canonical);
         let done = AtomicU64::new(0);
         let total = missing.len() as u64;
-        self.run.pool.map(&missing, |leg| {
+        self.run.pool.map(&missing, |(_, leg)| {
             // With thousands of legs, store look-ups alone would delay the stop noticeably.
             if self.is_abandoned() {
                 return;
@@ -370,15 +370,15 @@ fn lock<T>(remembered: &ByIdentity<T>) -> MutexGuard<'_, HashMap<String, T>> {
     remembered.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The legs that are not known yet, without repetitions.
-fn missing_from<'c, T>(
+/// The legs that are not known yet, without repetitions, with their places in the list.
+pub(super) fn missing_from<'c, T>(
     known: &HashMap<String, T>,
     legs: &'c [Option<CanonicalLeg>],
-) -> Vec<&'c CanonicalLeg> {
+) -> Vec<(usize, &'c CanonicalLeg)> {
     let mut listed = HashSet::new();
-    legs.iter()
-        .flatten()
-        .filter(|leg| !known.contains_key(&leg.identity) && listed.insert(&leg.identity))
+    let legs = legs.iter().enumerate();
+    legs.filter_map(|(index, leg)| Some((index, leg.as_ref()?)))
+        .filter(|(_, leg)| !known.contains_key(&leg.identity) && listed.insert(&leg.identity))
         .collect()
 }
 

@@ -15,6 +15,9 @@ use crate::model::waypoint::{Waypoint, WheelCondition};
 use crate::tour::order::Place;
 use nalgebra::{DVector, Vector3};
 
+/// Number of targets up to which all legs are solved.
+pub(super) const MAX_TARGETS_ALL_LEGS: usize = 40;
+
 /// The places of a scenario, with what the legs between them have in common.
 pub(super) struct Places<'a> {
     /// The scenario.
@@ -112,6 +115,12 @@ impl<'a> Places<'a> {
             }
             Place::Start | Place::End => 0.0,
         }
+    }
+
+    /// Whether all legs are proved and solved before a search begins. With many targets almost none of
+    /// them can be part of a good tour, and only those are on which a bound or a short order depends.
+    pub(super) fn needs_all_legs(&self) -> bool {
+        self.scenario.targets().len() <= MAX_TARGETS_ALL_LEGS
     }
 
     /// The attitude of a place.

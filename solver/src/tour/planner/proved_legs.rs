@@ -71,19 +71,5 @@ impl LegTimes for ProvedLegs<'_> {
     }
 }
 
-impl LegTimes for &ProvedLegs<'_> {
-    fn leg_s(&self, from: Place, to: Place) -> f64 {
-        (**self).leg_s(from, to)
-    }
-
-    fn is_open(&self, from: Place, to: Place) -> bool {
-        (**self).is_open(from, to)
-    }
-
-    fn raise(&self, legs: &[(Place, Place)]) {
-        (**self).raise(legs);
-    }
-}
-
 #[cfg(test)]
 mod tests;

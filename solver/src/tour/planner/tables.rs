@@ -3,7 +3,9 @@
 use super::places::Places;
 use crate::leg::multiphase::LegSolution;
 use crate::model::attitude::Attitude;
+use crate::model::dynamics::Dynamics;
 use crate::tour::order::Place;
+use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// A solved leg in its canonical form.
@@ -44,6 +46,20 @@ impl TabulatedLeg {
             costates: Vec::new(),
             ..self.leg.solution.placed(self.mirrored, begin)
         }
+    }
+
+    /// Body rates at begin and end, rad/s, of the motion from the given attitude; `None` where there is
+    /// no motion.
+    pub(super) fn rates_at_ends(
+        &self,
+        dynamics: &Dynamics,
+        begin: &Attitude,
+    ) -> Option<[Vector3<f64>; 2]> {
+        let solution = self.beginning_at(begin);
+        solution.duration()?;
+        let motion = solution.profile;
+        let rate = |node| dynamics.rate(&motion.attitudes[node], &motion.wheels[node]);
+        Some([0, motion.intervals()].map(rate))
     }
 }
 

@@ -22,9 +22,6 @@ use crate::tour::order::{
     Incumbent, KnownOrders, Place, SearchObserver, SearchSettings, least_bound, search,
 };
 
-/// Number of targets up to which all legs are proved and solved before a search begins. With more,
-/// almost none of them can be part of a good tour, and only those are on which a bound depends.
-pub(super) const MAX_TARGETS_ALL_LEGS: usize = 40;
 /// Node limit of the search times the cube of the number of targets: a fraction of a second.
 const NODES_TIMES_TARGETS_CUBED: u64 = 50_000_000;
 /// Relative gap at which the search may end; small beside the gap of the certified bounds.

@@ -15,17 +15,16 @@ use super::proved_legs::ProvedLegs;
 use super::segment_key::{MAX_SHORT_LEGS, SegmentKey, SegmentKind};
 use super::solved_segments::SolvedSegments;
 use super::tables::{SolvedTable, Table, TabulatedLeg};
+use super::turn_estimates::TurnEstimates;
 use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::leg::solve::around_cones::is_clear;
 use crate::model::order_rules::OrderRules;
-use crate::model::scenario::RateCondition;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::run::stop::StopSignal;
 use crate::tour::legs::LegKind;
 use crate::tour::order::{Evaluation, PassageCostate, Place, TourEvaluation, TourModel};
-use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -51,9 +50,8 @@ pub(super) struct Tours<'a> {
     pub(super) certified: ProvedLegs<'a>,
     /// Legs solved with only the conditions of their own ends: their durations are lower bounds.
     free: RwLock<SolvedTable>,
-    /// Largest body rates, rad/s, and accelerations, rad/s², about each axis.
-    largest_rates: Vector3<f64>,
-    largest_accelerations: Vector3<f64>,
+    /// Estimates of the legs that are not solved.
+    estimates: TurnEstimates<'a>,
     /// Whether every order takes as long as its reverse.
     symmetric: bool,
     pub(super) stop: &'a StopSignal,
@@ -75,39 +73,12 @@ impl<'a> Tours<'a> {
                 Box::new(|pairs| legs.certified_legs(LegKind::LowerBound, pairs)),
             ),
             free: RwLock::new(Table::new(places, std::iter::empty())),
-            largest_rates: places.dynamics.reachable_rates(),
-            largest_accelerations: Vector3::from_fn(|axis, _| {
-                places
-                    .dynamics
-                    .reachable_acceleration(&Vector3::ith(axis, 1.0))
-            }),
+            estimates: TurnEstimates::of(places),
             symmetric: places.are_symmetric(),
             stop,
             solves: AtomicU64::new(0),
             segments: SolvedSegments::default(),
         }
-    }
-
-    /// Time of the slowest component of the turn between two places, s, from rest to rest at the
-    /// largest rate and acceleration about its axis: an estimate without any search.
-    pub(super) fn ramped_turn_s(&self, from: Place, to: Place) -> f64 {
-        let begin = self.places.attitude(from);
-        let end = self
-            .places
-            .arrival
-            .signed(&self.places.attitude(to), &begin);
-        let turn = begin.signed_turn_to(&end);
-        let component = |axis: usize| {
-            let (angle, most) = (turn[axis].abs(), self.largest_rates[axis]);
-            let acceleration = self.largest_accelerations[axis];
-            let peak = (angle * acceleration).sqrt();
-            if peak <= most {
-                2.0 * peak / acceleration
-            } else {
-                angle / most + most / acceleration
-            }
-        };
-        (0..3).map(component).fold(0.0, f64::max)
     }
 
     /// Solves legs with only the conditions of their own ends.
@@ -235,7 +206,7 @@ impl<'a> Tours<'a> {
     pub(super) fn free_leg(&self, from: Place, to: Place) -> LegSolution {
         self.known_free_leg(from, to).map_or_else(
             || self.legs.leg(LegKind::LowerBound, from, to),
-            |leg| leg.beginning_at(&self.places.waypoint(from).attitude),
+            |leg| leg.beginning_at(&self.places.attitude(from)),
         )
     }
 
@@ -487,35 +458,13 @@ impl TourModel for Tours<'_> {
         }
     }
 
-    /// The rates at the ends of the leg on its own, relative to the reachable accelerations. A leg that
-    /// is not solved turns about its eigenaxis as fast as the wheels allow.
+    /// The rates at the ends of the leg on its own, relative to the reachable accelerations.
     fn free_ends(&self, from: Place, to: Place) -> [[f64; 3]; 2] {
-        let dynamics = &self.places.dynamics;
-        let begin = self.places.attitude(from);
+        let (dynamics, begin) = (&self.places.dynamics, self.places.attitude(from));
         let solved = self.known_free_leg(from, to);
-        let solved = solved.filter(|leg| leg.leg.solution.duration().is_some());
-        let rates = if let Some(leg) = solved {
-            let motion = leg.beginning_at(&begin).profile;
-            let last = motion.intervals();
-            [0, last].map(|node| dynamics.rate(&motion.attitudes[node], &motion.wheels[node]))
-        } else {
-            let end = self
-                .places
-                .arrival
-                .signed(&self.places.attitude(to), &begin);
-            let turn = begin.signed_turn_to(&end);
-            let fastest = self
-                .largest_rates
-                .zip_map(&turn, |most, part| most / part.abs())
-                .min();
-            let rate = if fastest.is_finite() {
-                turn * fastest
-            } else {
-                Vector3::zeros()
-            };
-            [from, to].map(|place| kept(&self.places.waypoint(place).rate, &rate))
-        };
-        rates.map(|rate| rate.component_div(&self.largest_accelerations).into())
+        let rates = solved.and_then(|leg| leg.rates_at_ends(dynamics, &begin));
+        let rates = rates.unwrap_or_else(|| self.estimates.rates(from, to));
+        rates.map(|rate| self.estimates.time_to_reach(&rate).into())
     }
 
     fn couples(&self, via: usize) -> bool {
@@ -539,14 +488,6 @@ impl TourModel for Tours<'_> {
             Err(_) => TourEvaluation::Unresolved,
         }
     }
-}
-
-/// A rate where the conditions on it, rad/s, leave it free, and the nearest admitted one elsewhere.
-fn kept(conditions: &[RateCondition; 3], rate: &Vector3<f64>) -> Vector3<f64> {
-    Vector3::from_fn(|axis, _| {
-        let [low, high] = conditions[axis].range();
-        rate[axis].clamp(low, high)
-    })
 }
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ fn enclosed(places: &Places<'_>) -> Vec<Problem> {
 /// What is said where the cones leave no way between two places.
 fn way_between(places: &Places<'_>, [from, to]: [Place; 2], names: [&str; 2]) -> Option<NoWay> {
     let pointer = pointer_of(to);
-    let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);
+    let [from, to] = [from, to].map(|place| places.attitude(place));
     let between = PathProblem {
         cones: &places.with_cones.cones,
         from,
@@ -120,8 +120,8 @@ fn unsolved_slew(tours: &Tours<'_>, from: Place, to: Place) -> Option<Problem> {
 /// envelope of the wheels, if there is one.
 fn outside_on_turn(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
     let places = &tours.places;
-    let [from, to] = [from, to].map(|place| places.waypoint(place).attitude);
-    let turn = from.signed_turn_to(&places.arrival.signed(&to, &from));
+    let [from, to] = [from, to].map(|place| places.attitude(place));
+    let turn = places.arrival.turn_vector(&from, &to);
     outside_envelope(places.scenario, &from, turn)
 }
 

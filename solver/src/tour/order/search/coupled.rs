@@ -110,7 +110,8 @@ impl OrderSearch<'_> {
         }
         let table = self.tree.table();
         let targets = table.targets();
-        let mut triple_bounds = TripleBounds::new(self.model, table, &SpanningTrees::new(table))?;
+        let trees = self.tree.spanning_trees()?;
+        let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());

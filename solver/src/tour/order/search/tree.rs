@@ -4,7 +4,7 @@ use super::coupled::CoupledBounds;
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
-use crate::tour::order::completion::CompletionBound;
+use crate::tour::order::completion::{CompletionBound, SpanningTrees};
 use crate::tour::order::frontier::Frontier;
 use crate::tour::order::heuristics::{self, SearchEffort};
 use crate::tour::order::incumbents::Incumbents;
@@ -107,6 +107,14 @@ impl SearchTree {
     /// The pair bounds.
     pub(super) fn table(&self) -> &PairTable {
         &self.table
+    }
+
+    /// The spanning trees that bound paths through many targets.
+    pub(super) fn spanning_trees(&self) -> Option<&SpanningTrees> {
+        match &self.completion {
+            CompletionBound::Relaxed(trees) => Some(trees),
+            CompletionBound::Exact(_) => None,
+        }
     }
 
     /// Which orders are searched.

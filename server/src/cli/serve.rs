@@ -38,7 +38,7 @@ pub(super) struct ServeArguments {
         value_parser = clap::value_parser!(u32).range(1024..))]
     max_body_bytes: u32,
     /// Maximum number of targets of a scenario
-    #[arg(long, env = "SLEWPLAN_MAX_TARGETS", value_name = "N", default_value_t = 200,
+    #[arg(long, env = "SLEWPLAN_MAX_TARGETS", value_name = "N", default_value_t = 1000,
         value_parser = clap::value_parser!(u32).range(1..))]
     max_targets: u32,
     /// Maximum number of queued jobs

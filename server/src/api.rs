@@ -7,8 +7,11 @@ pub(crate) mod connections;
 mod describe;
 mod error;
 mod extract;
+mod jobs;
+mod leg_tables;
 mod legs;
 mod metrics;
+mod negotiation;
 mod observe;
 mod operations;
 mod origin;
@@ -20,6 +23,7 @@ mod router;
 mod slews;
 mod spacecraft;
 mod stored;
+mod streaming;
 mod studies;
 mod verify;
 
@@ -60,6 +64,8 @@ struct Parts {
     solving: Turns,
     /// Turns of requests that integrate flights.
     integrating: Turns,
+    /// Turns of requests that write tables of leg times.
+    tabulating: Turns,
     /// Permits for event streams, fewer than connections.
     streams: Arc<Semaphore>,
     /// The cached answer of the readiness check.
@@ -112,6 +118,7 @@ impl App {
             lookups,
             solving: computing::solving(),
             integrating: computing::integrating(),
+            tabulating: computing::tabulating(),
             streams: Arc::new(Semaphore::new(limits.streams)),
             readiness: operations::health::Readiness::default(),
             metrics: RequestMetrics::default(),

@@ -16,6 +16,8 @@ pub(crate) mod jobs;
 pub(crate) mod kind;
 pub(crate) mod leg_import;
 pub(crate) mod leg_query;
+pub(crate) mod leg_rows;
+pub(crate) mod leg_table_jobs;
 pub(crate) mod legs;
 #[cfg(test)]
 mod mutations;

@@ -2,6 +2,8 @@
 
 pub(crate) mod leg_cache;
 pub(crate) mod leg_import;
+mod leg_snapshot;
+mod leg_table;
 mod memory;
 mod metrics;
 mod progress;
@@ -16,6 +18,7 @@ pub(crate) use worker::Worker;
 
 use crate::base::clock::now_us;
 use crate::jobs::leg_cache::LegCache;
+use crate::jobs::leg_snapshot::LegsAtOnce;
 use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -68,6 +71,11 @@ impl Jobs {
     /// The leg cache, for one solve on threads outside of the runtime.
     pub(crate) fn legs(&self, runtime: Handle) -> LegCache {
         LegCache::new(self.store().clone(), runtime, Arc::clone(&self.0.metrics))
+    }
+
+    /// The cached legs of one moment, for look-ups on threads outside of the runtime.
+    pub(crate) async fn legs_at_once(&self, runtime: Handle) -> Result<LegsAtOnce, StoreError> {
+        LegsAtOnce::new(self.store().clone(), runtime, Arc::clone(&self.0.metrics)).await
     }
 
     /// Metrics of the jobs of this process.

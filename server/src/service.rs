@@ -3,7 +3,7 @@
 use crate::api::connections;
 use crate::api::{self, Access, AllowedHost, App, OwnHosts, RequestLimits};
 use crate::base::lifecycle::{GRACE, Shutdown};
-use crate::documents::jobs::EventDocument;
+use crate::documents;
 use crate::jobs::leg_cache::upkeep;
 use crate::jobs::{Jobs, Worker, retention, segments};
 use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
@@ -181,7 +181,7 @@ async fn serve<E: From<ServiceError>>(
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let _lock = DatabaseLock::take(&settings.database).map_err(ServiceError::from)?;
-    let store = Store::open(&settings.database, EventDocument::tell)
+    let store = Store::open(&settings.database, documents::jobs::tell)
         .await
         .map_err(ServiceError::from)?;
     let boot_id = Uuid::new_v4().to_string();

@@ -10,7 +10,10 @@ use std::time::Duration;
 pub(crate) struct Answer {
     pub(crate) status: u16,
     headers: Vec<(String, String)>,
+    /// The body as text.
     pub(crate) body: String,
+    /// The body as it came.
+    pub(crate) bytes: Vec<u8>,
 }
 
 impl Answer {
@@ -115,10 +118,9 @@ impl Request {
 }
 
 fn parse(bytes: &[u8]) -> Answer {
-    let text = String::from_utf8_lossy(bytes);
-    let (head, body) = text
-        .split_once("\r\n\r\n")
-        .unwrap_or_else(|| panic!("no head in {text:?}"));
+    let end = bytes.windows(4).position(|four| four == b"\r\n\r\n");
+    let end = end.unwrap_or_else(|| panic!("no head in {:?}", String::from_utf8_lossy(bytes)));
+    let (head, body) = (String::from_utf8_lossy(&bytes[..end]), &bytes[end + 4..]);
     let mut lines = head.lines();
     let status = lines
         .next()
@@ -131,27 +133,31 @@ fn parse(bytes: &[u8]) -> Answer {
     let chunked = headers
         .iter()
         .any(|(name, value)| name == "transfer-encoding" && value == "chunked");
+    let bytes = if chunked {
+        joined(body)
+    } else {
+        body.to_owned()
+    };
     Answer {
         status: status.parse().expect("a number"),
-        body: if chunked {
-            joined(body)
-        } else {
-            body.to_owned()
-        },
+        body: String::from_utf8_lossy(&bytes).into_owned(),
+        bytes,
         headers,
     }
 }
 
-/// The content of a chunked body of plain ASCII.
-fn joined(mut body: &str) -> String {
-    let mut text = String::new();
-    while let Some((size, rest)) = body.split_once("\r\n") {
+/// The content of a chunked body, as far as it has arrived.
+fn joined(mut body: &[u8]) -> Vec<u8> {
+    let mut content = Vec::new();
+    while let Some(end) = body.windows(2).position(|two| two == b"\r\n") {
+        let size = std::str::from_utf8(&body[..end]).expect("a size");
         let size = usize::from_str_radix(size, 16).expect("a size");
         if size == 0 {
             break;
         }
-        text += &rest[..size];
-        body = &rest[size + 2..];
+        let begin = end + 2;
+        content.extend_from_slice(&body[begin..begin + size]);
+        body = &body[begin + size + 2..];
     }
-    text
+    content
 }

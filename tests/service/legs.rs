@@ -318,7 +318,7 @@ fn wrong_queries_are_refused_with_pointers() {
     let attitudes: Vec<Value> = (0..40)
         .map(|number| attitude(f64::from(number), 0.0))
         .collect();
-    let query = json!({"spacecraft": spacecraft, "attitudes": attitudes});
+    let query = json!({"spacecraft": spacecraft, "attitudes": attitudes, "mode": "compute"});
     let problem = service
         .post("/v1/legs/query", &query)
         .expect_problem(413, "too_many_pairs");

@@ -13,6 +13,7 @@ mod health;
 mod idempotency;
 mod imports;
 mod keys;
+mod leg_tables;
 mod legs;
 mod operations;
 mod origins;

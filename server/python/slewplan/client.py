@@ -13,17 +13,19 @@ against `openapi.yaml` by a test.
 
 from __future__ import annotations
 
+import importlib
 import json
 import time
 import urllib.error
 import urllib.parse
 import urllib.request
-from collections.abc import Iterator
-from typing import Any, Literal, NotRequired, TypedDict, cast
+from collections.abc import Callable, Iterator
+from typing import Any, Literal, NotRequired, TypedDict, TypeVar, cast
 
 State = Literal["queued", "running", "succeeded", "stopped", "infeasible", "failed", "cancelled", "dead"]
 Format = Literal["csv", "aem-kvn", "aem-xml", "basilisk", "open-mct", "stk", "wheel-rpm"]
 Scenario = dict[str, Any]
+LegQuery = dict[str, Any]
 
 
 class Quaternion(TypedDict):
@@ -89,6 +91,60 @@ class Verification(TypedDict):
     max_rate_error_rad_s: float | None
 
 
+# `from` is a word of Python.
+LegTime = TypedDict(
+    "LegTime",
+    {
+        "from": int,
+        "to": int,
+        "duration_s": float | None,
+        "certified_lower_bound_s": float | None,
+        "status": str | None,
+        "source": Literal["cached", "computed", "missing"],
+        "key": str | None,
+    },
+)
+
+
+class LegTable:
+    """Leg times in the order of their query."""
+
+    def __init__(self, rows: list[LegTime]) -> None:
+        self.rows = rows
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def array(self, column: Literal["duration_s", "certified_lower_bound_s"] = "duration_s") -> Any:
+        """Of the full matrix of attitudes: a NumPy array, from the row to the column, s. Not a number
+        where nothing is known; zero on the diagonal. Needs `numpy`."""
+        numpy = importlib.import_module("numpy")
+        size = 1 + max((max(row["from"], row["to"]) for row in self.rows), default=-1)
+        times = numpy.full((size, size), numpy.nan)
+        numpy.fill_diagonal(times, 0.0)
+        for row in self.rows:
+            if (time_s := row[column]) is not None:
+                times[row["from"], row["to"]] = time_s
+        return times
+
+    def frame(self) -> Any:
+        """A data frame with the members of a row as columns. Needs `pandas`."""
+        return importlib.import_module("pandas").DataFrame(self.rows, columns=list(LegTime.__annotations__))
+
+
+class LegTableJob(TypedDict):
+    id: str
+    state: State
+    legs: int
+    done: int
+    cached: int
+    computed: int
+    missing: int
+    detail: NotRequired[str | None]
+    code: NotRequired[str | None]
+    submitted_at: str
+
+
 class Problem(TypedDict):
     pointer: str
     code: str
@@ -130,7 +186,16 @@ OPERATIONS = {
     "cancel": ("POST", "/v1/plans/{id}/cancel"),
     "delete": ("DELETE", "/v1/plans/{id}"),
     "verify": ("POST", "/v1/verify"),
+    "query_legs": ("POST", "/v1/legs/query"),
+    "submit_legs": ("POST", "/v1/leg-tables"),
+    "leg_job": ("GET", "/v1/leg-tables/{id}"),
+    "leg_result": ("GET", "/v1/leg-tables/{id}/result"),
+    "leg_events": ("GET", "/v1/leg-tables/{id}/events"),
+    "stop_legs": ("POST", "/v1/leg-tables/{id}/stop"),
+    "cancel_legs": ("POST", "/v1/leg-tables/{id}/cancel"),
+    "delete_legs": ("DELETE", "/v1/leg-tables/{id}"),
 }
+LINES = {"Accept": "application/x-ndjson"}
 ENDED = ("succeeded", "stopped", "infeasible", "failed", "cancelled", "dead")
 
 
@@ -153,20 +218,11 @@ class Client:
 
     def wait(self, identifier: str, patience_s: float = 3600.0) -> Job:
         """The job when it has ended; `TimeoutError` when it has not after so long."""
-        end, pause = time.monotonic() + patience_s, 0.05
-        while (job := self.job(identifier))["state"] not in ENDED:
-            if time.monotonic() > end:
-                raise TimeoutError(f"job {identifier} is still {job['state']}")
-            time.sleep(pause)
-            pause = min(2 * pause, 2.0)
-        return job
+        return _ended(self.job, identifier, patience_s)
 
     def events(self, identifier: str) -> Iterator[dict[str, Any]]:
         """What happens to a job, until it has ended; each with incumbent and bound."""
-        with self._open("events", identifier) as stream:
-            for line in stream:
-                if line.startswith(b"data:"):
-                    yield json.loads(line[5:])
+        return self._events("events", identifier)
 
     def plan(self, identifier: str) -> Plan:
         """The final plan, or the best so far."""
@@ -213,6 +269,57 @@ class Client:
         body = {"scenario": scenario, "plan": plan}
         return cast(Verification, json.loads(self._send("verify", body=body)))
 
+    def query_legs(self, query: LegQuery) -> LegTable:
+        """The times of legs, cached, certified, or, with `"mode": "compute"`, of up to 1,000 legs."""
+        return self._table("query_legs", body=query)
+
+    def submit_legs(self, query: LegQuery, idempotency_key: str | None = None) -> LegTableJob:
+        """Queues a table of leg times of any size."""
+        headers = {"Idempotency-Key": idempotency_key} if idempotency_key else {}
+        return cast(LegTableJob, json.loads(self._send("submit_legs", body=query, headers=headers)))
+
+    def leg_job(self, identifier: str) -> LegTableJob:
+        """How far the job of a table is."""
+        return cast(LegTableJob, json.loads(self._send("leg_job", identifier)))
+
+    def wait_legs(self, identifier: str, patience_s: float = 86400.0) -> LegTableJob:
+        """The job of a table when it has ended; `TimeoutError` when it has not after so long."""
+        return _ended(self.leg_job, identifier, patience_s)
+
+    def leg_events(self, identifier: str) -> Iterator[dict[str, Any]]:
+        """What happens to the job of a table, until it has ended; each with counts of legs."""
+        return self._events("leg_events", identifier)
+
+    def leg_table(self, identifier: str) -> LegTable:
+        """The rows of a table: all of them, or those so far."""
+        return self._table("leg_result", identifier)
+
+    def export_legs(self, identifier: str, form: Literal["ndjson", "csv", "parquet", "json"]) -> bytes:
+        """The same as a file."""
+        return self._send("leg_result", identifier, {"format": form})
+
+    def stop_legs(self, identifier: str) -> LegTableJob:
+        """Finishes the job of a table with the legs so far."""
+        return cast(LegTableJob, json.loads(self._send("stop_legs", identifier)))
+
+    def cancel_legs(self, identifier: str) -> LegTableJob:
+        """Abandons the job of a table; the legs that it has solved stay in the cache."""
+        return cast(LegTableJob, json.loads(self._send("cancel_legs", identifier)))
+
+    def delete_legs(self, identifier: str) -> None:
+        """Deletes the job of a table with its rows."""
+        self._send("delete_legs", identifier)
+
+    def _table(self, *arguments: Any, **named: Any) -> LegTable:
+        with self._open(*arguments, headers=LINES, **named) as lines:
+            return LegTable([json.loads(line) for line in lines])
+
+    def _events(self, operation: str, identifier: str) -> Iterator[dict[str, Any]]:
+        with self._open(operation, identifier) as stream:
+            for line in stream:
+                if line.startswith(b"data:"):
+                    yield json.loads(line[5:])
+
     def _open(
         self,
         operation: str,
@@ -238,6 +345,20 @@ class Client:
     def _send(self, *arguments: Any, **named: Any) -> bytes:
         with self._open(*arguments, **named) as answer:
             return cast(bytes, answer.read())
+
+
+AnyJob = TypeVar("AnyJob", Job, LegTableJob)
+
+
+def _ended(read: Callable[[str], AnyJob], identifier: str, patience_s: float) -> AnyJob:
+    """A job when it has ended."""
+    end, pause = time.monotonic() + patience_s, 0.05
+    while (job := read(identifier))["state"] not in ENDED:
+        if time.monotonic() > end:
+            raise TimeoutError(f"job {identifier} is still {job['state']}")
+        time.sleep(pause)
+        pause = min(2 * pause, 2.0)
+    return job
 
 
 def _document(content: bytes) -> dict[str, Any]:

@@ -48,6 +48,9 @@ enum Rule {
     Needs(Scope),
 }
 
+/// Where the jobs of a client are.
+const JOBS: [&str; 2] = ["/v1/plans", "/v1/leg-tables"];
+
 /// The rule of a route; `None` when there is no such route.
 fn rule(method: &Method, route: &str) -> Option<Rule> {
     let reads = matches!(*method, Method::GET | Method::HEAD);
@@ -63,7 +66,9 @@ fn rule(method: &Method, route: &str) -> Option<Rule> {
         }
         "/v1/legs/query" | "/v1/verify" | "/v1/slews" => Some(Rule::Needs(Scope::Write)),
         _ if route.starts_with("/v1/studies/") => Some(Rule::Needs(Scope::Write)),
-        _ if route.starts_with("/v1/plans") || route.starts_with("/v1/spacecraft/") => {
+        _ if JOBS.iter().any(|jobs| route.starts_with(jobs))
+            || route.starts_with("/v1/spacecraft/") =>
+        {
             Some(Rule::Needs(if reads { Scope::Read } else { Scope::Write }))
         }
         _ => None,
@@ -138,11 +143,14 @@ async fn examine(app: &App, route: &str, request: &Parts) -> Result<Caller, ApiE
         return Err(ApiError::new(ErrorCode::ScopeMissing, detail));
     }
     // Compared without decoding: identifiers have no characters that need escaping.
-    let job = request.uri.path().strip_prefix("/v1/plans/");
+    let path = request.uri.path();
+    let job = JOBS
+        .iter()
+        .find_map(|jobs| path.strip_prefix(jobs)?.strip_prefix('/'));
     if let Some(id) = job.and_then(|rest| rest.split('/').next())
         && !app.store().owns(&key.client, id).await?
     {
-        return Err(ApiError::not_found("plan", id));
+        return Err(ApiError::not_found("job", id));
     }
     Ok(Caller(Some(key.client)))
 }

@@ -9,8 +9,7 @@ use tokio::task::{JoinError, JoinHandle, spawn_blocking};
 
 mod turns;
 
-pub(super) use turns::Turns;
-use turns::WorkTurn;
+pub(super) use turns::{Turns, WorkTurn};
 
 /// Longest time that a request may wait for its turn, and longest that it may compute, s.
 pub(super) const MAX_S: u64 = 60;
@@ -19,7 +18,9 @@ pub(super) const LONGEST: Duration = Duration::from_secs(MAX_S);
 pub(super) const UNTIL_DONE: Duration = Duration::MAX;
 /// Number of flights integrated at once, beside the threads of the solver.
 const FLIGHTS: usize = 2;
-/// Longest wait for a turn to integrate a flight.
+/// Number of tables of leg times written at once.
+const TABLES: usize = 4;
+/// Longest wait for a turn to integrate a flight, or to write a table.
 const INTEGRATION_WAIT: Duration = Duration::from_secs(10);
 
 /// Turns for computations on the solver's threads, one at a time.
@@ -36,6 +37,11 @@ pub(super) fn integrating() -> Turns {
     )
 }
 
+/// Turns for tables of leg times that are written as their clients read them.
+pub(super) fn tabulating() -> Turns {
+    Turns::new(TABLES, INTEGRATION_WAIT, "other tables are being written")
+}
+
 /// Waits for a turn, then does the work; its stop signal is set when the time is up.
 pub(super) async fn in_turn<T: Send + 'static>(
     app: &App,
@@ -44,16 +50,6 @@ pub(super) async fn in_turn<T: Send + 'static>(
 ) -> Result<T, ApiError> {
     let turn = app.0.solving.take().await?;
     watched(app, Some(turn), StopSignal::new(), longest, work).await
-}
-
-/// Does the work now, with a stop signal that may be set already.
-pub(super) async fn at_once<T: Send + 'static>(
-    app: &App,
-    stop: StopSignal,
-    longest: Duration,
-    work: impl FnOnce(&StopSignal) -> T + Send + 'static,
-) -> Result<T, ApiError> {
-    watched(app, None, stop, longest, work).await
 }
 
 /// Waits for a turn to integrate a flight, then integrates it to the end without a time limit.

@@ -1,54 +1,10 @@
 //! Answers that several routes give.
 
-use super::App;
 use super::error::{ApiError, ErrorCode};
-use crate::documents::jobs::JobDocument;
-use crate::store::{JobRow, StoreError};
-use axum::Json;
 use axum::body::Bytes;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
-use std::time::Duration;
-use tokio::time::Instant;
-
-/// An answer with a job and its address.
-pub(super) fn job(status: StatusCode, job: &JobRow) -> Result<Response, ApiError> {
-    let mut response = (status, Json(JobDocument::new(job)?)).into_response();
-    if let Ok(location) = HeaderValue::from_str(&format!("/v1/plans/{}", job.id)) {
-        response
-            .headers_mut()
-            .insert(header::CONTENT_LOCATION, location);
-    }
-    Ok(response)
-}
-
-/// Waits for the end of a job, at most for `longest`. Returns the job, `None` when it is gone.
-pub(super) async fn await_end(
-    app: &App,
-    id: &str,
-    longest: Duration,
-) -> Result<Option<JobRow>, StoreError> {
-    let until = Instant::now() + longest;
-    let mut changes = app.jobs().changes();
-    let mut shutdown = app.shutdown().clone();
-    loop {
-        changes.borrow_and_update();
-        let job = app.store().job(id).await?;
-        let waiting = match &job {
-            Some(job) => !job.state()?.is_final(),
-            None => false,
-        };
-        if !waiting {
-            return Ok(job);
-        }
-        tokio::select! {
-            _ = changes.changed() => {}
-            () = tokio::time::sleep_until(until) => return Ok(job),
-            () = shutdown.begun() => return Ok(job),
-        }
-    }
-}
 
 /// A document as JSON; `what` names it in errors.
 pub(super) fn written(document: &impl Serialize, what: &str) -> Result<Vec<u8>, ApiError> {

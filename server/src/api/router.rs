@@ -2,16 +2,19 @@
 
 use super::operations::docs::OpenApiPage;
 use super::{
-    App, access, describe, legs, observe, operations, origin, page, plans, protect, slews,
-    spacecraft, studies, verify,
+    App, access, describe, leg_tables, legs, observe, operations, origin, page, plans, protect,
+    slews, spacecraft, studies, verify,
 };
 use crate::documents::jobs::EventDocument;
+use crate::documents::leg_table_jobs::LegTableEventDocument;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::routing::get;
 use axum::{Extension, Router};
+use tower_http::CompressionLevel;
 use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::CompressionLayer;
 use utoipa::OpenApi;
-use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouterExt as _};
 use utoipa_axum::routes;
 use utoipa_swagger_ui::SwaggerUi;
 
@@ -24,7 +27,7 @@ use utoipa_swagger_ui::SwaggerUi;
             wheels.\n\nNumbers are SI with the unit in the field name. Unknown fields are \
             refused. Every error is RFC 9457 problem details; `/docs/errors` lists the codes.",
     ),
-    components(schemas(EventDocument)),
+    components(schemas(EventDocument, LegTableEventDocument)),
     tags(
         (name = "plans", description = "Planning jobs"),
         (name = "legs", description = "Leg times"),
@@ -46,7 +49,19 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(plans::events::handler))
         .routes(routes!(plans::stop::handler))
         .routes(routes!(plans::cancel::handler))
-        .routes(routes!(legs::query::handler))
+        .routes(routes!(legs::query::handler).layer(gzip()))
+        .routes(routes!(
+            leg_tables::create::handler,
+            leg_tables::list::handler
+        ))
+        .routes(routes!(
+            leg_tables::get::handler,
+            leg_tables::delete::handler
+        ))
+        .routes(routes!(leg_tables::result::handler).layer(gzip()))
+        .routes(routes!(leg_tables::events::handler))
+        .routes(routes!(leg_tables::stop::handler))
+        .routes(routes!(leg_tables::cancel::handler))
         .routes(routes!(legs::list::handler))
         .routes(routes!(legs::import::handler))
         .routes(routes!(legs::get::handler))
@@ -65,6 +80,11 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(operations::health::live))
         .routes(routes!(operations::health::ready))
         .routes(routes!(operations::metrics::handler))
+}
+
+/// Compression of large answers, where `Accept-Encoding` asks for it.
+fn gzip() -> CompressionLayer {
+    CompressionLayer::new().quality(CompressionLevel::Fastest)
 }
 
 /// The whole service.

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::runtime;
-use crate::documents::jobs::EventDocument;
+use crate::documents;
 use crate::jobs::leg_cache::LegCache;
 use crate::service::ServiceError;
 use crate::store::Store;
@@ -23,7 +23,7 @@ impl CommandLegCache {
     pub(super) fn open(database: &Path) -> Result<Self, Failure> {
         let runtime = runtime::start()?;
         let store = runtime
-            .block_on(Store::open(database, EventDocument::tell))
+            .block_on(Store::open(database, documents::jobs::tell))
             .map_err(ServiceError::from)?;
         let legs = LegCache::new(store, runtime.handle().clone(), Arc::default());
         Ok(Self {

@@ -1,7 +1,7 @@
 //! Access to the database for commands other than `serve`.
 
 use super::Failure;
-use crate::documents::jobs::EventDocument;
+use crate::documents;
 use crate::service::ServiceError;
 use crate::store::Store;
 use std::fs;
@@ -38,7 +38,7 @@ pub(super) fn with_store<T>(
     work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     start()?.block_on(async {
-        let store = Store::open(database, EventDocument::tell)
+        let store = Store::open(database, documents::jobs::tell)
             .await
             .map_err(ServiceError::from)?;
         let done = work(&store).await;

@@ -1,8 +1,9 @@
 //! Jobs and their events as JSON.
 
+use super::leg_table_jobs::LegTableEventDocument;
 use super::number::Number;
 use crate::base::clock::rfc3339;
-use crate::store::{JobRow, JobState, StoreError};
+use crate::store::{JobRow, JobState, StoreError, Work};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -23,13 +24,20 @@ pub(crate) struct JobDocument {
     /// Whether the plan that the job ended with violates a cone that is only reported; `null` before it
     /// has ended, without a plan, and for jobs of former versions.
     keep_out_violated: Option<bool>,
-    /// How often the solve has been begun; more than once only after the service was killed.
+    #[serde(flatten)]
+    history: JobHistory,
+}
+
+/// What has happened to a job.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct JobHistory {
+    /// How often the work has been begun; more than once only after the service was killed.
     attempt: i64,
-    /// Whether the job was asked to finish with the best plan so far.
+    /// Whether the job was asked to finish with what it has so far.
     stop_requested: bool,
     /// Whether the job was abandoned.
     cancel_requested: bool,
-    /// Why the job ended without a plan of its own; the best plan before that can still be read.
+    /// Why the job ended without a result of its own; what it had before that can still be read.
     detail: Option<String>,
     /// The same as a stable code of the error index: `memory_limit`, `internal_error` and
     /// `process_died` among others.
@@ -97,6 +105,14 @@ impl JobDocument {
             targets: job.targets,
             standing: Standing::of(job),
             keep_out_violated: job.keep_out_violated,
+            history: JobHistory::of(job),
+        })
+    }
+}
+
+impl JobHistory {
+    pub(super) fn of(job: &JobRow) -> Self {
+        Self {
             attempt: job.attempt,
             stop_requested: job.stop_requested_us.is_some(),
             cancel_requested: job.cancel_requested_us.is_some(),
@@ -107,11 +123,11 @@ impl JobDocument {
             finished_at: job.finished_us.map(rfc3339),
             queued_s: between(Some(job.submitted_us), job.started_us),
             solved_s: between(job.started_us, job.finished_us),
-        })
+        }
     }
 }
 
-fn between(begin_us: Option<i64>, end_us: Option<i64>) -> Option<Number> {
+pub(super) fn between(begin_us: Option<i64>, end_us: Option<i64>) -> Option<Number> {
     Some(Number((end_us? - begin_us?) as f64 / 1e6))
 }
 
@@ -149,15 +165,22 @@ impl EventDocument {
             at: rfc3339(now_us),
         })
     }
+}
 
-    /// The same as JSON, for the store.
-    pub(crate) fn tell(job: &JobRow, now_us: i64) -> Result<String, StoreError> {
-        let event = Self::new(job, now_us)?;
-        serde_json::to_string(&event).map_err(|error| StoreError::Inconsistent {
-            table: "jobs",
-            what: error.to_string(),
-        })
-    }
+/// How a job stands now, as the JSON of an event.
+///
+/// # Errors
+///
+/// When the row is inconsistent.
+pub(crate) fn tell(job: &JobRow, now_us: i64) -> Result<String, StoreError> {
+    let event = match job.work()? {
+        Work::Plan => serde_json::to_string(&EventDocument::new(job, now_us)?),
+        Work::LegTable => serde_json::to_string(&LegTableEventDocument::new(job, now_us)?),
+    };
+    event.map_err(|error| StoreError::Inconsistent {
+        table: "jobs",
+        what: error.to_string(),
+    })
 }
 
 /// A page of jobs, the newest first.

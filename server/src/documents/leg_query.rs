@@ -1,9 +1,7 @@
-//! Reading a query for leg times, and writing its answer.
+//! Reading a query for leg times.
 
 use super::document::Node;
-use super::number::Number;
 use super::reader::{Cursor, Sink};
-use serde::Serialize;
 use slewplan_solver::model::epoch;
 use slewplan_solver::model::input::{
     InputForm, InputPlace, UpTo, input_choice, input_object, optional, or, required_or,
@@ -15,8 +13,8 @@ use slewplan_solver::model::spec::{
     ScenarioSpec, SpacecraftOrReference, SpacecraftSpec, StateSpec, TargetSpec, TimeSystem,
 };
 use slewplan_solver::tour::legs::LegKind;
+use slewplan_solver::tour::order::Place;
 use slewplan_solver::tour::planner;
-use utoipa::ToSchema;
 
 input_object! {
     /// A query for leg times: of `attitudes` and `pairs` exactly one.
@@ -74,11 +72,60 @@ pub(crate) struct LegQuery {
     /// All its attitudes as targets of one scenario.
     pub(crate) scenario: Scenario,
     /// The legs that are asked for.
-    pub(crate) pairs: Vec<Pair>,
+    pub(crate) pairs: PairList,
+}
+
+/// Maximum number of legs of a table: those of 1,000 attitudes.
+pub(crate) const MAX_LEGS: usize = 1_000_000;
+
+/// The legs of a query in their order.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum PairList {
+    /// From each of so many attitudes to each other.
+    Matrix(usize),
+    /// So many pairs.
+    Pairs(usize),
+}
+
+impl PairList {
+    /// Number of legs.
+    pub(crate) fn len(self) -> usize {
+        match self {
+            Self::Matrix(attitudes) => attitudes * attitudes.saturating_sub(1),
+            Self::Pairs(pairs) => pairs,
+        }
+    }
+
+    /// The leg at a position.
+    pub(crate) fn get(self, position: usize) -> Pair {
+        match self {
+            Self::Matrix(attitudes) => {
+                let others = attitudes.saturating_sub(1).max(1);
+                let (from, to) = (position / others, position % others);
+                let to = to + usize::from(to >= from);
+                Pair {
+                    from,
+                    to,
+                    targets: (from, to),
+                }
+            }
+            Self::Pairs(_) => Pair {
+                from: position,
+                to: position,
+                targets: (2 * position, 2 * position + 1),
+            },
+        }
+    }
+
+    /// The legs of a part of the list.
+    pub(crate) fn part(self, first: usize, legs: usize) -> Vec<Pair> {
+        let end = self.len().min(first + legs);
+        (first..end).map(|position| self.get(position)).collect()
+    }
 }
 
 /// A leg that is asked for.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Pair {
     /// Position of the begin: in `attitudes`, or of the pair in `pairs`.
     pub(crate) from: usize,
@@ -86,6 +133,14 @@ pub(crate) struct Pair {
     pub(crate) to: usize,
     /// The targets of the query's scenario between which the leg is.
     pub(crate) targets: (usize, usize),
+}
+
+impl Pair {
+    /// The places of the query's scenario between which the leg is.
+    pub(crate) fn places(&self) -> (Place, Place) {
+        let (from, to) = self.targets;
+        (Place::Target(from), Place::Target(to))
+    }
 }
 
 /// The attitudes of a query, and where they stand in it.
@@ -122,27 +177,26 @@ impl QueriedAttitudes {
         }
     }
 
-    /// Indices of the targets at the begin and the end of each leg.
-    fn pairs(&self) -> Vec<(usize, usize)> {
+    /// The legs between them.
+    fn pairs(&self) -> PairList {
         let count = self.targets.len();
         if self.all_pairs {
-            let from_each = (0..count).flat_map(|from| (0..count).map(move |to| (from, to)));
-            from_each.filter(|(from, to)| from != to).collect()
+            PairList::Matrix(count)
         } else {
-            (0..count / 2).map(|leg| (2 * leg, 2 * leg + 1)).collect()
+            PairList::Pairs(count / 2)
         }
     }
 }
 
-/// Reads a query for at most so many legs.
+/// Reads a query for at most [`MAX_LEGS`].
 ///
 /// # Errors
 ///
 /// Everything that is wrong with it, or, as a number, how many legs it asks for.
-pub(crate) fn read(node: &Node, most: usize) -> Result<LegQuery, Refusal> {
+pub(crate) fn read(node: &Node) -> Result<LegQuery, Refusal> {
     // Counted before they are read, since a short list of attitudes has many pairs.
     let count = legs_asked_for(node);
-    if count > most {
+    if count > MAX_LEGS {
         return Err(Refusal::TooMany(count));
     }
     let spec = decode(node).map_err(Refusal::Invalid)?;
@@ -215,19 +269,10 @@ fn check_lists(node: &Node, root: &Cursor<'_>) {
 fn build(spec: &LegQuerySpec) -> Result<LegQuery, Vec<Problem>> {
     let places = QueriedAttitudes::of(spec);
     let scenario = check(spec, &places)?;
-    let pairs = places.pairs();
-    let pairs = pairs.into_iter().enumerate().map(|(index, targets)| {
-        let (from, to) = if places.all_pairs {
-            targets
-        } else {
-            (index, index)
-        };
-        Pair { from, to, targets }
-    });
     Ok(LegQuery {
         kind: spec.kind,
         compute: spec.mode == LegQueryMode::Compute,
-        pairs: pairs.collect(),
+        pairs: places.pairs(),
         scenario,
     })
 }
@@ -285,50 +330,19 @@ fn moved(problem: Problem, pointers: &[String]) -> Problem {
     }
 }
 
-/// The answer to a query.
-#[derive(Debug, Serialize, ToSchema)]
-#[schema(as = LegAnswers)]
-pub(crate) struct LegAnswersDocument {
-    /// `rest_to_rest`, `lower_bound` or `certified`.
-    pub(crate) kind: &'static str,
-    /// SHA-256 of the canonical text of the spacecraft; `null` when no leg is known.
-    pub(crate) spacecraft_key: Option<String>,
-    /// One entry for every leg, in the order of the query.
-    pub(crate) legs: Vec<LegAnswerDocument>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The answer for one leg.
-#[derive(Debug, Serialize, ToSchema)]
-#[schema(as = LegAnswer)]
-pub(crate) struct LegAnswerDocument {
-    /// Position in `attitudes` of the begin, or position of the pair.
-    pub(crate) from: usize,
-    /// Position in `attitudes` of the end, or position of the pair.
-    pub(crate) to: usize,
-    /// Minimum time, s; `null` when it is not known, and for `certified`, which solves nothing.
-    pub(crate) duration_s: Option<Number>,
-    /// No slew between these attitudes under the conditions of the kind takes less, s, proved, for
-    /// `certified` those of `rest_to_rest`; `null` where nothing is proved or nothing is known.
-    pub(crate) certified_lower_bound_s: Option<Number>,
-    /// How the solve ended (for `certified`: `proved`, or `none` without a bound); `no_clear_path` where
-    /// no way around the cones was found, `infeasible` where it is proved that there is none; `null`
-    /// when it was not tried.
-    pub(crate) status: Option<String>,
-    /// Where the time comes from.
-    pub(crate) source: Source,
-    /// Key of the cached leg; `null` when it is not stored.
-    pub(crate) key: Option<String>,
-}
-
-/// Where a leg time comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
-#[schema(as = LegSource)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Source {
-    /// It was known.
-    Cached,
-    /// It was solved for this query.
-    Computed,
-    /// It is not known.
-    Missing,
+    #[test]
+    fn a_matrix_lists_every_ordered_pair_once_and_in_order() {
+        let matrix = PairList::Matrix(5);
+        let listed: Vec<_> = (0..matrix.len()).map(|i| matrix.get(i).targets).collect();
+        let from_each = (0..5).flat_map(|from| (0..5).map(move |to| (from, to)));
+        let expected: Vec<_> = from_each.filter(|(from, to)| from != to).collect();
+        assert_eq!(listed, expected);
+        assert_eq!(matrix.part(18, 5), [matrix.get(18), matrix.get(19)]);
+        assert_eq!(PairList::Pairs(3).get(2).targets, (4, 5));
+        assert_eq!(PairList::Matrix(1).len(), 0);
+    }
 }

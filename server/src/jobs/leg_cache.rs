@@ -5,12 +5,15 @@ pub(crate) mod upkeep;
 use crate::base::clock::now_us;
 use crate::jobs::metrics::JobMetrics;
 use crate::store::{NewLeg, Store};
-use slewplan_solver::tour::legs::{LegStore, StoredLeg};
+use slewplan_solver::tour::legs::{LegStore, StoredLeg, StoredTime};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 use tokio::runtime::Handle;
 
 /// Number of legs per transaction.
 const BATCH: usize = 64;
+/// Interval between two writes of [`Unwritten::keep_writing`].
+const ROUND: Duration = Duration::from_millis(10);
 
 /// The legs of a database for one solve. New legs are written in batches, on request, and when the
 /// value is dropped, which must not happen on a thread of the runtime.
@@ -32,6 +35,14 @@ pub(crate) struct Unwritten {
 impl Unwritten {
     fn legs(&self) -> MutexGuard<'_, Vec<NewLeg>> {
         self.legs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes them at intervals, without end.
+    pub(crate) async fn keep_writing(self) {
+        loop {
+            tokio::time::sleep(ROUND).await;
+            self.write().await;
+        }
     }
 
     /// Writes all of them.
@@ -74,11 +85,28 @@ impl LegStore for LegCache {
             tracing::warn!(%error, "a leg cannot be looked up and is solved again");
             None
         });
-        self.metrics.looked_up(leg.is_some());
+        self.metrics.looked_up(leg.is_some(), 1);
         leg
     }
 
+    fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {
+        let times = self.runtime.block_on(async {
+            // What was solved a moment ago shall be found.
+            self.unwritten.write().await;
+            self.store.leg_snapshot().await?.times(identities).await
+        });
+        let times = times.unwrap_or_else(|error| {
+            tracing::warn!(%error, "legs cannot be looked up");
+            vec![None; identities.len()]
+        });
+        let found = times.iter().flatten().count();
+        self.metrics.looked_up(true, found);
+        self.metrics.looked_up(false, times.len() - found);
+        times
+    }
+
     fn put(&self, identity: &str, leg: &StoredLeg) {
+        self.metrics.leg_solved();
         let waiting = {
             let mut unwritten = self.unwritten.legs();
             unwritten.push(NewLeg {

@@ -2,7 +2,7 @@
 
 use crate::base::metrics::{Scrape, counter, histogram};
 use crate::store::{EndCode, Ended, JobRow, JobState};
-use prometheus::{HistogramVec, IntCounterVec};
+use prometheus::{HistogramVec, IntCounter, IntCounterVec};
 
 /// Upper ends of the buckets of times, s.
 const TIMES_S: [f64; 9] = [0.01, 0.1, 0.5, 1.0, 5.0, 15.0, 60.0, 300.0, 3600.0];
@@ -19,6 +19,7 @@ pub(crate) struct JobMetrics {
     /// Ends without a plan, by their cause.
     failures: IntCounterVec,
     leg_lookups: IntCounterVec,
+    legs_solved: IntCounter,
 }
 
 impl Default for JobMetrics {
@@ -35,6 +36,11 @@ impl Default for JobMetrics {
                 "Jobs that ended without a plan, by the first cause.",
                 &["cause"],
             ),
+            legs_solved: IntCounter::new(
+                "slewplan_legs_solved_total",
+                "Legs that were solved, or proved again, and given to the cache.",
+            )
+            .expect("a valid metric"),
             leg_lookups: counter(
                 "slewplan_leg_lookups_total",
                 "Legs that the solver looked up.",
@@ -76,10 +82,17 @@ impl JobMetrics {
         }
     }
 
-    /// Counts a look-up of a leg.
-    pub(super) fn looked_up(&self, found: bool) {
+    /// Counts look-ups of legs.
+    pub(super) fn looked_up(&self, found: bool, count: usize) {
         let outcome = if found { "hit" } else { "miss" };
-        self.leg_lookups.with_label_values(&[outcome]).inc();
+        self.leg_lookups
+            .with_label_values(&[outcome])
+            .inc_by(count as u64);
+    }
+
+    /// Counts a solved leg.
+    pub(super) fn leg_solved(&self) {
+        self.legs_solved.inc();
     }
 
     /// Adds them to a scrape.
@@ -89,5 +102,6 @@ impl JobMetrics {
         }
         scrape.add(&self.failures);
         scrape.add(&self.leg_lookups);
+        scrape.add(&self.legs_solved);
     }
 }

@@ -33,7 +33,7 @@ pub(super) struct JobContext<'a> {
 
 impl JobContext<'_> {
     /// The cause that stopped the solve.
-    fn interruption(&self) -> Interruption {
+    pub(super) fn interruption(&self) -> Interruption {
         match self.memory.exceeded() {
             Some(limit) => Interruption::Memory { limit },
             // The signal is set by requests, not by the time limit.
@@ -125,7 +125,7 @@ fn planned(plan: &Plan) -> Ended {
     }
 }
 
-fn without_plan(state: JobState, code: Option<EndCode>, detail: &str) -> Ended {
+pub(super) fn without_plan(state: JobState, code: Option<EndCode>, detail: &str) -> Ended {
     Ended {
         state,
         document: None,
@@ -138,7 +138,7 @@ fn without_plan(state: JobState, code: Option<EndCode>, detail: &str) -> Ended {
     }
 }
 
-fn refused(state: JobState, problems: &[Problem]) -> Ended {
+pub(super) fn refused(state: JobState, problems: &[Problem]) -> Ended {
     let first = problems.first().map(|first| EndCode::Problem(first.code));
     without_plan(state, first, &sentence(problems))
 }

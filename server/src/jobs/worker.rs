@@ -3,13 +3,14 @@
 //! It leases a job, solves it on the pool and records its end. It reaches the database through the
 //! handle of the runtime; nothing is computed on the runtime's threads.
 
+use super::leg_table::{self, TableStore};
 use super::memory::MemoryGuard;
 use super::progress::{Reporter, record};
 use super::segments::{self, SegmentCache};
 use super::solve::{self, JobContext};
 use super::{ActiveJob, Jobs};
 use crate::base::clock::now_us;
-use crate::store::{Ended, JobRow, JobState, Lease, StoreError};
+use crate::store::{Ended, JobRow, JobState, Lease, StoreError, Work};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use std::io;
@@ -161,7 +162,20 @@ impl WorkerThread {
             segments: &segments,
             memory: &memory,
         };
-        let ended = solve::solve(&lease.scenario, &context);
+        let ended = match job.work() {
+            Ok(Work::Plan) => solve::solve(&lease.scenario, &context),
+            Ok(Work::LegTable) => {
+                let writing = self.runtime.spawn(legs.unwritten().keep_writing());
+                let _writing = AbortOnDrop(writing.abort_handle());
+                let parts = TableStore {
+                    jobs: &self.jobs,
+                    lease: job,
+                    runtime: &self.runtime,
+                };
+                leg_table::solve(&lease.scenario, &context, &parts)
+            }
+            Err(error) => solve::without_plan(JobState::Failed, None, &error.to_string()),
+        };
         drop(memory);
         // Legs are stored before the end of the job is recorded, so that its observers find them.
         drop(legs);

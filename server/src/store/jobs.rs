@@ -1,7 +1,7 @@
 //! Jobs from the side of the API: submission, look-up, requests to stop or cancel, deletion.
 
 use super::writing::WriteTransaction;
-use super::{Counts, JobRow, JobState, Store, StoreError, events, results};
+use super::{Counts, JobRow, JobState, Store, StoreError, Work, events, results};
 use sqlx::{FromRow, Row, SqliteConnection};
 use strum::VariantArray as _;
 
@@ -10,11 +10,13 @@ use strum::VariantArray as _;
 pub(crate) struct Submission {
     /// Public identifier, unique.
     pub(crate) id: String,
+    /// What it makes.
+    pub(crate) work: Work,
     /// Name of the scenario.
     pub(crate) name: Option<String>,
-    /// The scenario as JSON, with its spacecraft written out.
+    /// The scenario or the query as JSON, with its spacecraft written out.
     pub(crate) scenario: Vec<u8>,
-    /// Number of its targets.
+    /// Number of its targets; of legs, for a table.
     pub(crate) targets: i64,
     /// The client whose job it is.
     pub(crate) client: Option<String>,
@@ -49,6 +51,8 @@ pub(crate) enum Submitted {
 /// Which jobs to list.
 #[derive(Debug, Default)]
 pub(crate) struct Listing {
+    /// Only jobs that make this.
+    pub(crate) work: Work,
     /// Only jobs of this client.
     pub(crate) client: Option<String>,
     /// Only jobs submitted before this one.
@@ -83,11 +87,12 @@ impl Store {
             return Ok(refusal);
         }
         let row = sqlx::query(concat!(
-            "INSERT INTO jobs (id, state, name, scenario, targets, client, submitted_us) \
-             VALUES (?, 'queued', ?, ?, ?, ?, ?) RETURNING ",
+            "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us) \
+             VALUES (?, 'queued', ?, ?, ?, ?, ?, ?) RETURNING ",
             job_columns!()
         ))
         .bind(&submission.id)
+        .bind(submission.work.into_str())
         .bind(&submission.name)
         .bind(&submission.scenario)
         .bind(submission.targets)
@@ -144,8 +149,8 @@ impl Store {
         if let Some(row) = ended {
             let job = JobRow::of(&row)?;
             events::append(&mut transaction, "state", &job, now_us).await?;
-            // An earlier attempt may have left a plan.
-            results::delete_incumbent(&mut transaction, job.sequence).await?;
+            // An earlier attempt may have left a plan, or a part of a table.
+            results::delete_unfinished(&mut transaction, job.sequence).await?;
         }
         let update = "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
              WHERE id = ? AND state = 'running'";
@@ -175,13 +180,14 @@ impl Store {
             job_columns!(),
             " FROM jobs WHERE (?1 IS NULL OR sequence < ?1) AND (?2 IS NULL OR state = ?2) \
              AND (?3 IS NULL OR name = ?3) AND (?4 IS NULL OR client = ?4) \
-             ORDER BY sequence DESC LIMIT ?5"
+             AND work = ?6 ORDER BY sequence DESC LIMIT ?5"
         ))
         .bind(listing.before)
         .bind(listing.state.map(|state| state.into_str()))
         .bind(&listing.name)
         .bind(&listing.client)
         .bind(listing.limit)
+        .bind(listing.work.into_str())
         .fetch_all(&self.readers)
         .await?)
     }

@@ -185,7 +185,7 @@ impl Store {
             return Ok(false);
         };
         if job.state()? == JobState::Cancelled {
-            results::delete_incumbent(&mut transaction, lease.sequence).await?;
+            results::delete_unfinished(&mut transaction, lease.sequence).await?;
         } else {
             results::store_result(&mut transaction, lease.sequence, ended).await?;
         }
@@ -242,7 +242,7 @@ impl Store {
                 JobState::Queued => recovered.queued += 1,
                 JobState::Cancelled => {
                     recovered.cancelled += 1;
-                    results::delete_incumbent(&mut transaction, job.sequence).await?;
+                    results::delete_unfinished(&mut transaction, job.sequence).await?;
                 }
                 _ => recovered.dead += 1,
             }
@@ -255,7 +255,7 @@ impl Store {
 
 /// Updates a leased job and appends the event. Returns the updated job, `None` when the lease has
 /// been lost.
-async fn update_leased(
+pub(super) async fn update_leased(
     transaction: &mut WriteTransaction,
     update: Query<'_, Sqlite, SqliteArguments>,
     kind: &'static str,

@@ -13,7 +13,7 @@ use std::str::FromStr;
 
 /// Legs of other versions of the solver are never found. They are replaced when they are solved
 /// again, and deleted when the service starts.
-const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
+pub(super) const SOLVER_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Tolerance on the scalar product of two unit quaternions: far above its rounding error, and less
 /// than 1e-6 rad as an angle.

@@ -18,7 +18,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 12] = [
+const HISTORY: [(&str, &str, &str); 13] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -31,6 +31,7 @@ const HISTORY: [(&str, &str, &str); 12] = [
     migration!("0030", "packed_plans"),
     migration!("0031", "bound_versions"),
     migration!("0040", "keep_out_violated"),
+    migration!("0041", "leg_tables"),
 ];
 
 /// What brings a database to the schema of this version.

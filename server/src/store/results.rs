@@ -36,7 +36,7 @@ pub(crate) struct NewIncumbent {
 macro_rules! results_of_job {
     () => {
         " FROM jobs LEFT JOIN results r ON r.job = sequence \
-         LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = ?"
+         LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = ? AND work = 'plan'"
     };
 }
 
@@ -122,11 +122,8 @@ pub(super) async fn store_result(
     Ok(())
 }
 
-/// Deletes the incumbent of a job that is cancelled or ends with another plan.
-pub(super) async fn delete_incumbent(
-    connection: &mut SqliteConnection,
-    job: i64,
-) -> Result<(), StoreError> {
+/// Deletes the incumbent of a job that ends with another plan.
+async fn delete_incumbent(connection: &mut SqliteConnection, job: i64) -> Result<(), StoreError> {
     sqlx::query("DELETE FROM incumbents WHERE job = ?")
         .bind(job)
         .execute(connection)
@@ -134,8 +131,21 @@ pub(super) async fn delete_incumbent(
     Ok(())
 }
 
+/// Deletes what there is so far of a job that is cancelled: its best plan, or parts of its table.
+pub(super) async fn delete_unfinished(
+    connection: &mut SqliteConnection,
+    job: i64,
+) -> Result<(), StoreError> {
+    delete_incumbent(connection, job).await?;
+    sqlx::query("DELETE FROM leg_table_parts WHERE job = ?")
+        .bind(job)
+        .execute(connection)
+        .await?;
+    Ok(())
+}
+
 impl Store {
-    /// The scenario of a job as JSON, and when it was submitted; `None` when there is no such job.
+    /// The scenario of a job as JSON, or the query of a table, and when it was submitted; `None` when there is no such job.
     pub(crate) async fn scenario(&self, id: &str) -> Result<Option<(Vec<u8>, i64)>, StoreError> {
         let found = sqlx::query_as("SELECT scenario, submitted_us FROM jobs WHERE id = ?")
             .bind(id)

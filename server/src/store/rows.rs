@@ -3,6 +3,7 @@
 use super::StoreError;
 use sqlx::FromRow as _;
 use sqlx::sqlite::SqliteRow;
+use std::str::FromStr as _;
 
 /// The state of a job.
 #[derive(
@@ -60,6 +61,17 @@ impl JobState {
     }
 }
 
+/// What a job makes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case", const_into_str)]
+pub(crate) enum Work {
+    /// A plan for a scenario.
+    #[default]
+    Plan,
+    /// A table of leg times.
+    LegTable,
+}
+
 row! {
     columns job_columns;
     /// A job without its scenario.
@@ -70,9 +82,10 @@ row! {
         /// Public identifier.
         pub(crate) id: String,
         state: String,
+        work: String,
         /// Name of the scenario.
         pub(crate) name: Option<String>,
-        /// Number of targets.
+        /// Number of targets; of legs, for a table.
         pub(crate) targets: i64,
         /// Stage of the solve.
         pub(crate) stage: Option<String>,
@@ -80,6 +93,12 @@ row! {
         pub(crate) done: Option<i64>,
         /// Steps of the stage in all.
         pub(crate) total: Option<i64>,
+        /// Of the legs of a table so far: found in the cache.
+        pub(crate) legs_cached: Option<i64>,
+        /// Solved.
+        pub(crate) legs_computed: Option<i64>,
+        /// Without a time.
+        pub(crate) legs_missing: Option<i64>,
         /// Duration of the best plan so far, s.
         pub(crate) incumbent_s: Option<f64>,
         /// Lower bound on the duration, s.
@@ -111,6 +130,14 @@ impl JobRow {
     /// The state of the job.
     pub(crate) fn state(&self) -> Result<JobState, StoreError> {
         JobState::stored(&self.state)
+    }
+
+    /// What the job makes.
+    pub(crate) fn work(&self) -> Result<Work, StoreError> {
+        Work::from_str(&self.work).map_err(|_| StoreError::Inconsistent {
+            table: "jobs",
+            what: format!("no job makes a {}", self.work),
+        })
     }
 
     pub(super) fn of(row: &SqliteRow) -> Result<Self, StoreError> {

@@ -9,7 +9,7 @@ mod statements;
 
 use super::{
     Ended, JobRow, JobState, Lease, NewIncumbent, PackedPlan, ProgressRow, QueueLimits, ResultRow,
-    SegmentRow, Store, StoreError, Submission, Submitted,
+    SegmentRow, Store, StoreError, Submission, Submitted, Work,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -57,6 +57,7 @@ fn ended(state: JobState, plan: Option<NewIncumbent>) -> Ended {
 
 fn submission() -> Submission {
     Submission {
+        work: Work::Plan,
         id: ID.into(),
         name: None,
         scenario: b"{}".into(),

@@ -50,12 +50,43 @@ pub struct StoredLeg {
     pub motion: Motion,
 }
 
+/// The time of a stored leg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StoredTime {
+    /// Minimum time, s.
+    pub duration_s: f64,
+    /// No slew with the conditions at the two ends takes less, s, proved; `None` where nothing is.
+    pub certified_lower_bound_s: Option<f64>,
+    /// Whether this version of the bounds has tried to prove it.
+    pub is_bound_current: bool,
+    /// Wall-clock time of the solve with all its starts, s.
+    pub solve_time_s: f64,
+}
+
+impl From<&StoredLeg> for StoredTime {
+    fn from(leg: &StoredLeg) -> Self {
+        Self {
+            duration_s: leg.duration_s,
+            certified_lower_bound_s: leg.certified_lower_bound_s,
+            is_bound_current: leg.certified_lower_bound_s.is_some(),
+            solve_time_s: leg.solve_time_s,
+        }
+    }
+}
+
 /// Remembers legs by their identity.
 ///
 /// Called from the solver's workers; must not fail a solve: a store in trouble forgets.
 pub trait LegStore: Sync {
     /// The leg of an identity, when it is known.
     fn get(&self, identity: &str) -> Option<StoredLeg>;
+
+    /// The times of the legs of many identities, in their order; `None` for legs that are not known.
+    /// Their motions are not read.
+    fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {
+        let time = |identity: &&str| self.get(identity).map(|leg| StoredTime::from(&leg));
+        identities.iter().map(time).collect()
+    }
 
     /// Remembers a leg.
     fn put(&self, identity: &str, leg: &StoredLeg);

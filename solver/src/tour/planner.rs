@@ -11,6 +11,7 @@ mod guesses;
 mod history;
 mod imported;
 mod lagrangian;
+mod leg_time_table;
 mod legs;
 mod memory;
 mod places;
@@ -42,13 +43,12 @@ use crate::wheels::envelope::momentum_problems;
 use additive_tours::LegTimes;
 use first_tour::{first_order, first_tour};
 use legs::LegSolver;
-use places::Places;
+use places::{Places, places_of};
 use plan_builder::PlanBuilder;
 use std::time::{Duration, Instant};
-use tables::CertifiedLeg;
 use tour_bound::tour_bound;
 use tours::Tours;
-use unsolved::{leg_status, unsolved};
+use unsolved::unsolved;
 
 pub use canonical::cones_of;
 pub use certificate::{
@@ -57,6 +57,7 @@ pub use certificate::{
 };
 pub use fixed_order::{BoundFrom, OrderError, solve_order};
 pub use imported::LegCheck;
+pub use leg_time_table::{LegTime, LegTimeTable};
 pub use memory::memory_estimate;
 
 /// What a solve needs from its surroundings.
@@ -208,77 +209,35 @@ pub fn leg_table(
     shard: Shard,
     run: Run<'_>,
 ) -> (Vec<LegRow>, bool) {
-    let stop = limited(scenario, run.stop);
-    let places = Places::of(scenario);
-    let pairs: Vec<_> = all_pairs(&places)
+    let pairs: Vec<_> = all_pairs(scenario)
         .into_iter()
         .enumerate()
         .filter(|(i, _)| i % shard.of.max(1) == shard.index)
         .map(|(_, pair)| pair)
         .collect();
-    let solver = LegSolver::new(&places, run, &stop);
-    let rows = rows(&solver, run.pool, kind, &pairs);
-    let rows: Vec<_> = rows.into_iter().flatten().collect();
+    let legs = LegTimeTable::of(scenario, kind, run);
+    let times = legs.solved(&pairs);
+    let rows = pairs.iter().zip(times).filter_map(|((from, to), time)| {
+        let time = time?;
+        Some(LegRow {
+            from: legs.name(*from),
+            to: legs.name(*to),
+            kind,
+            duration_s: time.duration_s,
+            certified_lower_bound_s: time.certified_lower_bound_s,
+            solve_time_s: time.solve_time_s,
+            status: time.status.into(),
+        })
+    });
+    let rows: Vec<_> = rows.collect();
     let complete = rows.len() == pairs.len();
     (rows, complete)
 }
 
-/// The legs of a kind between pairs of places, which must be those of the scenario. `None` for pairs
-/// that were not reached before the stop signal.
+/// Canonical text of the spacecraft of a scenario, which its stored legs have.
 #[must_use]
-pub fn legs_between(
-    scenario: &Scenario,
-    kind: LegKind,
-    pairs: &[(Place, Place)],
-    run: Run<'_>,
-) -> Vec<Option<LegRow>> {
-    let stop = limited(scenario, run.stop);
-    let places = Places::of(scenario);
-    rows(&LegSolver::new(&places, run, &stop), run.pool, kind, pairs)
-}
-
-/// The rows of a table of legs; of [`LegKind::Certified`] no leg is solved.
-fn rows(
-    solver: &LegSolver<'_>,
-    pool: &SolverPool,
-    kind: LegKind,
-    pairs: &[(Place, Place)],
-) -> Vec<Option<LegRow>> {
-    if kind == LegKind::Certified {
-        return certified_rows(solver, pairs);
-    }
-    let (places, table) = (solver.places(), solver.table(kind, pairs));
-    // Where cones leave no way, finding out that they do takes as long as a solve.
-    pool.map(pairs, |(from, to)| {
-        let leg = &table.get(*from, *to)?.leg;
-        Some(LegRow {
-            from: places.name(*from),
-            to: places.name(*to),
-            kind,
-            duration_s: leg.solution.duration(),
-            certified_lower_bound_s: leg.certified,
-            solve_time_s: leg.solve_time,
-            status: leg_status(places, [*from, *to], &leg.solution).into(),
-        })
-    })
-}
-
-/// The rows of a table of certified bounds.
-fn certified_rows(solver: &LegSolver<'_>, pairs: &[(Place, Place)]) -> Vec<Option<LegRow>> {
-    let kind = LegKind::Certified;
-    let legs = solver.certified_legs(kind, pairs);
-    let places = solver.places();
-    let row = |((from, to), leg): (&(Place, Place), CertifiedLeg)| LegRow {
-        from: places.name(*from),
-        to: places.name(*to),
-        kind,
-        duration_s: None,
-        certified_lower_bound_s: leg.lower_bound,
-        solve_time_s: leg.solve_time,
-        status: leg.lower_bound.map_or("none", |_| "proved").into(),
-    };
-    let legs = pairs.iter().zip(legs);
-    legs.map(|(pair, leg)| Some(row((pair, leg?)))).collect()
+pub fn described_spacecraft(scenario: &Scenario) -> String {
+    Places::of(scenario).described
 }
 
 /// Problems of a valid scenario that are found without solving it: for example a required rest
@@ -299,8 +258,8 @@ fn limited(scenario: &Scenario, stop: &StopSignal) -> StopSignal {
 }
 
 /// All ordered pairs of different places, in the order of a table's rows.
-fn all_pairs(places: &Places<'_>) -> Vec<(Place, Place)> {
-    let all = places.all();
+fn all_pairs(scenario: &Scenario) -> Vec<(Place, Place)> {
+    let all = places_of(scenario);
     all.iter()
         .flat_map(|from| all.iter().map(move |to| (*from, *to)))
         .filter(|(from, to)| from != to)

@@ -4,11 +4,12 @@ a service.
 
     python3 tests/clients/python/check.py
 
-Installs PyYAML and mypy from PyPI first where they are not there (CLIENT_VENV names another place).
+Installs PyYAML, mypy and readers of tables from PyPI first where they are not there (CLIENT_VENV names another place).
 SLEWPLAN names a built binary.
 """
 
 import inspect
+import io
 import os
 import subprocess
 import sys
@@ -23,10 +24,13 @@ PACKAGE = TESTS.parent / "server" / "python"
 sys.path[:0] = [str(PACKAGE), str(TESTS / "peers"), str(TESTS / "load")]
 from environment import Environment  # noqa: E402
 
-CLIENT = Environment("client", ("mypy==2.4.1", "PyYAML"), ("mypy", "yaml"), "CLIENT_VENV")
+NEEDED = ("mypy==2.4.1", "PyYAML", "numpy", "pandas", "pyarrow")
+CLIENT = Environment("client", NEEDED, ("mypy", "yaml", "numpy", "pandas", "pyarrow"), "CLIENT_VENV")
 # Types of the client by their names in the description.
 TYPES = {
     "Job": "Job",
+    "LegAnswer": "LegTime",
+    "LegTableJob": "LegTableJob",
     "Plan": "Plan",
     "Leg": "Leg",
     "Passage": "Passage",
@@ -111,6 +115,38 @@ def used(folder):
             raise AssertionError("nonsense was accepted")
 
 
+def tabulated(folder):
+    """Tables of leg times, as others read them."""
+    with Service(Path(folder, "legs.db")) as service:
+        client = slewplan.Client(f"http://{service.host}:{service.port}")
+        attitudes = [{"roll_pitch_yaw_deg": [10 * number, 0, 25 * number]} for number in range(4)]
+        query = {"spacecraft": fixture("two-targets")["spacecraft"], "attitudes": attitudes}
+        job = client.submit_legs(query, idempotency_key="legs")
+        assert list(client.leg_events(job["id"]))[-1]["done"] == 12
+        job = client.wait_legs(job["id"])
+        assert (job["state"], job["done"], job["missing"]) == ("succeeded", 12, 0), job
+        table = client.leg_table(job["id"])
+        times, frame = table.array(), table.frame()
+        assert times.shape == (4, 4) and (times[~numpy.eye(4, dtype=bool)] > 0).all()
+        assert numpy.allclose(times, times.T) and (times >= table.array("certified_lower_bound_s")).all()
+        for row in frame.itertuples():
+            assert times[row[1], row.to] == row.duration_s
+        read = pyarrow.parquet.read_table(io.BytesIO(client.export_legs(job["id"], "parquet")))
+        assert read.schema.metadata[b"kind"] == b"rest_to_rest"
+        assert read.to_pylist() == table.rows
+        csv = pandas.read_csv(io.BytesIO(client.export_legs(job["id"], "csv")), float_precision="round_trip")
+        assert (csv.duration_s == frame.duration_s).all() and (csv.key == frame.key).all()
+        assert {row["source"] for row in client.query_legs(query).rows} == {"cached"}
+        client.delete_legs(job["id"])
+        for call in (client.leg_job, client.stop_legs, client.cancel_legs, client.leg_table):
+            try:
+                call(job["id"])
+            except slewplan.Refused as refused:
+                assert (refused.status, refused.code) == (404, "not_found")
+            else:
+                raise AssertionError("a deleted table was found")
+
+
 def main():
     description = yaml.safe_load((TESTS.parent / "openapi.yaml").read_text(encoding="utf-8"))
     wrong = described(description)
@@ -120,11 +156,15 @@ def main():
     subprocess.run(strict, check=True)
     with tempfile.TemporaryDirectory() as folder:
         used(folder)
+        tabulated(folder)
     print("the client agrees with openapi.yaml and with the service")
 
 
 if __name__ == "__main__":
     CLIENT.enter()
+    import numpy
+    import pandas
+    import pyarrow.parquet
     import slewplan
     import yaml
     from service import Service, fixture

@@ -7,7 +7,7 @@ use slewplan_solver::model::plan::{Control, Flight, Passage};
 use slewplan_solver::model::spec::{ScenarioSpec, TargetSpec};
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::order::Place;
-use slewplan_solver::tour::planner::legs_between;
+use slewplan_solver::tour::planner::LegTimeTable;
 use slewplan_tests::published_targets_spec;
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, scenario_of};
@@ -199,7 +199,9 @@ fn compare(generator: &mut Generator, count: usize) -> (usize, f64) {
     }
     let scenario = scenario_of(&all);
     let kind = LegKind::Certified;
-    let rows = on_threads(1, |run| legs_between(&scenario, kind, &pairs, run));
+    let rows = on_threads(1, |run| {
+        LegTimeTable::of(&scenario, kind, run).solved(&pairs)
+    });
     let mut open = f64::INFINITY;
     for (row, duration_s) in rows.into_iter().flatten().zip(durations) {
         let bound_s = row.certified_lower_bound_s.expect("a bound");

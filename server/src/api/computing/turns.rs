@@ -6,7 +6,7 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 /// The permission to do work; passes to the next request when it is dropped.
-pub(super) type WorkTurn = OwnedSemaphorePermit;
+pub(in crate::api) type WorkTurn = OwnedSemaphorePermit;
 
 /// The turns of one kind of work.
 pub(in crate::api) struct Turns {
@@ -27,7 +27,7 @@ impl Turns {
     }
 
     /// Waits for a turn; requests get them in the order of their arrival.
-    pub(super) async fn take(&self) -> Result<WorkTurn, ApiError> {
+    pub(in crate::api) async fn take(&self) -> Result<WorkTurn, ApiError> {
         let turn = Arc::clone(&self.free).acquire_owned();
         match tokio::time::timeout(self.longest_wait, turn).await {
             Ok(Ok(turn)) => Ok(turn),

@@ -1,34 +1,40 @@
 //! `POST /v1/legs/query`: leg times between attitudes.
 
 use super::super::access::Caller;
+use super::super::computing::{self, WorkTurn};
 use super::super::describe::{self, BodyErrors, LegQueryBody, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::extract::JsonBody;
-use super::super::{App, computing, stored};
+use super::super::{App, negotiation, stored, streaming};
 use crate::base::contradictions::ContradictionObserver;
-use crate::documents::leg_query::{
-    self, LegAnswerDocument, LegAnswersDocument, LegQuery, Pair, Refusal, Source,
-};
-use crate::documents::number::Number;
+use crate::documents::document::Node;
+use crate::documents::leg_query::{self, LegQuery, MAX_LEGS, Refusal};
+use crate::documents::leg_rows::{LegAnswerDocument, LegAnswersDocument, LegRow};
+use crate::render::leg_table::{TableForm, TableHead, TableWriter};
 use crate::store::leg_key;
-use axum::Json;
 use axum::extract::State;
-use slewplan_solver::run::pool::SolverPool;
+use axum::http::{HeaderMap, header};
+use axum::response::{IntoResponse, Response};
 use slewplan_solver::run::stop::StopSignal;
-use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore, StoredLeg};
-use slewplan_solver::tour::order::Place;
-use slewplan_solver::tour::planner::{self, LegRow, Run};
-use std::sync::{Arc, Mutex, PoisonError};
+use slewplan_solver::tour::legs::{LegKind, LegStore, NoStore};
+use slewplan_solver::tour::planner::{LegTimeTable, Run};
+use std::io::{self, Write};
+use std::sync::Arc;
 use tokio::runtime::Handle;
 
-/// Maximum number of legs of one query: the full matrix of 32 attitudes.
+/// Maximum number of legs that a query solves: the full matrix of 32 attitudes.
 pub(in crate::api) const MAX_PAIRS: usize = 1000;
+/// Number of legs that are worked out and written together.
+const PART: usize = 8192;
 
 /// Query leg times
 ///
-/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers at once with the
-/// cached legs; `compute` also solves the missing ones, for at most a minute. Legs of the kind
-/// `certified` are only computed, without solving any slew, and not stored.
+/// For pairs of attitudes, or the full matrix of a list. `cached_only` answers with the cached legs,
+/// all of one moment; `compute` also solves the missing ones, at most 1,000 legs and for at most a
+/// minute: larger tables are jobs, `POST /v1/leg-tables`. Legs of the kind `certified` are only
+/// computed, without solving any slew, and not stored. Tables that solve nothing have up to 1,000,000
+/// legs and are sent while they are made; the connection breaks off when one cannot be finished.
+/// Times of cached legs are those of their solve, when their motions were verified.
 #[utoipa::path(
     post, path = "/v1/legs/query", tag = "legs", operation_id = "query_legs",
     request_body(content = LegQueryBody, examples(
@@ -38,194 +44,145 @@ pub(in crate::api) const MAX_PAIRS: usize = 1000;
             value = json!(describe::leg_pair()))),
     )),
     responses(
-        (status = 200, description = "One answer for every leg", body = LegAnswersDocument),
+        (status = 200, description = "One answer for every leg; `application/x-ndjson`: a `LegAnswer` a \
+            line; `text/csv` and Apache Parquet: the same as columns",
+            content(
+                (LegAnswersDocument = "application/json"),
+                (LegAnswerDocument = "application/x-ndjson"),
+                (String = "text/csv"),
+                (String = "application/vnd.apache.parquet"),
+            )),
+        (status = 406, description = "No accepted form", body = ProblemDetails<'static>,
+            content_type = "application/problem+json"),
         BodyErrors, ServerErrors,
     ),
 )]
 pub(in crate::api) async fn handler(
     State(app): State<App>,
     caller: Caller,
+    headers: HeaderMap,
     body: JsonBody,
-) -> Result<Json<LegAnswersDocument>, ApiError> {
+) -> Result<Response, ApiError> {
+    let form = accepted(&headers, &FORMS)?;
     let (node, _) = stored::write_out(&app, &caller, body.node, "").await?;
-    let query = leg_query::read(&node, MAX_PAIRS).map_err(|refusal| match refusal {
+    let query = read(&node)?;
+    let certifies = query.kind == LegKind::Certified;
+    if query.compute && !certifies {
+        if query.pairs.len() > MAX_PAIRS {
+            return Err(too_many(query.pairs.len(), MAX_PAIRS, "max_leg_pairs"));
+        }
+        let legs = app.jobs().legs(Handle::current());
+        let pool = Arc::clone(&app.0.pool);
+        let work = move |stop: &StopSignal| {
+            let run = Run {
+                pool: &pool,
+                stop,
+                observer: &ContradictionObserver,
+                legs: &legs,
+                segments: &NoStore,
+            };
+            write(&query, run, form, Vec::new())
+        };
+        let body = computing::in_turn(&app, computing::LONGEST, work).await?;
+        let body = body.map_err(|error| {
+            tracing::error!(%error, "leg times cannot be written");
+            ApiError::new(ErrorCode::Internal, "the leg times cannot be written")
+        })?;
+        return Ok(([(header::CONTENT_TYPE, form.media_type())], body).into_response());
+    }
+    let turn = app.0.tabulating.take().await?;
+    streamed(&app, turn, query, form).await
+}
+
+/// All forms, the preferred one first.
+const FORMS: [TableForm; 4] = [
+    TableForm::Json,
+    TableForm::Ndjson,
+    TableForm::Csv,
+    TableForm::Parquet,
+];
+
+/// The form that a request accepts.
+pub(in crate::api) fn accepted(
+    headers: &HeaderMap,
+    forms: &[TableForm],
+) -> Result<TableForm, ApiError> {
+    negotiation::accepted(headers, forms, TableForm::media_type).ok_or_else(|| {
+        let types: Vec<_> = forms.iter().map(|form| form.media_type()).collect();
+        let detail = format!("there is {}", types.join(", "));
+        ApiError::new(ErrorCode::NotAcceptable, detail)
+    })
+}
+
+/// Reads a query for legs.
+pub(in crate::api) fn read(node: &Node) -> Result<LegQuery, ApiError> {
+    leg_query::read(node).map_err(|refusal| match refusal {
         Refusal::Invalid(problems) => ApiError::input(problems),
-        Refusal::TooMany(count) => {
-            let detail = format!("{count} legs; the limit is {MAX_PAIRS} (max_leg_pairs)");
-            ApiError::new(ErrorCode::TooManyPairs, detail)
-        }
-    })?;
-    if !query.compute {
-        let stop = StopSignal::new();
-        stop.request();
-        let answers =
-            computing::at_once(&app, stop, computing::LONGEST, work(&app, query, false)).await;
-        return answers.map(Json);
-    }
-    computing::in_turn(&app, computing::LONGEST, work(&app, query, true))
-        .await
-        .map(Json)
+        Refusal::TooMany(count) => too_many(count, MAX_LEGS, "max_table_legs"),
+    })
 }
 
-/// The work of a query.
-fn work(
+fn too_many(count: usize, limit: usize, name: &str) -> ApiError {
+    let detail = format!("{count} legs; the limit is {limit} ({name})");
+    ApiError::new(ErrorCode::TooManyPairs, detail)
+}
+
+/// A table for which nothing is solved, written while the client reads it.
+async fn streamed(
     app: &App,
+    turn: WorkTurn,
     query: LegQuery,
-    compute: bool,
-) -> impl FnOnce(&StopSignal) -> LegAnswersDocument + Send + use<> {
-    let cache = app.jobs().legs(Handle::current());
-    let pool = Arc::clone(if compute { &app.0.pool } else { &app.0.lookups });
-    move |stop| {
-        let answers = answers(&query, &pool, stop, &cache);
-        // Stores new legs before the answer names their keys.
-        drop(cache);
-        answers
-    }
-}
-
-fn answers(
-    query: &LegQuery,
-    pool: &SolverPool,
-    stop: &StopSignal,
-    cache: &dyn LegStore,
-) -> LegAnswersDocument {
-    let answered = if query.kind == LegKind::Certified {
-        certified(query, pool, stop)
+    form: TableForm,
+) -> Result<Response, ApiError> {
+    let legs = app.jobs().legs_at_once(Handle::current()).await?;
+    let pool = if query.compute {
+        &app.0.pool
     } else {
-        pool.map(&query.pairs, |pair| answer(query, pair, pool, stop, cache))
+        &app.0.lookups
     };
-    let spacecraft_key = answered
-        .iter()
-        .find_map(|(_, spacecraft)| spacecraft.clone());
-    LegAnswersDocument {
+    let pool = Arc::clone(pool);
+    Ok(streaming::streamed(
+        app,
+        turn,
+        form.media_type(),
+        move |output| {
+            let run = Run {
+                pool: &pool,
+                stop: &StopSignal::new(),
+                observer: &ContradictionObserver,
+                legs: &legs as &dyn LegStore,
+                segments: &NoStore,
+            };
+            write(&query, run, form, output)
+        },
+    ))
+}
+
+/// Works out the legs of a query part by part, and writes them.
+fn write<W: Write + Send>(
+    query: &LegQuery,
+    run: Run<'_>,
+    form: TableForm,
+    output: W,
+) -> io::Result<W> {
+    let table = LegTimeTable::of(&query.scenario, query.kind, run);
+    let head = TableHead {
         kind: query.kind.into(),
-        spacecraft_key,
-        legs: answered.into_iter().map(|(leg, _)| leg).collect(),
-    }
-}
-
-/// The answers for certified legs, computed together because they share the preparation of the
-/// spacecraft.
-fn certified(
-    query: &LegQuery,
-    pool: &SolverPool,
-    stop: &StopSignal,
-) -> Vec<(LegAnswerDocument, Option<String>)> {
-    let places: Vec<_> = query.pairs.iter().map(places).collect();
-    let run = Run {
-        pool,
-        stop,
-        observer: &ContradictionObserver,
-        legs: &NoStore,
-        segments: &NoStore,
+        spacecraft_key: &leg_key(table.spacecraft()),
     };
-    let rows = planner::legs_between(&query.scenario, query.kind, &places, run);
-    let answer = |(pair, row): (&Pair, Option<LegRow>)| {
-        let source = row.as_ref().map_or(Source::Missing, |_| Source::Computed);
-        (document(pair, row, source, None), None)
-    };
-    query.pairs.iter().zip(rows).map(answer).collect()
-}
-
-/// The places of the query's scenario between which a leg is.
-fn places(pair: &Pair) -> (Place, Place) {
-    let (from, to) = pair.targets;
-    (Place::Target(from), Place::Target(to))
-}
-
-/// The answer for a leg and the key of its spacecraft.
-fn answer(
-    query: &LegQuery,
-    pair: &Pair,
-    pool: &SolverPool,
-    stop: &StopSignal,
-    cache: &dyn LegStore,
-) -> (LegAnswerDocument, Option<String>) {
-    let store = ObservedStore {
-        cache,
-        seen: Mutex::default(),
-    };
-    let run = Run {
-        pool,
-        stop,
-        observer: &ContradictionObserver,
-        legs: &store,
-        segments: &NoStore,
-    };
-    let rows = planner::legs_between(&query.scenario, query.kind, &[places(pair)], run);
-    let seen = store
-        .seen
-        .into_inner()
-        .unwrap_or_else(PoisonError::into_inner);
-    let row = rows.into_iter().flatten().next();
-    let source = match (&row, &seen) {
-        (Some(_), Some(seen)) if seen.found => Source::Cached,
-        (Some(row), _) if row.duration_s.is_some() => Source::Computed,
-        _ => Source::Missing,
-    };
-    let document = document(pair, row, source, seen.as_ref());
-    (document, seen.map(|seen| seen.spacecraft))
-}
-
-fn document(
-    pair: &Pair,
-    row: Option<LegRow>,
-    source: Source,
-    seen: Option<&Seen>,
-) -> LegAnswerDocument {
-    LegAnswerDocument {
-        from: pair.from,
-        to: pair.to,
-        duration_s: row.as_ref().and_then(|row| row.duration_s).map(Number),
-        certified_lower_bound_s: row
-            .as_ref()
-            .and_then(|row| row.certified_lower_bound_s)
-            .map(Number),
-        status: row.map(|row| row.status),
-        source,
-        key: seen.map(|seen| seen.key.clone()),
+    let mut writer = TableWriter::begin(form, head, output)?;
+    for first in (0..query.pairs.len()).step_by(PART) {
+        let pairs = query.pairs.part(first, PART);
+        let places: Vec<_> = pairs.iter().map(leg_query::Pair::places).collect();
+        let times = if query.compute {
+            table.solved(&places)
+        } else {
+            table.known(&places)
+        };
+        let rows = times.into_iter().zip(pairs);
+        let rows =
+            rows.map(|(time, pair)| time.map_or(LegRow::MISSING, LegRow::from).between(pair));
+        writer.rows(&rows.collect::<Vec<_>>())?;
     }
-}
-
-/// A leg store that records the last leg that the solver looked for, if it read or wrote it: where the
-/// leg without cones enters one, the leg around it comes after it.
-struct ObservedStore<'a> {
-    cache: &'a dyn LegStore,
-    seen: Mutex<Option<Seen>>,
-}
-
-struct Seen {
-    key: String,
-    spacecraft: String,
-    found: bool,
-}
-
-impl Seen {
-    fn of(identity: &str, leg: &StoredLeg, found: bool) -> Self {
-        Self {
-            key: leg_key(identity),
-            spacecraft: leg_key(&leg.spacecraft),
-            found,
-        }
-    }
-}
-
-impl ObservedStore<'_> {
-    fn note(&self, seen: Option<Seen>) {
-        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = seen;
-    }
-}
-
-impl LegStore for ObservedStore<'_> {
-    fn get(&self, identity: &str) -> Option<StoredLeg> {
-        let leg = self.cache.get(identity);
-        let seen = leg.as_ref().map(|leg| Seen::of(identity, leg, true));
-        self.note(seen);
-        leg
-    }
-
-    fn put(&self, identity: &str, leg: &StoredLeg) {
-        self.cache.put(identity, leg);
-        self.note(Some(Seen::of(identity, leg, false)));
-    }
+    writer.finish()
 }

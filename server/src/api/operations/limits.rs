@@ -1,7 +1,8 @@
 //! `GET /v1/limits`: the limits on requests.
 
 use super::super::App;
-use super::super::{computing, legs::query, plans::create};
+use super::super::{computing, jobs::submission, legs::query};
+use crate::documents::leg_query::MAX_LEGS;
 use axum::Json;
 use axum::extract::State;
 use serde::Serialize;
@@ -25,8 +26,10 @@ pub(in crate::api) struct LimitsDocument {
     client_queue_limit: i64,
     /// Longest `Prefer: wait`, s.
     max_wait_s: u64,
-    /// Maximum number of legs of a query.
+    /// Maximum number of legs that a query computes.
     max_leg_pairs: usize,
+    /// Maximum number of legs of a table: looked up, certified, or computed by a job.
+    max_table_legs: usize,
     /// Longest time that a query for legs may compute, s.
     max_leg_query_s: u64,
     /// Threads of the solver.
@@ -46,8 +49,9 @@ pub(in crate::api) async fn handler(State(app): State<App>) -> Json<LimitsDocume
         job_memory_bytes: app.jobs().memory_limit(),
         queue_limit: app.jobs().queue_limits().all,
         client_queue_limit: app.jobs().queue_limits().client,
-        max_wait_s: create::MAX_WAIT_S,
+        max_wait_s: submission::MAX_WAIT_S,
         max_leg_pairs: query::MAX_PAIRS,
+        max_table_legs: MAX_LEGS,
         max_leg_query_s: computing::MAX_S,
         solver_threads: app.0.pool.threads(),
     })

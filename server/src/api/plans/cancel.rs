@@ -4,11 +4,10 @@ use super::super::App;
 use super::super::describe::{Conflict, NotFound, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::Named;
-use super::super::respond;
+use super::super::jobs;
 use crate::documents::jobs::JobDocument;
-use crate::store::JobState;
+use crate::store::Work;
 use axum::extract::State;
-use axum::http::StatusCode;
 use axum::response::Response;
 
 /// Cancel a queued or running job
@@ -27,11 +26,5 @@ pub(in crate::api) async fn handler(
     State(app): State<App>,
     Named(id): Named,
 ) -> Result<Response, ApiError> {
-    let job = super::present(app.jobs().cancel(&id).await?, &id)?;
-    match job.state()? {
-        JobState::Queued | JobState::Running => {}
-        JobState::Cancelled => return respond::job(StatusCode::OK, &job),
-        ended => return Err(super::has_ended(ended)),
-    }
-    super::ending(&app, &id).await
+    jobs::cancel(&app, Work::Plan, &id).await
 }

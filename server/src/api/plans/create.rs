@@ -3,18 +3,19 @@
 use super::super::App;
 use super::super::access::Caller;
 use super::super::describe::{BodyErrors, QuotaErrors, Scenario, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
-use super::super::extract::{JsonBody, Parameters, header_text};
-use super::super::{admission, respond, stored};
+use super::super::error::ApiError;
+use super::super::extract::{JsonBody, Parameters};
+use super::super::jobs::{self, submission};
+use super::super::{admission, stored};
 use crate::base::digest;
 use crate::documents;
 use crate::documents::jobs::JobDocument;
 use crate::documents::plan::PlanDocument;
 use crate::documents::problems::ValidationDocument;
-use crate::store::{JobRow, Submission, Submitted};
+use crate::store::{JobRow, Submission, Work};
 use axum::Json;
 use axum::extract::State;
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use slewplan_solver::model::scenario::Validated;
@@ -22,10 +23,6 @@ use slewplan_solver::tour::planner;
 use std::time::Duration;
 use utoipa::IntoParams;
 use uuid::Uuid;
-
-/// Longest wait of a request for its plan, s.
-pub(in crate::api) const MAX_WAIT_S: u64 = 60;
-const MAX_KEY: usize = 255;
 
 /// Parameters of a submission.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -89,11 +86,11 @@ pub(in crate::api) async fn handler(
     headers: HeaderMap,
     body: JsonBody,
 ) -> Result<Response, ApiError> {
-    let key = idempotency_key(&headers)?;
+    let key = submission::idempotency_key(&headers)?;
     let fingerprint = digest::hex(&body.bytes);
     admission::check_size(&app, &body.node)?;
     if key.is_none() && !query.validate_only {
-        check_room(&app).await?;
+        submission::check_room(&app).await?;
     }
     let (node, written_out) = stored::write_out(&app, &caller, body.node, "").await?;
     let valid = documents::scenario::examine(&node, None)
@@ -105,6 +102,7 @@ pub(in crate::api) async fn handler(
     admission::check_memory(&app, &valid.scenario)?;
     let submission = Submission {
         id: Uuid::now_v7().to_string(),
+        work: Work::Plan,
         name: valid.scenario.name().map(str::to_owned),
         scenario: if written_out {
             node.to_json().into()
@@ -115,30 +113,9 @@ pub(in crate::api) async fn handler(
         client: caller.client().map(str::to_owned),
         key: key.map(|key| (caller.own(&key), fingerprint)),
     };
-    let (job, replayed) = submit(&app, &submission).await?;
-    let mut response = answer(&app, job, wait(&headers)).await?;
-    if replayed {
-        let name = header::HeaderName::from_static("idempotency-replayed");
-        response
-            .headers_mut()
-            .insert(name, HeaderValue::from_static("true"));
-    }
-    Ok(response)
-}
-
-/// Refuses a submission early while the queue is full; the store checks again. Not for requests
-/// with an idempotency key, which may belong to an existing job.
-async fn check_room(app: &App) -> Result<(), ApiError> {
-    if app.store().waiting().await? < app.jobs().queue_limits().all {
-        return Ok(());
-    }
-    Err(queue_full(app))
-}
-
-fn queue_full(app: &App) -> ApiError {
-    let limit = app.jobs().queue_limits().all;
-    let detail = format!("{limit} jobs are queued already (queue_limit)");
-    ApiError::new(ErrorCode::QueueFull, detail)
+    let (job, replayed) = submission::submit(&app, &submission).await?;
+    let response = answer(&app, &job, submission::wait(&headers)).await?;
+    submission::located(response, &job, replayed)
 }
 
 /// The answer of a finished request.
@@ -162,75 +139,17 @@ fn validation(valid: &Validated) -> Result<Response, ApiError> {
     Ok(Json(ValidationDocument::new(&[], &valid.warnings)).into_response())
 }
 
-async fn submit(app: &App, submission: &Submission) -> Result<(JobRow, bool), ApiError> {
-    if app.shutdown().has_begun() {
-        let detail = "the service is shutting down";
-        return Err(ApiError::new(ErrorCode::NotReady, detail));
-    }
-    match app.jobs().submit(submission).await? {
-        Submitted::New(job) => {
-            tracing::info!(job_id = job.id, targets = job.targets, "job queued");
-            Ok((job, false))
-        }
-        Submitted::Replayed(job) => Ok((job, true)),
-        Submitted::KeyReused => Err(ApiError::new(
-            ErrorCode::IdempotencyKeyReused,
-            "another body was submitted under this Idempotency-Key",
-        )),
-        Submitted::QueueFull => Err(queue_full(app)),
-        Submitted::QuotaExceeded => {
-            let limit = app.jobs().queue_limits().client;
-            let detail =
-                format!("{limit} jobs of this client are queued already (client_queue_limit)");
-            Err(ApiError::new(ErrorCode::QuotaExceeded, detail))
-        }
-    }
-}
-
 /// The plan if it is ready in time, else the job.
-async fn answer(app: &App, job: JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
+async fn answer(app: &App, job: &JobRow, wait: Option<Duration>) -> Result<Response, ApiError> {
     let Some(patience) = wait else {
-        return Ok(located(respond::job(StatusCode::ACCEPTED, &job)?, &job));
+        return jobs::answer(StatusCode::ACCEPTED, job);
     };
-    let job = super::present(respond::await_end(app, &job.id, patience).await?, &job.id)?;
+    let job = jobs::await_end(app, Work::Plan, &job.id, patience).await?;
     let found = app.store().result(&job.id).await?;
     let result = found.and_then(|(_, plan)| plan);
-    Ok(match result.filter(|result| result.is_final) {
-        Some(result) => located(super::result::json(&result), &job),
+    match result.filter(|result| result.is_final) {
+        Some(result) => Ok(super::result::json(&result)),
         // A final job without a plan, such as a cancelled one, gets none later.
-        None => located(super::ended_or_accepted(&job)?, &job),
-    })
-}
-
-fn located(mut response: Response, job: &JobRow) -> Response {
-    if let Ok(location) = HeaderValue::from_str(&format!("/v1/plans/{}", job.id)) {
-        response.headers_mut().insert(header::LOCATION, location);
+        None => jobs::ended_or_accepted(&job),
     }
-    response
-}
-
-fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, ApiError> {
-    let Some(key) = header_text(headers, "idempotency-key")? else {
-        return Ok(None);
-    };
-    let visible = key.bytes().all(|byte| byte.is_ascii_graphic());
-    if key.is_empty() || key.len() > MAX_KEY || !visible {
-        let detail =
-            format!("an Idempotency-Key has 1 to {MAX_KEY} visible ASCII characters, no space");
-        return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
-    }
-    Ok(Some(key.to_owned()))
-}
-
-/// The wait of `Prefer: wait=N`. Unknown preferences are ignored (RFC 7240).
-fn wait(headers: &HeaderMap) -> Option<Duration> {
-    let preferences = headers
-        .get_all("prefer")
-        .iter()
-        .filter_map(|value| value.to_str().ok());
-    preferences
-        .flat_map(|value| value.split([',', ';']))
-        .filter_map(|preference| preference.trim().strip_prefix("wait="))
-        .find_map(|seconds| seconds.trim().parse::<u64>().ok())
-        .map(|seconds| Duration::from_secs(seconds.min(MAX_WAIT_S)))
 }

@@ -4,6 +4,8 @@ use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::Named;
+use super::super::jobs;
+use crate::store::Work;
 use axum::extract::State;
 use axum::http::StatusCode;
 
@@ -17,9 +19,5 @@ pub(in crate::api) async fn handler(
     State(app): State<App>,
     Named(id): Named,
 ) -> Result<StatusCode, ApiError> {
-    if app.jobs().delete(&id).await? {
-        Ok(StatusCode::NO_CONTENT)
-    } else {
-        Err(ApiError::not_found("plan", &id))
-    }
+    jobs::delete(&app, Work::Plan, &id).await
 }

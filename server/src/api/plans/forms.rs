@@ -1,7 +1,8 @@
 //! The forms of a result, and which of them a request asks for.
 
+use super::super::negotiation;
 use crate::render::export::Form;
-use axum::http::{HeaderMap, header};
+use axum::http::HeaderMap;
 use serde::{Deserialize, Deserializer};
 use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
 
@@ -23,50 +24,16 @@ pub(super) fn described() -> ObjectBuilder {
         .enum_values(Some(Form::ALL.map(Form::name)))
 }
 
-/// The form that `Accept` prefers, the first among equals; `None` when it accepts none.
+/// The form that `Accept` prefers; `None` when it accepts none.
 pub(super) fn accepted(headers: &HeaderMap) -> Option<Form> {
-    let mut ranges = headers
-        .get_all(header::ACCEPT)
-        .iter()
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','))
-        .map(range)
-        .peekable();
-    if ranges.peek().is_none() {
-        return Some(Form::Json);
-    }
-    let ranges: Vec<(String, f64)> = ranges.collect();
-    let weight = |form: Form| {
-        let name = form.media_type();
-        let group = format!("{}/*", name.split('/').next().unwrap_or(""));
-        // The most specific range that matches decides.
-        [name, &group, "*/*"]
-            .iter()
-            .find_map(|name| ranges.iter().find(|(range, _)| range == name))
-            .map_or(0.0, |(_, weight)| *weight)
-    };
-    Form::ALL
-        .into_iter()
-        .map(|form| (form, weight(form)))
-        .filter(|(_, weight)| *weight > 0.0)
-        .reduce(|best, next| if next.1 > best.1 { next } else { best })
-        .map(|(form, _)| form)
-}
-
-fn range(text: &str) -> (String, f64) {
-    let mut parts = text.split(';').map(str::trim);
-    let name = parts.next().unwrap_or("").to_ascii_lowercase();
-    let weight = parts
-        .find_map(|part| part.strip_prefix("q="))
-        .map_or(1.0, |weight| weight.parse().unwrap_or(0.0));
-    (name, weight)
+    negotiation::accepted(headers, &Form::ALL, Form::media_type)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::render::export::Format;
-    use axum::http::HeaderValue;
+    use axum::http::{HeaderValue, header};
 
     #[test]
     fn the_preferred_form_is_chosen() {

@@ -4,8 +4,9 @@ use super::super::App;
 use super::super::describe::{NotFound, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::Named;
-use super::super::respond;
+use super::super::jobs;
 use crate::documents::jobs::JobDocument;
+use crate::store::Work;
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
@@ -20,5 +21,5 @@ pub(in crate::api) async fn handler(
     State(app): State<App>,
     Named(id): Named,
 ) -> Result<Response, ApiError> {
-    respond::job(StatusCode::OK, &super::find(&app, &id).await?)
+    jobs::answer(StatusCode::OK, &jobs::find(&app, Work::Plan, &id).await?)
 }

@@ -3,17 +3,15 @@
 use super::super::App;
 use super::super::access::Caller;
 use super::super::describe::{ParameterErrors, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::extract::Parameters;
+use super::super::jobs::list::{self, PageQuery};
 use crate::documents::jobs::{JobDocument, JobListDocument};
-use crate::store::{JobState, Listing};
+use crate::store::{JobState, Work};
 use axum::Json;
 use axum::extract::State;
 use serde::Deserialize;
 use utoipa::IntoParams;
-
-const DEFAULT_LIMIT: u16 = 50;
-const MAX_LIMIT: u16 = 200;
 
 /// Filter and page of the list.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -47,35 +45,15 @@ pub(in crate::api) async fn handler(
     caller: Caller,
     Parameters(query): Parameters<JobListQuery>,
 ) -> Result<Json<JobListDocument>, ApiError> {
-    let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
-    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
-    if !(1..=MAX_LIMIT).contains(&limit) {
-        return Err(wrong(format!("limit is from 1 to {MAX_LIMIT}")));
-    }
-    let state = query
-        .state
-        .map(|text| text.parse::<JobState>())
-        .transpose()
-        .map_err(wrong)?;
-    let before = super::super::extract::cursor(query.cursor.as_deref())?;
-    let listing = Listing {
-        client: caller.client().map(str::to_owned),
-        before,
-        state,
-        name: query.name,
-        limit: i64::from(limit) + 1,
+    let page = PageQuery {
+        state: query.state,
+        cursor: query.cursor,
+        limit: query.limit,
     };
-    let mut rows = app.store().jobs(&listing).await?;
-    let more = rows.len() > usize::from(limit);
-    rows.truncate(limit.into());
+    let (rows, next_cursor) = list::page(&app, &caller, Work::Plan, page, query.name).await?;
+    let plans = rows.iter().map(JobDocument::new);
     Ok(Json(JobListDocument {
-        next_cursor: rows
-            .last()
-            .filter(|_| more)
-            .map(|job| job.sequence.to_string()),
-        plans: rows
-            .iter()
-            .map(JobDocument::new)
-            .collect::<Result<_, _>>()?,
+        plans: plans.collect::<Result<_, _>>()?,
+        next_cursor,
     }))
 }

@@ -3,6 +3,7 @@
 use super::super::describe::{NotFound, ParameterErrors, ServerErrors};
 use super::super::error::{ApiError, ErrorCode, ProblemDetails};
 use super::super::extract::{Named, Parameters, header_text};
+use super::super::jobs::{self, JOB_STATE};
 use super::super::{App, computing, respond};
 use super::forms::{self, accepted};
 use crate::base::digest;
@@ -11,15 +12,12 @@ use crate::documents::plan::PlanDocument;
 use crate::render::export::{self, ExportError, ExportOptions, Form, Format, Spacing};
 use crate::store::{JobState, ResultRow};
 use axum::extract::State;
-use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
+use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
 use serde::Deserialize;
 use slewplan_solver::model::problem::Problem;
 use utoipa::IntoParams;
 
-const JOB_STATE: HeaderName = HeaderName::from_static("job-state");
-/// `Retry-After` of a job without a plan, s.
-const RETRY_S: u32 = 1;
 /// Maximum number of samples of an answer: about 80 MB of XML.
 const MAX_SAMPLES: usize = 200_000;
 
@@ -155,13 +153,8 @@ pub(in crate::api) async fn handler(
         return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
     }
     let Some(result) = result else {
-        return Err(if state.is_final() {
-            let detail = format!("the job ended {}", state.into_str());
-            ApiError::new(ErrorCode::NoResult, detail)
-        } else {
-            let detail = "no plan has been found so far; follow the events";
-            ApiError::new(ErrorCode::ResultNotReady, detail).retry_after(RETRY_S)
-        });
+        let not_ready = "no plan has been found so far; follow the events";
+        return Err(jobs::no_result(state, not_ready));
     };
     let tag = match form {
         Form::Json => result.digest.clone(),

@@ -4,8 +4,9 @@ use super::super::App;
 use super::super::describe::{NotFound, Scenario, ServerErrors};
 use super::super::error::ApiError;
 use super::super::extract::{Named, header_text};
-use super::super::respond;
+use super::super::{jobs, respond};
 use crate::base::digest;
+use crate::store::Work;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
@@ -32,6 +33,7 @@ pub(in crate::api) async fn handler(
     Named(id): Named,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
+    jobs::find(&app, Work::Plan, &id).await?;
     let found = app.store().scenario(&id).await?;
     let (scenario, _) = found.ok_or_else(|| ApiError::not_found("plan", &id))?;
     let known = header_text(&headers, "if-none-match")?.unwrap_or("");

@@ -2,13 +2,12 @@
 
 use super::super::App;
 use super::super::describe::{Conflict, NotFound, ServerErrors};
-use super::super::error::{ApiError, ErrorCode};
+use super::super::error::ApiError;
 use super::super::extract::Named;
-use super::super::respond;
+use super::super::jobs;
 use crate::documents::jobs::JobDocument;
-use crate::store::JobState;
+use crate::store::Work;
 use axum::extract::State;
-use axum::http::StatusCode;
 use axum::response::Response;
 
 /// Finish a running job with the best plan so far
@@ -27,16 +26,5 @@ pub(in crate::api) async fn handler(
     State(app): State<App>,
     Named(id): Named,
 ) -> Result<Response, ApiError> {
-    let job = super::present(app.jobs().stop(&id).await?, &id)?;
-    match job.state()? {
-        JobState::Running => {}
-        JobState::Queued => {
-            let detail = "there is no plan to stop with; cancel or delete the job instead";
-            return Err(ApiError::new(ErrorCode::NotRunning, detail));
-        }
-        // Stopped before, or finished: the caller has the result that it asked for.
-        JobState::Stopped | JobState::Succeeded => return respond::job(StatusCode::OK, &job),
-        ended => return Err(super::has_ended(ended)),
-    }
-    super::ending(&app, &id).await
+    jobs::stop(&app, Work::Plan, &id).await
 }

@@ -95,7 +95,7 @@ impl CanonicalLeg {
         dynamics.cones.dedup();
         let from = settled(&dynamics, Attitude::identity(), from);
         let to = settled(&dynamics, turn, to);
-        let spacecraft = describe_spacecraft(&dynamics);
+        let spacecraft = places.described.clone();
         let mut identity = format!("{VERSION};{:?};{:?};", places.resolution, places.arrival);
         identity.push_str(&spacecraft);
         let momentum = dynamics.momentum;
@@ -188,7 +188,8 @@ fn push_numbers(text: &mut String, numbers: &[f64]) {
     text.push(';');
 }
 
-fn describe_spacecraft(dynamics: &Dynamics) -> String {
+/// Canonical text of a spacecraft; its momentum is not part of it, because the frame of a leg turns it.
+pub(super) fn describe_spacecraft(dynamics: &Dynamics) -> String {
     let mut text = String::new();
     push_numbers(&mut text, dynamics.inertia.as_slice());
     for wheel in &dynamics.actuators {

@@ -53,7 +53,7 @@ impl<'a> LegCheck<'a> {
         (pool, stop): (&SolverPool, &StopSignal),
     ) -> Option<Self> {
         let places = Places::of(scenario);
-        let pairs = all_pairs(&places);
+        let pairs = all_pairs(places.scenario);
         let legs = pool.map(&pairs, |(from, to)| {
             if stop.is_set() {
                 return None;

@@ -121,12 +121,6 @@ impl<'a> LegSolver<'a> {
         self.contradictions.load(Relaxed) == 0
     }
 
-    /// A table of [`Self::solved_legs`].
-    pub(super) fn table(&self, kind: LegKind, pairs: &[(Place, Place)]) -> SolvedTable {
-        let legs = self.solved_legs(kind, pairs);
-        Table::new(self.places, pairs.iter().copied().zip(legs))
-    }
-
     /// Solves the legs of a kind between pairs of places; `None` for legs not reached before the stop
     /// signal.
     pub(super) fn solved_legs(
@@ -248,10 +242,36 @@ impl<'a> LegSolver<'a> {
     }
 
     /// The canonical legs of many pairs; `None` for pairs not reached before the stop signal.
-    fn all_canonical(&self, kind: LegKind, pairs: &[(Place, Place)]) -> Vec<Option<CanonicalLeg>> {
+    pub(super) fn all_canonical(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> Vec<Option<CanonicalLeg>> {
         self.run.pool.map(pairs, |(from, to)| {
             (!self.is_abandoned()).then(|| self.canonical(kind, *from, *to))
         })
+    }
+
+    /// The same with the cones that the scenario enforces, whether or not the legs without them are
+    /// clear.
+    pub(super) fn all_around_cones(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> Vec<Option<CanonicalLeg>> {
+        self.run.pool.map(pairs, |(from, to)| {
+            let ends = [from, to].map(|place| end_of(self.places, kind, *place));
+            (!self.is_abandoned())
+                .then(|| CanonicalLeg::around_cones(self.places, &ends[0], &ends[1]))
+        })
+    }
+
+    /// Whether the leg without cones is known, and clear of all that the scenario enforces.
+    pub(super) fn has_clear_leg(&self, kind: LegKind, (from, to): (Place, Place)) -> bool {
+        let canonical = self.canonical(kind, from, to);
+        let stored = self.load(&canonical).map(Arc::new);
+        let leg = stored.map(|leg| self.placed(from, leg, canonical.mirrored));
+        leg.is_some_and(|leg| is_clear(&self.places.with_cones, &leg.profile))
     }
 
     /// Whether the solve is cancelled or out of time, so that not even stored legs are of use.

@@ -1,5 +1,6 @@
 //! The places of a scenario (start, targets and end) as waypoints of legs.
 
+use super::canonical::describe_spacecraft;
 use crate::bounds::certified::CertifiedBounds;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
@@ -26,6 +27,8 @@ pub(super) struct Places<'a> {
     pub(super) dynamics: Dynamics,
     /// The same with the cones that hold along the whole flight.
     pub(super) with_cones: Dynamics,
+    /// Canonical text of the spacecraft, the same in the frames of all legs.
+    pub(super) described: String,
     /// Which quaternion signs count as arrived.
     pub(super) arrival: Arrival,
     /// Null-space momentum of the wheels at the start, N m s; rest-to-rest legs hold it at both
@@ -37,6 +40,16 @@ pub(super) struct Places<'a> {
     pub(super) extremals: KinematicExtremals,
     /// Certified lower bounds on the spacecraft's slews.
     pub(super) certified: CertifiedBounds,
+}
+
+/// Start, all targets, and the end of a scenario, where there is one.
+pub(super) fn places_of(scenario: &Scenario) -> Vec<Place> {
+    let targets = (0..scenario.targets().len()).map(Place::Target);
+    let end = scenario.end().map(|_| Place::End);
+    std::iter::once(Place::Start)
+        .chain(targets)
+        .chain(end)
+        .collect()
 }
 
 impl<'a> Places<'a> {
@@ -56,6 +69,7 @@ impl<'a> Places<'a> {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,
                 AttitudeEquivalence::Quaternion => Arrival::Quaternion,
             },
+            described: describe_spacecraft(&dynamics),
             with_cones: dynamics.with_cones(forbidden_always(scenario.cones())),
             dynamics,
             scenario,
@@ -64,12 +78,7 @@ impl<'a> Places<'a> {
 
     /// Start, all targets, and the end where there is one.
     pub(super) fn all(&self) -> Vec<Place> {
-        let targets = (0..self.scenario.targets().len()).map(Place::Target);
-        let end = self.scenario.end().map(|_| Place::End);
-        std::iter::once(Place::Start)
-            .chain(targets)
-            .chain(end)
-            .collect()
+        places_of(self.scenario)
     }
 
     /// The start and the targets of an order, followed by the end if the tour is `whole` and has

@@ -137,7 +137,7 @@ fn leg_from(store: &dyn LegStore, listener: &Listener, target: usize) -> (f64, O
     let (scenario, stop) = (scenario(), StopSignal::new());
     with_leg_solver(&scenario, listener, store, &stop, |legs, _| {
         let pair = (Place::Start, Place::Target(target));
-        let table = legs.table(LegKind::RestToRest, &[pair]);
+        let table = legs.table_without_cones(LegKind::RestToRest, &[pair]);
         let leg = &table.get(pair.0, pair.1).expect("a leg").leg;
         (leg.solution.duration().expect("converged"), leg.certified)
     })
@@ -232,7 +232,7 @@ fn lookups_and_solves(stop: &StopSignal) -> (usize, usize, u64) {
         (start, second),
     ];
     let (known, solved) = with_leg_solver(&scenario(), &listener, &store, stop, |legs, _| {
-        let table = legs.table(LegKind::RestToRest, &pairs);
+        let table = legs.table_without_cones(LegKind::RestToRest, &pairs);
         let known = pairs
             .iter()
             .filter(|(from, to)| table.get(*from, *to).is_some());

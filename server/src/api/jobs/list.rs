@@ -1,0 +1,58 @@
+//! Jobs page by page.
+
+use super::super::App;
+use super::super::access::Caller;
+use super::super::error::{ApiError, ErrorCode};
+use super::super::extract;
+use crate::store::{JobRow, JobState, Listing, Work};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+const DEFAULT_LIMIT: u16 = 50;
+const MAX_LIMIT: u16 = 200;
+
+/// Filter and page of a list.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::api) struct PageQuery {
+    /// Only jobs in this state.
+    #[param(inline, value_type = Option<JobState>)]
+    pub(in crate::api) state: Option<String>,
+    /// Where the page begins: `next_cursor` of the page before.
+    #[param(pattern = "^[0-9]{1,9}$")]
+    pub(in crate::api) cursor: Option<String>,
+    /// Maximum number of jobs of the page.
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    pub(in crate::api) limit: Option<u16>,
+}
+
+/// The jobs of a page, the newest first, and where the next page begins.
+pub(in crate::api) async fn page(
+    app: &App,
+    caller: &Caller,
+    work: Work,
+    query: PageQuery,
+    name: Option<String>,
+) -> Result<(Vec<JobRow>, Option<String>), ApiError> {
+    let wrong = |detail: String| ApiError::new(ErrorCode::InvalidParameter, detail);
+    let limit = query.limit.unwrap_or(DEFAULT_LIMIT);
+    if !(1..=MAX_LIMIT).contains(&limit) {
+        return Err(wrong(format!("limit is from 1 to {MAX_LIMIT}")));
+    }
+    let state = query.state.map(|text| text.parse::<JobState>());
+    let listing = Listing {
+        work,
+        client: caller.client().map(str::to_owned),
+        before: extract::cursor(query.cursor.as_deref())?,
+        state: state.transpose().map_err(wrong)?,
+        name,
+        limit: i64::from(limit) + 1,
+    };
+    let mut rows = app.store().jobs(&listing).await?;
+    let more = rows.len() > usize::from(limit);
+    rows.truncate(limit.into());
+    let last = rows.last().filter(|_| more);
+    let next = last.map(|job| job.sequence.to_string());
+    Ok((rows, next))
+}

@@ -1,0 +1,30 @@
+//! `POST /v1/leg-tables/{id}/stop`: finishes a job with the legs so far.
+
+use super::super::App;
+use super::super::describe::{Conflict, NotFound, ServerErrors};
+use super::super::error::ApiError;
+use super::super::extract::Named;
+use super::super::jobs;
+use crate::documents::leg_table_jobs::LegTableJobDocument;
+use crate::store::Work;
+use axum::extract::State;
+use axum::response::Response;
+
+/// Finish a running job with the legs so far
+///
+/// Answers when the job has ended, or after two seconds with 202 when it has not.
+#[utoipa::path(
+    post, path = "/v1/leg-tables/{id}/stop", tag = "legs", operation_id = "stop_leg_table",
+    params(("id" = String, Path, format = "uuid", description = "Identifier of the job")),
+    responses(
+        (status = 200, description = "The job has ended", body = LegTableJobDocument),
+        (status = 202, description = "The job is about to end", body = LegTableJobDocument),
+        Conflict, NotFound, ServerErrors,
+    ),
+)]
+pub(in crate::api) async fn handler(
+    State(app): State<App>,
+    Named(id): Named,
+) -> Result<Response, ApiError> {
+    jobs::stop(&app, Work::LegTable, &id).await
+}

@@ -1,0 +1,87 @@
+//! Times of stored legs, thousands in a statement, all from one snapshot of the database.
+
+use super::legs::{SOLVER_VERSION, key};
+use super::{Store, StoreError};
+use slewplan_solver::bounds;
+use slewplan_solver::tour::legs::StoredTime;
+use sqlx::{FromRow as _, Sqlite, Transaction};
+
+/// Maximum number of legs of one statement.
+const BATCH: usize = 4096;
+
+row! {
+    /// The time of a stored leg.
+    struct TimeRow {
+        /// Place of its key among those asked for.
+        position: i64,
+        duration_s: f64,
+        certified_lower_bound_s: Option<f64>,
+        bound_version: Option<u32>,
+        solve_time_s: f64,
+    }
+}
+
+impl From<&TimeRow> for StoredTime {
+    fn from(row: &TimeRow) -> Self {
+        let is_bound_current = row.bound_version == Some(bounds::VERSION);
+        Self {
+            duration_s: row.duration_s,
+            certified_lower_bound_s: row.certified_lower_bound_s.filter(|_| is_bound_current),
+            is_bound_current,
+            solve_time_s: row.solve_time_s,
+        }
+    }
+}
+
+/// The legs as they were at the first look-up.
+#[derive(Debug)]
+pub(crate) struct LegSnapshot(Transaction<'static, Sqlite>);
+
+impl Store {
+    /// A snapshot of the legs. The write-ahead log cannot be reset while it lives.
+    pub(crate) async fn leg_snapshot(&self) -> Result<LegSnapshot, StoreError> {
+        Ok(LegSnapshot(self.readers.begin().await?))
+    }
+}
+
+impl LegSnapshot {
+    /// The times of the legs of identities that this version of the solver has solved, in their order.
+    pub(crate) async fn times(
+        &mut self,
+        identities: &[&str],
+    ) -> Result<Vec<Option<StoredTime>>, StoreError> {
+        let mut times = vec![None; identities.len()];
+        for (batch, times) in identities.chunks(BATCH).zip(times.chunks_mut(BATCH)) {
+            for row in self.rows(batch).await? {
+                let place = usize::try_from(row.position).ok();
+                if let Some(time) = place.and_then(|place| times.get_mut(place)) {
+                    *time = Some(StoredTime::from(&row));
+                }
+            }
+        }
+        Ok(times)
+    }
+
+    async fn rows(&mut self, identities: &[&str]) -> Result<Vec<TimeRow>, StoreError> {
+        let mut keys = String::with_capacity(2 + 67 * identities.len());
+        for identity in identities {
+            keys.push_str(if keys.is_empty() { "[\"" } else { ",\"" });
+            keys.push_str(&key(identity));
+            keys.push('"');
+        }
+        keys.push(']');
+        let rows = sqlx::query(
+            "SELECT asked.key AS position, duration_s, certified_lower_bound_s, bound_version, \
+             solve_time_s FROM json_each(?1) AS asked CROSS JOIN legs INDEXED BY leg_times \
+             ON legs.key = asked.value AND solver_version = ?2",
+        )
+        .bind(keys)
+        .bind(SOLVER_VERSION)
+        .fetch_all(&mut *self.0)
+        .await?;
+        Ok(rows
+            .iter()
+            .map(TimeRow::from_row)
+            .collect::<Result<_, _>>()?)
+    }
+}

@@ -1,0 +1,203 @@
+//! Times of many legs of one scenario, part by part: known ones from the store without their
+//! motions, missing ones solved.
+
+use super::canonical::CanonicalLeg;
+use super::legs::{LegSolver, certify};
+use super::places::Places;
+use super::tables::CertifiedLeg;
+use super::unsolved::leg_status;
+use super::{Run, limited};
+use crate::model::scenario::Scenario;
+use crate::nlp::NlpStatus;
+use crate::run::contradiction::{Contradiction, refutes};
+use crate::run::stop::StopSignal;
+use crate::tour::legs::{LegKind, StoredTime};
+use crate::tour::order::Place;
+
+/// The time of a leg.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegTime {
+    /// Minimum time, s, when solved; never of [`LegKind::Certified`].
+    pub duration_s: Option<f64>,
+    /// Certified lower bound on the duration of any slew under these conditions, s; `None` where no
+    /// bound is proved.
+    pub certified_lower_bound_s: Option<f64>,
+    /// Wall-clock time of the solve or of the bound, s.
+    pub solve_time_s: f64,
+    /// How the solve ended (`converged`, ...); for [`LegKind::Certified`] whether there is a bound
+    /// (`proved`, `none`).
+    pub status: &'static str,
+    /// Whether the store knew it.
+    pub from_store: bool,
+    /// The identity under which it is stored, when it is.
+    pub identity: Option<String>,
+}
+
+impl LegTime {
+    fn stored(time: StoredTime, identity: String) -> Self {
+        Self {
+            duration_s: Some(time.duration_s),
+            certified_lower_bound_s: time.certified_lower_bound_s,
+            solve_time_s: time.solve_time_s,
+            // No others are stored.
+            status: NlpStatus::Converged.into_str(),
+            from_store: true,
+            identity: Some(identity),
+        }
+    }
+}
+
+/// The times of the legs of one kind between the places of a scenario.
+///
+/// What the legs have in common is prepared once; nothing else is kept between two calls, so that a
+/// table of any size can be worked out in parts.
+pub struct LegTimeTable<'a> {
+    places: Places<'a>,
+    kind: LegKind,
+    run: Run<'a>,
+    stop: StopSignal,
+}
+
+impl<'a> LegTimeTable<'a> {
+    /// Times of legs of a kind; the time limit of the scenario begins now.
+    #[must_use]
+    pub fn of(scenario: &'a Scenario, kind: LegKind, run: Run<'a>) -> Self {
+        Self {
+            places: Places::of(scenario),
+            kind,
+            run,
+            stop: limited(scenario, run.stop),
+        }
+    }
+
+    /// Identifier of a place: `start`, `end` or a target's identifier.
+    #[must_use]
+    pub fn name(&self, place: Place) -> String {
+        self.places.name(place)
+    }
+
+    /// Canonical text of the spacecraft of the legs.
+    #[must_use]
+    pub fn spacecraft(&self) -> &str {
+        &self.places.described
+    }
+
+    /// Whether it was asked to stop, or its time is up.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_set()
+    }
+
+    /// The legs between pairs of places that the store knows; `None` for all others, which are all of
+    /// [`LegKind::Certified`].
+    #[must_use]
+    pub fn known(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
+        if self.kind == LegKind::Certified {
+            return vec![None; pairs.len()];
+        }
+        let solver = self.solver();
+        if self.places.with_cones.cones.is_empty() {
+            return self.stored(&solver.all_canonical(self.kind, pairs));
+        }
+        let mut times = self.stored(&solver.all_around_cones(self.kind, pairs));
+        // Where none is stored with cones, the leg without them may be clear of all of them.
+        let open = (0..pairs.len()).filter(|i| times[*i].is_none());
+        let (open, asked): (Vec<usize>, Vec<_>) = open.map(|i| (i, pairs[i])).unzip();
+        let free = self.stored(&solver.all_canonical(self.kind, &asked));
+        let found: Vec<_> = asked.into_iter().zip(free).collect();
+        let clear = self.run.pool.map(&found, |(pair, time)| {
+            let time = time.as_ref()?;
+            solver.has_clear_leg(self.kind, *pair).then(|| time.clone())
+        });
+        for (place, time) in open.into_iter().zip(clear) {
+            times[place] = time;
+        }
+        times
+    }
+
+    /// All legs between pairs of places: the known ones, and the missing ones solved and stored. `None`
+    /// for legs not reached before the stop signal.
+    #[must_use]
+    pub fn solved(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
+        let mut times = self.known(pairs);
+        let missing = (0..pairs.len()).filter(|i| times[*i].is_none());
+        let (missing, asked): (Vec<usize>, Vec<_>) = missing.map(|i| (i, pairs[i])).unzip();
+        let fresh = if self.kind == LegKind::Certified {
+            self.proved(&asked)
+        } else {
+            self.solved_now(&asked)
+        };
+        for (place, time) in missing.into_iter().zip(fresh) {
+            times[place] = time;
+        }
+        times
+    }
+
+    fn solver(&self) -> LegSolver<'_> {
+        LegSolver::new(&self.places, self.run, &self.stop)
+    }
+
+    fn solved_now(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
+        if pairs.is_empty() {
+            return Vec::new();
+        }
+        let legs = self.solver().solved_legs(self.kind, pairs);
+        // What was solved is stored by now, under an identity that the solved leg does not tell.
+        let stored = self.known(pairs);
+        let legs: Vec<_> = pairs.iter().zip(legs).zip(stored).collect();
+        // Where cones leave no way, finding out that they do takes as long as a solve.
+        self.run.pool.map(&legs, |(((from, to), leg), stored)| {
+            let leg = &leg.as_ref()?.leg;
+            Some(LegTime {
+                duration_s: leg.solution.duration(),
+                certified_lower_bound_s: leg.certified,
+                solve_time_s: leg.solve_time,
+                status: leg_status(&self.places, [*from, *to], &leg.solution),
+                from_store: false,
+                identity: stored.as_ref().and_then(|stored| stored.identity.clone()),
+            })
+        })
+    }
+
+    fn proved(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
+        let legs = self.solver().certified_legs(self.kind, pairs);
+        let time = |leg: CertifiedLeg| LegTime {
+            duration_s: None,
+            certified_lower_bound_s: leg.lower_bound,
+            solve_time_s: leg.solve_time,
+            status: leg.lower_bound.map_or("none", |_| "proved"),
+            from_store: false,
+            identity: None,
+        };
+        legs.into_iter().map(|leg| leg.map(time)).collect()
+    }
+
+    /// The stored times of canonical legs, in one look-up.
+    fn stored(&self, legs: &[Option<CanonicalLeg>]) -> Vec<Option<LegTime>> {
+        let identities: Vec<&str> = legs.iter().flatten().map(|l| l.identity.as_str()).collect();
+        let mut times = self.run.legs.times(&identities).into_iter();
+        let mut known = |leg: &CanonicalLeg| {
+            let time = self.with_bound(leg, times.next().flatten()?);
+            Some(LegTime::stored(time, leg.identity.clone()))
+        };
+        legs.iter().map(|leg| known(leg.as_ref()?)).collect()
+    }
+
+    /// A stored time with a bound of this version that does not contradict it.
+    fn with_bound(&self, leg: &CanonicalLeg, mut time: StoredTime) -> StoredTime {
+        if !time.is_bound_current {
+            time.certified_lower_bound_s = certify(&self.places, leg).lower_bound;
+        }
+        if let Some(bound_s) = time.certified_lower_bound_s
+            && refutes(time.duration_s, bound_s)
+        {
+            self.run.observer.contradicted(&Contradiction::Leg {
+                identity: leg.identity.clone(),
+                bound_s,
+                duration_s: time.duration_s,
+            });
+            time.certified_lower_bound_s = None;
+        }
+        time
+    }
+}

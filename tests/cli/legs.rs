@@ -269,3 +269,37 @@ fn a_pod_of_an_indexed_job_solves_the_shard_of_its_index() {
         assert!(refused.stdout.is_empty());
     }
 }
+
+#[test]
+fn a_table_is_written_as_lines_columns_and_parquet() {
+    let scenario = fixture("two-targets.json");
+    let table = slewplan(&["legs", &scenario]).expect_code(0).json();
+    let lines = slewplan(&["legs", &scenario, "--format", "ndjson"]).expect_code(0);
+    let lines: Vec<Value> = lines
+        .stdout
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("a line of JSON"))
+        .collect();
+    let listed = table["legs"].as_array().expect("a list");
+    assert_eq!(lines.len(), listed.len());
+    for (line, row) in lines.iter().zip(listed) {
+        for name in [
+            "from",
+            "to",
+            "duration_s",
+            "certified_lower_bound_s",
+            "status",
+        ] {
+            assert_eq!(line[name], row[name]);
+        }
+        assert_eq!(line["source"], "computed");
+    }
+    let csv = slewplan(&["legs", &scenario, "--format", "csv"]).expect_code(0);
+    let first = csv.stdout.lines().nth(1).expect("a row");
+    assert!(first.starts_with("start,a,"), "{first}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("legs.parquet");
+    let path = path.to_str().expect("text");
+    slewplan(&["legs", &scenario, "--format", "parquet", "-o", path]).expect_code(0);
+    assert!(std::fs::read(path).expect("a file").starts_with(b"PAR1"));
+}

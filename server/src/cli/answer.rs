@@ -46,8 +46,17 @@ impl Answer {
         document: &impl Serialize,
         text: impl FnOnce() -> String,
     ) -> Result<(), Failure> {
+        self.write_content(|| Ok(output::json(document)?.into()), text)
+    }
+
+    /// Writes the content of a file that `content` makes, and the summary that `text` makes.
+    pub(super) fn write_content(
+        &self,
+        content: impl FnOnce() -> Result<Vec<u8>, Failure>,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), Failure> {
         if let Some(destination) = &self.document {
-            destination.write(&output::json(document)?)?;
+            destination.write(&content()?)?;
         }
         match self.summary {
             Summary::None => Ok(()),

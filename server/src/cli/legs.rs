@@ -10,7 +10,9 @@ use crate::cli::progress::{self, ProgressMode};
 use crate::cli::signals::{self, Received};
 use crate::documents;
 use crate::documents::document::Node;
+use crate::documents::leg_rows::LegAnswerDocument;
 use crate::documents::legs::{LegTable, LegTableDocument};
+use crate::render::leg_table::{TableForm, TableHead, TableWriter};
 use crate::render::report;
 use clap::ValueEnum;
 use recorder::Recorder;
@@ -43,6 +45,9 @@ pub(super) struct LegsArguments {
     /// Write the motions and the scenario too, so that the file can be imported
     #[arg(long)]
     trajectories: bool,
+    /// Write the rows in this form; only json can be merged and imported
+    #[arg(long, value_enum, default_value_t = TableForm::Json, conflicts_with = "trajectories")]
+    format: TableForm,
     /// Read known legs from this database of the service, and store new ones in it
     #[arg(long, value_name = "FILE")]
     database: Option<PathBuf>,
@@ -106,10 +111,31 @@ pub(super) fn run(arguments: &LegsArguments) -> Result<Exit, Failure> {
             table
         }
     };
-    let document = LegTableDocument::new(&table);
-    let document = document.map_err(|error| Failure::Unspeakable(error.to_string()))?;
-    answer.write(&document, || report::legs(&table))?;
+    answer.write_content(
+        || written(&table, arguments.format),
+        || report::legs(&table),
+    )?;
     Ok(exit(&table))
+}
+
+/// The table in a form.
+fn written(table: &LegTable, form: TableForm) -> Result<Vec<u8>, Failure> {
+    let unspeakable = |error: &dyn std::fmt::Display| Failure::Unspeakable(error.to_string());
+    if form == TableForm::Json {
+        let document = LegTableDocument::new(table).map_err(|error| unspeakable(&error))?;
+        return Ok(output::json(&document)?.into());
+    }
+    let head = TableHead {
+        kind: table.kind.into(),
+        spacecraft_key: None,
+        named: true,
+    };
+    let rows: Vec<_> = table.rows.iter().map(LegAnswerDocument::from).collect();
+    let written = TableWriter::begin(form, head, Vec::new()).and_then(|mut writer| {
+        writer.rows(&rows)?;
+        writer.finish()
+    });
+    written.map_err(|error| unspeakable(&error))
 }
 
 fn solve(

@@ -48,15 +48,16 @@ impl Destination {
     }
 
     /// Writes the whole answer.
-    pub(super) fn write(&self, text: &str) -> Result<(), Failure> {
+    pub(super) fn write(&self, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Failure> {
+        let content = content.as_ref();
         let (name, result) = match self {
-            Self::Stream => return print(text),
-            Self::File(path) => (path, replace(path, text)),
+            Self::Stream => return print(content),
+            Self::File(path) => (path, replace(path, content)),
             Self::Device(path) => {
                 let opened = File::options().write(true).open(path);
                 (
                     path,
-                    opened.and_then(|mut device| device.write_all(text.as_bytes())),
+                    opened.and_then(|mut device| device.write_all(content)),
                 )
             }
         };
@@ -84,9 +85,9 @@ fn temporary_beside(path: &Path) -> io::Result<(NamedTempFile, PathBuf)> {
     Ok((file, path.to_owned()))
 }
 
-fn replace(path: &Path, text: &str) -> io::Result<()> {
+fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     let (mut file, target) = temporary_beside(path)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(content)?;
     file.as_file().sync_all()?;
     file.persist(target)?;
     Ok(())
@@ -99,11 +100,11 @@ pub(super) fn json(document: &impl Serialize) -> Result<String, Failure> {
         .map_err(|error| Failure::Unspeakable(error.to_string()))
 }
 
-/// Writes text to standard output.
-pub(super) fn print(text: &str) -> Result<(), Failure> {
+/// Writes to standard output.
+pub(super) fn print(content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), Failure> {
     let mut stream = io::stdout().lock();
     match stream
-        .write_all(text.as_bytes())
+        .write_all(content.as_ref())
         .and_then(|()| stream.flush())
     {
         // A reader that closes the pipe early, such as `head`, is no error.

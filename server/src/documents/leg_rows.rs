@@ -4,7 +4,8 @@ use super::leg_query::Pair;
 use super::number::Number;
 use crate::store::leg_key;
 use serde::{Deserialize, Serialize};
-use slewplan_solver::tour::planner::LegTime;
+use slewplan_solver::tour::planner::{self, LegTime};
+use std::fmt;
 use utoipa::ToSchema;
 
 /// The answer to a query.
@@ -24,9 +25,11 @@ pub(crate) struct LegAnswersDocument {
 #[schema(as = LegAnswer)]
 pub(crate) struct LegAnswerDocument {
     /// Position in `attitudes` of the begin, or position of the pair.
-    pub(crate) from: usize,
+    #[schema(value_type = usize)]
+    pub(crate) from: LegEnd,
     /// Position in `attitudes` of the end, or position of the pair.
-    pub(crate) to: usize,
+    #[schema(value_type = usize)]
+    pub(crate) to: LegEnd,
     /// Minimum time, s; `null` when it is not known, and for `certified`, which solves nothing.
     pub(crate) duration_s: Option<Number>,
     /// No slew between these attitudes under the conditions of the kind takes less, s, proved, for
@@ -40,6 +43,25 @@ pub(crate) struct LegAnswerDocument {
     pub(crate) source: Source,
     /// Key of the cached leg; `null` when it is not stored.
     pub(crate) key: Option<String>,
+}
+
+/// Where a leg begins or ends.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(crate) enum LegEnd {
+    /// Position in a query.
+    Position(usize),
+    /// Identifier of a place of a scenario.
+    Name(String),
+}
+
+impl fmt::Display for LegEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Position(position) => position.fmt(f),
+            Self::Name(name) => name.fmt(f),
+        }
+    }
 }
 
 /// Where a leg time comes from.
@@ -56,6 +78,28 @@ pub(crate) enum Source {
     Computed,
     /// It is not known.
     Missing,
+}
+
+impl From<&planner::LegRow> for LegAnswerDocument {
+    fn from(row: &planner::LegRow) -> Self {
+        Self {
+            from: LegEnd::Name(row.from.clone()),
+            to: LegEnd::Name(row.to.clone()),
+            duration_s: row.duration_s.map(Number),
+            certified_lower_bound_s: row.certified_lower_bound_s.map(Number),
+            status: Some(row.status.clone()),
+            source: source(row.duration_s, &row.status, row.from_store),
+            key: None,
+        }
+    }
+}
+
+fn source(duration_s: Option<f64>, status: &str, from_store: bool) -> Source {
+    match (duration_s, status) {
+        (Some(_), _) if from_store => Source::Cached,
+        (Some(_), _) | (None, "proved" | "none") => Source::Computed,
+        (None, _) => Source::Missing,
+    }
 }
 
 /// What a table keeps of a leg. Its ends follow from its position.
@@ -81,8 +125,8 @@ impl LegRow {
     /// The answer for the leg between the ends of a pair.
     pub(crate) fn between(self, pair: Pair) -> LegAnswerDocument {
         LegAnswerDocument {
-            from: pair.from,
-            to: pair.to,
+            from: LegEnd::Position(pair.from),
+            to: LegEnd::Position(pair.to),
             duration_s: self.duration_s.map(Number),
             certified_lower_bound_s: self.certified_lower_bound_s.map(Number),
             status: self.status,
@@ -94,16 +138,11 @@ impl LegRow {
 
 impl From<LegTime> for LegRow {
     fn from(time: LegTime) -> Self {
-        let source = match (time.duration_s, time.status) {
-            (Some(_), _) if time.from_store => Source::Cached,
-            (Some(_), _) | (None, "proved" | "none") => Source::Computed,
-            (None, _) => Source::Missing,
-        };
         Self {
             duration_s: time.duration_s,
             certified_lower_bound_s: time.certified_lower_bound_s,
             status: Some(time.status.to_owned()),
-            source,
+            source: source(time.duration_s, time.status, time.from_store),
             key: time.identity.as_deref().map(leg_key),
         }
     }

@@ -7,7 +7,7 @@ use parquet_form::ParquetRows;
 use std::io::{self, Write};
 
 /// A form of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::VariantArray)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, clap::ValueEnum)]
 #[strum(serialize_all = "lowercase")]
 pub(crate) enum TableForm {
     /// One object with all rows.
@@ -37,8 +37,10 @@ impl TableForm {
 pub(crate) struct TableHead<'a> {
     /// `rest_to_rest`, `lower_bound` or `certified`.
     pub(crate) kind: &'static str,
-    /// SHA-256 of the canonical text of the spacecraft.
-    pub(crate) spacecraft_key: &'a str,
+    /// SHA-256 of the canonical text of the spacecraft; in JSON always.
+    pub(crate) spacecraft_key: Option<&'a str>,
+    /// Whether legs lie between named places, not between positions of a query.
+    pub(crate) named: bool,
 }
 
 /// Writes a table. Rows are given in parts; what is written must be finished.
@@ -50,7 +52,7 @@ pub(crate) enum TableWriter<W: Write + Send> {
     /// Comma-separated values.
     Csv(Box<csv::Writer<W>>),
     /// Apache Parquet.
-    Parquet(ParquetRows<W>),
+    Parquet(Box<ParquetRows<W>>),
 }
 
 impl<W: Write + Send> TableWriter<W> {
@@ -63,7 +65,7 @@ impl<W: Write + Send> TableWriter<W> {
         Ok(match form {
             TableForm::Json => {
                 // Neither has characters that need escaping.
-                let (kind, key) = (head.kind, head.spacecraft_key);
+                let (kind, key) = (head.kind, head.spacecraft_key.unwrap_or(""));
                 write!(
                     output,
                     r#"{{"kind":"{kind}","spacecraft_key":"{key}","legs":["#
@@ -76,7 +78,7 @@ impl<W: Write + Send> TableWriter<W> {
                 writer.write_record(COLUMNS)?;
                 Self::Csv(Box::new(writer))
             }
-            TableForm::Parquet => Self::Parquet(ParquetRows::begin(head, output)?),
+            TableForm::Parquet => Self::Parquet(Box::new(ParquetRows::begin(head, output)?)),
         })
     }
 
@@ -102,7 +104,7 @@ impl<W: Write + Send> TableWriter<W> {
             }
             Self::Csv(writer) => {
                 for row in rows {
-                    writer.write_record(&cells(row))?;
+                    writer.write_record(cells(row))?;
                 }
             }
             Self::Parquet(writer) => writer.rows(rows)?,
@@ -122,7 +124,7 @@ impl<W: Write + Send> TableWriter<W> {
                 Ok(output)
             }
             Self::Ndjson(output) => Ok(output),
-            Self::Csv(writer) => writer.into_inner().map_err(|error| error.into_error()),
+            Self::Csv(writer) => writer.into_inner().map_err(csv::IntoInnerError::into_error),
             Self::Parquet(writer) => writer.finish(),
         }
     }

@@ -94,6 +94,8 @@ pub struct LegRow {
     /// How the solve ended (`converged`, ...); for [`LegKind::Certified`] whether there is a bound
     /// (`proved`, `none`).
     pub status: String,
+    /// Whether the store knew it.
+    pub from_store: bool,
 }
 
 /// A part of the table: entries `i` with `i % of == index`.
@@ -227,6 +229,7 @@ pub fn leg_table(
             certified_lower_bound_s: time.certified_lower_bound_s,
             solve_time_s: time.solve_time_s,
             status: time.status.into(),
+            from_store: time.from_store,
         })
     });
     let rows: Vec<_> = rows.collect();

@@ -134,7 +134,8 @@ impl StoredTable {
         let query = read(asked)?;
         let head = TableHead {
             kind: query.kind.into(),
-            spacecraft_key: &leg_key(&planner::described_spacecraft(&query.scenario)),
+            spacecraft_key: Some(&leg_key(&planner::described_spacecraft(&query.scenario))),
+            named: false,
         };
         let mut writer = TableWriter::begin(form, head, output)?;
         for first in &self.parts {

@@ -168,7 +168,8 @@ fn write<W: Write + Send>(
     let table = LegTimeTable::of(&query.scenario, query.kind, run);
     let head = TableHead {
         kind: query.kind.into(),
-        spacecraft_key: &leg_key(table.spacecraft()),
+        spacecraft_key: Some(&leg_key(table.spacecraft())),
+        named: false,
     };
     let mut writer = TableWriter::begin(form, head, output)?;
     for first in (0..query.pairs.len()).step_by(PART) {

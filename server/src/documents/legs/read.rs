@@ -145,6 +145,8 @@ impl From<LegRowSpec> for LegRow {
             certified_lower_bound_s: row.certified_lower_bound_s,
             solve_time_s: row.solve_time_s,
             status: row.status,
+            // A file does not say.
+            from_store: false,
         }
     }
 }

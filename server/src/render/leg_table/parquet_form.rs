@@ -1,7 +1,7 @@
 //! Tables of leg times as Apache Parquet.
 
 use super::{COLUMNS, TableHead};
-use crate::documents::leg_rows::LegAnswerDocument;
+use crate::documents::leg_rows::{LegAnswerDocument, LegEnd};
 use parquet::basic::{Compression, GzipLevel};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type};
 use parquet::errors::ParquetError;
@@ -12,15 +12,16 @@ use parquet::schema::parser::parse_message_type;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-const SCHEMA: &str = "message leg_times {
-    required int32 from;
-    required int32 to;
+/// What the two columns of ends are.
+const POSITIONS: &str = "required int32 from; required int32 to;";
+const NAMES: &str = "required binary from (utf8); required binary to (utf8);";
+/// All other columns.
+const COLUMNS_OF_TIMES: &str = "
     optional double duration_s;
     optional double certified_lower_bound_s;
     optional binary status (utf8);
     required binary source (utf8);
-    optional binary key (utf8);
-}";
+    optional binary key (utf8);";
 /// Rows of a row group; fewer are kept until there are so many.
 const GROUP: usize = 1 << 16;
 
@@ -33,10 +34,36 @@ pub(crate) struct ParquetRows<W: Write + Send> {
 /// Rows that are not written yet, by column.
 #[derive(Default)]
 struct Columns {
-    ends: [Vec<i32>; 2],
+    ends: [EndColumn; 2],
     numbers: [Optional<f64>; 2],
     source: Vec<ByteArray>,
     texts: [Optional<ByteArray>; 2],
+}
+
+/// A column of begins or ends, of which one is filled.
+#[derive(Default)]
+struct EndColumn {
+    positions: Vec<i32>,
+    names: Vec<ByteArray>,
+}
+
+impl EndColumn {
+    fn push(&mut self, end: &LegEnd) {
+        match end {
+            // Tables end at a million legs.
+            LegEnd::Position(at) => self.positions.push(i32::try_from(*at).unwrap_or(i32::MAX)),
+            LegEnd::Name(name) => self.names.push(name.as_str().into()),
+        }
+    }
+
+    fn write(&self, column: &mut Column<'_>) -> Result<usize, ParquetError> {
+        if self.names.is_empty() {
+            let column = column.typed::<Int32Type>();
+            return column.write_batch(&self.positions, None, None);
+        }
+        let column = column.typed::<ByteArrayType>();
+        column.write_batch(&self.names, None, None)
+    }
 }
 
 /// The values of an optional column, and which of its rows have one.
@@ -55,14 +82,22 @@ impl<T> Optional<T> {
 
 impl<W: Write + Send> ParquetRows<W> {
     pub(super) fn begin(head: TableHead<'_>, output: W) -> io::Result<Self> {
-        let said = [("kind", head.kind), ("spacecraft_key", head.spacecraft_key)];
+        let said = [
+            ("kind", Some(head.kind)),
+            ("spacecraft_key", head.spacecraft_key),
+        ];
+        let said = said
+            .into_iter()
+            .filter_map(|(name, text)| Some((name, text?)));
         let said = said.map(|(name, text)| KeyValue::new(name.to_owned(), text.to_owned()));
         let properties = WriterProperties::builder()
             .set_compression(Compression::GZIP(GzipLevel::try_new(1).map_err(failed)?))
             .set_created_by(concat!("slewplan ", env!("CARGO_PKG_VERSION")).to_owned())
-            .set_key_value_metadata(Some(said.to_vec()))
+            .set_key_value_metadata(Some(said.collect()))
             .build();
-        let schema = Arc::new(parse_message_type(SCHEMA).map_err(failed)?);
+        let ends = if head.named { NAMES } else { POSITIONS };
+        let schema = format!("message leg_times {{ {ends} {COLUMNS_OF_TIMES} }}");
+        let schema = Arc::new(parse_message_type(&schema).map_err(failed)?);
         let writer = SerializedFileWriter::new(output, schema, Arc::new(properties));
         Ok(Self {
             writer: writer.map_err(failed)?,
@@ -98,9 +133,8 @@ impl<W: Write + Send> ParquetRows<W> {
 
 impl Columns {
     fn push(&mut self, row: &LegAnswerDocument) {
-        for (column, end) in self.ends.iter_mut().zip([row.from, row.to]) {
-            // Tables end at a million legs.
-            column.push(i32::try_from(end).unwrap_or(i32::MAX));
+        for (column, end) in self.ends.iter_mut().zip([&row.from, &row.to]) {
+            column.push(end);
         }
         let numbers = [row.duration_s, row.certified_lower_bound_s];
         for (column, number) in self.numbers.iter_mut().zip(numbers) {
@@ -121,12 +155,8 @@ impl Columns {
                 return Err(ParquetError::General(format!("no column {name}")));
             };
             match name {
-                "from" => column
-                    .typed::<Int32Type>()
-                    .write_batch(&self.ends[0], None, None)?,
-                "to" => column
-                    .typed::<Int32Type>()
-                    .write_batch(&self.ends[1], None, None)?,
+                "from" => self.ends[0].write(&mut column)?,
+                "to" => self.ends[1].write(&mut column)?,
                 "duration_s" => self.numbers[0].write_numbers(&mut column)?,
                 "certified_lower_bound_s" => self.numbers[1].write_numbers(&mut column)?,
                 "status" => self.texts[0].write_texts(&mut column)?,

@@ -1,20 +1,21 @@
 //! Every form of a table is read back as it was written.
 
 use super::*;
-use crate::documents::leg_rows::Source;
+use crate::documents::leg_rows::{LegEnd, Source};
 use crate::documents::number::Number;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::RowAccessor as _;
 
 const HEAD: TableHead<'_> = TableHead {
     kind: "rest_to_rest",
-    spacecraft_key: "5a",
+    spacecraft_key: Some("5a"),
+    named: false,
 };
 
 fn rows() -> Vec<LegAnswerDocument> {
     let row = |to: usize, duration_s: Option<f64>, source| LegAnswerDocument {
-        from: 0,
-        to,
+        from: LegEnd::Position(0),
+        to: LegEnd::Position(to),
         duration_s: duration_s.map(Number),
         certified_lower_bound_s: None,
         status: duration_s.map(|_| "converged".to_owned()),
@@ -80,8 +81,14 @@ fn parquet_is_read_as_it_was_written() {
     let read: Vec<_> = read.map(|row| row.expect("a row")).collect();
     assert_eq!(read.len(), 3);
     for (read, row) in read.iter().zip(rows()) {
-        assert_eq!(read.get_int(0).ok(), i32::try_from(row.from).ok());
-        assert_eq!(read.get_int(1).ok(), i32::try_from(row.to).ok());
+        assert_eq!(
+            read.get_int(0).map(|at| at.to_string()).ok(),
+            Some(row.from.to_string())
+        );
+        assert_eq!(
+            read.get_int(1).map(|at| at.to_string()).ok(),
+            Some(row.to.to_string())
+        );
         let bits = |value: Option<f64>| value.map(f64::to_bits);
         assert_eq!(
             bits(read.get_double(2).ok()),
@@ -119,5 +126,30 @@ fn no_rows_are_a_table_too() {
                 assert_eq!(reader.metadata().file_metadata().num_rows(), 0);
             }
         }
+    }
+}
+
+#[test]
+fn places_with_names_are_columns_of_text() {
+    let mut rows = rows();
+    for row in &mut rows {
+        row.from = LegEnd::Name("start".into());
+        row.to = LegEnd::Name(format!("target {}", row.to));
+    }
+    let head = TableHead {
+        named: true,
+        ..HEAD
+    };
+    let mut writer = TableWriter::begin(TableForm::Parquet, head, Vec::new()).expect("begun");
+    writer.rows(&rows).expect("written");
+    let bytes = bytes::Bytes::from(writer.finish().expect("finished"));
+    let reader = SerializedFileReader::new(bytes).expect("Parquet");
+    let read = reader
+        .get_row_iter(None)
+        .expect("rows")
+        .map(|row| row.expect("a row"));
+    for (read, row) in read.zip(&rows) {
+        assert_eq!(read.get_string(0).ok(), Some(&"start".to_owned()));
+        assert_eq!(read.get_string(1).ok(), Some(&row.to.to_string()));
     }
 }

@@ -310,8 +310,8 @@ class Client:
         """Deletes the job of a table with its rows."""
         self._send("delete_legs", identifier)
 
-    def _table(self, *arguments: Any, **named: Any) -> LegTable:
-        with self._open(*arguments, headers=LINES, **named) as lines:
+    def _table(self, operation: str, identifier: str = "", body: LegQuery | None = None) -> LegTable:
+        with self._open(operation, identifier, body=body, headers=LINES) as lines:
             return LegTable([json.loads(line) for line in lines])
 
     def _events(self, operation: str, identifier: str) -> Iterator[dict[str, Any]]:

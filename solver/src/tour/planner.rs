@@ -218,7 +218,7 @@ pub fn leg_table(
         .map(|(_, pair)| pair)
         .collect();
     let legs = LegTimeTable::of(scenario, kind, run);
-    let times = legs.solved(&pairs);
+    let times = legs.verified(&pairs);
     let rows = pairs.iter().zip(times).filter_map(|((from, to), time)| {
         let time = time?;
         Some(LegRow {

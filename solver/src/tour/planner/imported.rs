@@ -108,6 +108,7 @@ impl<'a> LegCheck<'a> {
             certified: certify(&self.places, leg).lower_bound,
             solves: 0,
             solve_time: solve_time_s,
+            from_store: false,
         };
         Ok(stored(leg, self.kind, &solved))
     }

@@ -137,26 +137,40 @@ impl<'a> LegTimeTable<'a> {
         LegSolver::new(&self.places, self.run, &self.stop)
     }
 
-    fn solved_now(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
-        if pairs.is_empty() {
-            return Vec::new();
+    /// The same with the motions of known legs read and verified again.
+    #[must_use]
+    pub fn verified(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
+        if self.kind == LegKind::Certified {
+            return self.proved(pairs);
         }
         let legs = self.solver().solved_legs(self.kind, pairs);
-        // What was solved is stored by now, under an identity that the solved leg does not tell.
-        let stored = self.known(pairs);
-        let legs: Vec<_> = pairs.iter().zip(legs).zip(stored).collect();
+        let legs: Vec<_> = pairs.iter().zip(legs).collect();
         // Where cones leave no way, finding out that they do takes as long as a solve.
-        self.run.pool.map(&legs, |(((from, to), leg), stored)| {
+        self.run.pool.map(&legs, |((from, to), leg)| {
             let leg = &leg.as_ref()?.leg;
             Some(LegTime {
                 duration_s: leg.solution.duration(),
                 certified_lower_bound_s: leg.certified,
                 solve_time_s: leg.solve_time,
                 status: leg_status(&self.places, [*from, *to], &leg.solution),
-                from_store: false,
-                identity: stored.as_ref().and_then(|stored| stored.identity.clone()),
+                from_store: leg.from_store,
+                identity: None,
             })
         })
+    }
+
+    fn solved_now(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {
+        if pairs.is_empty() {
+            return Vec::new();
+        }
+        let mut legs = self.verified(pairs);
+        // What was solved is stored by now, under an identity that the solved leg does not tell.
+        for (leg, stored) in legs.iter_mut().zip(self.known(pairs)) {
+            if let Some(leg) = leg {
+                leg.identity = stored.and_then(|stored| stored.identity);
+            }
+        }
+        legs
     }
 
     fn proved(&self, pairs: &[(Place, Place)]) -> Vec<Option<LegTime>> {

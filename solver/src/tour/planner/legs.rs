@@ -450,6 +450,7 @@ fn solve(
         certified,
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
+        from_store: false,
     }
 }
 
@@ -478,6 +479,7 @@ fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
         certified: stored.certified_lower_bound_s,
         solves: 0,
         solve_time: stored.solve_time_s,
+        from_store: true,
     })
 }
 

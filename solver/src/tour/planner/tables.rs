@@ -19,6 +19,8 @@ pub(super) struct SolvedLeg {
     pub(super) solves: u64,
     /// Wall-clock time of all starts, s.
     pub(super) solve_time: f64,
+    /// Whether it was taken from the store.
+    pub(super) from_store: bool,
 }
 
 /// The certified bound of a leg.

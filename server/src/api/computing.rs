@@ -18,8 +18,9 @@ pub(super) const LONGEST: Duration = Duration::from_secs(MAX_S);
 pub(super) const UNTIL_DONE: Duration = Duration::MAX;
 /// Number of flights integrated at once, beside the threads of the solver.
 const FLIGHTS: usize = 2;
-/// Number of tables of leg times written at once.
-const TABLES: usize = 4;
+/// Number of tables of leg times written at once: fewer than the database has readers, because each
+/// may keep one while its client reads.
+const TABLES: usize = 2;
 /// Longest wait for a turn to integrate a flight, or to write a table.
 const INTEGRATION_WAIT: Duration = Duration::from_secs(10);
 

@@ -85,7 +85,7 @@ impl LegStore for LegCache {
             tracing::warn!(%error, "a leg cannot be looked up and is solved again");
             None
         });
-        self.metrics.looked_up(leg.is_some(), 1);
+        self.metrics.looked_up(std::slice::from_ref(&leg));
         leg
     }
 
@@ -99,9 +99,7 @@ impl LegStore for LegCache {
             tracing::warn!(%error, "legs cannot be looked up");
             vec![None; identities.len()]
         });
-        let found = times.iter().flatten().count();
-        self.metrics.looked_up(true, found);
-        self.metrics.looked_up(false, times.len() - found);
+        self.metrics.looked_up(&times);
         times
     }
 

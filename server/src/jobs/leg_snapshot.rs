@@ -52,9 +52,7 @@ impl LegStore for LegsAtOnce {
             tracing::warn!(%error, "legs cannot be looked up");
             vec![None; identities.len()]
         });
-        let found = times.iter().flatten().count();
-        self.metrics.looked_up(true, found);
-        self.metrics.looked_up(false, times.len() - found);
+        self.metrics.looked_up(&times);
         times
     }
 

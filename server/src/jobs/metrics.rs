@@ -82,12 +82,13 @@ impl JobMetrics {
         }
     }
 
-    /// Counts look-ups of legs.
-    pub(super) fn looked_up(&self, found: bool, count: usize) {
-        let outcome = if found { "hit" } else { "miss" };
-        self.leg_lookups
-            .with_label_values(&[outcome])
-            .inc_by(count as u64);
+    /// Counts look-ups of legs by what they found.
+    pub(super) fn looked_up<T>(&self, legs: &[Option<T>]) {
+        let found = legs.iter().flatten().count();
+        for (outcome, count) in [("hit", found), ("miss", legs.len() - found)] {
+            let series = self.leg_lookups.with_label_values(&[outcome]);
+            series.inc_by(count as u64);
+        }
     }
 
     /// Counts a solved leg.

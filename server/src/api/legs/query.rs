@@ -134,11 +134,12 @@ async fn streamed(
     query: LegQuery,
     form: TableForm,
 ) -> Result<Response, ApiError> {
-    let legs = app.jobs().legs_at_once(Handle::current()).await?;
-    let pool = if query.compute {
-        &app.0.pool
+    // Certified legs are not stored, and need no reader of the database.
+    let (pool, legs): (_, Box<dyn LegStore + Send>) = if query.compute {
+        (&app.0.pool, Box::new(NoStore))
     } else {
-        &app.0.lookups
+        let legs = app.jobs().legs_at_once(Handle::current()).await?;
+        (&app.0.lookups, Box::new(legs))
     };
     let pool = Arc::clone(pool);
     Ok(streaming::streamed(
@@ -150,7 +151,7 @@ async fn streamed(
                 pool: &pool,
                 stop: &StopSignal::new(),
                 observer: &ContradictionObserver,
-                legs: &legs as &dyn LegStore,
+                legs: &*legs,
                 segments: &NoStore,
             };
             write(&query, run, form, output)

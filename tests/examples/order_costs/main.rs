@@ -4,6 +4,7 @@
 //! order_costs exact [SECONDS]                 4 to 20 targets, until proved or so long (default 120)
 //! order_costs anytime [SECONDS ...]           25 to 200 targets, stopped after each of these times
 //! order_costs one FAMILY TARGETS SEED SECONDS THREADS        FAMILY 0 to 3, see below
+//! order_costs trace FAMILY TARGETS SEED SECONDS THREADS      order and bound as they improve
 //! order_costs draw DIRECTORY                  what the two have printed, from standard input
 //! ```
 //!
@@ -22,7 +23,7 @@ use slewplan_tests::schedules::{RateConditions, Region, schedule};
 use slewplan_tests::solving::pool;
 use std::ops::Range;
 use std::str::FromStr;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 /// Seeds of the schedules that are proved; of those that are not, the first alone.
@@ -60,22 +61,36 @@ fn main() {
         }
         ["one", family, targets, seed, limit, threads] => {
             println!("{HEADER}");
-            measure(&Case {
-                mode: "one",
-                family: FAMILIES[number::<usize>(family) % FAMILIES.len()],
-                targets: number(targets),
-                seed: number(seed),
-                limit_s: number(limit),
-                threads: number(threads),
-            });
+            measure(&case("one", [family, targets, seed, limit, threads]));
         }
-        _ => eprintln!("exact [SECONDS], anytime [SECONDS ...], one ..., or draw DIRECTORY"),
+        ["trace", family, targets, seed, limit, threads] => {
+            println!("{TRACE_HEADER}");
+            measure(&case("trace", [family, targets, seed, limit, threads]));
+        }
+        _ => eprintln!(
+            "exact [SECONDS], anytime [SECONDS ...], one ..., trace ..., or draw DIRECTORY"
+        ),
+    }
+}
+
+/// The case that these words describe.
+fn case<'a>(mode: &'a str, [family, targets, seed, limit, threads]: [&str; 5]) -> Case<'a> {
+    Case {
+        mode,
+        family: FAMILIES[number::<usize>(family) % FAMILIES.len()],
+        targets: number(targets),
+        seed: number(seed),
+        limit_s: number(limit),
+        threads: number(threads),
     }
 }
 
 fn number<T: FromStr>(text: &str) -> T {
     text.parse().ok().expect("a number")
 }
+
+/// Columns of a trace.
+const TRACE_HEADER: &str = "after_s,total_s,bound_s,gap";
 
 /// What is measured.
 struct Case<'a> {
@@ -118,6 +133,7 @@ fn measure(case: &Case<'_>) {
     let first = FirstPlan {
         begin: Instant::now(),
         after_s: OnceLock::new(),
+        traced: (case.mode == "trace").then(Mutex::default),
     };
     let run = Run {
         pool: &pool(case.threads),
@@ -128,6 +144,9 @@ fn measure(case: &Case<'_>) {
     };
     let outcome = planner::solve(&scenario, run);
     let wall = first.begin.elapsed().as_secs_f64();
+    if case.mode == "trace" {
+        println!("{HEADER}");
+    }
     let Case {
         mode,
         targets,
@@ -160,14 +179,28 @@ fn described(plan: &Plan) -> String {
     )
 }
 
-/// Notes when the first plan comes.
+/// Notes when the first plan comes, and prints how order and bound improve where that is wanted.
 struct FirstPlan {
     begin: Instant,
     after_s: OnceLock<f64>,
+    /// Total and bound printed last, s.
+    traced: Option<Mutex<[f64; 2]>>,
 }
 
 impl Observer for FirstPlan {
-    fn progress(&self, _: Progress) {}
+    fn progress(&self, progress: Progress) {
+        let Some(traced) = &self.traced else {
+            return;
+        };
+        let now = [progress.incumbent_s, progress.lower_bound_s].map(|value| value.unwrap_or(0.0));
+        let mut last = traced.lock().expect("no panic");
+        if *last != now {
+            *last = now;
+            let after_s = self.begin.elapsed().as_secs_f64();
+            let gap = progress.relative_gap().unwrap_or(1.0);
+            println!("{after_s:.3},{:.3},{:.3},{gap:.5}", now[0], now[1]);
+        }
+    }
 
     fn incumbent(&self, _: &Plan) {
         self.after_s

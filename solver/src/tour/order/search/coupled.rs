@@ -112,6 +112,8 @@ impl OrderSearch<'_> {
         let targets = table.targets();
         let trees = self.tree.spanning_trees()?;
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
+        // Orders that are short without couplings are far from short.
+        self.raise_triple_bounds(&mut triple_bounds, 0);
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());
@@ -119,14 +121,7 @@ impl OrderSearch<'_> {
             if self.stop.is_set() {
                 break;
             }
-            let effort = AscentEffort {
-                triples: TRIPLES_OF_MANY * targets,
-                fives: FIVES_OF_MANY * targets,
-                steps: MAX_STEPS,
-            };
-            triple_bounds.raise(self.model, &effort, self.pool, self.stop);
-            self.tree.bound_root(triple_bounds.root_bound());
-            self.reporter.report(&self.tree);
+            self.raise_triple_bounds(&mut triple_bounds, FIVES_OF_MANY);
             let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
             let gained = raised || self.tree.best_s() < before.0;
             without_gain = if gained { 0 } else { without_gain + 1 };
@@ -137,6 +132,20 @@ impl OrderSearch<'_> {
         self.tree
             .set_coupled_bounds(CoupledBounds::Trees(Box::new(triple_bounds)));
         self.stop.is_set().then(|| self.stopped())
+    }
+
+    /// Raises the triple bounds for many targets and the bound of the root, with so many paths of five
+    /// places for each target.
+    fn raise_triple_bounds(&mut self, triple_bounds: &mut TripleBounds, fives: usize) {
+        let targets = triple_bounds.table().targets();
+        let effort = AscentEffort {
+            triples: TRIPLES_OF_MANY * targets,
+            fives: fives * targets,
+            steps: MAX_STEPS,
+        };
+        triple_bounds.raise(self.model, &effort, self.pool, self.stop);
+        self.tree.bound_root(triple_bounds.root_bound());
+        self.reporter.report(&self.tree);
     }
 
     /// Searches for orders that are short in the known and estimated couplings, solves their unknown

@@ -71,7 +71,8 @@ def table(program, scenario, kept, threads):
     """
     if not kept.exists():
         given, made = kept.with_suffix(".json"), kept.with_suffix(".part")
-        given.write_text(json.dumps(scenario), encoding="utf-8")
+        unlimited = scenario | {"options": {"time_limit_s": None}}
+        given.write_text(json.dumps(unlimited), encoding="utf-8")
         line = [program, "legs", given, "--format", "csv", "-o", made, "--progress", "none"]
         subprocess.run([*line, "--threads", str(threads)], check=True)
         made.rename(kept)

@@ -3,6 +3,7 @@
 //! ```text
 //! scenarios legs [COUNT]                            so many of each spacecraft, 3 unless given
 //! scenarios ordinary FIRST END TARGETS SPREAD       seeds from FIRST to before END
+//! scenarios schedule REGION RATES TARGETS SEED      sphere or strip, rest or z
 //! ```
 
 use serde_json::{Map, Value, json};
@@ -10,6 +11,7 @@ use slewplan_solver::model::spec::{
     AttitudeSpec, ScenarioSpec, SpacecraftSpec, TargetSpec, WheelSpec,
 };
 use slewplan_tests::ordinary;
+use slewplan_tests::schedules::{RateConditions, Region, schedule};
 use slewplan_tests::suite::{SPACECRAFT, leg};
 
 fn main() {
@@ -26,7 +28,30 @@ fn main() {
                 println!("{}", document(&ordinary::scenario(seed, targets, spread)));
             }
         }
-        _ => panic!("legs [COUNT] | ordinary FIRST END TARGETS SPREAD"),
+        ["schedule", region, rates, targets, seed] => {
+            let targets = targets.parse().expect("a number of targets");
+            let spec = schedule(region_of(region), rates_of(rates), targets, number(seed));
+            println!("{}", document(&spec));
+        }
+        _ => panic!(
+            "legs [COUNT] | ordinary FIRST END TARGETS SPREAD | schedule REGION RATES TARGETS SEED"
+        ),
+    }
+}
+
+fn region_of(word: &str) -> Region {
+    match word {
+        "sphere" => Region::Sphere,
+        "strip" => Region::Strip,
+        _ => panic!("sphere | strip"),
+    }
+}
+
+fn rates_of(word: &str) -> RateConditions {
+    match word {
+        "rest" => RateConditions::AllZero,
+        "z" => RateConditions::ZeroAboutZ,
+        _ => panic!("rest | z"),
     }
 }
 
@@ -44,12 +69,18 @@ fn document(spec: &ScenarioSpec) -> Value {
         "attitude": attitude(&spec.start.attitude),
         "wheel_speed_rad_s": spec.start.wheel_speed_rad_s,
     });
-    json!({
-        "name": spec.name,
-        "spacecraft": spacecraft(&spec.spacecraft),
-        "start": start,
-        "targets": spec.targets.iter().map(target).collect::<Vec<_>>(),
-    })
+    let end = spec.end.as_ref();
+    let end = end.map(|end| json!({"attitude": attitude(&end.attitude)}));
+    object([
+        ("name", json!(spec.name)),
+        ("spacecraft", spacecraft(&spec.spacecraft)),
+        ("start", start),
+        ("end", json!(end)),
+        (
+            "targets",
+            json!(spec.targets.iter().map(target).collect::<Vec<_>>()),
+        ),
+    ])
 }
 
 fn spacecraft(spec: &SpacecraftSpec) -> Value {
@@ -94,10 +125,13 @@ fn target(spec: &TargetSpec) -> Value {
 }
 
 fn attitude(spec: &AttitudeSpec) -> Value {
-    let AttitudeSpec::Quaternion([x, y, z, w]) = spec else {
-        unreachable!("attitudes of the suites are quaternions");
-    };
-    json!({"quaternion": {"x": x, "y": y, "z": z, "w": w}})
+    match spec {
+        AttitudeSpec::Quaternion([x, y, z, w]) => {
+            json!({"quaternion": {"x": x, "y": y, "z": z, "w": w}})
+        }
+        AttitudeSpec::RollPitchYawDeg(angles) => json!({"roll_pitch_yaw_deg": angles}),
+        _ => unreachable!("the suites have quaternions and angles"),
+    }
 }
 
 /// An object of the members that are not null.

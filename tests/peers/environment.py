@@ -57,6 +57,7 @@ class Environment:
 
 
 PEERS = Environment("peers", ("casadi==3.8.2", "numpy"), ("casadi", "numpy"), "PEERS_VENV")
+ROUTING = Environment("routing", ("ortools==9.15.6755",), ("ortools",), "ROUTING_VENV")
 
 
 def interpreter():

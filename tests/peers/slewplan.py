@@ -25,9 +25,19 @@ def binary(named=None):
     named = named or os.environ.get("SLEWPLAN")
     if named:
         return named
-    build = ["cargo", "build", "--release", "--locked", "--package", "slewplan-server"]
+    return built("slewplan-server") / "slewplan"
+
+
+def example(name):
+    """A program of tests/examples, built now."""
+    return built("slewplan-tests", "--example", name) / "examples" / name
+
+
+def built(package, *what):
+    """The folder of what is built of a package now."""
+    build = ["cargo", "build", "--release", "--locked", "--package", package, *what]
     subprocess.run(build, cwd=ROOT, check=True)
-    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"), "release", "slewplan")
+    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"), "release")
 
 
 def solve(program, scenario, *arguments):

@@ -117,7 +117,6 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     }
     let stop = limited(scenario, run.stop);
     let places = Places::of(scenario);
-    let pairs = tour_pairs(&places);
     let solver = LegSolver::new(&places, run, &stop);
     let tours = Tours::new(&places, &solver, &stop);
     let mut builder = PlanBuilder::new(&tours, run, begin);
@@ -125,6 +124,8 @@ pub fn solve(scenario: &Scenario, run: Run<'_>) -> Outcome {
     let bound_tours = || tour_bound(&places, &tours.certified, run.pool, &stop);
     let order = first_order(&places, &stop);
     let few = places.needs_all_legs();
+    // Of many targets nobody asks for all pairs, which would take more memory than what is known of them.
+    let pairs = if few { tour_pairs(&places) } else { Vec::new() };
     if let Some(order) = order.clone()
         && (places.dynamics.has_momentum() || !(few || stop.is_set()))
     {

@@ -65,10 +65,13 @@ impl TabulatedLeg {
     }
 }
 
-/// An entry for every ordered pair of places, for legs of one kind.
+/// Entries for ordered pairs of places, for legs of one kind.
+///
+/// Only what is known takes memory: of many targets, a few legs out of each.
 pub(super) struct Table<T> {
     places: usize,
-    entries: Vec<Option<T>>,
+    /// For every place the entries of the legs out of it, sorted by the place they lead to.
+    rows: Vec<Vec<(u32, T)>>,
 }
 
 /// Solved legs.
@@ -92,8 +95,8 @@ impl CertifiedTable {
 
     /// Whether any leg has a proved bound.
     pub(super) fn has_bounds(&self) -> bool {
-        let mut known = self.entries.iter().flatten();
-        known.any(|leg| leg.lower_bound.is_some())
+        let mut known = self.rows.iter().flatten();
+        known.any(|(_, leg)| leg.lower_bound.is_some())
     }
 }
 
@@ -106,7 +109,7 @@ impl<T> Table<T> {
         let count = 2 + places.scenario.targets().len();
         let mut table = Self {
             places: count,
-            entries: (0..count * count).map(|_| None).collect(),
+            rows: std::iter::repeat_with(Vec::new).take(count).collect(),
         };
         for (leg, entry) in entries {
             table.set(leg, entry);
@@ -116,14 +119,22 @@ impl<T> Table<T> {
 
     /// Sets the entry of the leg between two places.
     pub(super) fn set(&mut self, (from, to): (Place, Place), entry: Option<T>) {
-        let (from, to) = (index(from, self.places), index(to, self.places));
-        self.entries[from * self.places + to] = entry;
+        let to = number(to, self.places);
+        let row = &mut self.rows[index(from, self.places)];
+        match (row.binary_search_by_key(&to, |entry| entry.0), entry) {
+            (Ok(at), Some(entry)) => row[at].1 = entry,
+            (Ok(at), None) => _ = row.remove(at),
+            (Err(at), Some(entry)) => row.insert(at, (to, entry)),
+            (Err(_), None) => {}
+        }
     }
 
     /// The entry of the leg between two places, when there is one.
     pub(super) fn get(&self, from: Place, to: Place) -> Option<&T> {
-        let (from, to) = (index(from, self.places), index(to, self.places));
-        self.entries[from * self.places + to].as_ref()
+        let row = &self.rows[index(from, self.places)];
+        let to = number(to, self.places);
+        let at = row.binary_search_by_key(&to, |entry| entry.0).ok()?;
+        Some(&row[at].1)
     }
 }
 
@@ -133,4 +144,9 @@ fn index(place: Place, places: usize) -> usize {
         Place::Target(i) => 1 + i,
         Place::End => places - 1,
     }
+}
+
+/// The same in the width of an entry.
+fn number(place: Place, places: usize) -> u32 {
+    u32::try_from(index(place, places)).expect("fewer places than 2^32")
 }

@@ -28,15 +28,62 @@ impl ShortPath {
     }
 }
 
+/// The known gaps of triples, s.
+#[derive(Debug)]
+struct KnownTriples {
+    places: usize,
+    /// Number of the row for `via * places + from`, or [`NO_ROW`].
+    row_of: Vec<u32>,
+    /// Known gaps by `to`, sorted: of many targets, a few in each row.
+    rows: Vec<Vec<(u32, f64)>>,
+}
+
+/// Stands for a row without known gaps.
+const NO_ROW: u32 = u32::MAX;
+
+impl KnownTriples {
+    fn new(targets: usize) -> Self {
+        let places = targets + 2;
+        Self {
+            places,
+            row_of: vec![NO_ROW; targets * places],
+            rows: Vec::new(),
+        }
+    }
+
+    /// The gap, or NaN where it is unknown.
+    fn get(&self, [from, via, to]: [usize; 3]) -> f64 {
+        let row = self.row_of[via * self.places + from];
+        let row = self.rows.get(row as usize).map_or(&[][..], Vec::as_slice);
+        let at = row.binary_search_by_key(&to, |entry| entry.0 as usize);
+        at.map_or(f64::NAN, |at| row[at].1)
+    }
+
+    fn set(&mut self, [from, via, to]: [usize; 3], gap: f64) {
+        let row_of = &mut self.row_of[via * self.places + from];
+        if *row_of == NO_ROW {
+            *row_of = narrow(self.rows.len());
+            self.rows.push(Vec::new());
+        }
+        let row = &mut self.rows[*row_of as usize];
+        match row.binary_search_by_key(&to, |entry| entry.0 as usize) {
+            Ok(at) => row[at].1 = gap,
+            Err(at) => row.insert(at, (narrow(to), gap)),
+        }
+    }
+}
+
+fn narrow(number: usize) -> u32 {
+    u32::try_from(number).expect("fewer places and rows than 2^32")
+}
+
 /// Coupling gaps of triples, and of five places in a row, over their pair bounds.
 #[derive(Debug)]
 pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
     couples: Vec<bool>,
-    /// Row `via * places + from`, allocated when its first entry is set: the gap for every `to`, s,
-    /// or NaN where it is unknown.
-    triples: Vec<Option<Box<[f64]>>>,
+    triples: KnownTriples,
     /// Excess of five places over their four pair bounds, s.
     fives: HashMap<[usize; 5], f64>,
     estimates: GapEstimates,
@@ -50,7 +97,7 @@ impl CouplingGaps {
             targets,
             has_end: model.has_end(),
             couples: (0..targets).map(|via| model.couples(via)).collect(),
-            triples: vec![None; targets * (targets + 2)],
+            triples: KnownTriples::new(targets),
             fives: HashMap::new(),
             estimates: GapEstimates::new(model, table),
         }
@@ -64,7 +111,7 @@ impl CouplingGaps {
 
     /// The gap of a triple, s, as far as it is known, or an estimate; no bound.
     pub(super) fn estimate(&self, from: usize, via: usize, to: usize) -> f64 {
-        let known = self.known_triple(from, via, to);
+        let known = self.triples.get([from, via, to]);
         if !known.is_nan() {
             known
         } else if self.couples.get(via) == Some(&true) {
@@ -78,7 +125,7 @@ impl CouplingGaps {
     /// not known.
     pub(super) fn triple(&self, from: usize, via: usize, to: usize) -> f64 {
         // An unknown gap is not a number, for which the maximum gives 0.
-        self.known_triple(from, via, to).max(0.0)
+        self.triples.get([from, via, to]).max(0.0)
     }
 
     /// Lower bound, s, of the time of four consecutive legs beyond the bounds of their two halves.
@@ -97,7 +144,7 @@ impl CouplingGaps {
     pub(super) fn is_open(&self, path: &ShortPath) -> bool {
         let middle = path.0[path.0.len() / 2];
         let unknown = |path: Vec<usize>| match path[..] {
-            [a, b, c] => self.known_triple(a, b, c).is_nan(),
+            [a, b, c] => self.triples.get([a, b, c]).is_nan(),
             [a, b, c, d, e] => !self.fives.contains_key(&[a, b, c, d, e]),
             _ => false,
         };
@@ -136,7 +183,7 @@ impl CouplingGaps {
             match path[..] {
                 [a, b, c] => {
                     self.estimates.learn([a, b, c], coupling_gap);
-                    self.set_triple(a, b, c, coupling_gap);
+                    self.triples.set([a, b, c], coupling_gap);
                 }
                 [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], coupling_gap),
                 _ => {}
@@ -155,17 +202,5 @@ impl CouplingGaps {
             let possible = from != end && to != start && (to != end || self.has_end);
             possible.then_some(path)
         })
-    }
-
-    fn known_triple(&self, from: usize, via: usize, to: usize) -> f64 {
-        self.triples[via * (self.targets + 2) + from]
-            .as_ref()
-            .map_or(f64::NAN, |row| row[to])
-    }
-
-    fn set_triple(&mut self, from: usize, via: usize, to: usize, coupling_gap: f64) {
-        let places = self.targets + 2;
-        let row = &mut self.triples[via * places + from];
-        row.get_or_insert_with(|| vec![f64::NAN; places].into())[to] = coupling_gap;
     }
 }

@@ -2,6 +2,9 @@
 
 use std::num::NonZeroUsize;
 
+/// Shares of short work for each worker.
+const SHARES: usize = 4;
+
 /// A fixed set of worker threads for solving.
 #[derive(Debug)]
 pub struct SolverPool(rayon::ThreadPool);
@@ -62,5 +65,17 @@ impl SolverPool {
                 .map(&work)
                 .collect()
         })
+    }
+
+    /// Maps items whose work is short and even, many in a row on each worker.
+    pub fn map_short<T: Send, R: Send>(
+        &self,
+        items: Vec<T>,
+        work: impl Fn(T) -> R + Sync + Send,
+    ) -> Vec<R> {
+        use rayon::prelude::*;
+        let row = items.len().div_ceil(SHARES * self.threads());
+        self.0
+            .install(|| items.into_par_iter().with_min_len(row).map(work).collect())
     }
 }

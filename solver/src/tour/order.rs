@@ -177,6 +177,13 @@ pub trait TourModel: Sync {
     /// Solves the tour of a whole order, to the end where there is one. Expensive.
     fn tour(&self, order: &[usize]) -> TourEvaluation;
 
+    /// Times of the legs of the tour of a whole order, s, each with settling and dwelling at its end;
+    /// `None` where the order does not resolve or the model has no motions.
+    fn leg_times(&self, order: &[usize]) -> Option<Vec<f64>> {
+        let _ = order;
+        None
+    }
+
     /// Costates of the tour of a whole order at each of its targets that a leg leaves: by how much
     /// the state there shortens the legs before it, to first order, and lengthens those after it.
     /// `None` where the order does not resolve or the model has no states. In a symmetric model the

@@ -51,6 +51,19 @@ impl LegSolution {
         }
     }
 
+    /// Appends a solution that begins in the state in which this one ends. Nothing is known of the
+    /// costates where they meet.
+    pub(super) fn append(&mut self, next: &Self, wheels: usize) {
+        if !self.intervals.is_empty() {
+            self.costates.push(DVector::zeros(wheels));
+        }
+        self.profile.append(&next.profile);
+        self.intervals.extend_from_slice(&next.intervals);
+        self.costates.extend_from_slice(&next.costates);
+        self.iterations += next.iterations;
+        self.infeasibility = self.infeasibility.max(next.infeasibility);
+    }
+
     /// The same motion, or the one reversed in time, from another first attitude.
     pub(crate) fn placed(&self, reversed: bool, begin: &Attitude) -> Self {
         let mut placed = if reversed {

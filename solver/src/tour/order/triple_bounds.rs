@@ -126,8 +126,10 @@ impl TripleBounds {
         let part = Part::new(from, self.end(), remaining);
         let first = cheapest(remaining, |to| self.first(from, to)).1;
         let last = cheapest(remaining, |last| self.cost(last, self.end())).1;
-        let tree = least_tree(remaining.len(), |a, b| {
-            self.cost(remaining[a], remaining[b])
+        let tree = least_tree(remaining.len(), |a, weights| {
+            for (weight, &to) in weights.iter_mut().zip(remaining) {
+                *weight = self.cost(remaining[a], to);
+            }
         });
         let edges: f64 = tree.iter().map(|edge| edge.weight).sum();
         (self.passing(&part) + first + edges + last).max(0.0)
@@ -152,6 +154,22 @@ impl TripleBounds {
         }
         let unknown: Vec<ShortPath> = unknown.into_iter().collect();
         self.ask(&unknown, model, pool, stop);
+    }
+
+    /// Learns from the tour of an order how long its legs take together, for estimates.
+    pub fn learn(&mut self, order: &[usize], model: &dyn TourModel) {
+        let Some(times) = model.leg_times(order) else {
+            return;
+        };
+        let table = self.legs.table();
+        let mut path = vec![table.start()];
+        path.extend(order);
+        path.extend(model.has_end().then_some(table.end()));
+        let legs = path.windows(2).zip(times);
+        let excesses: Vec<f64> = legs
+            .map(|(leg, time_s)| time_s - table.estimate(leg[0], leg[1]))
+            .collect();
+        self.coupling_gaps.learn(&path, &excesses);
     }
 
     /// Asks the model for the gaps of paths. The bounds of their legs, over which the gaps are
@@ -196,7 +214,7 @@ impl TripleBounds {
 
     /// Updates the rankings and the bound of all tours to the current multipliers.
     fn update_root_bound(&mut self) {
-        self.rank();
+        self.rank(None);
         let all: Vec<usize> = (0..self.targets()).collect();
         self.root_s = self.root_s.max(self.bound(self.legs.table().start(), &all));
     }

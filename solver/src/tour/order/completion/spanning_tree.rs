@@ -136,8 +136,10 @@ impl SpanningTrees {
             bound += weight;
             edges.push([remaining[position], place]);
         }
-        let edge = |a: usize, b: usize| self.edge(remaining[a], remaining[b]);
-        for edge in least_tree(count, edge) {
+        let whole = remaining.iter().copied().eq(0..self.potentials.len());
+        let others = (!whole).then_some(remaining);
+        let fill = |a: usize, weights: &mut [f64]| self.fill(remaining[a], others, weights);
+        for edge in least_tree(count, fill) {
             bound += edge.weight;
             degrees[edge.ends[0]] += 1;
             degrees[edge.ends[1]] += 1;
@@ -150,9 +152,21 @@ impl SpanningTrees {
         }
     }
 
-    /// Weight of an edge between two targets, s.
-    fn edge(&self, a: usize, b: usize) -> f64 {
-        self.edges[a * self.entry_offsets.len() + b] + self.potentials[a] + self.potentials[b]
+    /// Weights of the edges between a target and some others, or all in their order, s.
+    fn fill(&self, target: usize, others: Option<&[usize]>, weights: &mut [f64]) {
+        let targets = self.entry_offsets.len();
+        let row = &self.edges[target * targets..][..targets];
+        let here = self.potentials[target];
+        if let Some(others) = others {
+            for (weight, &other) in weights.iter_mut().zip(others) {
+                *weight = row[other] + here + self.potentials[other];
+            }
+        } else {
+            let known = row.iter().zip(&self.potentials);
+            for (weight, (edge, there)) in weights.iter_mut().zip(known) {
+                *weight = edge + here + there;
+            }
+        }
     }
 }
 

@@ -28,17 +28,18 @@ const MAX_ROUNDS: u64 = 100;
 const ROUNDS_WITHOUT_GAIN: u64 = 2;
 /// Relative rise of the bound in a round that counts as none.
 const MIN_RELATIVE_GAIN: f64 = 2e-4;
-/// Triples solved per target in a round.
+/// Triples solved per target before the first round, and in a round.
+const FIRST_TRIPLES_OF_MANY: usize = 24;
 const TRIPLES_OF_MANY: usize = 12;
-/// Paths of five places solved per target in a round.
+/// Paths of five places solved per target in a round in which the triples are exhausted.
 const FIVES_OF_MANY: usize = 8;
 /// Passes of a round: each learns the couplings along the orders that it finds.
 const PASSES: u64 = 2;
 /// Heuristic searches for orders in a pass.
 const ORDERS_PER_PASS: u64 = 2;
 /// Kicks per target of a heuristic search, and at most.
-const KICKS_PER_TARGET: usize = 40;
-const MAX_KICKS: usize = 10_000;
+const KICKS_PER_TARGET: usize = 15;
+const MAX_KICKS: usize = 4_000;
 /// Orders of a pass that are evaluated.
 const ORDERS_EVALUATED: usize = 2;
 
@@ -67,6 +68,7 @@ impl CoupledBounds {
         let effort = AscentEffort {
             triples: TRIPLES_OF_FEW * targets,
             fives: FIVES_OF_FEW * targets,
+            fives_before_triples_end: true,
             steps: MAX_STEPS,
         };
         triple_bounds.raise(model, &effort, pool, stop);
@@ -109,11 +111,10 @@ impl OrderSearch<'_> {
             return None;
         }
         let table = self.tree.table();
-        let targets = table.targets();
         let trees = self.tree.spanning_trees()?;
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
         // Orders that are short without couplings are far from short.
-        self.raise_triple_bounds(&mut triple_bounds, 0);
+        self.raise_triple_bounds(&mut triple_bounds, FIRST_TRIPLES_OF_MANY, 0);
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());
@@ -121,7 +122,7 @@ impl OrderSearch<'_> {
             if self.stop.is_set() {
                 break;
             }
-            self.raise_triple_bounds(&mut triple_bounds, FIVES_OF_MANY);
+            self.raise_triple_bounds(&mut triple_bounds, TRIPLES_OF_MANY, FIVES_OF_MANY);
             let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
             let gained = raised || self.tree.best_s() < before.0;
             without_gain = if gained { 0 } else { without_gain + 1 };
@@ -134,13 +135,19 @@ impl OrderSearch<'_> {
         self.stop.is_set().then(|| self.stopped())
     }
 
-    /// Raises the triple bounds for many targets and the bound of the root, with so many paths of five
-    /// places for each target.
-    fn raise_triple_bounds(&mut self, triple_bounds: &mut TripleBounds, fives: usize) {
+    /// Raises the triple bounds for many targets and the bound of the root, with so many triples and paths
+    /// of five places for each target.
+    fn raise_triple_bounds(
+        &mut self,
+        triple_bounds: &mut TripleBounds,
+        triples: usize,
+        fives: usize,
+    ) {
         let targets = triple_bounds.table().targets();
         let effort = AscentEffort {
-            triples: TRIPLES_OF_MANY * targets,
+            triples: triples * targets,
             fives: fives * targets,
+            fives_before_triples_end: false,
             steps: MAX_STEPS,
         };
         triple_bounds.raise(self.model, &effort, self.pool, self.stop);
@@ -170,6 +177,9 @@ impl OrderSearch<'_> {
             orders.dedup();
             orders.truncate(ORDERS_EVALUATED);
             self.evaluate_new(&orders);
+            for order in &orders {
+                triple_bounds.learn(order, self.model);
+            }
             self.reporter.announce(&self.tree);
             self.reporter.report(&self.tree);
             if self.stop.is_set() {

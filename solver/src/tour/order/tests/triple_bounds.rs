@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const EFFORT: AscentEffort = AscentEffort {
     triples: 1000,
     fives: 1000,
+    fives_before_triples_end: true,
     steps: 200,
 };
 

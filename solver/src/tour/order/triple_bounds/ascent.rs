@@ -4,7 +4,7 @@
 use super::TripleBounds;
 use super::choice::{NeighbourChoice, Part};
 use super::coupling_gaps::ShortPath;
-use super::multipliers::Multipliers;
+use super::multipliers::{Heading, Multipliers};
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::TourModel;
@@ -12,6 +12,7 @@ use crate::tour::order::completion::LegCosts;
 use crate::tour::order::completion::least_tree::{cheapest, least_tree};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 // With these constants the bound is within 0.2 % of its limit after 400 steps, or four steps per
 // target if that is more, on 50 to 200 points on a sphere, uniform and clustered.
@@ -33,6 +34,12 @@ const STEPS_PER_BATCH: usize = 30;
 /// Questions of a batch per target.
 const BATCH_PER_TARGET: usize = 4;
 
+/// Number of targets from which the steps of an ascent are divided among workers.
+const MANY_TARGETS: usize = 60;
+
+/// Targets along the side of a square of edges.
+const SQUARE: usize = 32;
+
 /// Limits of the work of an ascent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AscentEffort {
@@ -41,6 +48,8 @@ pub struct AscentEffort {
     /// Largest number of paths of five places, and of triples in them, to ask for in the second
     /// ascent. With 0 there is no second ascent, and the outer multipliers stay as they are.
     pub fives: usize,
+    /// Whether there is a second ascent even if the first one reached its limit of triples.
+    pub fives_before_triples_end: bool,
     /// Largest number of steps of each of the two ascents: some 400, or four per target. With far
     /// fewer the second ascent gains nothing, because the bound falls before it rises.
     pub steps: usize,
@@ -82,7 +91,7 @@ struct Ascent<'a> {
     /// Edges between targets less their multipliers, by rows, s.
     weights: Vec<f64>,
     /// Direction of the next step in the multipliers.
-    heading: Multipliers,
+    heading: Heading,
     /// Direction of the next step in the node potentials.
     potential_heading: Vec<f64>,
     step: f64,
@@ -118,8 +127,17 @@ impl TripleBounds {
         let ask = |triple_bounds: &mut Self, paths: &[ShortPath]| {
             triple_bounds.ask(paths, model, pool, stop);
         };
-        let triples = self.climb(Width::Triples, effort.triples, effort.steps, ask, stop);
-        if effort.fives == 0 || stop.is_set() {
+        let triples = self.climb(
+            Width::Triples,
+            effort.triples,
+            effort.steps,
+            ask,
+            pool,
+            stop,
+        );
+        // While more triples are wanted, those of a later call gain more.
+        let early = triples.asked >= effort.triples && !effort.fives_before_triples_end;
+        if effort.fives == 0 || early || stop.is_set() {
             return AscentWork {
                 triples: triples.asked,
                 fives: 0,
@@ -127,7 +145,7 @@ impl TripleBounds {
                 settled: triples.settled,
             };
         }
-        let fives = self.climb(Width::Fives, effort.fives, effort.steps, ask, stop);
+        let fives = self.climb(Width::Fives, effort.fives, effort.steps, ask, pool, stop);
         AscentWork {
             triples: triples.asked,
             fives: fives.asked,
@@ -143,6 +161,7 @@ impl TripleBounds {
         limit: usize,
         steps: usize,
         ask: impl Fn(&mut Self, &[ShortPath]),
+        pool: &SolverPool,
         stop: &StopSignal,
     ) -> AscentOutcome {
         let all: Vec<usize> = (0..self.targets()).collect();
@@ -151,7 +170,7 @@ impl TripleBounds {
         let mut ascent = Ascent::new(self, width, &all, FIRST_STEP * mean_leg);
         while climb.steps < steps && !stop.is_set() {
             climb.steps += 1;
-            let choices = ascent.choose();
+            let choices = ascent.choose(pool);
             ascent.judge(&choices);
             climb.settled = ascent.step <= LAST_STEP * mean_leg;
             if climb.settled || climb.steps.is_multiple_of(STEPS_PER_BATCH) {
@@ -175,13 +194,23 @@ impl TripleBounds {
     }
 }
 
+/// The squares of a lower triangle.
+fn squares(targets: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+    let range = move |begin: usize| begin..(begin + SQUARE).min(targets);
+    let begins = move || (0..targets).step_by(SQUARE);
+    begins().flat_map(move |first| {
+        let seconds = begins().take_while(move |&second| second <= first);
+        seconds.map(move |second| (range(first), range(second)))
+    })
+}
+
 impl<'a> Ascent<'a> {
     fn new(triple_bounds: &'a mut TripleBounds, width: Width, all: &'a [usize], step: f64) -> Self {
         let targets = all.len();
         Self {
             part: Part::new(triple_bounds.legs.table().start(), triple_bounds.end(), all),
             weights: vec![0.0; targets * targets],
-            heading: Multipliers::zero(targets),
+            heading: Heading::zero(targets),
             potential_heading: vec![0.0; targets],
             step,
             stale: 0,
@@ -195,15 +224,19 @@ impl<'a> Ascent<'a> {
     }
 
     /// Both relaxed choices for the current multipliers.
-    fn choose(&mut self) -> RelaxedChoices {
-        self.triple_bounds.rank();
+    fn choose(&mut self, pool: &SolverPool) -> RelaxedChoices {
+        let pool = (self.part.targets.len() >= MANY_TARGETS).then_some(pool);
+        self.triple_bounds.rank(pool);
         let triple_bounds = &*self.triple_bounds;
         let targets = self.part.targets.len();
-        for a in 0..targets {
-            for b in 0..a {
-                let weight = triple_bounds.cost(a, b);
-                self.weights[a * targets + b] = weight;
-                self.weights[b * targets + a] = weight;
+        // Square by square, since the multipliers of both ends of an edge are far apart.
+        for (first, second) in squares(targets) {
+            for a in first {
+                for b in second.start..second.end.min(a) {
+                    let weight = triple_bounds.cost(a, b);
+                    self.weights[a * targets + b] = weight;
+                    self.weights[b * targets + a] = weight;
+                }
             }
         }
         let mut choices = RelaxedChoices {
@@ -211,8 +244,12 @@ impl<'a> Ascent<'a> {
             targets: Vec::with_capacity(targets),
             edges: Vec::with_capacity(targets + 1),
         };
-        for &via in self.part.targets {
-            let choice = triple_bounds.choice(&self.part, via);
+        let choice = |&via: &usize| triple_bounds.choice(&self.part, via);
+        let chosen = match pool {
+            None => self.part.targets.iter().map(choice).collect(),
+            Some(pool) => pool.map_short(self.part.targets.iter().collect(), choice),
+        };
+        for (&via, choice) in self.part.targets.iter().zip(chosen) {
             choices.bound += triple_bounds.legs.entry_offset(via) + choice.cost;
             choices.targets.push(choice);
         }
@@ -222,7 +259,10 @@ impl<'a> Ascent<'a> {
             choices.bound += weight;
             choices.edges.push([target, outer]);
         }
-        for edge in least_tree(targets, |a, b| self.weights[a * targets + b]) {
+        let fill = |a: usize, weights: &mut [f64]| {
+            weights.copy_from_slice(&self.weights[a * targets..][..targets]);
+        };
+        for edge in least_tree(targets, fill) {
             choices.bound += edge.weight;
             choices.edges.push(edge.ends);
         }
@@ -301,18 +341,16 @@ impl<'a> Ascent<'a> {
                 }
             }
         }
+        // In the first ascent the outer multipliers stay as they are.
+        if self.width == Width::Triples {
+            self.heading.stay_outside();
+        }
         let multipliers = &mut self.triple_bounds.multipliers;
-        let near = multipliers.near.chunks_exact_mut(targets + 2);
-        let headings = self.heading.near.chunks_exact(targets + 2);
-        for ((near, headings), potential) in near.zip(headings).zip(&self.potential_heading) {
-            for (multiplier, heading) in near.iter_mut().zip(headings) {
-                *multiplier += self.step * (heading + POTENTIAL_WEIGHT * potential);
-            }
+        let rows = multipliers.near.chunks_exact_mut(targets + 2);
+        for (row, potential) in rows.zip(&self.potential_heading) {
+            let change = self.step * POTENTIAL_WEIGHT * potential;
+            row.iter_mut().for_each(|multiplier| *multiplier += change);
         }
-        if self.width == Width::Fives {
-            for (multiplier, heading) in multipliers.outer.iter_mut().zip(&self.heading.outer) {
-                *multiplier += self.step * heading;
-            }
-        }
+        multipliers.add(&self.heading, self.step);
     }
 }

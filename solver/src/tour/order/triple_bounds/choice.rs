@@ -1,6 +1,7 @@
 //! The cheapest neighbours of each target: one of the two relaxed choices of the decomposition.
 
 use super::TripleBounds;
+use crate::run::pool::SolverPool;
 
 /// The part of a tour that a bound is for: from a place through some targets to the end.
 #[derive(Debug)]
@@ -54,7 +55,7 @@ impl<'a> Part<'a> {
 
 impl TripleBounds {
     /// Ranks the places around all targets by the current multipliers.
-    pub(super) fn rank(&mut self) {
+    pub(super) fn rank(&mut self, pool: Option<&SolverPool>) {
         let Self {
             multipliers,
             near,
@@ -62,15 +63,12 @@ impl TripleBounds {
             ..
         } = self;
         let targets = self.legs.table().targets();
-        for of in 0..targets {
-            far.rank(of, |place| multipliers.outer(of, place));
-        }
-        for via in 0..targets {
-            near.rank(via, |place| {
-                let of = if place < targets { place } else { via };
-                multipliers.near(via, place) + far.least(of)
-            });
-        }
+        far.rank(pool, |of, place| multipliers.outer(of, place));
+        let least: Vec<f64> = (0..targets).map(|of| far.least(of)).collect();
+        near.rank(pool, |via, place| {
+            let of = if place < targets { place } else { via };
+            multipliers.near(via, place) + least[of]
+        });
     }
 
     /// The cheapest neighbours of a target of a part, and places beyond them: the minimum of the
@@ -244,6 +242,7 @@ mod tests {
             let effort = AscentEffort {
                 triples: 300,
                 fives: 300,
+                fives_before_triples_end: true,
                 steps: 70,
             };
             triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());

@@ -5,6 +5,7 @@ use super::gap_estimates::GapEstimates;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{Evaluation, PairTable, Place, TourModel};
+use foldhash::fast::FixedState;
 use std::collections::HashMap;
 
 /// Three or five places in a row, in either direction, listed with the smaller end first.
@@ -73,6 +74,34 @@ impl KnownTriples {
     }
 }
 
+/// Delays of both legs of triples, s. The search for short orders looks them up all the time.
+#[derive(Debug)]
+struct Delays {
+    places: u64,
+    known: HashMap<u64, f64, FixedState>,
+}
+
+impl Delays {
+    fn new(targets: usize) -> Self {
+        Self {
+            places: targets as u64 + 2,
+            known: HashMap::default(),
+        }
+    }
+
+    fn key(&self, [from, via, to]: [usize; 3]) -> u64 {
+        (via as u64 * self.places + from as u64) * self.places + to as u64
+    }
+
+    fn get(&self, triple: [usize; 3]) -> Option<f64> {
+        self.known.get(&self.key(triple)).copied()
+    }
+
+    fn set(&mut self, triple: [usize; 3], delay: f64) {
+        self.known.insert(self.key(triple), delay);
+    }
+}
+
 fn narrow(number: usize) -> u32 {
     u32::try_from(number).expect("fewer places and rows than 2^32")
 }
@@ -82,11 +111,15 @@ fn narrow(number: usize) -> u32 {
 pub(super) struct CouplingGaps {
     targets: usize,
     has_end: bool,
+    symmetric: bool,
     couples: Vec<bool>,
     triples: KnownTriples,
     /// Excess of five places over their four pair bounds, s.
     fives: HashMap<[usize; 5], f64>,
     estimates: GapEstimates,
+    /// Estimated delays of both legs of the triples whose gap is known, s: the gap, or what solved
+    /// tours say.
+    delays: Delays,
 }
 
 impl CouplingGaps {
@@ -96,10 +129,12 @@ impl CouplingGaps {
         Self {
             targets,
             has_end: model.has_end(),
+            symmetric: model.is_symmetric(),
             couples: (0..targets).map(|via| model.couples(via)).collect(),
             triples: KnownTriples::new(targets),
             fives: HashMap::new(),
             estimates: GapEstimates::new(model, table),
+            delays: Delays::new(targets),
         }
     }
 
@@ -111,14 +146,56 @@ impl CouplingGaps {
 
     /// The gap of a triple, s, as far as it is known, or an estimate; no bound.
     pub(super) fn estimate(&self, from: usize, via: usize, to: usize) -> f64 {
-        let known = self.triples.get([from, via, to]);
-        if !known.is_nan() {
+        if let Some(known) = self.delays.get([from, via, to]) {
             known
         } else if self.couples.get(via) == Some(&true) {
             self.estimates.gap(from, via, to)
         } else {
             0.0
         }
+    }
+
+    /// Learns from a solved tour along a path how much longer its legs take than their bounds, s: half
+    /// of that is due to either end of a leg. Triples of several tours have the mean of the newest and
+    /// of those before it.
+    pub(super) fn learn(&mut self, path: &[usize], excesses: &[f64]) {
+        let last = excesses.len() - 1;
+        let share = |leg: usize| {
+            let whole = leg == 0 || leg == last;
+            if whole {
+                excesses[leg]
+            } else {
+                0.5 * excesses[leg]
+            }
+        };
+        for (leg, triple) in path.windows(3).enumerate() {
+            let triple = [triple[0], triple[1], triple[2]];
+            let Some(before) = self.delays.get(triple) else {
+                continue;
+            };
+            let delay = (share(leg) + share(leg + 1)).max(0.0);
+            let is_first = before.total_cmp(&self.triples.get(triple)).is_eq();
+            let delay = if is_first {
+                delay
+            } else {
+                0.5 * (before + delay)
+            };
+            for triple in [Some(triple), self.twin(triple)].into_iter().flatten() {
+                self.delays.set(triple, delay);
+            }
+        }
+    }
+
+    /// The triple that is this one in reverse, where every order takes as long as its reverse: start and
+    /// end are the same place.
+    fn twin(&self, [from, via, to]: [usize; 3]) -> Option<[usize; 3]> {
+        let (start, end) = (self.targets, self.targets + 1);
+        let twin = |place: usize| match place {
+            place if place == start => end,
+            place if place == end => start,
+            place => place,
+        };
+        self.symmetric.then(|| [twin(to), via, twin(from)])
     }
 
     /// Lower bound, s, of the time of two consecutive legs beyond their pair bounds; 0 where it is
@@ -184,6 +261,7 @@ impl CouplingGaps {
                 [a, b, c] => {
                     self.estimates.learn([a, b, c], coupling_gap);
                     self.triples.set([a, b, c], coupling_gap);
+                    self.delays.set([a, b, c], coupling_gap);
                 }
                 [a, b, c, d, e] => _ = self.fives.insert([a, b, c, d, e], coupling_gap),
                 _ => {}

@@ -1,7 +1,9 @@
 //! Inner and outer multipliers of the decomposition.
 
-/// Inner and outer multipliers, s, or a direction in them: one row for each target, with a value
-/// for each place.
+use foldhash::fast::FixedState;
+use std::collections::HashMap;
+
+/// Inner and outer multipliers, s: one row for each target, with a value for each place.
 #[derive(Debug, Clone)]
 pub(super) struct Multipliers {
     places: usize,
@@ -49,20 +51,62 @@ impl Multipliers {
         self.near(target, place) + self.outer(target, place)
     }
 
-    /// Multiplies all values by a factor.
-    pub(super) fn scale(&mut self, factor: f64) {
-        for value in self.near.iter_mut().chain(&mut self.outer) {
-            *value *= factor;
+    /// Adds changes to single multipliers, times a factor.
+    pub(super) fn add(&mut self, changes: &Heading, factor: f64) {
+        for (values, changes) in [
+            (&mut self.near, &changes.near),
+            (&mut self.outer, &changes.outer),
+        ] {
+            for (&at, change) in changes {
+                values[at] += factor * change;
+            }
+        }
+    }
+}
+
+/// Values below this are dropped from a direction.
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// A direction in the multipliers that is zero nearly everywhere.
+#[derive(Debug)]
+pub(super) struct Heading {
+    places: usize,
+    near: HashMap<usize, f64, FixedState>,
+    outer: HashMap<usize, f64, FixedState>,
+}
+
+impl Heading {
+    /// The direction zero.
+    pub(super) fn zero(targets: usize) -> Self {
+        Self {
+            places: targets + 2,
+            near: HashMap::default(),
+            outer: HashMap::default(),
         }
     }
 
-    /// Adds to an inner multiplier.
-    pub(super) fn add_near(&mut self, target: usize, place: usize, change: f64) {
-        self.near[target * self.places + place] += change;
+    /// Multiplies all values by a factor.
+    pub(super) fn scale(&mut self, factor: f64) {
+        for values in [&mut self.near, &mut self.outer] {
+            values.retain(|_, value| {
+                *value *= factor;
+                value.abs() > NEGLIGIBLE
+            });
+        }
     }
 
-    /// Adds to an outer multiplier.
+    /// Makes all values of outer multipliers zero.
+    pub(super) fn stay_outside(&mut self) {
+        self.outer.clear();
+    }
+
+    /// Adds to the value of an inner multiplier.
+    pub(super) fn add_near(&mut self, target: usize, place: usize, change: f64) {
+        *self.near.entry(target * self.places + place).or_default() += change;
+    }
+
+    /// Adds to the value of an outer multiplier.
     pub(super) fn add_outer(&mut self, target: usize, place: usize, change: f64) {
-        self.outer[target * self.places + place] += change;
+        *self.outer.entry(target * self.places + place).or_default() += change;
     }
 }

@@ -1,5 +1,7 @@
 //! The places around every target, sorted by cost.
 
+use crate::run::pool::SolverPool;
+
 /// For every target all other places, sorted by cost.
 ///
 /// The ranking is kept between the steps of an ascent: insertion sort is fast where little changes.
@@ -43,21 +45,37 @@ impl Ranking {
             .map_or(f64::INFINITY, |place| self.cost(of, place))
     }
 
-    /// Updates the costs of the places around a target and sorts them by insertion.
-    pub(super) fn rank(&mut self, of: usize, cost: impl Fn(usize) -> f64) {
-        let costs = &mut self.costs[of * self.places..][..self.places];
-        for (place, entry) in costs.iter_mut().enumerate() {
-            *entry = cost(place);
-        }
-        let row = &mut self.ranked[of * (self.places - 1)..][..self.places - 1];
-        for i in 1..row.len() {
-            let place = row[i];
-            let mut hole = i;
-            while hole > 0 && costs[row[hole - 1] as usize] > costs[place as usize] {
-                row[hole] = row[hole - 1];
-                hole -= 1;
+    /// Updates the costs of the places around all targets, on the workers of a pool where there is one.
+    pub(super) fn rank(
+        &mut self,
+        pool: Option<&SolverPool>,
+        cost: impl Fn(usize, usize) -> f64 + Sync + Send,
+    ) {
+        let costs = self.costs.chunks_exact_mut(self.places);
+        let rows = costs.zip(self.ranked.chunks_exact_mut(self.places - 1));
+        let rows = rows.enumerate();
+        let rank_row = |(of, (costs, ranked)): (usize, (&mut [f64], &mut [u32]))| {
+            for (place, entry) in costs.iter_mut().enumerate() {
+                *entry = cost(of, place);
             }
-            row[hole] = place;
+            sort_nearly_sorted(ranked, costs);
+        };
+        match pool {
+            None => rows.for_each(rank_row),
+            Some(pool) => drop(pool.map_short(rows.collect(), rank_row)),
         }
+    }
+}
+
+/// Sorts places by their costs, by insertion.
+fn sort_nearly_sorted(places: &mut [u32], costs: &[f64]) {
+    for i in 1..places.len() {
+        let place = places[i];
+        let mut hole = i;
+        while hole > 0 && costs[places[hole - 1] as usize] > costs[place as usize] {
+            places[hole] = places[hole - 1];
+            hole -= 1;
+        }
+        places[hole] = place;
     }
 }

@@ -98,10 +98,8 @@ mod tests {
     #[test]
     fn compiled_lengths_and_others_multiply_alike() {
         for columns in 1..20 {
-            let a: Vec<f64> = (0..3 * columns).map(|i| f64::from(i as u8) - 7.0).collect();
-            let x: Vec<f64> = (0..columns)
-                .map(|i| 0.5 * f64::from(i as u8) - 2.0)
-                .collect();
+            let a: Vec<f64> = (0..3 * columns).map(|i| i as f64 - 7.0).collect();
+            let x: Vec<f64> = (0..columns).map(|i| 0.5 * i as f64 - 2.0).collect();
             let mut y = [1.0; 3];
             mul(&a, &x, &mut y);
             let mut back = x.clone();

@@ -70,13 +70,14 @@ impl<const N: usize, const M: usize> Stage<N, M> {
         let control = last.iter().position(|value| *value != 0.0);
         let first = control.and_then(|control| (self.rows - 1).checked_sub(control));
         let adds = |row: usize, first: usize| {
-            let one = |at: usize, place: usize| if at == place { 1.0 } else { 0.0 };
+            let off = |(at, value): (usize, &f64), place: usize| {
+                (value - if at == place { 1.0 } else { 0.0 }).abs()
+            };
             let states = self.by_state[row].iter().enumerate();
             let controls = self.by_control[row].iter().enumerate();
-            states.fold(true, |all, (at, value)| all & (*value == one(at, row)))
-                && controls.fold(true, |all, (at, value)| {
-                    all & (*value == one(at, row - first))
-                })
+            let by_states: f64 = states.map(|entry| off(entry, row)).sum();
+            let by_controls: f64 = controls.map(|entry| off(entry, row - first)).sum();
+            by_states + by_controls == 0.0
         };
         first
             .filter(|first| (*first..self.rows).all(|row| adds(row, *first)))

@@ -250,8 +250,16 @@ mod tests {
         let q = [0.3, -0.5, 0.7, 0.2];
         for axis in 0..3 {
             let unit = quat(&Vector3::ith(axis, 1.0), 0.0);
-            assert_eq!(beside_unit(&q, axis), product(&q, &unit));
-            assert_eq!(unit_beside(axis, &q), product(&unit, &q));
+            for (got, want) in [
+                (beside_unit(&q, axis), product(&q, &unit)),
+                (unit_beside(axis, &q), product(&unit, &q)),
+            ] {
+                assert!(
+                    got.iter()
+                        .zip(want)
+                        .all(|(got, want)| (got - want).abs() < 1e-15)
+                );
+            }
         }
     }
 }

@@ -206,19 +206,18 @@ fn ratio(part: f64, whole: f64) -> f64 {
 /// The longest step for which every tail term is below `tolerance` times the largest of the
 /// first three terms.
 fn longest(size: &[f64; LEN], tolerance: f64) -> f64 {
+    // Logarithms, because powers of very short or very long times overflow.
+    let leading: [f64; 3] = std::array::from_fn(|j| tolerance.ln() + size[j].ln());
     let mut shortest = f64::INFINITY;
     for k in LEN - TAIL..LEN {
         if size[k] == 0.0 {
             continue;
         }
-        // Logarithms, because powers of very short or very long times overflow.
-        let against = |j: usize| {
-            let exponent = (tolerance.ln() + size[j].ln() - size[k].ln()) / (k - j) as f64;
-            exponent.exp()
-        };
-        shortest = shortest.min((0..3).map(against).fold(0.0, f64::max));
+        let last = size[k].ln();
+        let against = |j: usize| (leading[j] - last) / (k - j) as f64;
+        shortest = shortest.min((0..3).map(against).fold(f64::NEG_INFINITY, f64::max));
     }
-    shortest
+    shortest.exp()
 }
 
 #[cfg(test)]

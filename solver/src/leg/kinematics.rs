@@ -23,6 +23,7 @@ mod taylor;
 mod tests;
 
 use crate::math::quaternion::Quat;
+pub(crate) use magnus::BentTurn;
 use nalgebra::{Matrix3, Vector3};
 use runge_kutta::{RungeKutta, flow};
 

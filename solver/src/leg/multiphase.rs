@@ -26,7 +26,7 @@ pub(crate) use between_nodes::{
 use between_nodes::{depths_between_nodes, excess_between_nodes};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
-use passes::{POLISHING, Pass, from_a_guess};
+use passes::{ACCURATELY, POLISHING, Pass, from_a_guess};
 pub(crate) use rolling::solve_rolling;
 pub(crate) use solution::LegSolution;
 pub(crate) use staged::StagedSolve;
@@ -173,7 +173,12 @@ impl<'a> MultiphaseSolve<'a> {
             let excess = excesses.iter().copied().fold(0.0, f64::max);
             let depths = depths_between_nodes(self.dynamics, &self.solution.profile);
             let depth = deepest(&depths);
-            if missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE && depth <= CONE_TOLERANCE {
+            // Passes that end early leave one solve, with corrected turns.
+            let holds =
+                missed <= MISS_TOLERANCE && excess <= LIMIT_TOLERANCE && depth <= CONE_TOLERANCE;
+            if self.engine.settings.feasibility > ACCURATELY.feasibility {
+                self.engine.settings = ACCURATELY;
+            } else if holds {
                 return self.solution;
             }
             if missed > LARGE_MISS {

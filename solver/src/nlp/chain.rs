@@ -166,6 +166,7 @@ impl LinkModel {
     }
 
     /// Row `i` of the inequality Jacobian.
+    #[cfg(test)]
     pub(crate) fn inequality_row(&self, i: usize) -> &[f64] {
         &self.inequality_jacobian[i * self.vars..(i + 1) * self.vars]
     }

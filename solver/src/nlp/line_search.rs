@@ -49,7 +49,7 @@ impl<C: Chain> LineSearch<'_, C> {
         let longest = self.longest_step();
         let here = Reference {
             merit: self.problem.merit(&self.iterate.slack),
-            slope: self.newton.slope(self.problem, self.iterate),
+            slope: self.newton.slope(self.problem),
             longest,
         };
         let mut alpha = longest;
@@ -150,8 +150,9 @@ impl<C: Chain> LineSearch<'_, C> {
 /// to zero.
 pub(super) fn to_boundary(values: &[f64], steps: &[f64], fraction: f64) -> f64 {
     values.iter().zip(steps).fold(1.0, |alpha, (value, step)| {
-        if *step < 0.0 {
-            alpha.min(-fraction * value / step)
+        // A product where there is nothing to divide for: most steps are far from the boundary.
+        if alpha * step < -fraction * value {
+            -fraction * value / step
         } else {
             alpha
         }

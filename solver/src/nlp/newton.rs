@@ -2,11 +2,11 @@
 
 use super::barrier::BarrierProblem;
 use super::breakdown;
-use super::dense::{axpy, dot};
+use super::dense::{add_transpose_mul, dot, mul};
 use super::interruption::Interruptible;
 use super::iterate::{Iterate, Layout};
 use super::regularisation::Regularisation;
-use super::riccati::{NewtonSystem, RightHandSide, Step, system_for};
+use super::riccati::{MAX_CONTROLS, MAX_STATES, NewtonSystem, RightHandSide, Step, system_for};
 use super::status::NlpStatus;
 use super::trial::Trial;
 use std::ops::ControlFlow;
@@ -21,6 +21,10 @@ pub(super) struct Newton {
     rhs: RightHandSide,
     /// Weights of the condensed inequalities, `z / s` in Newton steps.
     sigma: Vec<f64>,
+    /// `1 / s`.
+    inverse_slack: Vec<f64>,
+    /// What the slacks pull at the variables, negative.
+    pull: Vec<f64>,
     step: Step,
     /// The step before its second-order correction.
     uncorrected: Step,
@@ -35,6 +39,8 @@ impl Newton {
             regularisation: Regularisation::default(),
             rhs: RightHandSide::zeros(layout),
             sigma: vec![0.0; layout.all_inequalities()],
+            inverse_slack: vec![0.0; layout.all_inequalities()],
+            pull: vec![0.0; layout.all_inequalities()],
             uncorrected: step.clone(),
             step,
         }
@@ -58,8 +64,10 @@ impl Newton {
         problem: &BarrierProblem,
         iterate: &Iterate,
     ) -> ControlFlow<NlpStatus> {
-        for ((sigma, z), s) in self.sigma.iter_mut().zip(&iterate.z).zip(&iterate.slack) {
-            *sigma = z / s;
+        self.invert_slacks(iterate);
+        let known = iterate.z.iter().zip(&self.inverse_slack);
+        for (sigma, (z, inverse)) in self.sigma.iter_mut().zip(known) {
+            *sigma = z * inverse;
         }
         let mut delta = self.regularisation.first();
         while let Err(stage) = self
@@ -85,8 +93,9 @@ impl Newton {
         problem: &BarrierProblem,
         iterate: &Iterate,
     ) -> bool {
-        for (sigma, s) in self.sigma.iter_mut().zip(&iterate.slack) {
-            *sigma = problem.mu / (s * s);
+        self.invert_slacks(iterate);
+        for (sigma, inverse) in self.sigma.iter_mut().zip(&self.inverse_slack) {
+            *sigma = problem.mu * (inverse * inverse);
         }
         let factored = self
             .system
@@ -95,7 +104,7 @@ impl Newton {
             return false;
         }
         self.fill_residuals(problem, iterate);
-        self.fill_gradient(problem, iterate, 0.0);
+        self.fill_gradient(problem, 0.0);
         self.step.nu.fill(0.0);
         self.system
             .solve(&problem.models, &self.rhs, &mut self.step);
@@ -126,7 +135,7 @@ impl Newton {
     }
 
     /// Derivative of the barrier cost along the step.
-    pub(super) fn slope(&self, problem: &BarrierProblem, iterate: &Iterate) -> f64 {
+    pub(super) fn slope(&self, problem: &BarrierProblem) -> f64 {
         let layout = &problem.layout;
         let mut slope = 0.0;
         for (node, model) in problem.models.iter().enumerate() {
@@ -134,13 +143,19 @@ impl Newton {
             slope += dot(by_state, &self.step.states[layout.state(node)]);
             slope += dot(by_control, &self.step.controls[layout.control(node)]);
         }
-        let steps = self.step.slack.iter().zip(&iterate.slack);
-        slope - problem.mu * steps.map(|(ds, s)| ds / s).sum::<f64>()
+        let steps = self.step.slack.iter().zip(&self.inverse_slack);
+        slope - problem.mu * steps.map(|(ds, inverse)| ds * inverse).sum::<f64>()
+    }
+
+    fn invert_slacks(&mut self, iterate: &Iterate) {
+        for (inverse, slack) in self.inverse_slack.iter_mut().zip(&iterate.slack) {
+            *inverse = slack.recip();
+        }
     }
 
     /// Solves the factorised system for the residuals on the right-hand side.
     fn solve(&mut self, problem: &BarrierProblem, iterate: &Iterate) {
-        self.fill_gradient(problem, iterate, 1.0);
+        self.fill_gradient(problem, 1.0);
         self.step.nu.copy_from_slice(&iterate.nu);
         self.system
             .solve(&problem.models, &self.rhs, &mut self.step);
@@ -181,44 +196,45 @@ impl Newton {
     }
 
     /// Gradient of the condensed system; `cost_weight` is zero towards feasibility.
-    fn fill_gradient(&mut self, problem: &BarrierProblem, iterate: &Iterate, cost_weight: f64) {
+    fn fill_gradient(&mut self, problem: &BarrierProblem, cost_weight: f64) {
+        let weights = self.sigma.iter().zip(&self.rhs.slack);
+        let known = weights.zip(&self.inverse_slack);
+        for (pull, ((sigma, residual), inverse)) in self.pull.iter_mut().zip(known) {
+            *pull = sigma * residual - problem.mu * inverse;
+        }
         let layout = &problem.layout;
-        let n = layout.states;
+        let mut all = [0.0; MAX_STATES + MAX_CONTROLS];
         for (node, model) in problem.models.iter().enumerate() {
-            let states = &mut self.rhs.states[layout.state(node)];
-            let controls = &mut self.rhs.controls[layout.control(node)];
-            let (by_state, by_control) = model.gradient.split_at(n);
-            for (out, value) in states.iter_mut().zip(by_state) {
+            let gradient = &mut all[..model.vars];
+            for (out, value) in gradient.iter_mut().zip(&model.gradient) {
                 *out = cost_weight * value;
             }
-            for (out, value) in controls.iter_mut().zip(by_control) {
-                *out = cost_weight * value;
-            }
-            for (i, index) in layout.inequality(node).enumerate() {
-                let pull =
-                    problem.mu / iterate.slack[index] - self.sigma[index] * self.rhs.slack[index];
-                let (by_state, by_control) = model.inequality_row(i).split_at(n);
-                axpy(-pull, by_state, states);
-                axpy(-pull, by_control, controls);
-            }
+            let pull = &self.pull[layout.inequality(node)];
+            add_transpose_mul(&model.inequality_jacobian, pull, gradient);
+            let (states, controls) = gradient.split_at(layout.states);
+            self.rhs.states[layout.state(node)].copy_from_slice(states);
+            self.rhs.controls[layout.control(node)].copy_from_slice(controls);
         }
     }
 
     /// Steps of slacks and their multipliers that belong to the primal step.
     fn fill_inequality_steps(&mut self, problem: &BarrierProblem, iterate: &Iterate) {
         let layout = &problem.layout;
-        let n = layout.states;
+        let mut all = [0.0; MAX_STATES + MAX_CONTROLS];
         for (node, model) in problem.models.iter().enumerate() {
-            let state = &self.step.states[layout.state(node)];
-            let control = &self.step.controls[layout.control(node)];
-            for (i, index) in layout.inequality(node).enumerate() {
-                let (by_state, by_control) = model.inequality_row(i).split_at(n);
-                let moved = dot(by_state, state) + dot(by_control, control);
-                let (s, z) = (iterate.slack[index], iterate.z[index]);
-                let slack_step = moved + self.rhs.slack[index];
-                self.step.slack[index] = slack_step;
-                self.step.z[index] = (problem.mu - z * slack_step) / s - z;
-            }
+            let step = &mut all[..model.vars];
+            let (states, controls) = step.split_at_mut(layout.states);
+            states.copy_from_slice(&self.step.states[layout.state(node)]);
+            controls.copy_from_slice(&self.step.controls[layout.control(node)]);
+            let moved = &mut self.step.slack[layout.inequality(node)];
+            mul(&model.inequality_jacobian, step, moved);
+        }
+        let slacks = self.step.slack.iter_mut().zip(&self.rhs.slack);
+        let here = self.inverse_slack.iter().zip(&iterate.z);
+        for (out, ((step, residual), (inverse, z))) in self.step.z.iter_mut().zip(slacks.zip(here))
+        {
+            *step += residual;
+            *out = (problem.mu - z * *step) * inverse - z;
         }
     }
 }

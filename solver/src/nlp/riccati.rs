@@ -23,7 +23,7 @@ mod stage;
 
 use super::chain::LinkModel;
 use super::iterate::Layout;
-use stage::{Matrix, Stage, dot, padded, solve_lower, solve_upper};
+use stage::{Matrix, Stage, axpy, padded, solve_lower, solve_upper};
 
 /// Proximal weight of node equalities. Smaller converges in fewer sweeps, larger loses fewer
 /// digits in the sums `M + C^T C / rho`.
@@ -31,8 +31,9 @@ const RHO: f64 = 1e-6;
 /// Limit of the vector sweeps for one step; each shrinks the equality residual by orders of
 /// magnitude.
 const MAX_SWEEPS: usize = 6;
-/// Equality residual at which the sweeps end (absolute, scaled variables).
-const SWEEP_TOLERANCE: f64 = 1e-13;
+/// Equality residual at which the sweeps end (absolute, scaled variables): a tenth of what any
+/// solve asks for. The multipliers are already those of the next sweep then.
+const SWEEP_TOLERANCE: f64 = 1e-10;
 
 /// Right-hand side of the Newton system, in the order of the iterate's flat vectors.
 #[derive(Debug, Clone, Default)]
@@ -173,12 +174,12 @@ impl<const N: usize, const M: usize> Riccati<N, M> {
         for (node, model) in models.iter().enumerate().rev() {
             let r_states = padded(&rhs.states[self.layout.state(node)]);
             let mut vector = if node < self.layout.intervals {
-                let gap = padded(&rhs.gap[self.layout.link(node)]);
+                let gap: [f64; N] = padded(&rhs.gap[self.layout.link(node)]);
                 let r_controls = padded(&rhs.controls[self.layout.control(node)]);
                 let (next, next_vector) = self.cost_to_go(node + 1);
                 let mut carried = *next_vector;
-                for (out, row) in carried.iter_mut().zip(next) {
-                    *out += dot(row, &gap);
+                for (value, row) in gap.iter().zip(next) {
+                    axpy(*value, row, &mut carried);
                 }
                 self.stages[node].carry(&carried, r_states, r_controls)
             } else {
@@ -210,11 +211,20 @@ impl<const N: usize, const M: usize> Riccati<N, M> {
             state = stage.arrival(&state, &control, gap);
             step.controls[self.layout.control(node)].copy_from_slice(&control[..m]);
             step.states[self.layout.state(node + 1)].copy_from_slice(&state[..n]);
-            let (matrix, vector) = self.cost_to_go(node + 1);
-            let costate = &mut step.lambda[self.layout.link(node)];
-            for (i, out) in costate.iter_mut().enumerate() {
-                *out = vector[i] + dot(&matrix[i], &state);
+        }
+    }
+
+    /// The costates of a step that is known.
+    fn write_costates(&self, step: &mut Step) {
+        let n = self.layout.states;
+        for node in 1..=self.layout.intervals {
+            let state: [f64; N] = padded(&step.states[self.layout.state(node)]);
+            let (matrix, vector) = self.cost_to_go(node);
+            let mut costate = *vector;
+            for (value, row) in state.iter().zip(matrix) {
+                axpy(*value, row, &mut costate);
             }
+            step.lambda[self.layout.link(node - 1)].copy_from_slice(&costate[..n]);
         }
     }
 
@@ -280,5 +290,6 @@ impl<const N: usize, const M: usize> NewtonSystem for Riccati<N, M> {
                 break;
             }
         }
+        self.write_costates(step);
     }
 }

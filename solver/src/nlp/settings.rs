@@ -9,6 +9,8 @@ pub(crate) struct Settings {
     /// Largest error of stationarity and complementarity. Absolute: scaled variables are of order
     /// one, and the cost exceeds its minimum by about this much.
     pub(crate) tolerance: f64,
+    /// Multiple of the tolerance up to which stationarity counts as reached.
+    pub(crate) stationarity: f64,
     /// Largest gap, equality or slack error.
     pub(crate) feasibility: f64,
     /// Barrier parameter of the first iteration.
@@ -23,6 +25,7 @@ impl Settings {
     /// From a guess without multipliers to an accurate solution.
     pub(crate) const COLD: Self = Self {
         tolerance: 1e-5,
+        stationarity: 1.0,
         feasibility: 1e-9,
         initial_barrier: 1e-2,
         initial_slack: 3e-2,

@@ -11,19 +11,27 @@ pub(super) struct Pass {
     pub(super) penalty: ControlPenalty,
 }
 
-/// First the active limits and the approximate switches, then the accurate solution. A strong
-/// penalty on lengths saves iterations but lengthens the motion; the second pass has a weaker one,
-/// drawn to the lengths of the first.
+/// First the active limits and the approximate switches, then the solution up to what its turns are
+/// off by. A strong penalty on lengths saves iterations but lengthens the motion; the second pass
+/// has a weaker one, drawn to the lengths of the first. It begins with the barrier that it ends
+/// with: the first pass ends so near that barriers between them take more iterations, not fewer.
 const FROM_A_GUESS: [Pass; 2] = [
     ROUGHLY,
     Pass {
         settings: Settings {
-            initial_barrier: 1e-3,
-            ..Settings::COLD
+            stationarity: 100.0,
+            feasibility: 1e-6,
+            ..ACCURATELY
         },
         penalty: ControlPenalty::of_lengths(0.02),
     },
 ];
+/// The last solve of a motion whose passes end before it is accurate: with corrected turns, which
+/// move it once more anyway.
+pub(super) const ACCURATELY: Settings = Settings {
+    initial_barrier: 1e-6,
+    ..Settings::COLD
+};
 /// The same with momentum under a rate limit. There are more intervals than switches, so torque can
 /// move from one interval to its neighbour at no cost; penalties on lengths and momentum changes
 /// make the solution unique.

@@ -9,6 +9,7 @@
 //! ```
 
 mod momentum;
+mod without_momentum;
 
 use super::rows::add_attitude_block;
 use super::{Transcription, quaternion_of};
@@ -71,9 +72,11 @@ impl Transcription {
 
     /// Writes the gap of a link: attitude, then wheel momenta.
     pub(super) fn write_gap(&self, link: &Link<'_>, gap: &mut [f64]) {
-        gap[..3].copy_from_slice(self.attitude_gap(link).as_slice());
-        for i in 0..self.wheels() {
-            gap[3 + i] = link.point[4 + i] + link.control[i] - link.next[4 + i];
+        let (attitude, wheels) = gap.split_at_mut(3);
+        attitude.copy_from_slice(self.attitude_gap(link).as_slice());
+        let (begin, end) = (link.point[4..].iter(), link.next[4..].iter());
+        for (((gap, h), m), next) in wheels.iter_mut().zip(begin).zip(link.control).zip(end) {
+            *gap = h + m - next;
         }
     }
 
@@ -87,6 +90,9 @@ impl Transcription {
         (first, z): (usize, &[f64]),
         out: &mut LinkModel,
     ) {
+        if self.writes_closed_form(link, lambda, out) {
+            return;
+        }
         let angle = self.scales.angle;
         let relative = relative_attitude(link);
         let covector = Vector3::new(lambda[0], lambda[1], lambda[2]) * (2.0 / angle);

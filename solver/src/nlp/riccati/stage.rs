@@ -3,6 +3,9 @@
 //! With `[L_vv; L_xv]` the factor of the controls' columns of `M + [A B]^T P+ [A B]`, the cost to
 //! go is `P = M_xx - L_xv L_xv^T`, and of the linear parts `y = L_vv^-1 m_v`, `p = m_x - L_xv y`.
 //! The controls are `dv = -L_vv^-T (y + L_xv^T dx)`.
+//!
+//! Many links have states at their end that a control of their own adds to, `x+_i = x_i + v_j`, as
+//! momenta are. Products with such rows of `[A B]` are additions, see [`Stage::general`].
 
 use crate::nlp::chain::LinkModel;
 
@@ -18,8 +21,13 @@ pub(super) struct Stage<const N: usize, const M: usize> {
     by_control: Matrix<N, M>,
     /// `L_vv`, with the inverse of its diagonal.
     control_factor: Matrix<M, M>,
-    /// `L_xv`.
-    coupling: Matrix<N, M>,
+    /// `L_xv^T`.
+    coupling: Matrix<M, N>,
+    /// Number of leading rows of `[A B]` that may be of any kind. Row `general + i` is that of
+    /// `x+ = x + v_i`.
+    general: usize,
+    /// Number of rows of `[A B]`; surplus rows are zero.
+    rows: usize,
     /// `y`.
     feedforward: [f64; M],
     /// `P`, both triangles.
@@ -34,7 +42,9 @@ impl<const N: usize, const M: usize> Default for Stage<N, M> {
             by_state: [[0.0; N]; N],
             by_control: [[0.0; M]; N],
             control_factor: [[0.0; M]; M],
-            coupling: [[0.0; M]; N],
+            coupling: [[0.0; N]; M],
+            general: N,
+            rows: N,
             feedforward: [0.0; M],
             cost_to_go: [[0.0; N]; N],
             cost_vector: [0.0; N],
@@ -50,6 +60,28 @@ impl<const N: usize, const M: usize> Stage<N, M> {
             self.by_state[i] = padded(states);
             self.by_control[i] = padded(controls);
         }
+        self.rows = n;
+        self.general = self.general_rows();
+    }
+
+    /// The number of general rows: the last row tells which controls are added to which states.
+    fn general_rows(&self) -> usize {
+        let last = self.by_control[self.rows - 1];
+        let control = last.iter().position(|value| *value != 0.0);
+        let first = control.and_then(|control| (self.rows - 1).checked_sub(control));
+        let adds = |row: usize, first: usize| {
+            let off = |(at, value): (usize, &f64), place: usize| {
+                (value - if at == place { 1.0 } else { 0.0 }).abs()
+            };
+            let states = self.by_state[row].iter().enumerate();
+            let controls = self.by_control[row].iter().enumerate();
+            let by_states: f64 = states.map(|entry| off(entry, row)).sum();
+            let by_controls: f64 = controls.map(|entry| off(entry, row - first)).sum();
+            by_states + by_controls == 0.0
+        };
+        first
+            .filter(|first| (*first..self.rows).all(|row| adds(row, *first)))
+            .unwrap_or(self.rows)
     }
 
     /// Carries the costate at arrival to this stage; returns `p` without the equalities.
@@ -59,13 +91,17 @@ impl<const N: usize, const M: usize> Stage<N, M> {
         mut states: [f64; N],
         mut controls: [f64; M],
     ) -> [f64; N] {
-        for (i, value) in carried.iter().enumerate() {
-            axpy(*value, &self.by_state[i], &mut states);
-            axpy(*value, &self.by_control[i], &mut controls);
+        for i in 0..self.general {
+            axpy(carried[i], &self.by_state[i], &mut states);
+            axpy(carried[i], &self.by_control[i], &mut controls);
+        }
+        for i in self.general..self.rows {
+            states[i] += carried[i];
+            controls[i - self.general] += carried[i];
         }
         solve_lower(&self.control_factor, &mut controls);
-        for (out, row) in states.iter_mut().zip(&self.coupling) {
-            *out -= dot(row, &controls);
+        for (value, row) in controls.iter().zip(&self.coupling) {
+            axpy(-value, row, &mut states);
         }
         self.feedforward = controls;
         states
@@ -73,10 +109,8 @@ impl<const N: usize, const M: usize> Stage<N, M> {
 
     /// The step of the controls at a step of the state.
     pub(super) fn control(&self, state: &[f64; N]) -> [f64; M] {
-        let mut control = self.feedforward.map(|y| -y);
-        for (row, value) in self.coupling.iter().zip(state) {
-            axpy(-value, row, &mut control);
-        }
+        let mut control: [f64; M] =
+            std::array::from_fn(|i| -(self.feedforward[i] + dot(&self.coupling[i], state)));
         solve_upper(&self.control_factor, &mut control);
         control
     }
@@ -84,8 +118,11 @@ impl<const N: usize, const M: usize> Stage<N, M> {
     /// The next state's step.
     pub(super) fn arrival(&self, state: &[f64; N], control: &[f64; M], gap: [f64; N]) -> [f64; N] {
         let mut arrived = gap;
-        for (i, out) in arrived.iter_mut().enumerate() {
-            *out += dot(&self.by_state[i], state) + dot(&self.by_control[i], control);
+        for i in 0..self.general {
+            arrived[i] += dot(&self.by_state[i], state) + dot(&self.by_control[i], control);
+        }
+        for i in self.general..self.rows {
+            arrived[i] += state[i] + control[i - self.general];
         }
         arrived
     }
@@ -144,26 +181,47 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
     /// Adds a weighted outer product, skipping the zeros of a sparse row.
     fn add_row(&mut self, weight: f64, states: &[f64], controls: &[f64]) {
         let (x, v): ([f64; N], [f64; M]) = (padded(states), padded(controls));
-        for i in 0..N {
-            if x[i] != 0.0 {
-                axpy(weight * x[i], &x, &mut self.states[i]);
+        // Most rows are of the states alone or of the controls alone.
+        let (of_states, of_controls) = (any(&x), any(&v));
+        if of_states {
+            for i in 0..N {
+                if x[i] != 0.0 {
+                    axpy(weight * x[i], &x, &mut self.states[i]);
+                }
             }
         }
-        for i in 0..M {
-            if v[i] != 0.0 {
+        if of_controls {
+            for i in 0..M {
+                if v[i] != 0.0 {
+                    axpy(weight * v[i], &v, &mut self.controls[i]);
+                }
+            }
+        }
+        if of_states && of_controls {
+            for i in 0..M {
                 axpy(weight * v[i], &x, &mut self.mixed[i]);
-                axpy(weight * v[i], &v, &mut self.controls[i]);
             }
         }
     }
 
     /// Adds `[A B]^T P+ [A B]`.
     pub(super) fn add_cost_to_go(&mut self, stage: &Stage<N, M>, next: &Matrix<N, N>) {
-        for (i, row) in next.iter().enumerate() {
+        let (general, rows) = (stage.general, stage.rows);
+        for (i, row) in next[..rows].iter().enumerate() {
             let (mut by_state, mut by_control) = ([0.0; N], [0.0; M]);
-            for (j, value) in row.iter().enumerate() {
-                axpy(*value, &stage.by_state[j], &mut by_state);
-                axpy(*value, &stage.by_control[j], &mut by_control);
+            for j in 0..general {
+                axpy(row[j], &stage.by_state[j], &mut by_state);
+                axpy(row[j], &stage.by_control[j], &mut by_control);
+            }
+            for j in general..rows {
+                by_state[j] += row[j];
+                by_control[j - general] += row[j];
+            }
+            if i >= general {
+                axpy(1.0, &by_state, &mut self.states[i]);
+                axpy(1.0, &by_state, &mut self.mixed[i - general]);
+                axpy(1.0, &by_control, &mut self.controls[i - general]);
+                continue;
             }
             for (out, value) in self.states.iter_mut().zip(&stage.by_state[i]) {
                 axpy(*value, &by_state, out);
@@ -181,13 +239,17 @@ impl<const N: usize, const M: usize> Blocks<N, M> {
         if !cholesky(&mut stage.control_factor) {
             return false;
         }
-        for i in 0..N {
-            let row = &mut stage.coupling[i];
-            *row = std::array::from_fn(|j| self.mixed[j][i]);
-            solve_lower(&stage.control_factor, row);
-            for j in 0..=i {
-                self.states[i][j] -= dot(&stage.coupling[i], &stage.coupling[j]);
+        for i in 0..M {
+            let mut row = self.mixed[i];
+            for j in 0..i {
+                axpy(-stage.control_factor[i][j], &stage.coupling[j], &mut row);
             }
+            let inverse = stage.control_factor[i][i];
+            let row = row.map(|value| inverse * value);
+            for (out, value) in self.states.iter_mut().zip(&row) {
+                axpy(-value, &row, out);
+            }
+            stage.coupling[i] = row;
         }
         true
     }
@@ -221,6 +283,15 @@ pub(super) fn padded<const L: usize>(values: &[f64]) -> [f64; L] {
     })
 }
 
+/// Whether a vector has entries other than zero; as two sums, which the processor forms at once.
+fn any<const L: usize>(values: &[f64; L]) -> bool {
+    let mut sums = [0.0; 2];
+    for i in 0..L {
+        sums[i % 2] += values[i].abs();
+    }
+    sums[0] + sums[1] != 0.0
+}
+
 /// Scalar product.
 pub(super) fn dot<const L: usize>(a: &[f64; L], b: &[f64; L]) -> f64 {
     let mut sum = 0.0;
@@ -231,7 +302,7 @@ pub(super) fn dot<const L: usize>(a: &[f64; L], b: &[f64; L]) -> f64 {
 }
 
 /// `y += scale x`.
-fn axpy<const L: usize>(scale: f64, x: &[f64; L], y: &mut [f64; L]) {
+pub(super) fn axpy<const L: usize>(scale: f64, x: &[f64; L], y: &mut [f64; L]) {
     for i in 0..L {
         y[i] += scale * x[i];
     }
@@ -285,21 +356,4 @@ pub(super) fn solve_upper<const L: usize>(factor: &Matrix<L, L>, b: &mut [f64; L
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cholesky_solves_and_refuses_indefinite() {
-        let full = [[4.0, 2.0, -1.0], [2.0, 5.0, 1.0], [-1.0, 1.0, 3.0]];
-        let mut factor = full;
-        assert!(cholesky(&mut factor));
-        let right = [1.0, -2.0, 0.5];
-        let mut x = right;
-        solve_lower(&factor, &mut x);
-        solve_upper(&factor, &mut x);
-        for (row, want) in full.iter().zip(right) {
-            assert!((dot(row, &x) - want).abs() < 1e-14);
-        }
-        assert!(!cholesky(&mut [[1.0, 2.0], [2.0, 1.0]]));
-    }
-}
+mod tests;

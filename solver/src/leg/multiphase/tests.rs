@@ -321,3 +321,61 @@ fn legs_with_the_costates_of_a_motion_add_up_to_it() {
         "{with_costates_s} {whole_s}"
     );
 }
+
+/// A long motion through random attitudes, free about two axes at each, in blocks and as one program.
+#[test]
+fn a_very_long_motion_in_blocks_is_as_short_as_one_program() {
+    let spec = crate::model::scenario::reference::experiment_a();
+    let dynamics = Scenario::try_new(&spec).expect("valid").scenario.dynamics();
+    let mut runner = TestRunner::deterministic();
+    let mut number = |low: f64, high: f64| sample(&(low..high), &mut runner);
+    let mut waypoints: Vec<Waypoint> = Vec::new();
+    let mut at = Attitude::identity();
+    for place in 0..=LONG_MOTION {
+        let outer = place == 0 || place == LONG_MOTION;
+        let free = if outer {
+            RateCondition::Fixed(0.0)
+        } else {
+            RateCondition::Free
+        };
+        waypoints.push(Waypoint {
+            attitude: at,
+            rate: [free, free, RateCondition::Fixed(0.0)],
+            wheels: WheelCondition::NullSpace(DVector::zeros(0)),
+            costates: None,
+        });
+        let turn = Vector3::from_fn(|_, _| number(-0.15, 0.15));
+        at = at.then_in_body(&Attitude::from_rotation_vector(turn));
+    }
+    let null = DVector::zeros(0);
+    let mut guess = Profile::empty();
+    for pair in waypoints.windows(2) {
+        let [from, to] = [&pair[0].attitude, &pair[1].attitude];
+        let eigenaxis = EigenaxisSlew::fastest(&dynamics, from, to, &null);
+        guess.append(&eigenaxis.guess(&dynamics, INTERVALS, Perturbation::Near));
+    }
+    let intervals = vec![INTERVALS; LONG_MOTION];
+    let blocks = solve_rolling(&dynamics, &waypoints, &intervals, &guess, &|| None);
+    let whole = solve_through(&dynamics, &waypoints, &intervals, &guess, &|| None);
+    let [blocks_s, whole_s] = [&blocks, &whole].map(|solution| solution.duration());
+    let (blocks_s, whole_s) = (blocks_s.expect("blocks"), whole_s.expect("whole"));
+    assert!(
+        (blocks_s / whole_s - 1.0).abs() < 5e-4,
+        "{blocks_s} {whole_s}"
+    );
+    assert_eq!(blocks.intervals, intervals);
+    assert_eq!(blocks.costates.len(), LONG_MOTION - 1);
+    for (leg, waypoint) in waypoints.iter().enumerate() {
+        let node = leg * INTERVALS;
+        let missed = blocks.profile.attitudes[node].signed_turn_to(&waypoint.attitude);
+        assert!(missed.norm() < 1e-7);
+        let rate = dynamics.rate(
+            &blocks.profile.attitudes[node],
+            &blocks.profile.wheels[node],
+        );
+        assert!(rate.z.abs() < 1e-7, "{rate}");
+    }
+}
+
+/// Legs of that motion: more than of one program.
+const LONG_MOTION: usize = 70;

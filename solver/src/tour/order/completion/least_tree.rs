@@ -112,3 +112,60 @@ pub(in crate::tour::order) fn cheapest(
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::SplitMix;
+
+    /// Weight of the lightest spanning tree by Kruskal's algorithm.
+    fn lightest(count: usize, weight: &dyn Fn(usize, usize) -> f64) -> f64 {
+        let mut edges: Vec<[usize; 2]> = (0..count)
+            .flat_map(|a| (0..a).map(move |b| [a, b]))
+            .collect();
+        edges.sort_by(|a, b| weight(a[0], a[1]).total_cmp(&weight(b[0], b[1])));
+        let mut part: Vec<usize> = (0..count).collect();
+        let mut sum = 0.0;
+        for [a, b] in edges {
+            let (one, other) = (part[a], part[b]);
+            if one != other {
+                sum += weight(a, b);
+                part.iter_mut()
+                    .filter(|at| **at == other)
+                    .for_each(|at| *at = one);
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn trees_are_as_light_as_those_of_kruskal() {
+        let mut random = SplitMix::new(1);
+        for count in (1..40).chain([64, 65]) {
+            let points: Vec<[f64; 2]> = (0..count)
+                .map(|_| [(); 2].map(|()| random.below(50) as f64 - 25.0))
+                .collect();
+            // Ties, and weights of both signs.
+            let weight = |a: usize, b: usize| {
+                let [p, q] = [points[a], points[b]];
+                (p[0] - q[0]).abs() + (p[1] - q[1]).abs() + 0.5 * (p[0] + q[0])
+            };
+            let tree = least_tree(count, |a, weights| {
+                for (b, entry) in weights.iter_mut().enumerate() {
+                    *entry = weight(a, b);
+                }
+            });
+            let mut joined = vec![false; count];
+            joined[0] = true;
+            for edge in &tree {
+                let [inside, next] = edge.ends;
+                assert!(joined[inside] && !joined[next]);
+                assert!((edge.weight - weight(inside, next)).abs() < 1e-12);
+                joined[next] = true;
+            }
+            assert_eq!(tree.len(), count - 1);
+            let sum: f64 = tree.iter().map(|edge| edge.weight).sum();
+            assert!((sum - lightest(count, &weight)).abs() < 1e-9, "{count}");
+        }
+    }
+}

@@ -206,6 +206,24 @@ impl TourModel for RandomModel {
         (self.couples)(via)
     }
 
+    /// Half of a penalty is due to either leg, more or less.
+    fn leg_times(&self, order: &[usize]) -> Option<Vec<f64>> {
+        let mut path = vec![self.targets];
+        path.extend(order);
+        path.extend(self.has_end.then_some(self.targets + 1));
+        let mut times: Vec<f64> = path
+            .windows(2)
+            .map(|leg| self.leg(leg[0], leg[1]))
+            .collect();
+        for (before, triple) in path.windows(3).enumerate() {
+            let penalty = self.penalty(triple[0], triple[1], triple[2]);
+            let share = 0.3 + 0.1 * (before % 5) as f64;
+            times[before] += share * penalty;
+            times[before + 1] += (1.0 - share) * penalty;
+        }
+        Some(times)
+    }
+
     fn tour(&self, order: &[usize]) -> TourEvaluation {
         assert_eq!(order.len(), self.targets);
         assert!(self.rules.admits(order));

@@ -242,6 +242,40 @@ fn estimates_lie_between_the_pair_bounds_and_the_duration() {
 }
 
 #[test]
+fn the_estimate_of_a_solved_tour_is_its_duration() {
+    for (seed, symmetric) in (0..6).flat_map(|seed| [(seed, true), (seed, false)]) {
+        let mut model = if symmetric {
+            RandomModel::symmetric(6, seed)
+        } else {
+            RandomModel::new(6, seed % 2 == 0, seed)
+        };
+        model.known_share = 0.6;
+        let (table, _, mut triple_bounds) = prepared(&model);
+        let order = [4, 1, 5, 0, 2, 3];
+        let mut path = vec![table.start()];
+        path.extend(order);
+        path.extend(model.has_end().then(|| table.end()));
+        let pairs: f64 = path.windows(2).map(|leg| table.bound(leg[0], leg[1])).sum();
+        let estimate = |triple_bounds: &TripleBounds| {
+            let gap = |p: &[usize]| triple_bounds.coupling_gap(p[0], p[1], p[2]);
+            pairs + path.windows(3).map(gap).sum::<f64>()
+        };
+        let TourEvaluation::Solved(duration) = model.tour(&order) else {
+            panic!("the model resolves");
+        };
+        triple_bounds.ask_along(&[order.into()], &model, &pool(1), &StopSignal::new());
+        assert!(estimate(&triple_bounds) < duration - 1.0);
+        triple_bounds.learn(&order, &model);
+        assert!((estimate(&triple_bounds) - duration).abs() < 1e-9, "{seed}");
+        if symmetric {
+            let triple = triple_bounds.coupling_gap(table.start(), 4, 1);
+            let twin = triple_bounds.coupling_gap(1, 4, table.end());
+            assert!((triple - twin).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
 fn a_model_without_couplings_has_no_triple_bounds() {
     let mut model = RandomModel::new(5, true, 1);
     model.couples = |_| false;

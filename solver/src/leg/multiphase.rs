@@ -27,7 +27,7 @@ use between_nodes::{depths_between_nodes, excess_between_nodes};
 pub(crate) use extended::solve_extended;
 use nalgebra::DVector;
 use passes::{ACCURATELY, POLISHING, Pass, from_a_guess};
-pub(crate) use rolling::solve_rolling;
+pub(crate) use rolling::{MAX_LEGS_AT_ONCE, solve_rolling};
 pub(crate) use solution::LegSolution;
 pub(crate) use staged::StagedSolve;
 

@@ -25,7 +25,7 @@ const SHORT: usize = 14;
 /// Legs at the end of a window that the next one solves again.
 const OVERLAP: usize = 2;
 /// Most legs of a motion whose whole is one program, and legs of a block of a longer one.
-const LONG: usize = 60;
+pub(crate) const MAX_LEGS_AT_ONCE: usize = 60;
 const BLOCK: usize = 40;
 
 /// From the motions of the windows, which are solutions except where they meet.
@@ -50,7 +50,7 @@ pub(crate) fn solve_rolling(
     if intervals.len() > SHORT {
         let motion = roll(dynamics, waypoints, intervals, guess, stop);
         let whole = motion.and_then(|motion| {
-            let solve = if intervals.len() > LONG {
+            let solve = if intervals.len() > MAX_LEGS_AT_ONCE {
                 solve_blocks
             } else {
                 solve_from_windows
@@ -167,7 +167,7 @@ fn roll(
         let mut window = MultiphaseSolve::new(dynamics, &through, window, &ahead);
         if !window.run_passes(from_a_guess(dynamics), stop) {
             let status = window.solution.status;
-            if status.is_interrupted() || intervals.len() <= LONG {
+            if status.is_interrupted() || intervals.len() <= MAX_LEGS_AT_ONCE {
                 return None;
             }
         }

@@ -16,7 +16,7 @@ use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it. It is part of the identity: legs
 /// stored by another version are not found.
-const VERSION: &str = "leg-8";
+const VERSION: &str = "leg-9";
 
 /// A leg in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone)]

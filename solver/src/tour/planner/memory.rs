@@ -1,12 +1,13 @@
 //! An estimate of the memory that a solve may need, made before it begins.
 //!
 //! It follows the structure of a solve: tables of pairs; the motions of the legs that are solved, all
-//! of few targets and some per target of many; the programs of whole tours, where legs couple; for
+//! of few targets and some per target of many; the programs of tours, where legs couple; for
 //! few targets, tables over subsets of the targets; and the open nodes and solved segments that a
 //! search keeps, which grow with its time up to fixed limits. What a search over subsets will need
 //! beyond its first table depends on how hard it turns out, and the estimate is that of a hard one.
 
 use super::places::MAX_TARGETS_ALL_LEGS;
+use crate::leg::multiphase::MAX_LEGS_AT_ONCE;
 use crate::leg::solve::Resolution;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::scenario::{RateCondition, Scenario, Target};
@@ -107,14 +108,15 @@ impl Size {
         }
     }
 
-    /// Programs of whole tours.
+    /// Programs of tours.
     fn programs(&self) -> u64 {
         if !self.couples {
             return 0;
         }
         // Derivatives and factors are matrices of the states of a stage: three angles and the momenta.
         let stage = PROGRAM_BYTES * (3 + self.wheels.max(3)).pow(2) / 36;
-        PROGRAMS * (self.targets + 1) * self.intervals * stage
+        let legs = (self.targets + 1).min(MAX_LEGS_AT_ONCE as u64);
+        PROGRAMS * legs * self.intervals * stage
     }
 
     /// Tables over subsets of few targets.

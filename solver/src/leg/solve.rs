@@ -2,6 +2,7 @@
 
 pub(crate) mod around_cones;
 pub(crate) mod arrival;
+mod bowed;
 mod centred;
 pub(crate) mod eigenaxis;
 pub(crate) mod extremal;

@@ -9,6 +9,7 @@ mod fixed_order;
 mod imported;
 mod infeasible;
 mod invariance;
+mod leg_minima;
 mod memory;
 mod oracle;
 mod order_rules;

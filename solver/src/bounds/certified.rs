@@ -12,8 +12,10 @@
 //! one of its limits ([`Dynamics::reachable_rate`], [`Dynamics::reachable_acceleration`]), for any
 //! inertia and any axes. Limits of the rate's components and norm reduce the rates further. So for
 //! every orthonormal frame fixed in the body there are boxes in its axes that no motion leaves. In
-//! these axes a turn has the components of its rotation vector in the frame. Body axes and the axes
-//! nearest to those of the wheels are tried; each gives a proved bound, and the larger one is used.
+//! these axes a turn has the components of its rotation vector in the frame. Tried are up to nine
+//! frames whose first axis is across a facet of what the wheels reach ([`Facets`]), those that promise
+//! most for the turn, body axes, and the axes nearest to those of the wheels. Each gives a proved
+//! bound, and the largest one is used.
 //!
 //! # The ends
 //!
@@ -50,8 +52,10 @@ mod momentum;
 use crate::bounds::kinematic::certificate::Certificate;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
+use crate::bounds::kinematic::strongest::Alternatives;
 use crate::model::attitude::Attitude;
-use crate::model::dynamics::{Dynamics, along};
+use crate::model::dynamics::facets::{Facets, FrameKey};
+use crate::model::dynamics::{Dynamics, along, component};
 use crate::model::scenario::RateCondition;
 use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
 use crate::model::waypoint::Waypoint;
@@ -62,7 +66,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Version of the mathematics of the bounds. A stored bound of another version is not used: raise it
 /// whenever a bound that was given before could be above one that is given now.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Tolerances are given away with a thousandth more, far above the rounding of turns and the errors of
 /// the checker's integration.
@@ -83,20 +87,38 @@ const SAME_AXES: f64 = 1e-6;
 /// End rates that are neither stopped nor free are rounded up to these shares of the spacecraft's
 /// largest rates, so that few combinations of end rates occur.
 const SHARES: [f64; 2] = [0.25, 0.5];
-/// Largest number of combinations of end rates whose boxes are cached, some 1 MB each; others are
-/// prepared again for every leg.
-const MAX_KINDS: usize = 64;
+/// Largest number of frames with end rates whose boxes are cached, some 0.1 MB for each box that was
+/// needed; others are prepared again for every leg.
+const MAX_PREPARED: usize = 512;
 
-/// Lower bounds on the slews of one spacecraft. The boxes for a combination of end rates are
-/// prepared when they are first needed, and shared between threads.
+/// Lower bounds on the slews of one spacecraft. The boxes of a frame for a combination of end rates
+/// are prepared when they are first needed, and shared between threads.
 #[derive(Debug)]
 pub(crate) struct CertifiedBounds {
+    /// The frames that every leg tries.
     frames: Vec<BodyFrame>,
+    /// Gives further ones.
+    spacecraft: Dynamics,
+    facets: Facets,
     /// Bounds with momentum, used in place of the frames.
     momentum: Option<MomentumBounds>,
     /// Norm of the body rate that no motion exceeds, rad/s; infinite without limits of speed.
     largest_rate: f64,
-    prepared: Mutex<HashMap<EndKey, Arc<[Option<SlewBound>]>>>,
+    prepared: Mutex<HashMap<(Frame, EndKey), Arc<PreparedFrame>>>,
+}
+
+/// A frame by its number among those that every leg tries, or by its facets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Frame {
+    Fixed(usize),
+    Fitted(FrameKey),
+}
+
+/// A frame with its bound for some end rates.
+#[derive(Debug)]
+struct PreparedFrame {
+    axes: Matrix3<f64>,
+    bound: Option<SlewBound>,
 }
 
 /// Limits of all motions in axes fixed in the body.
@@ -131,6 +153,8 @@ impl CertifiedBounds {
         let largest_rate = norms.chain(momentum.as_ref().map(MomentumBounds::largest_rate));
         Self {
             largest_rate: largest_rate.fold(f64::INFINITY, f64::min),
+            facets: Facets::of(dynamics),
+            spacecraft: dynamics.clone(),
             frames,
             momentum,
             prepared: Mutex::default(),
@@ -152,10 +176,9 @@ impl CertifiedBounds {
             let held = [from, to].map(|end| end.attitude.to_body(*momentum));
             return bounds.leg(&turn, &held, &ends, TOLERANCE);
         }
-        let prepared = self.prepared_for(ends)?;
-        self.seen(&turn, &prepared)
-            .map(|(_, bound, turn)| bound.lower_bound_s(&[turn], TOLERANCE))
-            .reduce(f64::max)
+        let prepared = self.prepared_for(&turn, ends)?;
+        let (alternatives, _) = seen(&turn, &prepared);
+        Some(alternatives.strongest(TOLERANCE)?.bound_s)
     }
 
     /// A smaller bound that is known at once, s: the angle of the turn at the largest rate of all
@@ -173,55 +196,88 @@ impl CertifiedBounds {
         to: &Waypoint,
     ) -> Option<(Matrix3<f64>, Certificate)> {
         let turn = from.attitude.turn_to(&to.attitude);
-        let prepared = self.prepared_for([rate_limits(from), rate_limits(to)])?;
-        self.seen(&turn, &prepared)
-            .map(|(axes, bound, turn)| (axes, bound.certificate(&[turn], TOLERANCE)))
-            .max_by(|(_, a), (_, b)| a.duration_s.total_cmp(&b.duration_s))
+        let prepared = self.prepared_for(&turn, [rate_limits(from), rate_limits(to)])?;
+        let (alternatives, axes) = seen(&turn, &prepared);
+        let strongest = alternatives.strongest(TOLERANCE)?;
+        let certificate = alternatives.certificate(&strongest, TOLERANCE);
+        Some((axes[strongest.alternative], certificate))
     }
 
-    /// The axes of the frames that have a bound, each with its bound and with the turn in these
-    /// axes.
-    fn seen<'s>(
-        &'s self,
-        turn: &'s Attitude,
-        prepared: &'s [Option<SlewBound>],
-    ) -> impl Iterator<Item = (Matrix3<f64>, &'s SlewBound, Attitude)> {
-        let frames = self.frames.iter().zip(prepared);
-        frames.filter_map(|(frame, bound)| {
-            let turn = turn.seen_from(&frame.axes)?;
-            Some((frame.axes, bound.as_ref()?, turn))
-        })
-    }
-
-    /// The bounds of all frames for end rates within these limits, body axes.
-    fn prepared_for(&self, ends: [Vector3<f64>; 2]) -> Option<Arc<[Option<SlewBound>]>> {
+    /// The frames for a turn and their bounds for end rates within these limits, body axes.
+    fn prepared_for(
+        &self,
+        turn: &Attitude,
+        ends: [Vector3<f64>; 2],
+    ) -> Option<Vec<Arc<PreparedFrame>>> {
         let rates = self.frames.first()?.limits.rates_rad_s;
-        Some(self.prepared(&ends.map(|end| end.zip_map(&rates, rounded_up))))
+        let ends = ends.map(|end| end.zip_map(&rates, rounded_up));
+        let identity = Attitude::identity();
+        let turn = identity.signed_turn_to(&turn.nearest_sign(&identity));
+        let fixed = (0..self.frames.len()).map(Frame::Fixed);
+        let fitted = self.facets.frames(&turn).into_iter().map(Frame::Fitted);
+        let mut prepared: Vec<Arc<PreparedFrame>> = Vec::new();
+        for frame in fixed.chain(fitted) {
+            let frame = self.prepared(frame, &ends);
+            if !prepared.iter().any(|known| known.has_axes_of(&frame)) {
+                prepared.push(frame);
+            }
+        }
+        Some(prepared)
     }
 
-    fn prepared(&self, ends: &[Vector3<f64>; 2]) -> Arc<[Option<SlewBound>]> {
+    fn prepared(&self, frame: Frame, ends: &[Vector3<f64>; 2]) -> Arc<PreparedFrame> {
         let kind: EndKey = ends.map(|end| end.map(f64::to_bits).into());
         let lock = || self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = lock().get(&kind) {
+        if let Some(known) = lock().get(&(frame, kind)) {
             return Arc::clone(known);
         }
         // Computed without the lock: two threads may prepare the same, with the same result.
-        let fresh: Arc<[_]> = self.frames.iter().map(|frame| frame.bound(ends)).collect();
+        let fitted = |key| BodyFrame::of(&self.spacecraft, self.facets.axes(key));
+        let body_frame = match frame {
+            Frame::Fixed(index) => self.frames[index],
+            Frame::Fitted(key) => fitted(key),
+        };
+        let fresh = Arc::new(PreparedFrame {
+            axes: body_frame.axes,
+            bound: body_frame.bound(ends),
+        });
         let mut known = lock();
-        if known.len() < MAX_KINDS {
-            known.insert(kind, Arc::clone(&fresh));
+        if known.len() < MAX_PREPARED {
+            known.insert((frame, kind), Arc::clone(&fresh));
         }
         fresh
     }
 }
 
+impl PreparedFrame {
+    /// Whether the axes are those of another frame, in any order and of any sign: the boxes are the
+    /// same.
+    fn has_axes_of(&self, other: &Self) -> bool {
+        let along = self.axes.tr_mul(&other.axes).abs();
+        along
+            .column_iter()
+            .all(|column| column.max() > 1.0 - SAME_AXES * SAME_AXES)
+    }
+}
+
+/// The bounds of frames on a turn, and the axes of each.
+fn seen<'p>(
+    turn: &Attitude,
+    prepared: &'p [Arc<PreparedFrame>],
+) -> (Alternatives<'p>, Vec<Matrix3<f64>>) {
+    let (mut alternatives, mut axes) = (Alternatives::default(), Vec::new());
+    for frame in prepared {
+        if let Some((bound, turn)) = frame.bound.as_ref().zip(turn.seen_from(&frame.axes)) {
+            alternatives.add(bound, turn);
+            axes.push(frame.axes);
+        }
+    }
+    (alternatives, axes)
+}
+
 impl BodyFrame {
     fn of(dynamics: &Dynamics, axes: Matrix3<f64>) -> Self {
-        let rate = |axis: &Vector3<f64>| {
-            dynamics
-                .reachable_rate(axis)
-                .min(allowed_rate(dynamics, axis))
-        };
+        let rate = |axis: &Vector3<f64>| dynamics.greatest_rate(axis);
         let acceleration = |axis: &Vector3<f64>| dynamics.reachable_acceleration(axis);
         Self {
             axes,
@@ -278,22 +334,4 @@ fn rounded_up(rate: f64, largest: f64) -> f64 {
     }
     let mut steps = SHARES.iter().map(|share| share * largest);
     steps.find(|step| rate <= *step).unwrap_or(f64::INFINITY)
-}
-
-/// Largest component of the rate along a direction that the rate limits allow, rad/s.
-fn allowed_rate(dynamics: &Dynamics, direction: &Vector3<f64>) -> f64 {
-    component(direction, &dynamics.max_rate).min(dynamics.max_rate_norm * direction.norm())
-}
-
-/// Largest component along a direction of vectors whose components have these largest sizes.
-fn component(direction: &Vector3<f64>, limits: &Vector3<f64>) -> f64 {
-    let parts = direction.iter().zip(limits);
-    // A component orthogonal to the direction does not contribute, even if it is infinite.
-    parts.fold(0.0, |sum, (share, limit)| {
-        sum + if *share == 0.0 {
-            0.0
-        } else {
-            share.abs() * limit
-        }
-    })
 }

@@ -93,6 +93,7 @@ mod rate_envelope;
 mod search;
 mod sequences;
 mod singular;
+pub(crate) mod strongest;
 mod terminal_arcs;
 #[cfg(test)]
 mod tests;

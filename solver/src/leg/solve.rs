@@ -2,6 +2,7 @@
 
 pub(crate) mod around_cones;
 pub(crate) mod arrival;
+mod bowed;
 mod centred;
 pub(crate) mod eigenaxis;
 pub(crate) mod extremal;
@@ -119,8 +120,12 @@ impl LegProblem<'_> {
         steered(self)
     }
 
-    /// Solves from a guess with the leg's own intervals.
-    fn solve_from(&self, guess: &Profile, stop: &dyn Fn() -> Option<StopReason>) -> LegSolution {
+    /// Solves from a guess of the leg's own intervals.
+    pub(crate) fn solve_from(
+        &self,
+        guess: &Profile,
+        stop: &dyn Fn() -> Option<StopReason>,
+    ) -> LegSolution {
         self.solve_with(&[self.intervals()], guess, stop)
     }
 

@@ -11,6 +11,8 @@
 //! Speed limits become limits on `h_i / I_i - a_i . w`. Torque and speed limits are multiplied here
 //! by the shares that a plan may use ([`Authority`]), and nowhere else.
 
+pub(crate) mod facets;
+
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
 use crate::model::scenario::Start;
@@ -93,6 +95,19 @@ pub(crate) fn along(axes: &Matrix3<f64>, quantity: impl Fn(&Vector3<f64>) -> f64
     Vector3::from_fn(|i, _| quantity(&axes.column(i).into_owned()))
 }
 
+/// Largest component along a direction of vectors whose components have these largest sizes.
+pub(crate) fn component(direction: &Vector3<f64>, limits: &Vector3<f64>) -> f64 {
+    let parts = direction.iter().zip(limits);
+    // A component orthogonal to the direction does not contribute, even if it is infinite.
+    parts.fold(0.0, |sum, (share, limit)| {
+        sum + if *share == 0.0 {
+            0.0
+        } else {
+            share.abs() * limit
+        }
+    })
+}
+
 impl Dynamics {
     /// The dynamics of a spacecraft with the momentum of a state, within the shares of its limits
     /// that a plan may use.
@@ -172,6 +187,18 @@ impl Dynamics {
     /// `d . w` is largest with every wheel at the limit of the sign that increases it.
     pub(crate) fn reachable_rate(&self, direction: &Vector3<f64>) -> f64 {
         self.reachable_relative_rate(direction, 0.0)
+    }
+
+    /// Largest component of the rate along a direction that the rate limits allow, rad/s.
+    pub(crate) fn allowed_rate(&self, direction: &Vector3<f64>) -> f64 {
+        component(direction, &self.max_rate).min(self.max_rate_norm * direction.norm())
+    }
+
+    /// Greatest component of the body rate along a direction, rad/s times its length, that the wheels
+    /// can reach at any attitude and the rate limits allow.
+    pub(crate) fn greatest_rate(&self, direction: &Vector3<f64>) -> f64 {
+        self.reachable_rate(direction)
+            .min(self.allowed_rate(direction))
     }
 
     /// The same of the rate relative to axes that turn in space with a share of the momentum, in

@@ -12,6 +12,7 @@ mod history;
 mod imported;
 mod lagrangian;
 mod leg_time_table;
+mod leg_trials;
 mod legs;
 mod memory;
 mod places;
@@ -58,6 +59,7 @@ pub use certificate::{
 pub use fixed_order::{BoundFrom, OrderError, solve_order};
 pub use imported::LegCheck;
 pub use leg_time_table::{LegTime, LegTimeTable};
+pub use leg_trials::{GuessNode, LegAnswer, LegTrial, LegTrials};
 pub use memory::memory_estimate;
 
 /// What a solve needs from its surroundings.

@@ -23,7 +23,7 @@
 //! `k` is valid. The middle of the eigenvalues of `J^-1` makes the box narrow; zero, with the box of
 //! all rates, is better where rates have limits of their own.
 
-use super::{BodyFrame, MISSED_ATTITUDE, allowed_rate, exceeded};
+use super::{BodyFrame, MISSED_ATTITUDE, exceeded};
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
 use crate::model::attitude::Attitude;
@@ -110,7 +110,7 @@ impl DriftingFrame {
         let rate = |axis: &Vector3<f64>| {
             dynamics
                 .reachable_relative_rate(axis, share)
-                .min(allowed_rate(dynamics, axis) + drift)
+                .min(dynamics.allowed_rate(axis) + drift)
         };
         let acceleration = |axis: &Vector3<f64>| {
             dynamics.reachable_acceleration(axis) + dynamics.gyroscopic_acceleration(axis, share)

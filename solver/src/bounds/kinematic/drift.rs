@@ -55,8 +55,9 @@ impl SlewBound {
         let mut excluded = 0.0;
         for _ in 0..MAX_STEPS {
             let left = Attitude::from_rotation_vector(-drift_rad_s * excluded).then_in_body(turn);
-            let next = self.boxes.iter().fold(excluded, |next, (rates, table)| {
-                let least = self.least_time(rates, table, &left, tolerance);
+            let next = self.boxes.iter().fold(excluded, |next, tried| {
+                let rates = &tried.rates;
+                let least = self.least_time(tried, &left, tolerance);
                 if least * rates.min() < NO_TURN {
                     return next;
                 }

@@ -14,7 +14,7 @@ pub(super) const RANGE_SLACK: f64 = 1e-7;
 /// Relative difference below which two rates are made equal.
 pub(super) const EQUAL: f64 = 1e-7;
 /// Entries of the table of cones per halving of the gap.
-const CONES_PER_OCTAVE: u32 = 8;
+const CONES_PER_OCTAVE: u32 = 3;
 /// Halvings of the gap that the table spans.
 const OCTAVES: u32 = 14;
 /// Bisections for a level; each halves its error relative to its height above the minimum.

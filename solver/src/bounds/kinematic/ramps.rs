@@ -48,6 +48,7 @@ use super::limits::{EndRates, SlewLimits};
 use super::rate_envelope::RateEnvelope;
 use crate::model::attitude::Attitude;
 use nalgebra::Vector3;
+use std::sync::OnceLock;
 
 /// Durations whose mean rates give the boxes, in units of the longest ramp.
 const DURATIONS: [f64; 4] = [0.5, 1.0, 2.0, 5.0];
@@ -62,22 +63,43 @@ pub(super) const DEFLATION: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct SlewBound {
     pub(super) envelope: RateEnvelope,
-    /// Rate limits of the boxes with their extremals; the first box is that of the limits
-    /// themselves.
-    pub(super) boxes: Vec<(Vector3<f64>, RateBox)>,
+    /// The boxes; the first one is that of the limits themselves.
+    pub(super) boxes: Vec<TriedBox>,
     /// Largest angle by which attitudes are missed, rad.
     pub(super) attitude_tolerance_rad: f64,
 }
 
+/// A box of rates, rad/s, whose extremals are listed when they are first needed.
+#[derive(Debug, Clone)]
+pub(super) struct TriedBox {
+    pub(super) rates: Vector3<f64>,
+    table: OnceLock<Option<RateBox>>,
+}
+
+impl TriedBox {
+    fn new(rates: Vector3<f64>) -> Self {
+        Self {
+            rates,
+            table: OnceLock::new(),
+        }
+    }
+
+    /// The extremals; `None` for rates so different that there are too many.
+    pub(super) fn table(&self) -> Option<&RateBox> {
+        let table = self.table.get_or_init(|| RateBox::new(self.rates));
+        table.as_ref()
+    }
+}
+
 impl SlewBound {
     /// Bounds for slews within these limits and with these end rates. `None` when limits are not
-    /// positive and finite, an end rate is negative or not a number, or [`RateBox::new`] refuses
-    /// the rates.
+    /// positive and finite, or an end rate is negative or not a number.
     #[must_use]
     pub fn new(limits: SlewLimits, ends: EndRates) -> Option<Self> {
         let positive = |v: &Vector3<f64>| v.iter().all(|x| x.is_finite() && *x > 0.0);
         let bounds = |v: &Vector3<f64>| v.iter().all(|x| *x >= 0.0);
-        if !positive(&limits.accelerations_rad_s2)
+        if !positive(&limits.rates_rad_s)
+            || !positive(&limits.accelerations_rad_s2)
             || !bounds(&ends.begin_rad_s)
             || !bounds(&ends.end_rad_s)
         {
@@ -86,20 +108,18 @@ impl SlewBound {
         let rates = limits.rates_rad_s;
         let mut bound = Self {
             envelope: RateEnvelope { limits, ends },
-            boxes: vec![(rates, RateBox::new(rates)?)],
+            boxes: vec![TriedBox::new(rates)],
             attitude_tolerance_rad: 0.0,
         };
         let longest = rates.component_div(&limits.accelerations_rad_s2).max();
         for duration in DURATIONS {
             let candidate = bound.envelope.mean_rates(duration * longest);
-            let known = bound.boxes.iter().any(|(other, _)| {
-                let ratio = candidate.component_div(other);
+            let known = bound.boxes.iter().any(|other| {
+                let ratio = candidate.component_div(&other.rates);
                 ratio.max() < ratio.min() * (1.0 + SAME_SHAPE)
             });
             if !known {
-                // A refused box is left out.
-                let table = RateBox::new(candidate);
-                bound.boxes.extend(table.map(|table| (candidate, table)));
+                bound.boxes.push(TriedBox::new(candidate));
             }
         }
         Some(bound)
@@ -131,54 +151,71 @@ impl SlewBound {
     #[must_use]
     pub fn certificate(&self, turns: &[Attitude], tolerance: f64) -> Certificate {
         let (index, duration_s) = self.best(turns, tolerance);
-        let (box_rad_s, table) = &self.boxes[index];
+        self.certificate_of(index, duration_s, turns, tolerance)
+    }
+
+    /// The certificate of a bound, s, that a box gives.
+    pub(super) fn certificate_of(
+        &self,
+        index: usize,
+        duration_s: f64,
+        turns: &[Attitude],
+        tolerance: f64,
+    ) -> Certificate {
+        let tried = &self.boxes[index];
         let certified = |turn: &Attitude| CertifiedTurn {
             turn: *turn,
-            least_s: certifiable_time(table, turn, tolerance),
+            least_s: certifiable_time(tried, turn, tolerance),
         };
         Certificate {
             limits: self.envelope.limits,
             ends: self.envelope.ends,
-            box_rad_s: *box_rad_s,
+            box_rad_s: tried.rates,
             turns: turns.iter().map(certified).collect(),
             attitude_tolerance_rad: self.attitude_tolerance_rad,
             duration_s,
         }
     }
 
-    /// Least time of any motion within a box, by its rates, that makes a turn up to the missed
-    /// angles at its ends, s; with the margin that its verification needs.
-    pub(super) fn least_time(
-        &self,
-        rates: &Vector3<f64>,
-        table: &RateBox,
-        turn: &Attitude,
-        tolerance: f64,
-    ) -> f64 {
-        let missed = 2.0 * self.attitude_tolerance_rad * (1.0 + ROUNDING) / rates.min();
-        (certifiable_time(table, turn, tolerance) - missed).max(0.0)
+    /// Least time of any motion within a box that makes a turn up to the missed angles at its ends,
+    /// s; with the margin that its verification needs.
+    pub(super) fn least_time(&self, tried: &TriedBox, turn: &Attitude, tolerance: f64) -> f64 {
+        (certifiable_time(tried, turn, tolerance) - self.missed_time(tried)).max(0.0)
+    }
+
+    /// Time of the angles by which the attitudes at both ends of a turn are missed, s.
+    pub(super) fn missed_time(&self, tried: &TriedBox) -> f64 {
+        2.0 * self.attitude_tolerance_rad * (1.0 + ROUNDING) / tried.rates.min()
     }
 
     /// Index of the box with the best bound for the turns, and the bound, s.
     fn best(&self, turns: &[Attitude], tolerance: f64) -> (usize, f64) {
         let mut best = (0, 0.0);
-        for (index, (rates, table)) in self.boxes.iter().enumerate() {
+        for (index, tried) in self.boxes.iter().enumerate() {
             let least: f64 = turns
                 .iter()
-                .map(|turn| self.least_time(rates, table, turn, tolerance))
+                .map(|turn| self.least_time(tried, turn, tolerance))
                 .sum();
-            let duration = self.envelope.duration_of(rates, least);
+            let duration = self.envelope.duration_of(&tried.rates, least);
             if duration > best.1 {
                 best = (index, duration);
             }
         }
-        (best.0, rounded_down(best.1 * (1.0 - DEFLATION)))
+        (best.0, stated(best.1))
     }
 }
 
-/// A lower bound on the least time of a turn, with the margin that its verification needs.
-fn certifiable_time(table: &RateBox, turn: &Attitude, tolerance: f64) -> f64 {
-    table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN)
+/// A lower bound on the least time of a turn within a box, with the margin that its verification
+/// needs; zero where the extremals are too many to list.
+fn certifiable_time(tried: &TriedBox, turn: &Attitude, tolerance: f64) -> f64 {
+    tried.table().map_or(0.0, |table| {
+        table.lower_bound(turn, tolerance) * (1.0 - PROOF_MARGIN)
+    })
+}
+
+/// A bound as it is given: less what rounding may have added, and to seven digits.
+pub(super) fn stated(duration_s: f64) -> f64 {
+    rounded_down(duration_s * (1.0 - DEFLATION))
 }
 
 /// A number rounded down to seven digits; 0 if it is negative.

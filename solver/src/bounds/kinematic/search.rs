@@ -6,7 +6,7 @@ use super::levels::others;
 use super::sequences::{ClosedFormSequence, FIRST, SequenceFamily, corner};
 use super::terminal_arcs::{IMAGES, Probes, TerminalArcs};
 use super::turns::{
-    best_axis_sequence, cross, dot, eigenaxis_time, rotate, small_angle_bound, twist_and_swing,
+    best_axis_sequence, cross, dot, eigenaxis_time, least_time, rotate, twist_and_swing,
 };
 use crate::math::quaternion::Quat;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -137,9 +137,7 @@ impl<'a> SequenceSearch<'a> {
 
     /// Lower bound on the time to the target that needs no search.
     pub(super) fn floor(&self) -> f64 {
-        // The rate's length is at most one.
-        let angle = 2.0 * (self.q[0].hypot(self.q[1]).hypot(self.q[2])).atan2(self.q[3].abs());
-        angle.max(small_angle_bound(&self.q, &self.table.levels.c))
+        least_time(&self.q, &self.table.levels.c)
     }
 
     /// Sequences of one and two arcs; the first flips of the three vertex families cover all of

@@ -196,6 +196,11 @@ impl Circle<'_> {
             turn = product(&about(&step.rate, duration), &turn);
             lasted += duration;
             let shorter = lasted * (1.0 - CLEARLY_SHORTER);
+            // No turn is faster than its angle.
+            let angle = 2.0 * turn[3].abs().min(1.0).acos();
+            if angle >= shorter {
+                return false;
+            }
             eigenaxis_time(&turn, self.c) < shorter || best_axis_sequence(&turn, self.c).0 < shorter
         })
     }

@@ -112,6 +112,13 @@ pub(super) fn small_angle_bound(q: &Quat, c: &[f64; 3]) -> f64 {
     })
 }
 
+/// A lower bound on the time of a turn that needs no search.
+pub(super) fn least_time(q: &Quat, c: &[f64; 3]) -> f64 {
+    // The rate's length is at most one.
+    let angle = 2.0 * (q[0].hypot(q[1]).hypot(q[2])).atan2(q[3].abs());
+    angle.max(small_angle_bound(q, c))
+}
+
 /// The product `q1 q2 ...` of turns.
 pub(super) fn chain<'a>(turns: impl IntoIterator<Item = &'a Quat>) -> Quat {
     turns

@@ -38,6 +38,11 @@ impl<'a> StagedSolve<'a> {
         self.solve.solution.duration()
     }
 
+    /// The motion so far.
+    pub(crate) fn motion(&self) -> &Profile {
+        &self.solve.solution.profile
+    }
+
     /// Runs the passes that are left. The motion is optimal then, but not exact between its nodes.
     pub(crate) fn refine(&mut self, stop: &dyn Fn() -> Option<StopReason>) {
         let left = std::mem::take(&mut self.left);

@@ -34,7 +34,7 @@ pub(crate) enum Perturbation {
 }
 
 impl Perturbation {
-    fn sign(self) -> f64 {
+    pub(super) fn sign(self) -> f64 {
         match self {
             Self::Near => 1.0,
             Self::Far => -1.0,
@@ -179,6 +179,19 @@ impl EigenaxisSlew {
         across.normalize()
     }
 
+    /// The direction across the axis to one side of which guesses are moved, oblique to that of
+    /// [`Self::across`].
+    fn aside(&self, dynamics: &Dynamics) -> Vector3<f64> {
+        let across = self.across(dynamics);
+        (across + across.cross(&self.axis)).normalize()
+    }
+
+    /// Angle and axis, the direction to one side, and the duration, s.
+    pub(super) fn geometry(&self, dynamics: &Dynamics) -> (Vector3<f64>, Vector3<f64>, f64) {
+        let turn = self.axis * self.course.angle();
+        (turn, self.aside(dynamics), self.course.duration())
+    }
+
     /// The slew sampled at its nodes, as a starting guess; it has to take some time.
     ///
     /// The exact slew is a stationary point whenever it lies in a plane of symmetry, and a local
@@ -191,8 +204,7 @@ impl EigenaxisSlew {
     ) -> Profile {
         let times = node_times(&self.course, intervals);
         let peak = self.course.rate();
-        let across = self.across(dynamics);
-        let direction = (across + across.cross(&self.axis)).normalize();
+        let direction = self.aside(dynamics);
         let most = 0.5 * dynamics.axis_rate(&direction);
         let across = direction * (side.sign() * (PERTURBATION * peak).min(most));
         let mut profile = Profile::empty();

@@ -194,7 +194,7 @@ impl Observer for FirstPlan {
         };
         let now = [progress.incumbent_s, progress.lower_bound_s].map(|value| value.unwrap_or(0.0));
         let mut last = traced.lock().expect("no panic");
-        if *last != now {
+        if last.map(f64::to_bits) != now.map(f64::to_bits) {
             *last = now;
             let after_s = self.begin.elapsed().as_secs_f64();
             let gap = progress.relative_gap().unwrap_or(1.0);

@@ -75,6 +75,34 @@ enum Width {
     Fives,
 }
 
+/// Limits of one ascent.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    width: Width,
+    /// Largest number of paths to ask for.
+    limit: usize,
+    /// Largest number of steps.
+    steps: usize,
+}
+
+impl AscentEffort {
+    fn first(&self) -> Limits {
+        Limits {
+            width: Width::Triples,
+            limit: self.triples,
+            steps: self.steps,
+        }
+    }
+
+    fn second(&self) -> Limits {
+        Limits {
+            width: Width::Fives,
+            limit: self.fives,
+            steps: self.steps,
+        }
+    }
+}
+
 /// Result of one ascent.
 #[derive(Debug, Clone, Copy, Default)]
 struct AscentOutcome {
@@ -124,17 +152,7 @@ impl TripleBounds {
         pool: &SolverPool,
         stop: &StopSignal,
     ) -> AscentWork {
-        let ask = |triple_bounds: &mut Self, paths: &[ShortPath]| {
-            triple_bounds.ask(paths, model, pool, stop);
-        };
-        let triples = self.climb(
-            Width::Triples,
-            effort.triples,
-            effort.steps,
-            ask,
-            pool,
-            stop,
-        );
+        let triples = self.climb(effort.first(), model, pool, stop);
         // While more triples are wanted, those of a later call gain more.
         let early = triples.asked >= effort.triples && !effort.fives_before_triples_end;
         if effort.fives == 0 || early || stop.is_set() {
@@ -145,7 +163,7 @@ impl TripleBounds {
                 settled: triples.settled,
             };
         }
-        let fives = self.climb(Width::Fives, effort.fives, effort.steps, ask, pool, stop);
+        let fives = self.climb(effort.second(), model, pool, stop);
         AscentWork {
             triples: triples.asked,
             fives: fives.asked,
@@ -157,10 +175,12 @@ impl TripleBounds {
     /// One ascent, which asks for paths of this width.
     fn climb(
         &mut self,
-        width: Width,
-        limit: usize,
-        steps: usize,
-        ask: impl Fn(&mut Self, &[ShortPath]),
+        Limits {
+            width,
+            limit,
+            steps,
+        }: Limits,
+        model: &dyn TourModel,
         pool: &SolverPool,
         stop: &StopSignal,
     ) -> AscentOutcome {
@@ -176,7 +196,7 @@ impl TripleBounds {
             if climb.settled || climb.steps.is_multiple_of(STEPS_PER_BATCH) {
                 let wanted = ascent.most_wanted(limit - climb.asked);
                 if !wanted.is_empty() {
-                    ask(ascent.triple_bounds, &wanted);
+                    ascent.triple_bounds.ask(&wanted, model, pool, stop);
                     climb.asked += wanted.len();
                     climb.settled = false;
                     // The new gaps change the function; the bound may fall at first.
@@ -349,7 +369,9 @@ impl<'a> Ascent<'a> {
         let rows = multipliers.near.chunks_exact_mut(targets + 2);
         for (row, potential) in rows.zip(&self.potential_heading) {
             let change = self.step * POTENTIAL_WEIGHT * potential;
-            row.iter_mut().for_each(|multiplier| *multiplier += change);
+            for multiplier in row {
+                *multiplier += change;
+            }
         }
         multipliers.add(&self.heading, self.step);
     }

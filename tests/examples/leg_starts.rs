@@ -166,7 +166,7 @@ fn guess(
     let node = |share: f64| {
         let (back, forth) = (f64::max(share - STEP, 0.0), f64::min(share + STEP, 1.0));
         let moved = at(back).signed_turn_to(&at(forth)) / ((forth - back) * lasting);
-        let ends = share == 0.0 || share == 1.0;
+        let ends = share <= 0.0 || share >= 1.0;
         let after_s = (share - before) * lasting;
         before = share;
         GuessNode {

@@ -23,10 +23,10 @@ const MEASURED: [(Region, RateConditions, usize, f64, f64); 18] = [
     (Region::Sphere, FREE, 40, 27.1, 4.0),
     (Region::Strip, FREE, 40, 14.4, 8.0),
     (Region::Sphere, AT_REST, 40, 6.0, 8.0),
-    (Region::Strip, FREE, 200, 39.3, 4.0),
+    (Region::Strip, FREE, 200, 80.0, 4.0),
     (Region::Sphere, AT_REST, 200, 23.8, 4.0),
-    (Region::Sphere, FREE, 1000, 277.7, 4.0),
-    (Region::Strip, FREE, 1000, 276.8, 4.0),
+    (Region::Sphere, FREE, 1000, 257.0, 4.0),
+    (Region::Strip, FREE, 1000, 357.0, 4.0),
     (Region::Sphere, AT_REST, 1000, 75.4, 4.0),
     (Region::Sphere, AT_REST, 6, 0.6, 16.0),
 ];

@@ -357,7 +357,7 @@ fn a_very_long_motion_in_blocks_is_as_short_as_one_program() {
     let intervals = vec![INTERVALS; LONG_MOTION];
     let blocks = solve_rolling(&dynamics, &waypoints, &intervals, &guess, &|| None);
     let whole = solve_through(&dynamics, &waypoints, &intervals, &guess, &|| None);
-    let [blocks_s, whole_s] = [&blocks, &whole].map(|solution| solution.duration());
+    let [blocks_s, whole_s] = [&blocks, &whole].map(LegSolution::duration);
     let (blocks_s, whole_s) = (blocks_s.expect("blocks"), whole_s.expect("whole"));
     assert!(
         (blocks_s / whole_s - 1.0).abs() < 5e-4,

@@ -15,7 +15,6 @@ use super::verified::{flight_faults, node_faults};
 use crate::checker::{END_SPEED_TOLERANCE, RATE_TOLERANCE};
 use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
-use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::model::motion::Motion;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::waypoint::{Waypoint, WheelCondition};
@@ -29,6 +28,9 @@ use std::collections::HashMap;
 /// allows itself.
 const EIGENAXIS_TOLERANCE: f64 = 1e-5;
 
+/// Angle, rad, by which a motion may begin away from the identity attitude: programs meet their ends
+/// within a tenth of it, and the checker accepts a thousand times as much.
+const BEGIN_TOLERANCE: f64 = 1e-9;
 /// Most intervals of a leg: ten times what ordinary ones have.
 const MAX_INTERVALS: usize = 500;
 
@@ -120,7 +122,7 @@ impl<'a> LegCheck<'a> {
         let turned = profile.attitudes[0]
             .signed_turn_to(&leg.from.attitude)
             .norm();
-        if turned > SAME_ATTITUDE {
+        if turned > BEGIN_TOLERANCE {
             faults.push(format!(
                 "it begins {turned:.1e} rad away from the identity attitude"
             ));

@@ -27,8 +27,9 @@ const MEASURED_INTERVALS: u64 = 18;
 /// at the ends of legs as well.
 const PAIR_BYTES: u64 = 40;
 const COUPLED_PAIR_BYTES: u64 = 130;
-/// Legs solved per target where they are solved as they are needed.
+/// Legs solved per target where they are solved as they are needed, and where legs couple.
 const LEGS_PER_TARGET: u64 = 10;
+const COUPLED_LEGS_PER_TARGET: u64 = 30;
 /// Memory of a program of a tour with three wheels, bytes an interval: derivatives and factors of all
 /// stages; and the number of tours that are solved at a time.
 const PROGRAM_BYTES: u64 = 6 << 10;
@@ -96,15 +97,15 @@ impl Size {
     fn legs(&self) -> u64 {
         let leg = LEG_BYTES * self.intervals / MEASURED_INTERVALS;
         let pairs = (self.targets + 2).pow(2);
-        let pair = if self.couples {
-            COUPLED_PAIR_BYTES
+        let (pair, solved) = if self.couples {
+            (COUPLED_PAIR_BYTES, COUPLED_LEGS_PER_TARGET)
         } else {
-            PAIR_BYTES
+            (PAIR_BYTES, LEGS_PER_TARGET)
         };
         if self.targets <= MAX_TARGETS_ALL_LEGS as u64 {
             pairs * leg
         } else {
-            pairs * pair + self.targets * LEGS_PER_TARGET * leg
+            pairs * pair + self.targets * solved * leg
         }
     }
 

@@ -17,7 +17,7 @@ fn random_vector(random: &mut SplitMix, low: f64, high: f64) -> Vector3<f64> {
 fn few_boxes_give_what_all_give() {
     let mut random = SplitMix::new(31);
     for case in 0..60 {
-        let bounds: Vec<_> = (0..1 + case % 2)
+        let bounds: Vec<_> = (0..=(case % 2))
             .map(|_| {
                 let limits = SlewLimits {
                     rates_rad_s: random_vector(&mut random, 0.02, 0.06),
@@ -48,7 +48,7 @@ fn few_boxes_give_what_all_give() {
             found.bound_s
         );
         let certificate = alternatives.certificate(&found, TOLERANCE);
-        assert_eq!(certificate.duration_s, found.bound_s);
+        assert_eq!(certificate.duration_s.to_bits(), found.bound_s.to_bits());
         assert_eq!(certify::verify(&certificate), Ok(()), "case {case}");
     }
 }
@@ -65,5 +65,5 @@ fn no_turn_has_a_bound_of_zero_and_no_alternatives_have_none() {
     let mut alternatives = Alternatives::default();
     alternatives.add(&bound, Attitude::identity());
     let found = alternatives.strongest(TOLERANCE).expect("a bound");
-    assert_eq!(found.bound_s, 0.0);
+    assert!(found.bound_s.abs() <= 0.0);
 }

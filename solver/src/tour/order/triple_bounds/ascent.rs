@@ -34,6 +34,9 @@ const STEPS_PER_BATCH: usize = 30;
 /// Questions of a batch per target.
 const BATCH_PER_TARGET: usize = 4;
 
+/// Relative rise of the bound by triples below which paths of five places are asked for.
+const MIN_RELATIVE_GAIN: f64 = 1e-3;
+
 /// Number of targets from which the steps of an ascent are divided among workers.
 const MANY_TARGETS: usize = 60;
 
@@ -48,7 +51,8 @@ pub struct AscentEffort {
     /// Largest number of paths of five places, and of triples in them, to ask for in the second
     /// ascent. With 0 there is no second ascent, and the outer multipliers stay as they are.
     pub fives: usize,
-    /// Whether there is a second ascent even if the first one reached its limit of triples.
+    /// Whether there is a second ascent even if the first one reached its limit of triples and gained by
+    /// them.
     pub fives_before_triples_end: bool,
     /// Largest number of steps of each of the two ascents: some 400, or four per target. With far
     /// fewer the second ascent gains nothing, because the bound falls before it rises.
@@ -152,9 +156,11 @@ impl TripleBounds {
         pool: &SolverPool,
         stop: &StopSignal,
     ) -> AscentWork {
+        let before_s = self.root_s;
         let triples = self.climb(effort.first(), model, pool, stop);
-        // While more triples are wanted, those of a later call gain more.
-        let early = triples.asked >= effort.triples && !effort.fives_before_triples_end;
+        // While more triples are wanted, and raise the bound, those of a later call gain more.
+        let wanted = triples.asked >= effort.triples && !effort.fives_before_triples_end;
+        let early = wanted && self.root_s > before_s * (1.0 + MIN_RELATIVE_GAIN);
         if effort.fives == 0 || early || stop.is_set() {
             return AscentWork {
                 triples: triples.asked,

@@ -29,7 +29,7 @@ const PAIR_BYTES: u64 = 40;
 const COUPLED_PAIR_BYTES: u64 = 130;
 /// Legs solved per target where they are solved as they are needed, and where legs couple.
 const LEGS_PER_TARGET: u64 = 10;
-const COUPLED_LEGS_PER_TARGET: u64 = 30;
+const COUPLED_LEGS_PER_TARGET: u64 = 45;
 /// Memory of a program of a tour with three wheels, bytes an interval: derivatives and factors of all
 /// stages; and the number of tours that are solved at a time.
 const PROGRAM_BYTES: u64 = 6 << 10;

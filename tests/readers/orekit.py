@@ -66,6 +66,10 @@ class Message:
     def attitude(self, seconds):
         date = self.starts[0].shiftedBy(float(seconds))
         inside = [i for i, start in enumerate(self.starts) if start.durationFrom(date) <= 1e-9]
+        # Times in the file are rounded, so that the last one may lie a little before the plan's.
+        stop = self.segments[inside[-1]].getStop()
+        if 0 < date.durationFrom(stop) <= 1e-9:
+            date = stop
         nowhere = jpype.JObject(None, PVCoordinatesProvider)
         found = self.providers[inside[-1]].getAttitude(nowhere, date, self.frame)
         turn = np.array([list(row) for row in found.getRotation().getMatrix()])

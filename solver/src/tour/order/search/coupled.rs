@@ -37,8 +37,9 @@ const FIVES_OF_MANY: usize = 8;
 const PASSES: u64 = 2;
 /// Heuristic searches for orders in a pass.
 const ORDERS_PER_PASS: u64 = 2;
-/// Kicks per target of a heuristic search, and at most.
+/// Kicks per target of a heuristic search, at least and at most.
 const KICKS_PER_TARGET: usize = 15;
+const MIN_KICKS: usize = 2_000;
 const MAX_KICKS: usize = 4_000;
 /// Orders of a pass that are evaluated.
 const ORDERS_EVALUATED: usize = 2;
@@ -158,7 +159,8 @@ impl OrderSearch<'_> {
     /// Searches for orders that are short in the known and estimated couplings, solves their unknown
     /// triples, and evaluates those that are shortest then.
     fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, round: u64) {
-        let kicks = MAX_KICKS.min(KICKS_PER_TARGET * self.tree.table().targets());
+        let kicks = KICKS_PER_TARGET * self.tree.table().targets();
+        let kicks = kicks.clamp(MIN_KICKS, MAX_KICKS);
         for pass in 0..PASSES {
             let first = (round * PASSES + pass) * ORDERS_PER_PASS;
             let seeds: Vec<u64> = (first..first + ORDERS_PER_PASS).collect();

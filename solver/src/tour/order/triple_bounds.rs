@@ -86,6 +86,8 @@ pub struct TripleBounds {
     far: Ranking,
     /// Best lower bound of all tours so far, s.
     root_s: f64,
+    /// Whether many targets have had an ascent.
+    raised: bool,
     symmetric: bool,
 }
 
@@ -105,6 +107,7 @@ impl TripleBounds {
             near: Ranking::new(targets),
             far: Ranking::new(targets),
             root_s: 0.0,
+            raised: false,
             symmetric: model.is_symmetric(),
         };
         triple_bounds.update_root_bound();

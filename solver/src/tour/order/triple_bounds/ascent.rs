@@ -19,6 +19,8 @@ use std::ops::Range;
 
 /// First step, relative to the mean leg.
 const FIRST_STEP: f64 = 0.03;
+/// The same in an ascent after a first one of many targets, which begins near the best multipliers.
+const LATER_STEP: f64 = 0.008;
 /// Step at which the ascent ends, relative to the mean leg.
 const LAST_STEP: f64 = 1e-5;
 /// Factor by which the step shrinks when the bound has not risen for [`MAX_STALE_STEPS`] steps.
@@ -158,6 +160,7 @@ impl TripleBounds {
     ) -> AscentWork {
         let before_s = self.root_s;
         let triples = self.climb(effort.first(), model, pool, stop);
+        self.raised = self.targets() >= MANY_TARGETS;
         // While more triples are wanted, and raise the bound, those of a later call gain more.
         let wanted = triples.asked >= effort.triples && !effort.fives_before_triples_end;
         let early = wanted && self.root_s > before_s * (1.0 + MIN_RELATIVE_GAIN);
@@ -193,7 +196,8 @@ impl TripleBounds {
         let all: Vec<usize> = (0..self.targets()).collect();
         let mean_leg = self.root_s / (all.len() + 1) as f64;
         let mut climb = AscentOutcome::default();
-        let mut ascent = Ascent::new(self, width, &all, FIRST_STEP * mean_leg);
+        let first_step = if self.raised { LATER_STEP } else { FIRST_STEP };
+        let mut ascent = Ascent::new(self, width, &all, first_step * mean_leg);
         while climb.steps < steps && !stop.is_set() {
             climb.steps += 1;
             let choices = ascent.choose(pool);

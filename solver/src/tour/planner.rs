@@ -6,6 +6,7 @@ mod canonical;
 mod certificate;
 mod first_tour;
 mod fixed_order;
+mod flight_times;
 mod from_store;
 mod guesses;
 mod history;

@@ -38,10 +38,9 @@ const BEGINNING_GUESSES: [InitialGuess; 3] = [
 ];
 /// Initial guess of a whole tour whose solution as a piece has failed.
 const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
-/// Number of guesses tried for a short segment even if the first one converges, where there are few
-/// targets: longer segments start from short ones and would inherit a local minimum. Among many targets
-/// one guess serves: of 960 pieces of two and four legs its minimum is by 1e-3 above the better of both
-/// for one, and a second solve costs as much as another piece.
+/// Number of guesses tried for a short segment of few targets even if the first one converges: longer
+/// segments start from short ones and would inherit a local minimum. Among many targets one guess
+/// serves: of 960 pieces of two and four legs one ends 1e-3 above the better of both.
 const MIN_GUESSES_OF_SHORT: usize = 2;
 
 /// The tours of a scenario, evaluated by solving their segments.
@@ -476,17 +475,7 @@ impl TourModel for Tours<'_> {
     }
 
     fn leg_times(&self, order: &[usize]) -> Option<Vec<f64>> {
-        let route = self.places.route(order, true);
-        let mut times = Vec::with_capacity(route.len());
-        for segment in self.solve_route(&route) {
-            segment.duration()?;
-            let mut lengths = segment.profile.lengths.iter();
-            for &intervals in &segment.intervals {
-                let leg: f64 = lengths.by_ref().take(intervals).sum();
-                times.push(leg + self.places.service_time(*route.get(times.len() + 1)?));
-            }
-        }
-        (times.len() + 1 == route.len()).then_some(times)
+        self.flight_leg_times(order)
     }
 
     fn costates(&self, order: &[usize]) -> Option<Vec<PassageCostate>> {

@@ -128,6 +128,16 @@ impl<'a> LegSolver<'a> {
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> Vec<Option<TabulatedLeg>> {
+        self.tabulated(&self.solved_canonical(kind, pairs))
+    }
+
+    /// The canonical legs between pairs of places after their solves, those around cones in place of
+    /// the ones that enter a cone; `None` for legs not reached before the stop signal.
+    pub(super) fn solved_canonical(
+        &self,
+        kind: LegKind,
+        pairs: &[(Place, Place)],
+    ) -> Vec<Option<CanonicalLeg>> {
         let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
@@ -142,7 +152,7 @@ impl<'a> LegSolver<'a> {
                 *leg = around.or(leg.take());
             }
         }
-        self.tabulated(&canonical)
+        canonical
     }
 
     /// The same without cones, and without reports of progress: for use after the stage of the legs.
@@ -158,7 +168,10 @@ impl<'a> LegSolver<'a> {
     }
 
     /// Legs as far as they are known.
-    fn tabulated(&self, canonical: &[Option<CanonicalLeg>]) -> Vec<Option<TabulatedLeg>> {
+    pub(super) fn tabulated(
+        &self,
+        canonical: &[Option<CanonicalLeg>],
+    ) -> Vec<Option<TabulatedLeg>> {
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
@@ -366,6 +379,7 @@ impl<'a> LegSolver<'a> {
             // Stored at once, so that a killed process loses little work. A stopped solve may have
             // skipped starts, and its leg is not stored.
             self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
+            fresh.is_stored = true;
         }
         fresh
     }
@@ -451,6 +465,7 @@ fn solve(
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
         from_store: false,
+        is_stored: false,
     }
 }
 
@@ -480,6 +495,7 @@ fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
         solves: 0,
         solve_time: stored.solve_time_s,
         from_store: true,
+        is_stored: true,
     })
 }
 

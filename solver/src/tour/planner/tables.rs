@@ -21,6 +21,8 @@ pub(super) struct SolvedLeg {
     pub(super) solve_time: f64,
     /// Whether it was taken from the store.
     pub(super) from_store: bool,
+    /// Whether the store has it, or was handed it.
+    pub(super) is_stored: bool,
 }
 
 /// The certified bound of a leg.

@@ -78,4 +78,14 @@ impl SolverPool {
         self.0
             .install(|| items.into_par_iter().with_min_len(row).map(work).collect())
     }
+
+    /// Does two pieces of work, at the same time if there are workers for both; either may give work to
+    /// all workers.
+    pub fn join<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        self.0.install(|| rayon::join(first, second))
+    }
 }

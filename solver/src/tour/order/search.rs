@@ -134,7 +134,9 @@ impl OrderSearch<'_> {
             .iter()
             .filter(|order| self.tree.is_new(order))
             .collect();
-        let answers = self.pool.map(&fresh, |order| self.evaluate_order(order));
+        let answers = self
+            .pool
+            .map(&fresh, |order| evaluate_order(self.model, order, self.stop));
         let mut interrupted = false;
         for (order, answer) in fresh.into_iter().zip(answers) {
             interrupted |= answer == TourEvaluation::Stopped;
@@ -201,25 +203,14 @@ impl OrderSearch<'_> {
     /// Evaluates a task with the model.
     fn evaluate(&self, task: &RoundTask) -> TaskResult {
         match task {
-            RoundTask::Probe(order) => TaskResult::Tour(self.evaluate_order(order)),
+            RoundTask::Probe(order) => {
+                TaskResult::Tour(evaluate_order(self.model, order, self.stop))
+            }
             RoundTask::Node(node) if self.tree.is_leaf(node) => {
-                TaskResult::Tour(self.evaluate_order(&node.prefix))
+                TaskResult::Tour(evaluate_order(self.model, &node.prefix, self.stop))
             }
             RoundTask::Node(_) if self.stop.is_set() => TaskResult::Prefix(Evaluation::Stopped),
             RoundTask::Node(node) => TaskResult::Prefix(self.model.prefix_bound(&node.prefix)),
-        }
-    }
-
-    fn evaluate_order(&self, order: &[usize]) -> TourEvaluation {
-        if self.stop.is_set() {
-            return TourEvaluation::Stopped;
-        }
-        match self.model.tour(order) {
-            // A duration that is not finite is no result.
-            TourEvaluation::Solved(duration_s) if !duration_s.is_finite() => {
-                TourEvaluation::Unresolved
-            }
-            answer => answer,
         }
     }
 
@@ -251,5 +242,17 @@ impl OrderSearch<'_> {
     /// request.
     fn stopped(&self) -> SearchEnd {
         SearchEnd::Stopped(self.stop.reason().unwrap_or(StopReason::Requested))
+    }
+}
+
+/// The tour of an order.
+fn evaluate_order(model: &dyn TourModel, order: &[usize], stop: &StopSignal) -> TourEvaluation {
+    if stop.is_set() {
+        return TourEvaluation::Stopped;
+    }
+    match model.tour(order) {
+        // A duration that is not finite is no result.
+        TourEvaluation::Solved(duration_s) if !duration_s.is_finite() => TourEvaluation::Unresolved,
+        answer => answer,
     }
 }

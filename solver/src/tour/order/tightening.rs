@@ -18,8 +18,8 @@ use std::collections::BTreeSet;
 const NEAREST: usize = 8;
 /// Largest number of rounds.
 const MAX_ROUNDS: usize = 24;
-/// A round whose trees have fewer edges to raise than this share of the targets is the last one.
-const FEW: f64 = 0.02;
+/// A round in which the bound rises by less, relative, is the last one.
+const MIN_RELATIVE_GAIN: f64 = 3e-4;
 /// The ascent of a round: that of the first leads near the best potentials, from which the others go
 /// on.
 const FIRST_ASCENT: Ascent = Ascent {
@@ -28,10 +28,10 @@ const FIRST_ASCENT: Ascent = Ascent {
 };
 const LATER_ASCENT: Ascent = Ascent {
     first_step: 0.05,
-    steps: 60,
+    steps: 40,
 };
 /// Trees at the end of an ascent whose edges are raised.
-const LAST_TREES: usize = 30;
+const LAST_TREES: usize = 20;
 
 /// Tightens the pair bounds on which bounds and short orders depend.
 pub(super) fn tighten(table: &mut PairTable, model: &dyn TourModel, stop: &StopSignal) {
@@ -42,6 +42,7 @@ pub(super) fn tighten(table: &mut PairTable, model: &dyn TourModel, stop: &StopS
     table.raise(model, &nearest);
     let mut potentials = vec![0.0; table.targets()];
     let mut ascent = FIRST_ASCENT;
+    let mut before_s = 0.0;
     for _ in 0..MAX_ROUNDS {
         if stop.is_set() {
             break;
@@ -54,8 +55,9 @@ pub(super) fn tighten(table: &mut PairTable, model: &dyn TourModel, stop: &StopS
                 open.extend(edges.iter().filter(|[a, b]| table.can_raise(*a, *b)));
             }
         });
-        let few = FEW * table.targets() as f64;
-        let is_last = open.len() as f64 <= few;
+        let bound_s = trees.whole_s();
+        let is_last = open.is_empty() || bound_s < before_s * (1.0 + MIN_RELATIVE_GAIN);
+        before_s = bound_s;
         let open: Vec<[usize; 2]> = open.into_iter().collect();
         table.raise(model, &open);
         if is_last {

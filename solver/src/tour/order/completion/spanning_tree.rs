@@ -40,6 +40,8 @@ pub struct SpanningTrees {
     potentials: Vec<f64>,
     /// The lesser of the two reduced legs between every two targets, by rows.
     edges: Vec<f64>,
+    /// Bound on the path from the start through all targets, s.
+    bound_s: f64,
 }
 
 /// A minimum spanning tree with its two outer edges.
@@ -74,6 +76,7 @@ impl SpanningTrees {
             edges: undirected(table, &entry_offsets),
             entry_offsets,
             potentials,
+            bound_s: 0.0,
         };
         let all: Vec<usize> = (0..targets).collect();
         let tree = trees.outer_tree(table, table.start(), &all);
@@ -93,7 +96,7 @@ impl SpanningTrees {
             degrees = tree.degrees;
             step *= STEP_DECAY;
         }
-        trees.potentials = best.1;
+        (trees.bound_s, trees.potentials) = best;
         trees
     }
 
@@ -105,6 +108,11 @@ impl SpanningTrees {
     /// Potentials added to the legs at each target, s.
     pub(in crate::tour::order) fn potentials(&self) -> &[f64] {
         &self.potentials
+    }
+
+    /// Lower bound, s, of the path from the start through all targets and to the end.
+    pub(in crate::tour::order) fn whole_s(&self) -> f64 {
+        self.bound_s
     }
 
     /// Lower bound, s, of the path from a place through the remaining targets and to the end.

@@ -5,7 +5,7 @@
 //! bounds would save work. A search over many targets computes the triple bounds first: they are
 //! the bound that it reports, and they guide the choice of orders to evaluate.
 
-use super::OrderSearch;
+use super::{OrderSearch, evaluate_order};
 use crate::model::order_rules::OrderRules;
 use crate::run::pool::SolverPool;
 use crate::run::stop::StopSignal;
@@ -28,11 +28,25 @@ const MAX_ROUNDS: u64 = 100;
 const ROUNDS_WITHOUT_GAIN: u64 = 2;
 /// Relative rise of the bound in a round that counts as none.
 const MIN_RELATIVE_GAIN: f64 = 2e-4;
-/// Triples solved per target before the first round, and in a round.
-const FIRST_TRIPLES_OF_MANY: usize = 24;
-const TRIPLES_OF_MANY: usize = 12;
-/// Paths of five places solved per target in a round in which the triples are exhausted.
-const FIVES_OF_MANY: usize = 8;
+/// Work on the bounds for many targets while a first order is evaluated, before the first round, and
+/// in a round. The paths are counted per target; those of five places are for when the triples are
+/// exhausted.
+const BESIDE_FIRST_ORDER: AscentEffort = AscentEffort {
+    triples: 4,
+    fives: 0,
+    fives_before_triples_end: false,
+    steps: 60,
+};
+const BEFORE_ROUNDS: AscentEffort = AscentEffort {
+    triples: 24,
+    steps: MAX_STEPS,
+    ..BESIDE_FIRST_ORDER
+};
+const OF_ROUND: AscentEffort = AscentEffort {
+    triples: 12,
+    fives: 8,
+    ..BEFORE_ROUNDS
+};
 /// Passes of a round: each learns the couplings along the orders that it finds.
 const PASSES: u64 = 2;
 /// Heuristic searches for orders in a pass.
@@ -41,6 +55,8 @@ const ORDERS_PER_PASS: u64 = 2;
 const KICKS_PER_TARGET: usize = 15;
 const MIN_KICKS: usize = 2_000;
 const MAX_KICKS: usize = 4_000;
+/// Kicks of the search for a first order.
+const FIRST_KICKS: usize = 1_000;
 /// Orders of a pass that are evaluated.
 const ORDERS_EVALUATED: usize = 2;
 
@@ -72,7 +88,7 @@ impl CoupledBounds {
             fives_before_triples_end: true,
             steps: MAX_STEPS,
         };
-        triple_bounds.raise(model, &effort, pool, stop);
+        triple_bounds.raise(model, &effort, pool, stop, &mut |_| ());
         let subsets = TripleBoundSubsets::new(triple_bounds, rules, stop);
         Some(Self::Paths(Box::new(subsets)))
     }
@@ -114,16 +130,25 @@ impl OrderSearch<'_> {
         let table = self.tree.table();
         let trees = self.tree.spanning_trees()?;
         let mut triple_bounds = TripleBounds::new(self.model, table, trees)?;
-        // Orders that are short without couplings are far from short.
-        self.raise_triple_bounds(&mut triple_bounds, FIRST_TRIPLES_OF_MANY, 0);
+        if self.tree.best_s().is_none() {
+            self.fly_a_first_order(&mut triple_bounds);
+        }
+        // Orders that are short in estimated couplings alone are far from short.
+        self.raise_triple_bounds(&mut triple_bounds, BEFORE_ROUNDS);
         let mut without_gain = 0;
         for round in 0..MAX_ROUNDS {
             let before = (self.tree.best_s(), triple_bounds.root_bound());
-            self.improve_orders(&mut triple_bounds, round);
+            for pass in 1..=PASSES {
+                let pass = round * PASSES + pass;
+                self.improve_orders(&mut triple_bounds, pass);
+                if self.stop.is_set() {
+                    break;
+                }
+            }
             if self.stop.is_set() {
                 break;
             }
-            self.raise_triple_bounds(&mut triple_bounds, TRIPLES_OF_MANY, FIVES_OF_MANY);
+            self.raise_triple_bounds(&mut triple_bounds, OF_ROUND);
             let raised = triple_bounds.root_bound() > before.1 * (1.0 + MIN_RELATIVE_GAIN);
             let gained = raised || self.tree.best_s() < before.0;
             without_gain = if gained { 0 } else { without_gain + 1 };
@@ -136,58 +161,78 @@ impl OrderSearch<'_> {
         self.stop.is_set().then(|| self.stopped())
     }
 
-    /// Raises the triple bounds for many targets and the bound of the root, with so many triples and paths
-    /// of five places for each target.
-    fn raise_triple_bounds(
-        &mut self,
-        triple_bounds: &mut TripleBounds,
-        triples: usize,
-        fives: usize,
-    ) {
-        let targets = triple_bounds.table().targets();
-        let effort = AscentEffort {
-            triples: triples * targets,
-            fives: fives * targets,
-            fives_before_triples_end: false,
-            steps: MAX_STEPS,
+    /// Evaluates an order that is short in estimated couplings, and begins to raise the triple bounds
+    /// meanwhile: one tour of many targets keeps one worker busy for seconds.
+    fn fly_a_first_order(&mut self, triple_bounds: &mut TripleBounds) {
+        let orders = self.orders_to_evaluate(triple_bounds, 0, FIRST_KICKS);
+        let Some(order) = orders.into_iter().next() else {
+            return;
         };
-        triple_bounds.raise(self.model, &effort, self.pool, self.stop);
-        self.tree.bound_root(triple_bounds.root_bound());
+        let (model, pool, stop) = (self.model, self.pool, self.stop);
+        let (answer, ()) = pool.join(
+            || evaluate_order(model, &order, stop),
+            || self.raise_triple_bounds(triple_bounds, BESIDE_FIRST_ORDER),
+        );
+        self.tree.record_candidate(&order, answer);
+        triple_bounds.learn(&order, self.model);
+        self.reporter.announce(&self.tree);
         self.reporter.report(&self.tree);
     }
 
-    /// Searches for orders that are short in the known and estimated couplings, solves their unknown
-    /// triples, and evaluates those that are shortest then.
-    fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, round: u64) {
+    /// Raises the triple bounds for many targets and the bound of the root, by an effort per target.
+    fn raise_triple_bounds(&mut self, triple_bounds: &mut TripleBounds, effort: AscentEffort) {
+        let targets = triple_bounds.table().targets();
+        let effort = AscentEffort {
+            triples: effort.triples * targets,
+            fives: effort.fives * targets,
+            ..effort
+        };
+        let mut tell = |bound_s| {
+            self.tree.bound_root(bound_s);
+            self.reporter.report(&self.tree);
+        };
+        triple_bounds.raise(self.model, &effort, self.pool, self.stop, &mut tell);
+        tell(triple_bounds.root_bound());
+    }
+
+    /// Evaluates orders that are short in the known and estimated couplings.
+    fn improve_orders(&mut self, triple_bounds: &mut TripleBounds, pass: u64) {
         let kicks = KICKS_PER_TARGET * self.tree.table().targets();
         let kicks = kicks.clamp(MIN_KICKS, MAX_KICKS);
-        for pass in 0..PASSES {
-            let first = (round * PASSES + pass) * ORDERS_PER_PASS;
-            let seeds: Vec<u64> = (first..first + ORDERS_PER_PASS).collect();
-            let found = self.pool.map(&seeds, |&seed| {
-                let effort = SearchEffort {
-                    kicks,
-                    alternatives: 0,
-                    seed,
-                };
-                self.tree.short_orders(triple_bounds, &effort, self.stop)
-            });
-            let mut orders: Vec<Vec<usize>> = found.into_iter().flatten().collect();
-            triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
-            let estimated = |order: &Vec<usize>| heuristics::estimated(triple_bounds, order);
-            orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
-            orders.dedup();
-            orders.truncate(ORDERS_EVALUATED);
-            self.evaluate_new(&orders);
-            for order in &orders {
-                triple_bounds.learn(order, self.model);
-            }
-            self.reporter.announce(&self.tree);
-            self.reporter.report(&self.tree);
-            if self.stop.is_set() {
-                break;
-            }
+        let mut orders = self.orders_to_evaluate(triple_bounds, pass, kicks);
+        orders.truncate(ORDERS_EVALUATED);
+        self.evaluate_new(&orders);
+        for order in &orders {
+            triple_bounds.learn(order, self.model);
         }
+        self.reporter.announce(&self.tree);
+        self.reporter.report(&self.tree);
+    }
+
+    /// Searches for orders that are short in the known and estimated couplings, and solves their unknown
+    /// triples. The shortest comes first.
+    fn orders_to_evaluate(
+        &self,
+        triple_bounds: &mut TripleBounds,
+        pass: u64,
+        kicks: usize,
+    ) -> Vec<Vec<usize>> {
+        let first = pass * ORDERS_PER_PASS;
+        let seeds: Vec<u64> = (first..first + ORDERS_PER_PASS).collect();
+        let found = self.pool.map(&seeds, |&seed| {
+            let effort = SearchEffort {
+                kicks,
+                alternatives: 0,
+                seed,
+            };
+            self.tree.short_orders(triple_bounds, &effort, self.stop)
+        });
+        let mut orders: Vec<Vec<usize>> = found.into_iter().flatten().collect();
+        triple_bounds.ask_along(&orders, self.model, self.pool, self.stop);
+        let estimated = |order: &Vec<usize>| heuristics::estimated(triple_bounds, order);
+        orders.sort_by(|a, b| estimated(a).total_cmp(&estimated(b)));
+        orders.dedup();
+        orders
     }
 
     /// Computes the triple bounds of a long search over few targets.

@@ -92,7 +92,7 @@ fn no_bound_exceeds_the_cheapest_path() {
         }
         let (table, _, mut triple_bounds) = prepared(&model);
         let before = triple_bounds.root_bound();
-        triple_bounds.raise(&model, &EFFORT, &pool, &StopSignal::new());
+        triple_bounds.raise(&model, &EFFORT, &pool, &StopSignal::new(), &mut |_| ());
         assert!(triple_bounds.root_bound() >= before, "case {case}");
         model.fails = |_| false;
         let all: Vec<usize> = (0..table.targets()).collect();
@@ -136,7 +136,7 @@ fn triples_raise_the_held_karp_bound_and_fives_raise_it_further() {
         assert!(triple_bounds.root_bound() >= bound - 1e-9, "seed {seed}");
         for fives in [0, EFFORT.fives] {
             let effort = AscentEffort { fives, ..EFFORT };
-            triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());
+            triple_bounds.raise(&model, &effort, &pool, &StopSignal::new(), &mut |_| ());
             assert!(triple_bounds.root_bound() > bound * 1.005, "seed {seed}");
             bound = triple_bounds.root_bound();
         }
@@ -150,7 +150,13 @@ fn triple_bounds_do_not_depend_on_the_number_of_threads() {
         let some: Vec<usize> = (3..17).collect();
         let results = [1, 2, 3].map(|threads| {
             let (_, _, mut triple_bounds) = prepared(&model);
-            let raised = triple_bounds.raise(&model, &EFFORT, &pool(threads), &StopSignal::new());
+            let raised = triple_bounds.raise(
+                &model,
+                &EFFORT,
+                &pool(threads),
+                &StopSignal::new(),
+                &mut |_| (),
+            );
             let bounds = [triple_bounds.root_bound(), triple_bounds.bound(0, &some)];
             (raised, bounds.map(f64::to_bits))
         });
@@ -174,12 +180,12 @@ fn a_stop_ends_the_ascent_at_once_and_leaves_a_bound() {
     let model = counting(&stop, 10);
     let (_, _, mut triple_bounds) = prepared(&model);
     let before = triple_bounds.root_bound();
-    let raised = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop);
+    let raised = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop, &mut |_| ());
     assert!(!raised.settled && raised.steps < EFFORT.steps);
     // The other worker may already have polled the signal.
     assert!(model.evaluations.load(Ordering::Relaxed) <= 11);
     assert!(triple_bounds.root_bound() >= before);
-    let again = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop);
+    let again = triple_bounds.raise(&model, &EFFORT, &pool(2), &stop, &mut |_| ());
     assert_eq!((again.steps, again.triples), (0, 0));
 }
 
@@ -203,7 +209,7 @@ fn the_model_is_asked_within_the_limits_and_never_twice_for_a_path() {
             fives,
             ..EFFORT
         };
-        let raised = triple_bounds.raise(&model, &effort, &pool(2), &stop);
+        let raised = triple_bounds.raise(&model, &effort, &pool(2), &stop, &mut |_| ());
         assert!(raised.triples <= triples && raised.fives <= fives);
         paths += raised.triples + raised.fives;
         // Paths from the start or to the end have one direction, all others two.
@@ -221,7 +227,7 @@ fn estimates_lie_between_the_pair_bounds_and_the_duration() {
     let mut model = RandomModel::new(6, true, 2);
     model.known_share = 1.0;
     let (table, _, mut triple_bounds) = prepared(&model);
-    triple_bounds.raise(&model, &EFFORT, &pool(2), &StopSignal::new());
+    triple_bounds.raise(&model, &EFFORT, &pool(2), &StopSignal::new(), &mut |_| ());
     let mut raised = 0;
     let mut order: Vec<usize> = (0..6).collect();
     for turn in 0..6 {

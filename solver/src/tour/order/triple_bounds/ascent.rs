@@ -150,16 +150,18 @@ struct RelaxedChoices {
 
 impl TripleBounds {
     /// Raises the bound within the limits of an effort or until the solve is stopped. The bound
-    /// never falls. A further call continues from the best multipliers.
+    /// never falls. A further call continues from the best multipliers. The bound so far, s, is told
+    /// whenever the model has been asked.
     pub fn raise(
         &mut self,
         model: &dyn TourModel,
         effort: &AscentEffort,
         pool: &SolverPool,
         stop: &StopSignal,
+        tell: &mut dyn FnMut(f64),
     ) -> AscentWork {
         let before_s = self.root_s;
-        let triples = self.climb(effort.first(), model, pool, stop);
+        let triples = self.climb(effort.first(), model, pool, stop, tell);
         self.raised = self.targets() >= MANY_TARGETS;
         // While more triples are wanted, and raise the bound, those of a later call gain more.
         let wanted = triples.asked >= effort.triples && !effort.fives_before_triples_end;
@@ -172,7 +174,7 @@ impl TripleBounds {
                 settled: triples.settled,
             };
         }
-        let fives = self.climb(effort.second(), model, pool, stop);
+        let fives = self.climb(effort.second(), model, pool, stop, tell);
         AscentWork {
             triples: triples.asked,
             fives: fives.asked,
@@ -192,6 +194,7 @@ impl TripleBounds {
         model: &dyn TourModel,
         pool: &SolverPool,
         stop: &StopSignal,
+        tell: &mut dyn FnMut(f64),
     ) -> AscentOutcome {
         let all: Vec<usize> = (0..self.targets()).collect();
         let mean_leg = self.root_s / (all.len() + 1) as f64;
@@ -211,6 +214,7 @@ impl TripleBounds {
                     climb.settled = false;
                     // The new gaps change the function; the bound may fall at first.
                     ascent.level_s = f64::NEG_INFINITY;
+                    tell(ascent.best_s);
                 }
             }
             if climb.settled {

@@ -245,7 +245,7 @@ mod tests {
                 fives_before_triples_end: true,
                 steps: 70,
             };
-            triple_bounds.raise(&model, &effort, &pool, &StopSignal::new());
+            triple_bounds.raise(&model, &effort, &pool, &StopSignal::new(), &mut |_| ());
             for (entry, size) in [(table.start(), 8), (7, 7), (7, 4), (7, 2), (7, 1)] {
                 let targets: Vec<usize> = (0..size).collect();
                 let part = Part::new(entry, table.end(), &targets);

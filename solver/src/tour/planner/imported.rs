@@ -111,6 +111,7 @@ impl<'a> LegCheck<'a> {
             solves: 0,
             solve_time: solve_time_s,
             from_store: false,
+            is_condensed: false,
         };
         Ok(stored(leg, self.kind, &solved))
     }

@@ -12,11 +12,12 @@ use crate::model::dynamics::Dynamics;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::{DVector, Vector3};
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 /// Version of the canonical form and of the numerics behind it. It is part of the identity: legs
 /// stored by another version are not found.
-const VERSION: &str = "leg-9";
+const VERSION: &str = "leg-10";
 
 /// A leg in the frame in which it begins at the identity attitude.
 #[derive(Debug, Clone)]
@@ -25,6 +26,8 @@ pub(super) struct CanonicalLeg {
     pub(super) identity: String,
     /// The part of the identity that describes the spacecraft.
     pub(super) spacecraft: String,
+    /// Where the part of the identity begins that legs of one scenario do not have in common.
+    own: usize,
     /// The spacecraft with the momentum in this frame.
     pub(super) dynamics: Dynamics,
     /// The begin, at the identity attitude.
@@ -98,6 +101,7 @@ impl CanonicalLeg {
         let spacecraft = places.described.clone();
         let mut identity = format!("{VERSION};{:?};{:?};", places.resolution, places.arrival);
         identity.push_str(&spacecraft);
+        let own = identity.len();
         let momentum = dynamics.momentum;
         for part in [momentum.as_slice(), &turn.xyzw(), places.null.as_slice()] {
             push_numbers(&mut identity, part);
@@ -109,6 +113,7 @@ impl CanonicalLeg {
         Self {
             identity,
             spacecraft,
+            own,
             dynamics,
             from,
             to,
@@ -119,6 +124,11 @@ impl CanonicalLeg {
             resolution: places.resolution,
             free: None,
         }
+    }
+
+    /// What tells it from the other legs of its scenario: a third of the identity.
+    pub(super) fn key(&self) -> &str {
+        &self.identity[self.own..]
     }
 
     /// The problem to solve; initial guesses come from the extremals of its spacecraft.
@@ -133,6 +143,18 @@ impl CanonicalLeg {
             resolution: self.resolution,
         }
     }
+}
+
+/// The legs that are not known yet, without repetitions, with their places in the list.
+pub(super) fn missing_from<'c, T>(
+    known: &HashMap<String, T>,
+    legs: &'c [Option<CanonicalLeg>],
+) -> Vec<(usize, &'c CanonicalLeg)> {
+    let mut listed = HashSet::new();
+    let legs = legs.iter().enumerate();
+    legs.filter_map(|(index, leg)| Some((index, leg.as_ref()?)))
+        .filter(|(_, leg)| !known.contains_key(leg.key()) && listed.insert(leg.key()))
+        .collect()
 }
 
 /// A waypoint with its attitude in the leg's frame. Conditions that leave nothing free are replaced

@@ -17,8 +17,7 @@ mod premises;
 
 use super::Run;
 use super::additive_tours::LegTimes;
-use super::canonical::CanonicalLeg;
-use super::legs::missing_from;
+use super::canonical::{CanonicalLeg, missing_from};
 use super::places::Places;
 use super::proved_legs::ProvedLegs;
 use super::tables::CertifiedLeg;
@@ -187,7 +186,7 @@ struct CertificateVerifier<'a> {
     done: AtomicU64,
     /// Number of proofs asked for so far.
     total: AtomicU64,
-    /// Proved bounds by the identity of the leg, s; `None` where the proof failed.
+    /// Proved bounds by [`CanonicalLeg::key`], s; `None` where the proof failed.
     known: Mutex<HashMap<String, Option<f64>>>,
 }
 
@@ -262,12 +261,12 @@ impl CertificateVerifier<'_> {
         let mut known = known();
         for ((_, leg), bound) in missing.into_iter().zip(bounds) {
             if let Some(bound) = bound {
-                known.insert(leg.identity.clone(), bound);
+                known.insert(leg.key().to_owned(), bound);
             }
         }
         let entry = |leg: &Option<CanonicalLeg>| {
             Some(CertifiedLeg {
-                lower_bound: *known.get(&leg.as_ref()?.identity)?,
+                lower_bound: *known.get(leg.as_ref()?.key())?,
                 solve_time: 0.0,
             })
         };

@@ -7,8 +7,8 @@
 
 use super::all_pairs;
 use super::canonical::CanonicalLeg;
-use super::from_store::leg_from_store;
-use super::legs::{certify, end_of, stored};
+use super::from_store::{leg_solution, stored_leg};
+use super::legs::{certify, end_of};
 use super::places::Places;
 use super::tables::SolvedLeg;
 use super::verified::{flight_faults, node_faults};
@@ -112,8 +112,9 @@ impl<'a> LegCheck<'a> {
             solve_time: solve_time_s,
             from_store: false,
             is_stored: false,
+            is_condensed: false,
         };
-        Ok(stored(leg, self.kind, &solved))
+        Ok(stored_leg(leg, self.kind, &solved))
     }
 
     /// What can be said before the motion is flown: whether it begins and ends as it has to, and
@@ -174,7 +175,7 @@ fn solved(leg: &CanonicalLeg, motion: Motion) -> Result<LegSolution, Vec<String>
     if intervals > MAX_INTERVALS {
         faults.push(format!("it has more than {MAX_INTERVALS} intervals"));
     }
-    let solution = leg_from_store(motion);
+    let solution = leg_solution(motion);
     if solution.is_none() {
         let nodes = intervals + 1;
         faults.push(format!(

@@ -4,8 +4,8 @@
 //! table, between the tables of one solve and, through the store, between solves.
 
 use super::Run;
-use super::canonical::CanonicalLeg;
-use super::from_store::leg_from_store;
+use super::canonical::{CanonicalLeg, missing_from};
+use super::from_store::{leg_from_store, stored_leg};
 use super::places::Places;
 use super::tables::{CertifiedLeg, SolvedLeg, SolvedTable, Table, TabulatedLeg};
 use super::verified::{flight_faults, is_feasible};
@@ -19,7 +19,7 @@ use crate::run::progress::{Progress, Stage};
 use crate::run::stop::{StopReason, StopSignal};
 use crate::tour::legs::{LegKind, SegmentStore, StoredLeg};
 use crate::tour::order::Place;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -29,8 +29,8 @@ pub(super) struct LegSolver<'a> {
     places: &'a Places<'a>,
     run: Run<'a>,
     stop: &'a StopSignal,
-    known: ByIdentity<Arc<SolvedLeg>>,
-    certified: ByIdentity<CertifiedLeg>,
+    known: ByKey<Arc<SolvedLeg>>,
+    certified: ByKey<CertifiedLeg>,
     /// Duration of the first tour and lower bound on all tours, s, when known: part of every report
     /// of progress.
     reported: Mutex<(Option<f64>, Option<f64>)>,
@@ -44,8 +44,8 @@ pub(super) struct LegSolver<'a> {
     contradictions: AtomicU64,
 }
 
-/// Results by the identity of the leg.
-type ByIdentity<T> = Mutex<HashMap<String, T>>;
+/// Results by [`CanonicalLeg::key`].
+type ByKey<T> = Mutex<HashMap<String, T>>;
 
 impl<'a> LegSolver<'a> {
     pub(super) fn new(places: &'a Places<'a>, run: Run<'a>, stop: &'a StopSignal) -> Self {
@@ -53,8 +53,8 @@ impl<'a> LegSolver<'a> {
             places,
             run,
             stop,
-            known: ByIdentity::default(),
-            certified: ByIdentity::default(),
+            known: ByKey::default(),
+            certified: ByKey::default(),
             reported: Mutex::default(),
             solved: AtomicU64::new(0),
             from_store: AtomicU64::new(0),
@@ -176,7 +176,7 @@ impl<'a> LegSolver<'a> {
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
             Some(TabulatedLeg {
-                leg: Arc::clone(known.get(&canonical.identity)?),
+                leg: Arc::clone(known.get(canonical.key())?),
                 mirrored: canonical.mirrored,
             })
         };
@@ -192,7 +192,8 @@ impl<'a> LegSolver<'a> {
 
     /// A known leg that begins at a place.
     fn known(&self, from: Place, canonical: &CanonicalLeg) -> Option<LegSolution> {
-        let leg = lock(&self.known).get(&canonical.identity).cloned()?;
+        let leg = lock(&self.known).get(canonical.key()).cloned();
+        let leg = leg.filter(|leg| !leg.is_condensed)?;
         Some(self.placed(from, leg, canonical.mirrored))
     }
 
@@ -242,10 +243,10 @@ impl<'a> LegSolver<'a> {
         let mut certified = lock(&self.certified);
         for ((_, leg), bound) in missing.into_iter().zip(bounds) {
             if let Some(bound) = bound {
-                certified.insert(leg.identity.clone(), bound);
+                certified.insert(leg.key().to_owned(), bound);
             }
         }
-        let known = |leg: &Option<CanonicalLeg>| certified.get(&leg.as_ref()?.identity).copied();
+        let known = |leg: &Option<CanonicalLeg>| certified.get(leg.as_ref()?.key()).copied();
         canonical.iter().map(known).collect()
     }
 
@@ -322,7 +323,7 @@ impl<'a> LegSolver<'a> {
     fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let row = self.run.legs.get(&leg.identity)?;
         let unproved = row.certified_lower_bound_s.is_none().then(|| row.clone());
-        let mut stored = from_store(row)?;
+        let mut stored = leg_from_store(row)?;
         let faults = flight_faults(self.places, leg, &stored.solution.profile);
         if !faults.is_empty() {
             let identity = leg.identity.clone();
@@ -341,7 +342,7 @@ impl<'a> LegSolver<'a> {
     /// Computes the certified bound of a leg that is stored without one, or with one of another
     /// version, and stores it.
     fn prove_stored(&self, leg: &CanonicalLeg, row: StoredLeg, solved: &mut SolvedLeg) {
-        let known = lock(&self.certified).get(&leg.identity).copied();
+        let known = lock(&self.certified).get(leg.key()).copied();
         let bound = known.unwrap_or_else(|| certify(self.places, leg));
         solved.certified = bound.lower_bound;
         if bound.lower_bound.is_some() {
@@ -372,16 +373,29 @@ impl<'a> LegSolver<'a> {
 
     /// Solves a leg, and stores it.
     fn solve(&self, kind: LegKind, leg: &CanonicalLeg) -> SolvedLeg {
-        let bound = lock(&self.certified).get(&leg.identity).copied();
+        let bound = lock(&self.certified).get(leg.key()).copied();
         let mut fresh = solve(self.places, leg, bound, self.stop);
         self.compare_with_bound(leg, &mut fresh);
         if fresh.solution.status == NlpStatus::Converged && !self.stop.is_set() {
             // Stored at once, so that a killed process loses little work. A stopped solve may have
             // skipped starts, and its leg is not stored.
-            self.run.legs.put(&leg.identity, &stored(leg, kind, &fresh));
+            self.run
+                .legs
+                .put(&leg.identity, &stored_leg(leg, kind, &fresh));
             fresh.is_stored = true;
         }
         fresh
+    }
+
+    /// Whether hardly anybody will ask for the motion of a leg: between two of many places that leave
+    /// something free it is part of longer motions, which do not begin with it. Who asks for it has it
+    /// loaded or solved again, with the same result.
+    fn is_condensable(&self, leg: &CanonicalLeg) -> bool {
+        let is_free = |end: &Waypoint| !end.is_fixed(&leg.dynamics);
+        !self.places.needs_all_legs()
+            && self.places.with_cones.cones.is_empty()
+            && is_free(&leg.from)
+            && is_free(&leg.to)
     }
 
     /// Keeps a leg for this solve unless its solve was interrupted.
@@ -395,25 +409,18 @@ impl<'a> LegSolver<'a> {
             self.solved.fetch_add(1, Relaxed);
             self.nlp_solves.fetch_add(solved.solves, Relaxed);
         }
-        lock(&self.known).insert(leg.identity.clone(), Arc::clone(solved));
+        let kept = if self.is_condensable(leg) {
+            Arc::new(solved.condensed())
+        } else {
+            Arc::clone(solved)
+        };
+        lock(&self.known).insert(leg.key().to_owned(), kept);
     }
 }
 
-fn lock<T>(remembered: &ByIdentity<T>) -> MutexGuard<'_, HashMap<String, T>> {
+fn lock<T>(remembered: &ByKey<T>) -> MutexGuard<'_, HashMap<String, T>> {
     // A panic under the lock leaves the map consistent.
     remembered.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The legs that are not known yet, without repetitions, with their places in the list.
-pub(super) fn missing_from<'c, T>(
-    known: &HashMap<String, T>,
-    legs: &'c [Option<CanonicalLeg>],
-) -> Vec<(usize, &'c CanonicalLeg)> {
-    let mut listed = HashSet::new();
-    let legs = legs.iter().enumerate();
-    legs.filter_map(|(index, leg)| Some((index, leg.as_ref()?)))
-        .filter(|(_, leg)| !known.contains_key(&leg.identity) && listed.insert(&leg.identity))
-        .collect()
 }
 
 /// The waypoint of a place in a leg of this kind.
@@ -466,37 +473,8 @@ fn solve(
         solve_time: begin.elapsed().as_secs_f64(),
         from_store: false,
         is_stored: false,
+        is_condensed: false,
     }
-}
-
-/// A solved leg to be stored.
-pub(super) fn stored(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) -> StoredLeg {
-    let profile = &solved.solution.profile;
-    StoredLeg {
-        spacecraft: leg.spacecraft.clone(),
-        kind,
-        turn_xyzw: leg.to.attitude.xyzw(),
-        body_momentum_nms: leg.dynamics.momentum.into(),
-        reversible: leg.reversible,
-        duration_s: profile.duration(),
-        certified_lower_bound_s: solved.certified,
-        status: solved.solution.status.into_str().into(),
-        solve_time_s: solved.solve_time,
-        motion: profile.into(),
-    }
-}
-
-/// A stored leg as a solved one; `None` when its numbers do not fit together.
-fn from_store(stored: StoredLeg) -> Option<SolvedLeg> {
-    let solution = leg_from_store(stored.motion)?;
-    Some(SolvedLeg {
-        solution,
-        certified: stored.certified_lower_bound_s,
-        solves: 0,
-        solve_time: stored.solve_time_s,
-        from_store: true,
-        is_stored: true,
-    })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::places::Places;
 use crate::leg::multiphase::LegSolution;
+use crate::leg::profile::Profile;
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::Dynamics;
 use crate::tour::order::Place;
@@ -23,6 +24,35 @@ pub(super) struct SolvedLeg {
     pub(super) from_store: bool,
     /// Whether the store has it, or was handed it.
     pub(super) is_stored: bool,
+    /// Whether only the ends of the motion are kept.
+    pub(super) is_condensed: bool,
+}
+
+impl SolvedLeg {
+    /// The same with a motion of one interval from the first node to the last: its duration and the
+    /// states at its ends in a quarter of the memory.
+    pub(super) fn condensed(&self) -> Self {
+        let solution = &self.solution;
+        let motion = &solution.profile;
+        let ends = [0, motion.intervals()];
+        let profile = if motion.intervals() > 1 {
+            Profile {
+                attitudes: ends.map(|node| motion.attitudes[node]).to_vec(),
+                wheels: ends.map(|node| motion.wheels[node].clone()).to_vec(),
+                lengths: vec![motion.duration()],
+            }
+        } else {
+            motion.clone()
+        };
+        Self {
+            solution: LegSolution {
+                profile,
+                ..solution.clone()
+            },
+            is_condensed: true,
+            ..*self
+        }
+    }
 }
 
 /// The certified bound of a leg.
@@ -50,6 +80,11 @@ impl TabulatedLeg {
             costates: Vec::new(),
             ..self.leg.solution.placed(self.mirrored, begin)
         }
+    }
+
+    /// The same; `None` where only the ends of the motion are kept.
+    pub(super) fn whole_beginning_at(&self, begin: &Attitude) -> Option<LegSolution> {
+        (!self.leg.is_condensed).then(|| self.beginning_at(begin))
     }
 
     /// Body rates at begin and end, rad/s, of the motion from the given attitude; `None` where there is

@@ -205,10 +205,9 @@ impl<'a> Tours<'a> {
 
     /// The leg with free ends between two places: from the table, if it is known, or solved now.
     pub(super) fn free_leg(&self, from: Place, to: Place) -> LegSolution {
-        self.known_free_leg(from, to).map_or_else(
-            || self.legs.leg(LegKind::LowerBound, from, to),
-            |leg| leg.beginning_at(&self.places.attitude(from)),
-        )
+        let known = self.known_free_leg(from, to);
+        let whole = known.and_then(|leg| leg.whole_beginning_at(&self.places.attitude(from)));
+        whole.unwrap_or_else(|| self.legs.leg(LegKind::LowerBound, from, to))
     }
 
     /// Solves a segment.

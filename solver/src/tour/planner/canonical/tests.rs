@@ -356,7 +356,7 @@ fn legs_that_differ_in_momentum_alone_have_different_identities() {
 fn the_identity_of_a_leg_is_written_as_before() {
     let mut spec = experiment_a();
     spec.targets[0].attitude = AttitudeSpec::Quaternion([0.0, 0.0, -0.6, -0.8]);
-    let expected = "leg-9;Resolution { intervals: 12, polished: false };Rotation;\
+    let expected = "leg-10;Resolution { intervals: 12, polished: false };Rotation;\
         6.629831e0,0e0,0e0,0e0,8.899831e0,0e0,0e0,0e0,9.629831000000001e0,;1e0,0e0,0e0,;\
         1.69e-4,-1.01e-2,1.01e-2,7.1e2,;0e0,1e0,0e0,;1.69e-4,-1.01e-2,1.01e-2,7.1e2,;\
         0e0,0e0,1e0,;1.69e-4,-1.01e-2,1.01e-2,7.1e2,;0e0,0e0,0e0,;4e-2,4e-2,4e-2,;inf,;\

@@ -6,6 +6,7 @@ use crate::model::scenario::reference::experiment_a;
 use crate::model::spec::{Applies, BoresightSpec, ConeSpec};
 use crate::run::progress::Observer;
 use crate::tour::legs::NoStore;
+use crate::tour::planner::places::MAX_TARGETS_ALL_LEGS;
 use crate::tour::planner::tests::with_leg_solver;
 use nalgebra::Vector3;
 
@@ -40,7 +41,7 @@ fn a_bound_above_the_duration_of_a_solved_leg_is_reported_and_dropped() {
                 lower_bound: Some(bound_s),
                 solve_time: 0.0,
             };
-            lock(&legs.certified).insert(leg.identity.clone(), known);
+            lock(&legs.certified).insert(leg.key().to_owned(), known);
             let solved = legs.solve(LegKind::RestToRest, &leg);
             assert!(solved.solution.duration().is_some());
             assert_eq!(solved.certified.is_none(), is_false);
@@ -59,6 +60,50 @@ fn a_leg_is_solved_once_however_often_it_is_asked_for() {
         assert!(first.is_some() && programs > 0);
         assert_eq!((solved, stored), (1, 0));
         assert_eq!((ask(), legs.work()), (first, [1, 0, programs]));
+    });
+}
+
+/// Between free places among many only the ends of motions are kept, and the motion is the same when it
+/// is asked for again.
+#[test]
+fn a_motion_that_is_not_kept_is_solved_again() {
+    let mut spec = experiment_a();
+    for i in 0..MAX_TARGETS_ALL_LEGS {
+        let mut target = spec.targets[i % 6].clone();
+        target.id = format!("{i}");
+        spec.targets.push(target);
+    }
+    for target in &mut spec.targets {
+        target.zero_rate_axes = Some([false, false, true]);
+    }
+    let scenario = Scenario::try_new(&spec).expect("valid").scenario;
+    let (counter, stop) = (Counter::default(), StopSignal::new());
+    with_leg_solver(&scenario, &counter, &NoStore, &stop, |legs, _| {
+        let kept = |from, to| {
+            let whole = legs.leg(LegKind::LowerBound, from, to);
+            let known = legs.solved_legs(LegKind::LowerBound, &[(from, to)]);
+            let known = known[0].clone().expect("solved");
+            assert_eq!(
+                legs.leg(LegKind::LowerBound, from, to).profile,
+                whole.profile
+            );
+            let begin = legs.places().waypoint(from).attitude;
+            let dynamics = &legs.places().dynamics;
+            let rates = known.rates_at_ends(dynamics, &begin).expect("a motion");
+            let motion = &whole.profile;
+            for (rate, node) in rates.into_iter().zip([0, motion.intervals()]) {
+                let exact = dynamics.rate(&motion.attitudes[node], &motion.wheels[node]);
+                assert!((rate - exact).amax() <= 1e-15);
+            }
+            assert_eq!(known.leg.solution.duration(), whole.duration());
+            assert_eq!(
+                known.whole_beginning_at(&begin).is_some(),
+                !known.leg.is_condensed
+            );
+            known.leg.solution.profile.intervals()
+        };
+        assert_eq!(kept(Place::Target(0), Place::Target(1)), 1);
+        assert!(kept(Place::Start, Place::Target(1)) > 1);
     });
 }
 

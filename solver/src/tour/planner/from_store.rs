@@ -34,7 +34,6 @@ pub(super) fn leg_from_store(stored: StoredLeg) -> Option<SolvedLeg> {
         solves: 0,
         solve_time: stored.solve_time_s,
         from_store: true,
-        is_stored: true,
         is_condensed: false,
     })
 }

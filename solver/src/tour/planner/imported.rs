@@ -111,7 +111,6 @@ impl<'a> LegCheck<'a> {
             solves: 0,
             solve_time: solve_time_s,
             from_store: false,
-            is_stored: false,
             is_condensed: false,
         };
         Ok(stored_leg(leg, self.kind, &solved))

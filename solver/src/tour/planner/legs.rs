@@ -128,16 +128,6 @@ impl<'a> LegSolver<'a> {
         kind: LegKind,
         pairs: &[(Place, Place)],
     ) -> Vec<Option<TabulatedLeg>> {
-        self.tabulated(&self.solved_canonical(kind, pairs))
-    }
-
-    /// The canonical legs between pairs of places after their solves, those around cones in place of
-    /// the ones that enter a cone; `None` for legs not reached before the stop signal.
-    pub(super) fn solved_canonical(
-        &self,
-        kind: LegKind,
-        pairs: &[(Place, Place)],
-    ) -> Vec<Option<CanonicalLeg>> {
         let tell = |done, total| self.report_progress(done, Some(total));
         let mut canonical = self.all_canonical(kind, pairs);
         self.solve_missing(kind, &canonical, tell);
@@ -152,7 +142,7 @@ impl<'a> LegSolver<'a> {
                 *leg = around.or(leg.take());
             }
         }
-        canonical
+        self.tabulated(&canonical)
     }
 
     /// The same without cones, and without reports of progress: for use after the stage of the legs.
@@ -168,10 +158,7 @@ impl<'a> LegSolver<'a> {
     }
 
     /// Legs as far as they are known.
-    pub(super) fn tabulated(
-        &self,
-        canonical: &[Option<CanonicalLeg>],
-    ) -> Vec<Option<TabulatedLeg>> {
+    fn tabulated(&self, canonical: &[Option<CanonicalLeg>]) -> Vec<Option<TabulatedLeg>> {
         let known = lock(&self.known);
         let entry = |canonical: &Option<CanonicalLeg>| {
             let canonical = canonical.as_ref()?;
@@ -382,7 +369,6 @@ impl<'a> LegSolver<'a> {
             self.run
                 .legs
                 .put(&leg.identity, &stored_leg(leg, kind, &fresh));
-            fresh.is_stored = true;
         }
         fresh
     }
@@ -472,7 +458,6 @@ fn solve(
         solves: solved.solves,
         solve_time: begin.elapsed().as_secs_f64(),
         from_store: false,
-        is_stored: false,
         is_condensed: false,
     }
 }

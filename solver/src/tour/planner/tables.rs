@@ -22,8 +22,6 @@ pub(super) struct SolvedLeg {
     pub(super) solve_time: f64,
     /// Whether it was taken from the store.
     pub(super) from_store: bool,
-    /// Whether the store has it, or was handed it.
-    pub(super) is_stored: bool,
     /// Whether only the ends of the motion are kept.
     pub(super) is_condensed: bool,
 }

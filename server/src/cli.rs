@@ -7,6 +7,7 @@ mod answer;
 mod backup;
 mod certify;
 mod convert;
+mod database;
 mod export;
 mod failure;
 mod form;

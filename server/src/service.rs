@@ -6,12 +6,11 @@ use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::documents;
 use crate::jobs::leg_cache::upkeep;
 use crate::jobs::{Jobs, Worker, retention, segments};
-use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
+use crate::store::{DatabaseAddress, DatabaseLock, OtherProcesses, QueueLimits, Store, StoreError};
 use slewplan_solver::run::pool::{PoolError, SolverPool};
 use std::io;
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -22,8 +21,8 @@ use uuid::Uuid;
 pub(crate) struct ServiceSettings {
     /// Address to listen on.
     pub(crate) listen: SocketAddr,
-    /// The path of the database.
-    pub(crate) database: PathBuf,
+    /// Where the database is.
+    pub(crate) database: DatabaseAddress,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
     /// Maximum size of a request body, bytes.
@@ -174,22 +173,35 @@ fn lower_priority() {
     }
 }
 
+/// Locks a file of SQLite for this process. A server of Postgres is shared.
+fn claim_database(
+    address: &DatabaseAddress,
+) -> Result<(Option<DatabaseLock>, OtherProcesses), ServiceError> {
+    match address {
+        DatabaseAddress::File(path) => {
+            let lock = DatabaseLock::take(path)?;
+            Ok((Some(lock), OtherProcesses::Ended))
+        }
+        DatabaseAddress::Postgres(_) => Ok((None, OtherProcesses::MayLive)),
+    }
+}
+
 async fn serve<E: From<ServiceError>>(
     settings: &ServiceSettings,
     pools: [Arc<SolverPool>; 2],
     tell: impl FnOnce(SocketAddr) -> Result<(), E>,
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
-    let _lock = DatabaseLock::take(&settings.database).map_err(ServiceError::from)?;
+    let (_lock, others) = claim_database(&settings.database)?;
     let store = Store::open(&settings.database, documents::jobs::tell)
         .await
         .map_err(ServiceError::from)?;
     let boot_id = Uuid::new_v4().to_string();
     let recovered = store
-        .recover(&boot_id, crate::base::clock::now_us())
+        .recover(&boot_id, others, crate::base::clock::now_us())
         .await
         .map_err(ServiceError::from)?;
-    tracing::info!(boot_id, ?recovered, database = %settings.database.display(), "store is open");
+    tracing::info!(boot_id, ?recovered, database = %settings.database, "store is open");
     let access = access(settings, &store).await?;
     let listener = TcpListener::bind(settings.listen)
         .await

@@ -19,6 +19,8 @@ mod operations;
 mod origins;
 mod page;
 mod plans;
+#[path = "../postgres.rs"]
+mod postgres;
 mod refusals;
 mod running;
 mod scenario;

@@ -1,7 +1,10 @@
-//! The service as a child process with a database of its own.
+//! The service as a child process with a database of its own: a file, or, where
+//! `SLEWPLAN_TEST_DATABASE` is `postgres`, one of a server.
 
 use crate::client::{Answer, Request};
+use crate::postgres;
 use serde_json::{Value, json};
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -29,14 +32,23 @@ impl Service {
 
     /// Starts a service on an empty database with further arguments.
     pub(crate) fn start_with(arguments: &[&str]) -> Self {
+        if std::env::var("SLEWPLAN_TEST_DATABASE").is_ok_and(|kind| kind == "postgres") {
+            let database = postgres::new_database().expect("Postgres is installed");
+            return Self::on_database(database.as_ref(), arguments);
+        }
         let folder = tempfile::tempdir().expect("a folder");
         let mut service = Self::on(&folder.path().join("test.db"), arguments);
         service.folder = Some(folder);
         service
     }
 
-    /// Starts a service on a database.
+    /// Starts a service on a file.
     pub(crate) fn on(database: &Path, arguments: &[&str]) -> Self {
+        Self::on_database(database.as_os_str(), arguments)
+    }
+
+    /// Starts a service on a database of either kind.
+    pub(crate) fn on_database(database: &OsStr, arguments: &[&str]) -> Self {
         let listen: &[&str] = if arguments.contains(&"--listen") {
             &[]
         } else {

@@ -5,10 +5,9 @@ use super::failure::Failure;
 use super::output;
 use crate::api::AllowedHost;
 use crate::service::{self, ServiceSettings};
-use crate::store::QueueLimits;
+use crate::store::{DatabaseAddress, QueueLimits};
 use clap::ValueEnum;
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::time::Duration;
 use tracing_subscriber::filter::Targets;
 use tracing_subscriber::prelude::*;
@@ -21,14 +20,14 @@ pub(super) struct ServeArguments {
     /// Address to listen on; port 0 stands for any free port
     #[arg(long, env = "SLEWPLAN_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// File of the database; created when it does not exist
+    /// Database: a file, created when it does not exist, or the URL of one on a Postgres server
     #[arg(
         long,
         env = "SLEWPLAN_DATABASE",
-        value_name = "FILE",
+        value_name = "FILE|URL",
         default_value = "slewplan.db"
     )]
-    database: PathBuf,
+    database: DatabaseAddress,
     /// Threads of the solver [default: one per core]
     #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
         value_parser = clap::value_parser!(u16).range(1..=1024))]

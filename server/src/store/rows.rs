@@ -1,8 +1,6 @@
 //! Rows of the tables as types.
 
 use super::StoreError;
-use sqlx::FromRow as _;
-use sqlx::sqlite::SqliteRow;
 use std::str::FromStr as _;
 
 /// The state of a job.
@@ -138,10 +136,6 @@ impl JobRow {
             table: "jobs",
             what: format!("no job makes a {}", self.work),
         })
-    }
-
-    pub(super) fn of(row: &SqliteRow) -> Result<Self, StoreError> {
-        Ok(Self::from_row(row)?)
     }
 }
 

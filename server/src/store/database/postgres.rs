@@ -1,0 +1,52 @@
+//! Postgres, from version 15 on, shared by any number of processes.
+
+use super::Database;
+use crate::store::{StoreError, migrations};
+use sqlx::postgres::{PgConnectOptions, PgPool, PgPoolOptions};
+use std::time::Duration;
+
+const OLDEST_POSTGRES: i32 = 150_000;
+/// Maximum number of connections of this process.
+const CONNECTIONS: u32 = 10;
+/// Longest wait for one of them.
+const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(5);
+/// Longest time of a statement, and of a transaction that does nothing: no connection is held by a
+/// process that has stopped in the middle.
+const TIMEOUTS: [(&str, &str); 2] = [
+    ("statement_timeout", "30s"),
+    ("idle_in_transaction_session_timeout", "30s"),
+];
+
+/// An open database.
+#[derive(Debug, Clone)]
+pub(in crate::store) struct PostgresDatabase {
+    pub(in crate::store) pool: PgPool,
+}
+
+impl PostgresDatabase {
+    /// Connects and migrates the schema.
+    pub(in crate::store) async fn open(options: &PgConnectOptions) -> Result<Database, StoreError> {
+        let options = options
+            .clone()
+            .application_name("slewplan")
+            .options(TIMEOUTS);
+        let pool = PgPoolOptions::new()
+            .max_connections(CONNECTIONS)
+            .acquire_timeout(ACQUIRE_TIMEOUT)
+            .connect_with(options)
+            .await?;
+        check_version(&pool).await?;
+        migrations::of_postgres().run(&pool).await?;
+        Ok(Database::Postgres(Self { pool }))
+    }
+}
+
+async fn check_version(pool: &PgPool) -> Result<(), StoreError> {
+    let version = "SELECT current_setting('server_version'), \
+         CAST(current_setting('server_version_num') AS integer)";
+    let (text, number): (String, i32) = sqlx::query_as(version).fetch_one(pool).await?;
+    if number < OLDEST_POSTGRES {
+        return Err(StoreError::OldPostgres(text));
+    }
+    Ok(())
+}

@@ -1,0 +1,72 @@
+//! A Postgres server for the tests of one process, with a new database for each of them.
+//!
+//! Where Postgres is not installed, nothing is tested on it, unless `SLEWPLAN_TEST_POSTGRES` is
+//! `required`.
+
+use sqlx::{AssertSqlSafe, Connection as _, Executor as _, PgConnection};
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// The server ends with this process, which then lets go of its standard input.
+struct Server {
+    socket: String,
+    _script: Child,
+}
+
+static SERVER: OnceLock<Option<Server>> = OnceLock::new();
+static DATABASES: AtomicU32 = AtomicU32::new(0);
+const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/postgres.sh");
+
+impl Server {
+    fn start() -> Option<Self> {
+        let started = Command::new("sh")
+            .arg(SCRIPT)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn();
+        let mut script = started.expect("a shell");
+        let mut line = String::new();
+        let output = script.stdout.take().expect("standard output is piped");
+        BufReader::new(output).read_line(&mut line).expect("a line");
+        if line.is_empty() {
+            let status = script.wait().expect("it ends");
+            let required = std::env::var("SLEWPLAN_TEST_POSTGRES").is_ok_and(|is| is == "required");
+            assert!(
+                !required && status.code() == Some(3),
+                "no Postgres: {status}"
+            );
+            return None;
+        }
+        Some(Self {
+            socket: line.trim().to_owned(),
+            _script: script,
+        })
+    }
+
+    fn url(&self, database: &str) -> String {
+        format!(
+            "postgres://slewplan@localhost/{database}?host={}",
+            self.socket
+        )
+    }
+}
+
+/// The address of a new, empty database; `None` where Postgres is not installed.
+pub(crate) fn new_database() -> Option<String> {
+    let server = SERVER.get_or_init(Server::start).as_ref()?;
+    let name = format!("test_{}", DATABASES.fetch_add(1, Ordering::Relaxed));
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .expect("a runtime");
+    runtime.block_on(async {
+        let url = server.url("postgres");
+        let mut connection = PgConnection::connect(&url).await.expect("connected");
+        let create = AssertSqlSafe(format!("CREATE DATABASE {name}"));
+        connection.execute(create).await.expect("created");
+        connection.close().await.expect("closed");
+    });
+    Some(server.url(&name))
+}

@@ -5,14 +5,15 @@
 
 use sqlx::{AssertSqlSafe, Connection as _, Executor as _, PgConnection};
 use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// The server ends with this process, which then lets go of its standard input.
-struct Server {
+/// A server; it ends with this process, which then lets go of its standard input, or before.
+pub(crate) struct Server {
     socket: String,
-    _script: Child,
+    script: Child,
+    answers: BufReader<ChildStdout>,
 }
 
 static SERVER: OnceLock<Option<Server>> = OnceLock::new();
@@ -20,18 +21,23 @@ static DATABASES: AtomicU32 = AtomicU32::new(0);
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/postgres.sh");
 
 impl Server {
-    fn start() -> Option<Self> {
+    /// Starts a server; `None` where Postgres is not installed.
+    pub(crate) fn start() -> Option<Self> {
         let started = Command::new("sh")
             .arg(SCRIPT)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn();
         let mut script = started.expect("a shell");
-        let mut line = String::new();
-        let output = script.stdout.take().expect("standard output is piped");
-        BufReader::new(output).read_line(&mut line).expect("a line");
-        if line.is_empty() {
-            let status = script.wait().expect("it ends");
+        let answers = script.stdout.take().expect("standard output is piped");
+        let mut server = Self {
+            socket: String::new(),
+            script,
+            answers: BufReader::new(answers),
+        };
+        server.socket = server.answer();
+        if server.socket.is_empty() {
+            let status = server.script.wait().expect("it ends");
             let required = std::env::var("SLEWPLAN_TEST_POSTGRES").is_ok_and(|is| is == "required");
             assert!(
                 !required && status.code() == Some(3),
@@ -39,10 +45,13 @@ impl Server {
             );
             return None;
         }
-        Some(Self {
-            socket: line.trim().to_owned(),
-            _script: script,
-        })
+        Some(server)
+    }
+
+    fn answer(&mut self) -> String {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).expect("a line");
+        line.trim().to_owned()
     }
 
     fn url(&self, database: &str) -> String {
@@ -51,22 +60,27 @@ impl Server {
             self.socket
         )
     }
+
+    /// The address of a new, empty database.
+    pub(crate) fn new_database(&self) -> String {
+        let name = format!("test_{}", DATABASES.fetch_add(1, Ordering::Relaxed));
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .expect("a runtime");
+        runtime.block_on(async {
+            let url = self.url("postgres");
+            let mut connection = PgConnection::connect(&url).await.expect("connected");
+            let create = AssertSqlSafe(format!("CREATE DATABASE {name}"));
+            connection.execute(create).await.expect("created");
+            connection.close().await.expect("closed");
+        });
+        self.url(&name)
+    }
 }
 
-/// The address of a new, empty database; `None` where Postgres is not installed.
+/// The address of a new, empty database of the common server; `None` where Postgres is not installed.
 pub(crate) fn new_database() -> Option<String> {
     let server = SERVER.get_or_init(Server::start).as_ref()?;
-    let name = format!("test_{}", DATABASES.fetch_add(1, Ordering::Relaxed));
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .expect("a runtime");
-    runtime.block_on(async {
-        let url = server.url("postgres");
-        let mut connection = PgConnection::connect(&url).await.expect("connected");
-        let create = AssertSqlSafe(format!("CREATE DATABASE {name}"));
-        connection.execute(create).await.expect("created");
-        connection.close().await.expect("closed");
-    });
-    Some(server.url(&name))
+    Some(server.new_database())
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # A Postgres of its own for tests: prints the folder of its socket once it accepts connections, and
 # ends and disappears with its standard input, so that no test leaves one behind, however it ends.
+# Of that it reads the lines `kill`, for an end without a shutdown, and `start`; each is answered.
 set -eu
 
 # It refuses to run as root. The other user may not be able to read this file: it is given the text.
@@ -36,12 +37,21 @@ initdb --pgdata="$folder/data" --auth=trust --username=slewplan --encoding=UTF8 
     --locale=C.UTF-8 --no-sync >"$folder/initdb.log" 2>&1 \
     || { cat "$folder/initdb.log" >&2; exit 1; }
 # Writes are synced, as where it serves. The socket alone: no port can be taken already.
-postgres -D "$folder/data" -k "$folder" -c listen_addresses= -c max_connections=200 \
-    -c logging_collector=off >"$folder/server.log" 2>&1 </dev/null &
-server=$!
-until pg_isready --quiet --host="$folder"; do
-    kill -0 "$server" 2>/dev/null || { cat "$folder/server.log" >&2; exit 1; }
-    sleep 0.05
+start() {
+    postgres -D "$folder/data" -k "$folder" -c listen_addresses= -c max_connections=200 \
+        -c logging_collector=off >"$folder/server.log" 2>&1 </dev/null &
+    server=$!
+    until pg_isready --quiet --host="$folder"; do
+        kill -0 "$server" 2>/dev/null || { cat "$folder/server.log" >&2; exit 1; }
+        sleep 0.05
+    done
+    echo "$folder"
+}
+start
+while read -r command; do
+    case "$command" in
+        kill) kill -QUIT "$server"; wait "$server" || true; echo killed ;;
+        start) start ;;
+        *) exit 2 ;;
+    esac
 done
-echo "$folder"
-cat >/dev/null

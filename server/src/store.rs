@@ -20,11 +20,13 @@ mod leg_tables;
 mod leg_times;
 mod legs;
 mod migrations;
+mod notices;
 mod packed;
 mod recent;
 mod results;
 mod retention;
 mod segments;
+mod shared_clock;
 mod spacecraft;
 #[cfg(test)]
 mod tests;
@@ -35,12 +37,13 @@ pub(crate) use database::sqlite::{DatabaseLock, backup};
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
 pub(crate) use events::{EventRow, FormatEvent};
-pub(crate) use jobs::{Listing, QueueLimits, Submission, Submitted};
+pub(crate) use jobs::{Listing, PRIORITIES, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey, Possessions};
 pub(crate) use leases::{Lease, OtherProcesses};
 pub(crate) use leg_tables::{LegCounts, NewTablePart};
 pub(crate) use leg_times::LegSnapshot;
 pub(crate) use legs::{CachedLegRow, LegFilter, NewLeg, key as leg_key};
+pub(crate) use notices::Notice;
 pub(crate) use packed::PackedPlan;
 pub(crate) use results::{NewIncumbent, ResultRow};
 pub(crate) use rows::{Counts, JobRow, JobState, ProgressRow, Work};
@@ -79,12 +82,14 @@ impl Store {
             DatabaseAddress::File(path) => SqliteDatabase::open(path, &alarm).await?,
             DatabaseAddress::Postgres(options) => PostgresDatabase::open(options).await?,
         };
-        Ok(Self {
+        let store = Self {
             database,
             format_event,
             alarm,
             recent: RecentPlans::default(),
-        })
+        };
+        store.compare_clocks().await?;
+        Ok(store)
     }
 
     /// Closes all connections.
@@ -92,11 +97,11 @@ impl Store {
         self.database.close().await;
     }
 
-    /// Sizes of the files of the database, bytes; none of a server's.
-    pub(crate) fn sizes(&self) -> Vec<(&'static str, u64)> {
+    /// Sizes of the files of the database, bytes; on a server all of them together.
+    pub(crate) async fn sizes(&self) -> Result<Vec<(&'static str, u64)>, StoreError> {
         match &self.database {
-            Database::Sqlite(database) => database.sizes().into(),
-            Database::Postgres(_) => Vec::new(),
+            Database::Sqlite(database) => Ok(database.sizes().into()),
+            Database::Postgres(database) => Ok(vec![("database", database.size().await?)]),
         }
     }
 

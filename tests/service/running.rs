@@ -17,6 +17,11 @@ pub(crate) fn pause() {
     std::thread::sleep(Duration::from_millis(10));
 }
 
+/// Whether services that choose no database get one of Postgres.
+pub(crate) fn on_postgres() -> bool {
+    std::env::var("SLEWPLAN_TEST_DATABASE").is_ok_and(|kind| kind == "postgres")
+}
+
 /// A running service; it is killed when it is dropped.
 pub(crate) struct Service {
     child: Child,
@@ -32,7 +37,7 @@ impl Service {
 
     /// Starts a service on an empty database with further arguments.
     pub(crate) fn start_with(arguments: &[&str]) -> Self {
-        if std::env::var("SLEWPLAN_TEST_DATABASE").is_ok_and(|kind| kind == "postgres") {
+        if on_postgres() {
             let database = postgres::new_database().expect("Postgres is installed");
             return Self::on_database(database.as_ref(), arguments);
         }
@@ -136,6 +141,48 @@ impl Service {
             .status();
         assert!(sent.expect("kill is there").success());
         self.child.wait().expect("it ends").success()
+    }
+}
+
+/// A running `slewplan work`; it is killed when it is dropped.
+pub(crate) struct Worker(Child);
+
+impl Worker {
+    /// Starts a worker with one thread.
+    pub(crate) fn on(database: &str) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_slewplan"))
+            .args([
+                "work",
+                "--log",
+                "warn",
+                "--threads",
+                "1",
+                "--database",
+                database,
+            ])
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+        let mut line = String::new();
+        let stdout = child.stdout.take().expect("standard output is piped");
+        BufReader::new(stdout).read_line(&mut line).expect("a line");
+        assert!(line.starts_with("working on postgres://"), "{line}");
+        Self(child)
+    }
+
+    /// Sends SIGTERM; whether the worker exited with success.
+    pub(crate) fn terminate(&mut self) -> bool {
+        let sent = Command::new("kill").arg(self.0.id().to_string()).status();
+        assert!(sent.expect("kill is there").success());
+        self.0.wait().expect("it ends").success()
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // The worker may have ended already.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 

@@ -4,7 +4,11 @@ use super::database::row::{FromRow, Row};
 use super::database::statement::{Handle, sql};
 use super::database::{Transaction, Turn};
 use super::{Counts, JobRow, JobState, Store, StoreError, Work, events, results};
+use std::ops::RangeInclusive;
 use strum::VariantArray as _;
+
+/// The priorities that a job may have.
+pub(crate) const PRIORITIES: RangeInclusive<i64> = -10..=10;
 
 /// A job to be queued.
 #[derive(Debug)]
@@ -21,6 +25,8 @@ pub(crate) struct Submission {
     pub(crate) targets: i64,
     /// The client whose job it is.
     pub(crate) client: Option<String>,
+    /// Jobs of greater priority are leased first; within [`PRIORITIES`].
+    pub(crate) priority: i64,
     /// The caller's idempotency key and the fingerprint of the request.
     pub(crate) key: Option<(String, String)>,
 }
@@ -89,8 +95,13 @@ impl Store {
             return Ok(refusal);
         }
         let job: JobRow = sql(concat!(
-            "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us) \
-             VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7) RETURNING ",
+            "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us, \
+             priority, turn) \
+             VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, coalesce(\
+             (SELECT max(turn) + 1 FROM jobs WHERE state = 'queued' AND priority = $8 \
+             AND client IS NOT DISTINCT FROM $6), \
+             (SELECT min(turn) FROM jobs WHERE state = 'queued' AND priority = $8), 0)) \
+             RETURNING ",
             job_columns!()
         ))
         .bind(&submission.id)
@@ -100,6 +111,7 @@ impl Store {
         .bind(submission.targets)
         .bind(&submission.client)
         .bind(now_us)
+        .bind(submission.priority)
         .fetch_one(&mut *transaction)
         .await?;
         if let Some((key, fingerprint)) = &submission.key {

@@ -78,8 +78,15 @@ pub(crate) struct Recovered {
     pub(crate) dead: usize,
 }
 
+impl Recovered {
+    /// Whether there was none.
+    pub(crate) fn is_empty(self) -> bool {
+        self == Self::default()
+    }
+}
+
 impl Store {
-    /// Leases the job that has waited longest; `None` when no job is queued. A lower bound of an
+    /// Leases the job whose turn it is; `None` when no job is queued. A lower bound of an
     /// earlier attempt is kept if this version of the bounds gave it.
     pub(crate) async fn lease(
         &self,
@@ -95,8 +102,8 @@ impl Store {
              lower_bound_s = CASE bound_version WHEN $4 THEN lower_bound_s END, bound_version = $4, \
              incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = sequence) \
              WHERE sequence = \
-             (SELECT sequence FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1 \
-             {skip_locked}) \
+             (SELECT sequence FROM jobs WHERE state = 'queued' \
+             ORDER BY priority DESC, turn, sequence LIMIT 1 {skip_locked}) \
              RETURNING scenario, ",
             job_columns!()
         ))

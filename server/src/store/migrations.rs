@@ -20,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 13] = [
+const HISTORY: [(&str, &str, &str); 14] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -34,6 +34,7 @@ const HISTORY: [(&str, &str, &str); 13] = [
     migration!("0031", "bound_versions"),
     migration!("0040", "keep_out_violated"),
     migration!("0041", "leg_tables"),
+    migration!("0042", "turns"),
 ];
 
 /// What brings a file of SQLite to the schema of this version.
@@ -87,6 +88,7 @@ mod tests {
             "0031 99e96e66209b6c73",
             "0040 724aa5a27540676d",
             "0041 b608bff618f759ca",
+            "0042 7e2e9a45d65381cb",
         ];
         assert_eq!(HISTORY.map(digest), expected);
     }

@@ -115,6 +115,8 @@ row! {
         pub(crate) stop_requested_us: Option<i64>,
         /// When its cancellation was requested.
         pub(crate) cancel_requested_us: Option<i64>,
+        /// Jobs of greater priority are leased first.
+        pub(crate) priority: i64,
         /// When it was submitted.
         pub(crate) submitted_us: i64,
         /// When its newest attempt began.

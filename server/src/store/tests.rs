@@ -70,6 +70,7 @@ fn submission() -> Submission {
         scenario: b"{}".into(),
         targets: 1,
         client: None,
+        priority: 0,
         key: None,
     }
 }
@@ -238,7 +239,8 @@ fn prolonging_a_lease_is_stored() {
         assert!(store.prolong(&lease, 9_000).await.expect("tried"));
         let lease: i64 = value(&store, "SELECT lease_until_us FROM jobs").await;
         assert_eq!(lease, 9_000);
-        assert!(store.sizes().iter().all(|(_, bytes)| *bytes > 0));
+        let sizes = store.sizes().await.expect("measured");
+        assert!(sizes.iter().all(|(_, bytes)| *bytes > 0));
     });
 }
 

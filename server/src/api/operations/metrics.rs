@@ -42,6 +42,7 @@ pub(in crate::api) async fn handler(
         ["file"],
         app.store()
             .sizes()
+            .await?
             .into_iter()
             .map(|(file, bytes)| ([file], bytes.try_into().unwrap_or(i64::MAX))),
     );

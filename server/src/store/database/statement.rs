@@ -174,10 +174,18 @@ impl<'v> Statement<'v> {
                 Value::Bool(value) => query.bind(value),
                 Value::Integer(value) => query.bind(value),
                 Value::Real(value) => query.bind(value),
-                Value::Text(value) => query.bind(value.as_deref()),
+                Value::Text(value) => query.bind(value.map(without_nul)),
                 Value::Bytes(value) => query.bind(value),
             };
         }
         query
     }
+}
+
+/// Texts of Postgres cannot have the character NUL, which names of scenarios may.
+fn without_nul(text: Cow<'_, str>) -> String {
+    if text.contains('\0') {
+        return text.replace('\0', "\u{fffd}");
+    }
+    text.into_owned()
 }

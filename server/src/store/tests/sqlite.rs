@@ -27,7 +27,7 @@ fn the_wal_stays_small_under_continuous_writes() {
             let taken = store.put_segments(&lease, &[segment]).await;
             assert!(taken.expect("tried"));
         }
-        let [_, (_, log)] = store.sizes()[..] else {
+        let [_, (_, log)] = store.sizes().await.expect("measured")[..] else {
             panic!("no sizes");
         };
         assert!((1..16 << 20).contains(&log), "{log} bytes");

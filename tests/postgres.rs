@@ -4,7 +4,7 @@
 //! `required`.
 
 use sqlx::{AssertSqlSafe, Connection as _, Executor as _, PgConnection};
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -52,6 +52,22 @@ impl Server {
         let mut line = String::new();
         self.answers.read_line(&mut line).expect("a line");
         line.trim().to_owned()
+    }
+
+    /// Ends the server at once, as a crash does.
+    pub(crate) fn kill(&mut self) {
+        assert_eq!(self.ask("kill"), "killed");
+    }
+
+    /// Starts the server again.
+    pub(crate) fn restart(&mut self) {
+        assert_eq!(self.ask("start"), self.socket);
+    }
+
+    fn ask(&mut self, command: &str) -> String {
+        let input = self.script.stdin.as_mut().expect("it is piped");
+        writeln!(input, "{command}").expect("written");
+        self.answer()
     }
 
     fn url(&self, database: &str) -> String {

@@ -135,17 +135,19 @@ fn on_runtime<E: From<ServiceError>>(work: impl Future<Output = Result<(), E>>) 
     worked
 }
 
-/// Opens the database, and takes jobs from processes that have died.
+/// Opens the database; where this process is the only one, jobs of the one before are taken back.
 async fn open_store(
     address: &DatabaseAddress,
     others: OtherProcesses,
     boot_id: &str,
 ) -> Result<Store, ServiceError> {
     let store = Store::open(address, documents::jobs::tell).await?;
-    let recovered = store
-        .recover(boot_id, others, store.lease_clock_us())
-        .await?;
-    tracing::info!(boot_id, ?recovered, database = %address, "store is open");
+    if others == OtherProcesses::Ended {
+        let now_us = store.lease_clock_us();
+        let recovered = store.recover(boot_id, others, now_us).await?;
+        tracing::info!(?recovered, "jobs of the process before");
+    }
+    tracing::info!(boot_id, database = %address, "store is open");
     Ok(store)
 }
 

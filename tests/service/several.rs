@@ -152,3 +152,33 @@ fn a_file_cannot_be_shared() {
         assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     }
 }
+
+#[test]
+fn while_postgres_is_away_requests_are_refused_and_the_solve_goes_on() {
+    let Some(mut server) = postgres::Server::start() else {
+        return println!("not run: Postgres is not installed");
+    };
+    let database = server.new_database();
+    let service = service(&database);
+    let _worker = Worker::on(&database);
+    let id = service.submit(&sizeable());
+    service.wait(&id, |job| !job["incumbent_s"].is_null());
+    server.kill();
+    let refused = service.get(&format!("/v1/plans/{id}"));
+    assert!(refused.header("retry-after").is_some(), "{refused:?}");
+    refused.expect_problem(503, "database_unavailable");
+    service
+        .post("/v1/plans", &small())
+        .expect_problem(503, "database_unavailable");
+    service
+        .get("/health/ready")
+        .expect_problem(503, "not_ready");
+    service.get("/health/live").expect(200);
+    server.restart();
+    let job = service.wait_end(&id);
+    assert_eq!(
+        (&job["state"], job["attempt"].as_i64()),
+        (&"succeeded".into(), Some(1))
+    );
+    service.get("/health/ready").expect(200);
+}

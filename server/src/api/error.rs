@@ -109,7 +109,8 @@ error_codes! {
         "Try again after Retry-After.";
     Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy",
         "Try again after Retry-After.";
-    DatabaseAway = "database_away", SERVICE_UNAVAILABLE, "The database cannot be reached",
+    DatabaseUnavailable = "database_unavailable", SERVICE_UNAVAILABLE,
+        "The database cannot be used at present",
         "Try again after Retry-After; nothing acknowledged is lost.";
     NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now",
         "Try again later; the log of the service has the cause.";
@@ -246,11 +247,11 @@ impl From<StoreError> for ApiError {
         } else if error.is_busy() {
             Self::new(ErrorCode::Busy, "the database is busy").retry_after(1)
         } else if error.is_away() {
-            Self::new(
-                ErrorCode::DatabaseAway,
-                "the server of the database does not answer",
-            )
-            .retry_after(AWAY_S)
+            let detail = "the server of the database does not answer";
+            Self::new(ErrorCode::DatabaseUnavailable, detail).retry_after(AWAY_S)
+        } else if error.is_read_only() {
+            let detail = "the database can only be read at present";
+            Self::new(ErrorCode::DatabaseUnavailable, detail).retry_after(AWAY_S)
         } else {
             Self::new(
                 ErrorCode::Internal,

@@ -1,12 +1,16 @@
 //! Several processes on one database: notices of what others did, and jobs of those that died.
 
 use super::Jobs;
+use super::worker::LEASE;
 use crate::store::{Notice, OtherProcesses};
 use slewplan_solver::run::stop::StopSignal;
 use std::time::Duration;
+use tokio::time::Instant;
 
 /// Interval between two looks for expired leases, half of their duration, and at what waits.
 const ROUND: Duration = Duration::from_secs(5);
+/// Time between two rounds after which the database must have been away.
+const AWAY: Duration = Duration::from_secs(7);
 
 impl Jobs {
     /// Begins to follow what other processes do to the jobs; nothing where there are none.
@@ -62,8 +66,10 @@ impl Jobs {
     }
 }
 
-/// Takes jobs from processes that no longer prolong their leases, without end.
+/// Takes jobs from processes that no longer prolong their leases, without end. When the database was
+/// away, nobody could prolong them: the others get the time of a lease to do so.
 async fn take_over(jobs: Jobs, boot_id: String) {
+    let (mut last, mut patient_until) = (Instant::now(), Instant::now());
     loop {
         tokio::time::sleep(ROUND).await;
         // What a lost notice said is found now.
@@ -71,6 +77,13 @@ async fn take_over(jobs: Jobs, boot_id: String) {
         let store = jobs.store();
         if let Err(error) = store.compare_clocks().await {
             tracing::warn!(%error, "the clock of the database cannot be read");
+            continue;
+        }
+        if last.elapsed() > AWAY {
+            patient_until = Instant::now() + LEASE;
+        }
+        last = Instant::now();
+        if last < patient_until {
             continue;
         }
         let now_us = store.lease_clock_us();

@@ -23,7 +23,7 @@ use tokio::runtime::Handle;
 use tokio::task::AbortHandle;
 
 /// Duration of a lease, and the interval between two prolongations.
-const LEASE: Duration = Duration::from_secs(10);
+pub(super) const LEASE: Duration = Duration::from_secs(10);
 const PROLONGATION: Duration = Duration::from_secs(2);
 /// Pause before another try after a failure of the database.
 const RETRY: Duration = Duration::from_millis(500);

@@ -53,20 +53,24 @@ const LOCKS: i64 = 0x736c_6577 << 8;
 
 impl Database {
     /// Begins a transaction that writes.
-    pub(super) async fn begin(&self) -> Result<Transaction, sqlx::Error> {
+    pub(super) async fn begin(&self) -> Result<Transaction, StoreError> {
         Ok(match self {
             Self::Sqlite(database) => Transaction::Sqlite(database.begin().await?),
-            Self::Postgres(database) => Transaction::Postgres(database.pool.begin().await?),
+            Self::Postgres(database) => {
+                let begun = database.pool.begin().await;
+                Transaction::Postgres(begun.map_err(postgres::error)?)
+            }
         })
     }
 
     /// Begins a transaction that reads the database as of its first statement.
-    pub(super) async fn snapshot(&self) -> Result<Transaction, sqlx::Error> {
+    pub(super) async fn snapshot(&self) -> Result<Transaction, StoreError> {
         Ok(match self {
             Self::Sqlite(database) => Transaction::Sqlite(database.readers.begin().await?),
             Self::Postgres(database) => {
                 let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
-                Transaction::Postgres(database.pool.begin_with(begin).await?)
+                let begun = database.pool.begin_with(begin).await;
+                Transaction::Postgres(begun.map_err(postgres::error)?)
             }
         })
     }

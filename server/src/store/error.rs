@@ -1,5 +1,6 @@
 //! Errors of the store.
 
+use sqlx::migrate::MigrateError;
 use sqlx::postgres::PgDatabaseError;
 use std::io;
 use std::path::PathBuf;
@@ -10,9 +11,18 @@ pub(crate) enum StoreError {
     /// The database or its driver.
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
+    /// No connection to a server became free or could be made in time.
+    #[error("database: no connection to the Postgres server in time")]
+    NoConnection,
     /// The schema cannot be brought up to date.
     #[error("database schema: {0}")]
-    Migration(#[from] sqlx::migrate::MigrateError),
+    Migration(MigrateError),
+    /// The schema is that of a newer version of the program.
+    #[error(
+        "the database has been used by a newer version of slewplan (its migration {0} is not known \
+         here): use that version, or another database"
+    )]
+    NewerSchema(i64),
     /// Another process uses the database.
     #[error("cannot lock {}: {source}; does another service use this database?", path.display())]
     Lock {
@@ -51,6 +61,15 @@ pub(crate) enum StoreError {
     },
 }
 
+impl From<MigrateError> for StoreError {
+    fn from(error: MigrateError) -> Self {
+        match error {
+            MigrateError::VersionMissing(version) => Self::NewerSchema(version),
+            other => Self::Migration(other),
+        }
+    }
+}
+
 /// Primary result codes of SQLite, and the bits that have them.
 const PRIMARY: u32 = 0xff;
 const BUSY: u32 = 5;
@@ -61,6 +80,8 @@ const IOERR_DIR_FSYNC: u32 = 1290;
 
 /// SQLSTATE of Postgres: no room is left.
 const DISK_FULL: &str = "53100";
+/// The server, or the user of it, may only read at present.
+const READ_ONLY: &str = "25006";
 /// The server has no connection left, ends or begins.
 const AWAY: [&str; 4] = ["53300", "57P01", "57P02", "57P03"];
 /// Class of errors of the connection.
@@ -95,6 +116,11 @@ impl StoreError {
         }
     }
 
+    /// Whether the server of the database only reads at present, as one that follows another does.
+    pub(crate) fn is_read_only(&self) -> bool {
+        matches!(self.code(), Some(ErrorCode::Postgres(code)) if code == READ_ONLY)
+    }
+
     /// Whether the server of the database cannot be reached.
     pub(crate) fn is_away(&self) -> bool {
         match self.code() {
@@ -104,7 +130,7 @@ impl StoreError {
             Some(ErrorCode::Sqlite(_)) => false,
             None => matches!(
                 self,
-                Self::Database(sqlx::Error::Io(_) | sqlx::Error::Tls(_) | sqlx::Error::Protocol(_))
+                Self::NoConnection | Self::Database(sqlx::Error::Io(_) | sqlx::Error::Protocol(_))
             ),
         }
     }

@@ -3,6 +3,7 @@
 mod bounds;
 mod ends;
 mod fence;
+mod outage;
 #[path = "../../../tests/postgres.rs"]
 mod postgres;
 mod queue;
@@ -126,7 +127,11 @@ fn on_an_address(test: impl AsyncFn(DatabaseAddress)) {
 fn on_sqlite<F: Future<Output = ()>>(test: impl FnOnce(Store) -> F) {
     let folder = tempfile::tempdir().expect("a folder");
     let address = DatabaseAddress::File(folder.path().join("store.db"));
-    runtime().block_on(async { test(open(&address).await).await });
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .expect("a runtime");
+    runtime.block_on(async { test(open(&address).await).await });
 }
 
 fn runtime() -> tokio::runtime::Runtime {

@@ -77,7 +77,7 @@ impl Store {
     pub(super) async fn begin(&self) -> Result<WriteTransaction, StoreError> {
         let begun = self.database.begin().await;
         Ok(WriteTransaction {
-            transaction: begun.map_err(|error| self.alarm.check(error.into()))?,
+            transaction: begun.map_err(|error| self.alarm.check(error))?,
             format_event: self.format_event,
             alarm: self.alarm.clone(),
             database: self.database.clone(),

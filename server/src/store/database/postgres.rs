@@ -68,6 +68,14 @@ impl PostgresDatabase {
     }
 }
 
+/// The error of a statement. A server that is away is noticed by waiting for a connection.
+pub(super) fn error(error: sqlx::Error) -> StoreError {
+    match error {
+        sqlx::Error::PoolTimedOut => StoreError::NoConnection,
+        other => other.into(),
+    }
+}
+
 async fn check_version(pool: &PgPool) -> Result<(), StoreError> {
     let version = "SELECT current_setting('server_version'), \
          CAST(current_setting('server_version_num') AS integer)";

@@ -1,6 +1,7 @@
 //! Statements: a text for both databases, with its values.
 
 use super::dialect::Dialect;
+use super::postgres;
 use super::row::{FromRow, Row};
 use crate::store::StoreError;
 use sqlx::postgres::{PgArguments, PgConnection, PgPool, Postgres};
@@ -87,10 +88,16 @@ pub(in crate::store) fn sql<'v>(text: impl SqlSafeStr) -> Statement<'v> {
 macro_rules! run {
     ($statement:ident, $on:ident, $method:ident, $sqlite:expr, $postgres:expr) => {
         match $on.into() {
-            Handle::SqlitePool(on) => $statement.for_sqlite().$method(on).await.map($sqlite),
-            Handle::Sqlite(on) => $statement.for_sqlite().$method(on).await.map($sqlite),
-            Handle::PostgresPool(on) => $statement.for_postgres().$method(on).await.map($postgres),
-            Handle::Postgres(on) => $statement.for_postgres().$method(on).await.map($postgres),
+            Handle::SqlitePool(on) => Ok($statement.for_sqlite().$method(on).await.map($sqlite)?),
+            Handle::Sqlite(on) => Ok($statement.for_sqlite().$method(on).await.map($sqlite)?),
+            Handle::PostgresPool(on) => {
+                let done = $statement.for_postgres().$method(on).await;
+                done.map($postgres).map_err(postgres::error)
+            }
+            Handle::Postgres(on) => {
+                let done = $statement.for_postgres().$method(on).await;
+                done.map($postgres).map_err(postgres::error)
+            }
         }
     };
 }
@@ -107,13 +114,8 @@ impl<'v> Statement<'v> {
         self,
         on: impl Into<Handle<'c>>,
     ) -> Result<u64, StoreError> {
-        Ok(run!(
-            self,
-            on,
-            execute,
-            |done| done.rows_affected(),
-            |done| { done.rows_affected() }
-        )?)
+        run!(self, on, execute, |done| done.rows_affected(), |done| done
+            .rows_affected())
     }
 
     /// All rows.

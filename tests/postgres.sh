@@ -1,7 +1,8 @@
 #!/bin/sh
 # A Postgres of its own for tests: prints the folder of its socket once it accepts connections, and
 # ends and disappears with its standard input, so that no test leaves one behind, however it ends.
-# Of that it reads the lines `kill`, for an end without a shutdown, and `start`; each is answered.
+# Further arguments are those of `postgres`, whose log is server.log in the folder.
+# Of its input it reads the lines `kill`, for an end without a shutdown, and `start`; each is answered.
 set -eu
 
 # It refuses to run as root. The other user may not be able to read this file: it is given the text.
@@ -9,7 +10,7 @@ if [ "$(id -u)" -eq 0 ]; then
     user=postgres
     id "$user" >/dev/null 2>&1 || user=nobody
     exec setpriv --reuid="$user" --regid="$(id -g "$user")" --clear-groups \
-        sh -c "$(cat "$0")" "$0"
+        sh -c "$(cat "$0")" "$0" "$@"
 fi
 
 # Debian keeps the programs of a server out of PATH.
@@ -39,7 +40,7 @@ initdb --pgdata="$folder/data" --auth=trust --username=slewplan --encoding=UTF8 
 # Writes are synced, as where it serves. The socket alone: no port can be taken already.
 start() {
     postgres -D "$folder/data" -k "$folder" -c listen_addresses= -c max_connections=200 \
-        -c logging_collector=off >"$folder/server.log" 2>&1 </dev/null &
+        -c logging_collector=off "$@" >>"$folder/server.log" 2>&1 </dev/null &
     server=$!
     until pg_isready --quiet --host="$folder"; do
         kill -0 "$server" 2>/dev/null || { cat "$folder/server.log" >&2; exit 1; }
@@ -47,11 +48,11 @@ start() {
     done
     echo "$folder"
 }
-start
+start "$@"
 while read -r command; do
     case "$command" in
         kill) kill -QUIT "$server"; wait "$server" || true; echo killed ;;
-        start) start ;;
+        start) start "$@" ;;
         *) exit 2 ;;
     esac
 done

@@ -34,6 +34,8 @@ pub(crate) struct LegCache {
 pub(crate) struct Unwritten {
     store: Store,
     legs: Arc<Mutex<Vec<NewLeg>>>,
+    /// Held while legs are on their way, so that whoever has them written waits for them.
+    writing: Arc<tokio::sync::Mutex<()>>,
     /// Until when a database that was away is not asked again: every question takes seconds then, and
     /// the solve shall go on.
     away_until: Arc<Mutex<Option<Instant>>>,
@@ -57,6 +59,7 @@ impl Unwritten {
         if self.is_away() {
             return;
         }
+        let _writing = self.writing.lock().await;
         let legs = std::mem::take(&mut *self.legs());
         if legs.is_empty() {
             return;
@@ -105,6 +108,7 @@ impl LegCache {
             unwritten: Unwritten {
                 store: store.clone(),
                 legs: Arc::default(),
+                writing: Arc::default(),
                 away_until: Arc::default(),
             },
             store,

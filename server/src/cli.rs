@@ -7,6 +7,7 @@ mod answer;
 mod backup;
 mod certify;
 mod convert;
+mod database;
 mod export;
 mod failure;
 mod form;
@@ -16,6 +17,7 @@ mod init;
 mod input;
 mod keys;
 mod legs;
+mod log;
 mod openapi;
 mod output;
 mod panics;
@@ -31,6 +33,7 @@ mod solve;
 mod study;
 mod validate;
 mod verify;
+mod work;
 
 pub(crate) use failure::Failure;
 
@@ -79,6 +82,8 @@ enum CliCommand {
     Plot(plot::PlotArguments),
     /// Run the HTTP service
     Serve(serve::ServeArguments),
+    /// Solve the jobs of a database that several processes share
+    Work(work::WorkArguments),
     /// Ask a running service whether it can take work
     Health(health::HealthArguments),
     /// Copy the database while the service uses it
@@ -155,6 +160,7 @@ fn dispatch(command: &CliCommand) -> Result<Exit, Failure> {
         CliCommand::Export(arguments) => export::run(arguments),
         CliCommand::Plot(arguments) => plot::run(arguments),
         CliCommand::Serve(arguments) => serve::run(arguments),
+        CliCommand::Work(arguments) => work::run(arguments),
         CliCommand::Health(arguments) => health::run(arguments),
         CliCommand::Backup(arguments) => backup::run(arguments),
         CliCommand::Keys(arguments) => keys::run(arguments),

@@ -9,6 +9,7 @@ mod metrics;
 mod progress;
 pub(crate) mod retention;
 pub(crate) mod segments;
+pub(crate) mod sharing;
 pub(crate) mod slews;
 mod solve;
 mod worker;
@@ -19,7 +20,7 @@ pub(crate) use worker::Worker;
 use crate::base::clock::now_us;
 use crate::jobs::leg_cache::LegCache;
 use crate::jobs::leg_snapshot::LegsAtOnce;
-use crate::store::{JobRow, QueueLimits, Store, StoreError, Submission, Submitted};
+use crate::store::{JobRow, Notice, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::runtime::Handle;
@@ -88,7 +89,14 @@ impl Jobs {
         self.0.changes.subscribe()
     }
 
+    /// Tells waiting requests of all processes that a job has changed.
     fn changed(&self) {
+        self.wake();
+        self.store().tell(Notice::Changed);
+    }
+
+    /// Has waiting requests of this process look again.
+    fn wake(&self) {
         self.0
             .changes
             .send_modify(|count| *count = count.wrapping_add(1));
@@ -112,6 +120,7 @@ impl Jobs {
             .await?;
         if let Submitted::New(_) = submitted {
             self.0.queued.notify_one();
+            self.store().tell(Notice::Queued);
             self.changed();
         }
         Ok(submitted)
@@ -121,6 +130,7 @@ impl Jobs {
     pub(crate) async fn stop(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
         let job = self.store().request_stop(id, now_us()).await?;
         self.with_active(id, StopSignal::request);
+        self.store().tell(Notice::Requested(id.to_owned()));
         Ok(job)
     }
 
@@ -130,6 +140,7 @@ impl Jobs {
         let job = self.store().request_cancel(id, now_us()).await?;
         // The job may have begun in between.
         self.with_active(id, StopSignal::cancel);
+        self.store().tell(Notice::Requested(id.to_owned()));
         if job.as_ref().is_some_and(|job| job.finished_us.is_some()) {
             // A job that waited for another attempt leaves the segments of the last one.
             tokio::spawn(segments::delete_of_ended_jobs(self.store().clone()));
@@ -142,6 +153,7 @@ impl Jobs {
     pub(crate) async fn delete(&self, id: &str) -> Result<bool, StoreError> {
         let deleted = self.store().delete(id).await?;
         self.with_active(id, StopSignal::cancel);
+        self.store().tell(Notice::Requested(id.to_owned()));
         self.changed();
         Ok(deleted)
     }
@@ -151,6 +163,12 @@ impl Jobs {
         if let Some(active) = active.as_ref().filter(|active| active.id == id) {
             act(&active.stop);
         }
+    }
+
+    /// The identifier of the job that this process works on.
+    fn active(&self) -> Option<String> {
+        let active = self.0.active.lock().unwrap_or_else(PoisonError::into_inner);
+        active.as_ref().map(|active| active.id.clone())
     }
 
     fn set_active(&self, active: Option<ActiveJob>) {

@@ -1,17 +1,18 @@
 //! The service: start of database, worker and routes, and their shutdown.
 
+pub(crate) mod working;
+
 use crate::api::connections;
 use crate::api::{self, Access, AllowedHost, App, OwnHosts, RequestLimits};
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::documents;
 use crate::jobs::leg_cache::upkeep;
 use crate::jobs::{Jobs, Worker, retention, segments};
-use crate::store::{DatabaseLock, QueueLimits, Store, StoreError};
+use crate::store::{DatabaseAddress, DatabaseLock, OtherProcesses, QueueLimits, Store, StoreError};
 use slewplan_solver::run::pool::{PoolError, SolverPool};
 use std::io;
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -22,10 +23,12 @@ use uuid::Uuid;
 pub(crate) struct ServiceSettings {
     /// Address to listen on.
     pub(crate) listen: SocketAddr,
-    /// The path of the database.
-    pub(crate) database: PathBuf,
+    /// Where the database is.
+    pub(crate) database: DatabaseAddress,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
+    /// Whether this process solves jobs, not only others on the same database.
+    pub(crate) worker: bool,
     /// Maximum size of a request body, bytes.
     pub(crate) max_body_bytes: usize,
     /// Maximum number of targets of a scenario.
@@ -111,20 +114,41 @@ pub(crate) fn run<E: From<ServiceError>>(
     ];
     let [solver, lookups] = pools.map(|pool| pool.map(Arc::new).map_err(ServiceError::from));
     let pools = [solver?, lookups?];
+    on_runtime(serve(settings, pools, tell))
+}
+
+/// Runs the service, or only a worker, on the threads for requests and for the database.
+fn on_runtime<E: From<ServiceError>>(work: impl Future<Output = Result<(), E>>) -> Result<(), E> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(REQUEST_THREADS)
         .enable_all()
         .build()
         .map_err(system("cannot start the threads for requests"))?;
-    let served = runtime.block_on(serve(settings, pools, tell));
-    if served.is_ok() {
+    let worked = runtime.block_on(work);
+    if worked.is_ok() {
         // Threads that still block are left to the end of the process.
         runtime.shutdown_timeout(RUNTIME_SHUTDOWN);
     } else {
         // The process ends at once. The worker, which was not asked to end, still uses the runtime.
         std::mem::forget(runtime);
     }
-    served
+    worked
+}
+
+/// Opens the database; where this process is the only one, jobs of the one before are taken back.
+async fn open_store(
+    address: &DatabaseAddress,
+    others: OtherProcesses,
+    boot_id: &str,
+) -> Result<Store, ServiceError> {
+    let store = Store::open(address, documents::jobs::tell).await?;
+    if others == OtherProcesses::Ended {
+        let now_us = store.lease_clock_us();
+        let recovered = store.recover(boot_id, others, now_us).await?;
+        tracing::info!(?recovered, "jobs of the process before");
+    }
+    tracing::info!(boot_id, database = %address, "store is open");
+    Ok(store)
 }
 
 /// Whether requests need a key: always once there is one. Without keys only loopback addresses are
@@ -174,22 +198,28 @@ fn lower_priority() {
     }
 }
 
+/// Locks a file of SQLite for this process. A server of Postgres is shared.
+fn claim_database(
+    address: &DatabaseAddress,
+) -> Result<(Option<DatabaseLock>, OtherProcesses), ServiceError> {
+    match address {
+        DatabaseAddress::File(path) => {
+            let lock = DatabaseLock::take(path)?;
+            Ok((Some(lock), OtherProcesses::Ended))
+        }
+        DatabaseAddress::Postgres(_) => Ok((None, OtherProcesses::MayLive)),
+    }
+}
+
 async fn serve<E: From<ServiceError>>(
     settings: &ServiceSettings,
     pools: [Arc<SolverPool>; 2],
     tell: impl FnOnce(SocketAddr) -> Result<(), E>,
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
-    let _lock = DatabaseLock::take(&settings.database).map_err(ServiceError::from)?;
-    let store = Store::open(&settings.database, documents::jobs::tell)
-        .await
-        .map_err(ServiceError::from)?;
+    let (_lock, others) = claim_database(&settings.database)?;
     let boot_id = Uuid::new_v4().to_string();
-    let recovered = store
-        .recover(&boot_id, crate::base::clock::now_us())
-        .await
-        .map_err(ServiceError::from)?;
-    tracing::info!(boot_id, ?recovered, database = %settings.database.display(), "store is open");
+    let store = open_store(&settings.database, others, &boot_id).await?;
     let access = access(settings, &store).await?;
     let listener = TcpListener::bind(settings.listen)
         .await
@@ -203,7 +233,11 @@ async fn serve<E: From<ServiceError>>(
     tokio::spawn(segments::delete_of_ended_jobs(store.clone()));
     tokio::spawn(upkeep::keep_within(store.clone(), settings.legs));
     let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
-    let worker = Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id)
+    jobs.follow_others(boot_id.clone());
+    let worker = settings
+        .worker
+        .then(|| Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id))
+        .transpose()
         .map_err(system("cannot start the worker"))?;
     let limits = RequestLimits {
         body_bytes: settings.max_body_bytes,
@@ -232,7 +266,12 @@ async fn serve<E: From<ServiceError>>(
         _ = &mut serving => return Err(ServiceError::ListenerStopped.into()),
     }
     // Both at once: event streams report the release of the job that they follow.
-    let finished = async { tokio::join!(worker.drain(), &mut serving) };
+    let drained = async {
+        if let Some(worker) = worker {
+            worker.drain().await;
+        }
+    };
+    let finished = async { tokio::join!(drained, &mut serving) };
     if tokio::time::timeout(GRACE, finished).await.is_err() {
         tracing::warn!("requests or the running job did not end in time; the job will run again");
     }

@@ -27,7 +27,9 @@ class Service:
     """`slewplan serve` on a free port."""
 
     def __init__(self, database, *arguments):
-        self.log = open(f"{database}.log", "a")
+        # Of a database on a server nothing is beside it.
+        shared = str(database).startswith("postgres")
+        self.log = open(os.devnull if shared else f"{database}.log", "a")
         command = [binary(), "serve", "--listen", "127.0.0.1:0", "--database", str(database)]
         self.process = subprocess.Popen(
             [*command, *arguments], stdout=subprocess.PIPE, stderr=self.log, text=True

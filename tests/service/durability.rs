@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::io::Read;
 
 /// A scenario that is solved within seconds on any machine, but not at once.
-fn sizeable() -> Value {
+pub(crate) fn sizeable() -> Value {
     let mut scenario = fixture("olivares-c.json");
     scenario["options"] = json!({"relative_gap": 0.05, "time_limit_s": null});
     scenario

@@ -19,9 +19,13 @@ mod operations;
 mod origins;
 mod page;
 mod plans;
+#[path = "../postgres.rs"]
+mod postgres;
+mod priorities;
 mod refusals;
 mod running;
 mod scenario;
+mod several;
 mod slews;
 mod spacecraft;
 mod studies;

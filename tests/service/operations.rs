@@ -1,7 +1,7 @@
 //! Operations: version, limits, metrics, documentation.
 
 use crate::client::Request;
-use crate::running::{Service, small};
+use crate::running::{self, Service, small};
 
 #[test]
 fn version_limits_and_health_are_answered() {
@@ -40,7 +40,13 @@ fn metrics_count_jobs_legs_and_requests() {
         let line = format!("{name} 1");
         assert!(metrics.lines().any(|found| found == line), "{line}");
     }
-    assert!(metrics.contains("slewplan_database_bytes{file=\"log\"} "));
+    let file = if running::on_postgres() {
+        "database"
+    } else {
+        "log"
+    };
+    let size = format!("slewplan_database_bytes{{file=\"{file}\"}} ");
+    assert!(metrics.contains(&size));
     let misses = metrics
         .lines()
         .find(|line| line.contains("outcome=\"miss\""))

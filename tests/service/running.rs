@@ -1,7 +1,10 @@
-//! The service as a child process with a database of its own.
+//! The service as a child process with a database of its own: a file, or, where
+//! `SLEWPLAN_TEST_DATABASE` is `postgres`, one of a server.
 
 use crate::client::{Answer, Request};
+use crate::postgres;
 use serde_json::{Value, json};
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -12,6 +15,11 @@ use tempfile::TempDir;
 #[expect(clippy::disallowed_methods, reason = "polls another process")]
 pub(crate) fn pause() {
     std::thread::sleep(Duration::from_millis(10));
+}
+
+/// Whether services that choose no database get one of Postgres.
+pub(crate) fn on_postgres() -> bool {
+    std::env::var("SLEWPLAN_TEST_DATABASE").is_ok_and(|kind| kind == "postgres")
 }
 
 /// A running service; it is killed when it is dropped.
@@ -29,14 +37,23 @@ impl Service {
 
     /// Starts a service on an empty database with further arguments.
     pub(crate) fn start_with(arguments: &[&str]) -> Self {
+        if on_postgres() {
+            let database = postgres::new_database().expect("Postgres is installed");
+            return Self::on_database(database.as_ref(), arguments);
+        }
         let folder = tempfile::tempdir().expect("a folder");
         let mut service = Self::on(&folder.path().join("test.db"), arguments);
         service.folder = Some(folder);
         service
     }
 
-    /// Starts a service on a database.
+    /// Starts a service on a file.
     pub(crate) fn on(database: &Path, arguments: &[&str]) -> Self {
+        Self::on_database(database.as_os_str(), arguments)
+    }
+
+    /// Starts a service on a database of either kind.
+    pub(crate) fn on_database(database: &OsStr, arguments: &[&str]) -> Self {
         let listen: &[&str] = if arguments.contains(&"--listen") {
             &[]
         } else {
@@ -124,6 +141,48 @@ impl Service {
             .status();
         assert!(sent.expect("kill is there").success());
         self.child.wait().expect("it ends").success()
+    }
+}
+
+/// A running `slewplan work`; it is killed when it is dropped.
+pub(crate) struct Worker(Child);
+
+impl Worker {
+    /// Starts a worker with one thread.
+    pub(crate) fn on(database: &str) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_slewplan"))
+            .args([
+                "work",
+                "--log",
+                "warn",
+                "--threads",
+                "1",
+                "--database",
+                database,
+            ])
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+        let mut line = String::new();
+        let stdout = child.stdout.take().expect("standard output is piped");
+        BufReader::new(stdout).read_line(&mut line).expect("a line");
+        assert!(line.starts_with("working on postgres://"), "{line}");
+        Self(child)
+    }
+
+    /// Sends SIGTERM; whether the worker exited with success.
+    pub(crate) fn terminate(&mut self) -> bool {
+        let sent = Command::new("kill").arg(self.0.id().to_string()).status();
+        assert!(sent.expect("kill is there").success());
+        self.0.wait().expect("it ends").success()
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // The worker may have ended already.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 

@@ -207,10 +207,14 @@ class Client:
         self._headers = {"Authorization": f"Bearer {key}"} if key else {}
         self._timeout_s = timeout_s
 
-    def submit(self, scenario: Scenario, idempotency_key: str | None = None) -> Job:
-        """Queues a scenario."""
+    def submit(
+        self, scenario: Scenario, idempotency_key: str | None = None, *, priority: int = 0
+    ) -> Job:
+        """Queues a scenario; jobs of greater priority, from -10 to 10, are solved first."""
         headers = {"Idempotency-Key": idempotency_key} if idempotency_key else {}
-        return cast(Job, json.loads(self._send("submit", body=scenario, headers=headers)))
+        query = {"priority": priority} if priority else {}
+        answer = self._send("submit", query=query, body=scenario, headers=headers)
+        return cast(Job, json.loads(answer))
 
     def job(self, identifier: str) -> Job:
         """Where a job stands."""
@@ -273,10 +277,14 @@ class Client:
         """The times of legs, cached, certified, or, with `"mode": "compute"`, of up to 1,000 legs."""
         return self._table("query_legs", body=query)
 
-    def submit_legs(self, query: LegQuery, idempotency_key: str | None = None) -> LegTableJob:
-        """Queues a table of leg times of any size."""
+    def submit_legs(
+        self, query: LegQuery, idempotency_key: str | None = None, *, priority: int = 0
+    ) -> LegTableJob:
+        """Queues a table of leg times of any size; `priority` is that of `submit`."""
         headers = {"Idempotency-Key": idempotency_key} if idempotency_key else {}
-        return cast(LegTableJob, json.loads(self._send("submit_legs", body=query, headers=headers)))
+        parameters = {"priority": priority} if priority else {}
+        answer = self._send("submit_legs", query=parameters, body=query, headers=headers)
+        return cast(LegTableJob, json.loads(answer))
 
     def leg_job(self, identifier: str) -> LegTableJob:
         """How far the job of a table is."""

@@ -12,6 +12,8 @@ use utoipa::ToSchema;
 const MAX_PROBLEMS: usize = 100;
 /// `Retry-After` of errors that set no other, s.
 const RETRY_S: u32 = 10;
+/// The same where the database is away: about the time in which a server restarts.
+const AWAY_S: u32 = 5;
 /// The media type of every error.
 pub(super) const PROBLEM_JSON: &str = "application/problem+json";
 
@@ -107,6 +109,9 @@ error_codes! {
         "Try again after Retry-After.";
     Busy = "busy", SERVICE_UNAVAILABLE, "The service is busy",
         "Try again after Retry-After.";
+    DatabaseUnavailable = "database_unavailable", SERVICE_UNAVAILABLE,
+        "The database cannot be used at present",
+        "Try again after Retry-After; nothing acknowledged is lost.";
     NotReady = "not_ready", SERVICE_UNAVAILABLE, "The service cannot take work now",
         "Try again later; the log of the service has the cause.";
     DiskFull = "disk_full", INSUFFICIENT_STORAGE, "The disk of the service is full",
@@ -241,6 +246,12 @@ impl From<StoreError> for ApiError {
             )
         } else if error.is_busy() {
             Self::new(ErrorCode::Busy, "the database is busy").retry_after(1)
+        } else if error.is_away() {
+            let detail = "the server of the database does not answer";
+            Self::new(ErrorCode::DatabaseUnavailable, detail).retry_after(AWAY_S)
+        } else if error.is_read_only() {
+            let detail = "the database can only be read at present";
+            Self::new(ErrorCode::DatabaseUnavailable, detail).retry_after(AWAY_S)
         } else {
             Self::new(
                 ErrorCode::Internal,

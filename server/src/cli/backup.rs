@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, runtime};
 use crate::service::ServiceError;
-use crate::store;
+use crate::store::{self, DatabaseAddress};
 use std::path::PathBuf;
 
 /// Arguments of `backup`.
@@ -17,12 +17,18 @@ pub(super) struct BackupArguments {
         value_name = "FILE",
         default_value = "slewplan.db"
     )]
-    database: PathBuf,
+    database: DatabaseAddress,
 }
 
 /// Copies the database.
 pub(super) fn run(arguments: &BackupArguments) -> Result<Exit, Failure> {
-    let copied = runtime::start()?.block_on(store::backup(&arguments.database, &arguments.copy));
+    let DatabaseAddress::File(database) = &arguments.database else {
+        return Err(Failure::Setting {
+            name: "--database",
+            what: "a database of Postgres is copied by its own tools, such as pg_dump".into(),
+        });
+    };
+    let copied = runtime::start()?.block_on(store::backup(database, &arguments.copy));
     copied.map_err(ServiceError::from)?;
     Ok(Exit::Complete)
 }

@@ -7,6 +7,7 @@ use crate::cli::signals;
 use crate::documents::leg_import::LegImportDocument;
 use crate::jobs::leg_import;
 use crate::service::ServiceError;
+use crate::store::DatabaseAddress;
 use slewplan_solver::run::stop::StopSignal;
 use std::path::PathBuf;
 
@@ -19,10 +20,10 @@ pub(super) struct ImportArguments {
     #[arg(
         long,
         env = "SLEWPLAN_DATABASE",
-        value_name = "FILE",
+        value_name = "FILE|URL",
         default_value = "slewplan.db"
     )]
-    database: PathBuf,
+    database: DatabaseAddress,
     #[command(flatten)]
     threads: Threads,
 }

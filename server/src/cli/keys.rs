@@ -4,9 +4,8 @@ use super::{Exit, Failure, output, runtime};
 use crate::base::access::{FreshKey, Scope, Scopes};
 use crate::base::clock::{now_us, rfc3339};
 use crate::service::ServiceError;
-use crate::store::{KeyRow, NewKey, Possessions, Store};
+use crate::store::{DatabaseAddress, KeyRow, NewKey, Possessions, Store};
 use std::fmt::Write;
-use std::path::PathBuf;
 
 /// Microseconds of a day.
 const DAY_US: i64 = 86_400_000_000;
@@ -24,10 +23,10 @@ pub(super) struct KeysArguments {
         long,
         global = true,
         env = "SLEWPLAN_DATABASE",
-        value_name = "FILE",
+        value_name = "FILE|URL",
         default_value = "slewplan.db"
     )]
-    database: PathBuf,
+    database: DatabaseAddress,
     #[command(subcommand)]
     action: Action,
 }

@@ -14,6 +14,7 @@ use crate::documents::leg_rows::LegAnswerDocument;
 use crate::documents::legs::{LegTable, LegTableDocument};
 use crate::render::leg_table::{TableForm, TableHead, TableWriter};
 use crate::render::report;
+use crate::store::DatabaseAddress;
 use clap::ValueEnum;
 use recorder::Recorder;
 use slewplan_solver::model::scenario::Scenario;
@@ -49,8 +50,8 @@ pub(super) struct LegsArguments {
     #[arg(long, value_enum, default_value_t = TableForm::Json, conflicts_with = "trajectories")]
     format: TableForm,
     /// Read known legs from this database of the service, and store new ones in it
-    #[arg(long, value_name = "FILE")]
-    database: Option<PathBuf>,
+    #[arg(long, value_name = "FILE|URL")]
+    database: Option<DatabaseAddress>,
     #[command(flatten)]
     answer: AnswerOptions,
     #[command(flatten)]
@@ -154,7 +155,7 @@ fn solve(
     let stop = StopSignal::new();
     let received = signals::listen(&stop).map_err(Failure::Signals)?;
     let observer = progress::observer(arguments.progress, scenario.options().time_limit_s);
-    let database = arguments.database.as_deref();
+    let database = arguments.database.as_ref();
     let remembered = database.map(CommandLegCache::open).transpose()?;
     let legs = remembered.as_ref();
     let legs = legs.map_or(&NoStore as &dyn LegStore, CommandLegCache::legs);

@@ -5,9 +5,8 @@ use super::runtime;
 use crate::documents;
 use crate::jobs::leg_cache::LegCache;
 use crate::service::ServiceError;
-use crate::store::Store;
+use crate::store::{DatabaseAddress, Store};
 use slewplan_solver::tour::legs::LegStore;
-use std::path::Path;
 use std::sync::Arc;
 use tokio::runtime::Runtime;
 
@@ -20,7 +19,7 @@ pub(super) struct CommandLegCache {
 
 impl CommandLegCache {
     /// Opens or creates a database.
-    pub(super) fn open(database: &Path) -> Result<Self, Failure> {
+    pub(super) fn open(database: &DatabaseAddress) -> Result<Self, Failure> {
         let runtime = runtime::start()?;
         let store = runtime
             .block_on(Store::open(database, documents::jobs::tell))

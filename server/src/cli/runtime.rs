@@ -3,9 +3,8 @@
 use super::Failure;
 use crate::documents;
 use crate::service::ServiceError;
-use crate::store::Store;
+use crate::store::{DatabaseAddress, Store};
 use std::fs;
-use std::path::Path;
 use tokio::runtime::Runtime;
 
 /// A runtime with one thread for the database.
@@ -22,19 +21,21 @@ pub(super) fn start() -> Result<Runtime, Failure> {
 
 /// Opens a database that exists, works on it and closes it.
 pub(super) fn with_existing_store<T>(
-    database: &Path,
+    database: &DatabaseAddress,
     work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    fs::metadata(database).map_err(|source| Failure::Unreadable {
-        name: format!("the database {}", database.display()),
-        source,
-    })?;
+    if let DatabaseAddress::File(path) = database {
+        fs::metadata(path).map_err(|source| Failure::Unreadable {
+            name: format!("the database {}", path.display()),
+            source,
+        })?;
+    }
     with_store(database, work)
 }
 
 /// Opens or creates a database, works on it and closes it.
 pub(super) fn with_store<T>(
-    database: &Path,
+    database: &DatabaseAddress,
     work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     start()?.block_on(async {

@@ -2,16 +2,13 @@
 
 use super::Exit;
 use super::failure::Failure;
+use super::log::LogOptions;
 use super::output;
 use crate::api::AllowedHost;
 use crate::service::{self, ServiceSettings};
-use crate::store::QueueLimits;
-use clap::ValueEnum;
+use crate::store::{DatabaseAddress, QueueLimits};
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::time::Duration;
-use tracing_subscriber::filter::Targets;
-use tracing_subscriber::prelude::*;
 
 const DAY: Duration = Duration::from_hours(24);
 
@@ -21,14 +18,14 @@ pub(super) struct ServeArguments {
     /// Address to listen on; port 0 stands for any free port
     #[arg(long, env = "SLEWPLAN_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// File of the database; created when it does not exist
+    /// Database: a file, created when it does not exist, or the URL of one on a Postgres server
     #[arg(
         long,
         env = "SLEWPLAN_DATABASE",
-        value_name = "FILE",
+        value_name = "FILE|URL",
         default_value = "slewplan.db"
     )]
-    database: PathBuf,
+    database: DatabaseAddress,
     /// Threads of the solver [default: one per core]
     #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
         value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -86,34 +83,28 @@ pub(super) struct ServeArguments {
     #[arg(long, env = "SLEWPLAN_MAX_CONNECTIONS", value_name = "N", default_value_t = 512,
         value_parser = clap::value_parser!(u16).range(1..))]
     max_connections: u16,
-    /// Format of the log on standard error
-    #[arg(long, env = "SLEWPLAN_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
-    log_format: LogFormat,
-    /// Level of the log, or levels by module
-    #[arg(
-        long,
-        env = "SLEWPLAN_LOG",
-        value_name = "FILTER",
-        default_value = "info"
-    )]
-    log: String,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum LogFormat {
-    /// Plain text
-    Text,
-    /// One JSON object per line
-    Json,
+    /// Solve no jobs in this process: slewplan work does, on the same database of Postgres
+    #[arg(long, env = "SLEWPLAN_NO_WORKER")]
+    no_worker: bool,
+    #[command(flatten)]
+    log: LogOptions,
 }
 
 /// Serves until a signal ends it.
 pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
-    start_log(arguments)?;
+    let shared = matches!(arguments.database, DatabaseAddress::Postgres(_));
+    if arguments.no_worker && !shared {
+        return Err(Failure::Setting {
+            name: "--no-worker",
+            what: "nobody else could solve the jobs of a file".into(),
+        });
+    }
+    arguments.log.start()?;
     let settings = ServiceSettings {
         listen: arguments.listen,
         database: arguments.database.clone(),
         threads: arguments.threads.map(usize::from),
+        worker: !arguments.no_worker,
         max_body_bytes: arguments.max_body_bytes as usize,
         max_targets: arguments.max_targets as usize,
         queue: QueueLimits {
@@ -131,58 +122,4 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
         output::print(&format!("listening on http://{address}\n"))
     })?;
     Ok(Exit::Complete)
-}
-
-fn start_log(arguments: &ServeArguments) -> Result<(), Failure> {
-    let filter = log_filter(&arguments.log)?;
-    let log = tracing_subscriber::fmt::layer()
-        // A log that cannot be written, because its disk is full, must not become a panic.
-        .log_internal_errors(false)
-        .with_writer(std::io::stderr);
-    let log = match arguments.log_format {
-        LogFormat::Text => log.with_ansi(false).boxed(),
-        LogFormat::Json => log.json().boxed(),
-    };
-    tracing_subscriber::registry()
-        .with(log.with_filter(filter))
-        .init();
-    // A panic ends one job or request only and is logged.
-    std::panic::set_hook(Box::new(|info| {
-        let message = info.payload_as_str().unwrap_or("no message");
-        let place = info.location().map(ToString::to_string).unwrap_or_default();
-        tracing::error!(message, place, "panic");
-    }));
-    Ok(())
-}
-
-/// An empty filter, as of a variable that is set to nothing, must not hide errors.
-fn log_filter(filter: &str) -> Result<Targets, Failure> {
-    let filter = if filter.trim().is_empty() {
-        "error"
-    } else {
-        filter
-    };
-    filter.parse().map_err(|error| Failure::Setting {
-        name: "--log",
-        what: format!("{error}"),
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use tracing::Level;
-
-    #[test]
-    fn an_empty_log_filter_shows_errors() {
-        for empty in ["", " "] {
-            let filter = log_filter(empty).unwrap();
-            assert!(filter.would_enable("slewplan_server", &Level::ERROR));
-            assert!(!filter.would_enable("slewplan_server", &Level::WARN));
-        }
-        let filter = log_filter("warn,slewplan_server::store=debug").unwrap();
-        assert!(filter.would_enable("slewplan_server::store", &Level::DEBUG));
-        assert!(!filter.would_enable("slewplan_server::api", &Level::INFO));
-        assert!(log_filter("loudly=often").is_err());
-    }
 }

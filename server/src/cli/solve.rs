@@ -12,6 +12,7 @@ use crate::documents;
 use crate::documents::plan::Interruption;
 use crate::render::export::Form;
 use crate::render::report;
+use crate::store::DatabaseAddress;
 use slewplan_solver::model::plan::{Optimality, Outcome};
 use slewplan_solver::model::problem::Problem;
 use slewplan_solver::model::scenario::{Scenario, Validated};
@@ -46,8 +47,8 @@ pub(super) struct SolveArguments {
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<f64>,
     /// Read known legs from this database of the service, and store new ones in it
-    #[arg(long, value_name = "FILE")]
-    database: Option<PathBuf>,
+    #[arg(long, value_name = "FILE|URL")]
+    database: Option<DatabaseAddress>,
     /// How to show progress on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     progress: ProgressMode,
@@ -101,7 +102,7 @@ fn solve(arguments: &SolveArguments, scenario: &Scenario) -> Result<(Outcome, Re
     let observer = progress::observer(arguments.progress, scenario.options().time_limit_s);
     let remembered = arguments
         .database
-        .as_deref()
+        .as_ref()
         .map(CommandLegCache::open)
         .transpose()?;
     let run = Run {

@@ -31,6 +31,8 @@ pub(crate) struct JobDocument {
 /// What has happened to a job.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct JobHistory {
+    /// Jobs of greater priority are solved first; -10 to 10.
+    priority: i64,
     /// How often the work has been begun; more than once only after the service was killed.
     attempt: i64,
     /// Whether the job was asked to finish with what it has so far.
@@ -113,6 +115,7 @@ impl JobDocument {
 impl JobHistory {
     pub(super) fn of(job: &JobRow) -> Self {
         Self {
+            priority: job.priority,
             attempt: job.attempt,
             stop_requested: job.stop_requested_us.is_some(),
             cancel_requested: job.cancel_requested_us.is_some(),

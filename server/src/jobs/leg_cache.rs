@@ -4,14 +4,18 @@ pub(crate) mod upkeep;
 
 use crate::base::clock::now_us;
 use crate::jobs::metrics::JobMetrics;
-use crate::store::{NewLeg, Store};
+use crate::store::{NewLeg, Store, StoreError};
 use slewplan_solver::tour::legs::{LegStore, StoredLeg, StoredTime};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 
 /// Number of legs per transaction.
 const BATCH: usize = 64;
+/// Time after which a database that was away is asked again.
+const AWAY: Duration = Duration::from_secs(5);
+/// Maximum number of legs that wait for it, some 16 MB.
+const MAX_KEPT: usize = 4096;
 /// Interval between two writes of [`Unwritten::keep_writing`].
 const ROUND: Duration = Duration::from_millis(10);
 
@@ -30,6 +34,11 @@ pub(crate) struct LegCache {
 pub(crate) struct Unwritten {
     store: Store,
     legs: Arc<Mutex<Vec<NewLeg>>>,
+    /// Held while legs are on their way, so that whoever has them written waits for them.
+    writing: Arc<tokio::sync::Mutex<()>>,
+    /// Until when a database that was away is not asked again: every question takes seconds then, and
+    /// the solve shall go on.
+    away_until: Arc<Mutex<Option<Instant>>>,
 }
 
 impl Unwritten {
@@ -47,6 +56,10 @@ impl Unwritten {
 
     /// Writes all of them.
     pub(crate) async fn write(&self) {
+        if self.is_away() {
+            return;
+        }
+        let _writing = self.writing.lock().await;
         let legs = std::mem::take(&mut *self.legs());
         if legs.is_empty() {
             return;
@@ -54,6 +67,36 @@ impl Unwritten {
         // Not an error of the job: a lost leg is solved again.
         if let Err(error) = self.store.put_legs(&legs, now_us()).await {
             tracing::warn!(%error, legs = legs.len(), "solved legs cannot be stored");
+            self.note(&error);
+            self.keep(legs, &error);
+        }
+    }
+
+    /// Whether the database was away a moment ago.
+    fn is_away(&self) -> bool {
+        let until = *self
+            .away_until
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        until.is_some_and(|until| Instant::now() < until)
+    }
+
+    /// Notes that the database is away, if the error says so.
+    fn note(&self, error: &StoreError) {
+        if error.is_away() {
+            let until = Instant::now() + AWAY;
+            *self
+                .away_until
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner) = Some(until);
+        }
+    }
+
+    /// Keeps legs for when the database is back.
+    fn keep(&self, mut legs: Vec<NewLeg>, error: &StoreError) {
+        let mut unwritten = self.legs();
+        if error.is_away() && unwritten.len() + legs.len() <= MAX_KEPT {
+            unwritten.append(&mut legs);
         }
     }
 }
@@ -65,6 +108,8 @@ impl LegCache {
             unwritten: Unwritten {
                 store: store.clone(),
                 legs: Arc::default(),
+                writing: Arc::default(),
+                away_until: Arc::default(),
             },
             store,
             runtime,
@@ -80,9 +125,13 @@ impl LegCache {
 
 impl LegStore for LegCache {
     fn get(&self, identity: &str) -> Option<StoredLeg> {
+        if self.unwritten.is_away() {
+            return None;
+        }
         let found = self.runtime.block_on(self.store.known_leg(identity));
         let leg = found.unwrap_or_else(|error| {
             tracing::warn!(%error, "a leg cannot be looked up and is solved again");
+            self.unwritten.note(&error);
             None
         });
         self.metrics.looked_up(std::slice::from_ref(&leg));
@@ -90,6 +139,9 @@ impl LegStore for LegCache {
     }
 
     fn times(&self, identities: &[&str]) -> Vec<Option<StoredTime>> {
+        if self.unwritten.is_away() {
+            return vec![None; identities.len()];
+        }
         let times = self.runtime.block_on(async {
             // What was solved a moment ago shall be found.
             self.unwritten.write().await;
@@ -97,6 +149,7 @@ impl LegStore for LegCache {
         });
         let times = times.unwrap_or_else(|error| {
             tracing::warn!(%error, "legs cannot be looked up");
+            self.unwritten.note(&error);
             vec![None; identities.len()]
         });
         self.metrics.looked_up(&times);

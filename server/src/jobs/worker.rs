@@ -10,7 +10,7 @@ use super::segments::{self, SegmentCache};
 use super::solve::{self, JobContext};
 use super::{ActiveJob, Jobs};
 use crate::base::clock::now_us;
-use crate::store::{Ended, JobRow, JobState, Lease, StoreError, Work};
+use crate::store::{Ended, JobRow, JobState, Lease, Notice, StoreError, Work};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use std::io;
@@ -23,7 +23,7 @@ use tokio::runtime::Handle;
 use tokio::task::AbortHandle;
 
 /// Duration of a lease, and the interval between two prolongations.
-const LEASE: Duration = Duration::from_secs(10);
+pub(super) const LEASE: Duration = Duration::from_secs(10);
 const PROLONGATION: Duration = Duration::from_secs(2);
 /// Pause before another try after a failure of the database.
 const RETRY: Duration = Duration::from_millis(500);
@@ -106,12 +106,9 @@ impl WorkerThread {
 
     /// Leases a job, or waits for a notification or the next look at the queue and returns `None`.
     async fn next(&self) -> Result<Option<Lease>, StoreError> {
-        let now = now_us();
-        let lease = self
-            .jobs
-            .store()
-            .lease(&self.boot_id, lease_end(now), now)
-            .await?;
+        let store = self.jobs.store();
+        let lease_until_us = lease_end(store.lease_clock_us());
+        let lease = store.lease(&self.boot_id, lease_until_us, now_us()).await?;
         if lease.is_none() {
             // A notification from before this wait ends it at once.
             let _ = tokio::time::timeout(POLL, self.jobs.0.queued.notified()).await;
@@ -195,18 +192,7 @@ impl WorkerThread {
 
     /// Applies requests that were recorded between the lease and the creation of the stop signal.
     fn apply_earlier_requests(&self, job: &JobRow, stop: &StopSignal) {
-        match self.runtime.block_on(self.jobs.store().job(&job.id)) {
-            Ok(Some(job)) => {
-                if job.stop_requested_us.is_some() {
-                    stop.request();
-                }
-                if job.cancel_requested_us.is_some() {
-                    stop.cancel();
-                }
-            }
-            Ok(None) => stop.cancel(),
-            Err(error) => tracing::warn!(%error, "earlier requests cannot be read"),
-        }
+        self.runtime.block_on(self.jobs.apply_requests(&job.id));
         if self.draining.load(Ordering::SeqCst) {
             stop.cancel();
         }
@@ -228,6 +214,9 @@ impl WorkerThread {
             match recorded {
                 Ok(true) => {
                     tracing::info!(state = ended.state.into_str(), interrupted, "solve ended");
+                    if interrupted {
+                        self.jobs.store().tell(Notice::Queued);
+                    }
                     return;
                 }
                 Ok(false) => {
@@ -264,7 +253,10 @@ fn lease_end(now_us: i64) -> i64 {
 async fn prolong(jobs: Jobs, lease: JobRow, stop: StopSignal) {
     loop {
         tokio::time::sleep(PROLONGATION).await;
-        match jobs.store().prolong(&lease, lease_end(now_us())).await {
+        let lease_until_us = lease_end(jobs.store().lease_clock_us());
+        match jobs.store().prolong(&lease, lease_until_us).await {
+            // Another process may have recorded a request, and its notice may be lost.
+            Ok(true) if jobs.store().is_shared() => jobs.apply_requests(&lease.id).await,
             Ok(true) => {}
             Ok(false) => {
                 stop.cancel();

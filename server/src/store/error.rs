@@ -1,17 +1,28 @@
 //! Errors of the store.
 
+use sqlx::migrate::MigrateError;
+use sqlx::postgres::PgDatabaseError;
 use std::io;
 use std::path::PathBuf;
 
 /// A failure of the store.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StoreError {
-    /// SQLite or its driver.
+    /// The database or its driver.
     #[error("database: {0}")]
     Database(#[from] sqlx::Error),
+    /// No connection to a server became free or could be made in time.
+    #[error("database: no connection to the Postgres server in time")]
+    NoConnection,
     /// The schema cannot be brought up to date.
     #[error("database schema: {0}")]
-    Migration(#[from] sqlx::migrate::MigrateError),
+    Migration(MigrateError),
+    /// The schema is that of a newer version of the program.
+    #[error(
+        "the database has been used by a newer version of slewplan (its migration {0} is not known \
+         here): use that version, or another database"
+    )]
+    NewerSchema(i64),
     /// Another process uses the database.
     #[error("cannot lock {}: {source}; does another service use this database?", path.display())]
     Lock {
@@ -31,6 +42,9 @@ pub(crate) enum StoreError {
     /// The embedded SQLite is too old to be used.
     #[error("SQLite {0} can corrupt its write-ahead log; at least 3.51.3 is needed")]
     OldSqlite(String),
+    /// The server is too old to be used.
+    #[error("Postgres {0} is too old; at least version 15 is needed")]
+    OldPostgres(String),
     /// A document does not match its stored hash.
     #[error("the stored {what} does not match its hash: the database file is damaged")]
     Damaged {
@@ -47,38 +61,96 @@ pub(crate) enum StoreError {
     },
 }
 
-/// Primary result codes of SQLite.
+impl From<MigrateError> for StoreError {
+    fn from(error: MigrateError) -> Self {
+        match error {
+            MigrateError::VersionMissing(version) => Self::NewerSchema(version),
+            other => Self::Migration(other),
+        }
+    }
+}
+
+/// Primary result codes of SQLite, and the bits that have them.
+const PRIMARY: u32 = 0xff;
 const BUSY: u32 = 5;
 const FULL: u32 = 13;
 /// Extended result codes of SQLite: the sync of a file or of its folder failed.
 const IOERR_FSYNC: u32 = 1034;
 const IOERR_DIR_FSYNC: u32 = 1290;
 
+/// SQLSTATE of Postgres: no room is left.
+const DISK_FULL: &str = "53100";
+/// The server, or the user of it, may only read at present.
+const READ_ONLY: &str = "25006";
+/// The server has no connection left, ends or begins.
+const AWAY: [&str; 4] = ["53300", "57P01", "57P02", "57P03"];
+/// Class of errors of the connection.
+const CONNECTION: &str = "08";
+/// Other transactions were in the way: serialization, deadlock, a lock or a statement took too long.
+const IN_THE_WAY: [&str; 4] = ["40001", "40P01", "55P03", "57014"];
+
+/// The code of an error of a database.
+enum ErrorCode {
+    /// Extended result code of SQLite.
+    Sqlite(u32),
+    /// SQLSTATE of Postgres.
+    Postgres(String),
+}
+
 impl StoreError {
     /// Whether the file system has no room left.
     pub(crate) fn is_disk_full(&self) -> bool {
-        self.primary_code() == Some(FULL)
+        match self.code() {
+            Some(ErrorCode::Sqlite(code)) => code & PRIMARY == FULL,
+            Some(ErrorCode::Postgres(code)) => code == DISK_FULL,
+            None => false,
+        }
     }
 
     /// Whether the same operation may succeed a little later.
     pub(crate) fn is_busy(&self) -> bool {
-        matches!(self, Self::Database(sqlx::Error::PoolTimedOut))
-            || self.primary_code() == Some(BUSY)
+        match self.code() {
+            Some(ErrorCode::Sqlite(code)) => code & PRIMARY == BUSY,
+            Some(ErrorCode::Postgres(code)) => IN_THE_WAY.contains(&code.as_str()),
+            None => matches!(self, Self::Database(sqlx::Error::PoolTimedOut)),
+        }
     }
 
-    /// Whether a commit may not have reached the disk.
+    /// Whether the server of the database only reads at present, as one that follows another does.
+    pub(crate) fn is_read_only(&self) -> bool {
+        matches!(self.code(), Some(ErrorCode::Postgres(code)) if code == READ_ONLY)
+    }
+
+    /// Whether the server of the database cannot be reached.
+    pub(crate) fn is_away(&self) -> bool {
+        match self.code() {
+            Some(ErrorCode::Postgres(code)) => {
+                code.starts_with(CONNECTION) || AWAY.contains(&code.as_str())
+            }
+            Some(ErrorCode::Sqlite(_)) => false,
+            None => matches!(
+                self,
+                Self::NoConnection | Self::Database(sqlx::Error::Io(_) | sqlx::Error::Protocol(_))
+            ),
+        }
+    }
+
+    /// Whether a commit may not have reached the disk. A server ends by itself then.
     pub(super) fn is_failed_sync(&self) -> bool {
-        matches!(self.extended_code(), Some(IOERR_FSYNC | IOERR_DIR_FSYNC))
+        matches!(
+            self.code(),
+            Some(ErrorCode::Sqlite(IOERR_FSYNC | IOERR_DIR_FSYNC))
+        )
     }
 
-    fn primary_code(&self) -> Option<u32> {
-        Some(self.extended_code()? & 0xff)
-    }
-
-    fn extended_code(&self) -> Option<u32> {
+    fn code(&self) -> Option<ErrorCode> {
         let Self::Database(sqlx::Error::Database(error)) = self else {
             return None;
         };
-        error.code()?.parse().ok()
+        let code = error.code()?;
+        if error.try_downcast_ref::<PgDatabaseError>().is_some() {
+            return Some(ErrorCode::Postgres(code.into_owned()));
+        }
+        code.parse().ok().map(ErrorCode::Sqlite)
     }
 }

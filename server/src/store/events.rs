@@ -1,5 +1,6 @@
 //! The events of jobs, numbered per job.
 
+use super::database::statement::sql;
 use super::writing::WriteTransaction;
 use super::{JobRow, Store, StoreError};
 
@@ -31,10 +32,8 @@ pub(super) async fn append(
     now_us: i64,
 ) -> Result<(), StoreError> {
     let data = (transaction.format_event)(job, now_us)?;
-    sqlx::query(
-        "INSERT INTO events (job, id, kind, data) \
-         SELECT ?1, 1 + coalesce(max(id), 0), ?2, ?3 FROM events WHERE job = ?1",
-    )
+    sql("INSERT INTO events (job, id, kind, data) \
+         SELECT $1, 1 + coalesce(max(id), 0), $2, $3 FROM events WHERE job = $1")
     .bind(job.sequence)
     .bind(kind)
     .bind(data)
@@ -50,15 +49,15 @@ impl Store {
         job: i64,
         known: i64,
     ) -> Result<Vec<EventRow>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             event_columns!(),
-            " FROM events WHERE job = ? AND id > ? ORDER BY id LIMIT ?",
+            " FROM events WHERE job = $1 AND id > $2 ORDER BY id LIMIT $3",
         ))
         .bind(job)
         .bind(known)
         .bind(BATCH)
-        .fetch_all(&self.readers)
-        .await?)
+        .fetch_all(&self.database)
+        .await
     }
 }

@@ -1,9 +1,14 @@
 //! Jobs from the side of the API: submission, look-up, requests to stop or cancel, deletion.
 
-use super::writing::WriteTransaction;
+use super::database::row::{FromRow, Row};
+use super::database::statement::{Handle, sql};
+use super::database::{Transaction, Turn};
 use super::{Counts, JobRow, JobState, Store, StoreError, Work, events, results};
-use sqlx::{FromRow, Row, SqliteConnection};
+use std::ops::RangeInclusive;
 use strum::VariantArray as _;
+
+/// The priorities that a job may have.
+pub(crate) const PRIORITIES: RangeInclusive<i64> = -10..=10;
 
 /// A job to be queued.
 #[derive(Debug)]
@@ -20,6 +25,8 @@ pub(crate) struct Submission {
     pub(crate) targets: i64,
     /// The client whose job it is.
     pub(crate) client: Option<String>,
+    /// Jobs of greater priority are leased first; within [`PRIORITIES`].
+    pub(crate) priority: i64,
     /// The caller's idempotency key and the fingerprint of the request.
     pub(crate) key: Option<(String, String)>,
 }
@@ -74,11 +81,12 @@ impl Store {
         now_us: i64,
     ) -> Result<Submitted, StoreError> {
         let mut transaction = self.begin().await?;
+        transaction.take_turn(Turn::Submission).await?;
         if let Some((key, fingerprint)) = &submission.key
-            && let Some((known, job)) = find_key(&mut transaction, key).await?
+            && let Some(known) = find_key(&mut transaction, key).await?
         {
-            return Ok(if known == *fingerprint {
-                Submitted::Replayed(job)
+            return Ok(if known.fingerprint == *fingerprint {
+                Submitted::Replayed(known.job)
             } else {
                 Submitted::KeyReused
             });
@@ -86,9 +94,14 @@ impl Store {
         if let Some(refusal) = refusal(&mut transaction, submission, limits).await? {
             return Ok(refusal);
         }
-        let row = sqlx::query(concat!(
-            "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us) \
-             VALUES (?, 'queued', ?, ?, ?, ?, ?, ?) RETURNING ",
+        let job: JobRow = sql(concat!(
+            "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us, \
+             priority, turn) \
+             VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, coalesce(\
+             (SELECT max(turn) + 1 FROM jobs WHERE state = 'queued' AND priority = $8 \
+             AND client IS NOT DISTINCT FROM $6), \
+             (SELECT min(turn) FROM jobs WHERE state = 'queued' AND priority = $8), 0)) \
+             RETURNING ",
             job_columns!()
         ))
         .bind(&submission.id)
@@ -98,13 +111,13 @@ impl Store {
         .bind(submission.targets)
         .bind(&submission.client)
         .bind(now_us)
+        .bind(submission.priority)
         .fetch_one(&mut *transaction)
         .await?;
-        let job = JobRow::of(&row)?;
         if let Some((key, fingerprint)) = &submission.key {
-            sqlx::query(
+            sql(
                 "INSERT INTO idempotency_keys (key, fingerprint, job, created_us) \
-                 VALUES (?, ?, ?, ?)",
+                 VALUES ($1, $2, $3, $4)",
             )
             .bind(key)
             .bind(fingerprint)
@@ -124,9 +137,18 @@ impl Store {
         id: &str,
         now_us: i64,
     ) -> Result<Option<JobRow>, StoreError> {
-        let update = "UPDATE jobs SET stop_requested_us = coalesce(stop_requested_us, ?) \
-             WHERE id = ? AND state = 'running'";
-        record_request(self.begin().await?, update, id, now_us).await
+        let mut transaction = self.begin().await?;
+        sql(
+            "UPDATE jobs SET stop_requested_us = coalesce(stop_requested_us, $1) \
+             WHERE id = $2 AND state = 'running'",
+        )
+        .bind(now_us)
+        .bind(id)
+        .execute(&mut *transaction)
+        .await?;
+        let job = find(&mut *transaction, id).await?;
+        transaction.commit().await?;
+        Ok(job)
     }
 
     /// Cancels a job: a queued one ends at once, a running one when its worker has noticed. Returns
@@ -137,50 +159,53 @@ impl Store {
         now_us: i64,
     ) -> Result<Option<JobRow>, StoreError> {
         let mut transaction = self.begin().await?;
-        let ended = sqlx::query(concat!(
-            "UPDATE jobs SET state = 'cancelled', cancel_requested_us = ?1, finished_us = ?1 \
-             WHERE id = ?2 AND state = 'queued' RETURNING ",
+        let job: Option<JobRow> = sql(concat!(
+            "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, $1), \
+             finished_us = CASE state WHEN 'queued' THEN $1 END, \
+             state = CASE state WHEN 'queued' THEN 'cancelled' ELSE state END \
+             WHERE id = $2 AND state IN ('queued', 'running') RETURNING ",
             job_columns!()
         ))
         .bind(now_us)
         .bind(id)
         .fetch_optional(&mut *transaction)
         .await?;
-        if let Some(row) = ended {
-            let job = JobRow::of(&row)?;
+        let Some(job) = job else {
+            return find(&mut *transaction, id).await;
+        };
+        if job.state()? == JobState::Cancelled {
             events::append(&mut transaction, "state", &job, now_us).await?;
             // An earlier attempt may have left a plan, or a part of a table.
             results::delete_unfinished(&mut transaction, job.sequence).await?;
         }
-        let update = "UPDATE jobs SET cancel_requested_us = coalesce(cancel_requested_us, ?) \
-             WHERE id = ? AND state = 'running'";
-        record_request(transaction, update, id, now_us).await
+        transaction.commit().await?;
+        Ok(Some(job))
     }
 
     /// Deletes a job and everything that refers to it; `false` when there is no such job.
     pub(crate) async fn delete(&self, id: &str) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let done = sqlx::query("DELETE FROM jobs WHERE id = ?")
+        let deleted = sql("DELETE FROM jobs WHERE id = $1")
             .bind(id)
             .execute(&mut *transaction)
             .await?;
         transaction.commit().await?;
-        Ok(done.rows_affected() > 0)
+        Ok(deleted > 0)
     }
 
     /// A job by its identifier.
     pub(crate) async fn job(&self, id: &str) -> Result<Option<JobRow>, StoreError> {
-        find(&mut *self.readers.acquire().await?, id).await
+        find(&self.database, id).await
     }
 
     /// Jobs, the newest first.
     pub(crate) async fn jobs(&self, listing: &Listing) -> Result<Vec<JobRow>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             job_columns!(),
-            " FROM jobs WHERE (?1 IS NULL OR sequence < ?1) AND (?2 IS NULL OR state = ?2) \
-             AND (?3 IS NULL OR name = ?3) AND (?4 IS NULL OR client = ?4) \
-             AND work = ?6 ORDER BY sequence DESC LIMIT ?5"
+            " FROM jobs WHERE ($1 IS NULL OR sequence < $1) AND ($2 IS NULL OR state = $2) \
+             AND ($3 IS NULL OR name = $3) AND ($4 IS NULL OR client = $4) \
+             AND work = $6 ORDER BY sequence DESC LIMIT $5"
         ))
         .bind(listing.before)
         .bind(listing.state.map(|state| state.into_str()))
@@ -188,22 +213,20 @@ impl Store {
         .bind(&listing.client)
         .bind(listing.limit)
         .bind(listing.work.into_str())
-        .fetch_all(&self.readers)
-        .await?)
+        .fetch_all(&self.database)
+        .await
     }
 
     /// Number of queued jobs.
     pub(crate) async fn waiting(&self) -> Result<i64, StoreError> {
-        let count = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'");
-        Ok(count.fetch_one(&self.readers).await?)
+        queued(&self.database).await
     }
 
     /// Number of jobs in every state.
     pub(crate) async fn counts(&self) -> Result<Vec<Counts>, StoreError> {
-        let rows: Vec<(String, i64)> =
-            sqlx::query_as("SELECT state, count(*) FROM jobs GROUP BY state")
-                .fetch_all(&self.readers)
-                .await?;
+        let rows: Vec<(String, i64)> = sql("SELECT state, count(*) FROM jobs GROUP BY state")
+            .fetch_all(&self.database)
+            .await?;
         let of = |state: JobState| rows.iter().find(|(text, _)| text == state.into_str());
         Ok(JobState::VARIANTS
             .iter()
@@ -217,67 +240,66 @@ impl Store {
 
 /// Why a job cannot be queued now, if it cannot.
 async fn refusal(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     submission: &Submission,
     limits: QueueLimits,
 ) -> Result<Option<Submitted>, StoreError> {
-    let waiting: i64 = sqlx::query_scalar("SELECT count(*) FROM jobs WHERE state = 'queued'")
-        .fetch_one(&mut *connection)
-        .await?;
-    if waiting >= limits.all {
+    if queued(&mut *transaction).await? >= limits.all {
         return Ok(Some(Submitted::QueueFull));
     }
     let Some(client) = &submission.client else {
         return Ok(None);
     };
-    let own: i64 =
-        sqlx::query_scalar("SELECT count(*) FROM jobs WHERE client = ? AND state = 'queued'")
-            .bind(client)
-            .fetch_one(connection)
-            .await?;
+    let (own,): (i64,) = sql("SELECT count(*) FROM jobs WHERE client = $1 AND state = 'queued'")
+        .bind(client)
+        .fetch_one(transaction)
+        .await?;
     Ok((own >= limits.client).then_some(Submitted::QuotaExceeded))
 }
 
-/// Runs an update that records a request on a running job. Returns the updated job.
-async fn record_request(
-    mut transaction: WriteTransaction,
-    update: &'static str,
-    id: &str,
-    now_us: i64,
-) -> Result<Option<JobRow>, StoreError> {
-    sqlx::query(update)
-        .bind(now_us)
-        .bind(id)
-        .execute(&mut *transaction)
+async fn queued<'c>(on: impl Into<Handle<'c>>) -> Result<i64, StoreError> {
+    let (count,) = sql("SELECT count(*) FROM jobs WHERE state = 'queued'")
+        .fetch_one(on)
         .await?;
-    let job = find(&mut transaction, id).await?;
-    transaction.commit().await?;
-    Ok(job)
+    Ok(count)
 }
 
-async fn find(connection: &mut SqliteConnection, id: &str) -> Result<Option<JobRow>, StoreError> {
-    Ok(sqlx::query_as(concat!(
+async fn find<'c>(on: impl Into<Handle<'c>>, id: &str) -> Result<Option<JobRow>, StoreError> {
+    sql(concat!(
         "SELECT ",
         job_columns!(),
-        " FROM jobs WHERE id = ?"
+        " FROM jobs WHERE id = $1"
     ))
     .bind(id)
-    .fetch_optional(connection)
-    .await?)
+    .fetch_optional(on)
+    .await
+}
+
+/// The job of an idempotency key.
+struct KnownRequest {
+    fingerprint: String,
+    job: JobRow,
+}
+
+impl FromRow for KnownRequest {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            fingerprint: row.get("fingerprint")?,
+            job: JobRow::from_row(row)?,
+        })
+    }
 }
 
 async fn find_key(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     key: &str,
-) -> Result<Option<(String, JobRow)>, StoreError> {
-    let row = sqlx::query(concat!(
+) -> Result<Option<KnownRequest>, StoreError> {
+    sql(concat!(
         "SELECT fingerprint, ",
         job_columns!(),
-        " FROM idempotency_keys JOIN jobs ON sequence = job WHERE key = ?"
+        " FROM idempotency_keys JOIN jobs ON sequence = job WHERE key = $1"
     ))
     .bind(key)
-    .fetch_optional(connection)
-    .await?;
-    row.map(|row| Ok((row.try_get("fingerprint")?, JobRow::from_row(&row)?)))
-        .transpose()
+    .fetch_optional(transaction)
+    .await
 }

@@ -1,8 +1,9 @@
 //! API keys of clients, and the ownership of jobs and spacecraft.
 
+use super::database::statement::sql;
+use super::database::{Transaction, Turn};
 use super::{Store, StoreError};
 use crate::base::access::Scopes;
-use sqlx::SqliteConnection;
 
 row! {
     columns key_columns;
@@ -72,9 +73,9 @@ impl Store {
         now_us: i64,
     ) -> Result<(), StoreError> {
         let mut transaction = self.begin().await?;
-        sqlx::query(
+        sql(
             "INSERT INTO api_keys (id, client, digest, scopes, created_us, expires_us) \
-             VALUES (?, ?, ?, ?, ?, ?)",
+             VALUES ($1, $2, $3, $4, $5, $6)",
         )
         .bind(&key.id)
         .bind(&key.client)
@@ -85,6 +86,7 @@ impl Store {
         .execute(&mut *transaction)
         .await?;
         if adopt {
+            transaction.take_turn(Turn::Adoption).await?;
             give(&mut transaction, &key.client).await?;
         }
         transaction.commit().await
@@ -92,59 +94,57 @@ impl Store {
 
     /// How much belongs to nobody: what was made without keys.
     pub(crate) async fn ownerless(&self) -> Result<Possessions, StoreError> {
-        let (jobs, spacecraft) = sqlx::query_as(
-            "SELECT (SELECT count(*) FROM jobs WHERE client IS NULL), \
-             (SELECT count(DISTINCT name) FROM spacecraft WHERE instr(name, ' ') = 0)",
-        )
-        .fetch_one(&self.readers)
+        let (jobs, spacecraft) = sql("SELECT (SELECT count(*) FROM jobs WHERE client IS NULL), \
+             (SELECT count(DISTINCT name) FROM spacecraft WHERE name NOT LIKE '% %')")
+        .fetch_one(&self.database)
         .await?;
         Ok(Possessions { jobs, spacecraft })
     }
 
     /// All keys, the oldest first.
     pub(crate) async fn keys(&self) -> Result<Vec<KeyRow>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             key_columns!(),
             " FROM api_keys ORDER BY created_us, id"
         ))
-        .fetch_all(&self.readers)
-        .await?)
+        .fetch_all(&self.database)
+        .await
     }
 
     /// The key with a digest.
     pub(crate) async fn key(&self, digest: &str) -> Result<Option<KeyRow>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             key_columns!(),
-            " FROM api_keys WHERE digest = ?"
+            " FROM api_keys WHERE digest = $1"
         ))
         .bind(digest)
-        .fetch_optional(&self.readers)
-        .await?)
+        .fetch_optional(&self.database)
+        .await
     }
 
     /// Revokes a key; `false` when no key of this name is still unrevoked.
     pub(crate) async fn revoke_key(&self, id: &str, now_us: i64) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let done =
-            sqlx::query("UPDATE api_keys SET revoked_us = ? WHERE id = ? AND revoked_us IS NULL")
+        let revoked =
+            sql("UPDATE api_keys SET revoked_us = $1 WHERE id = $2 AND revoked_us IS NULL")
                 .bind(now_us)
                 .bind(id)
                 .execute(&mut *transaction)
                 .await?;
         transaction.commit().await?;
-        Ok(done.rows_affected() > 0)
+        Ok(revoked > 0)
     }
 
     /// Whether a job exists and belongs to a client.
     pub(crate) async fn owns(&self, client: &str, job: &str) -> Result<bool, StoreError> {
-        let owned: Option<bool> = sqlx::query_scalar("SELECT client IS ? FROM jobs WHERE id = ?")
+        let owned: Option<(i64,)> = sql("SELECT sequence FROM jobs WHERE client = $1 AND id = $2")
             .bind(client)
             .bind(job)
-            .fetch_optional(&self.readers)
+            .fetch_optional(&self.database)
             .await?;
-        Ok(owned.unwrap_or(false))
+        Ok(owned.is_some())
     }
 }
 
@@ -152,24 +152,24 @@ impl Store {
 /// the client has already stay its own, and what would be hidden by them stays without owner.
 ///
 /// A name without owner is stored as it is, others after their client and a space.
-async fn give(connection: &mut SqliteConnection, client: &str) -> Result<(), StoreError> {
-    sqlx::query(
-        "UPDATE OR IGNORE idempotency_keys SET key = ?1 || ' ' || key \
-         WHERE instr(key, ' ') = 0",
+async fn give(transaction: &mut Transaction, client: &str) -> Result<(), StoreError> {
+    sql(
+        "UPDATE idempotency_keys SET key = $1 || ' ' || key WHERE key NOT LIKE '% %' \
+         AND $1 || ' ' || key NOT IN (SELECT key FROM idempotency_keys)",
     )
     .bind(client)
-    .execute(&mut *connection)
+    .execute(&mut *transaction)
     .await?;
-    sqlx::query("UPDATE jobs SET client = ? WHERE client IS NULL")
+    sql("UPDATE jobs SET client = $1 WHERE client IS NULL")
         .bind(client)
-        .execute(&mut *connection)
+        .execute(&mut *transaction)
         .await?;
-    sqlx::query(
-        "UPDATE spacecraft SET name = ?1 || ' ' || name WHERE instr(name, ' ') = 0 \
-         AND ?1 || ' ' || name NOT IN (SELECT name FROM spacecraft)",
+    sql(
+        "UPDATE spacecraft SET name = $1 || ' ' || name WHERE name NOT LIKE '% %' \
+         AND $1 || ' ' || name NOT IN (SELECT name FROM spacecraft)",
     )
     .bind(client)
-    .execute(connection)
+    .execute(transaction)
     .await?;
     Ok(())
 }

@@ -4,26 +4,38 @@
 //! lease succeed only while its fence is the newest, so that a worker that was presumed dead cannot
 //! overwrite the work of its successor.
 
+use super::database::row::{FromRow, Row};
+use super::database::statement::{Statement, sql};
 use super::writing::WriteTransaction;
 use super::{
     EndCode, Ended, JobRow, JobState, NewIncumbent, ProgressRow, Store, StoreError, events, results,
 };
 use slewplan_solver::bounds;
-use sqlx::query::Query;
-use sqlx::sqlite::SqliteArguments;
-use sqlx::{Row, Sqlite};
 
 /// Attempts after which a job whose process died at each of them becomes `dead`.
 const MAX_ATTEMPTS: i64 = 3;
 
-/// The lower bound of a job after the report of another one (`?5`, or null): the greater of the
-/// two, but no more than the duration of the plan.
+/// The greater of the lower bound of a job and of that of a report (`$5`); either may be null.
+macro_rules! greater_bound {
+    () => {
+        "(CASE WHEN lower_bound_s >= $5 THEN lower_bound_s ELSE coalesce($5, lower_bound_s) END)"
+    };
+}
+
+/// The lower bound of a job after a report: the greater one, but no more than the duration of the
+/// plan.
 macro_rules! bound_beside {
     ($incumbent:literal) => {
         concat!(
-            "min(max(coalesce(lower_bound_s, ?5), coalesce(?5, lower_bound_s)), coalesce(",
+            "CASE WHEN ",
+            greater_bound!(),
+            " > ",
             $incumbent,
-            ", 9e999))"
+            " THEN ",
+            $incumbent,
+            " ELSE ",
+            greater_bound!(),
+            " END"
         )
     };
 }
@@ -37,6 +49,24 @@ pub(crate) struct Lease {
     pub(crate) scenario: Vec<u8>,
 }
 
+impl FromRow for Lease {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            job: JobRow::from_row(row)?,
+            scenario: row.get("scenario")?,
+        })
+    }
+}
+
+/// What is known of other processes that have leased jobs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum OtherProcesses {
+    /// This process alone uses the database: the others have ended.
+    Ended,
+    /// They may live as long as they prolong their leases.
+    MayLive,
+}
+
 /// Numbers of jobs taken from dead processes, by their new state.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Recovered {
@@ -48,8 +78,15 @@ pub(crate) struct Recovered {
     pub(crate) dead: usize,
 }
 
+impl Recovered {
+    /// Whether there was none.
+    pub(crate) fn is_empty(self) -> bool {
+        self == Self::default()
+    }
+}
+
 impl Store {
-    /// Leases the job that has waited longest; `None` when no job is queued. A lower bound of an
+    /// Leases the job whose turn it is; `None` when no job is queued. A lower bound of an
     /// earlier attempt is kept if this version of the bounds gave it.
     pub(crate) async fn lease(
         &self,
@@ -58,14 +95,15 @@ impl Store {
         now_us: i64,
     ) -> Result<Option<Lease>, StoreError> {
         let mut transaction = self.begin().await?;
-        let row = sqlx::query(concat!(
+        let lease: Option<Lease> = sql(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + 1, \
-             boot_id = ?1, lease_until_us = ?2, started_us = ?3, stage = NULL, done = NULL, \
+             boot_id = $1, lease_until_us = $2, started_us = $3, stage = NULL, done = NULL, \
              total = NULL, \
-             lower_bound_s = CASE bound_version WHEN ?4 THEN lower_bound_s END, bound_version = ?4, \
+             lower_bound_s = CASE bound_version WHEN $4 THEN lower_bound_s END, bound_version = $4, \
              incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = sequence) \
              WHERE sequence = \
-             (SELECT sequence FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1) \
+             (SELECT sequence FROM jobs WHERE state = 'queued' \
+             ORDER BY priority DESC, turn, sequence LIMIT 1 {skip_locked}) \
              RETURNING scenario, ",
             job_columns!()
         ))
@@ -75,12 +113,8 @@ impl Store {
         .bind(bounds::VERSION)
         .fetch_optional(&mut *transaction)
         .await?;
-        let Some(row) = row else {
+        let Some(lease) = lease else {
             return Ok(None);
-        };
-        let lease = Lease {
-            job: JobRow::of(&row)?,
-            scenario: row.try_get("scenario")?,
         };
         events::append(&mut transaction, "state", &lease.job, now_us).await?;
         transaction.commit().await?;
@@ -94,17 +128,15 @@ impl Store {
         lease_until_us: i64,
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let done = sqlx::query(
-            "UPDATE jobs SET lease_until_us = ? \
-             WHERE sequence = ? AND fence = ? AND state = 'running'",
-        )
+        let prolonged = sql("UPDATE jobs SET lease_until_us = $1 \
+             WHERE sequence = $2 AND fence = $3 AND state = 'running'")
         .bind(lease_until_us)
         .bind(lease.sequence)
         .bind(lease.fence)
         .execute(&mut *transaction)
         .await?;
         transaction.commit().await?;
-        Ok(done.rows_affected() > 0)
+        Ok(prolonged > 0)
     }
 
     /// Records progress with its event, and a better plan if there is one; `false` when the lease
@@ -119,11 +151,14 @@ impl Store {
         now_us: i64,
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let update = sqlx::query(concat!(
-            "UPDATE jobs SET stage = ?, done = ?, total = ?, \
-             incumbent_s = coalesce(min(incumbent_s, ?4), ?4, incumbent_s), lower_bound_s = ",
-            bound_beside!("min(incumbent_s, ?4), ?4, incumbent_s"),
-            " WHERE sequence = ?6 AND fence = ?7 AND state = 'running' RETURNING ",
+        let update = sql(concat!(
+            "UPDATE jobs SET stage = $1, done = $2, total = $3, \
+             incumbent_s = CASE WHEN incumbent_s <= $4 THEN incumbent_s \
+             ELSE coalesce($4, incumbent_s) END, lower_bound_s = ",
+            bound_beside!(
+                "(CASE WHEN incumbent_s <= $4 THEN incumbent_s ELSE coalesce($4, incumbent_s) END)"
+            ),
+            " WHERE sequence = $6 AND fence = $7 AND state = 'running' RETURNING ",
             job_columns!()
         ))
         .bind(progress.stage)
@@ -162,14 +197,14 @@ impl Store {
             None
         };
         let ended = kept.as_ref().unwrap_or(ended);
-        let update = sqlx::query(concat!(
-            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN ?1 \
+        let update = sql(concat!(
+            "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NULL THEN $1 \
              ELSE 'cancelled' END, \
-             code = CASE WHEN cancel_requested_us IS NULL THEN ?2 END, detail = ?3, \
-             incumbent_s = coalesce(?4, incumbent_s), lower_bound_s = ",
-            bound_beside!("?4, incumbent_s"),
-            ", finished_us = ?6, keep_out_violated = ?7, boot_id = NULL, lease_until_us = NULL \
-             WHERE sequence = ?8 AND fence = ?9 AND state = 'running' RETURNING ",
+             code = CASE WHEN cancel_requested_us IS NULL THEN $2 END, detail = $3, \
+             incumbent_s = coalesce($4, incumbent_s), lower_bound_s = ",
+            bound_beside!("coalesce($4, incumbent_s)"),
+            ", finished_us = $6, keep_out_violated = $7, boot_id = NULL, lease_until_us = NULL \
+             WHERE sequence = $8 AND fence = $9 AND state = 'running' RETURNING ",
             job_columns!()
         ))
         .bind(ended.state.into_str())
@@ -196,9 +231,9 @@ impl Store {
     /// Returns a leased job to the queue; the attempt does not count.
     pub(crate) async fn release(&self, lease: &JobRow, now_us: i64) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let update = sqlx::query(concat!(
+        let update = sql(concat!(
             "UPDATE jobs SET state = 'queued', attempt = attempt - 1, boot_id = NULL, \
-             lease_until_us = NULL WHERE sequence = ? AND fence = ? AND state = 'running' \
+             lease_until_us = NULL WHERE sequence = $1 AND fence = $2 AND state = 'running' \
              RETURNING ",
             job_columns!()
         ))
@@ -209,35 +244,36 @@ impl Store {
         Ok(released.is_some())
     }
 
-    /// Takes running jobs from dead processes: those of another boot, and those whose lease has
-    /// expired.
+    /// Takes running jobs from dead processes: those whose lease has expired, and, where the others
+    /// have ended, all those of another boot.
     pub(crate) async fn recover(
         &self,
         boot_id: &str,
+        others: OtherProcesses,
         now_us: i64,
     ) -> Result<Recovered, StoreError> {
         let mut transaction = self.begin().await?;
-        let rows = sqlx::query(concat!(
+        let jobs: Vec<JobRow> = sql(concat!(
             "UPDATE jobs SET state = CASE WHEN cancel_requested_us IS NOT NULL THEN 'cancelled' \
-             WHEN attempt >= ?1 THEN 'dead' ELSE 'queued' END, \
-             finished_us = CASE WHEN cancel_requested_us IS NULL AND attempt < ?1 THEN NULL \
-             ELSE ?2 END, \
-             detail = CASE WHEN cancel_requested_us IS NULL AND attempt >= ?1 THEN \
+             WHEN attempt >= $1 THEN 'dead' ELSE 'queued' END, \
+             finished_us = CASE WHEN cancel_requested_us IS NULL AND attempt < $1 THEN NULL \
+             ELSE $2 END, \
+             detail = CASE WHEN cancel_requested_us IS NULL AND attempt >= $1 THEN \
              'its process ended unexpectedly at every attempt' END, \
-             code = CASE WHEN cancel_requested_us IS NULL AND attempt >= ?1 THEN ?4 END, \
+             code = CASE WHEN cancel_requested_us IS NULL AND attempt >= $1 THEN $4 END, \
              boot_id = NULL, lease_until_us = NULL \
-             WHERE state = 'running' AND (boot_id <> ?3 OR lease_until_us < ?2) RETURNING ",
+             WHERE state = 'running' AND (($5 AND boot_id <> $3) OR lease_until_us < $2) RETURNING ",
             job_columns!()
         ))
         .bind(MAX_ATTEMPTS)
         .bind(now_us)
         .bind(boot_id)
         .bind(EndCode::ProcessDied.as_str())
+        .bind(others == OtherProcesses::Ended)
         .fetch_all(&mut *transaction)
         .await?;
         let mut recovered = Recovered::default();
-        for row in &rows {
-            let job = JobRow::of(row)?;
+        for job in &jobs {
             match job.state()? {
                 JobState::Queued => recovered.queued += 1,
                 JobState::Cancelled => {
@@ -246,7 +282,7 @@ impl Store {
                 }
                 _ => recovered.dead += 1,
             }
-            events::append(&mut transaction, "state", &job, now_us).await?;
+            events::append(&mut transaction, "state", job, now_us).await?;
         }
         transaction.commit().await?;
         Ok(recovered)
@@ -257,14 +293,14 @@ impl Store {
 /// been lost.
 pub(super) async fn update_leased(
     transaction: &mut WriteTransaction,
-    update: Query<'_, Sqlite, SqliteArguments>,
+    update: Statement<'_>,
     kind: &'static str,
     now_us: i64,
 ) -> Result<Option<JobRow>, StoreError> {
-    let Some(row) = update.fetch_optional(&mut **transaction).await? else {
+    let job: Option<JobRow> = update.fetch_optional(&mut **transaction).await?;
+    let Some(job) = job else {
         return Ok(None);
     };
-    let job = JobRow::of(&row)?;
     events::append(transaction, kind, &job, now_us).await?;
     Ok(Some(job))
 }

@@ -1,8 +1,8 @@
 //! Tables of leg times, stored part by part as their jobs go on.
 
+use super::database::statement::sql;
 use super::leases::update_leased;
 use super::{JobRow, PackedPlan, Store, StoreError};
-use sqlx::FromRow as _;
 
 /// A finished part of a table.
 #[derive(Debug)]
@@ -38,11 +38,12 @@ impl LegCounts {
 impl Store {
     /// Positions at which the stored parts of a table begin.
     pub(crate) async fn table_parts(&self, job: i64) -> Result<Vec<i64>, StoreError> {
-        let firsts = "SELECT first FROM leg_table_parts WHERE job = ? ORDER BY first";
-        Ok(sqlx::query_scalar(firsts)
-            .bind(job)
-            .fetch_all(&self.readers)
-            .await?)
+        let firsts: Vec<(i64,)> =
+            sql("SELECT first FROM leg_table_parts WHERE job = $1 ORDER BY first")
+                .bind(job)
+                .fetch_all(&self.database)
+                .await?;
+        Ok(firsts.into_iter().map(|(first,)| first).collect())
     }
 
     /// The rows of a stored part as JSON; `None` when there is no such part.
@@ -51,15 +52,14 @@ impl Store {
         job: i64,
         first: i64,
     ) -> Result<Option<Vec<u8>>, StoreError> {
-        let part = sqlx::query(
-            "SELECT document, packed, digest FROM leg_table_parts WHERE job = ? AND first = ?",
+        let part: Option<PackedPlan> = sql(
+            "SELECT document, packed, digest FROM leg_table_parts WHERE job = $1 AND first = $2",
         )
         .bind(job)
         .bind(first)
-        .fetch_optional(&self.readers)
+        .fetch_optional(&self.database)
         .await?;
-        part.map(|row| PackedPlan::from_row(&row)?.unpacked())
-            .transpose()
+        part.map(PackedPlan::unpacked).transpose()
     }
 
     /// Stores a part of the table of a leased job, if any, together with the progress that it makes of
@@ -73,11 +73,13 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
         if let Some(part) = part {
-            sqlx::query(
-                "INSERT OR REPLACE INTO leg_table_parts \
+            sql("INSERT INTO leg_table_parts \
                  (job, first, legs, cached, computed, document, packed, digest) \
-                 SELECT sequence, ?, ?, ?, ?, ?, ?, ? FROM jobs WHERE sequence = ? AND fence = ?",
-            )
+                 SELECT sequence, $1, $2, $3, $4, $5, $6, $7 FROM jobs \
+                 WHERE sequence = $8 AND fence = $9 \
+                 ON CONFLICT (job, first) DO UPDATE SET legs = excluded.legs, \
+                 cached = excluded.cached, computed = excluded.computed, \
+                 document = excluded.document, packed = excluded.packed, digest = excluded.digest")
             .bind(part.first)
             .bind(part.counts.legs)
             .bind(part.counts.cached)
@@ -90,18 +92,17 @@ impl Store {
             .execute(&mut *transaction)
             .await?;
         }
-        let counts = sqlx::query(
-            "SELECT coalesce(sum(legs), 0) AS legs, coalesce(sum(cached), 0) AS cached, \
-             coalesce(sum(computed), 0) AS computed FROM leg_table_parts WHERE job = ?",
-        )
+        let counts: LegCounts = sql("SELECT CAST(coalesce(sum(legs), 0) AS bigint) AS legs, \
+             CAST(coalesce(sum(cached), 0) AS bigint) AS cached, \
+             CAST(coalesce(sum(computed), 0) AS bigint) AS computed \
+             FROM leg_table_parts WHERE job = $1")
         .bind(lease.sequence)
         .fetch_one(&mut *transaction)
         .await?;
-        let counts = LegCounts::from_row(&counts)?;
-        let update = sqlx::query(concat!(
-            "UPDATE jobs SET stage = 'legs', done = ?, total = ?, legs_cached = ?, \
-             legs_computed = ?, legs_missing = ? \
-             WHERE sequence = ? AND fence = ? AND state = 'running' RETURNING ",
+        let update = sql(concat!(
+            "UPDATE jobs SET stage = 'legs', done = $1, total = $2, legs_cached = $3, \
+             legs_computed = $4, legs_missing = $5 \
+             WHERE sequence = $6 AND fence = $7 AND state = 'running' RETURNING ",
             job_columns!()
         ))
         .bind(counts.legs)

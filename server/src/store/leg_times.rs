@@ -1,10 +1,11 @@
 //! Times of stored legs, thousands in a statement, all from one snapshot of the database.
 
+use super::database::Transaction;
+use super::database::statement::sql;
 use super::legs::{SOLVER_VERSION, key};
 use super::{Store, StoreError};
 use slewplan_solver::bounds;
 use slewplan_solver::tour::legs::StoredTime;
-use sqlx::{FromRow as _, Sqlite, Transaction};
 
 /// Maximum number of legs of one statement.
 const BATCH: usize = 4096;
@@ -16,14 +17,14 @@ row! {
         position: i64,
         duration_s: f64,
         certified_lower_bound_s: Option<f64>,
-        bound_version: Option<u32>,
+        bound_version: Option<i64>,
         solve_time_s: f64,
     }
 }
 
 impl From<&TimeRow> for StoredTime {
     fn from(row: &TimeRow) -> Self {
-        let is_bound_current = row.bound_version == Some(bounds::VERSION);
+        let is_bound_current = row.bound_version == Some(bounds::VERSION.into());
         Self {
             duration_s: row.duration_s,
             certified_lower_bound_s: row.certified_lower_bound_s.filter(|_| is_bound_current),
@@ -35,12 +36,12 @@ impl From<&TimeRow> for StoredTime {
 
 /// The legs as they were at the first look-up.
 #[derive(Debug)]
-pub(crate) struct LegSnapshot(Transaction<'static, Sqlite>);
+pub(crate) struct LegSnapshot(Transaction);
 
 impl Store {
     /// A snapshot of the legs. The write-ahead log cannot be reset while it lives.
     pub(crate) async fn leg_snapshot(&self) -> Result<LegSnapshot, StoreError> {
-        Ok(LegSnapshot(self.readers.begin().await?))
+        Ok(LegSnapshot(self.database.snapshot().await?))
     }
 }
 
@@ -70,18 +71,13 @@ impl LegSnapshot {
             keys.push('"');
         }
         keys.push(']');
-        let rows = sqlx::query(
+        sql(
             "SELECT asked.key AS position, duration_s, certified_lower_bound_s, bound_version, \
-             solve_time_s FROM json_each(?1) AS asked CROSS JOIN legs INDEXED BY leg_times \
-             ON legs.key = asked.value AND solver_version = ?2",
+             solve_time_s FROM {legs_asked_for} AND solver_version = $2",
         )
         .bind(keys)
         .bind(SOLVER_VERSION)
-        .fetch_all(&mut *self.0)
-        .await?;
-        Ok(rows
-            .iter()
-            .map(TimeRow::from_row)
-            .collect::<Result<_, _>>()?)
+        .fetch_all(&mut self.0)
+        .await
     }
 }

@@ -2,13 +2,15 @@
 
 mod upkeep;
 
+use super::database::row::{FromRow, Row};
+use super::database::statement::sql;
+use super::database::{Transaction, Turn};
 use super::{Store, StoreError};
 use slewplan_solver::bounds;
 use slewplan_solver::model::cone::ForbiddenCone;
 use slewplan_solver::model::motion::Motion;
 use slewplan_solver::tour::legs::{LegKind, StoredLeg};
 use slewplan_solver::tour::planner;
-use sqlx::{FromRow as _, Row, SqliteConnection};
 use std::str::FromStr;
 
 /// Legs of other versions of the solver are never found. They are replaced when they are solved
@@ -54,7 +56,7 @@ row! {
         /// Minimum time, s.
         pub(crate) duration_s: f64,
         certified_lower_bound_s: Option<f64>,
-        bound_version: Option<u32>,
+        bound_version: Option<i64>,
         /// Wall-clock time of the solve, s.
         pub(crate) solve_time_s: f64,
         /// How the solve ended.
@@ -81,7 +83,7 @@ impl CachedLegRow {
     /// another version.
     pub(crate) fn certified_lower_bound_s(&self) -> Option<f64> {
         self.certified_lower_bound_s
-            .filter(|_| self.bound_version == Some(bounds::VERSION))
+            .filter(|_| self.bound_version == Some(bounds::VERSION.into()))
     }
 
     /// The cones that it keeps out of, in the frame in which it begins at the identity attitude.
@@ -131,30 +133,28 @@ pub(crate) fn key(identity: &str) -> String {
 impl Store {
     /// The stored leg of an identity, if this version of the solver solved it.
     pub(crate) async fn known_leg(&self, identity: &str) -> Result<Option<StoredLeg>, StoreError> {
-        let row = sqlx::query(concat!(
+        let found: Option<KnownLeg> = sql(concat!(
             "SELECT document, trajectory, ",
             leg_columns!(),
-            " FROM legs JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) \
+            " FROM legs JOIN (SELECT key AS spacecraft_key, document FROM leg_spacecraft) AS known \
              ON spacecraft_key = spacecraft \
-             WHERE key = ? AND identity = ? AND solver_version = ?"
+             WHERE key = $1 AND identity = $2 AND solver_version = $3"
         ))
         .bind(key(identity))
         .bind(identity)
         .bind(SOLVER_VERSION)
-        .fetch_optional(&self.readers)
+        .fetch_optional(&self.database)
         .await?;
-        row.map(|row| {
-            let motion = read_motion(row.try_get("trajectory")?)?;
-            let spacecraft = row.try_get("document")?;
-            CachedLegRow::from_row(&row)?.stored(spacecraft, motion)
-        })
-        .transpose()
+        found
+            .map(|known| known.leg.row.stored(known.spacecraft, known.leg.motion))
+            .transpose()
     }
 
     /// Stores legs, all of them or none. Returns how many were not stored by this version with bounds
     /// of this version before.
     pub(crate) async fn put_legs(&self, legs: &[NewLeg], now_us: i64) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
+        transaction.take_turn(Turn::Legs).await?;
         let mut new = 0;
         for leg in legs {
             new += put_leg(&mut transaction, leg, now_us).await?;
@@ -168,35 +168,29 @@ impl Store {
         &self,
         key: &str,
     ) -> Result<Option<(CachedLegRow, Motion)>, StoreError> {
-        let row = sqlx::query(concat!(
+        let found: Option<LegWithMotion> = sql(concat!(
             "SELECT trajectory, ",
             leg_columns!(),
-            " FROM legs WHERE key = ?"
+            " FROM legs WHERE key = $1"
         ))
         .bind(key)
-        .fetch_optional(&self.readers)
+        .fetch_optional(&self.database)
         .await?;
-        row.map(|row| {
-            Ok((
-                CachedLegRow::from_row(&row)?,
-                read_motion(row.try_get("trajectory")?)?,
-            ))
-        })
-        .transpose()
+        Ok(found.map(|leg| (leg.row, leg.motion)))
     }
 
     /// Legs in the order in which they were stored.
     pub(crate) async fn legs(&self, filter: &LegFilter) -> Result<Vec<CachedLegRow>, StoreError> {
         let ([x, y, z, w], tolerance) = filter.turn.unwrap_or_default();
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             leg_columns!(),
-            " FROM legs WHERE (?1 IS NULL OR spacecraft = ?1) AND (?2 IS NULL OR sequence > ?2) \
-             AND (NOT ?3 \
-             OR abs(turn_x * ?4 + turn_y * ?5 + turn_z * ?6 + turn_w * ?7) >= ?8 \
+            " FROM legs WHERE ($1 IS NULL OR spacecraft = $1) AND ($2 IS NULL OR sequence > $2) \
+             AND (NOT $3 \
+             OR abs(turn_x * $4 + turn_y * $5 + turn_z * $6 + turn_w * $7) >= $8 \
              OR (reversible AND \
-             abs(turn_w * ?7 - turn_x * ?4 - turn_y * ?5 - turn_z * ?6) >= ?8)) \
-             ORDER BY sequence LIMIT ?9"
+             abs(turn_w * $7 - turn_x * $4 - turn_y * $5 - turn_z * $6) >= $8)) \
+             ORDER BY sequence LIMIT $9"
         ))
         .bind(&filter.spacecraft)
         .bind(filter.after)
@@ -208,15 +202,47 @@ impl Store {
         // The product of two equal quaternions is one up to rounding.
         .bind((tolerance / 2.0).cos() - ROUNDING)
         .bind(filter.limit)
-        .fetch_all(&self.readers)
-        .await?)
+        .fetch_all(&self.database)
+        .await
     }
 
     /// Number of stored legs.
     pub(crate) async fn leg_count(&self) -> Result<i64, StoreError> {
-        Ok(sqlx::query_scalar("SELECT count(*) FROM legs")
-            .fetch_one(&self.readers)
-            .await?)
+        let (count,) = sql("SELECT count(*) FROM legs")
+            .fetch_one(&self.database)
+            .await?;
+        Ok(count)
+    }
+}
+
+/// A leg with its motion.
+struct LegWithMotion {
+    row: CachedLegRow,
+    motion: Motion,
+}
+
+impl FromRow for LegWithMotion {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            row: CachedLegRow::from_row(row)?,
+            motion: read_motion(&row.get::<Vec<u8>>("trajectory")?)?,
+        })
+    }
+}
+
+/// A leg with all that a solve takes of it.
+struct KnownLeg {
+    leg: LegWithMotion,
+    /// Canonical text.
+    spacecraft: String,
+}
+
+impl FromRow for KnownLeg {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            leg: LegWithMotion::from_row(row)?,
+            spacecraft: row.get("document")?,
+        })
     }
 }
 
@@ -228,7 +254,7 @@ fn read_motion(json: &[u8]) -> Result<Motion, StoreError> {
 }
 
 async fn put_leg(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     NewLeg { identity, leg }: &NewLeg,
     now_us: i64,
 ) -> Result<u64, StoreError> {
@@ -237,32 +263,32 @@ async fn put_leg(
         what: error.to_string(),
     })?;
     let spacecraft = key(&leg.spacecraft);
-    sqlx::query("INSERT INTO leg_spacecraft (key, document) VALUES (?, ?) ON CONFLICT DO NOTHING")
+    sql("INSERT INTO leg_spacecraft (key, document) VALUES ($1, $2) ON CONFLICT DO NOTHING")
         .bind(&spacecraft)
         .bind(&leg.spacecraft)
-        .execute(&mut *connection)
+        .execute(&mut *transaction)
         .await?;
-    let mut query = sqlx::query(
+    let mut insert = sql(
         "INSERT INTO legs (key, identity, spacecraft, kind, turn_x, turn_y, turn_z, turn_w, \
          momentum_x, momentum_y, momentum_z, reversible, duration_s, certified_lower_bound_s, \
          bound_version, solve_time_s, status, solver_version, trajectory, created_us) \
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) \
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20) \
          ON CONFLICT (key) DO UPDATE SET reversible = excluded.reversible, duration_s = excluded.duration_s, \
          certified_lower_bound_s = excluded.certified_lower_bound_s, \
          bound_version = excluded.bound_version, solve_time_s = excluded.solve_time_s, \
          status = excluded.status, \
          solver_version = excluded.solver_version, trajectory = excluded.trajectory, \
-         created_us = excluded.created_us WHERE solver_version <> excluded.solver_version \
-         OR bound_version IS NOT excluded.bound_version",
+         created_us = excluded.created_us WHERE legs.solver_version <> excluded.solver_version \
+         OR legs.bound_version IS DISTINCT FROM excluded.bound_version",
     )
     .bind(key(identity))
     .bind(identity)
     .bind(spacecraft)
     .bind(<&str>::from(leg.kind));
     for number in leg.turn_xyzw.into_iter().chain(leg.body_momentum_nms) {
-        query = query.bind(number);
+        insert = insert.bind(number);
     }
-    let done = query
+    insert
         .bind(leg.reversible)
         .bind(leg.duration_s)
         .bind(leg.certified_lower_bound_s)
@@ -270,9 +296,8 @@ async fn put_leg(
         .bind(leg.solve_time_s)
         .bind(&leg.status)
         .bind(SOLVER_VERSION)
-        .bind(trajectory)
+        .bind(&trajectory)
         .bind(now_us)
-        .execute(connection)
-        .await?;
-    Ok(done.rows_affected())
+        .execute(transaction)
+        .await
 }

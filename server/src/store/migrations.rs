@@ -3,8 +3,10 @@
 //! The list replaces `sqlx::migrate!`: that macro alone had SQLite and half of sqlx compiled a second
 //! time, for the compiler.
 
-use sqlx::SqlSafeStr;
+mod postgres;
+
 use sqlx::migrate::{Migration, MigrationType, Migrator};
+use sqlx::{AssertSqlSafe, SqlSafeStr, SqlStr};
 
 /// A migration by its number and its file's name after it.
 macro_rules! migration {
@@ -18,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 13] = [
+const HISTORY: [(&str, &str, &str); 14] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -32,20 +34,29 @@ const HISTORY: [(&str, &str, &str); 13] = [
     migration!("0031", "bound_versions"),
     migration!("0040", "keep_out_violated"),
     migration!("0041", "leg_tables"),
+    migration!("0042", "turns"),
 ];
 
-/// What brings a database to the schema of this version.
-///
+/// What brings a file of SQLite to the schema of this version.
+pub(super) fn of_sqlite() -> Migrator {
+    migrator(SqlSafeStr::into_sql_str)
+}
+
+/// What brings a database of Postgres to the same schema.
+pub(super) fn of_postgres() -> Migrator {
+    migrator(|sql| AssertSqlSafe(postgres::translated(sql)).into_sql_str())
+}
+
 /// # Panics
 ///
 /// Never: every number of the list is one.
-pub(super) fn migrator() -> Migrator {
+fn migrator(statements: fn(&'static str) -> SqlStr) -> Migrator {
     let history = HISTORY.into_iter().map(|(number, name, sql)| {
         Migration::new(
             number.parse().expect("the number of a migration"),
             name.replace('_', " ").into(),
             MigrationType::Simple,
-            sql.into_sql_str(),
+            statements(sql),
             false,
         )
     });
@@ -55,6 +66,32 @@ pub(super) fn migrator() -> Migrator {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A database knows a migration by the hash of its text.
+    #[test]
+    fn what_postgres_was_given_never_changes() {
+        let digest = |(number, _, sql): (&str, &str, &str)| {
+            let digest = crate::base::digest::hex(postgres::translated(sql).as_bytes());
+            format!("{number} {}", &digest[..16])
+        };
+        let expected = [
+            "0001 f549da8d7428ec11",
+            "0002 dc6ac33d4b9d2889",
+            "0003 f2d9624a160f57c7",
+            "0004 c4f048d307439bb5",
+            "0010 59913a2987cf6205",
+            "0011 3da85bc3c7c03405",
+            "0012 2f5c1177179c7f2e",
+            "0020 452afa48440d9ca1",
+            "0021 a7703686c2fba2c6",
+            "0030 00735ad2a59dc402",
+            "0031 99e96e66209b6c73",
+            "0040 724aa5a27540676d",
+            "0041 b608bff618f759ca",
+            "0042 7e2e9a45d65381cb",
+        ];
+        assert_eq!(HISTORY.map(digest), expected);
+    }
 
     #[test]
     fn the_list_names_every_file_of_the_folder_in_order() {

@@ -5,9 +5,11 @@
 //! progress that reports them, and never by the solver's threads. They have a table of their own,
 //! so that the plan of an interrupted attempt cannot be mistaken for the result of a job.
 
+use super::database::Transaction;
+use super::database::row::{FromRow, Row};
+use super::database::statement::sql;
 use super::{Ended, JobState, PackedPlan, Store, StoreError};
 use bytes::Bytes;
-use sqlx::{FromRow, Row, SqliteConnection};
 
 /// A stored plan.
 #[derive(Debug, Clone)]
@@ -36,23 +38,23 @@ pub(crate) struct NewIncumbent {
 macro_rules! results_of_job {
     () => {
         " FROM jobs LEFT JOIN results r ON r.job = sequence \
-         LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = ? AND work = 'plan'"
+         LEFT JOIN incumbents i ON i.job = sequence AND state <> 'cancelled' WHERE id = $1 AND work = 'plan'"
     };
 }
 
 /// Stores the incumbent of a running job unless one at least as good is stored already.
 pub(super) async fn store_incumbent(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     job: i64,
     incumbent: &NewIncumbent,
 ) -> Result<(), StoreError> {
-    sqlx::query(
+    sql(
         "INSERT INTO incumbents (job, total_time_s, lower_bound_s, keep_out_violated, document, \
-         packed, digest) VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job) DO UPDATE SET \
+         packed, digest) VALUES ($1, $2, $3, $4, $5, $6, $7) ON CONFLICT (job) DO UPDATE SET \
          total_time_s = excluded.total_time_s, lower_bound_s = excluded.lower_bound_s, \
          keep_out_violated = excluded.keep_out_violated, document = excluded.document, \
          packed = excluded.packed, digest = excluded.digest \
-         WHERE excluded.total_time_s < total_time_s",
+         WHERE excluded.total_time_s < incumbents.total_time_s",
     )
     .bind(job)
     .bind(incumbent.total_time_s)
@@ -61,7 +63,7 @@ pub(super) async fn store_incumbent(
     .bind(&incumbent.document.document)
     .bind(incumbent.document.packed)
     .bind(&incumbent.document.digest)
-    .execute(connection)
+    .execute(transaction)
     .await?;
     Ok(())
 }
@@ -69,77 +71,80 @@ pub(super) async fn store_incumbent(
 /// The stored incumbent as the end of a job, when it is better than the plan that the job would end
 /// with.
 pub(super) async fn better_incumbent(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     job: i64,
     ended: &Ended,
 ) -> Result<Option<Ended>, StoreError> {
-    let kept = sqlx::query(
+    sql(
         "SELECT document, packed, digest, total_time_s, lower_bound_s, keep_out_violated \
          FROM incumbents \
-         WHERE job = ?1 AND (?2 IS NULL OR total_time_s < ?2)",
+         WHERE job = $1 AND ($2 IS NULL OR total_time_s < $2)",
     )
     .bind(job)
     .bind(ended.incumbent_s)
-    .fetch_optional(connection)
-    .await?;
-    let Some(row) = kept else {
-        return Ok(None);
-    };
-    Ok(Some(Ended {
-        state: JobState::Stopped,
-        document: Some(PackedPlan::from_row(&row)?),
-        incumbent_s: row.try_get("total_time_s")?,
-        lower_bound_s: row.try_get("lower_bound_s")?,
-        keep_out_violated: row.try_get("keep_out_violated")?,
-        detail: None,
-        code: None,
-        early: true,
-    }))
+    .fetch_optional(transaction)
+    .await
+}
+
+/// An incumbent as the end of a job that was cut short.
+impl FromRow for Ended {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            state: JobState::Stopped,
+            document: Some(PackedPlan::from_row(row)?),
+            incumbent_s: row.get("total_time_s")?,
+            lower_bound_s: row.get("lower_bound_s")?,
+            keep_out_violated: row.get("keep_out_violated")?,
+            detail: None,
+            code: None,
+            early: true,
+        })
+    }
 }
 
 /// Replaces the incumbent by the result of the job. A result without a plan does not replace an
 /// incumbent.
 pub(super) async fn store_result(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     job: i64,
     ended: &Ended,
 ) -> Result<(), StoreError> {
     if ended.incumbent_s.is_some() {
-        delete_incumbent(connection, job).await?;
+        delete_incumbent(transaction, job).await?;
     }
     if let Some(document) = &ended.document {
-        sqlx::query(
-            "INSERT INTO results (job, document, packed, digest) SELECT ?1, ?2, ?3, ?4 \
-             WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = ?1)",
+        sql(
+            "INSERT INTO results (job, document, packed, digest) SELECT $1, $2, $3, $4 \
+             WHERE NOT EXISTS (SELECT 1 FROM incumbents WHERE job = $1)",
         )
         .bind(job)
         .bind(&document.document)
         .bind(document.packed)
         .bind(&document.digest)
-        .execute(connection)
+        .execute(transaction)
         .await?;
     }
     Ok(())
 }
 
 /// Deletes the incumbent of a job that ends with another plan.
-async fn delete_incumbent(connection: &mut SqliteConnection, job: i64) -> Result<(), StoreError> {
-    sqlx::query("DELETE FROM incumbents WHERE job = ?")
+async fn delete_incumbent(transaction: &mut Transaction, job: i64) -> Result<(), StoreError> {
+    sql("DELETE FROM incumbents WHERE job = $1")
         .bind(job)
-        .execute(connection)
+        .execute(transaction)
         .await?;
     Ok(())
 }
 
 /// Deletes what there is so far of a job that is cancelled: its best plan, or parts of its table.
 pub(super) async fn delete_unfinished(
-    connection: &mut SqliteConnection,
+    transaction: &mut Transaction,
     job: i64,
 ) -> Result<(), StoreError> {
-    delete_incumbent(connection, job).await?;
-    sqlx::query("DELETE FROM leg_table_parts WHERE job = ?")
+    delete_incumbent(transaction, job).await?;
+    sql("DELETE FROM leg_table_parts WHERE job = $1")
         .bind(job)
-        .execute(connection)
+        .execute(transaction)
         .await?;
     Ok(())
 }
@@ -147,11 +152,10 @@ pub(super) async fn delete_unfinished(
 impl Store {
     /// The scenario of a job as JSON, or the query of a table, and when it was submitted; `None` when there is no such job.
     pub(crate) async fn scenario(&self, id: &str) -> Result<Option<(Vec<u8>, i64)>, StoreError> {
-        let found = sqlx::query_as("SELECT scenario, submitted_us FROM jobs WHERE id = ?")
+        sql("SELECT scenario, submitted_us FROM jobs WHERE id = $1")
             .bind(id)
-            .fetch_optional(&self.readers)
-            .await?;
-        Ok(found)
+            .fetch_optional(&self.database)
+            .await
     }
 
     /// The state of a job and its plan: its result, or the incumbent unless the job is cancelled.
@@ -160,27 +164,26 @@ impl Store {
         &self,
         id: &str,
     ) -> Result<Option<(JobState, Option<ResultRow>)>, StoreError> {
-        let known = sqlx::query(concat!(
+        let known: Option<KnownResult> = sql(concat!(
             "SELECT state, coalesce(r.digest, i.digest) AS digest, r.job IS NOT NULL AS is_final",
             results_of_job!()
         ))
         .bind(id)
-        .fetch_optional(&self.readers)
+        .fetch_optional(&self.database)
         .await?;
-        let Some(row) = known else {
+        let Some(known) = known else {
             return Ok(None);
         };
-        let digest: Option<String> = row.try_get("digest")?;
-        let Some(digest) = digest else {
-            return Ok(Some((JobState::stored(row.try_get("state")?)?, None)));
+        let Some(digest) = known.digest else {
+            return Ok(Some((known.state, None)));
         };
         if let Some(document) = self.recent.get(&digest) {
             let plan = ResultRow {
                 document,
                 digest,
-                is_final: row.try_get("is_final")?,
+                is_final: known.is_final,
             };
-            return Ok(Some((JobState::stored(row.try_get("state")?)?, Some(plan))));
+            return Ok(Some((known.state, Some(plan))));
         }
         self.read_result(id).await
     }
@@ -191,29 +194,63 @@ impl Store {
         id: &str,
     ) -> Result<Option<(JobState, Option<ResultRow>)>, StoreError> {
         // One statement, so that state and plan belong to the same moment.
-        let row = sqlx::query(concat!(
+        let read: Option<ReadResult> = sql(concat!(
             "SELECT state, coalesce(r.document, i.document) AS document, \
              coalesce(r.packed, i.packed) AS packed, coalesce(r.digest, i.digest) AS digest, \
              r.job IS NOT NULL AS is_final",
             results_of_job!()
         ))
         .bind(id)
-        .fetch_optional(&self.readers)
+        .fetch_optional(&self.database)
         .await?;
-        let Some(row) = row else {
+        let Some(ReadResult { known, plan }) = read else {
             return Ok(None);
         };
-        let state = JobState::stored(row.try_get("state")?)?;
-        let Some(digest) = row.try_get::<Option<String>, _>("digest")? else {
-            return Ok(Some((state, None)));
+        let (Some(digest), Some(plan)) = (known.digest, plan) else {
+            return Ok(Some((known.state, None)));
         };
-        let document = Bytes::from(PackedPlan::from_row(&row)?.unpacked()?);
+        let document = Bytes::from(plan.unpacked()?);
         self.recent.keep(&digest, &document);
         let plan = ResultRow {
             document,
             digest,
-            is_final: row.try_get("is_final")?,
+            is_final: known.is_final,
         };
-        Ok(Some((state, Some(plan))))
+        Ok(Some((known.state, Some(plan))))
+    }
+}
+
+/// What is known of a plan before it is read.
+struct KnownResult {
+    state: JobState,
+    /// `None` where there is no plan.
+    digest: Option<String>,
+    is_final: bool,
+}
+
+impl FromRow for KnownResult {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        Ok(Self {
+            state: JobState::stored(&row.get::<String>("state")?)?,
+            digest: row.get("digest")?,
+            is_final: row.get("is_final")?,
+        })
+    }
+}
+
+/// The same with the plan.
+struct ReadResult {
+    known: KnownResult,
+    plan: Option<PackedPlan>,
+}
+
+impl FromRow for ReadResult {
+    fn from_row(row: Row<'_>) -> Result<Self, StoreError> {
+        let known = KnownResult::from_row(row)?;
+        let there = known.digest.is_some();
+        Ok(Self {
+            known,
+            plan: there.then(|| PackedPlan::from_row(row)).transpose()?,
+        })
     }
 }

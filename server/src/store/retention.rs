@@ -1,5 +1,6 @@
 //! Deletion of jobs that ended long ago, with everything that refers to them.
 
+use super::database::statement::sql;
 use super::{Store, StoreError};
 
 impl Store {
@@ -11,15 +12,13 @@ impl Store {
         at_most: i64,
     ) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
-        let done = sqlx::query(
-            "DELETE FROM jobs WHERE sequence IN \
-             (SELECT sequence FROM jobs WHERE finished_us < ? ORDER BY finished_us LIMIT ?)",
-        )
+        let deleted = sql("DELETE FROM jobs WHERE sequence IN \
+             (SELECT sequence FROM jobs WHERE finished_us < $1 ORDER BY finished_us LIMIT $2)")
         .bind(before_us)
         .bind(at_most)
         .execute(&mut *transaction)
         .await?;
         transaction.commit().await?;
-        Ok(done.rows_affected())
+        Ok(deleted)
     }
 }

@@ -38,10 +38,12 @@ macro_rules! row {
             $($(#[$about_field])* $seen_field $field: $type,)*
         }
 
-        impl sqlx::FromRow<'_, sqlx::sqlite::SqliteRow> for $row {
-            fn from_row(row: &sqlx::sqlite::SqliteRow) -> Result<Self, sqlx::Error> {
+        impl $crate::store::database::row::FromRow for $row {
+            fn from_row(
+                row: $crate::store::database::row::Row<'_>,
+            ) -> Result<Self, $crate::store::StoreError> {
                 Ok(Self {
-                    $($field: sqlx::Row::try_get(row, stringify!($field))?,)*
+                    $($field: row.get(stringify!($field))?,)*
                 })
             }
         }

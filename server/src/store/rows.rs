@@ -1,8 +1,6 @@
 //! Rows of the tables as types.
 
 use super::StoreError;
-use sqlx::FromRow as _;
-use sqlx::sqlite::SqliteRow;
 use std::str::FromStr as _;
 
 /// The state of a job.
@@ -117,6 +115,8 @@ row! {
         pub(crate) stop_requested_us: Option<i64>,
         /// When its cancellation was requested.
         pub(crate) cancel_requested_us: Option<i64>,
+        /// Jobs of greater priority are leased first.
+        pub(crate) priority: i64,
         /// When it was submitted.
         pub(crate) submitted_us: i64,
         /// When its newest attempt began.
@@ -138,10 +138,6 @@ impl JobRow {
             table: "jobs",
             what: format!("no job makes a {}", self.work),
         })
-    }
-
-    pub(super) fn of(row: &SqliteRow) -> Result<Self, StoreError> {
-        Ok(Self::from_row(row)?)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Segments of tours that the search of a running job has solved.
 
+use super::database::statement::sql;
 use super::{JobRow, Store, StoreError};
 
 /// Segments of other versions of the solver are not found.
@@ -22,15 +23,15 @@ row! {
 impl Store {
     /// The segments of a job that this version of the solver has solved.
     pub(crate) async fn segments(&self, job: i64) -> Result<Vec<SegmentRow>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             segment_columns!(),
-            " FROM segments WHERE job = ? AND solver_version = ?",
+            " FROM segments WHERE job = $1 AND solver_version = $2",
         ))
         .bind(job)
         .bind(SOLVER_VERSION)
-        .fetch_all(&self.readers)
-        .await?)
+        .fetch_all(&self.database)
+        .await
     }
 
     /// Stores segments of a leased job, all of them or none; `false` when the lease has been lost.
@@ -40,8 +41,9 @@ impl Store {
         segments: &[SegmentRow],
     ) -> Result<bool, StoreError> {
         let mut transaction = self.begin().await?;
-        let held: Option<i64> = sqlx::query_scalar(
-            "SELECT sequence FROM jobs WHERE sequence = ? AND fence = ? AND state = 'running'",
+        let held: Option<(i64,)> = sql(
+            "SELECT sequence FROM jobs WHERE sequence = $1 AND fence = $2 AND state = 'running' \
+             {for_update}",
         )
         .bind(lease.sequence)
         .bind(lease.fence)
@@ -51,9 +53,11 @@ impl Store {
             return Ok(false);
         }
         for segment in segments {
-            sqlx::query(
-                "INSERT OR REPLACE INTO segments (job, name, solver_version, intervals, motion) \
-                 VALUES (?, ?, ?, ?, ?)",
+            sql(
+                "INSERT INTO segments (job, name, solver_version, intervals, motion) \
+                 VALUES ($1, $2, $3, $4, $5) ON CONFLICT (job, name) DO UPDATE SET \
+                 solver_version = excluded.solver_version, intervals = excluded.intervals, \
+                 motion = excluded.motion",
             )
             .bind(lease.sequence)
             .bind(&segment.name)
@@ -74,15 +78,13 @@ impl Store {
         at_most: i64,
     ) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
-        let done = sqlx::query(
-            "DELETE FROM segments WHERE sequence IN \
+        let deleted = sql("DELETE FROM segments WHERE sequence IN \
              (SELECT segments.sequence FROM segments JOIN jobs ON jobs.sequence = job \
-             WHERE finished_us IS NOT NULL LIMIT ?)",
-        )
+             WHERE finished_us IS NOT NULL LIMIT $1)")
         .bind(at_most)
         .execute(&mut *transaction)
         .await?;
         transaction.commit().await?;
-        Ok(done.rows_affected())
+        Ok(deleted)
     }
 }

@@ -1,5 +1,7 @@
 //! Spacecraft stored by name, with their newest versions.
 
+use super::database::Turn;
+use super::database::statement::sql;
 use super::{Store, StoreError};
 
 /// Number of versions kept of each name. Jobs do not depend on them: their scenarios have the
@@ -30,10 +32,11 @@ impl Store {
         now_us: i64,
     ) -> Result<SpacecraftRow, StoreError> {
         let mut transaction = self.begin().await?;
-        let newest: Option<SpacecraftRow> = sqlx::query_as(concat!(
+        transaction.take_turn(Turn::Spacecraft).await?;
+        let newest: Option<SpacecraftRow> = sql(concat!(
             "SELECT ",
             spacecraft_columns!(),
-            " FROM spacecraft WHERE name = ? ORDER BY version DESC LIMIT 1",
+            " FROM spacecraft WHERE name = $1 ORDER BY version DESC LIMIT 1",
         ))
         .bind(name)
         .fetch_optional(&mut *transaction)
@@ -43,16 +46,14 @@ impl Store {
             Some(newest) => newest.version + 1,
             None => 1,
         };
-        sqlx::query(
-            "INSERT INTO spacecraft (name, version, document, created_us) VALUES (?, ?, ?, ?)",
-        )
-        .bind(name)
-        .bind(version)
-        .bind(document)
-        .bind(now_us)
-        .execute(&mut *transaction)
-        .await?;
-        sqlx::query("DELETE FROM spacecraft WHERE name = ? AND version <= ?")
+        sql("INSERT INTO spacecraft (name, version, document, created_us) VALUES ($1, $2, $3, $4)")
+            .bind(name)
+            .bind(version)
+            .bind(document)
+            .bind(now_us)
+            .execute(&mut *transaction)
+            .await?;
+        sql("DELETE FROM spacecraft WHERE name = $1 AND version <= $2")
             .bind(name)
             .bind(version - KEPT_VERSIONS)
             .execute(&mut *transaction)
@@ -71,15 +72,15 @@ impl Store {
         name: &str,
         version: Option<i64>,
     ) -> Result<Option<SpacecraftRow>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        sql(concat!(
             "SELECT ",
             spacecraft_columns!(),
             " FROM spacecraft \
-             WHERE name = ?1 AND (?2 IS NULL OR version = ?2) ORDER BY version DESC LIMIT 1",
+             WHERE name = $1 AND ($2 IS NULL OR version = $2) ORDER BY version DESC LIMIT 1",
         ))
         .bind(name)
         .bind(version)
-        .fetch_optional(&self.readers)
-        .await?)
+        .fetch_optional(&self.database)
+        .await
     }
 }

@@ -3,13 +3,21 @@
 mod bounds;
 mod ends;
 mod fence;
+mod outage;
+#[path = "../../../tests/postgres.rs"]
+mod postgres;
 mod queue;
 mod races;
+mod schema;
+mod sqlite;
 mod statements;
 
+use super::database::row::FromRow;
+use super::database::statement::{Statement, sql};
 use super::{
-    Ended, JobRow, JobState, Lease, NewIncumbent, PackedPlan, ProgressRow, QueueLimits, ResultRow,
-    SegmentRow, Store, StoreError, Submission, Submitted, Work,
+    DatabaseAddress, Ended, JobRow, JobState, Lease, NewIncumbent, OtherProcesses, PackedPlan,
+    ProgressRow, QueueLimits, ResultRow, SegmentRow, Store, StoreError, Submission, Submitted,
+    Work,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -63,6 +71,7 @@ fn submission() -> Submission {
         scenario: b"{}".into(),
         targets: 1,
         client: None,
+        priority: 0,
         key: None,
     }
 }
@@ -93,17 +102,65 @@ fn state_of(job: &JobRow, _: i64) -> Result<String, StoreError> {
     Ok(event.to_string())
 }
 
-/// Runs a test on an empty database.
-fn on_a_store<F: Future<Output = ()>>(test: impl FnOnce(Store) -> F) {
+/// Runs a test on an empty database of SQLite, and on one of Postgres.
+fn on_a_store<F: Future<Output = ()>>(test: impl Fn(Store) -> F) {
+    on_an_address(async |address| test(open(&address).await).await);
+}
+
+/// Runs a test that opens an empty database by itself.
+fn on_an_address(test: impl AsyncFn(DatabaseAddress)) {
     let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("store.db");
+    let server = postgres::new_database();
+    for address in [Some(file.into_os_string()), server.map(Into::into)] {
+        let Some(address) = address else {
+            println!("not on Postgres, which is not installed");
+            continue;
+        };
+        println!("on {}", address.display());
+        let address = address.try_into().expect("an address");
+        runtime().block_on(test(address));
+    }
+}
+
+/// Runs a test of what only SQLite has.
+fn on_sqlite<F: Future<Output = ()>>(test: impl FnOnce(Store) -> F) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let address = DatabaseAddress::File(folder.path().join("store.db"));
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
         .expect("a runtime");
-    runtime.block_on(async {
-        let path = folder.path().join("store.db");
-        test(Store::open(&path, state_of).await.expect("opened")).await;
-    });
+    runtime.block_on(async { test(open(&address).await).await });
+}
+
+fn runtime() -> tokio::runtime::Runtime {
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build();
+    runtime.expect("a runtime")
+}
+
+async fn open(address: &DatabaseAddress) -> Store {
+    Store::open(address, state_of).await.expect("opened")
+}
+
+/// Changes rows beside the store.
+async fn change(store: &Store, statement: Statement<'_>) {
+    let mut transaction = store.begin().await.expect("begun");
+    let changed = statement.execute(&mut *transaction).await.expect("valid");
+    assert!(changed > 0);
+    transaction.commit().await.expect("changed");
+}
+
+/// The only value of a query.
+async fn value<T>(store: &Store, query: &'static str) -> T
+where
+    (T,): FromRow,
+{
+    let (value,) = sql(query).fetch_one(&store.database).await.expect("read");
+    value
 }
 
 #[test]
@@ -111,7 +168,10 @@ fn a_lost_lease_stores_no_plan_and_ends_no_job() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lost = lease(&store, "first").await.job;
-        store.recover("second", 3).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 3)
+            .await
+            .expect("recovered");
         let newest = lease(&store, "second").await.job;
         assert!(!improve(&store, &lost, 20.0).await);
         assert!(result(&store).await.1.is_none());
@@ -127,9 +187,15 @@ fn a_lost_lease_stores_no_plan_and_ends_no_job() {
 
 /// Kind and state of each event.
 async fn event_states(store: &Store) -> Vec<String> {
-    let states = "SELECT kind || ' ' || (data ->> 'state') FROM events ORDER BY id";
-    let states = sqlx::query_scalar(states).fetch_all(&store.readers).await;
-    states.expect("read")
+    let events: Vec<(String, String)> = sql("SELECT kind, data FROM events ORDER BY id")
+        .fetch_all(&store.database)
+        .await
+        .expect("read");
+    let state = |(kind, data): (String, String)| {
+        let event: serde_json::Value = serde_json::from_str(&data).expect("JSON");
+        format!("{kind} {}", event["state"].as_str().expect("a state"))
+    };
+    events.into_iter().map(state).collect()
 }
 
 #[test]
@@ -137,11 +203,17 @@ fn every_change_of_state_has_an_event() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let lost = lease(&store, "first").await.job;
-        let recovered = store.recover("second", 3).await.expect("recovered");
+        let recovered = store
+            .recover("second", OtherProcesses::Ended, 3)
+            .await
+            .expect("recovered");
         assert_eq!((recovered.queued, recovered.cancelled), (1, 0));
         lease(&store, "second").await;
         store.request_cancel(ID, 5).await.expect("cancelled");
-        let recovered = store.recover("third", 6).await.expect("recovered");
+        let recovered = store
+            .recover("third", OtherProcesses::Ended, 6)
+            .await
+            .expect("recovered");
         assert_eq!((recovered.queued, recovered.cancelled), (0, 1));
         assert!(!store.prolong(&lost, 9).await.expect("tried"));
         let expected = ["queued", "running", "queued", "running", "cancelled"];
@@ -170,30 +242,10 @@ fn prolonging_a_lease_is_stored() {
         submitted(&store).await;
         let lease = lease(&store, "first").await.job;
         assert!(store.prolong(&lease, 9_000).await.expect("tried"));
-        let lease = sqlx::query_scalar("SELECT lease_until_us FROM jobs");
-        let lease: i64 = lease.fetch_one(&store.readers).await.expect("read");
+        let lease: i64 = value(&store, "SELECT lease_until_us FROM jobs").await;
         assert_eq!(lease, 9_000);
-        assert!(store.sizes().iter().all(|(_, bytes)| *bytes > 0));
-    });
-}
-
-#[test]
-fn the_wal_stays_small_under_continuous_writes() {
-    on_a_store(|store| async move {
-        submitted(&store).await;
-        let lease = lease(&store, "first").await.job;
-        // About 64 MB in all; each write replaces the one before.
-        for round in 0..64 {
-            let segment = SegmentRow {
-                name: "piece 1 2 3".into(),
-                intervals: 2,
-                motion: vec![round; 1 << 20],
-            };
-            let taken = store.put_segments(&lease, &[segment]).await;
-            assert!(taken.expect("tried"));
-        }
-        let [_, (_, log)] = store.sizes();
-        assert!((1..16 << 20).contains(&log), "{log} bytes");
+        let sizes = store.sizes().await.expect("measured");
+        assert!(sizes.iter().all(|(_, bytes)| *bytes > 0));
     });
 }
 
@@ -205,7 +257,10 @@ fn the_best_plan_of_all_attempts_is_the_result_of_an_interrupted_search() {
         for total in [30.0, 20.0] {
             assert!(improve(&store, &first, total).await);
         }
-        store.recover("second", 4).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 4)
+            .await
+            .expect("recovered");
         let second = lease(&store, "second").await.job;
         assert_eq!((second.attempt, second.incumbent_s), (2, Some(20.0)));
         assert!(improve(&store, &second, 30.0).await);
@@ -230,7 +285,10 @@ fn a_cancelled_job_has_no_plan() {
         let first = lease(&store, "first").await.job;
         assert!(improve(&store, &first, 20.0).await);
         store.request_cancel(ID, 4).await.expect("noted");
-        store.recover("second", 5).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 5)
+            .await
+            .expect("recovered");
         let (state, none) = result(&store).await;
         assert_eq!(state, JobState::Cancelled);
         assert!(none.is_none());
@@ -239,17 +297,20 @@ fn a_cancelled_job_has_no_plan() {
 
 #[test]
 fn segments_are_kept_for_the_next_attempt_and_deleted_after_the_job() {
-    let segment = SegmentRow {
-        name: "piece 1 2 3".into(),
-        intervals: 2,
-        motion: vec![7; 24],
-    };
     on_a_store(|store| async move {
+        let segment = SegmentRow {
+            name: "piece 1 2 3".into(),
+            intervals: 2,
+            motion: vec![7; 24],
+        };
         submitted(&store).await;
         let lost = lease(&store, "first").await.job;
         let kept = [segment.clone()];
         assert!(store.put_segments(&lost, &kept).await.expect("written"));
-        store.recover("second", 3).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 3)
+            .await
+            .expect("recovered");
         let second = lease(&store, "second").await.job;
         let late = [SegmentRow {
             motion: vec![8; 24],
@@ -275,45 +336,6 @@ fn segments_are_kept_for_the_next_attempt_and_deleted_after_the_job() {
     });
 }
 
-/// The effect of this setting is shown by a test with a recorded disk (tests/trust).
-#[test]
-fn every_writing_connection_syncs_its_commits() {
-    on_a_store(|store| async move {
-        const FULL: i64 = 2;
-        for _ in 0..2 {
-            let mut writer = store.writer.acquire().await.expect("a connection");
-            let setting = sqlx::query_scalar::<_, i64>("PRAGMA synchronous");
-            let setting = setting.fetch_one(&mut *writer).await.expect("read");
-            assert_eq!(setting, FULL);
-            // The next one is new, as after a failure.
-            writer.close().await.expect("closed");
-        }
-    });
-}
-
-#[test]
-fn the_store_recovers_from_a_full_disk() {
-    on_a_store(|store| async move {
-        submitted(&store).await;
-        let big = "x".repeat(1 << 20);
-        // More rounds than connections: each failure makes one connection unusable.
-        for round in 0..3 {
-            sqlx::query("PRAGMA max_page_count = 1")
-                .execute(&store.writer)
-                .await
-                .expect("limited");
-            let full = store.put_spacecraft("big", &big, 2).await;
-            let error = full.expect_err("there is no room");
-            assert!(error.is_disk_full(), "{error}");
-            store.job(ID).await.expect("read").expect("there");
-            // A new connection does not have the limit.
-            let name = format!("small-{round}");
-            let stored = store.put_spacecraft(&name, "{}", 3);
-            stored.await.expect("the writer has recovered");
-        }
-    });
-}
-
 #[test]
 fn a_damaged_plan_is_detected_and_not_returned() {
     on_a_store(|store| async move {
@@ -321,10 +343,8 @@ fn a_damaged_plan_is_detected_and_not_returned() {
         let lease = lease(&store, "first").await.job;
         let end = ended(JobState::Stopped, Some(plan(20.0)));
         assert!(store.finish(&lease, &end, 3).await.expect("written"));
-        sqlx::query("UPDATE results SET document = x'7b7d'")
-            .execute(&store.writer)
-            .await
-            .expect("damaged");
+        let damage = sql("UPDATE results SET document = $1").bind(&b"{}"[..]);
+        change(&store, damage).await;
         let error = store.result(ID).await.expect_err("it was changed");
         assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
     });

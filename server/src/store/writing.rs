@@ -1,10 +1,10 @@
 //! Write transactions, and the alarm for failed syncs.
 
+use super::database::{Database, Transaction};
 use super::{FormatEvent, Store, StoreError};
-use sqlx::{Sqlite, SqliteConnection, Transaction};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
-use tokio::sync::{Notify, watch};
+use tokio::sync::watch;
 
 /// Raised when the operating system failed to sync a commit to the disk.
 ///
@@ -38,11 +38,11 @@ impl SyncAlarm {
 /// A write transaction; it is rolled back unless it is committed.
 #[derive(Debug)]
 pub(super) struct WriteTransaction {
-    transaction: Transaction<'static, Sqlite>,
+    transaction: Transaction,
     /// Formats the events.
     pub(super) format_event: FormatEvent,
     alarm: SyncAlarm,
-    written: Arc<Notify>,
+    database: Database,
 }
 
 impl WriteTransaction {
@@ -51,34 +51,36 @@ impl WriteTransaction {
         let alarm = self.alarm;
         let committed = self.transaction.commit().await;
         committed.map_err(|error| alarm.check(error.into()))?;
-        self.written.notify_one();
+        if let Database::Sqlite(database) = &self.database {
+            database.written.notify_one();
+        }
         Ok(())
     }
 }
 
 impl Deref for WriteTransaction {
-    type Target = SqliteConnection;
+    type Target = Transaction;
 
-    fn deref(&self) -> &SqliteConnection {
+    fn deref(&self) -> &Transaction {
         &self.transaction
     }
 }
 
 impl DerefMut for WriteTransaction {
-    fn deref_mut(&mut self) -> &mut SqliteConnection {
+    fn deref_mut(&mut self) -> &mut Transaction {
         &mut self.transaction
     }
 }
 
 impl Store {
-    /// Begins a transaction that holds the write lock from its begin.
+    /// Begins a transaction; one of SQLite holds the write lock from its begin.
     pub(super) async fn begin(&self) -> Result<WriteTransaction, StoreError> {
-        let begun = self.writer.begin_with("BEGIN IMMEDIATE").await;
+        let begun = self.database.begin().await;
         Ok(WriteTransaction {
-            transaction: begun.map_err(|error| self.alarm.check(error.into()))?,
+            transaction: begun.map_err(|error| self.alarm.check(error))?,
             format_event: self.format_event,
             alarm: self.alarm.clone(),
-            written: Arc::clone(&self.written),
+            database: self.database.clone(),
         })
     }
 

@@ -3,7 +3,7 @@
 use super::super::App;
 use super::super::error::{ApiError, ErrorCode};
 use super::super::extract::header_text;
-use crate::store::{JobRow, Submission, Submitted};
+use crate::store::{JobRow, PRIORITIES, Submission, Submitted};
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::Response;
 use std::time::Duration;
@@ -85,6 +85,16 @@ pub(in crate::api) fn idempotency_key(headers: &HeaderMap) -> Result<Option<Stri
         return Err(ApiError::new(ErrorCode::InvalidParameter, detail));
     }
     Ok(Some(key.to_owned()))
+}
+
+/// The priority of a submission.
+pub(in crate::api) fn priority(asked: i64) -> Result<i64, ApiError> {
+    if PRIORITIES.contains(&asked) {
+        return Ok(asked);
+    }
+    let (least, greatest) = (PRIORITIES.start(), PRIORITIES.end());
+    let detail = format!("priority: {asked} is not within {least} and {greatest}");
+    Err(ApiError::new(ErrorCode::InvalidParameter, detail))
 }
 
 /// The wait of `Prefer: wait=N`. Unknown preferences are ignored (RFC 7240).

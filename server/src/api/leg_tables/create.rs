@@ -3,7 +3,7 @@
 use super::super::access::Caller;
 use super::super::describe::{self, BodyErrors, LegQueryBody, QuotaErrors, ServerErrors};
 use super::super::error::ApiError;
-use super::super::extract::JsonBody;
+use super::super::extract::{JsonBody, Parameters};
 use super::super::jobs::{self, submission};
 use super::super::legs::query;
 use super::super::{App, stored};
@@ -13,7 +13,20 @@ use crate::store::{Submission, Work};
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::Response;
+use serde::Deserialize;
+use utoipa::IntoParams;
 use uuid::Uuid;
+
+/// Parameters of a submission.
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub(in crate::api) struct TableQuery {
+    /// Jobs of greater priority are solved first.
+    #[serde(default)]
+    #[param(minimum = -10, maximum = 10, default = 0)]
+    priority: i64,
+}
 
 /// Submit a table of leg times
 ///
@@ -23,6 +36,7 @@ use uuid::Uuid;
 #[utoipa::path(
     post, path = "/v1/leg-tables", tag = "legs", operation_id = "create_leg_table",
     params(
+        TableQuery,
         ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
             pattern = "^[!-~]+$",
             description = "The same request under the same key makes one job"),
@@ -58,10 +72,12 @@ use uuid::Uuid;
 pub(in crate::api) async fn handler(
     State(app): State<App>,
     caller: Caller,
+    Parameters(query): Parameters<TableQuery>,
     headers: HeaderMap,
     body: JsonBody,
 ) -> Result<Response, ApiError> {
     let key = submission::idempotency_key(&headers)?;
+    let priority = submission::priority(query.priority)?;
     let fingerprint = digest::hex(&body.bytes);
     if key.is_none() {
         submission::check_room(&app).await?;
@@ -79,6 +95,7 @@ pub(in crate::api) async fn handler(
         },
         targets: i64::try_from(legs).unwrap_or(i64::MAX),
         client: caller.client().map(str::to_owned),
+        priority,
         key: key.map(|key| (caller.own(&key), fingerprint)),
     };
     let (job, replayed) = submission::submit(&app, &submission).await?;

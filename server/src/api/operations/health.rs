@@ -5,6 +5,7 @@ use super::super::{App, describe};
 use crate::base::clock::now_us;
 use crate::base::contradictions::ContradictionObserver;
 use crate::documents;
+use crate::store::StoreError;
 use axum::Json;
 use axum::extract::State;
 use serde::Serialize;
@@ -76,9 +77,15 @@ pub(in crate::api) async fn ready(
 }
 
 async fn examine(app: &App) -> Result<(), &'static str> {
-    let failed = |error| {
+    let failed = |error: StoreError| {
         tracing::warn!(%error, "not ready");
-        "the database cannot be used"
+        if error.is_away() {
+            "the server of the database does not answer"
+        } else if error.is_read_only() {
+            "the database can only be read at present"
+        } else {
+            "the database cannot be used"
+        }
     };
     app.store().check_writable(now_us()).await.map_err(failed)?;
     let waiting = app.store().waiting().await.map_err(failed)?;

@@ -42,6 +42,8 @@ pub(in crate::api) async fn handler(
         ["file"],
         app.store()
             .sizes()
+            .await?
+            .into_iter()
             .map(|(file, bytes)| ([file], bytes.try_into().unwrap_or(i64::MAX))),
     );
     let free = app.0.streams.available_permits();

@@ -32,6 +32,10 @@ pub(in crate::api) struct SubmissionQuery {
     /// Validate the scenario only; nothing is queued.
     #[serde(default)]
     validate_only: bool,
+    /// Jobs of greater priority are solved first.
+    #[serde(default)]
+    #[param(minimum = -10, maximum = 10, default = 0)]
+    priority: i64,
 }
 
 /// Submit a scenario
@@ -87,6 +91,7 @@ pub(in crate::api) async fn handler(
     body: JsonBody,
 ) -> Result<Response, ApiError> {
     let key = submission::idempotency_key(&headers)?;
+    let priority = submission::priority(query.priority)?;
     let fingerprint = digest::hex(&body.bytes);
     admission::check_size(&app, &body.node)?;
     if key.is_none() && !query.validate_only {
@@ -111,6 +116,7 @@ pub(in crate::api) async fn handler(
         },
         targets: i64::try_from(targets).unwrap_or(i64::MAX),
         client: caller.client().map(str::to_owned),
+        priority,
         key: key.map(|key| (caller.own(&key), fingerprint)),
     };
     let (job, replayed) = submission::submit(&app, &submission).await?;

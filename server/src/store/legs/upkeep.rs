@@ -1,10 +1,9 @@
 //! Deletion of legs in small batches, so that other writes come in between.
 
+use super::super::database::Turn;
+use super::super::database::statement::{Statement, sql};
 use super::super::{Store, StoreError};
 use super::SOLVER_VERSION;
-use sqlx::Sqlite;
-use sqlx::query::QueryScalar;
-use sqlx::sqlite::SqliteArguments;
 use std::collections::HashSet;
 
 impl Store {
@@ -14,38 +13,30 @@ impl Store {
         at_most: i64,
     ) -> Result<u64, StoreError> {
         // Each half can use the index; `<>` could not.
-        let foreign = sqlx::query_scalar(
-            "DELETE FROM legs WHERE sequence IN \
-             (SELECT sequence FROM legs WHERE solver_version < ?1 \
-             UNION ALL SELECT sequence FROM legs WHERE solver_version > ?1 LIMIT ?2) \
-             RETURNING spacecraft",
-        );
+        let foreign = sql("DELETE FROM legs WHERE sequence IN \
+             (SELECT sequence FROM legs WHERE solver_version < $1 \
+             UNION ALL SELECT sequence FROM legs WHERE solver_version > $1 LIMIT $2) \
+             RETURNING spacecraft");
         self.delete_legs(foreign.bind(SOLVER_VERSION).bind(at_most))
             .await
     }
 
     /// Deletes the `count` oldest legs. Returns the number of those that existed.
     pub(crate) async fn delete_oldest_legs(&self, count: i64) -> Result<u64, StoreError> {
-        let oldest = sqlx::query_scalar(
-            "DELETE FROM legs WHERE sequence IN \
-             (SELECT sequence FROM legs ORDER BY sequence LIMIT ?) RETURNING spacecraft",
-        );
+        let oldest = sql("DELETE FROM legs WHERE sequence IN \
+             (SELECT sequence FROM legs ORDER BY sequence LIMIT $1) RETURNING spacecraft");
         self.delete_legs(oldest.bind(count)).await
     }
 
     /// Deletes legs, and spacecraft without any legs left.
-    async fn delete_legs(
-        &self,
-        delete: QueryScalar<'_, Sqlite, String, SqliteArguments>,
-    ) -> Result<u64, StoreError> {
+    async fn delete_legs(&self, delete: Statement<'_>) -> Result<u64, StoreError> {
         let mut transaction = self.begin().await?;
-        let gone = delete.fetch_all(&mut *transaction).await?;
+        transaction.take_turn(Turn::Legs).await?;
+        let gone: Vec<(String,)> = delete.fetch_all(&mut *transaction).await?;
         let count = gone.len() as u64;
-        for spacecraft in gone.into_iter().collect::<HashSet<_>>() {
-            sqlx::query(
-                "DELETE FROM leg_spacecraft WHERE key = ?1 \
-                 AND NOT EXISTS (SELECT 1 FROM legs WHERE spacecraft = ?1)",
-            )
+        for (spacecraft,) in gone.into_iter().collect::<HashSet<_>>() {
+            sql("DELETE FROM leg_spacecraft WHERE key = $1 \
+                 AND NOT EXISTS (SELECT 1 FROM legs WHERE spacecraft = $1)")
             .bind(spacecraft)
             .execute(&mut *transaction)
             .await?;

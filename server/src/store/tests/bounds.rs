@@ -1,6 +1,6 @@
 //! Limits on stored legs and versions of spacecraft.
 
-use super::on_a_store;
+use super::{change, on_a_store, sql, value};
 use crate::store::spacecraft::KEPT_VERSIONS;
 use crate::store::{LegFilter, NewLeg, Store};
 use slewplan_solver::model::motion::Motion;
@@ -33,19 +33,14 @@ async fn stored(store: &Store) -> (Vec<f64>, i64) {
         limit: 100,
     };
     let legs = store.legs(&all).await.expect("read");
-    let count = sqlx::query_scalar("SELECT count(*) FROM leg_spacecraft");
-    let spacecraft = count.fetch_one(&store.readers).await.expect("counted");
+    let spacecraft = value(store, "SELECT count(*) FROM leg_spacecraft").await;
     (legs.iter().map(|leg| leg.duration_s).collect(), spacecraft)
 }
 
 /// Sets the solver version of a stored leg.
 async fn set_version(store: &Store, identity: &str, version: &str) {
-    sqlx::query("UPDATE legs SET solver_version = ? WHERE identity = ?")
-        .bind(version)
-        .bind(identity)
-        .execute(&store.writer)
-        .await
-        .expect("changed");
+    let update = sql("UPDATE legs SET solver_version = $1 WHERE identity = $2");
+    change(store, update.bind(version).bind(identity)).await;
 }
 
 #[test]
@@ -101,11 +96,8 @@ fn certified_bounds_of_another_version_are_not_given_out_until_they_are_stored_a
         assert_eq!(store.put_legs(&legs, 1).await.expect("stored"), 1);
         assert_eq!(certified(&store, &legs[0]).await, [Some(2.5); 2]);
         for other in ["bound_version - 1", "bound_version + 1", "NULL"] {
-            let change = format!("UPDATE legs SET bound_version = {other}");
-            sqlx::query(sqlx::AssertSqlSafe(change))
-                .execute(&store.writer)
-                .await
-                .expect("changed");
+            let update = format!("UPDATE legs SET bound_version = {other}");
+            change(&store, sql(sqlx::AssertSqlSafe(update))).await;
             assert_eq!(certified(&store, &legs[0]).await, [None; 2], "{other}");
             assert_eq!(store.put_legs(&legs, 2).await.expect("stored"), 1);
             assert_eq!(certified(&store, &legs[0]).await, [Some(2.5); 2]);
@@ -170,8 +162,8 @@ fn checking_writability_commits_a_write() {
     on_a_store(|store| async move {
         for now_us in [7, 9] {
             store.check_writable(now_us).await.expect("written");
-            let row = sqlx::query_as("SELECT one, checked_us FROM readiness");
-            let rows: Vec<(i64, i64)> = row.fetch_all(&store.readers).await.expect("read");
+            let query = sql("SELECT one, checked_us FROM readiness");
+            let rows: Vec<(i64, i64)> = query.fetch_all(&store.database).await.expect("read");
             assert_eq!(rows, [(1, now_us)]);
         }
     });

@@ -1,7 +1,11 @@
 //! Plans, bounds and codes at the end of a job.
 
-use super::{ID, ended, improve, json, lease, on_a_store, plan, result, submitted};
-use crate::store::{EndCode, Ended, JobRow, JobState, PackedPlan, ProgressRow, Store};
+use super::{
+    ID, change, ended, improve, json, lease, on_a_store, plan, result, sql, submitted, value,
+};
+use crate::store::{
+    EndCode, Ended, JobRow, JobState, OtherProcesses, PackedPlan, ProgressRow, Store,
+};
 
 async fn job(store: &Store) -> JobRow {
     let found = store.job(ID).await.expect("read");
@@ -35,8 +39,7 @@ async fn bounded(store: &Store, lease: &JobRow, incumbent_s: f64, lower_bound_s:
 }
 
 async fn kept_plans(store: &Store) -> i64 {
-    let count = sqlx::query_scalar("SELECT count(*) FROM incumbents");
-    count.fetch_one(&store.readers).await.expect("counted")
+    value(store, "SELECT count(*) FROM incumbents").await
 }
 
 /// Plans of more than 50 s violate a cone.
@@ -103,7 +106,10 @@ fn the_bound_never_falls() {
         let first = lease(&store, "first").await.job;
         assert!(improve(&store, &first, 20.0).await);
         bounded(&store, &first, 20.0, 15.0).await;
-        store.recover("second", 4).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 4)
+            .await
+            .expect("recovered");
         let second = lease(&store, "second").await.job;
         assert_eq!(second.lower_bound_s, Some(15.0));
         bounded(&store, &second, 30.0, 11.0).await;
@@ -123,15 +129,19 @@ fn another_attempt_does_not_begin_with_a_bound_of_another_version() {
         submitted(&store).await;
         let first = lease(&store, "first").await.job;
         bounded(&store, &first, 20.0, 15.0).await;
-        sqlx::query("UPDATE jobs SET bound_version = bound_version - 1")
-            .execute(&store.writer)
+        let other = sql("UPDATE jobs SET bound_version = bound_version - 1");
+        change(&store, other).await;
+        store
+            .recover("second", OtherProcesses::Ended, 4)
             .await
-            .expect("changed");
-        store.recover("second", 4).await.expect("recovered");
+            .expect("recovered");
         let second = lease(&store, "second").await.job;
         assert_eq!(second.lower_bound_s, None);
         bounded(&store, &second, 20.0, 11.0).await;
-        store.recover("third", 5).await.expect("recovered");
+        store
+            .recover("third", OtherProcesses::Ended, 5)
+            .await
+            .expect("recovered");
         let third = lease(&store, "third").await.job;
         assert_eq!(third.lower_bound_s, Some(11.0));
     });
@@ -168,7 +178,10 @@ fn a_dead_job_keeps_its_plan_and_has_a_reason() {
         for (boot, next) in [("a", "b"), ("b", "c"), ("c", "d")] {
             let lease = lease(&store, boot).await.job;
             assert!(improve(&store, &lease, 20.0).await);
-            store.recover(next, 4).await.expect("recovered");
+            store
+                .recover(next, OtherProcesses::Ended, 4)
+                .await
+                .expect("recovered");
         }
         let (state, kept) = result(&store).await;
         assert_eq!(state, JobState::Dead);
@@ -198,7 +211,10 @@ fn cancelling_deletes_the_incumbent() {
         assert!(improve(&store, &running, 20.0).await);
         store.request_cancel(ID, 6).await.expect("noted");
         // The process ends before its worker has noticed.
-        store.recover("second", 7).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 7)
+            .await
+            .expect("recovered");
         assert_eq!(kept_plans(&store).await, 0);
         assert_eq!(job(&store).await.code, None);
     });

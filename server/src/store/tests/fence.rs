@@ -1,21 +1,47 @@
 //! A worker with a stale lease writes nothing.
 
-use super::{ID, ended, improve, lease, on_a_store, plan, submitted};
-use crate::store::{JobRow, JobState, SegmentRow, Store};
+use super::{ID, ended, improve, lease, on_a_store, plan, sql, submitted};
+use crate::store::{JobRow, JobState, OtherProcesses, SegmentRow, Store};
 
-/// All rows of the job in all tables, as text.
+/// What is written of the job in all tables, as text.
 async fn record(store: &Store) -> Vec<String> {
     let mut found = Vec::new();
-    for rows in [
-        "SELECT json_array(state, attempt, fence, boot_id, lease_until_us, started_us, \
-         finished_us, stage, done, total, incumbent_s, lower_bound_s, detail) FROM jobs",
-        "SELECT json_array(id, kind, data) FROM events ORDER BY id",
-        "SELECT json_array(total_time_s, hex(document)) FROM incumbents",
-        "SELECT json_array(hex(document)) FROM results",
-        "SELECT json_array(name, hex(motion)) FROM segments ORDER BY name",
+    for (columns, table) in [
+        (
+            &[
+                "state",
+                "attempt",
+                "fence",
+                "boot_id",
+                "lease_until_us",
+                "started_us",
+                "finished_us",
+                "stage",
+                "done",
+                "total",
+                "incumbent_s",
+                "lower_bound_s",
+                "detail",
+            ][..],
+            "jobs",
+        ),
+        (&["id", "kind", "data"], "events"),
+        (&["total_time_s", "digest"], "incumbents"),
+        (&["digest"], "results"),
+        (&["name", "motion"], "segments"),
     ] {
-        let rows = sqlx::query_scalar::<_, String>(rows);
-        found.extend(rows.fetch_all(&store.readers).await.expect("read"));
+        for column in columns {
+            let texts = format!("SELECT CAST({column} AS text) FROM {table} ORDER BY 1");
+            let texts: Vec<(Option<String>,)> = sql(sqlx::AssertSqlSafe(texts))
+                .fetch_all(&store.database)
+                .await
+                .expect("read");
+            found.extend(
+                texts
+                    .into_iter()
+                    .map(|(text,)| format!("{column} {text:?}")),
+            );
+        }
     }
     found
 }
@@ -64,7 +90,10 @@ fn a_stale_lease_is_refused_at_every_stage_of_its_successor() {
     on_a_store(|store| async move {
         submitted(&store).await;
         let stale = lease(&store, "first").await.job;
-        store.recover("second", 3).await.expect("recovered");
+        store
+            .recover("second", OtherProcesses::Ended, 3)
+            .await
+            .expect("recovered");
         assert_refused(&store, &stale).await;
         let newest = lease(&store, "second").await.job;
         assert_eq!((newest.attempt, newest.fence), (2, stale.fence + 1));

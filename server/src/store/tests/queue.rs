@@ -58,3 +58,102 @@ fn a_queue_of_size_zero_takes_no_job() {
         assert_eq!(store.waiting().await.expect("counted"), 0);
     });
 }
+
+/// Submits a job with a priority; nobody's without a client.
+async fn queue(store: &Store, number: u8, client: Option<&str>, priority: i64) {
+    let job = Submission {
+        id: format!("00000000-0000-7000-8000-0000000000{number:02}"),
+        client: client.map(Into::into),
+        priority,
+        ..submission()
+    };
+    let limits = QueueLimits {
+        all: 99,
+        client: 99,
+    };
+    let queued = store.submit(&job, limits, 1).await.expect("answered");
+    assert!(matches!(queued, Submitted::New(_)), "{queued:?}");
+}
+
+/// The numbers of all queued jobs in the order in which they are leased.
+async fn order(store: &Store) -> Vec<i64> {
+    let mut order = Vec::new();
+    while let Some(lease) = store.lease("worker", 1_000, 2).await.expect("tried") {
+        order.push(lease.job.sequence);
+    }
+    order
+}
+
+#[test]
+fn jobs_of_one_client_are_leased_in_the_order_of_their_submission() {
+    on_a_store(|store| async move {
+        for number in 1..=4 {
+            queue(&store, number, None, 0).await;
+        }
+        assert_eq!(order(&store).await, [1, 2, 3, 4]);
+    });
+}
+
+#[test]
+fn jobs_of_several_clients_alternate() {
+    on_a_store(|store| async move {
+        for number in 1..=4 {
+            queue(&store, number, Some("many"), 0).await;
+        }
+        queue(&store, 5, Some("few"), 0).await;
+        // One without a key is a client of its own.
+        queue(&store, 6, None, 0).await;
+        queue(&store, 7, Some("few"), 0).await;
+        let first = lease(&store, "worker").await.job;
+        assert_eq!(first.sequence, 1);
+        // Whoever comes later does not wait behind the others' first ones of before.
+        queue(&store, 8, Some("late"), 0).await;
+        assert_eq!(order(&store).await, [5, 6, 8, 2, 7, 3, 4]);
+    });
+}
+
+#[test]
+fn greater_priorities_come_first() {
+    on_a_store(|store| async move {
+        for (number, priority) in [(1, 0), (2, -10), (3, 10), (4, 0), (5, 10)] {
+            queue(&store, number, Some("a"), priority).await;
+        }
+        assert_eq!(order(&store).await, [3, 5, 1, 4, 2]);
+    });
+}
+
+#[test]
+fn a_job_that_is_given_back_keeps_its_turn() {
+    on_a_store(|store| async move {
+        for number in 1..=3 {
+            queue(&store, number, None, 0).await;
+        }
+        let first = lease(&store, "worker").await.job;
+        assert!(store.release(&first, 3).await.expect("given back"));
+        assert_eq!(order(&store).await, [1, 2, 3]);
+    });
+}
+
+/// Workers that ask at the same time get different jobs, and all of them.
+#[test]
+fn every_job_is_leased_once() {
+    on_a_store(|store| async move {
+        for number in 0..40 {
+            queue(&store, number, Some(["a", "b"][usize::from(number % 2)]), 0).await;
+        }
+        let workers: Vec<_> = (0..4)
+            .map(|_| {
+                let store = store.clone();
+                tokio::spawn(async move { order(&store).await })
+            })
+            .collect();
+        let mut leased = Vec::new();
+        for worker in workers {
+            leased.extend(worker.await.expect("no panic"));
+        }
+        // Postgres passes over a job while another worker decides on it.
+        leased.extend(order(&store).await);
+        leased.sort_unstable();
+        assert_eq!(leased, (1..=40).collect::<Vec<_>>());
+    });
+}

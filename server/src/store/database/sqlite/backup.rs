@@ -1,6 +1,7 @@
 //! Copies of a database that is in use.
 
-use super::{BUSY_TIMEOUT, StoreError};
+use super::BUSY_TIMEOUT;
+use crate::store::StoreError;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 use std::fs::File;

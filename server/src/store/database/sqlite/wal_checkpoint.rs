@@ -3,8 +3,8 @@
 //! SQLite's automatic checkpoint after a commit does not report a failed sync. Here a failed sync
 //! raises the same alarm as that of a commit.
 
-use super::StoreError;
-use super::writing::SyncAlarm;
+use crate::store::StoreError;
+use crate::store::writing::SyncAlarm;
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool, SqlitePoolOptions};
 use std::sync::Arc;
 use std::time::Duration;

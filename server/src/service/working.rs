@@ -1,0 +1,59 @@
+//! A process that only solves: jobs of a database that it shares with services and other workers.
+
+use super::{ServiceError, lower_priority, on_runtime, open_store, system};
+use crate::base::lifecycle::{GRACE, Shutdown};
+use crate::jobs::{Jobs, Worker};
+use crate::store::{DatabaseAddress, OtherProcesses, QueueLimits};
+use slewplan_solver::run::pool::SolverPool;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use uuid::Uuid;
+
+/// Settings of a worker.
+#[derive(Debug)]
+pub(crate) struct WorkSettings {
+    /// Where the database is.
+    pub(crate) database: DatabaseAddress,
+    /// Threads of the solver; one per core without it.
+    pub(crate) threads: Option<usize>,
+    /// Memory limit of one job, bytes.
+    pub(crate) job_memory: u64,
+}
+
+/// A worker queues nothing.
+const NO_QUEUE: QueueLimits = QueueLimits { all: 0, client: 0 };
+
+/// Solves until a signal ends it. Calls `tell` once it takes jobs.
+///
+/// # Errors
+///
+/// What kept it from working, and errors of `tell`.
+pub(crate) fn run<E: From<ServiceError>>(
+    settings: &WorkSettings,
+    tell: impl FnOnce() -> Result<(), E>,
+) -> Result<(), E> {
+    let threads = settings.threads.and_then(NonZeroUsize::new);
+    let pool = SolverPool::prepared(threads, lower_priority).map_err(ServiceError::from)?;
+    on_runtime(work(settings, Arc::new(pool), tell))
+}
+
+async fn work<E: From<ServiceError>>(
+    settings: &WorkSettings,
+    pool: Arc<SolverPool>,
+    tell: impl FnOnce() -> Result<(), E>,
+) -> Result<(), E> {
+    let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
+    let boot_id = Uuid::new_v4().to_string();
+    let store = open_store(&settings.database, OtherProcesses::MayLive, &boot_id).await?;
+    let jobs = Jobs::new(store.clone(), NO_QUEUE, settings.job_memory);
+    jobs.follow_others(boot_id.clone());
+    let worker = Worker::start(jobs, pool, boot_id).map_err(system("cannot start the worker"))?;
+    tell()?;
+    shutdown.clone().begun().await;
+    if tokio::time::timeout(GRACE, worker.drain()).await.is_err() {
+        tracing::warn!("the running job did not end in time; it will run again");
+    }
+    store.close().await;
+    tracing::info!("the worker has ended");
+    Ok(())
+}

@@ -1,0 +1,87 @@
+//! Postgres, from version 15 on, shared by any number of processes.
+
+use super::Database;
+use crate::store::notices::Notices;
+use crate::store::shared_clock::ClockOffset;
+use crate::store::{StoreError, migrations};
+use sqlx::postgres::{PgConnectOptions, PgPool, PgPoolOptions};
+use std::time::Duration;
+
+const OLDEST_POSTGRES: i32 = 150_000;
+/// Maximum number of connections of this process.
+const CONNECTIONS: u32 = 10;
+/// One that sends notices and one that listens.
+const NOTICE_CONNECTIONS: u32 = 2;
+/// Longest wait for one of them.
+const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(5);
+/// Longest time of a statement, and of a transaction that does nothing: no connection is held by a
+/// process that has stopped in the middle.
+const TIMEOUTS: [(&str, &str); 2] = [
+    ("statement_timeout", "30s"),
+    ("idle_in_transaction_session_timeout", "30s"),
+];
+
+/// An open database.
+#[derive(Debug, Clone)]
+pub(in crate::store) struct PostgresDatabase {
+    pub(in crate::store) pool: PgPool,
+    pub(in crate::store) notices: Notices,
+    pub(in crate::store) clock: ClockOffset,
+}
+
+impl PostgresDatabase {
+    /// Connects and migrates the schema.
+    pub(in crate::store) async fn open(options: &PgConnectOptions) -> Result<Database, StoreError> {
+        let options = options
+            .clone()
+            .application_name("slewplan")
+            .options(TIMEOUTS);
+        let pool = PgPoolOptions::new()
+            .max_connections(CONNECTIONS)
+            .acquire_timeout(ACQUIRE_TIMEOUT)
+            .connect_with(options.clone())
+            .await?;
+        check_version(&pool).await?;
+        migrations::of_postgres().run(&pool).await?;
+        let notices = PgPoolOptions::new()
+            .max_connections(NOTICE_CONNECTIONS)
+            .acquire_timeout(ACQUIRE_TIMEOUT)
+            .connect_lazy_with(options.options([("synchronous_commit", "off")]));
+        Ok(Database::Postgres(Self {
+            pool,
+            notices: Notices::new(notices),
+            clock: ClockOffset::default(),
+        }))
+    }
+
+    /// Closes all connections.
+    pub(super) async fn close(&self) {
+        self.notices.pool().close().await;
+        self.pool.close().await;
+    }
+
+    /// Size of the database with all of its tables and indexes, bytes.
+    pub(in crate::store) async fn size(&self) -> Result<u64, StoreError> {
+        let size = sqlx::query_scalar("SELECT pg_database_size(current_database())");
+        let bytes: i64 = size.fetch_one(&self.pool).await?;
+        Ok(u64::try_from(bytes).unwrap_or(0))
+    }
+}
+
+/// The error of a statement. A server that is away is noticed by waiting for a connection.
+pub(super) fn error(error: sqlx::Error) -> StoreError {
+    match error {
+        sqlx::Error::PoolTimedOut => StoreError::NoConnection,
+        other => other.into(),
+    }
+}
+
+async fn check_version(pool: &PgPool) -> Result<(), StoreError> {
+    let version = "SELECT current_setting('server_version'), \
+         CAST(current_setting('server_version_num') AS integer)";
+    let (text, number): (String, i32) = sqlx::query_as(version).fetch_one(pool).await?;
+    if number < OLDEST_POSTGRES {
+        return Err(StoreError::OldPostgres(text));
+    }
+    Ok(())
+}

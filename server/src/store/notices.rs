@@ -1,0 +1,169 @@
+//! What the processes on one database tell each other: LISTEN and NOTIFY of Postgres.
+//!
+//! A notice says where to look, never what there is: who misses one finds the same later, by looking
+//! at intervals. So it is sent after its commit, on a connection whose commits wait for no disk:
+//! notices of all processes follow one another through one lock of the server. SQLite, whose
+//! service is one process, needs none.
+
+use super::database::Database;
+use super::database::postgres::PostgresDatabase;
+use super::{Store, StoreError};
+use sqlx::PgPool;
+use sqlx::postgres::{PgListener, PgNotification};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+
+const CHANNEL: &str = "slewplan";
+/// Pause before another try to listen.
+const RETRY: Duration = Duration::from_secs(1);
+/// Maximum number of notices sent at once.
+const BATCH: usize = 256;
+
+/// Something that has been committed.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Notice {
+    /// A job has been queued.
+    Queued,
+    /// Some job has changed.
+    Changed,
+    /// A job shall stop or be cancelled, or has been deleted.
+    Requested(String),
+    /// Notices may have been missed.
+    Missed,
+}
+
+impl Notice {
+    fn text(&self) -> String {
+        match self {
+            Self::Queued => "queued".into(),
+            Self::Changed | Self::Missed => "changed".into(),
+            Self::Requested(id) => format!("requested {id}"),
+        }
+    }
+
+    /// The notice of a text, which may be that of a newer version.
+    fn of(text: &str) -> Self {
+        match text.split_once(' ') {
+            Some(("requested", id)) => Self::Requested(id.to_owned()),
+            _ if text == "queued" => Self::Queued,
+            _ => Self::Changed,
+        }
+    }
+}
+
+/// Sends notices to other processes, in the order in which they were given, those that came while
+/// others were sent all at once.
+#[derive(Debug, Clone)]
+pub(super) struct Notices {
+    queue: UnboundedSender<Notice>,
+    pool: PgPool,
+    /// Tells the notices of this process from those of others.
+    own: Arc<str>,
+}
+
+impl Notices {
+    /// Begins to send.
+    pub(super) fn new(pool: PgPool) -> Self {
+        let (queue, notices) = unbounded_channel();
+        let own: Arc<str> = uuid::Uuid::new_v4().simple().to_string().into();
+        tokio::spawn(send(pool.clone(), Arc::clone(&own), notices));
+        Self { queue, pool, own }
+    }
+
+    /// The connections that it uses.
+    pub(super) fn pool(&self) -> &PgPool {
+        &self.pool
+    }
+
+    /// The notice of another process; `None` of an own one.
+    fn foreign(&self, notification: &PgNotification) -> Option<Notice> {
+        let (sender, text) = notification.payload().split_once(' ')?;
+        (sender != &*self.own).then(|| Notice::of(text))
+    }
+}
+
+async fn send(pool: PgPool, own: Arc<str>, mut notices: UnboundedReceiver<Notice>) {
+    let mut waiting = Vec::new();
+    while notices.recv_many(&mut waiting, BATCH).await > 0 {
+        let different: BTreeSet<Notice> = waiting.drain(..).collect();
+        let texts = different.iter().map(|one| format!("{own} {}", one.text()));
+        let sent = sqlx::query("SELECT pg_notify($1, text) FROM unnest($2) AS text")
+            .bind(CHANNEL)
+            .bind(texts.collect::<Vec<_>>())
+            .execute(&pool)
+            .await;
+        if let Err(error) = sent {
+            tracing::warn!(%error, "other processes are not told of changes; they look for them");
+        }
+    }
+}
+
+impl Store {
+    /// Whether other services and workers may use the database.
+    pub(crate) fn is_shared(&self) -> bool {
+        matches!(self.database, Database::Postgres(_))
+    }
+
+    /// Tells other processes, soon and without a promise.
+    pub(crate) fn tell(&self, notice: Notice) {
+        if let Database::Postgres(PostgresDatabase { notices, .. }) = &self.database {
+            // Fails only when the runtime ends.
+            let _ = notices.queue.send(notice);
+        }
+    }
+
+    /// Calls `act` with the notices of other processes until the database is closed.
+    pub(crate) async fn listen(&self, act: impl Fn(Notice)) {
+        let Database::Postgres(PostgresDatabase { notices, .. }) = &self.database else {
+            return;
+        };
+        while !notices.pool.is_closed() {
+            match listen(notices, &act).await {
+                Err(StoreError::Database(sqlx::Error::PoolClosed)) => return,
+                Err(error) => {
+                    tracing::warn!(%error, "notices of other processes cannot be received");
+                }
+                Ok(()) => {}
+            }
+            tokio::time::sleep(RETRY).await;
+            act(Notice::Missed);
+        }
+    }
+}
+
+async fn listen(notices: &Notices, act: &impl Fn(Notice)) -> Result<(), StoreError> {
+    let mut listener = PgListener::connect_with(&notices.pool).await?;
+    listener.listen(CHANNEL).await?;
+    act(Notice::Missed);
+    loop {
+        match listener.try_recv().await? {
+            Some(notification) => {
+                if let Some(notice) = notices.foreign(&notification) {
+                    act(notice);
+                }
+            }
+            // The connection was lost, and there is a new one.
+            None => act(Notice::Missed),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notices_are_read_as_they_were_written() {
+        let id = "00000000-0000-7000-8000-000000000000";
+        for notice in [
+            Notice::Queued,
+            Notice::Changed,
+            Notice::Requested(id.into()),
+        ] {
+            assert_eq!(Notice::of(&notice.text()), notice);
+        }
+        assert_eq!(Notice::of("something new"), Notice::Changed);
+    }
+}

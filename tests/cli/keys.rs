@@ -68,3 +68,13 @@ fn the_first_key_and_the_last_say_what_they_mean() {
     let twice = keys(&["revoke", &ids[1]], database).expect_code(2);
     assert!(twice.stderr.contains("could be revoked"), "{twice:?}");
 }
+
+#[test]
+fn a_wrong_address_of_a_database_is_refused_without_its_password() {
+    let refused = keys(&["list"], "postgres://me:secret@db.example:port/plans").expect_code(2);
+    assert!(
+        refused.stderr.contains("--database: not an address"),
+        "{refused:?}"
+    );
+    assert!(!refused.stderr.contains("secret"), "{refused:?}");
+}

@@ -34,6 +34,7 @@ mod study;
 mod validate;
 mod verify;
 mod work;
+mod worker;
 
 pub(crate) use failure::Failure;
 

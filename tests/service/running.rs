@@ -67,9 +67,7 @@ impl Service {
             .stdout(Stdio::piped())
             .spawn()
             .expect("the binary starts");
-        let mut line = String::new();
-        let stdout = child.stdout.take().expect("standard output is piped");
-        BufReader::new(stdout).read_line(&mut line).expect("a line");
+        let line = first_line(&mut child);
         let address = line
             .trim()
             .strip_prefix("listening on http://")
@@ -144,6 +142,14 @@ impl Service {
     }
 }
 
+/// The line that a process prints when it is ready.
+fn first_line(child: &mut Child) -> String {
+    let mut line = String::new();
+    let stdout = child.stdout.take().expect("standard output is piped");
+    BufReader::new(stdout).read_line(&mut line).expect("a line");
+    line
+}
+
 /// A running `slewplan work`; it is killed when it is dropped.
 pub(crate) struct Worker(Child);
 
@@ -163,9 +169,7 @@ impl Worker {
             .stdout(Stdio::piped())
             .spawn()
             .expect("the binary starts");
-        let mut line = String::new();
-        let stdout = child.stdout.take().expect("standard output is piped");
-        BufReader::new(stdout).read_line(&mut line).expect("a line");
+        let line = first_line(&mut child);
         assert!(line.starts_with("working on postgres://"), "{line}");
         Self(child)
     }

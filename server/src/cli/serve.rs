@@ -4,6 +4,7 @@ use super::Exit;
 use super::failure::Failure;
 use super::log::LogOptions;
 use super::output;
+use super::worker::WorkerOptions;
 use crate::api::AllowedHost;
 use crate::service::{self, ServiceSettings};
 use crate::store::{DatabaseAddress, QueueLimits};
@@ -26,10 +27,8 @@ pub(super) struct ServeArguments {
         default_value = "slewplan.db"
     )]
     database: DatabaseAddress,
-    /// Threads of the solver [default: one per core]
-    #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
-        value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    worker: WorkerOptions,
     /// Maximum size of a request body, bytes
     #[arg(long, env = "SLEWPLAN_MAX_BODY_BYTES", value_name = "BYTES", default_value_t = 4 << 20,
         value_parser = clap::value_parser!(u32).range(1024..))]
@@ -46,10 +45,6 @@ pub(super) struct ServeArguments {
         default_value_t = 1000
     )]
     queue_limit: u32,
-    /// Memory limit of one job, MiB
-    #[arg(long, env = "SLEWPLAN_JOB_MEMORY", value_name = "MIB", default_value_t = 1024,
-        value_parser = clap::value_parser!(u32).range(16..))]
-    job_memory: u32,
     /// Maximum number of queued jobs of one client, where keys are required
     #[arg(
         long,
@@ -103,7 +98,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
     let settings = ServiceSettings {
         listen: arguments.listen,
         database: arguments.database.clone(),
-        threads: arguments.threads.map(usize::from),
+        threads: arguments.worker.threads(),
         worker: !arguments.no_worker,
         max_body_bytes: arguments.max_body_bytes as usize,
         max_targets: arguments.max_targets as usize,
@@ -112,7 +107,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
             client: arguments.client_queue_limit.into(),
         },
         retain: arguments.retain.map(|days| DAY * days),
-        job_memory: u64::from(arguments.job_memory) << 20,
+        job_memory: arguments.worker.job_memory(),
         no_keys: arguments.no_keys,
         allowed_hosts: arguments.allowed_host.clone(),
         legs: arguments.leg_cache.into(),

@@ -4,6 +4,7 @@ use super::Exit;
 use super::failure::Failure;
 use super::log::LogOptions;
 use super::output;
+use super::worker::WorkerOptions;
 use crate::service::working::{self, WorkSettings};
 use crate::store::DatabaseAddress;
 
@@ -13,14 +14,8 @@ pub(super) struct WorkArguments {
     /// Database on a Postgres server, the same as that of the services
     #[arg(long, env = "SLEWPLAN_DATABASE", value_name = "URL")]
     database: DatabaseAddress,
-    /// Threads of the solver [default: one per core]
-    #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
-        value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// Memory limit of one job, MiB
-    #[arg(long, env = "SLEWPLAN_JOB_MEMORY", value_name = "MIB", default_value_t = 1024,
-        value_parser = clap::value_parser!(u32).range(16..))]
-    job_memory: u32,
+    #[command(flatten)]
+    worker: WorkerOptions,
     #[command(flatten)]
     log: LogOptions,
 }
@@ -38,8 +33,8 @@ pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
     arguments.log.start()?;
     let settings = WorkSettings {
         database: arguments.database.clone(),
-        threads: arguments.threads.map(usize::from),
-        job_memory: u64::from(arguments.job_memory) << 20,
+        threads: arguments.worker.threads(),
+        job_memory: arguments.worker.job_memory(),
     };
     working::run::<Failure>(&settings, || {
         output::print(&format!("working on {}\n", settings.database))

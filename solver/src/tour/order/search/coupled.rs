@@ -174,9 +174,7 @@ impl OrderSearch<'_> {
             || self.raise_triple_bounds(triple_bounds, BESIDE_FIRST_ORDER),
         );
         self.tree.record_candidate(&order, answer);
-        triple_bounds.learn(&order, self.model);
-        self.reporter.announce(&self.tree);
-        self.reporter.report(&self.tree);
+        self.learn(triple_bounds, &[order]);
     }
 
     /// Raises the triple bounds for many targets and the bound of the root, by an effort per target.
@@ -202,7 +200,12 @@ impl OrderSearch<'_> {
         let mut orders = self.orders_to_evaluate(triple_bounds, pass, kicks);
         orders.truncate(ORDERS_EVALUATED);
         self.evaluate_new(&orders);
-        for order in &orders {
+        self.learn(triple_bounds, &orders);
+    }
+
+    /// Has the estimates learn from evaluated orders, and reports what they changed.
+    fn learn(&mut self, triple_bounds: &mut TripleBounds, orders: &[Vec<usize>]) {
+        for order in orders {
             triple_bounds.learn(order, self.model);
         }
         self.reporter.announce(&self.tree);

@@ -1,0 +1,26 @@
+//! Options of the process that solves jobs.
+
+/// What `serve` and `work` solve with.
+#[derive(Debug, clap::Args)]
+pub(super) struct WorkerOptions {
+    /// Threads of the solver [default: one per core]
+    #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Memory limit of one job, MiB
+    #[arg(long, env = "SLEWPLAN_JOB_MEMORY", value_name = "MIB", default_value_t = 1024,
+        value_parser = clap::value_parser!(u32).range(16..))]
+    job_memory: u32,
+}
+
+impl WorkerOptions {
+    /// Threads of the solver; one per core without it.
+    pub(super) fn threads(&self) -> Option<usize> {
+        self.threads.map(usize::from)
+    }
+
+    /// Memory limit of one job, bytes.
+    pub(super) fn job_memory(&self) -> u64 {
+        u64::from(self.job_memory) << 20
+    }
+}

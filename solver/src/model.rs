@@ -15,6 +15,7 @@ pub mod plan;
 pub mod problem;
 #[cfg(test)]
 pub(crate) mod random;
+pub mod roll;
 pub mod scenario;
 pub mod spacecraft;
 pub mod spec;

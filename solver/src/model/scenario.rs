@@ -20,6 +20,7 @@ use crate::model::cone::Cone;
 use crate::model::findings::Findings;
 use crate::model::order_rules::OrderRules;
 use crate::model::problem::{Faults, Problem};
+use crate::model::roll::FreeRoll;
 use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::{OptionsSpec, ReferenceFrame, ScenarioSpec, TimeSystem};
 pub(crate) use cone_conflicts::cone_problems;
@@ -72,8 +73,10 @@ impl Start {
 /// The conditions at the end of the tour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct End {
-    /// Attitude, sign as given.
+    /// Attitude, sign as given; where the roll is free, that of roll 0.
     pub attitude: Attitude,
+    /// The admissible rolls, unless the attitude is given.
+    pub roll: Option<FreeRoll>,
     /// Body rate in body axes, rad/s.
     pub rate: Vector3<f64>,
     /// Wheel speeds relative to the body, rad/s, one per wheel; `None` leaves them free.
@@ -85,8 +88,10 @@ pub struct End {
 pub struct Target {
     /// Unique identifier.
     pub id: String,
-    /// Attitude, sign as given.
+    /// Attitude, sign as given; where the roll is free, that of roll 0.
     pub attitude: Attitude,
+    /// The admissible rolls, unless the attitude is given.
+    pub roll: Option<FreeRoll>,
     /// Condition of each rate component; all are `Fixed(0.0)` when settle or dwell is above zero.
     pub rate: [RateCondition; 3],
     /// Time to settle at rest after arrival, s.

@@ -51,6 +51,7 @@ pub(super) fn read_end(
     };
     Some(End {
         attitude: attitude?,
+        roll: None,
         rate: rate?,
         wheel_speed: wheel_speed?,
     })

@@ -46,6 +46,7 @@ pub(super) fn read_all(
             Some(Target {
                 id: id_valid.then(|| target.id.clone())?,
                 attitude: attitude?,
+                roll: None,
                 rate: rate?,
                 settle: settle?,
                 dwell: dwell?,

@@ -1,0 +1,110 @@
+//! The roll about a body axis that is pointed, where it is not given.
+//!
+//! A telescope is pointed at a direction; the attitudes that do so are `q(r) = q(0) exp(r b)`, with the
+//! unit vector `b` along its boresight, body axes, and the roll `r`. The boresight `b` is the same at all
+//! of them, seen from the body and from the reference frame.
+
+use super::attitude::Attitude;
+use nalgebra::Vector3;
+use std::f64::consts::{PI, TAU};
+
+/// The rolls that are admissible at an attitude beside its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeRoll {
+    /// The body axis that is pointed, of unit length.
+    pub axis: Vector3<f64>,
+    /// Least and greatest right-handed turn about the axis from the attitude it belongs to, rad, less than
+    /// a whole turn apart; `None` where every roll is admissible.
+    pub range: Option<[f64; 2]>,
+}
+
+impl FreeRoll {
+    /// The attitude after a roll, rad.
+    #[must_use]
+    pub fn rolled(&self, attitude: &Attitude, roll: f64) -> Attitude {
+        attitude.retract(self.axis * roll)
+    }
+
+    /// The same freedom, seen from the attitude after a roll, rad.
+    #[must_use]
+    pub fn after(&self, roll: f64) -> Self {
+        let range = self.range.map(|range| range.map(|end| end - roll));
+        Self {
+            axis: self.axis,
+            range,
+        }
+    }
+
+    /// The roll, rad, in `(-pi, pi]`, from one attitude to the attitude with the same boresight that is
+    /// nearest to another.
+    #[must_use]
+    pub fn between(&self, from: &Attitude, to: &Attitude) -> f64 {
+        let [x, y, z, w] = from.turn_to(to).xyzw();
+        let along = Vector3::new(x, y, z).dot(&self.axis);
+        // The half angle, of either quaternion sign.
+        let roll = 2.0 * along.atan2(w);
+        if roll > PI {
+            roll - TAU
+        } else if roll <= -PI {
+            roll + TAU
+        } else {
+            roll
+        }
+    }
+
+    /// The admissible roll that is nearest to a roll, rad, whole turns apart being the same.
+    #[must_use]
+    pub fn nearest(&self, roll: f64) -> f64 {
+        let Some([low, high]) = self.range else {
+            return roll;
+        };
+        let middle = 0.5 * (low + high);
+        let away = roll - middle;
+        let away = away - TAU * (away / TAU).round();
+        (middle + away).clamp(low, high)
+    }
+
+    /// Angle, rad, between the boresights at two attitudes.
+    #[must_use]
+    pub fn off_boresight(&self, one: &Attitude, other: &Attitude) -> f64 {
+        let [one, other] = [one, other].map(|attitude| attitude.to_reference(self.axis));
+        one.cross(&other).norm().atan2(one.dot(&other))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tilted() -> (Attitude, FreeRoll) {
+        let attitude = Attitude::from_rotation_vector(Vector3::new(0.4, -1.1, 0.3));
+        let axis = Vector3::new(1.0, 2.0, -0.5).normalize();
+        (attitude, FreeRoll { axis, range: None })
+    }
+
+    #[test]
+    fn a_roll_keeps_the_boresight_and_is_found_again() {
+        let (attitude, free) = tilted();
+        for roll in [-3.0, -0.7, 0.0, 0.2, 3.1] {
+            let rolled = free.rolled(&attitude, roll);
+            assert!(free.off_boresight(&attitude, &rolled) < 1e-12);
+            for signed in [rolled, rolled.negated()] {
+                assert!((free.between(&attitude, &signed) - roll).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_admissible_roll_lies_in_the_range() {
+        let (_, free) = tilted();
+        let limited = FreeRoll {
+            range: Some([3.0, 4.0]),
+            ..free
+        };
+        assert!((free.nearest(7.0) - 7.0).abs() < 1e-15);
+        assert!((limited.nearest(3.5 - TAU) - 3.5).abs() < 1e-12);
+        assert!((limited.nearest(4.2 - TAU) - 4.0).abs() < 1e-12);
+        assert!((limited.nearest(0.0) - 4.0).abs() < 1e-12);
+        assert!((limited.after(0.5).nearest(3.0) - 3.0).abs() < 1e-12);
+    }
+}

@@ -19,6 +19,7 @@ mod operations;
 mod origins;
 mod page;
 mod plans;
+mod pointing;
 #[path = "../postgres.rs"]
 mod postgres;
 mod priorities;

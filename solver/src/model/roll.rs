@@ -131,6 +131,23 @@ mod tests {
     }
 
     #[test]
+    fn another_reference_frame_changes_no_roll() {
+        let (level, free) = tilted();
+        let frame = Attitude::from_rotation_vector(Vector3::new(-2.0, 0.4, 0.9));
+        let seen = |attitude: &Attitude| frame.then_in_body(attitude);
+        for roll in [-2.0, 0.3, 3.0] {
+            let across = free.axis.cross(&Vector3::y()).normalize() * 0.2;
+            let rolled = free.rolled(&level, roll).retract(across);
+            let there = [seen(&level), seen(&rolled)];
+            let found = free.between(&there[0], &there[1]);
+            assert!((found - free.between(&level, &rolled)).abs() < 1e-12);
+            let off = free.off_boresight(&there[0], &there[1]);
+            assert!((off - free.off_boresight(&level, &rolled)).abs() < 1e-12);
+            assert!((off - 0.2).abs() < 1e-12);
+        }
+    }
+
+    #[test]
     fn the_nearest_admissible_roll_lies_in_the_range() {
         let (_, free) = tilted();
         let limited = FreeRoll {

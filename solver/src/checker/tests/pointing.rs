@@ -119,7 +119,7 @@ fn an_end_is_tested_like_a_target() {
         "the end is missed by",
     );
     let outside = at_end(along_x(X, Some([flown + 1.0, flown + 2.0])));
-    refused(&outside, &flight, "the end is passed 1.7");
+    refused(&outside, &flight, "the end is passed 0.0174533 rad outside");
 }
 
 /// What the checker says of an attitude at a target that is pointed in any direction.
@@ -152,7 +152,7 @@ fn attitudes_made_by_hand_are_accepted_at_admissible_rolls_only() {
         let scenario = valid(&spec);
         let axis = Vector3::from(boresight).normalize();
         let level = scenario.targets()[0].attitude;
-        for degrees in (-180..540).step_by(10) {
+        for degrees in (-180_i32..540).step_by(10) {
             let rolled = level.retract(axis * f64::from(degrees).to_radians());
             let off = axis.cross(&Vector3::new(0.3, 0.2, 0.9)).normalize() * 2e-6;
             let is_admissible = (100..=250).contains(&degrees.rem_euclid(360));

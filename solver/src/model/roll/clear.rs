@@ -156,7 +156,7 @@ mod tests {
             prop_assert!(clear.windows(2).all(|pair| pair[0][1] <= pair[1][0]));
             let [low, high] = free.range.unwrap_or([-PI, PI]);
             for step in 0..=200 {
-                let roll = low + (high - low) * f64::from(step) / 200.0;
+                let roll = (low + (high - low) * f64::from(step) / 200.0).min(high);
                 let rolled = free.rolled(&attitude, roll);
                 let depth = cones.iter().map(|cone| cone.depth(&rolled)).fold(-4.0, f64::max);
                 let is_clear = clear.iter().any(|[from, to]| (*from..=*to).contains(&roll));

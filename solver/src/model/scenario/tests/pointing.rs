@@ -112,7 +112,7 @@ fn limits_leave_a_range_all_or_one_roll() {
     let degrees = |range: Option<[f64; 2]>| range.map(|range| range.map(f64::to_degrees));
     for (given, expected) in [
         ([-10.0, 20.0], [-10.0, 20.0]),
-        ([170.0, 190.0], [170.0, 190.0]),
+        ([170.0, 190.0], [-190.0, -170.0]),
         ([710.0, 740.0], [-10.0, 20.0]),
         ([0.0, 359.0], [0.0, 359.0]),
     ] {

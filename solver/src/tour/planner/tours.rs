@@ -100,10 +100,10 @@ impl<'a> Tours<'a> {
 
     /// Number of intervals of every leg of a route.
     pub(super) fn intervals(&self, route: &[Place]) -> Vec<usize> {
-        let legs = route.windows(2).map(|leg| {
-            let ends = [leg[0], leg[1]].map(|place| self.places.waypoint(place));
-            self.places.slew(&ends[0], &ends[1]).intervals()
-        });
+        let waypoints = self.places.waypoints(route);
+        let legs = waypoints
+            .windows(2)
+            .map(|ends| self.places.slew(&ends[0], &ends[1]).intervals());
         legs.collect()
     }
 
@@ -352,9 +352,10 @@ impl<'a> Tours<'a> {
     ) -> Vec<Waypoint> {
         let signed = |(i, place): (usize, &Place)| {
             let mut waypoint = self.places.waypoint(*place);
-            if i > 0
+            if (i > 0 || waypoint.roll.is_some())
                 && let Some(there) = motion.attitudes.get(intervals[..i].iter().sum::<usize>())
             {
+                waypoint = waypoint.rolled_towards(there);
                 waypoint.attitude = self.places.arrival.signed(&waypoint.attitude, there);
             }
             waypoint

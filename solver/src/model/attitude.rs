@@ -15,6 +15,7 @@
 mod forms;
 
 pub use forms::AttitudeContext;
+pub(in crate::model) use forms::{Aim, boresight_axis, pointed};
 
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 

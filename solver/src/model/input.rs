@@ -89,6 +89,9 @@ pub trait InputPlace: Sized {
     /// A member of an object that must have it.
     fn required(&self, name: &str) -> Option<Self>;
 
+    /// A member of an object that must have it, or another one instead of it.
+    fn required_unless(&self, name: &str, other: &str) -> Option<Self>;
+
     /// Number of entries of a list.
     fn entries(&self) -> Option<usize>;
 
@@ -181,6 +184,10 @@ impl InputPlace for Nothing {
     }
 
     fn required(&self, _: &str) -> Option<Self> {
+        None
+    }
+
+    fn required_unless(&self, _: &str, _: &str) -> Option<Self> {
         None
     }
 

@@ -318,6 +318,13 @@ pub enum Code {
         it reported."
     )]
     AttitudeViolatesCone,
+    /// A boresight is to be pointed, but limits of the roll about it and enforced cones leave no roll,
+    /// so that there is no plan.
+    #[strum(
+        message = "Widen the limits of the roll, move the direction, change the cones, or only have \
+        them reported."
+    )]
+    NoRollLeft,
     /// A direction of a body of the sky in a scenario without an epoch.
     #[strum(message = "Give the epoch of time zero, or the direction as a vector.")]
     EpochRequired,

@@ -4,6 +4,8 @@
 //! unit vector `b` along its boresight, body axes, and the roll `r`. The boresight `b` is the same at all
 //! of them, seen from the body and from the reference frame.
 
+mod clear;
+
 use super::attitude::Attitude;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
@@ -88,6 +90,28 @@ impl FreeRoll {
     }
 }
 
+/// A boresight that is pointed, as its target or end says it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pointing {
+    /// The attitude of roll 0.
+    pub level: Attitude,
+    /// The admissible rolls from there, also where limits leave a single one.
+    pub roll: FreeRoll,
+}
+
+impl Pointing {
+    /// The roll of an attitude that points the boresight, rad: the one in the middle of the limits, or
+    /// in `(-pi, pi]`, of those that are whole turns apart.
+    #[must_use]
+    pub fn roll_of(&self, attitude: &Attitude) -> f64 {
+        let roll = self.roll.between(&self.level, attitude);
+        let Some([low, high]) = self.roll.range else {
+            return roll;
+        };
+        roll + TAU * ((0.5 * (low + high) - roll) / TAU).round()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,6 +132,18 @@ mod tests {
                 assert!((free.between(&attitude, &signed) - roll).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn the_roll_of_an_attitude_is_told_where_its_limits_are() {
+        let (level, free) = tilted();
+        let within = |range| {
+            let roll = FreeRoll { range, ..free };
+            Pointing { level, roll }.roll_of(&free.rolled(&level, 3.3))
+        };
+        assert!((within(None) - (3.3 - TAU)).abs() < 1e-12);
+        assert!((within(Some([3.0, 3.5])) - 3.3).abs() < 1e-12);
+        assert!((within(Some([-9.5, -9.0])) - (3.3 - 2.0 * TAU)).abs() < 1e-12);
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod labels;
 mod limits;
 mod options;
 mod order;
+mod pointing;
 mod state;
 mod target;
 mod unit_slips;
@@ -20,7 +21,7 @@ use crate::model::cone::Cone;
 use crate::model::findings::Findings;
 use crate::model::order_rules::OrderRules;
 use crate::model::problem::{Faults, Problem};
-use crate::model::roll::FreeRoll;
+use crate::model::roll::{FreeRoll, Pointing};
 use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::{OptionsSpec, ReferenceFrame, ScenarioSpec, TimeSystem};
 pub(crate) use cone_conflicts::cone_problems;
@@ -28,6 +29,7 @@ use directions::Sky;
 use jiff::civil::DateTime;
 use limits::Limits;
 use nalgebra::Vector3;
+use pointing::Surroundings;
 
 /// The condition on a rate component at a passage.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,8 +77,10 @@ impl Start {
 pub struct End {
     /// Attitude, sign as given; where the roll is free, that of roll 0.
     pub attitude: Attitude,
-    /// The admissible rolls, unless the attitude is given.
+    /// The admissible rolls, unless the attitude or its roll is given.
     pub roll: Option<FreeRoll>,
+    /// The boresight that is pointed, where no attitude is given.
+    pub pointing: Option<Pointing>,
     /// Body rate in body axes, rad/s.
     pub rate: Vector3<f64>,
     /// Wheel speeds relative to the body, rad/s, one per wheel; `None` leaves them free.
@@ -90,8 +94,10 @@ pub struct Target {
     pub id: String,
     /// Attitude, sign as given; where the roll is free, that of roll 0.
     pub attitude: Attitude,
-    /// The admissible rolls, unless the attitude is given.
+    /// The admissible rolls, unless the attitude or its roll is given.
     pub roll: Option<FreeRoll>,
+    /// The boresight that is pointed, where no attitude is given.
+    pub pointing: Option<Pointing>,
     /// Condition of each rate component; all are `Fixed(0.0)` when settle or dwell is above zero.
     pub rate: [RateCondition; 3],
     /// Time to settle at rest after arrival, s.
@@ -149,6 +155,11 @@ impl Scenario {
         };
         let epoch = labels::read_epoch(spec, findings);
         labels::check_frame(spec, findings);
+        let sky = Sky::of(spec, epoch);
+        let surroundings = Surroundings {
+            attitudes: context,
+            sky,
+        };
         let limits = Limits::of(spec);
         let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", findings);
         let start = state::read_start(&spec.start, context, &limits, findings).filter(|start| {
@@ -158,7 +169,7 @@ impl Scenario {
             })
         });
         let end = spec.end.as_ref().map(|end| {
-            let end = state::read_end(end, &spec.start, context, &limits, findings)?;
+            let end = state::read_end(end, &spec.start, surroundings, &limits, findings)?;
             let known = spacecraft.as_ref().zip(start.as_ref());
             known
                 .is_none_or(|(spacecraft, start)| {
@@ -166,9 +177,8 @@ impl Scenario {
                 })
                 .then_some(end)
         });
-        let targets = target::read_all(spec, context, &limits, findings);
+        let targets = target::read_all(spec, surroundings, &limits, findings);
         let order_rules = order::read(spec, findings);
-        let sky = Sky::of(spec, epoch);
         let cones = cones::read_all(spec, sky, findings);
         let options_valid = options::check(&spec.options, findings);
         unit_slips::check_targets(spec, findings);

@@ -8,11 +8,13 @@
 mod attitude;
 mod cones;
 mod labels;
+mod pointing;
 mod spacecraft;
 
 pub use attitude::{AttitudeSpec, BoresightChoice, PairSpec};
 pub use cones::{Applies, CelestialBody, ConeSpec, DirectionSpec};
 pub use labels::{ReferenceFrame, TimeSystem};
+pub use pointing::{OrientationSpec, PointingSpec};
 pub use spacecraft::{BoresightSpec, SpacecraftOrReference, SpacecraftSpec, WheelSpec};
 
 use super::epoch;
@@ -60,11 +62,14 @@ input_object! {
 }
 
 input_object! {
-    /// An attitude with rates and wheel speeds.
+    /// An attitude with rates and wheel speeds. At an end exactly one of `attitude` and `pointing` is given.
     #[derive(Default)]
     pub struct StateSpec as "BoundaryState" {
-        /// The attitude.
-        pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()),
+        /// The attitude; not read where `pointing` is given.
+        pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()).unless("pointing"),
+        /// Instead of the attitude where a boresight points, at an end: the roll about it is left to the
+        /// plan. What is known at a start is its attitude.
+        pub pointing: Option<PointingSpec> = optional(),
         /// Body rate in body axes; zero without it.
         pub body_rate_rad_s: Option<[f64; 3]> = optional(),
         /// Wheel speeds relative to the body, one per wheel; zero at the start and free at the end
@@ -74,13 +79,15 @@ input_object! {
 }
 
 input_object! {
-    /// An attitude to visit.
+    /// An attitude, or a direction, to visit: exactly one of `attitude` and `pointing` says which.
     #[derive(Default)]
     pub struct TargetSpec as "Target" {
         /// Name of the target, unique in the scenario.
         pub id: String = MemberRule::required_or_pointer().min_length(1),
-        /// The attitude to pass through.
-        pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()),
+        /// The attitude to pass through; not read where `pointing` is given.
+        pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()).unless("pointing"),
+        /// Instead of the attitude where a boresight points: the roll about it is left to the plan.
+        pub pointing: Option<PointingSpec> = optional(),
         /// Which rate components must vanish there; all without it.
         pub zero_rate_axes: Option<[bool; 3]> as Option<RateAxes> = optional(),
         /// Lower bounds of the rate components there instead; `null` is none.

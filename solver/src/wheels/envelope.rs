@@ -4,11 +4,14 @@
 //! `sum a_i I_i W_i = R^T H - J w - (locked wheels)`. More than three wheels can do so in many ways; a
 //! linear program finds the one with the least load of the most loaded wheel.
 
+mod rolls;
 mod turn;
 
 pub(crate) use turn::{OutsideEnvelope, outside_envelope};
 
+use crate::model::attitude::Attitude;
 use crate::model::problem::{Code, Problem};
+use crate::model::roll::FreeRoll;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spacecraft::{Spacecraft, Wheel};
 use crate::wheels::allocation;
@@ -111,7 +114,7 @@ fn weights(wheels: &[(usize, &Wheel)]) -> Vec<f64> {
 /// Problems of targets, and of the end, at which the wheels cannot hold the conserved momentum.
 ///
 /// Only those with a fully prescribed rate are tested: with a free rate component the body can carry
-/// momentum.
+/// momentum. Where the roll is free, a place is a problem if it is one at every admissible roll.
 #[must_use]
 pub fn momentum_problems(scenario: &Scenario) -> Vec<Problem> {
     let targets = scenario
@@ -120,20 +123,24 @@ pub fn momentum_problems(scenario: &Scenario) -> Vec<Problem> {
         .enumerate()
         .filter_map(|(i, target)| {
             let rate = prescribed(&target.rate)?;
-            let total = target.attitude.to_body(scenario.momentum());
-            problem(scenario, total, rate, &format!("/targets/{i}"))
+            let rest = Rest {
+                attitude: &target.attitude,
+                roll: target.roll.as_ref(),
+                rate,
+            };
+            problem(scenario, &rest, &format!("/targets/{i}"))
         });
     // Wheel speeds given at the end are validated with the scenario.
     let end = scenario
         .end()
         .filter(|end| end.wheel_speed.is_none())
         .and_then(|end| {
-            problem(
-                scenario,
-                end.attitude.to_body(scenario.momentum()),
-                end.rate,
-                "/end",
-            )
+            let rest = Rest {
+                attitude: &end.attitude,
+                roll: end.roll.as_ref(),
+                rate: end.rate,
+            };
+            problem(scenario, &rest, "/end")
         });
     // The end comes before the targets in the document.
     end.into_iter().chain(targets).collect()
@@ -151,25 +158,50 @@ fn prescribed(rate: &[RateCondition; 3]) -> Option<Vector3<f64>> {
     Some(values)
 }
 
-fn problem(
-    scenario: &Scenario,
-    total: Vector3<f64>,
+/// A place with a fully prescribed rate, rad/s.
+struct Rest<'a> {
+    attitude: &'a Attitude,
+    roll: Option<&'a FreeRoll>,
     rate: Vector3<f64>,
-    pointer: &str,
-) -> Option<Problem> {
-    let spacecraft = scenario.spacecraft();
-    let authority = scenario.options().momentum_authority;
-    let demand = total - spacecraft.inertia() * rate;
-    let hold = hold_momentum(spacecraft, authority, &scenario.start().wheel_speed, demand)?;
+}
+
+impl Rest<'_> {
+    /// What the wheels must carry there, N m s, and the speeds that do so; where the roll is free, at
+    /// one that is held, if there is any.
+    fn hold(&self, scenario: &Scenario) -> Option<(Vector3<f64>, MomentumHold)> {
+        let spacecraft = scenario.spacecraft();
+        let authority = scenario.options().momentum_authority;
+        let (total, of_rate) = (scenario.momentum(), spacecraft.inertia() * self.rate);
+        let hold = |attitude: &Attitude| {
+            let demand = attitude.to_body(total) - of_rate;
+            let speeds = &scenario.start().wheel_speed;
+            let hold = hold_momentum(spacecraft, authority, speeds, demand)?;
+            Some((demand, hold))
+        };
+        let Some(free) = self.roll else {
+            return hold(self.attitude);
+        };
+        let turning = free.axis.cross(&self.attitude.to_body(total)).norm();
+        let change = rolls::load_per_momentum(spacecraft, authority)? * turning;
+        let rolled = |roll| hold(&free.rolled(self.attitude, roll));
+        rolls::least_loaded(rolled, free.range, change)
+    }
+}
+
+fn problem(scenario: &Scenario, rest: &Rest<'_>, pointer: &str) -> Option<Problem> {
+    let (demand, hold) = rest.hold(scenario)?;
     if hold.fits() {
         return None;
     }
+    let rolls = rest
+        .roll
+        .map_or("", |_| ", at the admissible roll of the least load,");
     Some(Problem::new(
         pointer,
         Code::MomentumExceedsEnvelope,
         format!(
-            "the wheels must carry ({:.6e}, {:.6e}, {:.6e}) N m s in body axes there, which needs \
-             {:.4} times the usable speed of the most loaded wheel",
+            "the wheels must carry ({:.6e}, {:.6e}, {:.6e}) N m s in body axes there, which{rolls} \
+             needs {:.4} times the usable speed of the most loaded wheel",
             demand.x, demand.y, demand.z, hold.load
         ),
         "unload momentum first, raise options.momentum_authority, or leave a rate component free",

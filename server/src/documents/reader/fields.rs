@@ -29,13 +29,22 @@ impl<'a> Fields<'a> {
 
     /// A member that must be there.
     pub(crate) fn required(&self, name: &str) -> Option<Cursor<'a>> {
+        self.found(name, || format!("add {name:?} to this object"))
+    }
+
+    /// A member that must be there, or another one instead of it.
+    pub(super) fn required_unless(&self, name: &str, other: &str) -> Option<Cursor<'a>> {
+        self.found(name, || format!("add {name:?} or {other:?} to this object"))
+    }
+
+    fn found(&self, name: &str, hint: impl FnOnce() -> String) -> Option<Cursor<'a>> {
         let found = self.raw(name);
         if found.is_none() {
             self.place.sink.push(Problem::new(
                 self.place.pointer_to(name),
                 Code::MissingField,
                 format!("the required field {name:?} is missing"),
-                format!("add {name:?} to this object"),
+                hint(),
             ));
         }
         found

@@ -81,6 +81,13 @@ impl InputPlace for Cursor<'_> {
         Fields::of(members, self.clone()).required(name)
     }
 
+    fn required_unless(&self, name: &str, other: &str) -> Option<Self> {
+        let Node::Object(members) = self.node else {
+            return None;
+        };
+        Fields::of(members, self.clone()).required_unless(name, other)
+    }
+
     fn entries(&self) -> Option<usize> {
         self.list().map(<[Node]>::len)
     }

@@ -105,7 +105,7 @@ fn sky_angles(angles: [f64; 3], pointer: &str, findings: &mut Findings) -> Optio
 }
 
 /// Unit vector along the body axis that is pointed.
-fn boresight_axis(
+pub(in crate::model) fn boresight_axis(
     choice: &BoresightChoice,
     boresights: &[BoresightSpec],
     pointer: &str,
@@ -237,16 +237,56 @@ fn nearest_rotation(matrix: Matrix3<f64>) -> Rotation3<f64> {
 
 fn ra_dec_roll(angles_deg: [f64; 3], boresight: Vector3<f64>) -> Attitude {
     let [ra, dec, roll] = angles_deg;
+    let level = level(sky_direction([ra, dec]), boresight);
+    without_sign((level * turn(boresight, roll)).to_rotation_matrix())
+}
+
+/// A direction of the sky with local north there, both of unit length.
+type SkyDirection = [Vector3<f64>; 2];
+
+/// The direction at a right ascension and declination, degrees.
+fn sky_direction([ra, dec]: [f64; 2]) -> SkyDirection {
     let (sin_ra, cos_ra) = ra.to_radians().sin_cos();
     let (sin_dec, cos_dec) = dec.to_radians().sin_cos();
     let direction = Vector3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
     let north = Vector3::new(-sin_dec * cos_ra, -sin_dec * sin_ra, cos_dec);
+    [direction, north]
+}
+
+/// The attitude of roll 0.
+fn level([direction, north]: SkyDirection, boresight: Vector3<f64>) -> UnitQuaternion<f64> {
     let up = upward(boresight);
     let in_reference = Matrix3::from_columns(&[direction, north, direction.cross(&north)]);
     let in_body = Matrix3::from_columns(&[boresight, up, boresight.cross(&up)]);
     let level = Rotation3::from_matrix_unchecked(in_reference * in_body.transpose());
-    let level = UnitQuaternion::from_rotation_matrix(&level);
-    without_sign((level * turn(boresight, roll)).to_rotation_matrix())
+    UnitQuaternion::from_rotation_matrix(&level)
+}
+
+/// Where a boresight is pointed.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::model) enum Aim {
+    /// At a right ascension and declination, degrees.
+    RaDecDeg([f64; 2]),
+    /// Along a unit vector of the reference frame; at the poles of right ascension 0.
+    Direction(Vector3<f64>),
+}
+
+/// The attitude of roll 0 at which a unit vector of the body is pointed.
+pub(in crate::model) fn pointed(aim: Aim, boresight: Vector3<f64>) -> Attitude {
+    let sky = match aim {
+        Aim::RaDecDeg(angles) => sky_direction(angles),
+        Aim::Direction(direction) => {
+            let level = direction.xy().norm();
+            let (cos_ra, sin_ra) = if level > 0.0 {
+                (direction.x / level, direction.y / level)
+            } else {
+                (1.0, 0.0)
+            };
+            let north = Vector3::new(-direction.z * cos_ra, -direction.z * sin_ra, level);
+            [direction, north]
+        }
+    };
+    without_sign(level(sky, boresight).to_rotation_matrix())
 }
 
 /// The body axis that points to local north at roll zero.

@@ -2,12 +2,14 @@
 
 use super::schema::{Literal, MemberBounds};
 use super::{InputForm, InputPlace};
+use crate::model::problem::Code;
 
 /// The rule of a member with a value of this type.
 #[derive(Debug, Clone)]
 pub struct MemberRule<T> {
     absence: Absence<T>,
     means: Option<Literal>,
+    unless: Option<&'static str>,
     pub(super) bounds: MemberBounds,
 }
 
@@ -80,6 +82,7 @@ impl<T> MemberRule<T> {
         Self {
             absence,
             means: None,
+            unless: None,
             bounds: MemberBounds {
                 minimum: None,
                 exclusive_minimum: None,
@@ -97,6 +100,14 @@ impl<T> MemberRule<T> {
     #[must_use]
     pub fn means(mut self, value: impl Into<Literal>) -> Self {
         self.means = Some(value.into());
+        self
+    }
+
+    /// Another member of the object may stand instead, but not both of them; the rule's substitute is
+    /// taken where it does.
+    #[must_use]
+    pub fn unless(mut self, other: &'static str) -> Self {
+        self.unless = Some(other);
         self
     }
 
@@ -157,7 +168,8 @@ impl<T> MemberRule<T> {
     }
 
     pub(super) fn is_required(&self) -> bool {
-        !matches!(self.absence, Absence::Default(_) | Absence::Nullable(..))
+        let left_out = matches!(self.absence, Absence::Default(_) | Absence::Nullable(..));
+        !left_out && self.unless.is_none()
     }
 
     pub(super) fn described_default<F: InputForm<Value = T>>(&self) -> Option<Literal> {
@@ -189,7 +201,11 @@ impl<'p, P: InputPlace> InputMembers<'p, P> {
     #[must_use]
     pub fn read<F: InputForm>(&self, name: &str, rule: MemberRule<F::Value>) -> Option<F::Value> {
         let required = || {
-            let it = self.is_object.then(|| self.place.required(name));
+            let it = self.is_object.then(|| match rule.unless {
+                Some(other) if self.given(other).is_some() => self.replaced(name, other),
+                Some(other) => self.place.required_unless(name, other),
+                None => self.place.required(name),
+            });
             F::read(&it.flatten()?)
         };
         let member = || {
@@ -215,5 +231,21 @@ impl<'p, P: InputPlace> InputMembers<'p, P> {
                 Some(read?.unwrap_or(placeholder))
             }
         }
+    }
+
+    /// A member that is neither left out nor `null`.
+    fn given(&self, name: &str) -> Option<P> {
+        let member = self.place.member(name);
+        member.filter(|it| !it.is_null())
+    }
+
+    /// A member in whose place another one stands: it must not be given too.
+    fn replaced(&self, name: &str, other: &str) -> Option<P> {
+        self.given(name)?.report(
+            Code::ConflictingFields,
+            format!("both {name} and {other} are given"),
+            format!("give {name} or {other}"),
+        );
+        None
     }
 }

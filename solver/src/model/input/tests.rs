@@ -51,6 +51,17 @@ input_union! {
 }
 
 input_object! {
+    /// What a tank is filled from.
+    #[derive(Default)]
+    struct SourceSpec as "Source" {
+        /// Number of the store.
+        store: f64 = required_or(0.0).unless("truck"),
+        /// Instead of it the truck.
+        truck: Option<String> = optional(),
+    }
+}
+
+input_object! {
     /// Anything with a name.
     struct LabelledSpec as "Labelled" open {
         /// The name.
@@ -175,6 +186,10 @@ impl InputPlace for Reader<'_> {
         found
     }
 
+    fn required_unless(&self, name: &str, _: &str) -> Option<Self> {
+        self.required(name)
+    }
+
     fn entries(&self) -> Option<usize> {
         match self.value {
             List(entries) => Some(entries.len()),
@@ -286,6 +301,41 @@ fn substitutes_stand_in_for_what_cannot_be_read() {
     let expected = [("/name", Code::WrongType), ("/valves", Code::WrongLength)];
     let expected = expected.map(|(pointer, code)| (pointer.to_owned(), code));
     assert_eq!(problems, expected);
+}
+
+#[test]
+fn of_members_that_stand_for_each_other_exactly_one_is_given() {
+    let problem = |code| vec![("/store".to_owned(), code)];
+    let truck = || ("truck", Text("t"));
+    let cases = [
+        (vec![("store", Number(3.0))], 3.0, Vec::new()),
+        (
+            vec![("store", Number(3.0)), ("truck", Null)],
+            3.0,
+            Vec::new(),
+        ),
+        (vec![truck()], 0.0, Vec::new()),
+        (vec![truck(), ("store", Null)], 0.0, Vec::new()),
+        (
+            vec![truck(), ("store", Number(3.0))],
+            0.0,
+            problem(Code::ConflictingFields),
+        ),
+        (Vec::new(), 0.0, problem(Code::MissingField)),
+        (vec![("truck", Null)], 0.0, problem(Code::MissingField)),
+    ];
+    for (members, store, expected) in cases {
+        let (spec, problems) = read::<SourceSpec>(&Object(members));
+        assert_eq!(problems, expected);
+        assert_eq!(spec.map(|spec| spec.store), Some(store));
+    }
+    let Schema::Named(source) = SourceSpec::schema() else {
+        panic!("it has a name")
+    };
+    let Schema::Object(members) = (source.schema)() else {
+        panic!("it is an object")
+    };
+    assert!(members.iter().all(|member| !member.required));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The states at the start and at the end.
 
 use super::limits::{Limits, exceeds};
+use super::pointing::Surroundings;
 use super::{End, Start};
 use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::findings::Findings;
@@ -21,6 +22,15 @@ pub(super) fn read_start(
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<Start> {
+    if spec.pointing.is_some() {
+        findings.refuse(
+            "/start/pointing",
+            Code::ConflictingFields,
+            "a direction does not tell the attitude at the start, which is known",
+            "give the attitude at the start",
+        );
+        return None;
+    }
     let attitude = Attitude::read(&spec.attitude, context, "/start/attitude", findings);
     let rate = read_rate(spec, "/start", limits, findings);
     let wheel_speed = match &spec.wheel_speed_rad_s {
@@ -37,11 +47,12 @@ pub(super) fn read_start(
 pub(super) fn read_end(
     spec: &StateSpec,
     start: &StateSpec,
-    context: AttitudeContext<'_>,
+    surroundings: Surroundings<'_>,
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<End> {
-    let attitude = Attitude::read(&spec.attitude, context, "/end/attitude", findings);
+    let pointing = spec.pointing.as_ref();
+    let orientation = surroundings.orientation(&spec.attitude, pointing, "/end", findings);
     let rate = read_rate(spec, "/end", limits, findings);
     let wheel_speed = match &spec.wheel_speed_rad_s {
         None => Some(None),
@@ -49,9 +60,11 @@ pub(super) fn read_end(
             .filter(|speeds| keeps_locked_wheels(speeds, start, limits, findings))
             .map(Some),
     };
+    let orientation = orientation?;
     Some(End {
-        attitude: attitude?,
-        roll: None,
+        attitude: orientation.attitude,
+        roll: orientation.roll,
+        pointing: orientation.pointing,
         rate: rate?,
         wheel_speed: wheel_speed?,
     })
@@ -175,8 +188,23 @@ pub(super) fn end_conserves_momentum(
     let capacity: f64 = limited
         .map(|w| w.axis.norm() * w.inertia * w.max_speed)
         .sum();
-    let error = (given - conserved).norm();
-    if error <= (MOMENTUM_TOLERANCE * scale).max(CAPACITY_TOLERANCE * capacity) {
+    let tolerance = (MOMENTUM_TOLERANCE * scale).max(CAPACITY_TOLERANCE * capacity);
+    let turning = end
+        .roll
+        .map_or(0.0, |free| free.axis.cross(&conserved).norm());
+    if turning > tolerance {
+        findings.refuse(
+            "/end/wheel_speed_rad_s",
+            Code::EndMomentumInconsistent,
+            format!(
+                "wheel speeds at the end fix the roll there: of the conserved momentum {turning:.6e} \
+                 N m s turn with it in body axes"
+            ),
+            "leave the wheel speeds at the end out, or give the attitude there",
+        );
+        return false;
+    }
+    if (given - conserved).norm() <= tolerance {
         return true;
     }
     findings.refuse(

@@ -1,8 +1,8 @@
 //! The targets and the conditions on the rate there.
 
 use super::limits::{Limits, exceeds};
+use super::pointing::Surroundings;
 use super::{RateCondition, Target};
-use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::model::spec::{MAX_TARGETS, ScenarioSpec, TargetSpec};
@@ -13,7 +13,7 @@ const RESERVED: [&str; 2] = ["start", "end"];
 
 pub(super) fn read_all(
     spec: &ScenarioSpec,
-    context: AttitudeContext<'_>,
+    surroundings: Surroundings<'_>,
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<Vec<Target>> {
@@ -38,15 +38,18 @@ pub(super) fn read_all(
         .map(|(i, target)| {
             let pointer = format!("/targets/{i}");
             let id_valid = check_id(&target.id, &mut ids, &pointer, findings);
-            let attitude_pointer = format!("{pointer}/attitude");
-            let attitude = Attitude::read(&target.attitude, context, &attitude_pointer, findings);
+            let pointing = target.pointing.as_ref();
+            let orientation =
+                surroundings.orientation(&target.attitude, pointing, &pointer, findings);
             let rate = read_rate(target, &pointer, limits, findings);
             let dwell = read_time(target.dwell_s, &format!("{pointer}/dwell_s"), findings);
             let settle = read_time(target.settle_s, &format!("{pointer}/settle_s"), findings);
+            let orientation = orientation?;
             Some(Target {
                 id: id_valid.then(|| target.id.clone())?,
-                attitude: attitude?,
-                roll: None,
+                attitude: orientation.attitude,
+                roll: orientation.roll,
+                pointing: orientation.pointing,
                 rate: rate?,
                 settle: settle?,
                 dwell: dwell?,

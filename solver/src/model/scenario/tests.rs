@@ -1,5 +1,6 @@
 mod cones;
 mod labels;
+mod pointing;
 mod remarks;
 mod sky;
 mod unit_slips;

@@ -1,6 +1,9 @@
 use super::*;
 use crate::model::scenario::reference::experiment_a;
-use crate::model::spec::{AttitudeSpec, ScenarioSpec, SpacecraftSpec, WheelSpec};
+use crate::model::spec::{
+    AttitudeSpec, BoresightChoice, PointingSpec, ScenarioSpec, SpacecraftSpec, StateSpec,
+    TargetSpec, WheelSpec,
+};
 
 /// Four wheels on the edges of a square pyramid, each with a capacity of 1 N m s.
 fn pyramid() -> SpacecraftSpec {
@@ -144,4 +147,92 @@ fn a_smaller_authority_gives_a_smaller_envelope() {
     assert_eq!(problems(&spec), []);
     spec.options.momentum_authority = 0.6;
     assert_eq!(problems(&spec)[0].pointer, "/targets/0");
+}
+
+/// A pyramid with a momentum along the edge of its envelope, and a target that is pointed with a free
+/// roll.
+fn pointed(momentum: Vector3<f64>, roll: [Option<f64>; 2]) -> ScenarioSpec {
+    let craft = Spacecraft::try_new(&pyramid(), "").unwrap();
+    let hold = hold_momentum(&craft, 1.0, &[0.0; 4], momentum).unwrap();
+    let [roll_min_deg, roll_max_deg] = roll;
+    ScenarioSpec {
+        spacecraft: pyramid(),
+        start: StateSpec {
+            wheel_speed_rad_s: Some(hold.wheel_speed),
+            ..StateSpec::default()
+        },
+        targets: vec![TargetSpec {
+            id: "star".into(),
+            // Body Z, about which the wheels stand, to +Y of the reference frame.
+            pointing: Some(PointingSpec {
+                boresight: BoresightChoice::Axis([0.0, 0.0, 1.0]),
+                direction: Some([0.0, 1.0, 0.0].into()),
+                roll_min_deg,
+                roll_max_deg,
+                ..PointingSpec::default()
+            }),
+            ..TargetSpec::default()
+        }],
+        ..ScenarioSpec::default()
+    }
+}
+
+/// The load at every degree of the roll of the only target.
+fn loads(scenario: &Scenario) -> Vec<f64> {
+    let target = &scenario.targets()[0];
+    let pointing = target.pointing.as_ref().unwrap();
+    let at = |degrees: i32| {
+        let roll = f64::from(degrees).to_radians();
+        let attitude = pointing.roll.rolled(&pointing.level, roll);
+        let total = attitude.to_body(scenario.momentum());
+        let craft = scenario.spacecraft();
+        hold_momentum(craft, 1.0, &[0.0; 4], total).unwrap().load
+    };
+    (-180..180).map(at).collect()
+}
+
+#[test]
+fn a_free_roll_is_refused_only_where_no_roll_is_held() {
+    // Across the pyramid's axis the envelope reaches from 1.633 N m s at the facets to 2 / sqrt(3) * 1.633
+    // at the edges between them. Along X of the reference frame all of the momentum turns with the roll.
+    let mut decided = [0; 2];
+    for size in [1.5, 1.63, 1.66, 1.7, 1.9, 2.3, 2.32, 2.6] {
+        let spec = pointed(Vector3::x() * size, [None; 2]);
+        let scenario = Scenario::try_new(&spec).unwrap().scenario;
+        let least = loads(&scenario).into_iter().fold(f64::INFINITY, f64::min);
+        let problems = momentum_problems(&scenario);
+        assert_eq!(problems.is_empty(), least <= 1.0, "{size}: {least}");
+        decided[usize::from(least <= 1.0)] += 1;
+    }
+    assert!(decided[0] >= 2 && decided[1] >= 2, "{decided:?}");
+}
+
+#[test]
+fn limits_of_the_roll_leave_out_those_that_are_held() {
+    let momentum = Vector3::x() * 1.9;
+    let free = Scenario::try_new(&pointed(momentum, [None; 2]))
+        .unwrap()
+        .scenario;
+    let loads = loads(&free);
+    let mut refused = 0;
+    for low in (-180..150).step_by(10) {
+        let limits = [low, low + 20].map(|limit| Some(f64::from(limit)));
+        let scenario = Scenario::try_new(&pointed(momentum, limits))
+            .unwrap()
+            .scenario;
+        let first = usize::try_from(low + 180).unwrap();
+        let is_held = loads[first..=first + 20].iter().any(|load| *load <= 1.0);
+        let problems = momentum_problems(&scenario);
+        assert_eq!(problems.is_empty(), is_held, "{low}");
+        refused += problems.len();
+        for problem in problems {
+            assert_eq!(problem.pointer, "/targets/0");
+            assert!(
+                problem
+                    .message
+                    .contains("at the admissible roll of the least load")
+            );
+        }
+    }
+    assert!(refused > 4, "{refused}");
 }

@@ -6,7 +6,7 @@ use crate::model::scenario::Scenario;
 use crate::model::scenario::reference::experiment_a;
 use crate::model::spec::{
     Accuracy, AttitudeEquivalence, AttitudeSpec, BoresightSpec, ConeSpec, OptionsSpec,
-    ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
+    PointingSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
 };
 use crate::tour::order::Place;
 
@@ -124,12 +124,22 @@ const TABLE: &[Row] = &[
     ("StateSpec.wheel_speed_rad_s", Effect::Both, |s| {
         speeds(s)[0] += 1.0;
     }),
+    // Of the end only, to which neither leg leads.
+    ("StateSpec.pointing", Effect::None, |s| {
+        s.end = Some(StateSpec {
+            pointing: Some(PointingSpec::default()),
+            ..StateSpec::default()
+        });
+    }),
     ("TargetSpec.id", Effect::None, |s| {
         s.targets[1].id = "renamed".into();
         s.targets[2].after = vec!["renamed".into()];
     }),
     ("TargetSpec.attitude", Effect::Both, |s| {
         s.targets[0].attitude = turned(0.4);
+    }),
+    ("TargetSpec.pointing", Effect::Both, |s| {
+        s.targets[0].pointing = Some(PointingSpec::default());
     }),
     ("TargetSpec.zero_rate_axes", Effect::Second, |s| {
         s.targets[1].zero_rate_axes = Some([true, true, false]);
@@ -319,9 +329,9 @@ fn the_table_lists_every_field() {
             axis, normalize_axis, inertia_kg_m2, max_torque_nm, min_torque_nm, max_speed_rad_s, enabled,
         }
         BoresightSpec { name, axis }
-        StateSpec { attitude, body_rate_rad_s, wheel_speed_rad_s }
+        StateSpec { attitude, pointing, body_rate_rad_s, wheel_speed_rad_s }
         TargetSpec {
-            id, attitude, zero_rate_axes, rate_min_rad_s, rate_max_rad_s, dwell_s, settle_s, position,
+            id, attitude, pointing, zero_rate_axes, rate_min_rad_s, rate_max_rad_s, dwell_s, settle_s, position,
             after,
         }
         ConeSpec { boresight, direction, half_angle_deg, applies }

@@ -73,7 +73,7 @@ impl KinematicExtremals {
     }
 
     /// Duration of the guess for a turn in body axes, s.
-    pub(super) fn duration_s(&self, turn: &Attitude) -> Option<f64> {
+    pub(crate) fn duration_s(&self, turn: &Attitude) -> Option<f64> {
         let ramped = self.ramped(turn)?;
         let arcs = ramped.arcs.iter().map(|arc| arc.duration_s);
         Some(arcs.sum::<f64>() + ramped.ramp)

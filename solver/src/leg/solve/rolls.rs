@@ -1,22 +1,18 @@
-//! Starting rolls of motions between waypoints at which only an axis is pointed.
+//! Legs between waypoints at which only an axis is pointed: the starting rolls.
 //!
 //! A program moves a free roll to the nearest minimum; which one that is, depends on the guess. So the
-//! durations of eigenaxis slews between rolls on a grid are compared. For a leg the local minima of this
-//! estimate are starts, fastest first by its kinematic extremals; for a longer motion a dynamic program
-//! finds the rolls with the least sum.
+//! durations of eigenaxis slews between rolls on a grid are compared. The local minima of this estimate
+//! are starts, fastest first by their kinematic extremals.
+
+mod grid;
+mod route;
 
 use super::{LegOutcome, LegProblem, solve_from_attitudes};
-use crate::math::bang_coast_bang::BangCoastBang;
-use crate::model::attitude::Attitude;
-use crate::model::cone::ForbiddenCone;
-use crate::model::dynamics::Dynamics;
-use crate::model::roll::FreeRoll;
 use crate::model::waypoint::{Waypoint, nearest_rolls};
 use crate::run::stop::StopReason;
-use std::f64::consts::TAU;
+use grid::{Grid, is_clear};
+pub(crate) use route::rolled_routes;
 
-/// Greatest distance of neighbouring rolls of the grid, rad.
-const SPACING: f64 = TAU / 24.0;
 /// Number of starts of a leg, and the ratio of their estimates to the least one up to which there are
 /// several.
 const MAX_STARTS: usize = 4;
@@ -119,125 +115,3 @@ fn starts(leg: &LegProblem<'_>) -> Vec<[Waypoint; 2]> {
     starts.extend(promising.map(|(_, ends)| ends.map(Waypoint::clone)));
     starts
 }
-
-/// The waypoints of a route, described from rolls at which the slews between them take little time
-/// together: the shortest path over the grids of all rolls.
-pub(crate) fn rolled_route(dynamics: &Dynamics, route: Vec<Waypoint>) -> Vec<Waypoint> {
-    if route.iter().all(|waypoint| waypoint.roll.is_none()) {
-        return route;
-    }
-    let grid = |waypoint| Grid::of(waypoint).clear_of(&dynamics.cones);
-    let grids: Vec<Grid> = route.iter().map(grid).collect();
-    if grids.iter().any(|grid| grid.waypoints.is_empty()) {
-        return route;
-    }
-    let Some(first) = grids.first() else {
-        return route;
-    };
-    let mut elapsed = vec![0.0; first.waypoints.len()];
-    let mut arrivals: Vec<Vec<usize>> = Vec::new();
-    for pair in grids.windows(2) {
-        let table = pair[0].durations_to(&pair[1], dynamics);
-        let best = |to: usize| {
-            let from = elapsed
-                .iter()
-                .zip(&table)
-                .map(|(before, row)| before + row[to]);
-            let from = from.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b));
-            from.expect("a grid has at least one roll")
-        };
-        let best: Vec<(usize, f64)> = (0..pair[1].waypoints.len()).map(best).collect();
-        elapsed = best.iter().map(|(_, elapsed)| *elapsed).collect();
-        arrivals.push(best.iter().map(|(from, _)| *from).collect());
-    }
-    let last = elapsed.iter().enumerate();
-    let last = last.min_by(|(_, a), (_, b)| a.total_cmp(b));
-    let mut roll = last.map_or(0, |(roll, _)| roll);
-    let mut rolled = Vec::with_capacity(grids.len());
-    for (i, grid) in grids.iter().enumerate().rev() {
-        rolled.push(grid.waypoints[roll].clone());
-        if let Some(from) = i.checked_sub(1).map(|before| &arrivals[before]) {
-            roll = from[roll];
-        }
-    }
-    rolled.reverse();
-    rolled
-}
-
-/// A waypoint, described from rolls all over its range; once where the roll is given.
-struct Grid {
-    waypoints: Vec<Waypoint>,
-    /// Whether the last roll is beside the first.
-    is_closed: bool,
-}
-
-impl Grid {
-    fn of(end: &Waypoint) -> Self {
-        let range = end.roll.map(|FreeRoll { range, .. }| range);
-        let (rolls, is_closed): (Vec<f64>, bool) = match range {
-            None => (vec![0.0], false),
-            Some(None) => {
-                let count = (TAU / SPACING).round();
-                let roll = |i: u32| TAU * f64::from(i) / count;
-                ((0..count as u32).map(roll).collect(), true)
-            }
-            Some(Some([least, greatest])) => {
-                let parts = ((greatest - least) / SPACING).ceil().max(1.0);
-                let roll = |i: u32| least + (greatest - least) * f64::from(i) / parts;
-                ((0..=parts as u32).map(roll).collect(), false)
-            }
-        };
-        Self {
-            waypoints: rolls.into_iter().map(|roll| end.rolled(roll)).collect(),
-            is_closed,
-        }
-    }
-
-    /// Those that lie in no cone.
-    fn clear_of(mut self, cones: &[ForbiddenCone]) -> Self {
-        let all = self.waypoints.len();
-        if all > 1 {
-            self.waypoints.retain(|waypoint| is_clear(cones, waypoint));
-        }
-        self.is_closed &= self.waypoints.len() == all;
-        self
-    }
-
-    /// Durations, s, of the slews about the eigenaxis from every roll to every roll of another waypoint.
-    fn durations_to(&self, to: &Self, dynamics: &Dynamics) -> Vec<Vec<f64>> {
-        let row = |from: &Waypoint| {
-            let leg = |to: &Waypoint| eigenaxis_s(dynamics, &from.attitude, &to.attitude);
-            to.waypoints.iter().map(leg).collect()
-        };
-        self.waypoints.iter().map(row).collect()
-    }
-
-    /// A roll and its neighbours, by their numbers.
-    fn around(&self, at: usize) -> impl Iterator<Item = usize> + '_ {
-        let count = self.waypoints.len();
-        let beside = [at + count - 1, at + count, at + count + 1].into_iter();
-        beside.filter_map(move |at| {
-            let inside = (count..2 * count).contains(&at);
-            (self.is_closed || inside).then_some(at % count)
-        })
-    }
-}
-
-fn is_clear(cones: &[ForbiddenCone], waypoint: &Waypoint) -> bool {
-    cones
-        .iter()
-        .all(|cone| cone.depth(&waypoint.attitude) <= 0.0)
-}
-
-/// Duration, s, of the slew about the eigenaxis from rest to rest without stored momentum.
-fn eigenaxis_s(dynamics: &Dynamics, from: &Attitude, to: &Attitude) -> f64 {
-    let turn = from.signed_turn_to(&to.nearest_sign(from));
-    let angle = turn.norm();
-    if angle == 0.0 {
-        return 0.0;
-    }
-    let axis = turn / angle;
-    let (acceleration, rate) = (dynamics.axis_acceleration(&axis), dynamics.axis_rate(&axis));
-    BangCoastBang::fastest(angle, acceleration, rate).duration()
-}
-

@@ -7,7 +7,8 @@ use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::leg::solve::around_cones::is_clear;
 use crate::leg::solve::eigenaxis::Perturbation;
-use crate::leg::solve::rolls::rolled_route;
+use crate::leg::solve::rolls::rolled_routes;
+use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::tour::legs::LegKind;
 use crate::tour::order::Place;
@@ -61,13 +62,12 @@ pub(super) fn admits_rest(places: &Places<'_>, route: &[Place]) -> bool {
 /// from rest to rest has no solution. For [`InitialGuess::Shorter`] see [`extended`].
 pub(super) fn joined(
     legs: &LegSolver<'_>,
-    route: &[Place],
+    (route, waypoints): (&[Place], &[Waypoint]),
     kind: InitialGuess,
 ) -> Option<(Profile, Vec<usize>)> {
     let places = legs.places();
     let mut guess = Profile::empty();
     let mut intervals = Vec::new();
-    let waypoints = places.waypoints(route);
     let is_rolled = waypoints.iter().any(|waypoint| waypoint.roll.is_some());
     for (pair, ends) in route.windows(2).zip(waypoints.windows(2)) {
         let slew = places.slew(&ends[0], &ends[1]);
@@ -104,12 +104,14 @@ pub(super) fn extended(
 ) -> Option<(Profile, Vec<usize>)> {
     shorter.duration()?;
     let (mut guess, mut intervals) = (shorter.profile.clone(), shorter.intervals.clone());
-    let mut ends = last_leg.iter().map(|place| legs.places().waypoint(*place));
+    let places = legs.places();
+    let mut ends = last_leg.iter().map(|place| places.waypoint(*place));
     // From the roll at which the solution ends.
     let reached = guess.attitudes.last()?;
     let from = ends.next()?.rolled_towards(reached).pinned();
-    let ends = rolled_route(&legs.places().dynamics, vec![from, ends.next()?]);
-    let slew = legs.places().slew(&ends[0], &ends[1]);
+    let route = vec![from, ends.next()?];
+    let ends = rolled_routes(&places.dynamics, &places.extremals, route, 1).swap_remove(0);
+    let slew = places.slew(&ends[0], &ends[1]);
     let last = slew.perturbed_eigenaxis(Perturbation::Near);
     guess.append(&last);
     intervals.push(last.intervals());

@@ -4,7 +4,7 @@ use super::canonical::describe_spacecraft;
 use crate::bounds::certified::CertifiedBounds;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
-use crate::leg::solve::rolls::rolled_route;
+use crate::leg::solve::rolls::rolled_routes;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
@@ -204,8 +204,14 @@ impl<'a> Places<'a> {
 
     /// The waypoints of a route; where rolls are free, described from those of a short way through all.
     pub(super) fn waypoints(&self, route: &[Place]) -> Vec<Waypoint> {
-        let waypoints = route.iter().map(|place| self.waypoint(*place));
-        rolled_route(&self.with_cones, waypoints.collect())
+        let mut starts = self.waypoint_starts(route, 1);
+        starts.swap_remove(0)
+    }
+
+    /// The waypoints of a route, described from the rolls of so many starts at most.
+    pub(super) fn waypoint_starts(&self, route: &[Place], most: usize) -> Vec<Vec<Waypoint>> {
+        let waypoints = route.iter().map(|place| self.waypoint(*place)).collect();
+        rolled_routes(&self.with_cones, &self.extremals, waypoints, most)
     }
 
     /// Torques of all wheels, N m, from those of the enabled ones; disabled wheels have none.

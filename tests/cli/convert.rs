@@ -33,6 +33,25 @@ fn a_table_becomes_a_list_of_targets() {
 }
 
 #[test]
+fn stars_without_a_roll_become_pointings_that_a_scenario_takes() {
+    let table = "id,ra,dec,roll_min,roll_max\nvega,279.23,38.78,,\nsirius,101.29,-16.72,-20,20\n";
+    let ended = slewplan_fed(&["convert", "-"], table.as_bytes()).expect_code(0);
+    let expected = json!([
+        {"id": "vega", "pointing": {"boresight": [0.0, 0.0, 1.0], "ra_dec_deg": [279.23, 38.78]}},
+        {"id": "sirius", "pointing": {
+            "boresight": [0.0, 0.0, 1.0], "ra_dec_deg": [101.29, -16.72],
+            "roll_min_deg": -20.0, "roll_max_deg": 20.0}},
+    ]);
+    assert_eq!(ended.json(), expected);
+    let base = fixture("two-targets.json");
+    let into = slewplan_fed(&["convert", "-", "--into", &base], table.as_bytes()).expect_code(0);
+    let filled = into.json();
+    assert_eq!(filled["targets"][1]["pointing"]["roll_max_deg"], 20.0);
+    let text = filled.to_string();
+    slewplan_fed(&["validate", "-"], text.as_bytes()).expect_code(0);
+}
+
+#[test]
 fn a_scenario_with_the_targets_is_valid_and_solved() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();

@@ -15,6 +15,7 @@ mod labels;
 mod legs;
 mod merging;
 mod plot;
+mod pointing;
 mod refusals;
 mod run;
 mod slew;

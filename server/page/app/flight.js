@@ -15,7 +15,7 @@ export function flightOf(plan, scenario) {
     total: plan.total_time_s,
     torques: { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true },
     phases: phases(plan, scenario),
-    stops: stops(plan),
+    stops: stops(plan, scenario),
     alarms: alarmsOf(plan),
   };
 }
@@ -93,14 +93,17 @@ function phases(plan, scenario) {
   });
 }
 
-/** The targets in visiting order. */
-function stops(plan) {
+/** The targets in visiting order. Of a boresight that is pointed, its name or axis and its roll are told. */
+function stops(plan, scenario) {
+  const pointed = new Map(scenario.targets.map((target) => [target.id, target.pointing?.boresight ?? null]));
   return plan.passages.map((passage, index) => ({
     number: index + 1,
     name: passage.target,
     time: passage.time_s,
     departure: passage.departure_s,
     attitude: quaternion(passage.attitude.quaternion),
+    roll: passage.roll_deg ?? null,
+    pointed: pointed.get(passage.target) ?? null,
   }));
 }
 

@@ -35,6 +35,12 @@ export function slerp(from, to, fraction) {
   return sum(scaled(from, a / Math.sin(angle)), scaled(end, b / Math.sin(angle)));
 }
 
+/** The body axis that points to north at roll 0: +Z, or +X where the boresight lies along Z, across it. */
+export function upward(boresight) {
+  const axis = Math.hypot(boresight[0], boresight[1]) < 1e-6 ? [1, 0, 0] : [0, 0, 1];
+  return unit(sum(axis, scaled(boresight, -dot(axis, boresight))));
+}
+
 /** Longitude and latitude of a direction, degrees. */
 export function longitudeLatitude(v) {
   const [x, y, z] = unit(v);

@@ -61,6 +61,8 @@ class Passage(TypedDict):
     target: str
     time_s: float
     departure_s: float
+    # Degrees, where the target points a boresight.
+    roll_deg: NotRequired[float]
     body_rate_rad_s: list[float]
     wheel_speed_rad_s: list[float]
 

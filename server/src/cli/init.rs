@@ -109,7 +109,14 @@ mod tests {
                 members(of, &entries.flatten().collect::<Vec<_>>(), seen);
             }
             Schema::Object(declared) => {
+                let stands_for = |name: &str, other: &MemberSchema| {
+                    let is_there = |value: &&Value| value.get(other.name).is_some();
+                    other.unless == Some(name) && values.iter().all(|value| is_there(&value))
+                };
                 for MemberSchema { name, schema, .. } in declared {
+                    if declared.iter().any(|other| stands_for(name, other)) {
+                        continue;
+                    }
                     let inside: Vec<&Value> =
                         values.iter().filter_map(|value| value.get(name)).collect();
                     seen.push(((*name).to_owned(), !inside.is_empty()));

@@ -167,7 +167,9 @@ fn absence(member: &MemberSchema) -> String {
         Some(Literal::Number(value)) => format!("`{value}`"),
         Some(Literal::Integer(value)) => format!("`{value}`"),
         Some(Literal::Boolean(value)) => format!("`{value}`"),
-        None => String::new(),
+        None => member
+            .unless
+            .map_or_else(String::new, |other| format!("`{other}` instead")),
     }
 }
 

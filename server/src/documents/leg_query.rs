@@ -9,8 +9,8 @@ use slewplan_solver::model::input::{
 use slewplan_solver::model::problem::{Code, Problem};
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::{
-    AttitudeSpec, ConeSpec, MAX_CONES, OptionsSpec, PairSpec, RateAxes, ReferenceFrame,
-    ScenarioSpec, SpacecraftOrReference, SpacecraftSpec, StateSpec, TargetSpec, TimeSystem,
+    ConeSpec, MAX_CONES, OptionsSpec, OrientationSpec, RateAxes, ReferenceFrame, ScenarioSpec,
+    SpacecraftOrReference, SpacecraftSpec, StateSpec, TargetSpec, TimeSystem,
 };
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::order::Place;
@@ -40,15 +40,25 @@ input_object! {
         /// Cones in which a boresight must point; likewise.
         keep_in: Vec<ConeSpec> as UpTo<MAX_CONES, ConeSpec> = or(Vec::new()),
         /// The legs between all of these, both directions.
-        attitudes: Option<Vec<AttitudeSpec>> = optional().min_length(2),
+        attitudes: Option<Vec<OrientationSpec>> = optional().min_length(2),
         /// The legs of these pairs.
-        pairs: Option<Vec<PairSpec>> = optional().min_length(1),
+        pairs: Option<Vec<LegEndsSpec>> = optional().min_length(1),
         /// The conditions at the two ends; `rest_to_rest` without it. `certified` asks for proved bounds
         /// of the rest-to-rest times only: they are computed, in `compute`, without solving any slew, and
         /// not stored.
         kind: LegKind = or(LegKind::RestToRest),
         /// Whether unknown legs are solved; `cached_only` without it.
         mode: LegQueryMode = or(LegQueryMode::CachedOnly),
+    }
+}
+
+input_object! {
+    /// From one attitude, or pointed boresight, to another.
+    struct LegEndsSpec as "LegEnds" {
+        /// Where the leg begins.
+        from: OrientationSpec = required_or(OrientationSpec::default()),
+        /// Where the leg ends.
+        to: OrientationSpec = required_or(OrientationSpec::default()),
     }
 }
 
@@ -164,11 +174,15 @@ impl QueriedAttitudes {
         let listed = attitudes.map(|(i, attitude)| (format!("/attitudes/{i}"), attitude));
         let (pointers, attitudes): (Vec<String>, Vec<_>) = listed.chain(ends).unzip();
         // Messages name targets by their identifiers.
-        let target = |(id, attitude): (&String, &AttitudeSpec)| TargetSpec {
-            id: id.clone(),
-            attitude: attitude.clone(),
-            zero_rate_axes: spec.zero_rate_axes,
-            ..TargetSpec::default()
+        let target = |(id, orientation): (&String, &OrientationSpec)| {
+            let (attitude, pointing) = orientation.clone().into_members();
+            TargetSpec {
+                id: id.clone(),
+                attitude,
+                pointing,
+                zero_rate_axes: spec.zero_rate_axes,
+                ..TargetSpec::default()
+            }
         };
         Self {
             targets: pointers.iter().zip(attitudes).map(target).collect(),
@@ -318,11 +332,14 @@ fn is_of_start(problem: &Problem) -> bool {
 fn moved(problem: Problem, pointers: &[String]) -> Problem {
     let place = problem.pointer.strip_prefix("/targets/").and_then(|rest| {
         let (index, rest) = rest.split_once('/').unwrap_or((rest, ""));
-        let inside = rest.strip_prefix("attitude").unwrap_or("");
-        Some(format!(
-            "{}{inside}",
-            pointers.get(index.parse::<usize>().ok()?)?
-        ))
+        // An attitude stands at the place itself, a pointing in a member there.
+        let inside = match rest.strip_prefix("attitude") {
+            Some(inside) => inside.to_owned(),
+            None if rest.starts_with("pointing") => format!("/{rest}"),
+            None => String::new(),
+        };
+        let place = pointers.get(index.parse::<usize>().ok()?)?;
+        Some(format!("{place}{inside}"))
     });
     match place {
         Some(pointer) => Problem { pointer, ..problem },

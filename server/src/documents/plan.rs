@@ -16,7 +16,7 @@ pub(crate) use parts::{
     ClearanceDocument, ControlDocument, IntrusionDocument, MarginsDocument, QuaternionDocument,
     StateDocument, VerificationDocument,
 };
-use parts::{LegDocument, PassageDocument};
+use parts::{EndDocument, LegDocument, PassageDocument};
 use statistics::StatisticsDocument;
 
 /// The answer of `solve`. All times are `null` and all lists empty when there is no plan.
@@ -40,6 +40,10 @@ pub(crate) struct PlanDocument<'a> {
     alternatives: Vec<AlternativeDocument<'a>>,
     legs: Vec<LegDocument<'a>>,
     passages: Vec<PassageDocument<'a>>,
+    /// Where the end points a boresight: how it is reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    end: Option<EndDocument>,
     trajectory: TrajectoryDocument,
     margins: Option<MarginsDocument>,
     verification: Option<VerificationDocument<'a>>,
@@ -133,14 +137,11 @@ fn planned(plan: &Plan) -> PlanDocument<'_> {
             .map(AlternativeDocument::from)
             .collect(),
         legs: plan.legs.iter().map(LegDocument::from).collect(),
-        passages: flight
-            .passages
-            .iter()
-            .filter_map(|passage| {
-                state_at(&plan.states, passage.time_s)
-                    .map(|state| PassageDocument::new(passage, state))
-            })
-            .collect(),
+        passages: passages(plan),
+        end: plan.rolls.end.and_then(|roll| {
+            let state = plan.states.last()?;
+            Some(EndDocument::new(state, roll))
+        }),
         trajectory: TrajectoryDocument {
             controls: flight.controls.iter().map(ControlDocument::from).collect(),
             states: plan.states.iter().map(StateDocument::from).collect(),
@@ -153,15 +154,14 @@ fn planned(plan: &Plan) -> PlanDocument<'_> {
     }
 }
 
-/// The sampled state nearest to a time. Passages are control boundaries, which are all sampled.
-fn state_at(states: &[State], time_s: f64) -> Option<&State> {
-    let after = states.partition_point(|state| state.time_s < time_s);
-    let candidates = &states[after.saturating_sub(1)..states.len().min(after + 1)];
-    candidates.iter().min_by(|a, b| {
-        (a.time_s - time_s)
-            .abs()
-            .total_cmp(&(b.time_s - time_s).abs())
-    })
+fn passages(plan: &Plan) -> Vec<PassageDocument<'_>> {
+    let passages = plan.flight.passages.iter().enumerate();
+    let passages = passages.filter_map(|(index, passage)| {
+        let state = State::nearest(&plan.states, passage.time_s)?;
+        let roll = plan.rolls.passages.get(index).copied().flatten();
+        Some(PassageDocument::new(passage, state, roll))
+    });
+    passages.collect()
 }
 
 #[cfg(test)]
@@ -272,12 +272,19 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_state_is_found_at_the_ends_and_between() {
-        let states = sample::plan().states;
-        for (time, expected) in [(-1.0, 0.0), (9.9, 10.0), (10.1, 10.0), (99.0, 30.0)] {
-            let found = state_at(&states, time).unwrap();
-            assert!((found.time_s - expected).abs() < 1e-12, "{time}");
-        }
-        assert!(state_at(&[], 0.0).is_none());
+    fn rolls_are_written_where_there_are_any() {
+        let mut plan = sample::plan();
+        let written = |plan: &Plan| serde_json::to_value(super::plan(plan, &[])).unwrap();
+        let value = written(&plan);
+        assert_eq!(value["passages"][1]["roll_deg"], -12.5);
+        assert!(value["passages"][0].get("roll_deg").is_none());
+        assert!(value.get("end").is_none());
+        plan.rolls.end = Some(7.0);
+        let end = &written(&plan)["end"];
+        assert_eq!(
+            (&end["roll_deg"], &end["time_s"]),
+            (&7.0.into(), &30.0.into())
+        );
+        assert_eq!(end["attitude"]["quaternion"]["w"], 1.0);
     }
 }

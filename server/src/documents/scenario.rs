@@ -101,7 +101,10 @@ fn follows_from_a_substitute(found: &Problem, replaced: &[String]) -> bool {
             any_related(&found.pointer)
                 || replaced.iter().any(|p| contains(p, "/spacecraft/wheels"))
         }
-        Code::UnknownReference if found.pointer.ends_with("/attitude/boresight") => {
+        Code::UnknownReference
+            if found.pointer.ends_with("/attitude/boresight")
+                || found.pointer.ends_with("/pointing/boresight") =>
+        {
             any_related(&found.pointer) || any_related("/spacecraft/boresights")
         }
         Code::UnknownReference if found.pointer.starts_with("/targets/") => {

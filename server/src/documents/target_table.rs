@@ -174,11 +174,52 @@ impl Row<'_> {
         }
         let mut members = vec![
             member("id", Node::Text(id.into())),
-            member("attitude", self.attitude(boresight, problems)),
+            self.orientation(boresight, problems),
         ];
         for (column, name) in [(Column::Dwell, "dwell_s"), (Column::Settle, "settle_s")] {
             // An empty cell is the default.
-            if self.cell(column).is_some_and(|cell| !cell.is_empty()) {
+            if self.is_filled(column) {
+                members.push(member(name, self.number(column, problems)));
+            }
+        }
+        Node::Object(members.into())
+    }
+
+    /// The attitude, or a pointed boresight where the sky is given without a roll.
+    fn orientation(&self, boresight: [f64; 3], problems: &mut Vec<Problem>) -> Member {
+        let on_sky = self.columns.attitude == AttitudeColumns::RaDecRoll;
+        self.check_limits(on_sky, problems);
+        if on_sky && !self.is_filled(Column::Roll) {
+            member("pointing", self.pointing(boresight, problems))
+        } else {
+            member("attitude", self.attitude(boresight, problems))
+        }
+    }
+
+    /// Refuses limits of a roll that is given.
+    fn check_limits(&self, on_sky: bool, problems: &mut Vec<Problem>) {
+        for column in [Column::RollMin, Column::RollMax] {
+            if self.is_filled(column) && (!on_sky || self.is_filled(Column::Roll)) {
+                let message = "the roll is given, so it has no limits";
+                let hint = "give ra and dec with roll, or with roll_min and roll_max";
+                problems.push(self.problem(column, Code::ConflictingFields, message, hint));
+            }
+        }
+    }
+
+    fn pointing(&self, boresight: [f64; 3], problems: &mut Vec<Problem>) -> Node {
+        let sky = [Column::RightAscension, Column::Declination];
+        let sky = sky.map(|column| self.number(column, problems));
+        let mut members = vec![
+            member("boresight", Node::List(boresight.map(Node::Number).into())),
+            member("ra_dec_deg", Node::List(sky.into())),
+        ];
+        let limits = [
+            (Column::RollMin, "roll_min_deg"),
+            (Column::RollMax, "roll_max_deg"),
+        ];
+        for (column, name) in limits {
+            if self.is_filled(column) {
                 members.push(member(name, self.number(column, problems)));
             }
         }
@@ -189,13 +230,9 @@ impl Row<'_> {
         let mut number = |column| self.number(column, problems);
         let members = match self.columns.attitude {
             AttitudeColumns::RaDecRoll => {
-                let (ra, dec) = (number(Column::RightAscension), number(Column::Declination));
-                let roll = match self.cell(Column::Roll) {
-                    Some(_) => number(Column::Roll),
-                    None => Node::Number(0.0),
-                };
+                let angles = [Column::RightAscension, Column::Declination, Column::Roll];
                 vec![
-                    member("ra_dec_roll_deg", Node::List([ra, dec, roll].into())),
+                    member("ra_dec_roll_deg", Node::List(angles.map(number).into())),
                     member("boresight", Node::List(boresight.map(Node::Number).into())),
                 ]
             }
@@ -215,6 +252,10 @@ impl Row<'_> {
             }
         };
         Node::Object(members.into())
+    }
+
+    fn is_filled(&self, column: Column) -> bool {
+        self.cell(column).is_some_and(|cell| !cell.is_empty())
     }
 
     fn cell(&self, column: Column) -> Option<&str> {
@@ -325,6 +366,11 @@ fn column_of(place: &[&str]) -> Option<Column> {
             &[Column::RightAscension, Column::Declination, Column::Roll],
             index,
         ),
+        ["pointing", "ra_dec_deg", index] => {
+            of(&[Column::RightAscension, Column::Declination], index)
+        }
+        ["pointing", "roll_min_deg"] => Some(Column::RollMin),
+        ["pointing", "roll_max_deg"] => Some(Column::RollMax),
         ["attitude", "roll_pitch_yaw_deg", index] => {
             of(&[Column::Roll, Column::Pitch, Column::Yaw], index)
         }

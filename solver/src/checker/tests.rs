@@ -7,5 +7,6 @@ mod enforced_cones;
 mod flights;
 mod limits;
 mod motion;
+mod pointing;
 mod ramped;
 mod refusals;

@@ -1,6 +1,8 @@
 //! Whether every target is visited once, with the required state and stay, and the end is reached.
 
-use super::dynamics::{QuaternionComponents, Snapshot, conjugate, norm, product};
+mod goal;
+
+use super::dynamics::Snapshot;
 use super::integrator::TorqueSpan;
 use super::number_format::figure;
 use super::order::misplaced;
@@ -11,6 +13,7 @@ use super::{
 use crate::model::plan::{Flight, Passage};
 use crate::model::scenario::{End, RateCondition, Scenario, Target};
 use crate::model::spec::AttitudeEquivalence;
+use goal::{Goal, Miss};
 use nalgebra::Vector3;
 
 /// A visit that can be tested: a known target at times inside the flight.
@@ -159,13 +162,17 @@ pub(super) fn inspect(scenario: &Scenario, visits: &[Visit<'_>], states: &[Snaps
 impl Misses {
     fn at_target(&mut self, visit: &Visit<'_>, stay: &[Snapshot], sign: AttitudeEquivalence) {
         let target = visit.target;
-        let goal = target.attitude.xyzw();
-        let (mut turn, mut rate) = (0.0_f64, 0.0_f64);
+        let goal = Goal {
+            attitude: target.attitude.xyzw(),
+            roll: target.roll.as_ref(),
+            sign,
+        };
+        let (mut miss, mut rate) = (Miss::default(), 0.0_f64);
         for state in stay {
-            turn = turn.max(attitude_error(&state.quaternion, &goal, sign));
+            miss = miss.larger(goal.missed_by(&state.quaternion));
             rate = rate.max(rate_error(&state.rate, &target.rate));
         }
-        self.record(&format!("target '{}'", target.id), turn, rate);
+        self.record(&format!("target '{}'", target.id), miss, rate);
     }
 
     /// A stay without any state cannot be tested and counts as failed.
@@ -181,10 +188,14 @@ impl Misses {
     }
 
     fn at_end(&mut self, end: &End, state: &Snapshot, scenario: &Scenario) {
-        let sign = scenario.options().attitude_equivalence;
-        let turn = attitude_error(&state.quaternion, &end.attitude.xyzw(), sign);
+        let goal = Goal {
+            attitude: end.attitude.xyzw(),
+            roll: end.roll.as_ref(),
+            sign: scenario.options().attitude_equivalence,
+        };
+        let miss = goal.missed_by(&state.quaternion);
         let conditions = [end.rate.x, end.rate.y, end.rate.z].map(RateCondition::Fixed);
-        self.record("the end", turn, rate_error(&state.rate, &conditions));
+        self.record("the end", miss, rate_error(&state.rate, &conditions));
         let Some(speeds) = &end.wheel_speed else {
             return;
         };
@@ -210,13 +221,19 @@ impl Misses {
         self.end_speed = Some(worst);
     }
 
-    fn record(&mut self, place: &str, turn: f64, rate: f64) {
-        self.attitude_rad = self.attitude_rad.max(turn);
+    fn record(&mut self, place: &str, miss: Miss, rate: f64) {
+        self.attitude_rad = self.attitude_rad.max(miss.turn).max(miss.roll);
         self.rate_rad_s = self.rate_rad_s.max(rate);
-        if turn > ATTITUDE_TOLERANCE {
-            let turn = figure(turn);
+        if miss.turn > ATTITUDE_TOLERANCE {
+            let turn = figure(miss.turn);
             self.failures
                 .push(format!("{place} is missed by {turn} rad"));
+        }
+        if miss.roll > ATTITUDE_TOLERANCE {
+            let roll = figure(miss.roll);
+            self.failures.push(format!(
+                "{place} is passed {roll} rad outside the limits of its roll"
+            ));
         }
         if rate > RATE_TOLERANCE {
             let rate = figure(rate);
@@ -254,22 +271,6 @@ pub(super) fn driven_rests(
         ))
     };
     visits.iter().filter_map(culprit).collect()
-}
-
-/// Angle of the turn between two unit quaternions, rad. With [`AttitudeEquivalence::Quaternion`] the
-/// opposite sign is a full turn away.
-fn attitude_error(
-    q: &QuaternionComponents,
-    goal: &QuaternionComponents,
-    equivalence: AttitudeEquivalence,
-) -> f64 {
-    let turn = product(&conjugate(goal), q);
-    let sine = norm(&[turn[0], turn[1], turn[2], 0.0]);
-    let cosine = match equivalence {
-        AttitudeEquivalence::Rotation => turn[3].abs(),
-        AttitudeEquivalence::Quaternion => turn[3],
-    };
-    2.0 * sine.atan2(cosine)
 }
 
 /// Largest deviation of a rate component from its condition, rad/s.

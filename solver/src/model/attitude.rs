@@ -14,8 +14,8 @@
 
 mod forms;
 
-pub use forms::AttitudeContext;
 pub(in crate::model) use forms::{Aim, boresight_axis, pointed};
+pub use forms::{AttitudeContext, upward};
 
 use nalgebra::{Matrix3, Quaternion, Unit, UnitQuaternion, Vector3};
 

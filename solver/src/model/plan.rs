@@ -1,5 +1,9 @@
 //! The answer: order, passage times, wheel torques, bound and verification.
 
+mod rolls;
+
+pub use rolls::Rolls;
+
 use crate::model::attitude::Attitude;
 use crate::model::cone::Cone;
 use crate::model::problem::Problem;
@@ -63,6 +67,8 @@ pub struct Plan {
     pub legs: Vec<Leg>,
     /// The motion: passages and torques.
     pub flight: Flight,
+    /// The rolls about the boresights that are pointed.
+    pub rolls: Rolls,
     /// Sampled states, at every control boundary at least.
     pub states: Vec<State>,
     /// The margins of all limits.
@@ -166,6 +172,21 @@ pub struct State {
     pub body_rate_rad_s: Vector3<f64>,
     /// Wheel speeds relative to the body, rad/s.
     pub wheel_speed_rad_s: Vec<f64>,
+}
+
+impl State {
+    /// The one nearest to a time, s, of states in order of time. Passages are control boundaries, which
+    /// all have a state.
+    #[must_use]
+    pub fn nearest(states: &[Self], time_s: f64) -> Option<&Self> {
+        let after = states.partition_point(|state| state.time_s < time_s);
+        let candidates = &states[after.saturating_sub(1)..states.len().min(after + 1)];
+        candidates.iter().min_by(|a, b| {
+            (a.time_s - time_s)
+                .abs()
+                .total_cmp(&(b.time_s - time_s).abs())
+        })
+    }
 }
 
 /// Relative margins of all limits: 0 is at the limit, 1 is unused.

@@ -325,6 +325,9 @@ pub enum Code {
         them reported."
     )]
     NoRollLeft,
+    /// A free roll where the computation needs a given one.
+    #[strum(message = "Give equal limits of the roll, or an attitude.")]
+    RollNotFree,
     /// A direction of a body of the sky in a scenario without an epoch.
     #[strum(message = "Give the epoch of time zero, or the direction as a vector.")]
     EpochRequired,

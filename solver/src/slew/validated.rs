@@ -67,6 +67,7 @@ impl Slew {
         if !enclosed.is_empty() {
             return Err(enclosed);
         }
+        refuse_free_roll(&scenario.scenario)?;
         let mut warnings = scenario.warnings;
         // A slew never has any.
         warnings.retain(|warning| warning.code != Code::NoTargets);
@@ -254,6 +255,19 @@ impl Slew {
             ..self.clone()
         }
     }
+}
+
+/// Refuses an end whose roll is left to the slew.
+fn refuse_free_roll(scenario: &Scenario) -> Result<(), Vec<Problem>> {
+    if scenario.end().is_none_or(|end| end.roll.is_none()) {
+        return Ok(());
+    }
+    Err(vec![Problem::new(
+        "/end/pointing",
+        Code::RollNotFree,
+        "the roll at the end is free, but a slew ends at a given roll",
+        "give equal roll_min_deg and roll_max_deg, or plan the slew as a scenario with this end",
+    )])
 }
 
 fn fixed(rate: &Vector3<f64>) -> [RateCondition; 3] {

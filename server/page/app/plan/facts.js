@@ -50,5 +50,6 @@ export function order(plan, cursor) {
   return el("ol", { class: "order", "aria-label": "Visiting order" }, plan.passages.map((passage) =>
     el("li", {}, el("button", { type: "button", onclick: () => cursor.set(passage.time_s) },
       el("span", { class: "stop-name" }, passage.target), " ",
-      el("span", { class: "stop-time" }, seconds(passage.time_s, 1))))));
+      el("span", { class: "stop-time" }, passage.roll_deg === undefined ? seconds(passage.time_s, 1)
+        : `${seconds(passage.time_s, 1)}, roll ${fixed(passage.roll_deg, 1)}°`)))));
 }

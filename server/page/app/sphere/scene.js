@@ -29,7 +29,7 @@ export function draw(picture, size, { view, zoom }, content) {
     ...AXES.map(([name, direction]) => axis(name, at(direction), larger)),
     ...curves("trace", [paths(view, content.trace, place)]),
     ...content.ends.map((end) => ring(end, at(end.direction))),
-    ...marks(content.stops, at, larger),
+    ...marks(content.stops, { at, view, larger }),
     dot(content.now, at),
   );
 }
@@ -65,7 +65,8 @@ function ring({ name }, { x, y, hidden }) {
 }
 
 /** Numbered targets, those behind first, so that those in front cover them. */
-function marks(stops, at, larger) {
+function marks(stops, { at, view, larger }) {
+  const radius = larger * (stops.length > MANY ? 7 : 9.5);
   return stops
     .map((stop) => ({ stop, ...at(stop.direction) }))
     .sort((a, b) => b.hidden - a.hidden || b.stop.number - a.stop.number)
@@ -74,9 +75,18 @@ function marks(stops, at, larger) {
         "g",
         { class: `stop ${stops.length > MANY ? "tiny" : ""} ${hidden ? "behind" : ""} ${stop.reached ? "reached" : ""}`, transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, "data-time": stop.time },
         svg("title", {}, `${stop.number}: ${stop.name}`),
-        svg("circle", { r: larger * (stops.length > MANY ? 7 : 9.5) }),
+        tick(view, stop.up, radius),
+        svg("circle", { r: radius }),
         svg("text", { dy: "0.35em" }, String(stop.number)),
       ));
+}
+
+/** From a mark towards where the body's up points: the roll of a boresight that is pointed. */
+function tick(view, up, radius) {
+  if (!up) return "";
+  const [x, y] = seen(view, up);
+  const end = (part) => (2 * radius * part).toFixed(1);
+  return svg("line", { class: "tick", x1: 0, y1: 0, x2: end(x), y2: end(-y) });
 }
 
 function dot(direction, at) {

@@ -3,7 +3,7 @@
 
 import { disclosure, el, section, svg, table } from "../dom.js";
 import { fixed } from "../format.js";
-import { dot, longitudeLatitude, rotate, sum, unit } from "../rotation.js";
+import { dot, longitudeLatitude, rotate, sum, unit, upward } from "../rotation.js";
 import { viewOn } from "./projection.js";
 import { draw } from "./scene.js";
 
@@ -108,10 +108,19 @@ function first(flight, axes) {
 
 function contentOf(flight, axis) {
   const direction = (attitude) => rotate(attitude, axis.direction);
-  const stops = flight.stops.map((stop) => ({ ...stop, direction: direction(stop.attitude), reached: false }));
+  const stops = flight.stops.map((stop) => ({
+    ...stop, direction: direction(stop.attitude), reached: false,
+    up: isPointed(stop, axis) ? rotate(stop.attitude, upward(axis.direction)) : null,
+  }));
   const ends = endsOf(flight).map((end) => ({ ...end, direction: direction(end.attitude) }));
   const caps = flight.excluded.map((cap) => ({ ...cap, applies: cap.boresight === axis.boresight }));
   return { trace: trace(flight, axis), stops, ends, caps, now: null };
+}
+
+/** Whether a target points this axis and leaves its roll to the plan. */
+function isPointed({ roll, pointed }, { boresight, direction }) {
+  if (roll === null || pointed === null) return false;
+  return Array.isArray(pointed) ? dot(unit(pointed), direction) > 1 - 1e-12 : pointed === boresight;
 }
 
 /** The start, and the end where one is asked for. */
@@ -187,7 +196,8 @@ function listenToPointer(picture, pressed, dragged) {
 function legend(flight) {
   const cones = flight.excluded.length > 0;
   const frame = flight.scenario.reference_frame ?? "the reference frame";
-  const marks = flight.stops.length ? "Numbers give the visiting order" : "Rings are the start and the end";
+  const rolls = flight.stops.some(({ roll }) => roll !== null) ? ", ticks the roll where it is chosen: up is 0°" : "";
+  const marks = flight.stops.length ? `Numbers give the visiting order${rolls}` : "Rings are the start and the end";
   return el("p", { class: "quiet" }, `Seen from outside, in ${frame}. ${marks}`,
     cones ? "; red is what cones exclude, of other boresights dashed." : ".");
 }
@@ -199,9 +209,12 @@ function directions(flight, axis) {
       { title: "Longitude, °", number: true }, { title: "Latitude, °", number: true },
     ];
     const places = flight.stops.length ? flight.stops : endsOf(flight);
-    return table(`Where ${axis.name} points`, columns, places.map(({ number, name, time, attitude }) => {
+    const rolls = flight.stops.some(({ roll }) => roll !== null);
+    if (rolls) columns.push({ title: "Roll, °", number: true });
+    return table(`Where ${axis.name} points`, columns, places.map(({ number, name, time, attitude, roll }) => {
       const [longitude, latitude] = longitudeLatitude(rotate(attitude, axis.direction));
-      return [number ? `${number}: ${name}` : name, fixed(time), fixed(longitude, 1), fixed(latitude, 1)];
+      const row = [number ? `${number}: ${name}` : name, fixed(time), fixed(longitude, 1), fixed(latitude, 1)];
+      return rolls ? [...row, roll === null ? "given" : fixed(roll, 1)] : row;
     }));
   });
 }

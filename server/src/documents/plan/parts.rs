@@ -72,6 +72,14 @@ struct AttitudeDocument {
     quaternion: QuaternionDocument,
 }
 
+impl From<&Attitude> for AttitudeDocument {
+    fn from(attitude: &Attitude) -> Self {
+        Self {
+            quaternion: attitude.into(),
+        }
+    }
+}
+
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Passage)]
 pub(super) struct PassageDocument<'a> {
@@ -79,22 +87,46 @@ pub(super) struct PassageDocument<'a> {
     time_s: Number,
     departure_s: Number,
     attitude: AttitudeDocument,
+    /// Where a boresight is pointed: the roll about it, degrees, in the convention of `ra_dec_roll_deg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    roll_deg: Option<Number>,
     body_rate_rad_s: [Number; 3],
     wheel_speed_rad_s: Vec<Number>,
 }
 
 impl<'a> PassageDocument<'a> {
-    /// A passage with the state at its arrival.
-    pub(super) fn new(passage: &'a Passage, state: &State) -> Self {
+    /// A passage with the state at its arrival, and its roll, degrees.
+    pub(super) fn new(passage: &'a Passage, state: &State, roll_deg: Option<f64>) -> Self {
         Self {
             target: &passage.target,
             time_s: Number(passage.time_s),
             departure_s: Number(passage.departure_s),
-            attitude: AttitudeDocument {
-                quaternion: (&state.attitude).into(),
-            },
+            attitude: (&state.attitude).into(),
+            roll_deg: roll_deg.map(Number),
             body_rate_rad_s: <[f64; 3]>::from(state.body_rate_rad_s).map(Number),
             wheel_speed_rad_s: Number::all(&state.wheel_speed_rad_s),
+        }
+    }
+}
+
+/// The end where a boresight is pointed.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = PlanEnd)]
+pub(super) struct EndDocument {
+    time_s: Number,
+    attitude: AttitudeDocument,
+    /// Roll about the boresight, degrees, in the convention of `ra_dec_roll_deg`.
+    roll_deg: Number,
+}
+
+impl EndDocument {
+    /// The last state with its roll, degrees.
+    pub(super) fn new(state: &State, roll_deg: f64) -> Self {
+        Self {
+            time_s: Number(state.time_s),
+            attitude: (&state.attitude).into(),
+            roll_deg: Number(roll_deg),
         }
     }
 }

@@ -17,7 +17,9 @@ const COMPLETE: &str = r#"{
     "end": null,
     "targets": [{"id": "t", "attitude": {"mrp": [0.1, 0, 0]}, "zero_rate_axes": ["z", "x"],
         "rate_min_rad_s": [null, -0.1, null], "dwell_s": 1, "settle_s": 2.5, "position": 1,
-        "after": ["u", "v"]}],
+        "after": ["u", "v"]},
+        {"id": "u", "pointing": {"boresight": "camera", "direction": [1, 0, 0], "ra_dec_deg": [2, 3],
+            "roll_min_deg": -4, "roll_max_deg": 5}}],
     "keep_out": [{"boresight": "camera", "direction": [1, 0, 0], "half_angle_deg": 30}],
     "options": {"accuracy": "tight", "attitude_equivalence": "quaternion", "time_limit_s": null, "node_limit": 7,
         "relative_gap": 0.01, "alternatives": 3, "torque_authority": 0.9,
@@ -63,6 +65,11 @@ fn every_field_arrives() {
     assert_eq!((target.dwell_s, target.settle_s), (1.0, 2.5));
     assert_eq!(target.position, Some(1));
     assert_eq!(target.after, ["u", "v"]);
+    let pointing = spec.targets[1].pointing.as_ref().expect("given");
+    assert_eq!(pointing.direction, Some([1.0, 0.0, 0.0].into()));
+    assert_eq!(pointing.ra_dec_deg, Some([2.0, 3.0]));
+    let limits = [pointing.roll_min_deg, pointing.roll_max_deg];
+    assert_eq!(limits, [Some(-4.0), Some(5.0)]);
     assert_eq!(
         spec.keep_out[0].half_angle_deg.to_bits(),
         30.0_f64.to_bits()

@@ -11,6 +11,8 @@ pub(super) enum Column {
     RightAscension,
     Declination,
     Roll,
+    RollMin,
+    RollMax,
     Pitch,
     Yaw,
     X,
@@ -22,7 +24,7 @@ pub(super) enum Column {
 }
 
 /// The names of every column, the usual one first.
-const NAMES: [(Column, &[&str]); 12] = [
+const NAMES: [(Column, &[&str]); 14] = [
     (Column::Id, &["id", "name", "target"]),
     (
         Column::RightAscension,
@@ -33,6 +35,8 @@ const NAMES: [(Column, &[&str]); 12] = [
         &["dec", "dec_deg", "declination", "declination_deg"],
     ),
     (Column::Roll, &["roll", "roll_deg"]),
+    (Column::RollMin, &["roll_min", "roll_min_deg"]),
+    (Column::RollMax, &["roll_max", "roll_max_deg"]),
     (Column::Pitch, &["pitch", "pitch_deg"]),
     (Column::Yaw, &["yaw", "yaw_deg"]),
     (Column::X, &["qx", "q_x", "x"]),
@@ -46,7 +50,7 @@ const NAMES: [(Column, &[&str]); 12] = [
 /// The form of the attitudes of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AttitudeColumns {
-    /// `ra`, `dec` and perhaps `roll`.
+    /// `ra`, `dec` and perhaps `roll`, or `roll_min` and `roll_max`.
     RaDecRoll,
     /// `roll`, `pitch`, `yaw`.
     RollPitchYaw,
@@ -140,7 +144,7 @@ impl Columns {
 /// The form whose columns are there, unless it is none or several.
 fn attitude_of(found: &[Option<Column>], problems: &mut Vec<Problem>) -> Option<AttitudeColumns> {
     let is_there = |column: &Column| found.contains(&Some(*column));
-    // What says that a form is meant: roll alone belongs to two of them.
+    // What says that a form is meant: roll alone belongs to two of them, and its limits to none.
     let is_meant = |columns: &[Column]| columns.iter().any(|c| *c != Column::Roll && is_there(c));
     let meant = FORMS.iter().filter(|(_, columns)| is_meant(columns));
     let meant: Vec<_> = meant.collect();

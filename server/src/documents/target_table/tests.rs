@@ -64,10 +64,43 @@ fn names_of_columns_may_have_units_capitals_and_any_order() {
 
 #[test]
 fn what_may_be_left_out_is() {
-    let plain = json("id,ra,dec,roll\na,1,2,0\n");
-    assert_eq!(json("id,ra,dec\na,1,2\n"), plain);
+    let plain = json("id,ra,dec\na,1,2\n");
     assert_eq!(json("id,ra,dec,dwell\n\n,,,\na,1,2,\n\n"), plain);
+    assert_eq!(json("id,ra,dec,roll,roll_min,roll_max\na,1,2,,,\n"), plain);
     expect_refused("id,ra,dec\n\n,,\n", &[("line 1", Code::MissingField)]);
+}
+
+#[test]
+fn without_a_roll_it_is_left_to_the_plan() {
+    assert_eq!(
+        json("id,ra,dec\nm31,10.68,41.27\n"),
+        r#"[{"id":"m31","pointing":{"boresight":[0.0,0.0,1.0],"ra_dec_deg":[10.68,41.27]}}]"#
+    );
+    // Limits and rolls by lines.
+    assert_eq!(
+        json("id,ra,dec,roll_min [deg],Roll Max,roll\na,1,2,-5,6,\nb,3,4,,,7\n"),
+        r#"[{"id":"a","pointing":{"boresight":[0.0,0.0,1.0],"ra_dec_deg":[1.0,2.0],"roll_min_deg":-5.0,"roll_max_deg":6.0}},{"id":"b","attitude":{"ra_dec_roll_deg":[3.0,4.0,7.0],"boresight":[0.0,0.0,1.0]}}]"#
+    );
+}
+
+#[test]
+fn limits_of_the_roll_are_refused_where_they_stand() {
+    expect_refused(
+        "id,ra,dec,roll_min,roll_max\na,1,91,0,9\nb,1,2,9,0\nc,1,2,9,\nd,1,2,,0\ne,1,2,x,0\n",
+        &[("line 6, column 4 (roll_min)", Code::WrongType)],
+    );
+    expect_refused(
+        "id,ra,dec,roll_min,roll_max\na,1,91,0,9\nb,1,2,9,0\nc,1,2,9,\nd,1,2,,0\n",
+        &[
+            ("line 2, column 3 (dec)", Code::OutOfRange),
+            ("line 3, column 4 (roll_min)", Code::EmptyRange),
+            ("line 4, column 5 (roll_max)", Code::MissingField),
+            ("line 5, column 4 (roll_min)", Code::MissingField),
+        ],
+    );
+    let both = [("line 2, column 5 (roll_min)", Code::ConflictingFields)];
+    expect_refused("id,ra,dec,roll,roll_min\na,1,2,3,4\n", &both);
+    expect_refused("id,roll,pitch,yaw,roll_min\na,1,2,3,4\n", &both);
 }
 
 #[test]

@@ -2,8 +2,9 @@
 
 use super::canvas::{ALARM, Canvas, FAINT, Ink, LINE, Pen, PlotArea, SERIES};
 use super::view::DrawnBoresight;
-use super::written::{WrittenPlan, WrittenState};
+use super::written::{WrittenPassage, WrittenPlan, WrittenState};
 use nalgebra::Vector3;
+use slewplan_solver::model::attitude::upward;
 use slewplan_solver::model::cone::{Cone, ForbiddenCone};
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::ReferenceFrame;
@@ -108,15 +109,20 @@ pub(super) fn draw(
     let near = Pen::new(SERIES[0], 2.2);
     view.trace(canvas, &trace, near, Some(near.dashed().faded(0.35)));
     axes(canvas, &view);
-    targets(canvas, &view, plan, &trace);
+    let ups = roll_ticks(plan, scenario, boresight);
+    targets(canvas, &view, (plan, &trace, &ups));
     let frame_name = scenario.and_then(Scenario::reference_frame);
     let of = frame_name.map_or("the reference frame", ReferenceFrame::name);
     let cones = match forbidden {
         0 => "",
         _ => "; red: excluded by cones",
     };
+    let rolls = match ups.iter().any(Option::is_some) {
+        true => "; ticks: roll, up is 0",
+        false => "",
+    };
     let caption = format!(
-        "Where {} points in {of}; dashed: far side{cones}",
+        "Where {} points in {of}; dashed: far side{rolls}{cones}",
         boresight.name
     );
     let below = frame.top + frame.height + 4.0;
@@ -209,14 +215,43 @@ fn cap(canvas: &mut Canvas, view: &SphereView, cone: &Cone) {
     view.trace(canvas, &edge, pen, Some(pen.dashed().faded(0.3)));
 }
 
-/// Targets numbered in visiting order.
-fn targets(canvas: &mut Canvas, view: &SphereView, plan: &WrittenPlan, trace: &[Vector3<f64>]) {
-    let radius = if plan.passages.len() > 30 { 6.5 } else { 9.0 };
-    let places = plan.passages.iter().map(|passage| {
-        let states = &plan.trajectory.states;
-        let index = states.partition_point(|state| state.time_s < passage.time_s - 1e-6);
-        trace.get(index).copied()
+/// At the passages that point the boresight, the direction in the reference frame of the body axis that
+/// points to north at roll 0.
+fn roll_ticks(
+    plan: &WrittenPlan,
+    scenario: Option<&Scenario>,
+    boresight: &DrawnBoresight,
+) -> Vec<Option<Vector3<f64>>> {
+    let is_drawn = |passage: &WrittenPassage| {
+        let targets = scenario.map_or(&[][..], Scenario::targets);
+        let target = targets.iter().find(|target| target.id == passage.target);
+        let pointing = target.and_then(|target| target.pointing.as_ref());
+        // Without a scenario it is not known which axis is pointed.
+        passage.roll_deg.is_some()
+            && pointing
+                .is_some_and(|pointing| pointing.roll.axis.dot(&boresight.axis) > 1.0 - 1e-12)
+    };
+    let up = upward(boresight.axis);
+    let ups = plan.passages.iter().map(|passage| {
+        let state = plan
+            .state_from(passage.time_s)
+            .filter(|_| is_drawn(passage))?;
+        Some(state.attitude().to_reference(up))
     });
+    ups.collect()
+}
+
+/// Targets numbered in visiting order, with ticks.
+fn targets(
+    canvas: &mut Canvas,
+    view: &SphereView,
+    (plan, trace, ups): (&WrittenPlan, &[Vector3<f64>], &[Option<Vector3<f64>>]),
+) {
+    let radius = if plan.passages.len() > 30 { 6.5 } else { 9.0 };
+    let places = plan
+        .passages
+        .iter()
+        .map(|passage| trace.get(plan.index_from(passage.time_s)).copied());
     let mut marks: Vec<(usize, Vector3<f64>)> = places
         .enumerate()
         .filter_map(|(index, place)| Some((index + 1, place?)))
@@ -231,6 +266,11 @@ fn targets(canvas: &mut Canvas, view: &SphereView, plan: &WrittenPlan, trace: &[
         } else {
             "#9AA5AF"
         };
+        if let Some(Some(up)) = ups.get(number - 1) {
+            let (right, rise) = (view.right.dot(up), view.up.dot(up));
+            let tip = (x + 2.0 * radius * right, y - 2.0 * radius * rise);
+            canvas.path(&[(x, y), tip], Pen::new(fill, 2.5));
+        }
         canvas.circle((x, y), radius, fill, pen);
         canvas.text(x, y + 3.8, Ink::ON_COLOUR, &number.to_string());
     }

@@ -50,6 +50,8 @@ pub(super) struct WrittenPassage {
     pub(super) target: String,
     pub(super) time_s: f64,
     pub(super) departure_s: f64,
+    /// Where a boresight is pointed.
+    pub(super) roll_deg: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -151,6 +153,17 @@ impl WrittenPlan {
     pub(super) fn intrusions(&self) -> Vec<(f64, f64)> {
         let margins = self.margins.as_ref();
         margins.map_or_else(Vec::new, |margins| spans(&margins.keep_out_intrusions))
+    }
+
+    /// The index of the first state at a time, s, or after it.
+    pub(super) fn index_from(&self, time_s: f64) -> usize {
+        let states = &self.trajectory.states;
+        states.partition_point(|state| state.time_s < time_s - 1e-6)
+    }
+
+    /// That state.
+    pub(super) fn state_from(&self, time_s: f64) -> Option<&WrittenState> {
+        self.trajectory.states.get(self.index_from(time_s))
     }
 
     /// Number of wheels.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::{
     Alternative, Control, Flight, Leg, LowerBoundKind, Margins, Milestone, NlpSolves, Optimality,
-    Passage, Plan, SearchWork, State, Statistics, Verification,
+    Passage, Plan, Rolls, SearchWork, State, Statistics, Verification,
 };
 
 /// Two targets, 30 s, three wheels; `b` has 5 s of dwell.
@@ -26,6 +26,10 @@ pub(crate) fn plan() -> Plan {
             leg("b", "end", 25.0, 5.0),
         ],
         flight: flight(),
+        rolls: Rolls {
+            passages: vec![None, Some(-12.5)],
+            end: None,
+        },
         states: [(0.0, 0.0), (10.0, 0.5), (20.0, 0.25), (30.0, 0.0)]
             .map(state)
             .into(),

@@ -56,15 +56,23 @@ fn legs(plan: &Plan, targets: &[Target]) -> String {
     if rests {
         head.extend(["settle [s]", "dwell [s]"]);
     }
+    let rolls: Vec<_> = plan.legs.iter().map(|leg| roll(leg, plan)).collect();
+    let chosen = rolls.iter().any(Option::is_some);
+    if chosen {
+        head.push("roll [deg]");
+    }
     head.extend(["eigenaxis [s]", "saved"]);
     let mut rows = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for (index, (leg, stay)) in plan.legs.iter().zip(stays).enumerate() {
+    for (index, ((leg, stay), roll)) in plan.legs.iter().zip(stays).zip(rolls).enumerate() {
         let other = leg.eigenaxis_duration_s;
         let mut row = vec![(index + 1).to_string(), leg.from.clone(), leg.to.clone()];
         let times = [leg.start_s, leg.start_s + leg.duration_s, leg.duration_s];
         row.extend(times.map(|time| format!("{time:.3}")));
         if rests {
             row.extend(stay.map(rest));
+        }
+        if chosen {
+            row.push(roll.map_or_else(|| "-".into(), |roll| format!("{roll:.3}")));
         }
         row.push(other.map_or_else(|| "-".into(), |time| format!("{time:.3}")));
         row.push(other.map_or_else(|| "-".into(), |time| saved(leg.duration_s, time)));
@@ -83,6 +91,15 @@ fn stay(leg: &Leg, plan: &Plan, targets: &[Target]) -> [f64; 2] {
     let target = targets.iter().find(|target| target.id == leg.to);
     let settle = target.map_or(0.0, |target| target.settle.min(stay));
     [settle, stay - settle]
+}
+
+/// The roll at the end of a leg, degrees, where a boresight is pointed there.
+fn roll(leg: &Leg, plan: &Plan) -> Option<f64> {
+    let passages = &plan.flight.passages;
+    match passages.iter().position(|passage| passage.target == leg.to) {
+        Some(index) => plan.rolls.passages.get(index).copied().flatten(),
+        None => plan.rolls.end,
+    }
 }
 
 /// A time at rest; a dash where there is none.
@@ -218,7 +235,7 @@ mod tests {
     use super::*;
     use crate::render::report::sample;
     use slewplan_solver::model::attitude::Attitude;
-    use slewplan_solver::model::plan::Intrusion;
+    use slewplan_solver::model::plan::{Intrusion, Rolls};
     use slewplan_solver::model::scenario::RateCondition;
 
     #[test]
@@ -252,6 +269,8 @@ mod tests {
         let mut target = Target {
             id: "b".into(),
             attitude: Attitude::identity(),
+            roll: None,
+            pointing: None,
             rate: [RateCondition::Fixed(0.0); 3],
             settle: 2.0,
             dwell: 3.0,
@@ -267,6 +286,22 @@ mod tests {
         target.settle = 0.0;
         plan.flight.passages[1].departure_s = plan.flight.passages[1].time_s;
         assert!(!legs(&plan, &[target]).contains("dwell"));
+    }
+
+    #[test]
+    fn rolls_have_a_column_where_there_are_any() {
+        let mut plan = sample::plan();
+        let text = legs(&plan, &[]);
+        assert!(
+            text.contains("roll [deg]") && text.contains("-12.500"),
+            "{text}"
+        );
+        plan.rolls.end = Some(3.0);
+        let last = legs(&plan, &[]);
+        let last = last.lines().last().unwrap_or_default();
+        assert!(last.contains(" 3.000 "), "{last}");
+        plan.rolls = Rolls::default();
+        assert!(!legs(&plan, &[]).contains("roll"));
     }
 
     #[test]

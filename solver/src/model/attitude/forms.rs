@@ -289,8 +289,9 @@ pub(in crate::model) fn pointed(aim: Aim, boresight: Vector3<f64>) -> Attitude {
     without_sign(level(sky, boresight).to_rotation_matrix())
 }
 
-/// The body axis that points to local north at roll zero.
-fn upward(boresight: Vector3<f64>) -> Vector3<f64> {
+/// The unit vector of the body that points to local north at roll zero, of a unit boresight.
+#[must_use]
+pub fn upward(boresight: Vector3<f64>) -> Vector3<f64> {
     let along_z = boresight.xy().norm() < ALONG_Z;
     let axis = if along_z { Vector3::x() } else { Vector3::z() };
     unit(axis - boresight * boresight.dot(&axis))

@@ -9,7 +9,7 @@ use crate::model::problem::Code;
 pub struct MemberRule<T> {
     absence: Absence<T>,
     means: Option<Literal>,
-    unless: Option<&'static str>,
+    pub(super) unless: Option<&'static str>,
     pub(super) bounds: MemberBounds,
 }
 

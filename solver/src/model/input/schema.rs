@@ -64,6 +64,8 @@ pub struct MemberSchema {
     pub text: String,
     /// Whether it must be there.
     pub required: bool,
+    /// The member that may stand instead; one of the two must be there.
+    pub unless: Option<&'static str>,
     /// What it looks like.
     pub schema: Schema,
     /// What leaving it out means.
@@ -80,6 +82,7 @@ impl MemberSchema {
             name,
             text: text_of(doc),
             required: rule.is_required(),
+            unless: rule.unless,
             schema: F::schema(),
             default: rule.described_default::<F>(),
             bounds: rule.bounds,

@@ -7,6 +7,7 @@ use crate::model::problem::Code;
 use crate::model::roll::{FreeRoll, Pointing};
 use crate::model::spec::{AttitudeEquivalence, AttitudeSpec, DirectionSpec, PointingSpec};
 use crate::model::tolerances::ATTITUDE_TOLERANCE;
+use nalgebra::Vector3;
 
 /// What attitudes and pointed boresights may refer to.
 #[derive(Debug, Clone, Copy)]
@@ -34,8 +35,7 @@ impl Surroundings<'_> {
         findings: &mut Findings,
     ) -> Option<Orientation> {
         if let Some(pointing) = pointing {
-            let pointing = self.pointing(pointing, &format!("{pointer}/pointing"), findings)?;
-            return Some(Orientation::of(pointing));
+            return self.pointing(pointing, &format!("{pointer}/pointing"), findings);
         }
         let pointer = format!("{pointer}/attitude");
         let attitude = Attitude::read(attitude, self.attitudes, &pointer, findings)?;
@@ -51,7 +51,7 @@ impl Surroundings<'_> {
         spec: &PointingSpec,
         pointer: &str,
         findings: &mut Findings,
-    ) -> Option<Pointing> {
+    ) -> Option<Orientation> {
         let signed = self.attitudes.equivalence == AttitudeEquivalence::Quaternion;
         if signed {
             findings.refuse(
@@ -68,10 +68,7 @@ impl Surroundings<'_> {
         let aim = self.aim(spec, pointer, findings);
         let range = roll_range(spec, pointer, findings);
         let (axis, aim, range) = (axis?, aim?, range?);
-        (!signed).then(|| Pointing {
-            level: pointed(aim, axis),
-            roll: FreeRoll { axis, range },
-        })
+        (!signed).then(|| Orientation::of(axis, pointed(aim, axis), range))
     }
 
     fn aim(&self, spec: &PointingSpec, pointer: &str, findings: &mut Findings) -> Option<Aim> {
@@ -105,24 +102,32 @@ impl Surroundings<'_> {
 }
 
 impl Orientation {
-    /// Limits of the roll within twice the tolerance of the checker make it an attitude.
-    fn of(pointing: Pointing) -> Self {
-        let roll = pointing.roll;
+    /// Of a boresight, the attitude of roll 0, and limits, degrees. Those within twice the tolerance of
+    /// the checker make an attitude.
+    fn of(axis: Vector3<f64>, level: Attitude, limits: Option<[f64; 2]>) -> Self {
+        let turned = |by: f64| {
+            let range = limits.map(|limits| limits.map(|limit| (limit - by).to_radians()));
+            FreeRoll { axis, range }
+        };
+        let middle = limits.map_or(0.0, |[low, high]| 0.5 * low + 0.5 * high);
+        // Whole turns are taken off in degrees, where they are exact.
+        let roll = turned(360.0 * (middle / 360.0).round());
         let only = roll
             .range
             .filter(|[low, high]| high - low <= 2.0 * ATTITUDE_TOLERANCE);
-        let attitude = only.map_or(pointing.level, |[low, high]| {
-            roll.rolled(&pointing.level, 0.5 * (low + high))
-        });
+        let attitude = only.map_or(level, |[low, high]| roll.rolled(&level, 0.5 * (low + high)));
         Self {
             attitude,
             roll: only.is_none().then_some(roll),
-            pointing: Some(pointing),
+            pointing: Some(Pointing {
+                level,
+                roll: turned(0.0),
+            }),
         }
     }
 }
 
-/// The limits of the roll, rad, within a turn of 0; the inner `None` is every roll.
+/// The limits of the roll, degrees; the inner `None` is every roll.
 fn roll_range(
     spec: &PointingSpec,
     pointer: &str,
@@ -159,8 +164,5 @@ fn roll_range(
     if !finite || low > high {
         return None;
     }
-    // Whole turns are taken off in degrees, where they are exact.
-    let turns = 360.0 * ((0.5 * low + 0.5 * high) / 360.0).round();
-    let limited = high - low < 360.0;
-    Some(limited.then(|| [low, high].map(|limit| (limit - turns).to_radians())))
+    Some((high - low < 360.0).then_some([low, high]))
 }

@@ -116,6 +116,9 @@ pub enum Obstacle {
     /// Bounds on slews with stored momentum cannot be verified.
     #[error("there is no second proof of bounds with stored momentum")]
     Momentum,
+    /// Bounds on slews whose roll is free at an end cannot be verified.
+    #[error("there is no second proof of bounds where the roll is free")]
+    FreeRoll,
     /// The work was stopped first.
     #[error("stopped before it was checked")]
     Stopped,
@@ -205,6 +208,9 @@ impl CertificateVerifier<'_> {
         if let Some(early) = self.early_verdict(bound, leg.duration_s) {
             return early;
         }
+        if has_free_roll(self.places.scenario, pair) {
+            return Verdict::NotChecked(Obstacle::FreeRoll);
+        }
         match self.prove_leg(pair, &canonical(self.places, pair), Some(bound)) {
             Ok(_) => Verdict::Confirmed,
             Err(objection) => Verdict::Rejected(objection),
@@ -221,6 +227,12 @@ impl CertificateVerifier<'_> {
         };
         if let Some(early) = self.early_verdict(bound, certificate.total_time_s) {
             return early;
+        }
+        if pairs
+            .iter()
+            .any(|pair| has_free_roll(self.places.scenario, *pair))
+        {
+            return Verdict::NotChecked(Obstacle::FreeRoll);
         }
         let bounds = ProvedLegs::new(self.places, Box::new(|pairs| self.prove_legs(pairs)));
         if self.places.needs_all_legs() {
@@ -316,6 +328,15 @@ impl CertificateVerifier<'_> {
             lower_bound_s: None,
         });
     }
+}
+
+/// Whether the roll is free at one of two places.
+fn has_free_roll(scenario: &Scenario, (from, to): (Place, Place)) -> bool {
+    [from, to].into_iter().any(|place| match place {
+        Place::Start => false,
+        Place::Target(index) => scenario.targets()[index].roll.is_some(),
+        Place::End => scenario.end().is_some_and(|end| end.roll.is_some()),
+    })
 }
 
 /// The canonical leg between two places, each end with its own conditions only.

@@ -11,7 +11,8 @@ use super::unsolved::SLEW_HINT;
 use crate::checker;
 use crate::leg::multiphase::LegSolution;
 use crate::model::plan::{
-    Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Statistics,
+    Alternative, Flight, Leg, LowerBoundKind, NlpSolves, Optimality, Outcome, Plan, Rolls,
+    Statistics,
 };
 use crate::model::problem::{Code, Problem};
 use crate::run::contradiction::{Contradiction, refutes};
@@ -274,6 +275,7 @@ impl<'a> PlanBuilder<'a> {
                 })
                 .collect(),
             legs,
+            rolls: Rolls::of(scenario, &flight, &report.states),
             flight,
             states: report.states,
             margins: report.margins,

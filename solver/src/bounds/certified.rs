@@ -48,19 +48,21 @@
 //! rotation, which may be the shorter way round.
 
 mod momentum;
+mod rolls;
 
 use crate::bounds::kinematic::certificate::Certificate;
 use crate::bounds::kinematic::limits::{EndRates, SlewLimits};
 use crate::bounds::kinematic::ramps::SlewBound;
-use crate::bounds::kinematic::strongest::Alternatives;
+use crate::bounds::kinematic::strongest::{Alternatives, GivenAway};
 use crate::model::attitude::Attitude;
 use crate::model::dynamics::facets::{Facets, FrameKey};
 use crate::model::dynamics::{Dynamics, along, component};
 use crate::model::scenario::RateCondition;
 use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
-use crate::model::waypoint::Waypoint;
+use crate::model::waypoint::{Waypoint, least_angle};
 use momentum::MomentumBounds;
 use nalgebra::{Matrix3, Vector3};
+use rolls::{given_away, least_over_rolls};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -95,12 +97,12 @@ const MAX_PREPARED: usize = 512;
 /// are prepared when they are first needed, and shared between threads.
 #[derive(Debug)]
 pub(crate) struct CertifiedBounds {
-    /// The frames that every leg tries.
+    /// The frames that every leg tries; with momentum, those of legs with a free roll.
     frames: Vec<BodyFrame>,
     /// Gives further ones.
     spacecraft: Dynamics,
     facets: Facets,
-    /// Bounds with momentum, used in place of the frames.
+    /// Bounds with momentum, used in place of the frames where both attitudes are given.
     momentum: Option<MomentumBounds>,
     /// Norm of the body rate that no motion exceeds, rad/s; infinite without limits of speed.
     largest_rate: f64,
@@ -142,17 +144,16 @@ impl CertifiedBounds {
         let momentum = dynamics
             .has_momentum()
             .then(|| MomentumBounds::of(dynamics, &axes));
-        let frames = if momentum.is_some() {
-            Vec::new()
-        } else {
-            axes.iter()
+        let frames: Vec<_> = match &momentum {
+            Some(bounds) => bounds.without_drift().collect(),
+            None => axes
+                .iter()
                 .map(|axes| BodyFrame::of(dynamics, *axes))
-                .collect()
+                .collect(),
         };
         let norms = frames.iter().map(BodyFrame::largest_rate);
-        let largest_rate = norms.chain(momentum.as_ref().map(MomentumBounds::largest_rate));
         Self {
-            largest_rate: largest_rate.fold(f64::INFINITY, f64::min),
+            largest_rate: norms.fold(f64::INFINITY, f64::min),
             facets: Facets::of(dynamics),
             spacecraft: dynamics.clone(),
             frames,
@@ -170,34 +171,48 @@ impl CertifiedBounds {
         to: &Waypoint,
         momentum: &Vector3<f64>,
     ) -> Option<f64> {
-        let turn = from.attitude.turn_to(&to.attitude);
-        let ends = [rate_limits(from), rate_limits(to)];
-        if let Some(bounds) = &self.momentum {
-            let held = [from, to].map(|end| end.attitude.to_body(*momentum));
-            return bounds.leg(&turn, &held, &ends, TOLERANCE);
+        let ends = [from, to];
+        if from.roll.is_some() || to.roll.is_some() {
+            return least_over_rolls(ends, |ends, halves| self.around_rolls(ends, halves));
         }
-        let prepared = self.prepared_for(&turn, ends)?;
-        let (alternatives, _) = seen(&turn, &prepared);
+        if let Some(bounds) = &self.momentum {
+            let turn = from.attitude.turn_to(&to.attitude);
+            let held = ends.map(|end| end.attitude.to_body(*momentum));
+            return bounds.leg(&turn, &held, &ends.map(rate_limits), TOLERANCE);
+        }
+        self.around_rolls(ends, [0.0; 2])
+    }
+
+    /// Lower bound, s, on the duration of any slew between rolls that differ from those of two waypoints
+    /// by so much at most, rad.
+    fn around_rolls(&self, ends: [&Waypoint; 2], halves: [f64; 2]) -> Option<f64> {
+        let turn = ends[0].attitude.turn_to(&ends[1].attitude);
+        let away = |axes: &Matrix3<f64>| given_away(ends, halves, axes);
+        let prepared = self.prepared_for(&turn, ends.map(rate_limits))?;
+        let (alternatives, _) = seen(&turn, &prepared, away);
         Some(alternatives.strongest(TOLERANCE)?.bound_s)
     }
 
     /// A smaller bound that is known at once, s: the angle of the turn at the largest rate of all
     /// motions. 0 without limits of speed.
-    pub(crate) fn at_largest_rate(&self, from: &Attitude, to: &Attitude) -> f64 {
-        let angle = from.angle_to(to) - 2.0 * MISSED_ATTITUDE;
+    pub(crate) fn at_largest_rate(&self, from: &Waypoint, to: &Waypoint) -> f64 {
+        let angle = least_angle(from, to) - 2.0 * MISSED_ATTITUDE;
         (angle / self.largest_rate).max(0.0)
     }
 
     /// The certificate of the bound [`Self::leg`] and the axes in which it is expressed; `None`
-    /// where nothing is proved, and with momentum, for which there is no verification.
+    /// where nothing is proved, and with momentum or a free roll, for which there is no verification.
     pub(crate) fn certificate(
         &self,
         from: &Waypoint,
         to: &Waypoint,
     ) -> Option<(Matrix3<f64>, Certificate)> {
+        if self.momentum.is_some() || from.roll.is_some() || to.roll.is_some() {
+            return None;
+        }
         let turn = from.attitude.turn_to(&to.attitude);
         let prepared = self.prepared_for(&turn, [rate_limits(from), rate_limits(to)])?;
-        let (alternatives, axes) = seen(&turn, &prepared);
+        let (alternatives, axes) = seen(&turn, &prepared, |_| GivenAway::default());
         let strongest = alternatives.strongest(TOLERANCE)?;
         let certificate = alternatives.certificate(&strongest, TOLERANCE);
         Some((axes[strongest.alternative], certificate))
@@ -214,7 +229,12 @@ impl CertifiedBounds {
         let identity = Attitude::identity();
         let turn = identity.signed_turn_to(&turn.nearest_sign(&identity));
         let fixed = (0..self.frames.len()).map(Frame::Fixed);
-        let fitted = self.facets.frames(&turn).into_iter().map(Frame::Fitted);
+        // Stored momentum changes what wheels reach across their facets.
+        let fitted = match self.momentum {
+            Some(_) => Vec::new(),
+            None => self.facets.frames(&turn),
+        };
+        let fitted = fitted.into_iter().map(Frame::Fitted);
         let mut prepared: Vec<Arc<PreparedFrame>> = Vec::new();
         for frame in fixed.chain(fitted) {
             let frame = self.prepared(frame, &ends);
@@ -260,15 +280,16 @@ impl PreparedFrame {
     }
 }
 
-/// The bounds of frames on a turn, and the axes of each.
+/// The bounds of frames on a turn, with what is given away in the axes of each, and these axes.
 fn seen<'p>(
     turn: &Attitude,
     prepared: &'p [Arc<PreparedFrame>],
+    away: impl Fn(&Matrix3<f64>) -> GivenAway,
 ) -> (Alternatives<'p>, Vec<Matrix3<f64>>) {
     let (mut alternatives, mut axes) = (Alternatives::default(), Vec::new());
     for frame in prepared {
         if let Some((bound, turn)) = frame.bound.as_ref().zip(turn.seen_from(&frame.axes)) {
-            alternatives.add(bound, turn);
+            alternatives.add(bound, turn, away(&frame.axes));
             axes.push(frame.axes);
         }
     }

@@ -7,6 +7,7 @@ mod centred;
 pub(crate) mod eigenaxis;
 pub(crate) mod extremal;
 mod resolution;
+pub(crate) mod rolls;
 mod starts;
 mod steered;
 #[cfg(test)]
@@ -66,6 +67,18 @@ pub(crate) struct LegOutcome {
 /// Solves a leg from one guess after the other, until its duration is so close to a lower bound, s,
 /// that another guess is not worth its time.
 pub(crate) fn solve(
+    leg: &LegProblem<'_>,
+    bound: Option<f64>,
+    stop: &dyn Fn() -> Option<StopReason>,
+) -> LegOutcome {
+    if leg.from.roll.is_some() || leg.to.roll.is_some() {
+        return rolls::solve_from_rolls(leg, bound, stop);
+    }
+    solve_from_attitudes(leg, bound, stop)
+}
+
+/// Solves a leg from guesses between the attitudes of its waypoints.
+fn solve_from_attitudes(
     leg: &LegProblem<'_>,
     bound: Option<f64>,
     stop: &dyn Fn() -> Option<StopReason>,

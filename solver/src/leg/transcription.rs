@@ -22,6 +22,7 @@
 //! [`crate::leg::kinematics`].
 
 mod attitude_link;
+mod attitude_rows;
 mod cones;
 mod demands;
 mod middle;
@@ -44,6 +45,7 @@ use crate::model::spacecraft::MAX_ENABLED;
 use crate::nlp::{
     Chain, Iterate, Link, LinkModel, LinkMultipliers, LinkValues, MAX_CONTROLS, MAX_STATES,
 };
+use attitude_rows::AttitudeRows;
 use middle::MiddleRow;
 use nalgebra::Vector3;
 use nodes::Node;
@@ -236,7 +238,8 @@ impl Transcription {
     pub(crate) fn state_inequalities(&self, node: usize) -> usize {
         let cones = self.cones_at(node).len();
         let node = &self.nodes[node];
-        self.inequality_rows(node).count() + usize::from(self.has_norm_row(node)) + cones
+        let of_roll = node.attitude.as_ref().map_or(0, AttitudeRows::inequalities);
+        of_roll + self.inequality_rows(node).count() + usize::from(self.has_norm_row(node)) + cones
     }
 
     fn torque_margins<'a>(&'a self, control: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
@@ -284,22 +287,23 @@ impl Transcription {
         let (node, reserves) = (&self.nodes[at], self.reserves.at(at));
         let state = self.view(point, drift);
         let mut equalities = out.equality.as_mut_slice();
-        if let Some(target) = &node.attitude {
-            let relative = product(&conjugate(target), &quaternion_of(point));
-            let error = attitude_link::chart(&relative) / self.scales.angle;
-            let (attitude, rest) = equalities.split_at_mut(3);
-            attitude.copy_from_slice(error.as_slice());
+        let mut count = 0;
+        if let Some(rows) = &node.attitude {
+            let (attitude, rest) = equalities.split_at_mut(rows.equalities());
+            self.write_attitude_values(rows, point, (attitude, &mut out.inequality));
             equalities = rest;
+            count = rows.inequalities();
         }
         for (out, row) in equalities.iter_mut().zip(&node.equalities) {
             *out = row.value(&state);
         }
-        let mut count = 0;
+        let first = count;
         for row in self.inequality_rows(node) {
             out.inequality[count] = row.value(&state);
             count += 1;
         }
-        for (value, limit) in out.inequality.iter_mut().zip(self.limits_of(node)) {
+        let values = out.inequality[first..].iter_mut();
+        for (value, limit) in values.zip(self.limits_of(node)) {
             *value -= reserves[limit.share] * limit.limit;
         }
         if self.has_norm_row(node) {
@@ -325,10 +329,11 @@ impl Transcription {
     ) -> usize {
         let node = &self.nodes[link.node];
         let state = self.view(link.point, drift);
-        let mut offset = 0;
-        if let Some(target) = &node.attitude {
-            self.write_attitude_rows(target, link.point, (duals.equality, states), out);
-            offset = 3;
+        let (mut offset, mut count) = (0, 0);
+        if let Some(rows) = &node.attitude {
+            self.write_attitude_equalities(rows, link.point, (duals.equality, states), out);
+            self.write_roll_limits(rows, link.point, (0, duals.inequality), out);
+            (offset, count) = (rows.equalities(), rows.inequalities());
         }
         let mut curvature = Vector3::zeros();
         for (i, row) in node.equalities.iter().enumerate() {
@@ -336,7 +341,6 @@ impl Transcription {
             self.write_row(row, &state, &mut out.equality_jacobian[at..at + states]);
             curvature += row.momentum * duals.equality[offset + i];
         }
-        let mut count = 0;
         for row in self.inequality_rows(node) {
             let at = count * out.vars;
             self.write_row(row, &state, &mut out.inequality_jacobian[at..at + states]);
@@ -375,7 +379,8 @@ impl Chain for Transcription {
 
     fn equalities(&self, node: usize) -> usize {
         let node = &self.nodes[node];
-        node.equalities.len() + if node.attitude.is_some() { 3 } else { 0 }
+        let of_attitude = node.attitude.as_ref().map_or(0, AttitudeRows::equalities);
+        of_attitude + node.equalities.len()
     }
 
     fn inequalities(&self, node: usize) -> usize {

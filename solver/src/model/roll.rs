@@ -10,6 +10,9 @@ use super::attitude::Attitude;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 
+/// Rolls closer than this are the same, rad.
+const SAME_ROLL: f64 = 1e-11;
+
 /// The rolls that are admissible at an attitude beside its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeRoll {
@@ -64,6 +67,19 @@ impl FreeRoll {
         let away = roll - middle;
         let away = away - TAU * (away / TAU).round();
         (middle + away).clamp(low, high)
+    }
+
+    /// Whether every roll from a least to a greatest one, rad, is admissible; without them, every roll.
+    #[must_use]
+    pub fn admits(&self, rolls: Option<[f64; 2]>) -> bool {
+        let Some([low, high]) = self.range else {
+            return true;
+        };
+        rolls.is_some_and(|[least, greatest]| {
+            // How far inside the range it begins, whole turns apart being the same.
+            let inside = (least - low + SAME_ROLL).rem_euclid(TAU) - SAME_ROLL;
+            low + inside + (greatest - least) <= high + SAME_ROLL
+        })
     }
 
     /// Angle, rad, between the boresights at two attitudes.
@@ -158,6 +174,8 @@ mod tests {
         assert!((limited.nearest(3.5 - TAU) - 3.5).abs() < 1e-12);
         assert!((limited.nearest(4.2 - TAU) - 4.0).abs() < 1e-12);
         assert!((limited.nearest(0.0) - 4.0).abs() < 1e-12);
+        assert!(limited.admits(Some([3.0 - TAU, 4.0 - TAU])) && free.admits(None));
+        assert!(!limited.admits(None) && !limited.admits(Some([3.5, 4.1])));
         assert!((limited.after(0.5).nearest(3.0) - 3.0).abs() < 1e-12);
     }
 }

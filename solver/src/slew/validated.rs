@@ -92,6 +92,7 @@ impl Slew {
         let start_momenta = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let begin = Waypoint {
             attitude: start.attitude,
+            roll: None,
             rate: fixed(&start.rate),
             wheels: WheelCondition::Fixed(start_momenta.clone()),
             costates: None,
@@ -115,6 +116,7 @@ impl Slew {
         };
         let end = Waypoint {
             attitude: arrival.signed(&target, &start.attitude),
+            roll: None,
             rate: fixed(&rate),
             wheels,
             costates: None,

@@ -62,11 +62,10 @@ impl MomentumBounds {
         }
     }
 
-    /// Norm of the body rate that no motion exceeds, rad/s.
-    pub(super) fn largest_rate(&self) -> f64 {
+    /// The frames whose limits are those of the body rate itself.
+    pub(super) fn without_drift(&self) -> impl Iterator<Item = BodyFrame> {
         let without_drift = self.frames.iter().filter(|drifting| drifting.share == 0.0);
-        let norms = without_drift.map(|drifting| drifting.frame.largest_rate());
-        norms.fold(f64::INFINITY, f64::min)
+        without_drift.map(|drifting| drifting.frame)
     }
 
     /// Lower bound, s, on the duration of a slew that makes a turn, with the momentum, N m s, and

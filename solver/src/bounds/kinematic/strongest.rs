@@ -11,6 +11,7 @@ use super::certificate::Certificate;
 use super::ramps::{SlewBound, TriedBox, stated};
 use super::turns::{best_axis_sequence, eigenaxis_time, least_time};
 use crate::model::attitude::Attitude;
+use nalgebra::Vector3;
 
 /// Relative gain for which a box is not tried any more.
 const SMALL_GAIN: f64 = 2e-4;
@@ -21,7 +22,44 @@ const MAX_TRIED: usize = 6;
 /// Bounds on one slew in several axes, each with the turn in these axes.
 #[derive(Debug, Default)]
 pub(crate) struct Alternatives<'a> {
-    bounds: Vec<(&'a SlewBound, Attitude)>,
+    bounds: Vec<Alternative<'a>>,
+}
+
+/// A bound with the turn to which it is applied.
+#[derive(Debug)]
+struct Alternative<'a> {
+    bound: &'a SlewBound,
+    turn: Attitude,
+    given_away: GivenAway,
+}
+
+/// Turns by which the ends of a slew may be missed, beside the attitude tolerance of its bound.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct GivenAway {
+    /// Absolute components of the rotation vector, rad, at both ends, in the axes of the bound.
+    pub(crate) turns: [Vector3<f64>; 2],
+}
+
+impl GivenAway {
+    /// The time of these turns at constant rates within a box, s.
+    fn time_s(&self, rates: &Vector3<f64>) -> f64 {
+        let times = self.turns.map(|turn| turn.component_div(rates).max());
+        times.iter().sum()
+    }
+}
+
+impl Alternative<'_> {
+    /// What is left of the time of a turn within a box, s, for those up to what is missed.
+    fn left_of(&self, time: f64, tried: &TriedBox) -> f64 {
+        let missed = self.bound.missed_time(tried) + self.given_away.time_s(&tried.rates);
+        (time - missed).max(0.0)
+    }
+
+    /// Least time of any motion within a box that makes such a turn, s.
+    fn least_time(&self, tried: &TriedBox, tolerance: f64) -> f64 {
+        let least = self.bound.least_time(tried, &self.turn, tolerance);
+        (least - self.given_away.time_s(&tried.rates)).max(0.0)
+    }
 }
 
 /// The strongest of them.
@@ -49,8 +87,12 @@ struct Candidate {
 
 impl<'a> Alternatives<'a> {
     /// Adds a bound, with the turn in its axes.
-    pub(crate) fn add(&mut self, bound: &'a SlewBound, turn: Attitude) {
-        self.bounds.push((bound, turn));
+    pub(crate) fn add(&mut self, bound: &'a SlewBound, turn: Attitude, given_away: GivenAway) {
+        self.bounds.push(Alternative {
+            bound,
+            turn,
+            given_away,
+        });
     }
 
     /// The strongest bound of the most promising boxes, within [`SMALL_GAIN`]; `None` where there is
@@ -59,7 +101,8 @@ impl<'a> Alternatives<'a> {
         let mut best: Option<(Strongest, f64)> = None;
         let mut left = MAX_TRIED;
         for candidate in self.candidates() {
-            let (bound, turn) = &self.bounds[candidate.alternative];
+            let alternative = &self.bounds[candidate.alternative];
+            let bound = alternative.bound;
             let tried = &bound.boxes[candidate.tried];
             let proved = best.map_or(0.0, |(_, duration)| duration);
             let needed = bound
@@ -75,7 +118,7 @@ impl<'a> Alternatives<'a> {
             if tried.table().is_none() {
                 continue;
             }
-            let least = bound.least_time(tried, turn, tolerance);
+            let least = alternative.least_time(tried, tolerance);
             if best.is_some() && least <= bound.envelope.effective(&tried.rates, proved) {
                 continue;
             }
@@ -94,22 +137,21 @@ impl<'a> Alternatives<'a> {
 
     /// The certificate of the strongest bound.
     pub(crate) fn certificate(&self, strongest: &Strongest, tolerance: f64) -> Certificate {
-        let (bound, turn) = &self.bounds[strongest.alternative];
+        let Alternative { bound, turn, .. } = &self.bounds[strongest.alternative];
         bound.certificate_of(strongest.tried, strongest.bound_s, &[*turn], tolerance)
     }
 
     /// All boxes, the most promising one first.
     fn candidates(&self) -> Vec<Candidate> {
         let mut all = Vec::new();
-        for (alternative, (bound, turn)) in self.bounds.iter().enumerate() {
-            for (index, tried) in bound.boxes.iter().enumerate() {
-                let [attained, least] = quick_times(tried, turn);
-                let left = |time: f64| (time - bound.missed_time(tried)).max(0.0);
+        for (alternative, one) in self.bounds.iter().enumerate() {
+            for (index, tried) in one.bound.boxes.iter().enumerate() {
+                let [attained, least] = quick_times(tried, &one.turn);
                 all.push(Candidate {
                     alternative,
                     tried: index,
-                    attained: left(attained),
-                    expected: left(0.5 * (attained + least)),
+                    attained: one.left_of(attained, tried),
+                    expected: one.left_of(0.5 * (attained + least), tried),
                     promise: 0.0,
                 });
             }
@@ -118,12 +160,12 @@ impl<'a> Alternatives<'a> {
         let Some(first) = all.first() else {
             return all;
         };
-        let (bound, _) = &self.bounds[first.alternative];
+        let bound = self.bounds[first.alternative].bound;
         let rates = &bound.boxes[first.tried].rates;
         let reference = bound.envelope.duration_of(rates, first.expected);
         if reference > 0.0 {
             for candidate in &mut all {
-                let (bound, _) = &self.bounds[candidate.alternative];
+                let bound = self.bounds[candidate.alternative].bound;
                 let rates = &bound.boxes[candidate.tried].rates;
                 candidate.promise = candidate.expected / bound.envelope.effective(rates, reference);
             }

@@ -31,7 +31,7 @@ pub(crate) fn solve_extended(
     let tail = motion.part(begin..motion.intervals());
     let mut through = waypoints[held..].to_vec();
     if held > 0 {
-        through[0] = through[0].passed_with(&tail.wheels[0]);
+        through[0] = through[0].passed_in(&tail.attitudes[0], &tail.wheels[0]);
     }
     let mut end = MultiphaseSolve::new(dynamics, &through, &intervals[held..], &tail);
     if end.run_passes(from_a_guess(dynamics), stop) {

@@ -127,10 +127,11 @@ fn solve_block(
     let mut through = waypoints[begin..=end].to_vec();
     let last = through.len() - 1;
     if begin > 0 {
-        through[0] = through[0].passed_with(&part.wheels[0]);
+        through[0] = through[0].passed_in(&part.attitudes[0], &part.wheels[0]);
     }
     if end < intervals.len() {
-        through[last] = through[last].passed_with(&part.wheels[part.intervals()]);
+        let node = part.intervals();
+        through[last] = through[last].passed_in(&part.attitudes[node], &part.wheels[node]);
     }
     let intervals = &intervals[begin..end];
     let solved = solve_from_windows(dynamics, &through, intervals, &part, stop);
@@ -158,8 +159,8 @@ fn roll(
     loop {
         let last = (first + WINDOW).min(intervals.len());
         let mut through = waypoints[first..=last].to_vec();
-        if let Some(wheels) = ahead.wheels.first() {
-            through[0] = through[0].passed_with(wheels);
+        if let Some((attitude, wheels)) = ahead.attitudes.first().zip(ahead.wheels.first()) {
+            through[0] = through[0].passed_in(attitude, wheels);
         }
         let begin = node_of(first);
         ahead.append(&guess.part(begin + ahead.intervals()..node_of(last)));

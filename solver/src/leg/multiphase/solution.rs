@@ -64,16 +64,23 @@ impl LegSolution {
         self.infeasibility = self.infeasibility.max(next.infeasibility);
     }
 
-    /// The same motion, or the one reversed in time, from another first attitude.
-    pub(crate) fn placed(&self, reversed: bool, begin: &Attitude) -> Self {
+    /// The same motion, or the one reversed in time, in another frame: where one attitude is in the frame
+    /// of the motion, another one is. Without the former, it is the motion's first one.
+    pub(crate) fn placed(
+        &self,
+        reversed: bool,
+        attitude_here: Option<&Attitude>,
+        there: &Attitude,
+    ) -> Self {
         let mut placed = if reversed {
             self.reversed()
         } else {
             self.clone()
         };
-        if let Some(first) = placed.profile.attitudes.first().copied() {
+        let first = placed.profile.attitudes.first().copied();
+        if let Some(here) = attitude_here.copied().or(first) {
             for attitude in &mut placed.profile.attitudes {
-                *attitude = begin.then_in_body(&first.turn_to(attitude));
+                *attitude = there.then_in_body(&here.turn_to(attitude));
             }
         }
         placed

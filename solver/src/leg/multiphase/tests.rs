@@ -48,6 +48,7 @@ impl Leg {
         let null = DVector::zeros(dynamics.wheel_count() - 3);
         let ends = [turn[0], turn[1].nearest_sign(&turn[0])].map(|attitude| Waypoint {
             attitude,
+            roll: None,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(null.clone()),
             costates: None,
@@ -274,6 +275,7 @@ fn legs_with_the_costates_of_a_motion_add_up_to_it() {
     let (rest, free) = (RateCondition::Fixed(0.0), RateCondition::Free);
     let place = |attitude, rate| Waypoint {
         attitude,
+        roll: None,
         rate,
         wheels: WheelCondition::Free,
         costates: None,
@@ -340,6 +342,7 @@ fn a_very_long_motion_in_blocks_is_as_short_as_one_program() {
         };
         waypoints.push(Waypoint {
             attitude: at,
+            roll: None,
             rate: [free, free, RateCondition::Fixed(0.0)],
             wheels: WheelCondition::NullSpace(DVector::zeros(0)),
             costates: None,

@@ -1,6 +1,8 @@
 //! The quaternion sign with which a motion has to arrive at its target.
 
+use super::zero_length::SAME_ATTITUDE;
 use crate::model::attitude::Attitude;
+use crate::model::waypoint::Waypoint;
 use nalgebra::Vector3;
 
 /// Which quaternion signs of the target count as arrived.
@@ -25,6 +27,23 @@ impl Arrival {
     /// the first.
     pub(crate) fn turn_vector(self, from: &Attitude, to: &Attitude) -> Vector3<f64> {
         from.signed_turn_to(&self.signed(to, from))
+    }
+
+    /// Whether every attitude that one waypoint admits is admitted by another.
+    pub(crate) fn implies(self, one: &Waypoint, other: &Waypoint) -> bool {
+        let Some(free) = &other.roll else {
+            let turn = self.turn(&one.attitude, &other.attitude);
+            return one.roll.is_none() && turn <= SAME_ATTITUDE;
+        };
+        let same_axis = one
+            .roll
+            .is_none_or(|roll| (roll.axis - free.axis).amax() <= SAME_ATTITUDE);
+        let given = Some([0.0; 2]);
+        let range = one.roll.map_or(given, |roll| roll.range);
+        let begin = free.between(&other.attitude, &one.attitude);
+        same_axis
+            && free.off_boresight(&one.attitude, &other.attitude) <= SAME_ATTITUDE
+            && free.admits(range.map(|ends| ends.map(|end| begin + end)))
     }
 
     /// Its angle, rad.

@@ -72,6 +72,13 @@ impl KinematicExtremals {
         arrived.then_some(guess)
     }
 
+    /// Duration of the guess for a turn in body axes, s.
+    pub(crate) fn duration_s(&self, turn: &Attitude) -> Option<f64> {
+        let ramped = self.ramped(turn)?;
+        let arcs = ramped.arcs.iter().map(|arc| arc.duration_s);
+        Some(arcs.sum::<f64>() + ramped.ramp)
+    }
+
     /// The extremal of a turn in body axes.
     fn ramped(&self, turn: &Attitude) -> Option<Ramped> {
         let table = self

@@ -25,6 +25,7 @@ fn dynamics(change: impl FnOnce(&mut ScenarioSpec)) -> Dynamics {
 fn at_rest(attitude: Attitude) -> Waypoint {
     Waypoint {
         attitude,
+        roll: None,
         rate: [RateCondition::Fixed(0.0); 3],
         wheels: WheelCondition::Free,
         costates: None,

@@ -1,4 +1,4 @@
-//! The attitude link of an interval and the attitude rows of a node, with derivatives.
+//! The attitude link of an interval, with derivatives.
 //!
 //! With `r = q_{k+1}* q_k`, a step `d` of `q_k` entering as `(d / 2, 1 - |d|^2 / 8)` and the turn
 //! `p(z)`, the gap is `2 vec(r (x) d (x) p)`. Weighted by a covector `l` the product is bilinear in
@@ -244,26 +244,6 @@ impl Transcription {
         }
         let along = terms.begin.dot(&(along_both - along_end)) + terms.end.dot(&along_end);
         out.hessian[length_row + 3 + 2 * wheels] += along;
-    }
-
-    /// Derivatives of `2 vec(target* q) = 0` by so many directions of a state.
-    pub(super) fn write_attitude_rows(
-        &self,
-        target: &Quat,
-        point: &[f64],
-        (nu, states): (&[f64], usize),
-        out: &mut LinkModel,
-    ) {
-        let relative = product(&conjugate(target), &quaternion_of(point));
-        for column in 0..3 {
-            let moved = product(&relative, &quat(&Vector3::ith(column, 1.0), 0.0));
-            for row in 0..3 {
-                out.equality_jacobian[row * states + column] = moved[row];
-            }
-        }
-        let weight = Vector3::new(nu[0], nu[1], nu[2]) * (2.0 / self.scales.angle);
-        let bend = -0.25 * self.scales.angle.powi(2) * weight.dot(&imaginary(&relative));
-        add_attitude_block(out, &(Matrix3::identity() * bend));
     }
 }
 

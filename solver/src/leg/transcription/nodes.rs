@@ -1,8 +1,8 @@
 //! Conditions at nodes: which rows hold where.
 
 use super::Transcription;
+use super::attitude_rows::AttitudeRows;
 use super::rows::{LimitRow, Row};
-use crate::math::quaternion::Quat;
 use crate::model::scenario::RateCondition;
 use crate::model::waypoint::{Waypoint, WheelCondition};
 use nalgebra::Vector3;
@@ -14,8 +14,8 @@ const MIN_RATE_UNIT: f64 = 1e-2;
 /// The rows of one node.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Node {
-    /// The attitude, where it is given.
-    pub(super) attitude: Option<Quat>,
+    /// Conditions on the attitude.
+    pub(super) attitude: Option<AttitudeRows>,
     /// Rows that are zero.
     pub(super) equalities: Vec<Row>,
     /// Rows that are not negative, beside the limits.
@@ -65,8 +65,8 @@ impl Transcription {
 
     fn waypoint_node(&self, waypoint: &Waypoint) -> Node {
         let mut node = Node {
-            attitude: Some(waypoint.attitude.xyzw()),
-            limited: !waypoint.is_fixed(&self.dynamics),
+            attitude: Some(AttitudeRows::of(waypoint)),
+            limited: !waypoint.fixes_limits(&self.dynamics),
             costates: self.scaled_costates(waypoint),
             ..Node::default()
         };

@@ -3,6 +3,7 @@
 use super::*;
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
+use crate::model::roll::FreeRoll;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 use crate::nlp::Iterate;
@@ -72,12 +73,13 @@ fn dynamics(biased: bool) -> Dynamics {
     dynamics
 }
 
-fn transcription(dynamics: &Dynamics) -> Transcription {
+fn transcription(dynamics: &Dynamics, roll: Option<FreeRoll>) -> Transcription {
     let scales = Scales::for_legs(dynamics, 0.8, 50.0);
     let null = DVector::from_vec(vec![0.03]);
     let waypoints = [
         Waypoint {
             attitude: Attitude::identity(),
+            roll: None,
             rate: [
                 RateCondition::Free,
                 RateCondition::Fixed(0.01),
@@ -88,6 +90,7 @@ fn transcription(dynamics: &Dynamics) -> Transcription {
         },
         Waypoint {
             attitude: Attitude::from_rotation_vector(Vector3::new(0.5, -0.4, 0.3)),
+            roll,
             rate: [RateCondition::Free; 3],
             wheels: WheelCondition::Free,
             costates: None,
@@ -133,8 +136,8 @@ struct Fixture {
 }
 
 impl Fixture {
-    fn new(biased: bool, node: usize) -> Self {
-        let chain = transcription(&dynamics(biased));
+    fn new(biased: bool, roll: Option<FreeRoll>, node: usize) -> Self {
+        let chain = transcription(&dynamics(biased), roll);
         let weights = |n: usize, seed: f64| (0..n).map(|i| (seed + i as f64).sin()).collect();
         Self {
             gap: weights(chain.state_dim(), 1.0),
@@ -250,9 +253,23 @@ fn check_second(fixture: &Fixture) {
 
 #[test]
 fn derivatives_of_every_kind_of_node_match_finite_differences() {
+    let free = FreeRoll {
+        axis: Vector3::new(0.2, -0.9, 0.4).normalize(),
+        range: None,
+    };
+    let limited = FreeRoll {
+        range: Some([-0.3, 1.4]),
+        ..free
+    };
     for biased in [false, true] {
-        for node in [0, 1, 2] {
-            let fixture = Fixture::new(biased, node);
+        for (node, roll) in [
+            (0, None),
+            (1, None),
+            (2, None),
+            (2, Some(free)),
+            (2, Some(limited)),
+        ] {
+            let fixture = Fixture::new(biased, roll, node);
             check_first(&fixture);
             check_second(&fixture);
         }

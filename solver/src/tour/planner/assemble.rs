@@ -3,6 +3,7 @@
 use super::torques::{MIN_PIECE_SHARE, torques};
 use super::tours::Tours;
 use crate::leg::multiphase::LegSolution;
+use crate::model::attitude::Attitude;
 use crate::model::plan::{Control, Flight, Leg, Passage};
 use crate::tour::order::Place;
 use std::sync::Arc;
@@ -57,6 +58,7 @@ impl Assembly<'_> {
         range: std::ops::Range<usize>,
     ) {
         let begin = self.clock;
+        let flown = [range.start, range.end].map(|node| solution.profile.attitudes[node]);
         for (length, torque) in torques(&solution.profile, range, self.shortest) {
             self.push(length, torque.iter().copied());
         }
@@ -67,7 +69,7 @@ impl Assembly<'_> {
             start_s: begin,
             duration_s: duration,
             certified_lower_bound_s: None,
-            eigenaxis_duration_s: self.eigenaxis_duration(from, to),
+            eigenaxis_duration_s: self.eigenaxis_duration([from, to], flown),
             rest_to_rest_duration_s: None,
             solver_status: solution.status.into_str().into(),
         });
@@ -99,9 +101,11 @@ impl Assembly<'_> {
         self.clock += duration;
     }
 
-    fn eigenaxis_duration(&self, from: Place, to: Place) -> Option<f64> {
+    /// Duration, s, of the slew about the eigenaxis between two places, with the rolls that are flown.
+    fn eigenaxis_duration(&self, ends: [Place; 2], flown: [Attitude; 2]) -> Option<f64> {
         let places = self.tours.places;
-        let (from, to) = (places.waypoint(from), places.waypoint(to));
+        let rolled = |end: usize| places.waypoint(ends[end]).rolled_towards(&flown[end]);
+        let (from, to) = (rolled(0), rolled(1));
         let slew = places.slew(&from, &to).eigenaxis();
         slew.flyable.then_some(slew.course.duration())
     }

@@ -5,6 +5,7 @@ use super::additive_tours::AdditiveTours;
 use super::places::Places;
 use super::tours::Tours;
 use super::turn_estimates::TurnEstimates;
+use crate::model::waypoint::nearest_rolls;
 use crate::run::stop::StopSignal;
 use crate::tour::order::{SolvedOrder, TourEvaluation, TourModel, short_order};
 
@@ -12,8 +13,9 @@ use crate::tour::order::{SolvedOrder, TourEvaluation, TourModel, short_order};
 pub(super) fn first_order(places: &Places<'_>, stop: &StopSignal) -> Option<Vec<usize>> {
     if places.needs_all_legs() {
         let eigenaxis_s = |from, to| {
-            let (begin, end) = (places.waypoint(from), places.waypoint(to));
-            places.slew(&begin, &end).eigenaxis().course.duration()
+            let ends = nearest_rolls(&places.waypoint(from), &places.waypoint(to));
+            let slew = places.slew(&ends[0], &ends[1]);
+            slew.eigenaxis().course.duration()
         };
         short_order(&AdditiveTours::new(places, &eigenaxis_s), stop)
     } else {

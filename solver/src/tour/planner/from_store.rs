@@ -27,7 +27,7 @@ pub(super) fn stored_leg(leg: &CanonicalLeg, kind: LegKind, solved: &SolvedLeg) 
 }
 
 /// A stored leg as a solved one; `None` when its numbers do not fit together.
-pub(super) fn leg_from_store(stored: StoredLeg) -> Option<SolvedLeg> {
+pub(super) fn leg_from_store(leg: &CanonicalLeg, stored: StoredLeg) -> Option<SolvedLeg> {
     Some(SolvedLeg {
         solution: leg_solution(stored.motion)?,
         certified: stored.certified_lower_bound_s,
@@ -35,6 +35,7 @@ pub(super) fn leg_from_store(stored: StoredLeg) -> Option<SolvedLeg> {
         solve_time: stored.solve_time_s,
         from_store: true,
         is_condensed: false,
+        described_from: leg.described_from(),
     })
 }
 

@@ -7,6 +7,8 @@ use crate::leg::multiphase::LegSolution;
 use crate::leg::profile::Profile;
 use crate::leg::solve::around_cones::is_clear;
 use crate::leg::solve::eigenaxis::Perturbation;
+use crate::leg::solve::rolls::rolled_routes;
+use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
 use crate::tour::legs::LegKind;
 use crate::tour::order::Place;
@@ -35,9 +37,8 @@ pub(super) fn constructed(places: &Places<'_>, route: &[Place]) -> Option<Vec<Ar
             status: NlpStatus::Constructed,
             ..LegSolution::nowhere()
         };
-        for pair in segment.windows(2) {
-            let [from, to] = [pair[0], pair[1]].map(|place| places.waypoint(place));
-            let leg = places.slew(&from, &to).constructed()?;
+        for ends in places.waypoints(segment).windows(2) {
+            let leg = places.slew(&ends[0], &ends[1]).constructed()?;
             if !is_clear(&places.with_cones, &leg.profile) {
                 return None;
             }
@@ -61,18 +62,23 @@ pub(super) fn admits_rest(places: &Places<'_>, route: &[Place]) -> bool {
 /// from rest to rest has no solution. For [`InitialGuess::Shorter`] see [`extended`].
 pub(super) fn joined(
     legs: &LegSolver<'_>,
-    route: &[Place],
+    (route, waypoints): (&[Place], &[Waypoint]),
     kind: InitialGuess,
 ) -> Option<(Profile, Vec<usize>)> {
     let places = legs.places();
     let mut guess = Profile::empty();
     let mut intervals = Vec::new();
-    for pair in route.windows(2) {
-        let (from, to) = (places.waypoint(pair[0]), places.waypoint(pair[1]));
-        let slew = places.slew(&from, &to);
+    let is_rolled = waypoints.iter().any(|waypoint| waypoint.roll.is_some());
+    for (pair, ends) in route.windows(2).zip(waypoints.windows(2)) {
+        let slew = places.slew(&ends[0], &ends[1]);
         let perturbed_eigenaxis = || slew.perturbed_eigenaxis(Perturbation::Near);
         let solved = |kind| {
-            let leg = legs.leg(kind, pair[0], pair[1]);
+            // Legs of their own pass a place with different rolls.
+            let leg = if is_rolled {
+                legs.rest_to_rest_between([&ends[0], &ends[1]])
+            } else {
+                legs.leg(kind, pair[0], pair[1])
+            };
             leg.duration().map(|_| leg.profile)
         };
         let leg = match kind {
@@ -98,8 +104,16 @@ pub(super) fn extended(
 ) -> Option<(Profile, Vec<usize>)> {
     shorter.duration()?;
     let (mut guess, mut intervals) = (shorter.profile.clone(), shorter.intervals.clone());
-    let (last, its) = joined(legs, last_leg, InitialGuess::Eigenaxes)?;
+    let places = legs.places();
+    let mut ends = last_leg.iter().map(|place| places.waypoint(*place));
+    // From the roll at which the solution ends.
+    let reached = guess.attitudes.last()?;
+    let from = ends.next()?.rolled_towards(reached).pinned();
+    let route = vec![from, ends.next()?];
+    let ends = rolled_routes(&places.dynamics, &places.extremals, route, 1).swap_remove(0);
+    let slew = places.slew(&ends[0], &ends[1]);
+    let last = slew.perturbed_eigenaxis(Perturbation::Near);
     guess.append(&last);
-    intervals.extend(its);
+    intervals.push(last.intervals());
     Some((guess, intervals))
 }

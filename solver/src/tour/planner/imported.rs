@@ -112,6 +112,7 @@ impl<'a> LegCheck<'a> {
             solve_time: solve_time_s,
             from_store: false,
             is_condensed: false,
+            described_from: leg.described_from(),
         };
         Ok(stored_leg(leg, self.kind, &solved))
     }
@@ -120,9 +121,9 @@ impl<'a> LegCheck<'a> {
     /// is not slow.
     fn faults(&self, leg: &CanonicalLeg, profile: &Profile) -> Vec<String> {
         let mut faults = Vec::new();
-        let turned = profile.attitudes[0]
-            .signed_turn_to(&leg.from.attitude)
-            .norm();
+        let first = &profile.attitudes[0];
+        let begin = leg.from.rolled_towards(first).attitude;
+        let turned = first.signed_turn_to(&begin.nearest_sign(first)).norm();
         if turned > BEGIN_TOLERANCE {
             faults.push(format!(
                 "it begins {turned:.1e} rad away from the identity attitude"

@@ -1,7 +1,7 @@
 //! Costates at the passages of a tour, and legs with the Lagrangian terms of their boundary states.
 //!
-//! The attitude at a target is prescribed, so the free state of a passage is that of the wheels.
-//! Costates belong to the wheel momenta; their unit is s per N m s.
+//! The free state of a passage is that of the wheels: costates belong to the wheel momenta, their unit is
+//! s per N m s. A free roll has none; the bound holds without.
 
 use super::tours::Tours;
 use crate::leg::multiphase::solve_through;
@@ -85,9 +85,9 @@ impl Tours<'_> {
 
     /// The eigenaxis slew of a leg, perturbed off its axis.
     fn perturbed_eigenaxis(&self, leg: [Place; 2]) -> Profile {
-        let [from, to] = leg.map(|place| self.places.waypoint(place));
+        let ends = self.places.waypoints(&leg);
         self.places
-            .slew(&from, &to)
+            .slew(&ends[0], &ends[1])
             .perturbed_eigenaxis(Perturbation::Near)
     }
 

@@ -177,6 +177,19 @@ impl<'a> LegSolver<'a> {
             .map_or(free, |around| self.known_or_solved(kind, from, &around))
     }
 
+    /// The leg from rest to rest around cones between two attitudes, not kept.
+    pub(super) fn rest_to_rest_between(&self, ends: [&Waypoint; 2]) -> LegSolution {
+        let [from, to] = ends.map(|end| self.places.stopped(&end.pinned()));
+        let leg = CanonicalLeg::around_cones(self.places, &from, &to);
+        let solved = solve(self.places, &leg, None, self.stop);
+        self.nlp_solves.fetch_add(solved.solves, Relaxed);
+        let leg = TabulatedLeg {
+            mirrored: leg.mirrored,
+            leg: Arc::new(solved),
+        };
+        leg.beginning_at(&from.attitude)
+    }
+
     /// A known leg that begins at a place.
     fn known(&self, from: Place, canonical: &CanonicalLeg) -> Option<LegSolution> {
         let leg = lock(&self.known).get(canonical.key()).cloned();
@@ -212,7 +225,8 @@ impl<'a> LegSolver<'a> {
             return None;
         }
         let [from, to] = [from, to].map(|place| end_of(self.places, kind, place));
-        Some(CanonicalLeg::around_cones(self.places, &from, &to).knowing(free))
+        let around = CanonicalLeg::around_cones(self.places, &from, &to);
+        Some(around.knowing(free, [&from, &to]))
     }
 
     /// Certified bounds on the legs of a kind between pairs of places; no leg is solved. `None` for
@@ -310,7 +324,7 @@ impl<'a> LegSolver<'a> {
     fn load(&self, leg: &CanonicalLeg) -> Option<SolvedLeg> {
         let row = self.run.legs.get(&leg.identity)?;
         let unproved = row.certified_lower_bound_s.is_none().then(|| row.clone());
-        let mut stored = leg_from_store(row)?;
+        let mut stored = leg_from_store(leg, row)?;
         let faults = flight_faults(self.places, leg, &stored.solution.profile);
         if !faults.is_empty() {
             let identity = leg.identity.clone();
@@ -443,8 +457,10 @@ fn solve(
     let problem = leg.problem(&places.extremals);
     let stop = || stop.reason();
     let mut solved = match &leg.free {
-        Some(free) => around_cones::solve_around(&problem, free, &stop),
-        None => solve::solve(&problem, certified, &stop),
+        Some(free) if leg.described_from() == [None, None] => {
+            around_cones::solve_around(&problem, free, &stop)
+        }
+        _ => solve::solve(&problem, certified, &stop),
     };
     if solved.solution.duration().is_some() && !is_feasible(places, leg, &solved.solution.profile) {
         solved.solution.status = NlpStatus::NumericalError(Breakdown {
@@ -459,6 +475,7 @@ fn solve(
         solve_time: begin.elapsed().as_secs_f64(),
         from_store: false,
         is_condensed: false,
+        described_from: leg.described_from(),
     }
 }
 

@@ -4,6 +4,7 @@ use super::canonical::describe_spacecraft;
 use crate::bounds::certified::CertifiedBounds;
 use crate::leg::solve::arrival::Arrival;
 use crate::leg::solve::extremal::KinematicExtremals;
+use crate::leg::solve::rolls::rolled_routes;
 use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
@@ -132,7 +133,7 @@ impl<'a> Places<'a> {
         self.scenario.targets().len() <= MAX_TARGETS_ALL_LEGS
     }
 
-    /// The attitude of a place.
+    /// The attitude of a place; where its roll is free, that of roll 0.
     pub(super) fn attitude(&self, place: Place) -> Attitude {
         match place {
             Place::Start => self.scenario.start().attitude,
@@ -152,6 +153,7 @@ impl<'a> Places<'a> {
                 let start = self.scenario.start();
                 Waypoint {
                     attitude: start.attitude,
+                    roll: None,
                     rate: fixed(&start.rate),
                     wheels: wheels(&start.rate, &start.wheel_speed),
                     costates: None,
@@ -161,6 +163,7 @@ impl<'a> Places<'a> {
                 let target = &self.scenario.targets()[i];
                 Waypoint {
                     attitude: target.attitude,
+                    roll: target.roll,
                     rate: target.rate,
                     wheels: WheelCondition::Free,
                     costates: None,
@@ -174,6 +177,7 @@ impl<'a> Places<'a> {
                 let speeds = end.wheel_speed.as_ref();
                 Waypoint {
                     attitude: end.attitude,
+                    roll: end.roll,
                     rate: fixed(&end.rate),
                     wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
                     costates: None,
@@ -184,12 +188,30 @@ impl<'a> Places<'a> {
 
     /// A place at full rest with the null-space momentum of the start.
     pub(super) fn at_rest(&self, place: Place) -> Waypoint {
+        self.stopped(&self.waypoint(place))
+    }
+
+    /// A waypoint at full rest with the null-space momentum of the start.
+    pub(super) fn stopped(&self, waypoint: &Waypoint) -> Waypoint {
         Waypoint {
-            attitude: self.attitude(place),
+            attitude: waypoint.attitude,
+            roll: waypoint.roll,
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
             costates: None,
         }
+    }
+
+    /// The waypoints of a route; where rolls are free, described from those of a short way through all.
+    pub(super) fn waypoints(&self, route: &[Place]) -> Vec<Waypoint> {
+        let mut starts = self.waypoint_starts(route, 1);
+        starts.swap_remove(0)
+    }
+
+    /// The waypoints of a route, described from the rolls of so many starts at most.
+    pub(super) fn waypoint_starts(&self, route: &[Place], most: usize) -> Vec<Vec<Waypoint>> {
+        let waypoints = route.iter().map(|place| self.waypoint(*place)).collect();
+        rolled_routes(&self.with_cones, &self.extremals, waypoints, most)
     }
 
     /// Torques of all wheels, N m, from those of the enabled ones; disabled wheels have none.
@@ -219,13 +241,12 @@ impl<'a> Places<'a> {
     /// the same, and the conditions of the first imply those of the second.
     pub(super) fn covers(&self, one: Place, other: Place) -> bool {
         let (one, other) = (self.waypoint(one), self.waypoint(other));
-        let turn = self.arrival.turn(&one.attitude, &other.attitude);
         let implied = |axis: usize| {
             let ([low, high], [min, max]) = (one.rate[axis].range(), other.rate[axis].range());
             min <= low && high <= max
         };
         let held = other.wheels == WheelCondition::Free || one.wheels == other.wheels;
-        turn <= SAME_ATTITUDE && (0..3).all(implied) && held
+        self.arrival.implies(&one, &other) && (0..3).all(implied) && held
     }
 
     /// Whether one of two places covers the other.
@@ -245,6 +266,7 @@ impl<'a> Places<'a> {
         let same_wheels = start.wheels == end.wheels || self.dynamics.wheel_count() == 3;
         let targets = (0..self.scenario.targets().len()).map(Place::Target);
         turn <= SAME_ATTITUDE
+            && end.roll.is_none()
             && start.rate == end.rate
             && same_wheels
             && self.reversible([&start, &end])

@@ -24,6 +24,9 @@ pub(super) struct SolvedLeg {
     pub(super) from_store: bool,
     /// Whether only the ends of the motion are kept.
     pub(super) is_condensed: bool,
+    /// The attitudes that describe its ends; `None` where the roll is given and the motion itself begins
+    /// or ends there.
+    pub(super) described_from: [Option<Attitude>; 2],
 }
 
 impl SolvedLeg {
@@ -72,11 +75,13 @@ pub(super) struct TabulatedLeg {
 }
 
 impl TabulatedLeg {
-    /// The solution with a motion that begins at the given attitude.
+    /// The solution with a motion that begins at the given attitude or, where its roll is free, at an
+    /// admissible one beside it.
     pub(super) fn beginning_at(&self, begin: &Attitude) -> LegSolution {
+        let here = self.leg.described_from[usize::from(self.mirrored)].as_ref();
         LegSolution {
             costates: Vec::new(),
-            ..self.leg.solution.placed(self.mirrored, begin)
+            ..self.leg.solution.placed(self.mirrored, here, begin)
         }
     }
 

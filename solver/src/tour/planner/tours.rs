@@ -42,6 +42,8 @@ const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
 /// segments start from short ones and would inherit a local minimum. Among many targets one guess
 /// serves: of 960 pieces of two and four legs one ends 1e-3 above the better of both.
 const MIN_GUESSES_OF_SHORT: usize = 2;
+/// Starts with different rolls where rolls are free.
+const MAX_ROLLED_STARTS: usize = 4;
 
 /// The tours of a scenario, evaluated by solving their segments.
 pub(super) struct Tours<'a> {
@@ -100,10 +102,10 @@ impl<'a> Tours<'a> {
 
     /// Number of intervals of every leg of a route.
     pub(super) fn intervals(&self, route: &[Place]) -> Vec<usize> {
-        let legs = route.windows(2).map(|leg| {
-            let ends = [leg[0], leg[1]].map(|place| self.places.waypoint(place));
-            self.places.slew(&ends[0], &ends[1]).intervals()
-        });
+        let waypoints = self.places.waypoints(route);
+        let legs = waypoints
+            .windows(2)
+            .map(|ends| self.places.slew(&ends[0], &ends[1]).intervals());
         legs.collect()
     }
 
@@ -270,21 +272,25 @@ impl<'a> Tours<'a> {
             SegmentKind::Beginning | SegmentKind::Piece => &PIECE_GUESSES,
             SegmentKind::Tour => &TOUR_GUESSES,
         };
-        let mut best = self.solve_from(route, guesses[0]);
-        for (tried, &guess) in guesses.iter().enumerate().skip(1) {
-            let settled = best.status == NlpStatus::Converged && tried >= min_guesses;
+        let starts = self.places.waypoint_starts(route, MAX_ROLLED_STARTS);
+        let needed = starts.len() * min_guesses;
+        let with = |guess| starts.iter().map(move |waypoints| (guess, waypoints));
+        let all = guesses.iter().flat_map(|guess| with(*guess));
+        let mut best = LegSolution::nowhere();
+        for (tried, (guess, waypoints)) in all.enumerate() {
+            let settled = best.status == NlpStatus::Converged && tried >= needed;
             if settled || best.status.is_interrupted() {
                 break;
             }
-            let solution = self.solve_from(route, guess);
-            if solution.improves(&best) || solution.status.is_interrupted() {
+            let solution = self.solve_from((route, waypoints), guess);
+            if tried == 0 || solution.improves(&best) || solution.status.is_interrupted() {
                 best = solution;
             }
         }
         let with_cones = &self.places.with_cones;
         let mut dynamics = &self.places.dynamics;
         if !is_clear(with_cones, &best.profile) && !best.status.is_interrupted() {
-            best = self.solve_from(route, InitialGuess::AroundCones);
+            best = self.solve_from((route, &starts[0]), InitialGuess::AroundCones);
             dynamics = with_cones;
         }
         if self.places.resolution.polished {
@@ -297,8 +303,12 @@ impl<'a> Tours<'a> {
         best
     }
 
-    fn solve_from(&self, route: &[Place], kind: InitialGuess) -> LegSolution {
-        let Some((guess, intervals)) = self.guess(route, kind) else {
+    fn solve_from(
+        &self,
+        (route, rolled): (&[Place], &[Waypoint]),
+        kind: InitialGuess,
+    ) -> LegSolution {
+        let Some((guess, intervals)) = self.guess((route, rolled), kind) else {
             return LegSolution::nowhere();
         };
         self.solves.fetch_add(1, Ordering::Relaxed);
@@ -332,13 +342,17 @@ impl<'a> Tours<'a> {
 
     /// The initial guess of a route and the number of intervals of each of its legs; `None` where
     /// there is none.
-    fn guess(&self, route: &[Place], kind: InitialGuess) -> Option<(Profile, Vec<usize>)> {
+    fn guess(
+        &self,
+        (route, rolled): (&[Place], &[Waypoint]),
+        kind: InitialGuess,
+    ) -> Option<(Profile, Vec<usize>)> {
         match (kind, route) {
             (InitialGuess::Shorter, [before @ .., _]) => {
                 let shorter = self.segment(before, SegmentKind::Beginning);
                 extended(self.legs, &shorter, &route[before.len() - 1..])
             }
-            _ => joined(self.legs, route, kind),
+            _ => joined(self.legs, (route, rolled), kind),
         }
     }
 
@@ -352,9 +366,10 @@ impl<'a> Tours<'a> {
     ) -> Vec<Waypoint> {
         let signed = |(i, place): (usize, &Place)| {
             let mut waypoint = self.places.waypoint(*place);
-            if i > 0
+            if (i > 0 || waypoint.roll.is_some())
                 && let Some(there) = motion.attitudes.get(intervals[..i].iter().sum::<usize>())
             {
+                waypoint = waypoint.rolled_towards(there);
                 waypoint.attitude = self.places.arrival.signed(&waypoint.attitude, there);
             }
             waypoint

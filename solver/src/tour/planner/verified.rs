@@ -25,7 +25,8 @@ pub(super) fn flight_faults(
     let (Some(begin), Some(last)) = (begin(places, leg, profile), profile.attitudes.last()) else {
         return vec!["there is no motion".into()];
     };
-    let target = leg.arrival.signed(&leg.to.attitude, last);
+    let target = leg.to.rolled_towards(last).attitude;
+    let target = leg.arrival.signed(&target, last);
     let arrival = LegEnd {
         quaternion: target.xyzw(),
         rate: leg.to.rate.map(|condition| match condition {

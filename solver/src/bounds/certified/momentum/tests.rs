@@ -130,6 +130,7 @@ fn the_limit_of_an_end_rate_is_valid_and_tight() {
         });
         let waypoint = Waypoint {
             attitude: Attitude::identity(),
+            roll: None,
             rate: ends.map(|(condition, _)| condition),
             wheels: WheelCondition::Free,
             costates: None,

@@ -33,7 +33,7 @@ fn few_boxes_give_what_all_give() {
             .collect();
         let mut alternatives = Alternatives::default();
         for (bound, turn) in bounds.iter().zip(&turns) {
-            alternatives.add(bound, *turn);
+            alternatives.add(bound, *turn, GivenAway::default());
         }
         let all = bounds
             .iter()
@@ -63,7 +63,7 @@ fn no_turn_has_a_bound_of_zero_and_no_alternatives_have_none() {
     let bound = SlewBound::new(limits, EndRates::at_rest()).expect("ordinary limits");
     let bound = bound.missing(1e-6);
     let mut alternatives = Alternatives::default();
-    alternatives.add(&bound, Attitude::identity());
+    alternatives.add(&bound, Attitude::identity(), GivenAway::default());
     let found = alternatives.strongest(TOLERANCE).expect("a bound");
     assert!(found.bound_s.abs() <= 0.0);
 }

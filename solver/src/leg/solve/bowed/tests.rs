@@ -15,6 +15,7 @@ fn bowed_motions_arrive_at_rest_on_ways_of_their_own() {
     let dynamics = scenario.dynamics();
     let at_rest = |vector| Waypoint {
         attitude: Attitude::from_rotation_vector(vector),
+        roll: None,
         rate: [RateCondition::Fixed(0.0); 3],
         wheels: WheelCondition::Free,
         costates: None,

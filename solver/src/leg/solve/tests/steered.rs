@@ -68,6 +68,7 @@ proptest! {
         let null = DVector::zeros(count - 3);
         let end = |attitude: Attitude, rate: f64| Waypoint {
             attitude,
+            roll: None,
             rate: [RateCondition::Fixed(rate * limit), RateCondition::Free, RateCondition::Fixed(0.0)],
             wheels: WheelCondition::Free,
             costates: None,

@@ -1,0 +1,89 @@
+//! Rolls all over their range, and an estimate of the slews between them.
+
+use crate::math::bang_coast_bang::BangCoastBang;
+use crate::model::attitude::Attitude;
+use crate::model::cone::ForbiddenCone;
+use crate::model::dynamics::Dynamics;
+use crate::model::roll::FreeRoll;
+use crate::model::waypoint::Waypoint;
+use std::f64::consts::TAU;
+
+/// Greatest distance of neighbouring rolls, rad.
+const SPACING: f64 = TAU / 24.0;
+
+/// A waypoint, described from rolls all over its range; once where the roll is given.
+pub(super) struct Grid {
+    pub(super) waypoints: Vec<Waypoint>,
+    /// Whether the last roll is beside the first.
+    is_closed: bool,
+}
+
+impl Grid {
+    pub(super) fn of(end: &Waypoint) -> Self {
+        let range = end.roll.map(|FreeRoll { range, .. }| range);
+        let (rolls, is_closed): (Vec<f64>, bool) = match range {
+            None => (vec![0.0], false),
+            Some(None) => {
+                let count = (TAU / SPACING).round();
+                let roll = |i: u32| TAU * f64::from(i) / count;
+                ((0..count as u32).map(roll).collect(), true)
+            }
+            Some(Some([least, greatest])) => {
+                let parts = ((greatest - least) / SPACING).ceil().max(1.0);
+                let roll = |i: u32| least + (greatest - least) * f64::from(i) / parts;
+                ((0..=parts as u32).map(roll).collect(), false)
+            }
+        };
+        Self {
+            waypoints: rolls.into_iter().map(|roll| end.rolled(roll)).collect(),
+            is_closed,
+        }
+    }
+
+    /// Those that lie in no cone.
+    pub(super) fn clear_of(mut self, cones: &[ForbiddenCone]) -> Self {
+        let all = self.waypoints.len();
+        if all > 1 {
+            self.waypoints.retain(|waypoint| is_clear(cones, waypoint));
+        }
+        self.is_closed &= self.waypoints.len() == all;
+        self
+    }
+
+    /// Durations, s, of the slews about the eigenaxis from every roll to every roll of another waypoint.
+    pub(super) fn durations_to(&self, to: &Self, dynamics: &Dynamics) -> Vec<Vec<f64>> {
+        let row = |from: &Waypoint| {
+            let leg = |to: &Waypoint| eigenaxis_s(dynamics, &from.attitude, &to.attitude);
+            to.waypoints.iter().map(leg).collect()
+        };
+        self.waypoints.iter().map(row).collect()
+    }
+
+    /// A roll and its neighbours, by their numbers.
+    pub(super) fn around(&self, at: usize) -> impl Iterator<Item = usize> + '_ {
+        let count = self.waypoints.len();
+        let beside = [at + count - 1, at + count, at + count + 1].into_iter();
+        beside.filter_map(move |at| {
+            let inside = (count..2 * count).contains(&at);
+            (self.is_closed || inside).then_some(at % count)
+        })
+    }
+}
+
+pub(super) fn is_clear(cones: &[ForbiddenCone], waypoint: &Waypoint) -> bool {
+    cones
+        .iter()
+        .all(|cone| cone.depth(&waypoint.attitude) <= 0.0)
+}
+
+/// Duration, s, of the slew about the eigenaxis from rest to rest without stored momentum.
+fn eigenaxis_s(dynamics: &Dynamics, from: &Attitude, to: &Attitude) -> f64 {
+    let turn = from.signed_turn_to(&to.nearest_sign(from));
+    let angle = turn.norm();
+    if angle == 0.0 {
+        return 0.0;
+    }
+    let axis = turn / angle;
+    let (acceleration, rate) = (dynamics.axis_acceleration(&axis), dynamics.axis_rate(&axis));
+    BangCoastBang::fastest(angle, acceleration, rate).duration()
+}

@@ -39,6 +39,11 @@ def conjugate(q):
     return ca.vertcat(-q[:3], q[3])
 
 
+def rolled(q, axis, angle):
+    """An attitude after a turn about a body axis."""
+    return product(q, ca.vertcat(ca.sin(angle / 2) * ca.DM(axis), ca.cos(angle / 2)))
+
+
 class Craft:
     """The numbers of a spacecraft, and units in which its slews are of order one."""
 
@@ -69,9 +74,11 @@ class Model:
     """The nonlinear program of slews of one spacecraft from rest to rest.
 
     `margins` makes of an attitude what must not be negative, at the nodes and half-way between them.
+    With `axes`, two of the body, the attitudes at the ends are rolled about them by two angles, rad, which
+    are the variables after the duration.
     """
 
-    def __init__(self, craft, angle, intervals=INTERVALS, margins=None):
+    def __init__(self, craft, angle, intervals=INTERVALS, margins=None, axes=None):
         self.craft, count, self.intervals = craft, len(craft.spin), intervals
         self.time, self.rate = craft.units(angle)
         self.momentum = craft.spin * craft.speed
@@ -86,7 +93,14 @@ class Model:
             least.extend(np.broadcast_to(lower, value.shape[0]))
             most.extend(np.broadcast_to(upper, value.shape[0]))
 
-        state = start
+        state, aim = start, goal
+        if axes is not None:
+            rolls = ca.MX.sym("rolls", 2)
+            variables.append(rolls)
+            low += [0.0] * 2
+            high += [0.0] * 2
+            state = ca.vertcat(rolled(start[:4], axes[0], rolls[0]), start[4:])
+            aim = rolled(goal, axes[1], rolls[1])
         for k in range(intervals):
             torque = ca.MX.sym(f"torque{k}", count)
             variables.append(torque)
@@ -106,7 +120,7 @@ class Model:
                 require(margins(state[:4]), 0.0, np.inf)
             if craft.norm < np.inf:
                 require(ca.sumsqr(state[4:7]), 0.0, (craft.norm / self.rate) ** 2)
-        missed = product(conjugate(goal), state[:4])
+        missed = product(conjugate(aim), state[:4])
         require(missed[:3], 0.0, 0.0)
         require(missed[3], 0.0, np.inf)
         require(state[4:7], 0.0, 0.0)

@@ -123,6 +123,24 @@ struct PreparedFrame {
     bound: Option<SlewBound>,
 }
 
+/// A bound on the slews between the rolls around those of two waypoints.
+struct BoundAround {
+    bound_s: f64,
+    /// The frame and the number of the box that give it.
+    frame: Arc<PreparedFrame>,
+    tried: usize,
+}
+
+impl BoundAround {
+    /// What the same box gives between other rolls, s.
+    fn between(&self, ends: [&Waypoint; 2], halves: [f64; 2]) -> Option<f64> {
+        let turn = ends[0].attitude.turn_to(&ends[1].attitude);
+        let frame = std::slice::from_ref(&self.frame);
+        let (alternatives, _) = seen(&turn, frame, |axes| given_away(ends, halves, axes));
+        alternatives.of_box(0, self.tried, TOLERANCE).into()
+    }
+}
+
 /// Limits of all motions in axes fixed in the body.
 #[derive(Debug, Clone, Copy)]
 struct BodyFrame {
@@ -180,17 +198,21 @@ impl CertifiedBounds {
             let held = ends.map(|end| end.attitude.to_body(*momentum));
             return bounds.leg(&turn, &held, &ends.map(rate_limits), TOLERANCE);
         }
-        self.around_rolls(ends, [0.0; 2])
+        Some(self.around_rolls(ends, [0.0; 2])?.bound_s)
     }
 
-    /// Lower bound, s, on the duration of any slew between rolls that differ from those of two waypoints
-    /// by so much at most, rad.
-    fn around_rolls(&self, ends: [&Waypoint; 2], halves: [f64; 2]) -> Option<f64> {
+    /// Lower bound on the duration of any slew between rolls that differ from those of two waypoints by so
+    /// much at most, rad.
+    fn around_rolls(&self, ends: [&Waypoint; 2], halves: [f64; 2]) -> Option<BoundAround> {
         let turn = ends[0].attitude.turn_to(&ends[1].attitude);
-        let away = |axes: &Matrix3<f64>| given_away(ends, halves, axes);
         let prepared = self.prepared_for(&turn, ends.map(rate_limits))?;
-        let (alternatives, _) = seen(&turn, &prepared, away);
-        Some(alternatives.strongest(TOLERANCE)?.bound_s)
+        let (alternatives, frames) = seen(&turn, &prepared, |axes| given_away(ends, halves, axes));
+        let strongest = alternatives.strongest(TOLERANCE)?;
+        Some(BoundAround {
+            bound_s: strongest.bound_s,
+            frame: Arc::clone(frames[strongest.alternative]),
+            tried: strongest.tried,
+        })
     }
 
     /// A smaller bound that is known at once, s: the angle of the turn at the largest rate of all
@@ -212,10 +234,10 @@ impl CertifiedBounds {
         }
         let turn = from.attitude.turn_to(&to.attitude);
         let prepared = self.prepared_for(&turn, [rate_limits(from), rate_limits(to)])?;
-        let (alternatives, axes) = seen(&turn, &prepared, |_| GivenAway::default());
+        let (alternatives, frames) = seen(&turn, &prepared, |_| GivenAway::default());
         let strongest = alternatives.strongest(TOLERANCE)?;
         let certificate = alternatives.certificate(&strongest, TOLERANCE);
-        Some((axes[strongest.alternative], certificate))
+        Some((frames[strongest.alternative].axes, certificate))
     }
 
     /// The frames for a turn and their bounds for end rates within these limits, body axes.
@@ -280,20 +302,20 @@ impl PreparedFrame {
     }
 }
 
-/// The bounds of frames on a turn, with what is given away in the axes of each, and these axes.
+/// The bounds of frames on a turn, with what is given away in the axes of each, and these frames.
 fn seen<'p>(
     turn: &Attitude,
     prepared: &'p [Arc<PreparedFrame>],
     away: impl Fn(&Matrix3<f64>) -> GivenAway,
-) -> (Alternatives<'p>, Vec<Matrix3<f64>>) {
-    let (mut alternatives, mut axes) = (Alternatives::default(), Vec::new());
+) -> (Alternatives<'p>, Vec<&'p Arc<PreparedFrame>>) {
+    let (mut alternatives, mut frames) = (Alternatives::default(), Vec::new());
     for frame in prepared {
         if let Some((bound, turn)) = frame.bound.as_ref().zip(turn.seen_from(&frame.axes)) {
             alternatives.add(bound, turn, away(&frame.axes));
-            axes.push(frame.axes);
+            frames.push(frame);
         }
     }
-    (alternatives, axes)
+    (alternatives, frames)
 }
 
 impl BodyFrame {

@@ -127,6 +127,15 @@ impl LegProblem<'_> {
         self.resolution.intervals_of(self.dynamics, turn)
     }
 
+    /// The same leg between other descriptions of its ends.
+    fn between<'e>(&'e self, ends: &'e [Waypoint; 2]) -> LegProblem<'e> {
+        LegProblem {
+            from: &ends[0],
+            to: &ends[1],
+            ..*self
+        }
+    }
+
     /// A solution constructed without a program: slowly about the eigenaxis. `None` where the
     /// wheels cannot hold the momentum along the way.
     pub(crate) fn constructed(&self) -> Option<LegSolution> {
@@ -220,7 +229,11 @@ impl LegProblem<'_> {
 
     /// A guess from the eigenaxis slew, perturbed to one side.
     pub(crate) fn perturbed_eigenaxis(&self, side: Perturbation) -> Profile {
-        let intervals = self.intervals();
+        self.perturbed_eigenaxis_of(self.intervals(), side)
+    }
+
+    /// The same with so many intervals.
+    fn perturbed_eigenaxis_of(&self, intervals: usize, side: Perturbation) -> Profile {
         let slew = self.eigenaxis().lasting(self.least_duration());
         slew.guess(self.dynamics, intervals, side)
     }

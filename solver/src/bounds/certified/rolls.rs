@@ -6,6 +6,7 @@
 //! cell ([`GivenAway`]). The cell with the least bound is halved again and again (branch and bound); the
 //! result holds whenever that ends.
 
+use super::BoundAround;
 use crate::bounds::kinematic::strongest::GivenAway;
 use crate::model::waypoint::Waypoint;
 use nalgebra::Matrix3;
@@ -14,60 +15,57 @@ use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 
 /// Cells into which the rolls of an end are divided at first.
-const FIRST_CELLS: u32 = 8;
-/// Bounds computed for one leg, per free end more than the first one a multiple.
-const BUDGET: usize = 64;
-const BUDGET_OF_BOTH: usize = 256;
+const FIRST_CELLS: u32 = 6;
+/// Cells divided for each free end.
+const DIVISIONS: usize = 40;
 /// Half width of a cell, rad, below which it is not divided.
 const NARROW: f64 = 2e-3;
 
-/// The least bound, s, over the rolls of both ends; `bound` is given two ends with the half widths of
-/// the cell around their rolls. `None` where nothing is proved.
+/// The least bound, s, over the rolls of both ends; `around` is given two ends with the half widths of a
+/// cell around their rolls. `None` where nothing is proved.
+///
+/// Of the first cells the strongest bound is sought; the parts of a cell have that of the same box.
 pub(super) fn least_over_rolls(
     ends: [&Waypoint; 2],
-    bound: impl Fn([&Waypoint; 2], [f64; 2]) -> Option<f64>,
+    around: impl Fn([&Waypoint; 2], [f64; 2]) -> Option<BoundAround>,
 ) -> Option<f64> {
-    let bounded = |middles: [f64; 2], halves: [f64; 2], least: f64| {
-        let rolled = [0, 1].map(|end| ends[end].rolled(middles[end]));
-        let bound_s = bound(rolled.each_ref(), halves)?.max(least);
-        Some(Cell {
-            middles,
-            halves,
-            bound_s,
-        })
-    };
+    let rolled = |middles: [f64; 2]| [0, 1].map(|end| ends[end].rolled(middles[end]));
     let [first, second] = ends.map(cells);
-    let mut open = BinaryHeap::new();
+    let (mut bounds, mut open) = (Vec::new(), BinaryHeap::new());
     for (begin, begin_half) in &first {
         for (arrival, arrival_half) in &second {
-            open.push(bounded(
-                [*begin, *arrival],
-                [*begin_half, *arrival_half],
-                0.0,
-            )?);
+            let (middles, halves) = ([*begin, *arrival], [*begin_half, *arrival_half]);
+            let bound = around(rolled(middles).each_ref(), halves)?;
+            open.push(Cell {
+                middles,
+                halves,
+                bound_s: bound.bound_s,
+                within: bounds.len(),
+            });
+            bounds.push(bound);
         }
     }
-    let budget = if first.len() > 1 && second.len() > 1 {
-        BUDGET_OF_BOTH
-    } else {
-        BUDGET
-    };
-    let mut left = budget.saturating_sub(open.len());
-    while left >= 2 {
-        let Some(cell) = open.peek() else { break };
+    let free = ends.iter().filter(|end| end.roll.is_some()).count();
+    for _ in 0..DIVISIONS * free {
+        let Some(cell) = open.pop() else { break };
         let wider = usize::from(cell.halves[1] > cell.halves[0]);
         if cell.halves[wider] <= NARROW {
+            open.push(cell);
             break;
         }
-        let Some(cell) = open.pop() else { break };
         let mut halves = cell.halves;
         halves[wider] *= 0.5;
         for side in [-1.0, 1.0] {
             let mut middles = cell.middles;
             middles[wider] += side * halves[wider];
-            open.push(bounded(middles, halves, cell.bound_s)?);
+            let part = bounds[cell.within].between(rolled(middles).each_ref(), halves)?;
+            open.push(Cell {
+                middles,
+                halves,
+                bound_s: cell.bound_s.max(part),
+                ..cell
+            });
         }
-        left -= 2;
     }
     open.peek().map(|least| least.bound_s)
 }
@@ -97,6 +95,8 @@ struct Cell {
     middles: [f64; 2],
     halves: [f64; 2],
     bound_s: f64,
+    /// The first cell in which it lies.
+    within: usize,
 }
 
 impl Ord for Cell {

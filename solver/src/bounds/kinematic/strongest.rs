@@ -68,7 +68,7 @@ pub(crate) struct Strongest {
     /// Number of the alternative.
     pub(crate) alternative: usize,
     /// Number of its box.
-    tried: usize,
+    pub(crate) tried: usize,
     /// The bound, s.
     pub(crate) bound_s: f64,
 }
@@ -133,6 +133,14 @@ impl<'a> Alternatives<'a> {
             }
         }
         best.map(|(strongest, _)| strongest)
+    }
+
+    /// The bound, s, that one box of one alternative gives.
+    pub(crate) fn of_box(&self, alternative: usize, tried: usize, tolerance: f64) -> f64 {
+        let one = &self.bounds[alternative];
+        let tried = &one.bound.boxes[tried];
+        let least = one.least_time(tried, tolerance);
+        stated(one.bound.envelope.duration_of(&tried.rates, least))
     }
 
     /// The certificate of the strongest bound.

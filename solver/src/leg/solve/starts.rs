@@ -31,7 +31,7 @@ const MAX_GAP_WITH_MOMENTUM: f64 = 0.03;
 /// nearly always. With momentum, bounds leave more of all legs, and the long way round is tried.
 const EXPLORED_GAP: f64 = 0.07;
 /// Intervals of the rough motions that tell where a minimum may be.
-const ROUGH_INTERVALS: usize = 8;
+pub(super) const ROUGH_INTERVALS: usize = 8;
 /// Excess of a rough motion over the best duration up to which it is solved, and how far it must be
 /// from the best motion: a rough motion is some 2 % slower than what becomes of it, with spare wheels 5 %.
 const PROMISING: f64 = 1.05;

@@ -176,7 +176,7 @@ fn settled(dynamics: &Dynamics, attitude: Attitude, place: &Waypoint) -> Waypoin
         RateCondition::Fixed(y),
         RateCondition::Fixed(z),
     ] = place.rate
-        && place.is_fixed(dynamics)
+        && place.fixes_limits(dynamics)
     {
         let null = match &place.wheels {
             WheelCondition::NullSpace(null) => null.clone(),

@@ -127,13 +127,9 @@ impl LegProblem<'_> {
         self.resolution.intervals_of(self.dynamics, turn)
     }
 
-    /// The same leg between other descriptions of its ends.
-    fn between<'e>(&'e self, ends: &'e [Waypoint; 2]) -> LegProblem<'e> {
-        LegProblem {
-            from: &ends[0],
-            to: &ends[1],
-            ..*self
-        }
+    /// A leg of the same spacecraft between other waypoints.
+    fn between<'e>(&'e self, from: &'e Waypoint, to: &'e Waypoint) -> LegProblem<'e> {
+        LegProblem { from, to, ..*self }
     }
 
     /// A solution constructed without a program: slowly about the eigenaxis. `None` where the

@@ -6,15 +6,14 @@
 //! lead to the same minimum, and which to a slow one.
 
 mod grid;
+mod rough;
 mod route;
 
-use super::eigenaxis::Perturbation;
-use super::starts::ROUGH_INTERVALS;
 use super::{LegOutcome, LegProblem, solve_from_attitudes};
-use crate::leg::multiphase::StagedSolve;
 use crate::model::waypoint::{Waypoint, nearest_rolls};
 use crate::run::stop::StopReason;
 use grid::{Grid, is_clear};
+pub(crate) use rough::promising;
 pub(crate) use route::rolled_routes;
 
 /// Number of starts of a leg, and the ratio of their estimates to the least one up to which there are
@@ -24,11 +23,8 @@ const PROMISING: f64 = 1.15;
 /// The same with momentum, of which the estimates know nothing.
 const MAX_STARTS_WITH_MOMENTUM: usize = 8;
 const PROMISING_WITH_MOMENTUM: f64 = 1.6;
-/// Starts that are solved after a rough motion from each, excess of that over the fastest one up to which
-/// they are, and turn, rad, between ends that belong to the same minimum.
+/// Starts that are solved after a rough motion from each.
 const MAX_REFINED: usize = 3;
-const PROMISING_ROUGH: f64 = 1.03;
-const SAME_MINIMUM: f64 = 0.05;
 /// Relative gap to a lower bound at which no other start is tried.
 const MAX_GAP: f64 = 0.001;
 
@@ -42,7 +38,7 @@ pub(super) fn solve_from_rolls(
     let mut solves = 0;
     if leg.dynamics.cones.is_empty() && starts.len() > 1 {
         solves += starts.len() as u64;
-        starts = promising(leg, starts, stop);
+        starts = promising(leg, starts, MAX_REFINED, stop);
     }
     let mut best: Option<LegOutcome> = None;
     let is_settled = |best: &LegOutcome| {
@@ -50,11 +46,11 @@ pub(super) fn solve_from_rolls(
         let both = bound.zip(duration);
         stop().is_some() || both.is_some_and(|(bound, found)| found <= (1.0 + MAX_GAP) * bound)
     };
-    for ends in starts {
+    for ends in &starts {
         if best.as_ref().is_some_and(is_settled) {
             break;
         }
-        let rolled = leg.between(&ends);
+        let rolled = leg.between(&ends[0], &ends[1]);
         let found = if leg.dynamics.cones.is_empty() {
             solve_from_attitudes(&rolled, bound, stop)
         } else {
@@ -70,53 +66,10 @@ pub(super) fn solve_from_rolls(
     LegOutcome { solves, ..best }
 }
 
-/// The ends at which rough motions from several starts end, the fastest first, each once; the starts
-/// themselves where no motion converges.
-fn promising(
-    leg: &LegProblem<'_>,
-    starts: Vec<[Waypoint; 2]>,
-    stop: &dyn Fn() -> Option<StopReason>,
-) -> Vec<[Waypoint; 2]> {
-    let mut found: Vec<(f64, [Waypoint; 2])> = Vec::new();
-    for ends in &starts {
-        let start = leg.between(ends);
-        let guess = start.perturbed_eigenaxis_of(ROUGH_INTERVALS, Perturbation::Far);
-        let waypoints = start.waypoints(&guess);
-        let intervals = [ROUGH_INTERVALS];
-        let rough = StagedSolve::rough(leg.dynamics, &waypoints, &intervals, &guess, stop);
-        let motion = &rough.motion().attitudes;
-        if let (Some(duration), Some(first), Some(last)) =
-            (rough.duration(), motion.first(), motion.last())
-        {
-            let ends = [leg.from.rolled_towards(first), leg.to.rolled_towards(last)];
-            found.push((duration, ends));
-        }
-    }
-    found.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-    let most = PROMISING_ROUGH * found.first().map_or(0.0, |(least, _)| *least);
-    let mut distinct: Vec<[Waypoint; 2]> = Vec::new();
-    for (duration, ends) in found {
-        let same = |end: usize, known: &[Waypoint; 2]| {
-            known[end].attitude.angle_to(&ends[end].attitude) < SAME_MINIMUM
-        };
-        let is_new = !distinct
-            .iter()
-            .any(|known| same(0, known) && same(1, known));
-        if duration <= most && is_new {
-            distinct.push(ends);
-        }
-    }
-    if distinct.is_empty() {
-        return starts;
-    }
-    distinct.truncate(MAX_REFINED);
-    distinct
-}
-
 /// The solution around cones with the rolls of the attitudes first, then from there with free ones.
 fn solve_around_cones(leg: &LegProblem<'_>, stop: &dyn Fn() -> Option<StopReason>) -> LegOutcome {
     let ends = [leg.from, leg.to].map(Waypoint::pinned);
-    let mut found = solve_from_attitudes(&leg.between(&ends), None, stop);
+    let mut found = solve_from_attitudes(&leg.between(&ends[0], &ends[1]), None, stop);
     if found.solution.duration().is_some() && stop().is_none() {
         let intervals = found.solution.intervals.clone();
         let freed = leg.solve_with(&intervals, &found.solution.profile, stop);
@@ -129,7 +82,7 @@ fn solve_around_cones(leg: &LegProblem<'_>, stop: &dyn Fn() -> Option<StopReason
 }
 
 /// The ends of a leg, described from the rolls of its starts, the fastest first.
-fn starts(leg: &LegProblem<'_>) -> Vec<[Waypoint; 2]> {
+fn starts(leg: &LegProblem<'_>) -> Vec<Vec<Waypoint>> {
     let cones = &leg.dynamics.cones;
     let grids = [leg.from, leg.to].map(|end| Grid::of(end).clear_of(cones));
     let table = grids[0].durations_to(&grids[1], leg.dynamics);
@@ -158,8 +111,8 @@ fn starts(leg: &LegProblem<'_>) -> Vec<[Waypoint; 2]> {
     let nearest = nearest_rolls(leg.from, leg.to);
     let mut starts = Vec::new();
     if minima.is_empty() || nearest.iter().all(|end| is_clear(cones, end)) {
-        starts.push(nearest);
+        starts.push(nearest.into());
     }
-    starts.extend(promising.map(|(_, ends)| ends.map(Waypoint::clone)));
+    starts.extend(promising.map(|(_, ends)| ends.map(Waypoint::clone).into()));
     starts
 }

@@ -19,6 +19,7 @@ use super::turn_estimates::TurnEstimates;
 use crate::leg::multiphase::{LegSolution, polish, solve_extended, solve_rolling, solve_through};
 use crate::leg::profile::Profile;
 use crate::leg::solve::around_cones::is_clear;
+use crate::leg::solve::rolls::promising;
 use crate::model::order_rules::OrderRules;
 use crate::model::waypoint::Waypoint;
 use crate::nlp::NlpStatus;
@@ -42,8 +43,11 @@ const TOUR_GUESSES: [InitialGuess; 1] = [InitialGuess::AtRest];
 /// segments start from short ones and would inherit a local minimum. Among many targets one guess
 /// serves: of 960 pieces of two and four legs one ends 1e-3 above the better of both.
 const MIN_GUESSES_OF_SHORT: usize = 2;
-/// Starts with different rolls where rolls are free.
-const MAX_ROLLED_STARTS: usize = 4;
+/// Where rolls are free: starts with different rolls that are compared by rough motions, and how many of
+/// them are solved. Of short segments of few targets, of longer ones, and among many targets.
+const ROLLED_STARTS_OF_SHORT: [usize; 2] = [16, 3];
+const ROLLED_STARTS: [usize; 2] = [8, 2];
+const ROLLED_STARTS_AMONG_MANY: [usize; 2] = [4, 1];
 
 /// The tours of a scenario, evaluated by solving their segments.
 pub(super) struct Tours<'a> {
@@ -272,7 +276,7 @@ impl<'a> Tours<'a> {
             SegmentKind::Beginning | SegmentKind::Piece => &PIECE_GUESSES,
             SegmentKind::Tour => &TOUR_GUESSES,
         };
-        let starts = self.places.waypoint_starts(route, MAX_ROLLED_STARTS);
+        let starts = self.starts(route, short);
         let needed = starts.len() * min_guesses;
         let with = |guess| starts.iter().map(move |waypoints| (guess, waypoints));
         let all = guesses.iter().flat_map(|guess| with(*guess));
@@ -301,6 +305,24 @@ impl<'a> Tours<'a> {
             });
         }
         best
+    }
+
+    /// The waypoints of a route, described from the rolls of its starts.
+    fn starts(&self, route: &[Place], short: bool) -> Vec<Vec<Waypoint>> {
+        let [compared, kept] = match (short, self.places.needs_all_legs()) {
+            (true, true) => ROLLED_STARTS_OF_SHORT,
+            (false, true) => ROLLED_STARTS,
+            (_, false) => ROLLED_STARTS_AMONG_MANY,
+        };
+        let starts = self.places.waypoint_starts(route, compared);
+        if starts.len() == 1 {
+            return starts;
+        }
+        let (from, to) = (starts[0][0].clone(), starts[0][1].clone());
+        let leg = self.places.slew(&from, &to);
+        self.solves
+            .fetch_add(starts.len() as u64, Ordering::Relaxed);
+        promising(&leg, starts, kept, &|| self.stop.reason())
     }
 
     fn solve_from(

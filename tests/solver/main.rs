@@ -14,6 +14,7 @@ mod memory;
 mod oracle;
 mod order_rules;
 mod ordinary;
+mod pointing;
 mod published;
 mod pyramid;
 mod random_suite;

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// Cells into which the rolls of an end are divided at first.
 const FIRST_CELLS: u32 = 6;
 /// Cells divided for each free end.
-const DIVISIONS: usize = 40;
+const DIVISIONS: usize = 160;
 /// Half width of a cell, rad, below which it is not divided.
 const NARROW: f64 = 2e-3;
 

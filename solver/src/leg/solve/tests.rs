@@ -1,6 +1,7 @@
 //! Legs with known answers.
 
 mod cones;
+mod rolls;
 mod steered;
 
 use super::*;

@@ -37,6 +37,18 @@ export async function modules({ browser, service, must }) {
     });
     check(errors.every((error) => error < 1e-12), String(errors));
   });
+  await must("up is across the boresight and towards the body's +Z", async () => {
+    const errors = await inPage(async (folder) => {
+      const { dot, unit, upward } = await import(`${folder}/app/rotation.js`);
+      const boresights = [[1, 0, 0], [0.3, -0.8, 0.2], [0, 0, 1], [0, 0, -1]].map(unit);
+      return boresights.map((boresight, index) => {
+        const up = upward(boresight);
+        const towards = index < 2 ? up[2] : up[0];
+        return Math.abs(dot(up, boresight)) + Math.abs(Math.hypot(...up) - 1) + (towards > 0.9 ? 0 : 1);
+      });
+    });
+    check(errors.every((error) => error < 1e-12), String(errors));
+  });
   await must("clearances are angles to what cones exclude", async () => {
     const found = await inPage(async (folder) => {
       const { clearanceCurves, excludedBy } = await import(`${folder}/app/plan/keep-out.js`);

@@ -45,13 +45,16 @@ export function matrix(plan, scenario, signal) {
 function placesOf(plan, scenario) {
   const targets = new Map(scenario.targets.map((target) => [target.id, target]));
   const places = [{ name: "start", attitude: scenario.start.attitude },
-    ...plan.sequence.map((id) => ({ name: id, attitude: targets.get(id).attitude }))];
+    ...plan.sequence.map((id) => ({ name: id, attitude: asked(targets.get(id)) }))];
   const { end } = scenario;
   if (!end) return places;
   if (JSON.stringify(end.attitude) === JSON.stringify(scenario.start.attitude)) places[0].name = "start, end";
-  else places.push({ name: "end", attitude: end.attitude });
+  else places.push({ name: "end", attitude: asked(end) });
   return places;
 }
+
+/** What a query has for a target or the end: its attitude, or where it points a boresight. */
+const asked = ({ attitude, pointing }) => (pointing ? { pointing } : attitude);
 
 function grid(places, legs) {
   const size = places.length;

@@ -117,9 +117,10 @@ pub(super) fn draw(
         0 => "",
         _ => "; red: excluded by cones",
     };
-    let rolls = match ups.iter().any(Option::is_some) {
-        true => "; ticks: roll, up is 0",
-        false => "",
+    let rolls = if ups.iter().any(Option::is_some) {
+        "; ticks: roll, up is 0"
+    } else {
+        ""
     };
     let caption = format!(
         "Where {} points in {of}; dashed: far side{rolls}{cones}",

@@ -13,6 +13,10 @@ fn written() -> Vec<u8> {
 }
 
 fn scenario() -> Scenario {
+    scenario_with(r#"{"id": "a", "attitude": {"roll_pitch_yaw_deg": [0, 0, 5]}}"#)
+}
+
+fn scenario_with(targets: &str) -> Scenario {
     let wheel = |axis: &str| {
         format!(r#"{{"axis": [{axis}], "inertia_kg_m2": 0.002, "max_torque_nm": 0.5}}"#)
     };
@@ -23,7 +27,7 @@ fn scenario() -> Scenario {
             "max_body_rate_rad_s": [0.6, 0.6, 0.6], "wheels": [{wheels}],
             "boresights": [{{"name": "camera", "axis": [0, 0, 1]}}, {{"name": "x2", "axis": [1, 0, 0]}}]}},
         "start": {{"attitude": {{"roll_pitch_yaw_deg": [0, 0, 0]}}}},
-        "targets": [{{"id": "a", "attitude": {{"roll_pitch_yaw_deg": [0, 0, 5]}}}}],
+        "targets": [{targets}],
         "keep_out": [{{"boresight": "camera", "direction": [0, 0, 1], "half_angle_deg": 30}}]}}"#
     );
     documents::scenario::read(text.as_bytes(), None)
@@ -53,6 +57,16 @@ fn a_plan_alone_is_drawn_without_limits() {
         assert!(picture.contains(&format!(">{words}</text>")), "{words}");
     }
     assert!(!picture.contains("limit") && !picture.contains("by cones"));
+}
+
+#[test]
+fn the_roll_of_a_pointed_boresight_is_a_tick() {
+    let scenario = scenario_with(
+        r#"{"id": "a", "attitude": {"roll_pitch_yaw_deg": [0, 0, 5]}},
+        {"id": "b", "pointing": {"boresight": "camera", "direction": [0, 0, 1]}}"#,
+    );
+    let told = |boresight| drawn(Some(&scenario), Some(boresight)).contains("ticks: roll");
+    assert!(told("camera") && !told("x2"));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Targets and ends that point a boresight.
 
 use super::*;
+use crate::model::cone::Side;
 use crate::model::spec::{BoresightChoice, CelestialBody, DirectionSpec, PointingSpec};
 use nalgebra::Vector3;
 
@@ -283,8 +284,6 @@ fn rolled(roll: [Option<f64>; 2], cones: &[(Side, [f64; 3], f64)]) -> Scenario {
     spec.targets.truncate(1);
     Scenario::try_new(&spec).expect("valid").scenario
 }
-
-use crate::model::cone::Side;
 
 #[test]
 fn cones_are_a_conflict_only_where_they_leave_no_roll() {

@@ -113,9 +113,11 @@ fn scenario(seed: u64) -> (ScenarioSpec, Vec<Pointed>, [f64; 3]) {
 fn oracle(spec: &ScenarioSpec, targets: &[Pointed], boresight: [f64; 3]) -> (Vec<usize>, f64) {
     let all_around = |target: &Pointed| -> Vec<f64> {
         let [least, greatest] = target.roll_deg.unwrap_or([-180.0, 180.0 - SPACINGS_DEG[0]]);
-        let parts = ((greatest - least) / SPACINGS_DEG[0]).ceil();
-        let roll = |i: u32| least + (greatest - least) * f64::from(i) / parts;
-        (0..=parts as u32).map(roll).collect()
+        let spacing = SPACINGS_DEG[0].min(greatest - least);
+        let parts = (0..).take_while(|i| f64::from(*i) * spacing <= greatest - least);
+        // The last one may be less than a spacing from the greatest roll, which is admissible too.
+        let rolls = parts.map(|i| least + spacing * f64::from(i));
+        rolls.chain([greatest]).collect()
     };
     let mut rolls: Vec<Vec<f64>> = targets.iter().map(all_around).collect();
     let mut best = shortest(spec, targets, boresight, &rolls);

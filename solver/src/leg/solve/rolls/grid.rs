@@ -1,6 +1,7 @@
 //! Rolls all over their range, and an estimate of the slews between them.
 
 use crate::math::bang_coast_bang::BangCoastBang;
+use crate::math::rounding::parts_of;
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
 use crate::model::dynamics::Dynamics;
@@ -8,8 +9,8 @@ use crate::model::roll::FreeRoll;
 use crate::model::waypoint::Waypoint;
 use std::f64::consts::TAU;
 
-/// Greatest distance of neighbouring rolls, rad.
-const SPACING: f64 = TAU / 24.0;
+/// Rolls where every one is admissible.
+const ALL_AROUND: usize = 24;
 
 /// A waypoint, described from rolls all over its range; once where the roll is given.
 pub(super) struct Grid {
@@ -24,14 +25,13 @@ impl Grid {
         let (rolls, is_closed): (Vec<f64>, bool) = match range {
             None => (vec![0.0], false),
             Some(None) => {
-                let count = (TAU / SPACING).round();
-                let roll = |i: u32| TAU * f64::from(i) / count;
-                ((0..count as u32).map(roll).collect(), true)
+                let roll = |i: usize| TAU * i as f64 / ALL_AROUND as f64;
+                ((0..ALL_AROUND).map(roll).collect(), true)
             }
             Some(Some([least, greatest])) => {
-                let parts = ((greatest - least) / SPACING).ceil().max(1.0);
-                let roll = |i: u32| least + (greatest - least) * f64::from(i) / parts;
-                ((0..=parts as u32).map(roll).collect(), false)
+                let parts = parts_of(greatest - least, TAU / ALL_AROUND as f64, ALL_AROUND).max(1);
+                let roll = |i: usize| least + (greatest - least) * i as f64 / parts as f64;
+                ((0..=parts).map(roll).collect(), false)
             }
         };
         Self {

@@ -107,6 +107,11 @@ fn follows_from_a_substitute(found: &Problem, replaced: &[String]) -> bool {
         {
             any_related(&found.pointer) || any_related("/spacecraft/boresights")
         }
+        // Where a boresight points may be said in the member that could not be read.
+        Code::MissingField if found.pointer.ends_with("/pointing/direction") => {
+            let pointing = found.pointer.trim_end_matches("/direction");
+            any_related(&found.pointer) || any_related(&format!("{pointing}/ra_dec_deg"))
+        }
         Code::UnknownReference if found.pointer.starts_with("/targets/") => {
             any_related(&found.pointer) || replaced.iter().any(|p| loses_name_of_target(p))
         }

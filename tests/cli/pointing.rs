@@ -290,3 +290,12 @@ fn the_end_of_a_single_slew_has_a_given_roll() {
     let fixed = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes());
     assert!(!fixed.stderr.contains("roll_not_free"), "{fixed:?}");
 }
+
+#[test]
+fn the_sun_chooses_the_rolls_of_a_star_camera() {
+    let folder = Folder::new("stars-and-sun");
+    let scenario = fixture("stars-and-sun.json");
+    let plan = folder.join("plan.json");
+    slewplan(["solve", &scenario, "-o", &plan, "--progress", "none"]).succeeds();
+    slewplan(["verify", &scenario, &plan, "--strict"]).succeeds();
+}

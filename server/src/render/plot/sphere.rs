@@ -117,17 +117,16 @@ pub(super) fn draw(
         0 => "",
         _ => "; red: excluded by cones",
     };
-    let rolls = if ups.iter().any(Option::is_some) {
-        "; ticks: roll, up is 0"
-    } else {
-        ""
-    };
     let caption = format!(
-        "Where {} points in {of}; dashed: far side{rolls}{cones}",
+        "Where {} points in {of}; dashed: far side{cones}",
         boresight.name
     );
     let below = frame.top + frame.height + 4.0;
     canvas.text(view.centre.0, below, Ink::SMALL.middle(), &caption);
+    if ups.iter().any(Option::is_some) {
+        let ticks = "ticks: roll, up is 0";
+        canvas.text(view.centre.0, below + 14.0, Ink::SMALL.middle(), ticks);
+    }
 }
 
 /// A view of the side with most of a trace.

@@ -276,7 +276,10 @@ impl<'a> Tours<'a> {
             SegmentKind::Beginning | SegmentKind::Piece => &PIECE_GUESSES,
             SegmentKind::Tour => &TOUR_GUESSES,
         };
-        let starts = self.starts(route, short);
+        let starts = match guesses[0] {
+            InitialGuess::AtRest => vec![self.places.waypoints(route)],
+            _ => self.starts(route, short),
+        };
         let needed = starts.len() * min_guesses;
         let with = |guess| starts.iter().map(move |waypoints| (guess, waypoints));
         let all = guesses.iter().flat_map(|guess| with(*guess));
@@ -294,7 +297,9 @@ impl<'a> Tours<'a> {
         let with_cones = &self.places.with_cones;
         let mut dynamics = &self.places.dynamics;
         if !is_clear(with_cones, &best.profile) && !best.status.is_interrupted() {
-            best = self.solve_from((route, &starts[0]), InitialGuess::AroundCones);
+            // The motions of the starts may have rolled into cones.
+            let clear = self.places.waypoints(route);
+            best = self.solve_from((route, &clear), InitialGuess::AroundCones);
             dynamics = with_cones;
         }
         if self.places.resolution.polished {

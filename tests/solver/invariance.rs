@@ -2,7 +2,9 @@
 
 use slewplan_solver::model::attitude::Attitude;
 use slewplan_solver::model::plan::{Flight, Plan};
-use slewplan_solver::model::spec::{AttitudeSpec, ScenarioSpec, StateSpec, WheelSpec};
+use slewplan_solver::model::spec::{
+    AttitudeSpec, BoresightChoice, PointingSpec, ScenarioSpec, StateSpec, WheelSpec,
+};
 use slewplan_solver::run::stop::StopSignal;
 use slewplan_solver::slew::{self, Slew, SlewSpec};
 use slewplan_solver::tour::legs::LegKind;
@@ -109,6 +111,36 @@ fn relabelled_body_axes_do_not_change_the_duration() {
     spec.spacecraft.max_body_rate_rad_s = [Some(0.03), Some(0.04), None];
     spec.targets[0].zero_rate_axes = Some([true, false, true]);
     let (plan, other) = (plan_of(&spec), plan_of(&relabelled(&spec)));
+    let (a, b) = (plan.total_time_s, other.total_time_s);
+    assert!(agree(a, b, 1e-4), "{a} and {b} s");
+    assert_eq!(order_of(&plan), order_of(&other));
+}
+
+/// Two pointed targets and an end, all with free roll, seen from a reference frame that is turned.
+fn pointed(frame: &Attitude) -> ScenarioSpec {
+    let mut spec = published_targets_spec(&["a", "d"]);
+    spec.start.attitude = quaternion_of(&frame.then_in_body(&Attitude::identity()));
+    let pointing = |direction: [f64; 3]| PointingSpec {
+        boresight: BoresightChoice::Axis([0.3, 0.0, 1.0]),
+        direction: Some(<[f64; 3]>::from(frame.to_reference(direction.into())).into()),
+        ..PointingSpec::default()
+    };
+    spec.targets[0].pointing = Some(pointing([0.2, 0.3, 0.9]));
+    spec.targets[1].pointing = Some(pointing([-0.4, 0.1, 0.8]));
+    spec.end = Some(StateSpec {
+        pointing: Some(pointing([0.1, -0.3, 0.7])),
+        ..StateSpec::default()
+    });
+    spec
+}
+
+#[test]
+fn the_reference_frame_does_not_change_a_plan_of_free_rolls() {
+    let turned = Attitude::from_rotation_vector([1.2, -0.7, 2.1].into());
+    let (plan, other) = (
+        plan_of(&pointed(&Attitude::identity())),
+        plan_of(&pointed(&turned)),
+    );
     let (a, b) = (plan.total_time_s, other.total_time_s);
     assert!(agree(a, b, 1e-4), "{a} and {b} s");
     assert_eq!(order_of(&plan), order_of(&other));

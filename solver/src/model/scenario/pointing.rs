@@ -102,9 +102,9 @@ impl Surroundings<'_> {
 }
 
 impl Orientation {
-    /// Of a boresight, the attitude of roll 0, and limits, degrees. Those within twice the tolerance of
+    /// Of a boresight, the attitude of roll 0, and limits. Those within twice the tolerance of
     /// the checker make an attitude.
-    fn of(axis: Vector3<f64>, level: Attitude, limits: Option<[f64; 2]>) -> Self {
+    fn of(axis: Vector3<f64>, level: Attitude, RollLimits(limits): RollLimits) -> Self {
         let turned = |by: f64| {
             let range = limits.map(|limits| limits.map(|limit| (limit - by).to_radians()));
             FreeRoll { axis, range }
@@ -127,12 +127,12 @@ impl Orientation {
     }
 }
 
-/// The limits of the roll, degrees; the inner `None` is every roll.
-fn roll_range(
-    spec: &PointingSpec,
-    pointer: &str,
-    findings: &mut Findings,
-) -> Option<Option<[f64; 2]>> {
+/// Limits of a roll, degrees; `None` where every roll is admissible.
+#[derive(Debug, Clone, Copy)]
+struct RollLimits(Option<[f64; 2]>);
+
+/// The limits that are given.
+fn roll_range(spec: &PointingSpec, pointer: &str, findings: &mut Findings) -> Option<RollLimits> {
     let places = ["roll_min_deg", "roll_max_deg"].map(|name| format!("{pointer}/{name}"));
     let limits = [spec.roll_min_deg, spec.roll_max_deg];
     let mut finite = true;
@@ -140,7 +140,7 @@ fn roll_range(
         finite &= limit.is_none_or(|limit| findings.finite(place, limit).is_some());
     }
     let [low, high] = match limits {
-        [None, None] => return Some(None),
+        [None, None] => return Some(RollLimits(None)),
         [Some(low), Some(high)] => [low, high],
         [given, _] => {
             let missing = usize::from(given.is_some());
@@ -164,5 +164,6 @@ fn roll_range(
     if !finite || low > high {
         return None;
     }
-    Some((high - low < 360.0).then_some([low, high]))
+    let limited = high - low < 360.0;
+    Some(RollLimits(limited.then_some([low, high])))
 }

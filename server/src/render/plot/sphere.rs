@@ -215,13 +215,16 @@ fn cap(canvas: &mut Canvas, view: &SphereView, cone: &Cone) {
     view.trace(canvas, &edge, pen, Some(pen.dashed().faded(0.3)));
 }
 
+/// Where the body's up points, of a passage that points the boresight.
+type Tick = Option<Vector3<f64>>;
+
 /// At the passages that point the boresight, the direction in the reference frame of the body axis that
 /// points to north at roll 0.
 fn roll_ticks(
     plan: &WrittenPlan,
     scenario: Option<&Scenario>,
     boresight: &DrawnBoresight,
-) -> Vec<Option<Vector3<f64>>> {
+) -> Vec<Tick> {
     let is_drawn = |passage: &WrittenPassage| {
         let targets = scenario.map_or(&[][..], Scenario::targets);
         let target = targets.iter().find(|target| target.id == passage.target);
@@ -245,7 +248,7 @@ fn roll_ticks(
 fn targets(
     canvas: &mut Canvas,
     view: &SphereView,
-    (plan, trace, ups): (&WrittenPlan, &[Vector3<f64>], &[Option<Vector3<f64>>]),
+    (plan, trace, ups): (&WrittenPlan, &[Vector3<f64>], &[Tick]),
 ) {
     let radius = if plan.passages.len() > 30 { 6.5 } else { 9.0 };
     let places = plan

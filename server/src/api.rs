@@ -83,6 +83,8 @@ pub(crate) struct RequestLimits {
     pub(crate) targets: usize,
     /// Maximum number of event streams at once.
     pub(crate) streams: usize,
+    /// Number of jobs that this process solves at once.
+    pub(crate) jobs: usize,
 }
 
 /// The number of values and names allowed in a body is its maximum size divided by this, bytes.

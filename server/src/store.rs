@@ -39,7 +39,7 @@ pub(crate) use error::StoreError;
 pub(crate) use events::{EventRow, FormatEvent};
 pub(crate) use jobs::{Listing, PRIORITIES, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey, Possessions};
-pub(crate) use leases::{Lease, OtherProcesses};
+pub(crate) use leases::{Lease, MemoryRoom, OtherProcesses};
 pub(crate) use leg_tables::{LegCounts, NewTablePart};
 pub(crate) use leg_times::LegSnapshot;
 pub(crate) use legs::{CachedLegRow, LegFilter, NewLeg, key as leg_key};

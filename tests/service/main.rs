@@ -26,6 +26,7 @@ mod refusals;
 mod running;
 mod scenario;
 mod several;
+mod side_by_side;
 mod slews;
 mod spacecraft;
 mod studies;

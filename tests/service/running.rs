@@ -22,6 +22,9 @@ pub(crate) fn on_postgres() -> bool {
     std::env::var("SLEWPLAN_TEST_DATABASE").is_ok_and(|kind| kind == "postgres")
 }
 
+/// One job at a time, so that others wait.
+pub(crate) const ALONE: [&str; 2] = ["--jobs", "1"];
+
 /// A running service; it is killed when it is dropped.
 pub(crate) struct Service {
     child: Child,

@@ -99,7 +99,11 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
         listen: arguments.listen,
         database: arguments.database.clone(),
         threads: arguments.worker.threads(),
-        worker: !arguments.no_worker,
+        jobs: if arguments.no_worker {
+            0
+        } else {
+            arguments.worker.jobs()
+        },
         max_body_bytes: arguments.max_body_bytes as usize,
         max_targets: arguments.max_targets as usize,
         queue: QueueLimits {

@@ -34,6 +34,7 @@ pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
     let settings = WorkSettings {
         database: arguments.database.clone(),
         threads: arguments.worker.threads(),
+        jobs: arguments.worker.jobs(),
         job_memory: arguments.worker.job_memory(),
     };
     working::run::<Failure>(&settings, || {

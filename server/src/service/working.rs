@@ -1,6 +1,6 @@
 //! A process that only solves: jobs of a database that it shares with services and other workers.
 
-use super::{ServiceError, lower_priority, on_runtime, open_store, system};
+use super::{ServiceError, lower_priority, on_runtime, open_store, shared_threads, system};
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::jobs::{Jobs, Worker};
 use crate::store::{DatabaseAddress, OtherProcesses, QueueLimits};
@@ -16,7 +16,9 @@ pub(crate) struct WorkSettings {
     pub(crate) database: DatabaseAddress,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
-    /// Memory limit of one job, bytes.
+    /// Number of jobs that are solved at once.
+    pub(crate) jobs: usize,
+    /// Memory limit of the jobs that are solved at once, bytes.
     pub(crate) job_memory: u64,
 }
 
@@ -33,13 +35,13 @@ pub(crate) fn run<E: From<ServiceError>>(
     tell: impl FnOnce() -> Result<(), E>,
 ) -> Result<(), E> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
-    let pool = SolverPool::prepared(threads, lower_priority).map_err(ServiceError::from)?;
-    on_runtime(work(settings, Arc::new(pool), tell))
+    let pools = shared_threads(threads, settings.jobs)?;
+    on_runtime(work(settings, pools, tell))
 }
 
 async fn work<E: From<ServiceError>>(
     settings: &WorkSettings,
-    pool: Arc<SolverPool>,
+    pools: Vec<Arc<SolverPool>>,
     tell: impl FnOnce() -> Result<(), E>,
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
@@ -47,11 +49,12 @@ async fn work<E: From<ServiceError>>(
     let store = open_store(&settings.database, OtherProcesses::MayLive, &boot_id).await?;
     let jobs = Jobs::new(store.clone(), NO_QUEUE, settings.job_memory);
     jobs.follow_others(boot_id.clone());
-    let worker = Worker::start(jobs, pool, boot_id).map_err(system("cannot start the worker"))?;
+    let worker = Worker::start(&jobs, pools, &boot_id, lower_priority)
+        .map_err(system("cannot start the worker"))?;
     tell()?;
     shutdown.clone().begun().await;
     if tokio::time::timeout(GRACE, worker.drain()).await.is_err() {
-        tracing::warn!("the running job did not end in time; it will run again");
+        tracing::warn!("running jobs did not end in time; they will run again");
     }
     store.close().await;
     tracing::info!("the worker has ended");

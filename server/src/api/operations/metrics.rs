@@ -29,6 +29,13 @@ pub(in crate::api) async fn handler(
         jobs.iter()
             .map(|count| ([count.state.into_str()], count.jobs)),
     );
+    let running = app.jobs().running_here();
+    scrape.gauge(
+        "slewplan_running_jobs_here",
+        "Jobs that this process works on.",
+        [],
+        [([], running.try_into().unwrap_or(i64::MAX))],
+    );
     scrape.gauge(
         "slewplan_cached_legs",
         "Legs in the database.",

@@ -29,7 +29,7 @@ mod verify;
 
 pub(crate) use access::Access;
 pub(crate) use origin::{AllowedHost, OwnHosts};
-pub(crate) use router::{openapi, router};
+pub(crate) use router::{openapi, router, worker_router};
 
 use crate::base::lifecycle::Shutdown;
 use crate::jobs::Jobs;

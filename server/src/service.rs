@@ -25,6 +25,8 @@ pub(crate) struct ServiceSettings {
     pub(crate) listen: SocketAddr,
     /// Where the database is.
     pub(crate) database: DatabaseAddress,
+    /// Maximum number of connections to a server of databases, beside those for notices.
+    pub(crate) database_connections: u32,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
     /// Number of jobs that this process solves at once; none where only others on the same database
@@ -148,10 +150,11 @@ fn on_runtime<E: From<ServiceError>>(work: impl Future<Output = Result<(), E>>) 
 /// Opens the database; where this process is the only one, jobs of the one before are taken back.
 async fn open_store(
     address: &DatabaseAddress,
+    connections: u32,
     others: OtherProcesses,
     boot_id: &str,
 ) -> Result<Store, ServiceError> {
-    let store = Store::open(address, documents::jobs::tell).await?;
+    let store = Store::open_with(address, connections, documents::jobs::tell).await?;
     if others == OtherProcesses::Ended {
         let now_us = store.lease_clock_us();
         let recovered = store.recover(boot_id, others, now_us).await?;
@@ -230,7 +233,8 @@ async fn serve<E: From<ServiceError>>(
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let (_lock, others) = claim_database(&settings.database)?;
     let boot_id = Uuid::new_v4().to_string();
-    let store = open_store(&settings.database, others, &boot_id).await?;
+    let connections = settings.database_connections;
+    let store = open_store(&settings.database, connections, others, &boot_id).await?;
     let access = access(settings, &store).await?;
     let listener = TcpListener::bind(settings.listen)
         .await

@@ -51,7 +51,7 @@ pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
 use database::Database;
-use database::postgres::PostgresDatabase;
+use database::postgres::{DEFAULT_CONNECTIONS, PostgresDatabase};
 use database::sqlite::SqliteDatabase;
 use database::statement::sql;
 use recent::RecentPlans;
@@ -77,10 +77,25 @@ impl Store {
         address: &DatabaseAddress,
         format_event: FormatEvent,
     ) -> Result<Self, StoreError> {
+        Self::open_with(address, DEFAULT_CONNECTIONS, format_event).await
+    }
+
+    /// The same with a maximum number of connections to a server, beside those for notices.
+    ///
+    /// # Errors
+    ///
+    /// When the database cannot be used, or is too old.
+    pub(crate) async fn open_with(
+        address: &DatabaseAddress,
+        connections: u32,
+        format_event: FormatEvent,
+    ) -> Result<Self, StoreError> {
         let alarm = SyncAlarm::default();
         let database = match address {
             DatabaseAddress::File(path) => SqliteDatabase::open(path, &alarm).await?,
-            DatabaseAddress::Postgres(options) => PostgresDatabase::open(options).await?,
+            DatabaseAddress::Postgres(options) => {
+                PostgresDatabase::open(options, connections).await?
+            }
         };
         let store = Self {
             database,
@@ -95,6 +110,29 @@ impl Store {
     /// Closes all connections.
     pub(crate) async fn close(&self) {
         self.database.close().await;
+    }
+
+    /// Maximum number of connections of this process.
+    pub(crate) fn max_connections(&self) -> u32 {
+        match &self.database {
+            Database::Sqlite(database) => database.max_connections(),
+            Database::Postgres(database) => database.max_connections(),
+        }
+    }
+
+    /// Numbers of connections of this process for its statements: in use, and open but free.
+    pub(crate) fn connections(&self) -> [(&'static str, usize); 2] {
+        let (open, free) = match &self.database {
+            Database::Sqlite(SqliteDatabase {
+                writer, readers, ..
+            }) => (
+                writer.size() + readers.size(),
+                writer.num_idle() + readers.num_idle(),
+            ),
+            Database::Postgres(PostgresDatabase { pool, .. }) => (pool.size(), pool.num_idle()),
+        };
+        let in_use = (open as usize).saturating_sub(free);
+        [("busy", in_use), ("idle", free)]
     }
 
     /// Sizes of the files of the database, bytes; on a server all of them together.

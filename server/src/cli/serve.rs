@@ -98,6 +98,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
     let settings = ServiceSettings {
         listen: arguments.listen,
         database: arguments.database.clone(),
+        database_connections: arguments.worker.database_connections(),
         threads: arguments.worker.threads(),
         jobs: if arguments.no_worker {
             0

@@ -7,6 +7,10 @@ pub(super) struct WorkerOptions {
     #[arg(long, env = "SLEWPLAN_THREADS", value_name = "N",
         value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Maximum number of connections to a Postgres server, beside two for notices between processes
+    #[arg(long, env = "SLEWPLAN_DATABASE_CONNECTIONS", value_name = "N", default_value_t = 10,
+        value_parser = clap::value_parser!(u16).range(4..=1000))]
+    database_connections: u16,
     /// Jobs that are solved at once: they get equal shares of the threads, so that a short one does not
     /// wait behind a long one
     #[arg(long, env = "SLEWPLAN_JOBS", value_name = "N", default_value_t = 2,
@@ -22,6 +26,11 @@ impl WorkerOptions {
     /// Threads of the solver; one per core without it.
     pub(super) fn threads(&self) -> Option<usize> {
         self.threads.map(usize::from)
+    }
+
+    /// Maximum number of connections to a server of databases, beside those for notices.
+    pub(super) fn database_connections(&self) -> u32 {
+        self.database_connections.into()
     }
 
     /// Number of jobs that are solved at once.

@@ -1,12 +1,15 @@
 //! A process that only solves: jobs of a database that it shares with services and other workers.
 
 use super::{ServiceError, lower_priority, on_runtime, open_store, shared_threads, system};
+use crate::api;
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::jobs::{Jobs, Worker};
 use crate::store::{DatabaseAddress, OtherProcesses, QueueLimits};
 use slewplan_solver::run::pool::SolverPool;
+use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
+use tokio::net::TcpListener;
 use uuid::Uuid;
 
 /// Settings of a worker.
@@ -14,6 +17,10 @@ use uuid::Uuid;
 pub(crate) struct WorkSettings {
     /// Where the database is.
     pub(crate) database: DatabaseAddress,
+    /// Maximum number of connections to the server of the database, beside those for notices.
+    pub(crate) database_connections: u32,
+    /// Where metrics and health are answered, if anywhere.
+    pub(crate) metrics: Option<SocketAddr>,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
     /// Number of jobs that are solved at once.
@@ -46,8 +53,17 @@ async fn work<E: From<ServiceError>>(
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let boot_id = Uuid::new_v4().to_string();
-    let store = open_store(&settings.database, OtherProcesses::MayLive, &boot_id).await?;
+    let connections = settings.database_connections;
+    let others = OtherProcesses::MayLive;
+    let store = open_store(&settings.database, connections, others, &boot_id).await?;
     let jobs = Jobs::new(store.clone(), NO_QUEUE, settings.job_memory);
+    if let Some(address) = settings.metrics {
+        let listener = TcpListener::bind(address)
+            .await
+            .map_err(system(format!("cannot listen on {address}")))?;
+        let router = api::worker_router(jobs.clone());
+        tokio::spawn(axum::serve(listener, router).into_future());
+    }
     jobs.follow_others(boot_id.clone());
     let worker = Worker::start(&jobs, pools, &boot_id, lower_priority)
         .map_err(system("cannot start the worker"))?;

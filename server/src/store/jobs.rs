@@ -225,6 +225,14 @@ impl Store {
         queued(&self.database).await
     }
 
+    /// When the job was submitted that has waited longest of those that are queued; `None` when none is.
+    pub(crate) async fn waiting_since_us(&self) -> Result<Option<i64>, StoreError> {
+        let (since,) = sql("SELECT min(submitted_us) FROM jobs WHERE state = 'queued'")
+            .fetch_one(&self.database)
+            .await?;
+        Ok(since)
+    }
+
     /// Number of jobs in every state.
     pub(crate) async fn counts(&self) -> Result<Vec<Counts>, StoreError> {
         let rows: Vec<(String, i64)> = sql("SELECT state, count(*) FROM jobs GROUP BY state")

@@ -20,6 +20,8 @@ pub(in crate::api) struct LimitsDocument {
     max_targets: usize,
     /// Number of jobs that this process solves at once; 0 where only others on the same database solve.
     jobs_at_once: usize,
+    /// Maximum number of connections of this process to its database.
+    database_connections: u32,
     /// Memory limit of one job, and of those together that are solved at once, bytes.
     job_memory_bytes: u64,
     /// Maximum number of queued jobs.
@@ -49,6 +51,7 @@ pub(in crate::api) async fn handler(State(app): State<App>) -> Json<LimitsDocume
         max_body_values: app.limits().body_values(),
         max_targets: app.limits().targets,
         jobs_at_once: app.limits().jobs,
+        database_connections: app.store().max_connections(),
         job_memory_bytes: app.jobs().memory_limit(),
         queue_limit: app.jobs().queue_limits().all,
         client_queue_limit: app.jobs().queue_limits().client,

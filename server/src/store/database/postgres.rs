@@ -8,8 +8,8 @@ use sqlx::postgres::{PgConnectOptions, PgPool, PgPoolOptions};
 use std::time::Duration;
 
 const OLDEST_POSTGRES: i32 = 150_000;
-/// Maximum number of connections of this process.
-const CONNECTIONS: u32 = 10;
+/// Maximum number of connections of a process for its statements, where nothing else is said.
+pub(in crate::store) const DEFAULT_CONNECTIONS: u32 = 10;
 /// One that sends notices and one that listens.
 const NOTICE_CONNECTIONS: u32 = 2;
 /// Longest wait for one of them.
@@ -30,14 +30,17 @@ pub(in crate::store) struct PostgresDatabase {
 }
 
 impl PostgresDatabase {
-    /// Connects and migrates the schema.
-    pub(in crate::store) async fn open(options: &PgConnectOptions) -> Result<Database, StoreError> {
+    /// Connects, with a maximum number of connections for statements, and migrates the schema.
+    pub(in crate::store) async fn open(
+        options: &PgConnectOptions,
+        connections: u32,
+    ) -> Result<Database, StoreError> {
         let options = options
             .clone()
             .application_name("slewplan")
             .options(TIMEOUTS);
         let pool = PgPoolOptions::new()
-            .max_connections(CONNECTIONS)
+            .max_connections(connections)
             .acquire_timeout(ACQUIRE_TIMEOUT)
             .connect_with(options.clone())
             .await?;
@@ -58,6 +61,11 @@ impl PostgresDatabase {
     pub(super) async fn close(&self) {
         self.notices.pool().close().await;
         self.pool.close().await;
+    }
+
+    /// Maximum number of connections, with those for notices.
+    pub(in crate::store) fn max_connections(&self) -> u32 {
+        self.pool.options().get_max_connections() + NOTICE_CONNECTIONS
     }
 
     /// Size of the database with all of its tables and indexes, bytes.

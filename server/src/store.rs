@@ -9,6 +9,7 @@ mod row;
 mod rows;
 
 mod address;
+mod copy;
 mod database;
 mod ends;
 mod error;
@@ -25,6 +26,7 @@ mod packed;
 mod recent;
 mod results;
 mod retention;
+mod roles;
 mod segments;
 mod shared_clock;
 mod spacecraft;
@@ -33,6 +35,7 @@ mod tests;
 mod writing;
 
 pub(crate) use address::DatabaseAddress;
+pub(crate) use copy::{Copied, CopyLock, copy};
 pub(crate) use database::sqlite::{DatabaseLock, backup};
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
@@ -51,7 +54,7 @@ pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
 use database::Database;
-use database::postgres::{DEFAULT_CONNECTIONS, PostgresDatabase};
+use database::postgres::{COPYING, DEFAULT_CONNECTIONS, PostgresDatabase};
 use database::sqlite::SqliteDatabase;
 use database::statement::sql;
 use recent::RecentPlans;
@@ -78,6 +81,25 @@ impl Store {
         format_event: FormatEvent,
     ) -> Result<Self, StoreError> {
         Self::open_with(address, DEFAULT_CONNECTIONS, format_event).await
+    }
+
+    /// The same for a copy, which other copies do not take for a service.
+    ///
+    /// # Errors
+    ///
+    /// When the database cannot be used, or is too old.
+    pub(crate) async fn open_quietly(
+        address: &DatabaseAddress,
+        format_event: FormatEvent,
+    ) -> Result<Self, StoreError> {
+        let address = match address {
+            DatabaseAddress::Postgres(options) => {
+                let options = options.as_ref().clone().application_name(COPYING);
+                DatabaseAddress::Postgres(Box::new(options))
+            }
+            file @ DatabaseAddress::File(_) => file.clone(),
+        };
+        Self::open(&address, format_event).await
     }
 
     /// The same with a maximum number of connections to a server, beside those for notices.

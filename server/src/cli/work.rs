@@ -43,8 +43,10 @@ pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
         jobs: arguments.worker.jobs(),
         job_memory: arguments.worker.job_memory(),
     };
-    working::run::<Failure>(&settings, || {
-        output::print(&format!("working on {}\n", settings.database))
+    working::run::<Failure>(&settings, |metrics| {
+        let metrics = metrics.map(|address| format!("metrics on http://{address}\n"));
+        let metrics = metrics.unwrap_or_default();
+        output::print(&format!("working on {}\n{metrics}", settings.database))
     })?;
     Ok(Exit::Complete)
 }

@@ -32,14 +32,14 @@ pub(crate) struct WorkSettings {
 /// A worker queues nothing.
 const NO_QUEUE: QueueLimits = QueueLimits { all: 0, client: 0 };
 
-/// Solves until a signal ends it. Calls `tell` once it takes jobs.
+/// Solves until a signal ends it. Calls `tell` once it takes jobs, with the address of its metrics.
 ///
 /// # Errors
 ///
 /// What kept it from working, and errors of `tell`.
 pub(crate) fn run<E: From<ServiceError>>(
     settings: &WorkSettings,
-    tell: impl FnOnce() -> Result<(), E>,
+    tell: impl FnOnce(Option<SocketAddr>) -> Result<(), E>,
 ) -> Result<(), E> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
     let pools = shared_threads(threads, settings.jobs)?;
@@ -49,7 +49,7 @@ pub(crate) fn run<E: From<ServiceError>>(
 async fn work<E: From<ServiceError>>(
     settings: &WorkSettings,
     pools: Vec<Arc<SolverPool>>,
-    tell: impl FnOnce() -> Result<(), E>,
+    tell: impl FnOnce(Option<SocketAddr>) -> Result<(), E>,
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let boot_id = Uuid::new_v4().to_string();
@@ -57,17 +57,14 @@ async fn work<E: From<ServiceError>>(
     let others = OtherProcesses::MayLive;
     let store = open_store(&settings.database, connections, others, &boot_id).await?;
     let jobs = Jobs::new(store.clone(), NO_QUEUE, settings.job_memory);
-    if let Some(address) = settings.metrics {
-        let listener = TcpListener::bind(address)
-            .await
-            .map_err(system(format!("cannot listen on {address}")))?;
-        let router = api::worker_router(jobs.clone());
-        tokio::spawn(axum::serve(listener, router).into_future());
-    }
+    let metrics = match settings.metrics {
+        Some(address) => Some(serve_metrics(address, jobs.clone()).await?),
+        None => None,
+    };
     jobs.follow_others(boot_id.clone());
     let worker = Worker::start(&jobs, pools, &boot_id, lower_priority)
         .map_err(system("cannot start the worker"))?;
-    tell()?;
+    tell(metrics)?;
     shutdown.clone().begun().await;
     if tokio::time::timeout(GRACE, worker.drain()).await.is_err() {
         tracing::warn!("running jobs did not end in time; they will run again");
@@ -75,4 +72,13 @@ async fn work<E: From<ServiceError>>(
     store.close().await;
     tracing::info!("the worker has ended");
     Ok(())
+}
+
+/// Answers metrics and health until the process ends. Returns the address.
+async fn serve_metrics(address: SocketAddr, jobs: Jobs) -> Result<SocketAddr, ServiceError> {
+    let cannot_listen = || system(format!("cannot listen on {address}"));
+    let listener = TcpListener::bind(address).await.map_err(cannot_listen())?;
+    let own = listener.local_addr().map_err(cannot_listen())?;
+    tokio::spawn(axum::serve(listener, api::worker_router(jobs)).into_future());
+    Ok(own)
 }

@@ -1,6 +1,7 @@
 //! Leases, incumbents, segments and events over several attempts, and failures of the disk.
 
 mod bounds;
+mod copy;
 mod ends;
 mod fence;
 mod outage;

@@ -78,7 +78,7 @@ pub(in crate::api) async fn ready(
 }
 
 /// Why a failure of the database is in the way.
-fn failed(error: StoreError) -> &'static str {
+fn failed(error: &StoreError) -> &'static str {
     tracing::warn!(%error, "not ready");
     if error.is_away() {
         "the server of the database does not answer"
@@ -95,13 +95,18 @@ pub(in crate::api) async fn worker_ready(
 ) -> Result<Json<HealthDocument>, ApiError> {
     let written = jobs.store().check_writable(now_us()).await;
     written
-        .map_err(|error| ApiError::new(ErrorCode::NotReady, failed(error)).retry_after(RETRY_S))?;
+        .map_err(|error| ApiError::new(ErrorCode::NotReady, failed(&error)).retry_after(RETRY_S))?;
     Ok(Json(HealthDocument { status: "ok" }))
 }
 
 async fn examine(app: &App) -> Result<(), &'static str> {
-    app.store().check_writable(now_us()).await.map_err(failed)?;
-    let waiting = app.store().waiting().await.map_err(failed)?;
+    let written = app.store().check_writable(now_us()).await;
+    written.map_err(|error| failed(&error))?;
+    let waiting = app
+        .store()
+        .waiting()
+        .await
+        .map_err(|error| failed(&error))?;
     if waiting >= app.jobs().queue_limits().all {
         return Err("the queue is full");
     }

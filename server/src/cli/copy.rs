@@ -3,7 +3,7 @@
 use super::{Exit, Failure, output, runtime};
 use crate::documents;
 use crate::service::ServiceError;
-use crate::store::{self, Copied, DatabaseAddress, CopyLock, Store, StoreError};
+use crate::store::{self, Copied, CopyLock, DatabaseAddress, Store, StoreError};
 use std::fmt::Write;
 
 /// Arguments of `copy`.

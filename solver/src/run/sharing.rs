@@ -6,7 +6,7 @@
 //! one of hours whose pieces are long, and the workers that compute are never more than the slots.
 //!
 //! A slot goes to the waiting solve that has computed least. Who had nothing to compute gets no credit
-//! for it.
+//! for it, and nobody waits for what it has computed long ago, when the slots were free.
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,6 +16,8 @@ use std::time::{Duration, Instant};
 /// Time for which a slot is kept although others wait: short against what a person notices, long
 /// against the exchange of the workers and their caches.
 const QUANTUM: Duration = Duration::from_millis(10);
+/// How much more a solve that begins to compute may have computed than the others.
+const MAX_DEBT: Duration = Duration::from_millis(100);
 /// Longest wait of a worker that has given its slot back. After it the worker goes on without one: it
 /// might hold what the owners of all slots are waiting for.
 const MAX_PAUSE: Duration = Duration::from_secs(1);
@@ -72,7 +74,7 @@ impl State {
             let active = self.solves.iter().filter(|usage| usage.is_active());
             if let Some(least) = active.map(|usage| usage.used).min() {
                 let used = &mut self.solves[solve].used;
-                *used = least.max(*used);
+                *used = (*used).clamp(least, least + MAX_DEBT);
             }
         }
         self.solves[solve].waiting += 1;
@@ -280,12 +282,12 @@ mod tests {
     }
 
     #[test]
-    fn who_had_nothing_to_compute_gets_no_credit_and_keeps_its_debt() {
+    fn who_had_nothing_to_compute_gets_no_credit_and_does_not_pay_for_what_was_free() {
         let mut idle = state(&[(1, 9), (0, 2), (0, 12)]);
         idle.wait(1);
         idle.wait(2);
-        let used: Vec<u64> = idle.solves.iter().map(|u| u.used.as_secs()).collect();
-        assert_eq!(used, [9, 9, 12]);
+        let used: Vec<u128> = idle.solves.iter().map(|u| u.used.as_millis()).collect();
+        assert_eq!(used, [9_000, 9_000, 9_100]);
         // Alone there is nobody to count from.
         let mut alone = state(&[(0, 9), (0, 2)]);
         alone.wait(1);

@@ -11,7 +11,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A server; it ends with this process, which then lets go of its standard input, or before.
 pub(crate) struct Server {
-    socket: String,
+    /// The folder with its socket, and with what its script has made.
+    pub(crate) socket: String,
     script: Child,
     answers: BufReader<ChildStdout>,
 }
@@ -23,8 +24,14 @@ const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/postgres.sh"
 impl Server {
     /// Starts a server; `None` where Postgres is not installed.
     pub(crate) fn start() -> Option<Self> {
+        Self::start_with(&[])
+    }
+
+    /// Starts a server with some variables of the environment.
+    pub(crate) fn start_with(environment: &[(&str, &str)]) -> Option<Self> {
         let started = Command::new("sh")
             .arg(SCRIPT)
+            .envs(environment.iter().copied())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn();

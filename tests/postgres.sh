@@ -37,6 +37,22 @@ trap 'exit 1' HUP INT TERM
 initdb --pgdata="$folder/data" --auth=trust --username=slewplan --encoding=UTF8 \
     --locale=C.UTF-8 --no-sync >"$folder/initdb.log" 2>&1 \
     || { cat "$folder/initdb.log" >&2; exit 1; }
+# With POSTGRES_TLS, only by TCP with TLS, at the port PGPORT: ca.crt has signed the certificate.
+if [ -n "${POSTGRES_TLS-}" ]; then
+    command -v openssl >/dev/null || { echo "openssl is not installed" >&2; exit 3; }
+    cd "$folder/data"
+    {
+        openssl req -new -x509 -days 2 -nodes -subj /CN=test -keyout ca.key -out "$folder/ca.crt"
+        openssl req -new -nodes -subj /CN=localhost -keyout server.key -out server.csr
+        echo subjectAltName=DNS:localhost >names
+        openssl x509 -req -days 2 -in server.csr -CA "$folder/ca.crt" -CAkey ca.key -CAcreateserial \
+            -extfile names -out server.crt
+    } 2>"$folder/openssl.log" || { cat "$folder/openssl.log" >&2; exit 1; }
+    chmod 600 server.key
+    sed -i 's/^host /hostssl /' pg_hba.conf
+    set -- -c ssl=on -c listen_addresses=localhost "$@"
+    cd /
+fi
 # Writes are synced, as where it serves. The socket alone: no port can be taken already.
 start() {
     postgres -D "$folder/data" -k "$folder" -c listen_addresses= -c max_connections=200 \

@@ -29,7 +29,7 @@ mod verify;
 
 pub(crate) use access::Access;
 pub(crate) use origin::{AllowedHost, OwnHosts};
-pub(crate) use router::{openapi, router};
+pub(crate) use router::{openapi, router, worker_router};
 
 use crate::base::lifecycle::Shutdown;
 use crate::jobs::Jobs;
@@ -83,6 +83,8 @@ pub(crate) struct RequestLimits {
     pub(crate) targets: usize,
     /// Maximum number of event streams at once.
     pub(crate) streams: usize,
+    /// Number of jobs that this process solves at once.
+    pub(crate) jobs: usize,
 }
 
 /// The number of values and names allowed in a body is its maximum size divided by this, bytes.

@@ -7,6 +7,7 @@ mod answer;
 mod backup;
 mod certify;
 mod convert;
+mod copy;
 mod database;
 mod export;
 mod failure;
@@ -18,6 +19,7 @@ mod input;
 mod keys;
 mod legs;
 mod log;
+mod migrate;
 mod openapi;
 mod output;
 mod panics;
@@ -89,6 +91,10 @@ enum CliCommand {
     Health(health::HealthArguments),
     /// Copy the database while the service uses it
     Backup(backup::BackupArguments),
+    /// Copy everything to another database: from a file to a Postgres server, or back
+    Copy(copy::CopyArguments),
+    /// Bring the schema of a database up to date, and let another role use it
+    Migrate(migrate::MigrateArguments),
     /// Make, list and revoke keys for the service
     Keys(keys::KeysArguments),
     /// Print the description of the HTTP service
@@ -164,6 +170,8 @@ fn dispatch(command: &CliCommand) -> Result<Exit, Failure> {
         CliCommand::Work(arguments) => work::run(arguments),
         CliCommand::Health(arguments) => health::run(arguments),
         CliCommand::Backup(arguments) => backup::run(arguments),
+        CliCommand::Copy(arguments) => copy::run(arguments),
+        CliCommand::Migrate(arguments) => migrate::run(arguments),
         CliCommand::Keys(arguments) => keys::run(arguments),
         CliCommand::Openapi => openapi::run(),
     }

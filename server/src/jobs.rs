@@ -1,4 +1,4 @@
-//! Execution of queued jobs: one at a time, in the order of submission, on the solver's own threads.
+//! Execution of queued jobs: a few at once, each in its turn, on the solver's own threads.
 
 pub(crate) mod leg_cache;
 pub(crate) mod leg_import;
@@ -20,9 +20,10 @@ pub(crate) use worker::Worker;
 use crate::base::clock::now_us;
 use crate::jobs::leg_cache::LegCache;
 use crate::jobs::leg_snapshot::LegsAtOnce;
+use crate::jobs::memory::JobMemory;
 use crate::store::{JobRow, Notice, QueueLimits, Store, StoreError, Submission, Submitted};
 use slewplan_solver::run::stop::StopSignal;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::runtime::Handle;
 use tokio::sync::{Notify, watch};
 
@@ -37,29 +38,29 @@ struct SharedJobs {
     changes: watch::Sender<u64>,
     /// Notified when a job has been queued.
     queued: Notify,
-    active: Mutex<Option<ActiveJob>>,
+    active: Mutex<Vec<ActiveJob>>,
     queue: QueueLimits,
-    /// Memory of one job, bytes.
-    memory: u64,
+    memory: JobMemory,
     metrics: Arc<JobMetrics>,
 }
 
 #[derive(Debug)]
 struct ActiveJob {
     id: String,
+    fence: i64,
     stop: StopSignal,
 }
 
 impl Jobs {
-    /// Jobs of a store with limits on the queue and on the memory of one job, bytes.
+    /// Jobs of a store with limits on the queue and on the memory of the jobs of this process, bytes.
     pub(crate) fn new(store: Store, queue: QueueLimits, memory: u64) -> Self {
         Self(Arc::new(SharedJobs {
             store,
             changes: watch::Sender::new(0),
             queued: Notify::new(),
-            active: Mutex::new(None),
+            active: Mutex::default(),
             queue,
-            memory,
+            memory: JobMemory::new(memory),
             metrics: Arc::default(),
         }))
     }
@@ -107,9 +108,9 @@ impl Jobs {
         self.0.queue
     }
 
-    /// Memory of one job, bytes.
+    /// Memory of the jobs of this process, bytes: what one may need, and all that run together.
     pub(crate) fn memory_limit(&self) -> u64 {
-        self.0.memory
+        self.0.memory.limit()
     }
 
     /// Queues a job.
@@ -158,20 +159,19 @@ impl Jobs {
         Ok(deleted)
     }
 
-    fn with_active(&self, id: &str, act: impl FnOnce(&StopSignal)) {
-        let active = self.0.active.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(active) = active.as_ref().filter(|active| active.id == id) {
+    fn with_active(&self, id: &str, act: impl Fn(&StopSignal)) {
+        for active in self.active().iter().filter(|active| active.id == id) {
             act(&active.stop);
         }
     }
 
-    /// The identifier of the job that this process works on.
-    fn active(&self) -> Option<String> {
-        let active = self.0.active.lock().unwrap_or_else(PoisonError::into_inner);
-        active.as_ref().map(|active| active.id.clone())
+    /// The jobs that this process works on.
+    fn active(&self) -> MutexGuard<'_, Vec<ActiveJob>> {
+        self.0.active.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn set_active(&self, active: Option<ActiveJob>) {
-        *self.0.active.lock().unwrap_or_else(PoisonError::into_inner) = active;
+    /// Number of jobs that this process works on.
+    pub(crate) fn running_here(&self) -> usize {
+        self.active().len()
     }
 }

@@ -25,17 +25,20 @@ pub(crate) struct ServiceSettings {
     pub(crate) listen: SocketAddr,
     /// Where the database is.
     pub(crate) database: DatabaseAddress,
+    /// Maximum number of connections to a server of databases, beside those for notices.
+    pub(crate) database_connections: u32,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
-    /// Whether this process solves jobs, not only others on the same database.
-    pub(crate) worker: bool,
+    /// Number of jobs that this process solves at once; none where only others on the same database
+    /// solve.
+    pub(crate) jobs: usize,
     /// Maximum size of a request body, bytes.
     pub(crate) max_body_bytes: usize,
     /// Maximum number of targets of a scenario.
     pub(crate) max_targets: usize,
     /// Limits on the number of queued jobs.
     pub(crate) queue: QueueLimits,
-    /// Memory limit of one job, bytes.
+    /// Memory limit of the jobs that are solved at once, bytes.
     pub(crate) job_memory: u64,
     /// Whether requests need no key, whatever the address.
     pub(crate) no_keys: bool,
@@ -108,13 +111,22 @@ pub(crate) fn run<E: From<ServiceError>>(
     tell: impl FnOnce(SocketAddr) -> Result<(), E>,
 ) -> Result<(), E> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
-    let pools = [
-        SolverPool::prepared(threads, lower_priority),
-        SolverPool::new(NonZeroUsize::new(1)),
-    ];
-    let [solver, lookups] = pools.map(|pool| pool.map(Arc::new).map_err(ServiceError::from));
-    let pools = [solver?, lookups?];
-    on_runtime(serve(settings, pools, tell))
+    // Requests compute in turn with the jobs.
+    let [requests, jobs @ ..] = &shared_threads(threads, 1 + settings.jobs)?[..] else {
+        unreachable!("a pool for each");
+    };
+    let lookups = SolverPool::new(NonZeroUsize::new(1)).map_err(ServiceError::from)?;
+    let pools = [Arc::clone(requests), Arc::new(lookups)];
+    on_runtime(serve(settings, pools, jobs.to_vec(), tell))
+}
+
+/// Pools for a number of solves at once, which share the threads of the solver.
+fn shared_threads(
+    threads: Option<NonZeroUsize>,
+    solves: usize,
+) -> Result<Vec<Arc<SolverPool>>, ServiceError> {
+    let pools = SolverPool::sharing(threads, solves, lower_priority)?;
+    Ok(pools.into_iter().map(Arc::new).collect())
 }
 
 /// Runs the service, or only a worker, on the threads for requests and for the database.
@@ -138,10 +150,11 @@ fn on_runtime<E: From<ServiceError>>(work: impl Future<Output = Result<(), E>>) 
 /// Opens the database; where this process is the only one, jobs of the one before are taken back.
 async fn open_store(
     address: &DatabaseAddress,
+    connections: u32,
     others: OtherProcesses,
     boot_id: &str,
 ) -> Result<Store, ServiceError> {
-    let store = Store::open(address, documents::jobs::tell).await?;
+    let store = Store::open_with(address, connections, documents::jobs::tell).await?;
     if others == OtherProcesses::Ended {
         let now_us = store.lease_clock_us();
         let recovered = store.recover(boot_id, others, now_us).await?;
@@ -214,12 +227,14 @@ fn claim_database(
 async fn serve<E: From<ServiceError>>(
     settings: &ServiceSettings,
     pools: [Arc<SolverPool>; 2],
+    job_pools: Vec<Arc<SolverPool>>,
     tell: impl FnOnce(SocketAddr) -> Result<(), E>,
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let (_lock, others) = claim_database(&settings.database)?;
     let boot_id = Uuid::new_v4().to_string();
-    let store = open_store(&settings.database, others, &boot_id).await?;
+    let connections = settings.database_connections;
+    let store = open_store(&settings.database, connections, others, &boot_id).await?;
     let access = access(settings, &store).await?;
     let listener = TcpListener::bind(settings.listen)
         .await
@@ -234,16 +249,14 @@ async fn serve<E: From<ServiceError>>(
     tokio::spawn(upkeep::keep_within(store.clone(), settings.legs));
     let jobs = Jobs::new(store.clone(), settings.queue, settings.job_memory);
     jobs.follow_others(boot_id.clone());
-    let worker = settings
-        .worker
-        .then(|| Worker::start(jobs.clone(), Arc::clone(&pools[0]), boot_id))
-        .transpose()
+    let worker = Worker::start(&jobs, job_pools, &boot_id, lower_priority)
         .map_err(system("cannot start the worker"))?;
     let limits = RequestLimits {
         body_bytes: settings.max_body_bytes,
         targets: settings.max_targets,
         // Event streams take at most half of the connections.
         streams: settings.connections.div_ceil(2),
+        jobs: settings.jobs,
     };
     let hosts = OwnHosts::new(address, settings.allowed_hosts.clone());
     let router = api::router(App::new(
@@ -266,14 +279,9 @@ async fn serve<E: From<ServiceError>>(
         _ = &mut serving => return Err(ServiceError::ListenerStopped.into()),
     }
     // Both at once: event streams report the release of the job that they follow.
-    let drained = async {
-        if let Some(worker) = worker {
-            worker.drain().await;
-        }
-    };
-    let finished = async { tokio::join!(drained, &mut serving) };
+    let finished = async { tokio::join!(worker.drain(), &mut serving) };
     if tokio::time::timeout(GRACE, finished).await.is_err() {
-        tracing::warn!("requests or the running job did not end in time; the job will run again");
+        tracing::warn!("requests or running jobs did not end in time; the jobs will run again");
     }
     store.close().await;
     tracing::info!("the service has ended");

@@ -9,6 +9,7 @@ mod row;
 mod rows;
 
 mod address;
+mod copy;
 mod database;
 mod ends;
 mod error;
@@ -25,6 +26,7 @@ mod packed;
 mod recent;
 mod results;
 mod retention;
+mod roles;
 mod segments;
 mod shared_clock;
 mod spacecraft;
@@ -33,13 +35,14 @@ mod tests;
 mod writing;
 
 pub(crate) use address::DatabaseAddress;
+pub(crate) use copy::{Copied, CopyLock, copy};
 pub(crate) use database::sqlite::{DatabaseLock, backup};
 pub(crate) use ends::{EndCode, Ended};
 pub(crate) use error::StoreError;
 pub(crate) use events::{EventRow, FormatEvent};
 pub(crate) use jobs::{Listing, PRIORITIES, QueueLimits, Submission, Submitted};
 pub(crate) use keys::{KeyRow, NewKey, Possessions};
-pub(crate) use leases::{Lease, OtherProcesses};
+pub(crate) use leases::{Lease, MemoryRoom, OtherProcesses};
 pub(crate) use leg_tables::{LegCounts, NewTablePart};
 pub(crate) use leg_times::LegSnapshot;
 pub(crate) use legs::{CachedLegRow, LegFilter, NewLeg, key as leg_key};
@@ -51,7 +54,7 @@ pub(crate) use segments::SegmentRow;
 pub(crate) use spacecraft::SpacecraftRow;
 
 use database::Database;
-use database::postgres::PostgresDatabase;
+use database::postgres::{COPYING, DEFAULT_CONNECTIONS, PostgresDatabase};
 use database::sqlite::SqliteDatabase;
 use database::statement::sql;
 use recent::RecentPlans;
@@ -77,10 +80,44 @@ impl Store {
         address: &DatabaseAddress,
         format_event: FormatEvent,
     ) -> Result<Self, StoreError> {
+        Self::open_with(address, DEFAULT_CONNECTIONS, format_event).await
+    }
+
+    /// The same for a copy, which other copies do not take for a service.
+    ///
+    /// # Errors
+    ///
+    /// When the database cannot be used, or is too old.
+    pub(crate) async fn open_quietly(
+        address: &DatabaseAddress,
+        format_event: FormatEvent,
+    ) -> Result<Self, StoreError> {
+        let address = match address {
+            DatabaseAddress::Postgres(options) => {
+                let options = options.as_ref().clone().application_name(COPYING);
+                DatabaseAddress::Postgres(Box::new(options))
+            }
+            file @ DatabaseAddress::File(_) => file.clone(),
+        };
+        Self::open(&address, format_event).await
+    }
+
+    /// The same with a maximum number of connections to a server, beside those for notices.
+    ///
+    /// # Errors
+    ///
+    /// When the database cannot be used, or is too old.
+    pub(crate) async fn open_with(
+        address: &DatabaseAddress,
+        connections: u32,
+        format_event: FormatEvent,
+    ) -> Result<Self, StoreError> {
         let alarm = SyncAlarm::default();
         let database = match address {
             DatabaseAddress::File(path) => SqliteDatabase::open(path, &alarm).await?,
-            DatabaseAddress::Postgres(options) => PostgresDatabase::open(options).await?,
+            DatabaseAddress::Postgres(options) => {
+                PostgresDatabase::open(options, connections).await?
+            }
         };
         let store = Self {
             database,
@@ -95,6 +132,29 @@ impl Store {
     /// Closes all connections.
     pub(crate) async fn close(&self) {
         self.database.close().await;
+    }
+
+    /// Maximum number of connections of this process.
+    pub(crate) fn max_connections(&self) -> u32 {
+        match &self.database {
+            Database::Sqlite(database) => database.max_connections(),
+            Database::Postgres(database) => database.max_connections(),
+        }
+    }
+
+    /// Numbers of connections of this process for its statements: in use, and open but free.
+    pub(crate) fn connections(&self) -> [(&'static str, usize); 2] {
+        let (open, free) = match &self.database {
+            Database::Sqlite(SqliteDatabase {
+                writer, readers, ..
+            }) => (
+                writer.size() + readers.size(),
+                writer.num_idle() + readers.num_idle(),
+            ),
+            Database::Postgres(PostgresDatabase { pool, .. }) => (pool.size(), pool.num_idle()),
+        };
+        let in_use = (open as usize).saturating_sub(free);
+        [("busy", in_use), ("idle", free)]
     }
 
     /// Sizes of the files of the database, bytes; on a server all of them together.

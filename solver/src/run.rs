@@ -3,4 +3,5 @@
 pub mod contradiction;
 pub mod pool;
 pub mod progress;
+mod sharing;
 pub mod stop;

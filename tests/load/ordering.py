@@ -69,7 +69,7 @@ def scenario(number, name):
 
 def main(name):
     table = Table()
-    with tempfile.TemporaryDirectory() as folder, Service(Path(folder) / "load.db", "--log", "warn") as service:
+    with tempfile.TemporaryDirectory() as folder, Service(Path(folder) / "load.db", "--log", "warn", "--jobs", "1") as service:
         identifiers = [service.submit(scenario(number, name)) for number in range(JOBS)]
         begin = time.monotonic()
         latencies, errors = asyncio.run(measure(service, identifiers))

@@ -72,7 +72,7 @@ def in_time(wanted, attempt):
 def main(wanted, name):
     table = Table()
     random_state = random.Random(2)
-    with tempfile.TemporaryDirectory() as folder, Service(Path(folder) / "stop.db", "--log", "warn") as service:
+    with tempfile.TemporaryDirectory() as folder, Service(Path(folder) / "stop.db", "--log", "warn", "--jobs", "1") as service:
         stops = in_time(wanted, lambda number: stopped(service, number, random_state, name))
         later = len(stops)
         cancels = in_time(wanted, lambda number: cancelled(service, later + number, random_state, name))

@@ -1,7 +1,7 @@
 //! The best plan so far of a running job.
 
 use crate::client::{Answer, Request};
-use crate::running::{Service, large, small};
+use crate::running::{ALONE, Service, large, small};
 use serde_json::{Value, json};
 
 /// Waits for the first plan of a running job; the path of its result.
@@ -62,7 +62,7 @@ fn a_running_job_gives_a_verified_plan_with_its_bound() {
 
 #[test]
 fn waiting_for_a_plan_does_not_answer_with_the_best_so_far() {
-    let service = Service::start();
+    let service = Service::start_with(&ALONE);
     let id = service.submit(&large());
     let path = first_plan(&service, &id);
     let submission = Request::new("POST", "/v1/plans").header("Prefer", "wait=0");

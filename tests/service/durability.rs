@@ -1,7 +1,7 @@
 //! Durability over shutdowns and kills of the process.
 
 use crate::client::Request;
-use crate::running::{Service, fixture, large, small};
+use crate::running::{ALONE, Service, fixture, large, small};
 use serde_json::{Value, json};
 use std::io::Read;
 
@@ -16,7 +16,7 @@ pub(crate) fn sizeable() -> Value {
 fn a_killed_solve_runs_again_and_nothing_acknowledged_is_lost() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("killed.db");
-    let mut service = Service::on(&database, &[]);
+    let mut service = Service::on(&database, &ALONE);
     let ids = [service.submit(&sizeable()), service.submit(&small())];
     service.wait(&ids[0], |job| job["state"] == "running");
     service.kill();

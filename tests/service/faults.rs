@@ -42,6 +42,21 @@ fn a_panic_keeps_the_best_plan() {
 }
 
 #[test]
+fn a_panic_ends_one_of_several_jobs() {
+    let service = Service::start_with(&["--jobs", "2", "--threads", "1"]);
+    let long = service.submit(&large());
+    service.wait(&long, |job| !job["incumbent_s"].is_null());
+    let failed = service.submit(&failing(small(), "fault:panic"));
+    assert_eq!(service.wait_end(&failed)["state"], "failed");
+    assert_eq!(service.job(&long)["state"], "running");
+    // The thread of the failed one goes on.
+    let next = service.submit(&small());
+    assert_eq!(service.wait_end(&next)["state"], "succeeded");
+    service.post(&format!("/v1/plans/{long}/stop"), &json!({}));
+    assert_eq!(service.wait_end(&long)["state"], "stopped");
+}
+
+#[test]
 fn memory_limits_and_panics_have_different_codes() {
     let service = Service::start_with(&["--job-memory", "16"]);
     let end = |fault: &str| {

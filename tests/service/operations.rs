@@ -1,7 +1,8 @@
 //! Operations: version, limits, metrics, documentation.
 
 use crate::client::Request;
-use crate::running::{self, Service, small};
+use crate::running::{self, ALONE, Service, large, pause, small};
+use std::time::{Duration, Instant};
 
 #[test]
 fn version_limits_and_health_are_answered() {
@@ -12,6 +13,8 @@ fn version_limits_and_health_are_answered() {
     assert_eq!(answer.json()["version"], env!("CARGO_PKG_VERSION"));
     let limits = service.get("/v1/limits").expect(200).json();
     assert!(limits["max_body_bytes"].as_u64() > Some(1 << 20));
+    let connections = if running::on_postgres() { 12 } else { 6 };
+    assert_eq!(limits["database_connections"], connections);
     for path in ["/health/live", "/health/ready"] {
         assert_eq!(service.get(path).expect(200).json()["status"], "ok");
     }
@@ -52,6 +55,29 @@ fn metrics_count_jobs_legs_and_requests() {
         .find(|line| line.contains("outcome=\"miss\""))
         .expect("misses");
     assert!(!misses.ends_with(" 0"));
+}
+
+#[test]
+fn metrics_tell_for_how_long_the_queue_waits() {
+    let service = Service::start_with(&ALONE);
+    let waited = || {
+        let metrics = service.get("/metrics").expect(200).body;
+        let mut lines = metrics.lines();
+        let line = lines.find_map(|line| line.strip_prefix("slewplan_queue_oldest_seconds "));
+        line.expect("the metric").parse::<u64>().expect("seconds")
+    };
+    assert_eq!(waited(), 0);
+    let running = service.submit(&large());
+    service.wait(&running, |job| job["state"] == "running");
+    let id = service.submit(&small());
+    let begin = Instant::now();
+    while waited() == 0 {
+        assert!(begin.elapsed() < Duration::from_mins(1), "still no second");
+        pause();
+    }
+    let cancel = Request::new("POST", &format!("/v1/plans/{id}/cancel"));
+    service.send(&cancel).expect(200);
+    assert_eq!(waited(), 0);
 }
 
 #[test]

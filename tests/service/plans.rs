@@ -1,7 +1,7 @@
 //! Jobs from submission to deletion.
 
 use crate::client::Request;
-use crate::running::{Service, large, pause, small};
+use crate::running::{ALONE, Service, large, pause, small};
 use serde_json::{Value, json};
 
 #[test]
@@ -219,7 +219,7 @@ fn a_list_is_filtered_and_paged() {
 
 #[test]
 fn stop_answers_with_the_best_plan_so_far() {
-    let service = Service::start();
+    let service = Service::start_with(&ALONE);
     let id = service.submit(&large());
     let queued = service.submit(&small());
     service
@@ -250,7 +250,7 @@ fn stop_answers_with_the_best_plan_so_far() {
 
 #[test]
 fn cancel_frees_the_threads_for_the_next_job() {
-    let service = Service::start();
+    let service = Service::start_with(&ALONE);
     let id = service.submit(&large());
     let next = service.submit(&small());
     service.wait(&id, |job| job["state"] == "running");
@@ -271,7 +271,7 @@ fn cancel_frees_the_threads_for_the_next_job() {
 
 #[test]
 fn waiting_for_a_cancelled_job_is_answered_with_its_end() {
-    let service = Service::start();
+    let service = Service::start_with(&ALONE);
     let first = service.submit(&large());
     service.wait(&first, |job| job["state"] == "running");
     let submission = Request::new("POST", "/v1/plans")
@@ -305,7 +305,7 @@ fn waiting_for_a_cancelled_job_is_answered_with_its_end() {
 
 #[test]
 fn deleting_a_running_job_cancels_it() {
-    let service = Service::start();
+    let service = Service::start_with(&ALONE);
     let id = service.submit(&large());
     let next = service.submit(&small());
     service.wait(&id, |job| job["state"] == "running");

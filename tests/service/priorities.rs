@@ -1,11 +1,11 @@
 //! The priority of a submission.
 
-use crate::running::{Service, large, small};
+use crate::running::{ALONE, Service, large, small};
 use serde_json::json;
 
 #[test]
 fn greater_priorities_are_solved_first() {
-    let service = Service::start();
+    let service = Service::start_with(&ALONE);
     let running = service.submit(&large());
     service.wait(&running, |job| job["state"] == "running");
     let submit = |priority: i64| {

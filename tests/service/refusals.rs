@@ -175,7 +175,7 @@ fn the_wrong_kind_of_document_is_told_in_words() {
 
 #[test]
 fn a_full_queue_answers_with_retry_after() {
-    let service = Service::start_with(&["--queue-limit", "1"]);
+    let service = Service::start_with(&["--queue-limit", "1", "--jobs", "1"]);
     let running = service.submit(&large());
     service.wait(&running, |job| job["state"] == "running");
     service.submit(&small());

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -21,6 +21,9 @@ pub(crate) fn pause() {
 pub(crate) fn on_postgres() -> bool {
     std::env::var("SLEWPLAN_TEST_DATABASE").is_ok_and(|kind| kind == "postgres")
 }
+
+/// One job at a time, so that others wait.
+pub(crate) const ALONE: [&str; 2] = ["--jobs", "1"];
 
 /// A running service; it is killed when it is dropped.
 pub(crate) struct Service {
@@ -67,7 +70,7 @@ impl Service {
             .stdout(Stdio::piped())
             .spawn()
             .expect("the binary starts");
-        let line = first_line(&mut child);
+        let (line, _) = first_line(&mut child);
         let address = line
             .trim()
             .strip_prefix("listening on http://")
@@ -142,20 +145,40 @@ impl Service {
     }
 }
 
-/// The line that a process prints when it is ready.
-fn first_line(child: &mut Child) -> String {
-    let mut line = String::new();
-    let stdout = child.stdout.take().expect("standard output is piped");
-    BufReader::new(stdout).read_line(&mut line).expect("a line");
-    line
+/// Runs the program to its end.
+pub(crate) fn slewplan<A: AsRef<OsStr>>(arguments: &[A]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_slewplan"));
+    command.args(arguments).output().expect("the binary starts")
 }
 
-/// A running `slewplan work`; it is killed when it is dropped.
+/// The line that a process prints when it is ready, and what comes after it.
+fn first_line(child: &mut Child) -> (String, BufReader<ChildStdout>) {
+    let mut line = String::new();
+    let stdout = child.stdout.take().expect("standard output is piped");
+    let mut stdout = BufReader::new(stdout);
+    stdout.read_line(&mut line).expect("a line");
+    (line, stdout)
+}
+
+/// A running `slewplan work` with one thread; it is killed when it is dropped.
 pub(crate) struct Worker(Child);
 
 impl Worker {
-    /// Starts a worker with one thread.
+    /// Starts a worker.
     pub(crate) fn on(database: &str) -> Self {
+        Self::started(database, &[]).0
+    }
+
+    /// Starts a worker that answers its metrics at the address that is returned.
+    pub(crate) fn with_metrics(database: &str) -> (Self, String) {
+        let (worker, mut told) = Self::started(database, &["--metrics", "127.0.0.1:0"]);
+        let mut line = String::new();
+        told.read_line(&mut line).expect("a line");
+        let address = line.trim().strip_prefix("metrics on http://");
+        (worker, address.expect("the address").to_owned())
+    }
+
+    fn started(database: &str, arguments: &[&str]) -> (Self, BufReader<ChildStdout>) {
         let mut child = Command::new(env!("CARGO_BIN_EXE_slewplan"))
             .args([
                 "work",
@@ -166,12 +189,13 @@ impl Worker {
                 "--database",
                 database,
             ])
+            .args(arguments)
             .stdout(Stdio::piped())
             .spawn()
             .expect("the binary starts");
-        let line = first_line(&mut child);
+        let (line, told) = first_line(&mut child);
         assert!(line.starts_with("working on postgres://"), "{line}");
-        Self(child)
+        (Self(child), told)
     }
 
     /// Sends SIGTERM; whether the worker exited with success.

@@ -188,3 +188,33 @@ fn while_postgres_is_away_requests_are_refused_and_the_solve_goes_on() {
         pause();
     }
 }
+
+#[test]
+fn a_worker_tells_its_metrics_and_whether_it_can_store_what_it_solves() {
+    let Some(mut server) = postgres::Server::start() else {
+        return println!("not run: Postgres is not installed");
+    };
+    let database = server.new_database();
+    let service = service(&database);
+    let (_worker, metrics) = Worker::with_metrics(&database);
+    let ask = |path: &str| Request::new("GET", path).send(&metrics);
+    let id = service.submit(&small());
+    service.wait_end(&id);
+    let told = ask("/metrics").expect(200).body;
+    for line in [
+        "slewplan_running_jobs_here 0",
+        "slewplan_solve_seconds_count 1",
+    ] {
+        assert!(told.lines().any(|told| told == line), "{line} in {told}");
+    }
+    assert!(
+        told.contains("slewplan_database_connections{state=\"idle\"}"),
+        "{told}"
+    );
+    ask("/health/live").expect(200);
+    ask("/health/ready").expect(200);
+    assert_eq!(ask("/v1/limits").status, 404);
+    server.kill();
+    ask("/health/live").expect(200);
+    ask("/health/ready").expect_problem(503, "not_ready");
+}

@@ -15,8 +15,9 @@ type Row = (&'static str, &'static [&'static str]);
 /// The solver, from the ground up.
 const SOLVER: &[Row] = &[
     ("math", &[]),
-    // The signal to stop uses nothing, so that every loop may poll it.
-    ("run/stop", &[]),
+    // The signal to stop uses nothing else, so that every loop may poll it.
+    ("run/sharing", &[]),
+    ("run/stop", &["run::sharing"]),
     ("nlp", &["math", "run::stop"]),
     ("model", &["math"]),
     ("run", &["model"]),

@@ -24,14 +24,14 @@ pub(super) fn check_size(app: &App, scenario: &Node) -> Result<(), ApiError> {
     }
 }
 
-/// Refuses scenarios that may need more memory than a job may take.
-pub(super) fn check_memory(app: &App, scenario: &Scenario) -> Result<(), ApiError> {
+/// Refuses scenarios that may need more memory than a job may take. Returns what it may need, bytes.
+pub(super) fn check_memory(app: &App, scenario: &Scenario) -> Result<u64, ApiError> {
     let (needed, given) = (
         planner::memory_estimate(scenario),
         app.jobs().memory_limit(),
     );
     if needed <= given {
-        return Ok(());
+        return Ok(needed);
     }
     let count = scenario.targets().len();
     let detail = format!(

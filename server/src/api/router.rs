@@ -7,6 +7,7 @@ use super::{
 };
 use crate::documents::jobs::EventDocument;
 use crate::documents::leg_table_jobs::LegTableEventDocument;
+use crate::jobs::Jobs;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::routing::get;
 use axum::{Extension, Router};
@@ -104,6 +105,17 @@ pub(crate) fn router(app: App) -> Router {
         .layer(from_fn(protect::protect))
         .layer(Extension(OpenApiPage::new(describe::yaml(&description))))
         .with_state(app)
+}
+
+/// What a process answers that only solves.
+pub(crate) fn worker_router(jobs: Jobs) -> Router {
+    Router::new()
+        .route("/metrics", get(operations::metrics::of_worker))
+        .route("/health/live", get(operations::health::live))
+        .route("/health/ready", get(operations::health::worker_ready))
+        .layer(from_fn(observe::envelop))
+        .layer(from_fn(protect::protect))
+        .with_state(jobs)
 }
 
 /// The description of the interface as YAML.

@@ -24,13 +24,19 @@ pub(super) fn with_existing_store<T>(
     database: &DatabaseAddress,
     work: impl AsyncFnOnce(&Store) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
+    check_there(database)?;
+    with_store(database, work)
+}
+
+/// Refuses a file that does not exist.
+pub(super) fn check_there(database: &DatabaseAddress) -> Result<(), Failure> {
     if let DatabaseAddress::File(path) = database {
         fs::metadata(path).map_err(|source| Failure::Unreadable {
             name: format!("the database {}", path.display()),
             source,
         })?;
     }
-    with_store(database, work)
+    Ok(())
 }
 
 /// Opens or creates a database, works on it and closes it.

@@ -98,8 +98,13 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<Exit, Failure> {
     let settings = ServiceSettings {
         listen: arguments.listen,
         database: arguments.database.clone(),
+        database_connections: arguments.worker.database_connections(),
         threads: arguments.worker.threads(),
-        worker: !arguments.no_worker,
+        jobs: if arguments.no_worker {
+            0
+        } else {
+            arguments.worker.jobs()
+        },
         max_body_bytes: arguments.max_body_bytes as usize,
         max_targets: arguments.max_targets as usize,
         queue: QueueLimits {

@@ -7,6 +7,7 @@ use super::output;
 use super::worker::WorkerOptions;
 use crate::service::working::{self, WorkSettings};
 use crate::store::DatabaseAddress;
+use std::net::SocketAddr;
 
 /// Arguments of `work`.
 #[derive(Debug, clap::Args)]
@@ -16,6 +17,9 @@ pub(super) struct WorkArguments {
     database: DatabaseAddress,
     #[command(flatten)]
     worker: WorkerOptions,
+    /// Address that answers /metrics, /health/live and /health/ready [default: none]
+    #[arg(long, env = "SLEWPLAN_METRICS", value_name = "ADDRESS")]
+    metrics: Option<SocketAddr>,
     #[command(flatten)]
     log: LogOptions,
 }
@@ -33,11 +37,16 @@ pub(super) fn run(arguments: &WorkArguments) -> Result<Exit, Failure> {
     arguments.log.start()?;
     let settings = WorkSettings {
         database: arguments.database.clone(),
+        metrics: arguments.metrics,
+        database_connections: arguments.worker.database_connections(),
         threads: arguments.worker.threads(),
+        jobs: arguments.worker.jobs(),
         job_memory: arguments.worker.job_memory(),
     };
-    working::run::<Failure>(&settings, || {
-        output::print(&format!("working on {}\n", settings.database))
+    working::run::<Failure>(&settings, |metrics| {
+        let metrics = metrics.map(|address| format!("metrics on http://{address}\n"));
+        let metrics = metrics.unwrap_or_default();
+        output::print(&format!("working on {}\n{metrics}", settings.database))
     })?;
     Ok(Exit::Complete)
 }

@@ -35,7 +35,8 @@ impl Jobs {
             Notice::Missed => {
                 self.0.queued.notify_one();
                 self.wake();
-                if let Some(id) = self.active() {
+                let ids: Vec<_> = self.active().iter().map(|job| job.id.clone()).collect();
+                for id in ids {
                     self.apply_requests_soon(id);
                 }
             }
@@ -43,7 +44,7 @@ impl Jobs {
     }
 
     fn apply_requests_soon(&self, id: String) {
-        if self.active().is_some_and(|active| active == id) {
+        if self.active().iter().any(|active| active.id == id) {
             let jobs = self.clone();
             tokio::spawn(async move { jobs.apply_requests(&id).await });
         }

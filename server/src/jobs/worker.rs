@@ -1,7 +1,9 @@
-//! The thread that takes jobs from the queue of the asynchronous service and solves them.
+//! The threads that take jobs from the queue of the asynchronous service and solve them, each one job
+//! at a time.
 //!
-//! It leases a job, solves it on the pool and records its end. It reaches the database through the
-//! handle of the runtime; nothing is computed on the runtime's threads.
+//! A thread leases a job, solves it on its pool and records its end. It reaches the database through
+//! the handle of the runtime; nothing is computed on the runtime's threads. The pools share the threads
+//! of the solver, so that every job gets its part.
 
 use super::leg_table::{self, TableStore};
 use super::memory::MemoryGuard;
@@ -10,11 +12,12 @@ use super::segments::{self, SegmentCache};
 use super::solve::{self, JobContext};
 use super::{ActiveJob, Jobs};
 use crate::base::clock::now_us;
-use crate::store::{Ended, JobRow, JobState, Lease, Notice, StoreError, Work};
+use crate::store::{Ended, JobRow, JobState, Lease, MemoryRoom, Notice, StoreError, Work};
 use slewplan_solver::run::pool::SolverPool;
 use slewplan_solver::run::stop::StopSignal;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::pin::pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -29,59 +32,70 @@ const PROLONGATION: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(500);
 /// Interval between two looks at the queue without a notification.
 const POLL: Duration = Duration::from_secs(5);
+/// Time for which a job waits while others, which have room beside the running ones, are begun before
+/// it.
+const PASSED_OVER: Duration = Duration::from_mins(2);
 
-/// The thread that solves.
+/// The threads that solve.
 #[derive(Debug)]
 pub(crate) struct Worker {
     jobs: Jobs,
     draining: Arc<AtomicBool>,
-    thread: JoinHandle<()>,
+    threads: Vec<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// Starts the thread.
+    /// Starts a thread for each pool; each calls `prepare` first.
     ///
     /// # Errors
     ///
-    /// When the operating system refuses it.
-    pub(crate) fn start(jobs: Jobs, pool: Arc<SolverPool>, boot_id: String) -> io::Result<Self> {
+    /// When the operating system refuses one.
+    pub(crate) fn start(
+        jobs: &Jobs,
+        pools: Vec<Arc<SolverPool>>,
+        boot_id: &str,
+        prepare: fn(),
+    ) -> io::Result<Self> {
         let draining = Arc::new(AtomicBool::new(false));
-        let worker = WorkerThread {
-            jobs: jobs.clone(),
-            pool,
-            boot_id,
-            draining: Arc::clone(&draining),
-            runtime: Handle::current(),
-        };
-        let thread = std::thread::Builder::new()
-            .name("slewplan-worker".into())
-            .spawn(move || worker.run())?;
+        let threads = pools.into_iter().enumerate().map(|(number, pool)| {
+            let worker = WorkerThread {
+                jobs: jobs.clone(),
+                pool,
+                boot_id: boot_id.to_owned(),
+                draining: Arc::clone(&draining),
+                runtime: Handle::current(),
+            };
+            let work = move || {
+                prepare();
+                worker.run();
+            };
+            std::thread::Builder::new()
+                .name(format!("slewplan-job-{number}"))
+                .spawn(work)
+        });
         Ok(Self {
-            jobs,
+            threads: threads.collect::<Result<_, _>>()?,
+            jobs: jobs.clone(),
             draining,
-            thread,
         })
     }
 
-    /// Leases no more jobs and returns the running one to the queue; waits for both.
+    /// Leases no more jobs and returns the running ones to the queue; waits for both.
     pub(crate) async fn drain(self) {
         self.draining.store(true, Ordering::SeqCst);
-        self.jobs.0.queued.notify_one();
-        {
-            let active = self.jobs.0.active.lock();
-            let active = active.unwrap_or_else(std::sync::PoisonError::into_inner);
-            if let Some(active) = active.as_ref() {
-                active.stop.cancel();
-            }
+        self.jobs.0.queued.notify_waiters();
+        for active in &*self.jobs.active() {
+            active.stop.cancel();
         }
-        let ended = tokio::task::spawn_blocking(move || self.thread.join()).await;
-        if !matches!(ended, Ok(Ok(()))) {
-            tracing::error!("the worker ended with a panic");
+        let join = || self.threads.into_iter().map(JoinHandle::join).collect();
+        let ended: Result<Vec<_>, _> = tokio::task::spawn_blocking(join).await;
+        if !ended.is_ok_and(|ended| ended.iter().all(Result::is_ok)) {
+            tracing::error!("a worker ended with a panic");
         }
     }
 }
 
-/// The state of the worker's thread.
+/// The state of a worker's thread.
 struct WorkerThread {
     jobs: Jobs,
     pool: Arc<SolverPool>,
@@ -94,7 +108,7 @@ impl WorkerThread {
     fn run(&self) {
         while !self.draining.load(Ordering::SeqCst) {
             match self.runtime.block_on(self.next()) {
-                Ok(Some(lease)) => self.work_contained(&lease),
+                Ok(Some((lease, memory))) => self.work_contained(&lease, memory),
                 Ok(None) => {}
                 Err(error) => {
                     tracing::error!(%error, "no job can be leased");
@@ -105,27 +119,55 @@ impl WorkerThread {
     }
 
     /// Leases a job, or waits for a notification or the next look at the queue and returns `None`.
-    async fn next(&self) -> Result<Option<Lease>, StoreError> {
-        let store = self.jobs.store();
-        let lease_until_us = lease_end(store.lease_clock_us());
-        let lease = store.lease(&self.boot_id, lease_until_us, now_us()).await?;
-        if lease.is_none() {
-            // A notification from before this wait ends it at once.
-            let _ = tokio::time::timeout(POLL, self.jobs.0.queued.notified()).await;
+    async fn next(&self) -> Result<Option<(Lease, MemoryGuard)>, StoreError> {
+        let mut queued = pin!(self.jobs.0.queued.notified());
+        // Every job that is queued from here on wakes another of the threads that look.
+        queued.as_mut().enable();
+        if self.draining.load(Ordering::SeqCst) {
+            return Ok(None);
         }
-        Ok(lease)
+        let leased = self.leased().await?;
+        if leased.is_none() {
+            // A notification from before this wait ends it at once.
+            let _ = tokio::time::timeout(POLL, queued).await;
+        }
+        Ok(leased)
+    }
+
+    /// Leases a job that has room beside the running ones, if one is queued, and takes its memory.
+    async fn leased(&self) -> Result<Option<(Lease, MemoryGuard)>, StoreError> {
+        let (store, memory) = (self.jobs.store(), &self.jobs.0.memory);
+        // Two that look at the same time could both find all memory free.
+        let _alone = memory.admission().await;
+        let now_us = now_us();
+        let room = memory.free().map_or(MemoryRoom::ALL, |bytes| MemoryRoom {
+            bytes: bytes.try_into().unwrap_or(i64::MAX),
+            passed_over_since_us: now_us.saturating_sub(microseconds(PASSED_OVER)),
+        });
+        let lease_until_us = lease_end(store.lease_clock_us());
+        let lease = store.lease(&self.boot_id, lease_until_us, room, now_us);
+        let Some(lease) = lease.await? else {
+            return Ok(None);
+        };
+        let memory = memory.admit(lease.memory_bytes.try_into().unwrap_or(0));
+        if lease.more_wait {
+            self.jobs.0.queued.notify_one();
+        }
+        Ok(Some((lease, memory)))
     }
 
     /// Works on a job; after a panic the thread goes on to the next.
-    fn work_contained(&self, lease: &Lease) {
-        if catch_unwind(AssertUnwindSafe(|| self.work(lease))).is_err() {
-            self.conclude(&lease.job, &solve::broken());
+    fn work_contained(&self, lease: &Lease, memory: MemoryGuard) {
+        let job = &lease.job;
+        if catch_unwind(AssertUnwindSafe(|| self.work(lease, memory))).is_err() {
+            self.conclude(job, &solve::broken());
         }
-        self.jobs.set_active(None);
+        let ended = |active: &ActiveJob| active.id == job.id && active.fence == job.fence;
+        self.jobs.active().retain(|active| !ended(active));
         self.jobs.changed();
     }
 
-    fn work(&self, lease: &Lease) {
+    fn work(&self, lease: &Lease, mut memory: MemoryGuard) {
         let job = &lease.job;
         let span = tracing::info_span!("job", job_id = job.id, attempt = job.attempt);
         let _entered = span.enter();
@@ -134,10 +176,11 @@ impl WorkerThread {
         let begin = Instant::now();
         self.jobs.changed();
         let stop = StopSignal::new();
-        self.jobs.set_active(Some(ActiveJob {
+        self.jobs.active().push(ActiveJob {
             id: job.id.clone(),
+            fence: job.fence,
             stop: stop.clone(),
-        }));
+        });
         self.apply_earlier_requests(job, &stop);
         let (reporter, reports) = Reporter::new();
         let legs = self.jobs.legs(self.runtime.clone());
@@ -150,7 +193,7 @@ impl WorkerThread {
         let segments = SegmentCache::new(self.jobs.store().clone(), &self.runtime, job.clone());
         let writing = self.runtime.spawn(segments.writing());
         let writing = AbortOnDrop(writing.abort_handle());
-        let memory = MemoryGuard::watch(&self.runtime, self.jobs.memory_limit(), stop.clone());
+        memory.watch(&self.runtime, stop.clone());
         let context = JobContext {
             pool: &self.pool,
             stop: &stop,
@@ -246,7 +289,11 @@ impl Drop for AbortOnDrop {
 }
 
 fn lease_end(now_us: i64) -> i64 {
-    now_us.saturating_add(i64::try_from(LEASE.as_micros()).unwrap_or(i64::MAX))
+    now_us.saturating_add(microseconds(LEASE))
+}
+
+fn microseconds(time: Duration) -> i64 {
+    i64::try_from(time.as_micros()).unwrap_or(i64::MAX)
 }
 
 /// Prolongs a lease at intervals; cancels the solve when the lease has been lost.

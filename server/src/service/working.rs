@@ -1,12 +1,15 @@
 //! A process that only solves: jobs of a database that it shares with services and other workers.
 
-use super::{ServiceError, lower_priority, on_runtime, open_store, system};
+use super::{ServiceError, lower_priority, on_runtime, open_store, shared_threads, system};
+use crate::api;
 use crate::base::lifecycle::{GRACE, Shutdown};
 use crate::jobs::{Jobs, Worker};
 use crate::store::{DatabaseAddress, OtherProcesses, QueueLimits};
 use slewplan_solver::run::pool::SolverPool;
+use std::net::SocketAddr;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
+use tokio::net::TcpListener;
 use uuid::Uuid;
 
 /// Settings of a worker.
@@ -14,46 +17,68 @@ use uuid::Uuid;
 pub(crate) struct WorkSettings {
     /// Where the database is.
     pub(crate) database: DatabaseAddress,
+    /// Maximum number of connections to the server of the database, beside those for notices.
+    pub(crate) database_connections: u32,
+    /// Where metrics and health are answered, if anywhere.
+    pub(crate) metrics: Option<SocketAddr>,
     /// Threads of the solver; one per core without it.
     pub(crate) threads: Option<usize>,
-    /// Memory limit of one job, bytes.
+    /// Number of jobs that are solved at once.
+    pub(crate) jobs: usize,
+    /// Memory limit of the jobs that are solved at once, bytes.
     pub(crate) job_memory: u64,
 }
 
 /// A worker queues nothing.
 const NO_QUEUE: QueueLimits = QueueLimits { all: 0, client: 0 };
 
-/// Solves until a signal ends it. Calls `tell` once it takes jobs.
+/// Solves until a signal ends it. Calls `tell` once it takes jobs, with the address of its metrics.
 ///
 /// # Errors
 ///
 /// What kept it from working, and errors of `tell`.
 pub(crate) fn run<E: From<ServiceError>>(
     settings: &WorkSettings,
-    tell: impl FnOnce() -> Result<(), E>,
+    tell: impl FnOnce(Option<SocketAddr>) -> Result<(), E>,
 ) -> Result<(), E> {
     let threads = settings.threads.and_then(NonZeroUsize::new);
-    let pool = SolverPool::prepared(threads, lower_priority).map_err(ServiceError::from)?;
-    on_runtime(work(settings, Arc::new(pool), tell))
+    let pools = shared_threads(threads, settings.jobs)?;
+    on_runtime(work(settings, pools, tell))
 }
 
 async fn work<E: From<ServiceError>>(
     settings: &WorkSettings,
-    pool: Arc<SolverPool>,
-    tell: impl FnOnce() -> Result<(), E>,
+    pools: Vec<Arc<SolverPool>>,
+    tell: impl FnOnce(Option<SocketAddr>) -> Result<(), E>,
 ) -> Result<(), E> {
     let shutdown = Shutdown::on_signals().map_err(system("cannot listen for signals"))?;
     let boot_id = Uuid::new_v4().to_string();
-    let store = open_store(&settings.database, OtherProcesses::MayLive, &boot_id).await?;
+    let connections = settings.database_connections;
+    let others = OtherProcesses::MayLive;
+    let store = open_store(&settings.database, connections, others, &boot_id).await?;
     let jobs = Jobs::new(store.clone(), NO_QUEUE, settings.job_memory);
+    let metrics = match settings.metrics {
+        Some(address) => Some(serve_metrics(address, jobs.clone()).await?),
+        None => None,
+    };
     jobs.follow_others(boot_id.clone());
-    let worker = Worker::start(jobs, pool, boot_id).map_err(system("cannot start the worker"))?;
-    tell()?;
+    let worker = Worker::start(&jobs, pools, &boot_id, lower_priority)
+        .map_err(system("cannot start the worker"))?;
+    tell(metrics)?;
     shutdown.clone().begun().await;
     if tokio::time::timeout(GRACE, worker.drain()).await.is_err() {
-        tracing::warn!("the running job did not end in time; it will run again");
+        tracing::warn!("running jobs did not end in time; they will run again");
     }
     store.close().await;
     tracing::info!("the worker has ended");
     Ok(())
+}
+
+/// Answers metrics and health until the process ends. Returns the address.
+async fn serve_metrics(address: SocketAddr, jobs: Jobs) -> Result<SocketAddr, ServiceError> {
+    let cannot_listen = || system(format!("cannot listen on {address}"));
+    let listener = TcpListener::bind(address).await.map_err(cannot_listen())?;
+    let own = listener.local_addr().map_err(cannot_listen())?;
+    tokio::spawn(axum::serve(listener, api::worker_router(jobs)).into_future());
+    Ok(own)
 }

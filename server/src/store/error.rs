@@ -23,6 +23,26 @@ pub(crate) enum StoreError {
          here): use that version, or another database"
     )]
     NewerSchema(i64),
+    /// The schema is that of an older version, and this role may not change it.
+    #[error(
+        "the database has not been prepared for this version of slewplan, and this role may not do it: \
+         run slewplan migrate as the role that owns the tables, with --grant-to for this one"
+    )]
+    OldSchema,
+    /// Another database than this one was expected.
+    #[error("the database to copy to is not empty: {table} has {rows} rows")]
+    NotEmpty {
+        /// The first table that is not empty.
+        table: &'static str,
+        /// Its number of rows.
+        rows: i64,
+    },
+    /// Services or workers use the database.
+    #[error(
+        "services or workers use the database ({0} connections): stop them first, because what they \
+         write meanwhile would be lost"
+    )]
+    InUse(i64),
     /// Another process uses the database.
     #[error("cannot lock {}: {source}; does another service use this database?", path.display())]
     Lock {

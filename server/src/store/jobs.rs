@@ -23,6 +23,8 @@ pub(crate) struct Submission {
     pub(crate) scenario: Vec<u8>,
     /// Number of its targets; of legs, for a table.
     pub(crate) targets: i64,
+    /// What it may need of the memory that the jobs of a process share, bytes.
+    pub(crate) memory_bytes: i64,
     /// The client whose job it is.
     pub(crate) client: Option<String>,
     /// Jobs of greater priority are leased first; within [`PRIORITIES`].
@@ -96,8 +98,8 @@ impl Store {
         }
         let job: JobRow = sql(concat!(
             "INSERT INTO jobs (id, state, work, name, scenario, targets, client, submitted_us, \
-             priority, turn) \
-             VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, coalesce(\
+             priority, memory_bytes, turn) \
+             VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, coalesce(\
              (SELECT max(turn) + 1 FROM jobs WHERE state = 'queued' AND priority = $8 \
              AND client IS NOT DISTINCT FROM $6), \
              (SELECT min(turn) FROM jobs WHERE state = 'queued' AND priority = $8), 0)) \
@@ -112,6 +114,7 @@ impl Store {
         .bind(&submission.client)
         .bind(now_us)
         .bind(submission.priority)
+        .bind(submission.memory_bytes)
         .fetch_one(&mut *transaction)
         .await?;
         if let Some((key, fingerprint)) = &submission.key {
@@ -220,6 +223,14 @@ impl Store {
     /// Number of queued jobs.
     pub(crate) async fn waiting(&self) -> Result<i64, StoreError> {
         queued(&self.database).await
+    }
+
+    /// When the job was submitted that has waited longest of those that are queued; `None` when none is.
+    pub(crate) async fn waiting_since_us(&self) -> Result<Option<i64>, StoreError> {
+        let (since,) = sql("SELECT min(submitted_us) FROM jobs WHERE state = 'queued'")
+            .fetch_one(&self.database)
+            .await?;
+        Ok(since)
     }
 
     /// Number of jobs in every state.

@@ -47,6 +47,10 @@ pub(crate) struct Lease {
     pub(crate) job: JobRow,
     /// Its scenario as JSON.
     pub(crate) scenario: Vec<u8>,
+    /// What it may need of the memory that the jobs of a process share, bytes.
+    pub(crate) memory_bytes: i64,
+    /// Whether further jobs wait.
+    pub(crate) more_wait: bool,
 }
 
 impl FromRow for Lease {
@@ -54,8 +58,27 @@ impl FromRow for Lease {
         Ok(Self {
             job: JobRow::from_row(row)?,
             scenario: row.get("scenario")?,
+            memory_bytes: row.get("memory_bytes")?,
+            more_wait: row.get("more_wait")?,
         })
     }
+}
+
+/// The memory that a process has left for a further job, beside those that it works on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MemoryRoom {
+    /// Jobs that may need more, bytes, are passed over,
+    pub(crate) bytes: i64,
+    /// but none that was submitted before this time: no other job is begun before it.
+    pub(crate) passed_over_since_us: i64,
+}
+
+impl MemoryRoom {
+    /// The process works on no job: each has room.
+    pub(crate) const ALL: Self = Self {
+        bytes: i64::MAX,
+        passed_over_since_us: 0,
+    };
 }
 
 /// What is known of other processes that have leased jobs.
@@ -86,12 +109,13 @@ impl Recovered {
 }
 
 impl Store {
-    /// Leases the job whose turn it is; `None` when no job is queued. A lower bound of an
-    /// earlier attempt is kept if this version of the bounds gave it.
+    /// Leases the job whose turn it is; `None` when no job is queued that has room. A lower bound of
+    /// an earlier attempt is kept if this version of the bounds gave it.
     pub(crate) async fn lease(
         &self,
         boot_id: &str,
         lease_until_us: i64,
+        room: MemoryRoom,
         now_us: i64,
     ) -> Result<Option<Lease>, StoreError> {
         let mut transaction = self.begin().await?;
@@ -103,14 +127,19 @@ impl Store {
              incumbent_s = (SELECT total_time_s FROM incumbents WHERE job = sequence) \
              WHERE sequence = \
              (SELECT sequence FROM jobs WHERE state = 'queued' \
+             AND (memory_bytes <= $5 OR submitted_us < $6) \
              ORDER BY priority DESC, turn, sequence LIMIT 1 {skip_locked}) \
-             RETURNING scenario, ",
+             AND memory_bytes <= $5 RETURNING scenario, memory_bytes, \
+             EXISTS (SELECT 1 FROM jobs AS others WHERE others.state = 'queued' \
+             AND others.sequence <> jobs.sequence) AS more_wait, ",
             job_columns!()
         ))
         .bind(boot_id)
         .bind(lease_until_us)
         .bind(now_us)
         .bind(bounds::VERSION)
+        .bind(room.bytes)
+        .bind(room.passed_over_since_us)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(lease) = lease else {

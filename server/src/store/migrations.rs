@@ -20,7 +20,7 @@ macro_rules! migration {
 }
 
 /// Number, name and statements of every migration, oldest first.
-const HISTORY: [(&str, &str, &str); 14] = [
+const HISTORY: [(&str, &str, &str); 15] = [
     migration!("0001", "service"),
     migration!("0002", "incumbents"),
     migration!("0003", "reversible_legs"),
@@ -35,6 +35,7 @@ const HISTORY: [(&str, &str, &str); 14] = [
     migration!("0040", "keep_out_violated"),
     migration!("0041", "leg_tables"),
     migration!("0042", "turns"),
+    migration!("0050", "job_memory"),
 ];
 
 /// What brings a file of SQLite to the schema of this version.
@@ -89,6 +90,7 @@ mod tests {
             "0040 724aa5a27540676d",
             "0041 b608bff618f759ca",
             "0042 7e2e9a45d65381cb",
+            "0050 d0ab5f87f886f332",
         ];
         assert_eq!(HISTORY.map(digest), expected);
     }

@@ -1,6 +1,7 @@
 //! Leases, incumbents, segments and events over several attempts, and failures of the disk.
 
 mod bounds;
+mod copy;
 mod ends;
 mod fence;
 mod outage;
@@ -15,9 +16,9 @@ mod statements;
 use super::database::row::FromRow;
 use super::database::statement::{Statement, sql};
 use super::{
-    DatabaseAddress, Ended, JobRow, JobState, Lease, NewIncumbent, OtherProcesses, PackedPlan,
-    ProgressRow, QueueLimits, ResultRow, SegmentRow, Store, StoreError, Submission, Submitted,
-    Work,
+    DatabaseAddress, Ended, JobRow, JobState, Lease, MemoryRoom, NewIncumbent, OtherProcesses,
+    PackedPlan, ProgressRow, QueueLimits, ResultRow, SegmentRow, Store, StoreError, Submission,
+    Submitted, Work,
 };
 
 const ID: &str = "00000000-0000-7000-8000-000000000000";
@@ -70,6 +71,7 @@ fn submission() -> Submission {
         name: None,
         scenario: b"{}".into(),
         targets: 1,
+        memory_bytes: 0,
         client: None,
         priority: 0,
         key: None,
@@ -86,7 +88,10 @@ async fn submitted(store: &Store) {
 }
 
 async fn lease(store: &Store, boot_id: &str) -> Lease {
-    let lease = store.lease(boot_id, 1_000, 2).await.expect("leased");
+    let lease = store
+        .lease(boot_id, 1_000, MemoryRoom::ALL, 2)
+        .await
+        .expect("leased");
     lease.expect("a job waits")
 }
 

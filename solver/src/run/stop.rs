@@ -1,5 +1,6 @@
 //! Stopping as an injected, polled object.
 
+use super::sharing;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::{Duration, Instant};
@@ -57,9 +58,11 @@ impl StopSignal {
         self.flag.store(CANCELLED, Ordering::Relaxed);
     }
 
-    /// The reason to stop, if there is one.
+    /// The reason to stop, if there is one. Where solves share threads, others may compute before the
+    /// answer.
     #[must_use]
     pub fn reason(&self) -> Option<StopReason> {
+        sharing::offer_slot();
         match self.flag.load(Ordering::Relaxed) {
             REQUESTED => Some(StopReason::Requested),
             CANCELLED => Some(StopReason::Cancelled),

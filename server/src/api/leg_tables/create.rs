@@ -17,6 +17,9 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
+/// Memory that the largest table needs, bytes: its places, times, and the part that is made.
+const TABLE_BYTES: i64 = 192 << 20;
+
 /// Parameters of a submission.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
@@ -94,6 +97,7 @@ pub(in crate::api) async fn handler(
             body.bytes.into()
         },
         targets: i64::try_from(legs).unwrap_or(i64::MAX),
+        memory_bytes: TABLE_BYTES,
         client: caller.client().map(str::to_owned),
         priority,
         key: key.map(|key| (caller.own(&key), fingerprint)),

@@ -5,6 +5,7 @@ use super::super::{App, describe};
 use crate::base::clock::now_us;
 use crate::base::contradictions::ContradictionObserver;
 use crate::documents;
+use crate::jobs::Jobs;
 use crate::store::StoreError;
 use axum::Json;
 use axum::extract::State;
@@ -76,19 +77,36 @@ pub(in crate::api) async fn ready(
     Ok(Json(HealthDocument { status: "ok" }))
 }
 
+/// Why a failure of the database is in the way.
+fn failed(error: &StoreError) -> &'static str {
+    tracing::warn!(%error, "not ready");
+    if error.is_away() {
+        "the server of the database does not answer"
+    } else if error.is_read_only() {
+        "the database can only be read at present"
+    } else {
+        "the database cannot be used"
+    }
+}
+
+/// The same of a process that only solves: whether it can write what it has solved.
+pub(in crate::api) async fn worker_ready(
+    State(jobs): State<Jobs>,
+) -> Result<Json<HealthDocument>, ApiError> {
+    let written = jobs.store().check_writable(now_us()).await;
+    written
+        .map_err(|error| ApiError::new(ErrorCode::NotReady, failed(&error)).retry_after(RETRY_S))?;
+    Ok(Json(HealthDocument { status: "ok" }))
+}
+
 async fn examine(app: &App) -> Result<(), &'static str> {
-    let failed = |error: StoreError| {
-        tracing::warn!(%error, "not ready");
-        if error.is_away() {
-            "the server of the database does not answer"
-        } else if error.is_read_only() {
-            "the database can only be read at present"
-        } else {
-            "the database cannot be used"
-        }
-    };
-    app.store().check_writable(now_us()).await.map_err(failed)?;
-    let waiting = app.store().waiting().await.map_err(failed)?;
+    let written = app.store().check_writable(now_us()).await;
+    written.map_err(|error| failed(&error))?;
+    let waiting = app
+        .store()
+        .waiting()
+        .await
+        .map_err(|error| failed(&error))?;
     if waiting >= app.jobs().queue_limits().all {
         return Err("the queue is full");
     }

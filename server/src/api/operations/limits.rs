@@ -18,7 +18,11 @@ pub(in crate::api) struct LimitsDocument {
     max_body_values: usize,
     /// Maximum number of targets of a scenario.
     max_targets: usize,
-    /// Memory limit of one job, bytes.
+    /// Number of jobs that this process solves at once; 0 where only others on the same database solve.
+    jobs_at_once: usize,
+    /// Maximum number of connections of this process to its database.
+    database_connections: u32,
+    /// Memory limit of one job, and of those together that are solved at once, bytes.
     job_memory_bytes: u64,
     /// Maximum number of queued jobs.
     queue_limit: i64,
@@ -46,6 +50,8 @@ pub(in crate::api) async fn handler(State(app): State<App>) -> Json<LimitsDocume
         max_body_bytes: app.limits().body_bytes,
         max_body_values: app.limits().body_values(),
         max_targets: app.limits().targets,
+        jobs_at_once: app.limits().jobs,
+        database_connections: app.store().max_connections(),
         job_memory_bytes: app.jobs().memory_limit(),
         queue_limit: app.jobs().queue_limits().all,
         client_queue_limit: app.jobs().queue_limits().client,

@@ -104,7 +104,7 @@ pub(in crate::api) async fn handler(
     if query.validate_only {
         return validation(&valid);
     }
-    admission::check_memory(&app, &valid.scenario)?;
+    let memory = admission::check_memory(&app, &valid.scenario)?;
     let submission = Submission {
         id: Uuid::now_v7().to_string(),
         work: Work::Plan,
@@ -115,6 +115,7 @@ pub(in crate::api) async fn handler(
             body.bytes.into()
         },
         targets: i64::try_from(targets).unwrap_or(i64::MAX),
+        memory_bytes: memory.try_into().unwrap_or(i64::MAX),
         client: caller.client().map(str::to_owned),
         priority,
         key: key.map(|key| (caller.own(&key), fingerprint)),

@@ -18,7 +18,7 @@ struct Word {
     postgres: &'static str,
 }
 
-const WORDS: [Word; 3] = [
+const WORDS: [Word; 5] = [
     // Rows that are read in order to be written by the same transaction.
     Word {
         name: "{for_update}",
@@ -30,6 +30,21 @@ const WORDS: [Word; 3] = [
         name: "{skip_locked}",
         sqlite: "",
         postgres: "FOR UPDATE SKIP LOCKED",
+    },
+    // Name and type of the columns of a table, in their order.
+    Word {
+        name: "{columns_of}",
+        sqlite: "SELECT name, lower(type) FROM pragma_table_info($1) ORDER BY cid",
+        postgres: "SELECT CAST(column_name AS text), CAST(data_type AS text) \
+             FROM information_schema.columns \
+             WHERE table_schema = current_schema() AND table_name = $1 ORDER BY ordinal_position",
+    },
+    // The newest number that was assigned to a row of a table, where the database remembers it.
+    Word {
+        name: "{last_assigned}",
+        sqlite: "SELECT seq FROM sqlite_sequence WHERE name = $1",
+        postgres: "SELECT pg_sequence_last_value(CAST(pg_get_serial_sequence($1, 'sequence') \
+             AS regclass))",
     },
     // The texts of a JSON array as rows `asked (key, value)`, counted from 0, each with its leg.
     Word {

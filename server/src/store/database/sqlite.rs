@@ -135,6 +135,15 @@ impl SqliteDatabase {
         self.writer.close().await;
     }
 
+    /// Maximum number of connections to the file.
+    pub(in crate::store) fn max_connections(&self) -> u32 {
+        let pools = [&self.writer, &self.readers, &self.checkpointer];
+        pools
+            .map(|pool| pool.options().get_max_connections())
+            .iter()
+            .sum()
+    }
+
     /// Sizes of the database and of its write-ahead log, bytes; 0 for a file that does not exist.
     pub(in crate::store) fn sizes(&self) -> [(&'static str, u64); 2] {
         let mut log = self.path.as_os_str().to_owned();

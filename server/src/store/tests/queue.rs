@@ -1,7 +1,7 @@
 //! Limits on queued jobs.
 
 use super::{lease, on_a_store, submission};
-use crate::store::{QueueLimits, Store, Submission, Submitted};
+use crate::store::{MemoryRoom, QueueLimits, Store, Submission, Submitted};
 
 /// Submits a job with an identifier of this number.
 async fn submit(store: &Store, number: u8, client: &str, limits: QueueLimits) -> Submitted {
@@ -78,7 +78,11 @@ async fn queue(store: &Store, number: u8, client: Option<&str>, priority: i64) {
 /// The numbers of all queued jobs in the order in which they are leased.
 async fn order(store: &Store) -> Vec<i64> {
     let mut order = Vec::new();
-    while let Some(lease) = store.lease("worker", 1_000, 2).await.expect("tried") {
+    while let Some(lease) = store
+        .lease("worker", 1_000, MemoryRoom::ALL, 2)
+        .await
+        .expect("tried")
+    {
         order.push(lease.job.sequence);
     }
     order
@@ -131,6 +135,45 @@ fn a_job_that_is_given_back_keeps_its_turn() {
         let first = lease(&store, "worker").await.job;
         assert!(store.release(&first, 3).await.expect("given back"));
         assert_eq!(order(&store).await, [1, 2, 3]);
+    });
+}
+
+/// Queues jobs with numbers from 1, each with the time of its submission and the memory that it may
+/// need.
+async fn queue_sized(store: &Store, jobs: &[(i64, i64)]) {
+    let limits = QueueLimits {
+        all: 99,
+        client: 99,
+    };
+    for (number, &(submitted_us, memory_bytes)) in (1_u8..).zip(jobs) {
+        let job = Submission {
+            id: format!("00000000-0000-7000-8000-0000000000{number:02}"),
+            memory_bytes,
+            ..submission()
+        };
+        let queued = store.submit(&job, limits, submitted_us).await;
+        assert!(matches!(queued, Ok(Submitted::New(_))), "{queued:?}");
+    }
+}
+
+#[test]
+fn a_job_without_room_is_passed_over_until_it_has_waited_for_long() {
+    on_a_store(|store| async move {
+        queue_sized(&store, &[(10, 500), (11, 100), (12, 501), (13, 99)]).await;
+        let leased = async |bytes, passed_over_since_us| {
+            let room = MemoryRoom {
+                bytes,
+                passed_over_since_us,
+            };
+            let lease = store.lease("worker", 1_000, room, 20).await.expect("tried");
+            lease.map(|lease| (lease.job.sequence, lease.memory_bytes, lease.more_wait))
+        };
+        assert_eq!(leased(99, 10).await, Some((4, 99, true)));
+        // Now the first has waited for long, and nothing is begun before it.
+        assert_eq!(leased(200, 11).await, None);
+        assert_eq!(leased(500, 11).await, Some((1, 500, true)));
+        assert_eq!(leased(i64::MAX, 0).await, Some((2, 100, true)));
+        assert_eq!(leased(i64::MAX, 0).await, Some((3, 501, false)));
     });
 }
 

@@ -3,7 +3,7 @@
 //! `SLEWPLAN_RACES` sets the number of races.
 
 use super::{ID, ended, event_states, json, lease, on_an_address, open, plan, result, submitted};
-use crate::store::{JobState, Lease, OtherProcesses, Store};
+use crate::store::{JobState, Lease, MemoryRoom, OtherProcesses, Store};
 use std::time::Duration;
 
 const USUAL: u64 = 40;
@@ -19,7 +19,10 @@ fn wait(round: u64, step: u64) -> Duration {
 /// transaction looks whether it may end it.
 async fn leased(rescuer: &Store) -> Option<Lease> {
     loop {
-        let found = rescuer.lease("rescuer", 1_000, 6).await.expect("tried");
+        let found = rescuer
+            .lease("rescuer", 1_000, MemoryRoom::ALL, 6)
+            .await
+            .expect("tried");
         let job = rescuer.job(ID).await.expect("read").expect("there");
         if found.is_some() || job.finished_us.is_some() {
             return found;

@@ -3,7 +3,7 @@
 use crate::running::{Service, small};
 use serde_json::{Value, json};
 
-fn star(boresight: Value) -> Value {
+fn star(boresight: &Value) -> Value {
     json!({"boresight": boresight, "ra_dec_deg": [20, 65]})
 }
 
@@ -13,7 +13,7 @@ fn a_plan_of_pointings_comes_back_with_its_rolls() {
     let mut scenario = small();
     let target = scenario["targets"][1].as_object_mut().expect("an object");
     target.remove("attitude");
-    target.insert("pointing".into(), star(json!([0, 0, 1])));
+    target.insert("pointing".into(), star(&json!([0, 0, 1])));
     let name = scenario["targets"][1]["id"].clone();
     let id = service.submit(&scenario);
     service.wait_end(&id);
@@ -45,7 +45,7 @@ fn a_plan_of_pointings_comes_back_with_its_rolls() {
 #[test]
 fn a_query_for_legs_takes_pointings_at_both_ends_and_names_their_faults() {
     let service = Service::start();
-    let pointing = |boresight: Value| json!({"pointing": star(boresight)});
+    let pointing = |boresight: Value| json!({"pointing": star(&boresight)});
     let attitude = json!({"roll_pitch_yaw_deg": [15, 0, 10]});
     let query = |pairs: Value| json!({"spacecraft": small()["spacecraft"], "mode": "cached_only", "pairs": pairs});
     let asked = query(json!([
@@ -57,7 +57,7 @@ fn a_query_for_legs_takes_pointings_at_both_ends_and_names_their_faults() {
     assert_eq!(answer["legs"].as_array().map(Vec::len), Some(3));
     let faulty = query(json!([
         {"from": pointing(json!("radar")), "to": attitude},
-        {"from": {"pointing": {"boresight": [0, 0, 1]}}, "to": {"mrp": [0, 0, 0], "pointing": star(json!([0, 0, 1]))}},
+        {"from": {"pointing": {"boresight": [0, 0, 1]}}, "to": {"mrp": [0, 0, 0], "pointing": star(&json!([0, 0, 1]))}},
     ]));
     let problem = service.post("/v1/legs/query", &faulty).expect(422).json();
     let found = |problem: &Value| -> Vec<(String, String)> {

@@ -111,7 +111,7 @@ mod tests {
             Schema::Object(declared) => {
                 let stands_for = |name: &str, other: &MemberSchema| {
                     let is_there = |value: &&Value| value.get(other.name).is_some();
-                    other.unless == Some(name) && values.iter().all(|value| is_there(&value))
+                    other.unless == Some(name) && values.iter().all(is_there)
                 };
                 for MemberSchema { name, schema, .. } in declared {
                     if declared.iter().any(|other| stands_for(name, other)) {

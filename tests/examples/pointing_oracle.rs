@@ -7,13 +7,13 @@
 //! With numbers, only the scenarios with these seeds.
 
 use slewplan_solver::model::spec::{
-    AttitudeSpec, BoresightChoice, PointingSpec, ScenarioSpec, StateSpec, TargetSpec,
+    AttitudeSpec, BoresightChoice, ScenarioSpec, StateSpec, TargetSpec,
 };
 use slewplan_solver::tour::legs::LegKind;
 use slewplan_solver::tour::planner::{Shard, leg_table, solve};
 use slewplan_tests::random::Generator;
 use slewplan_tests::solving::{on_threads, planned, scenario_of};
-use slewplan_tests::{experiment_a_spec, pyramid_spec};
+use slewplan_tests::{experiment_a_spec, pointed_target, pyramid_spec};
 use std::collections::HashMap;
 use std::time::Instant;
 
@@ -90,21 +90,15 @@ fn scenario(seed: u64) -> (ScenarioSpec, Vec<Pointed>, [f64; 3]) {
             }
         })
         .collect();
-    spec.targets = targets
-        .iter()
-        .enumerate()
-        .map(|(i, target)| TargetSpec {
-            id: format!("t{i}"),
-            pointing: Some(PointingSpec {
-                boresight: BoresightChoice::Axis(boresight),
-                direction: None,
-                ra_dec_deg: Some(target.ra_dec_deg),
-                roll_min_deg: target.roll_deg.map(|[least, _]| least),
-                roll_max_deg: target.roll_deg.map(|[_, greatest]| greatest),
-            }),
-            ..TargetSpec::default()
-        })
-        .collect();
+    let target = |(i, target): (usize, &Pointed)| {
+        pointed_target(
+            &format!("t{i}"),
+            boresight,
+            target.ra_dec_deg,
+            target.roll_deg,
+        )
+    };
+    spec.targets = targets.iter().enumerate().map(target).collect();
     spec.end = (seed % 5 != 4).then(StateSpec::default);
     (spec, targets, boresight)
 }

@@ -1,12 +1,13 @@
 //! Tours through directions whose roll is left to the plan.
 
+use nalgebra::Vector3;
 use slewplan_solver::model::plan::Plan;
 use slewplan_solver::model::scenario::Scenario;
 use slewplan_solver::model::spec::{
-    AttitudeSpec, BoresightChoice, PointingSpec, ScenarioSpec, TargetSpec,
+    Applies, AttitudeSpec, BoresightChoice, BoresightSpec, ConeSpec, DirectionSpec, ScenarioSpec,
 };
 use slewplan_tests::solving::{on_threads, order_of, plan_of, planned, scenario_of};
-use slewplan_tests::{experiment_a_spec, pyramid_spec};
+use slewplan_tests::{experiment_a_spec, pointed_target, pyramid_spec};
 
 /// Right ascensions and declinations, degrees.
 const STARS: [[f64; 2]; 4] = [
@@ -19,21 +20,10 @@ const STARS: [[f64; 2]; 4] = [
 const CAMERA: [f64; 3] = [0.1, -0.2, 1.0];
 
 fn pointings(mut spec: ScenarioSpec, roll_deg: Option<[f64; 2]>) -> ScenarioSpec {
-    spec.targets = STARS
-        .iter()
-        .enumerate()
-        .map(|(i, ra_dec_deg)| TargetSpec {
-            id: format!("s{i}"),
-            pointing: Some(PointingSpec {
-                boresight: BoresightChoice::Axis(CAMERA),
-                direction: None,
-                ra_dec_deg: Some(*ra_dec_deg),
-                roll_min_deg: roll_deg.map(|[least, _]| least),
-                roll_max_deg: roll_deg.map(|[_, greatest]| greatest),
-            }),
-            ..TargetSpec::default()
-        })
-        .collect();
+    let target = |(i, ra_dec_deg): (usize, &[f64; 2])| {
+        pointed_target(&format!("s{i}"), CAMERA, *ra_dec_deg, roll_deg)
+    };
+    spec.targets = STARS.iter().enumerate().map(target).collect();
     spec
 }
 
@@ -138,4 +128,70 @@ fn rates_may_be_free_too_and_stored_momentum_is_held() {
     let mut spec = pointings(pyramid_spec(), None);
     spec.start.wheel_speed_rad_s = Some(vec![60.0, -30.0, 20.0, 40.0]);
     assert_sound(&spec, &plan_of(&spec));
+}
+
+/// Body axes with names, and a cone of one of them around a direction.
+const AXES: [(&str, [f64; 3]); 3] = [
+    ("x", [1.0, 0.0, 0.0]),
+    ("y", [0.0, 1.0, 0.0]),
+    ("oblique", [-0.6, 0.8, 0.0]),
+];
+
+fn cone(boresight: &str, direction: [f64; 3], half_angle_deg: f64, applies: Applies) -> ConeSpec {
+    ConeSpec {
+        boresight: boresight.to_owned(),
+        direction: DirectionSpec::Vector(direction),
+        half_angle_deg,
+        applies,
+    }
+}
+
+/// Pointings of the published spacecraft, whose axes have names.
+fn named(targets: usize) -> ScenarioSpec {
+    let mut spec = pointings(experiment_a_spec(), None);
+    spec.targets.truncate(targets);
+    spec.spacecraft.boresights = AXES
+        .map(|(name, axis)| BoresightSpec {
+            name: name.to_owned(),
+            axis,
+        })
+        .into();
+    spec
+}
+
+#[test]
+fn cones_choose_the_rolls_at_targets_whenever_they_hold() {
+    // Of the rolls at a target the two leave several arcs.
+    let cones = |applies| {
+        [
+            cone("x", [0.2, 1.0, 0.3], 50.0, applies),
+            cone("oblique", [0.9, -0.1, 0.4], 55.0, applies),
+        ]
+    };
+    let mut totals = Vec::new();
+    for applies in [Applies::Report, Applies::AtTargets, Applies::Always] {
+        let mut spec = named(STARS.len());
+        spec.keep_out = cones(applies).into();
+        spec.targets[1].dwell_s = 20.0;
+        let plan = plan_of(&spec);
+        assert_sound(&spec, &plan);
+        totals.push(plan.total_time_s);
+    }
+    assert!(
+        totals[0] < totals[1] && totals[1] <= totals[2] * (1.0 + 1e-6),
+        "{totals:?}"
+    );
+}
+
+#[test]
+fn the_last_few_degrees_of_roll_that_cones_leave_are_found() {
+    let mut spec = named(1);
+    // Where body y looks at one roll; it turns by a degree or so less than the roll.
+    let at_one_roll = scenario_of(&given(&spec, 37.5));
+    let y = at_one_roll.targets()[0].attitude.to_reference(Vector3::y());
+    spec.keep_in = vec![cone("y", y.into(), 3.5, Applies::AtTargets)];
+    let plan = plan_of(&spec);
+    assert_sound(&spec, &plan);
+    let roll = plan.rolls.passages[0].expect("a pointing");
+    assert!((33.0..42.0).contains(&roll), "{roll}");
 }

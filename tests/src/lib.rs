@@ -14,7 +14,8 @@ pub mod solving;
 pub mod suite;
 
 use slewplan_solver::model::spec::{
-    AttitudeSpec, ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec,
+    AttitudeSpec, BoresightChoice, PointingSpec, ScenarioSpec, SpacecraftSpec, StateSpec,
+    TargetSpec, WheelSpec,
 };
 
 /// Identifiers and roll, pitch, yaw in degrees of the 18 published targets.
@@ -117,6 +118,28 @@ pub fn target(id: &str, roll_pitch_yaw_deg: [f64; 3]) -> TargetSpec {
     TargetSpec {
         id: id.to_owned(),
         attitude: AttitudeSpec::RollPitchYawDeg(roll_pitch_yaw_deg),
+        ..TargetSpec::default()
+    }
+}
+
+/// A target at full rest where a body axis points to a right ascension and declination; its roll is free
+/// or within limits, all in degrees.
+#[must_use]
+pub fn pointed_target(
+    id: &str,
+    boresight: [f64; 3],
+    ra_dec_deg: [f64; 2],
+    roll_deg: Option<[f64; 2]>,
+) -> TargetSpec {
+    TargetSpec {
+        id: id.to_owned(),
+        pointing: Some(PointingSpec {
+            boresight: BoresightChoice::Axis(boresight),
+            direction: None,
+            ra_dec_deg: Some(ra_dec_deg),
+            roll_min_deg: roll_deg.map(|[least, _]| least),
+            roll_max_deg: roll_deg.map(|[_, greatest]| greatest),
+        }),
         ..TargetSpec::default()
     }
 }

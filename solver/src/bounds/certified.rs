@@ -59,7 +59,7 @@ use crate::model::dynamics::facets::{Facets, FrameKey};
 use crate::model::dynamics::{Dynamics, along, component};
 use crate::model::scenario::RateCondition;
 use crate::model::tolerances::{ATTITUDE_TOLERANCE, LIMIT_TOLERANCE, RATE_TOLERANCE};
-use crate::model::waypoint::{Waypoint, least_angle};
+use crate::model::waypoint::Waypoint;
 use momentum::MomentumBounds;
 use nalgebra::{Matrix3, Vector3};
 use rolls::{given_away, least_over_rolls};
@@ -132,12 +132,12 @@ struct BoundAround {
 }
 
 impl BoundAround {
-    /// What the same box gives between other rolls, s.
+    /// What the same box gives between other rolls, s; `None` where the turn is no number.
     fn between(&self, ends: [&Waypoint; 2], halves: [f64; 2]) -> Option<f64> {
         let turn = ends[0].attitude.turn_to(&ends[1].attitude);
         let frame = std::slice::from_ref(&self.frame);
         let (alternatives, _) = seen(&turn, frame, |axes| given_away(ends, halves, axes));
-        alternatives.of_box(0, self.tried, TOLERANCE).into()
+        alternatives.of_box(0, self.tried, TOLERANCE)
     }
 }
 
@@ -215,11 +215,10 @@ impl CertifiedBounds {
         })
     }
 
-    /// A smaller bound that is known at once, s: the angle of the turn at the largest rate of all
+    /// A smaller bound that is known at once, s: the angle of the turn, rad, at the largest rate of all
     /// motions. 0 without limits of speed.
-    pub(crate) fn at_largest_rate(&self, from: &Waypoint, to: &Waypoint) -> f64 {
-        let angle = least_angle(from, to) - 2.0 * MISSED_ATTITUDE;
-        (angle / self.largest_rate).max(0.0)
+    pub(crate) fn at_largest_rate(&self, angle: f64) -> f64 {
+        ((angle - 2.0 * MISSED_ATTITUDE) / self.largest_rate).max(0.0)
     }
 
     /// The certificate of the bound [`Self::leg`] and the axes in which it is expressed; `None`

@@ -56,6 +56,16 @@ impl Cone {
         self.applies != Applies::Report
     }
 
+    /// Whether a plan has to keep it at a place that it passes, a target or another one.
+    #[must_use]
+    pub fn is_enforced_at(&self, is_target: bool) -> bool {
+        match self.applies {
+            Applies::Always => true,
+            Applies::AtTargets => is_target,
+            Applies::Report => false,
+        }
+    }
+
     /// Angle between the boresight and the cone's surface at an attitude, rad; negative on the wrong
     /// side.
     #[must_use]

@@ -4,7 +4,10 @@
 //! unit vector `b` along its boresight, body axes, and the roll `r`. The boresight `b` is the same at all
 //! of them, seen from the body and from the reference frame.
 
+mod arcs;
 mod clear;
+
+pub(crate) use arcs::RollArcs;
 
 use super::attitude::Attitude;
 use nalgebra::Vector3;
@@ -28,16 +31,6 @@ impl FreeRoll {
     #[must_use]
     pub fn rolled(&self, attitude: &Attitude, roll: f64) -> Attitude {
         attitude.retract(self.axis * roll)
-    }
-
-    /// The same freedom, seen from the attitude after a roll, rad.
-    #[must_use]
-    pub fn after(&self, roll: f64) -> Self {
-        let range = self.range.map(|range| range.map(|end| end - roll));
-        Self {
-            axis: self.axis,
-            range,
-        }
     }
 
     /// The roll, rad, in `(-pi, pi]`, from one attitude to the attitude with the same boresight that is
@@ -69,17 +62,15 @@ impl FreeRoll {
         (middle + away).clamp(low, high)
     }
 
-    /// Whether every roll from a least to a greatest one, rad, is admissible; without them, every roll.
+    /// Whether every roll from a least to a greatest one, rad, is admissible.
     #[must_use]
-    pub fn admits(&self, rolls: Option<[f64; 2]>) -> bool {
+    pub fn admits(&self, [least, greatest]: [f64; 2]) -> bool {
         let Some([low, high]) = self.range else {
             return true;
         };
-        rolls.is_some_and(|[least, greatest]| {
-            // How far inside the range it begins, whole turns apart being the same.
-            let inside = (least - low + SAME_ROLL).rem_euclid(TAU) - SAME_ROLL;
-            low + inside + (greatest - least) <= high + SAME_ROLL
-        })
+        // How far inside the range it begins, whole turns apart being the same.
+        let inside = (least - low + SAME_ROLL).rem_euclid(TAU) - SAME_ROLL;
+        low + inside + (greatest - least) <= high + SAME_ROLL
     }
 
     /// Angle, rad, between the boresights at two attitudes.
@@ -174,8 +165,7 @@ mod tests {
         assert!((limited.nearest(3.5 - TAU) - 3.5).abs() < 1e-12);
         assert!((limited.nearest(4.2 - TAU) - 4.0).abs() < 1e-12);
         assert!((limited.nearest(0.0) - 4.0).abs() < 1e-12);
-        assert!(limited.admits(Some([3.0 - TAU, 4.0 - TAU])) && free.admits(None));
-        assert!(!limited.admits(None) && !limited.admits(Some([3.5, 4.1])));
-        assert!((limited.after(0.5).nearest(3.0) - 3.0).abs() < 1e-12);
+        assert!(limited.admits([3.0 - TAU, 4.0 - TAU]) && free.admits([0.0, 9.0]));
+        assert!(!limited.admits([3.0, 9.0]) && !limited.admits([3.5, 4.1]));
     }
 }

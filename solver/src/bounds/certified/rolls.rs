@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 
-/// Cells into which the rolls of an end are divided at first.
+/// Cells into which an arc of rolls is divided at first.
 const FIRST_CELLS: u32 = 6;
 /// Cells divided for each free end.
 const DIVISIONS: usize = 160;
@@ -73,7 +73,10 @@ pub(super) fn least_over_rolls(
 /// What is given away in the axes of a frame, given as columns, for the cell around the rolls of two ends.
 pub(super) fn given_away(ends: [&Waypoint; 2], halves: [f64; 2], axes: &Matrix3<f64>) -> GivenAway {
     let turns = [0, 1].map(|end| {
-        let axis = ends[end].roll.map(|roll| axes.tr_mul(&roll.axis).abs());
+        let axis = ends[end]
+            .roll
+            .as_ref()
+            .map(|roll| axes.tr_mul(&roll.axis).abs());
         axis.unwrap_or_default() * halves[end]
     });
     GivenAway { turns }
@@ -84,10 +87,15 @@ fn cells(end: &Waypoint) -> Vec<(f64, f64)> {
     let Some(free) = &end.roll else {
         return vec![(0.0, 0.0)];
     };
-    let [least, greatest] = free.range.unwrap_or([-PI, PI]);
-    let half = 0.5 * (greatest - least) / f64::from(FIRST_CELLS);
-    let middle = |i: u32| least + half * f64::from(2 * i + 1);
-    (0..FIRST_CELLS).map(|i| (middle(i), half)).collect()
+    let cut = |[least, greatest]: [f64; 2]| {
+        let half = 0.5 * (greatest - least) / f64::from(FIRST_CELLS);
+        let middle = move |i: u32| least + half * f64::from(2 * i + 1);
+        (0..FIRST_CELLS).map(move |i| (middle(i), half))
+    };
+    match free.arcs.as_slice() {
+        [] => cut([-PI, PI]).collect(),
+        arcs => arcs.iter().copied().flat_map(cut).collect(),
+    }
 }
 
 /// Rolls of both ends with a bound, s, that holds for all of them; the least one is first in a heap.

@@ -135,12 +135,12 @@ impl<'a> Alternatives<'a> {
         best.map(|(strongest, _)| strongest)
     }
 
-    /// The bound, s, that one box of one alternative gives.
-    pub(crate) fn of_box(&self, alternative: usize, tried: usize, tolerance: f64) -> f64 {
-        let one = &self.bounds[alternative];
-        let tried = &one.bound.boxes[tried];
+    /// The bound, s, that one box of one alternative gives, where there are these.
+    pub(crate) fn of_box(&self, alternative: usize, tried: usize, tolerance: f64) -> Option<f64> {
+        let one = self.bounds.get(alternative)?;
+        let tried = one.bound.boxes.get(tried)?;
         let least = one.least_time(tried, tolerance);
-        stated(one.bound.envelope.duration_of(&tried.rates, least))
+        Some(stated(one.bound.envelope.duration_of(&tried.rates, least)))
     }
 
     /// The certificate of the strongest bound.

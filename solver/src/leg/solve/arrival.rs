@@ -2,6 +2,7 @@
 
 use super::zero_length::SAME_ATTITUDE;
 use crate::model::attitude::Attitude;
+use crate::model::roll::{FreeRoll, RollArcs};
 use crate::model::waypoint::Waypoint;
 use nalgebra::Vector3;
 
@@ -35,15 +36,18 @@ impl Arrival {
             let turn = self.turn(&one.attitude, &other.attitude);
             return one.roll.is_none() && turn <= SAME_ATTITUDE;
         };
-        let same_axis = one
-            .roll
-            .is_none_or(|roll| (roll.axis - free.axis).amax() <= SAME_ATTITUDE);
-        let given = Some([0.0; 2]);
-        let range = one.roll.map_or(given, |roll| roll.range);
-        let begin = free.between(&other.attitude, &one.attitude);
-        same_axis
-            && free.off_boresight(&one.attitude, &other.attitude) <= SAME_ATTITUDE
-            && free.admits(range.map(|ends| ends.map(|end| begin + end)))
+        let given = RollArcs {
+            axis: free.axis,
+            arcs: vec![[0.0; 2]],
+        };
+        let rolls = one.roll.as_ref().unwrap_or(&given);
+        let pointed = FreeRoll {
+            axis: free.axis,
+            range: None,
+        };
+        (rolls.axis - free.axis).amax() <= SAME_ATTITUDE
+            && pointed.off_boresight(&one.attitude, &other.attitude) <= SAME_ATTITUDE
+            && free.include(rolls, pointed.between(&other.attitude, &one.attitude))
     }
 
     /// Its angle, rad.

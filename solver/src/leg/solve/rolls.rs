@@ -12,7 +12,7 @@ mod route;
 use super::{LegOutcome, LegProblem, solve_from_attitudes};
 use crate::model::waypoint::{Waypoint, nearest_rolls};
 use crate::run::stop::StopReason;
-use grid::{Grid, is_clear};
+use grid::Grid;
 pub(crate) use rough::promising;
 pub(crate) use route::rolled_routes;
 
@@ -83,8 +83,7 @@ fn solve_around_cones(leg: &LegProblem<'_>, stop: &dyn Fn() -> Option<StopReason
 
 /// The ends of a leg, described from the rolls of its starts, the fastest first.
 fn starts(leg: &LegProblem<'_>) -> Vec<Vec<Waypoint>> {
-    let cones = &leg.dynamics.cones;
-    let grids = [leg.from, leg.to].map(|end| Grid::of(end).clear_of(cones));
+    let grids = [leg.from, leg.to].map(Grid::of);
     let table = grids[0].durations_to(&grids[1], leg.dynamics);
     let mut minima = Vec::new();
     for (i, row) in table.iter().enumerate() {
@@ -108,11 +107,7 @@ fn starts(leg: &LegProblem<'_>) -> Vec<Vec<Waypoint>> {
     let most = most * minima.first().map_or(0.0, |(least, _)| *least);
     let promising = minima.iter().take_while(|(estimate, _)| *estimate <= most);
     let promising = promising.take(count);
-    let nearest = nearest_rolls(leg.from, leg.to);
-    let mut starts = Vec::new();
-    if minima.is_empty() || nearest.iter().all(|end| is_clear(cones, end)) {
-        starts.push(nearest.into());
-    }
+    let mut starts = vec![nearest_rolls(leg.from, leg.to).into()];
     starts.extend(promising.map(|(_, ends)| ends.map(Waypoint::clone).into()));
     starts
 }

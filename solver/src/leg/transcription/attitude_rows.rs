@@ -16,7 +16,7 @@
 use super::rows::add_attitude_block;
 use super::{Transcription, Waypoint, attitude_link, quaternion_of};
 use crate::math::quaternion::{Quat, conjugate, imaginary, product, quat};
-use crate::model::roll::FreeRoll;
+use crate::model::roll::RollArcs;
 use crate::nlp::LinkModel;
 use nalgebra::{Matrix3, Vector3};
 
@@ -39,10 +39,9 @@ impl AttitudeRows {
                 limited: None,
             };
         };
-        let middle = roll
-            .range
-            .map_or(0.0, |[least, greatest]| 0.5 * (least + greatest));
-        let limited = roll.range.map(|[least, greatest]| {
+        let arc = roll.own();
+        let middle = arc.map_or(0.0, |[least, greatest]| 0.5 * (least + greatest));
+        let limited = arc.map(|[least, greatest]| {
             let half_width = 0.5 * (greatest - least);
             (roll.axis, 2.0 * (0.5 * half_width).sin())
         });
@@ -81,7 +80,7 @@ impl AttitudeRows {
 }
 
 /// Two directions that complete the pointed axis to an orthonormal frame.
-fn across(roll: &FreeRoll) -> [Vector3<f64>; 2] {
+fn across(roll: &RollArcs) -> [Vector3<f64>; 2] {
     let least = roll.axis.iamin();
     let one = roll.axis.cross(&Vector3::ith(least, 1.0)).normalize();
     [one, roll.axis.cross(&one)]

@@ -13,7 +13,6 @@
 //! Nodes alone would let one long interval lead through a cone. So lengths of intervals are limited
 //! too, `1 - tau / longest >= 0`, and what the motion enters between nodes becomes a reserve.
 
-use super::attitude_rows::AttitudeRows;
 use super::rows::{add_attitude_block, double_cross_curvature};
 use super::{Transcription, quaternion_of};
 use crate::math::quaternion::rotate_back;
@@ -37,10 +36,9 @@ impl Transcription {
     }
 
     /// The cones that have rows at a node: none where the attitude is given, which would leave no
-    /// interior on a surface.
+    /// interior on a surface, or an axis is pointed, whose admissible rolls are clear of them.
     pub(super) fn cones_at(&self, node: usize) -> &[ForbiddenCone] {
-        let attitude = &self.nodes[node].attitude;
-        if attitude.as_ref().is_some_and(AttitudeRows::is_fixed) {
+        if self.nodes[node].attitude.is_some() {
             &[]
         } else {
             &self.dynamics.cones

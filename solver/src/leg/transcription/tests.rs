@@ -3,7 +3,7 @@
 use super::*;
 use crate::model::attitude::Attitude;
 use crate::model::cone::ForbiddenCone;
-use crate::model::roll::FreeRoll;
+use crate::model::roll::RollArcs;
 use crate::model::scenario::{RateCondition, Scenario};
 use crate::model::spec::{ScenarioSpec, SpacecraftSpec, StateSpec, TargetSpec, WheelSpec};
 use crate::nlp::Iterate;
@@ -73,7 +73,7 @@ fn dynamics(biased: bool) -> Dynamics {
     dynamics
 }
 
-fn transcription(dynamics: &Dynamics, roll: Option<FreeRoll>) -> Transcription {
+fn transcription(dynamics: &Dynamics, roll: Option<RollArcs>) -> Transcription {
     let scales = Scales::for_legs(dynamics, 0.8, 50.0);
     let null = DVector::from_vec(vec![0.03]);
     let waypoints = [
@@ -136,7 +136,7 @@ struct Fixture {
 }
 
 impl Fixture {
-    fn new(biased: bool, roll: Option<FreeRoll>, node: usize) -> Self {
+    fn new(biased: bool, roll: Option<RollArcs>, node: usize) -> Self {
         let chain = transcription(&dynamics(biased), roll);
         let weights = |n: usize, seed: f64| (0..n).map(|i| (seed + i as f64).sin()).collect();
         Self {
@@ -253,21 +253,21 @@ fn check_second(fixture: &Fixture) {
 
 #[test]
 fn derivatives_of_every_kind_of_node_match_finite_differences() {
-    let free = FreeRoll {
+    let free = RollArcs {
         axis: Vector3::new(0.2, -0.9, 0.4).normalize(),
-        range: None,
+        arcs: Vec::new(),
     };
-    let limited = FreeRoll {
-        range: Some([-0.3, 1.4]),
-        ..free
+    let limited = RollArcs {
+        arcs: vec![[-0.3, 1.4], [2.0, 3.0]],
+        ..free.clone()
     };
     for biased in [false, true] {
         for (node, roll) in [
             (0, None),
             (1, None),
             (2, None),
-            (2, Some(free)),
-            (2, Some(limited)),
+            (2, Some(free.clone())),
+            (2, Some(limited.clone())),
         ] {
             let fixture = Fixture::new(biased, roll, node);
             check_first(&fixture);

@@ -67,12 +67,9 @@ fn enforced<'a>(
     scenario: &'a Scenario,
     place: Place<'a>,
 ) -> impl Iterator<Item = &'a Cone> + Clone {
+    let is_target = matches!(place, Place::Target(..));
     let cones = scenario.cones.iter();
-    cones.filter(move |cone| match cone.applies {
-        Applies::Always => true,
-        Applies::AtTargets => matches!(place, Place::Target(..)),
-        Applies::Report => false,
-    })
+    cones.filter(move |cone| cone.is_enforced_at(is_target))
 }
 
 /// The cones that a place violates, each at every admissible roll, in the order of the document.

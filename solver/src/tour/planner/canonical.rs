@@ -61,14 +61,14 @@ impl CanonicalLeg {
     /// The same leg with what is known of it without cones between two waypoints.
     pub(super) fn knowing(mut self, free: &LegSolution, ends: [&Waypoint; 2]) -> Self {
         let begin = ends[usize::from(self.mirrored)];
-        let here = begin.roll.map(|_| &begin.attitude);
+        let here = begin.roll.as_ref().map(|_| &begin.attitude);
         self.free = Some(free.placed(self.mirrored, here, &self.from.attitude));
         self
     }
 
     /// The attitudes from which its ends are described, where their rolls are free.
     pub(super) fn described_from(&self) -> [Option<Attitude>; 2] {
-        [&self.from, &self.to].map(|end| end.roll.map(|_| end.attitude))
+        [&self.from, &self.to].map(|end| end.roll.as_ref().map(|_| end.attitude))
     }
 
     fn within(dynamics: &Dynamics, places: &Places<'_>, [from, to]: [&Waypoint; 2]) -> Self {
@@ -276,7 +276,7 @@ fn describe_conditions(text: &mut String, place: &Waypoint) {
     if let Some(roll) = &place.roll {
         text.push_str("roll ");
         push_numbers(text, roll.axis.as_slice());
-        push_numbers(text, roll.range.as_ref().map_or(&[], |range| range));
+        push_numbers(text, roll.arcs.as_flattened());
     }
     for rate in &place.rate {
         match rate {

@@ -9,11 +9,12 @@ use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
 use crate::model::attitude::Attitude;
-use crate::model::cone::forbidden_always;
+use crate::model::cone::{Cone, forbidden_always};
 use crate::model::dynamics::{Authority, Dynamics};
-use crate::model::scenario::{RateCondition, Scenario};
+use crate::model::roll::{FreeRoll, RollArcs};
+use crate::model::scenario::{End, RateCondition, Scenario};
 use crate::model::spec::AttitudeEquivalence;
-use crate::model::waypoint::{Waypoint, WheelCondition};
+use crate::model::waypoint::{Waypoint, WheelCondition, least_angle, nearest_rolls};
 use crate::tour::order::Place;
 use nalgebra::{DVector, Vector3};
 
@@ -41,6 +42,9 @@ pub(super) struct Places<'a> {
     pub(super) extremals: KinematicExtremals,
     /// Certified lower bounds on the spacecraft's slews.
     pub(super) certified: CertifiedBounds,
+    /// The rolls that limits and cones leave at the targets and the end, where an axis is pointed.
+    rolls: Vec<Option<RollArcs>>,
+    end_rolls: Option<RollArcs>,
 }
 
 /// Start, all targets, and the end of a scenario, where there is one.
@@ -60,11 +64,22 @@ impl<'a> Places<'a> {
         let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
+        let rolls = |free: Option<&FreeRoll>, attitude: &Attitude, is_target: bool| {
+            let cones = scenario.cones().iter();
+            let cones = cones.filter(|cone| cone.is_enforced_at(is_target));
+            let cones: Vec<_> = cones.map(Cone::forbidden).collect();
+            free.map(|free| RollArcs::clear_of(free, &cones, attitude))
+        };
+        let targets = scenario.targets().iter();
+        let targets = targets.map(|target| rolls(target.roll.as_ref(), &target.attitude, true));
+        let end = scenario.end();
         Self {
             // Rounding errors of a null-space component that vanishes are set to zero.
             null: dynamics.null_component(&wheels).map(|h| rounded(h, scale)),
             extremals: KinematicExtremals::of(&dynamics),
             certified: CertifiedBounds::of(&dynamics),
+            rolls: targets.collect(),
+            end_rolls: end.and_then(|end| rolls(end.roll.as_ref(), &end.attitude, false)),
             resolution: Resolution::of(scenario.options().accuracy, &dynamics),
             arrival: match scenario.options().attitude_equivalence {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,
@@ -138,8 +153,41 @@ impl<'a> Places<'a> {
         match place {
             Place::Start => self.scenario.start().attitude,
             Place::Target(i) => self.scenario.targets()[i].attitude,
-            Place::End => self.waypoint(place).attitude,
+            Place::End => self.end().attitude,
         }
+    }
+
+    /// The rolls of a place, where its roll is free.
+    fn roll(&self, place: Place) -> Option<&RollArcs> {
+        match place {
+            Place::Start => None,
+            Place::Target(i) => self.rolls[i].as_ref(),
+            Place::End => self.end_rolls.as_ref(),
+        }
+    }
+
+    /// The attitudes of two places, where rolls are free those with the least turn between them.
+    pub(super) fn nearest_attitudes(&self, ends: [Place; 2]) -> [Attitude; 2] {
+        if ends.iter().all(|place| self.roll(*place).is_none()) {
+            return ends.map(|place| self.attitude(place));
+        }
+        let [from, to] = ends.map(|place| self.waypoint(place));
+        nearest_rolls(&from, &to).map(|end| end.attitude)
+    }
+
+    /// A lower bound on the angle, rad, of all turns between two places.
+    pub(super) fn least_angle(&self, ends: [Place; 2]) -> f64 {
+        if ends.iter().any(|place| self.roll(*place).is_none()) {
+            let [from, to] = self.nearest_attitudes(ends);
+            return from.angle_to(&to);
+        }
+        let [from, to] = ends.map(|place| self.waypoint(place));
+        least_angle(&from, &to)
+    }
+
+    fn end(&self) -> &'a End {
+        let end = self.scenario.end();
+        end.expect("only scenarios with an end have the place `End`")
     }
 
     /// A place as a waypoint with its own conditions.
@@ -163,21 +211,18 @@ impl<'a> Places<'a> {
                 let target = &self.scenario.targets()[i];
                 Waypoint {
                     attitude: target.attitude,
-                    roll: target.roll,
+                    roll: self.roll(place).cloned(),
                     rate: target.rate,
                     wheels: WheelCondition::Free,
                     costates: None,
                 }
             }
             Place::End => {
-                let end = self
-                    .scenario
-                    .end()
-                    .expect("only scenarios with an end have the place `End`");
+                let end = self.end();
                 let speeds = end.wheel_speed.as_ref();
                 Waypoint {
                     attitude: end.attitude,
-                    roll: end.roll,
+                    roll: self.roll(place).cloned(),
                     rate: fixed(&end.rate),
                     wheels: speeds.map_or(WheelCondition::Free, |speeds| wheels(&end.rate, speeds)),
                     costates: None,
@@ -195,7 +240,7 @@ impl<'a> Places<'a> {
     pub(super) fn stopped(&self, waypoint: &Waypoint) -> Waypoint {
         Waypoint {
             attitude: waypoint.attitude,
-            roll: waypoint.roll,
+            roll: waypoint.roll.clone(),
             rate: [RateCondition::Fixed(0.0); 3],
             wheels: WheelCondition::NullSpace(self.null.clone()),
             costates: None,

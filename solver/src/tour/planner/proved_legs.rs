@@ -49,8 +49,8 @@ impl LegTimes for ProvedLegs<'_> {
         let known = self.table().get(from, to).copied();
         known.map_or_else(
             || {
-                let ends = [from, to].map(|place| self.places.waypoint(place));
-                self.places.certified.at_largest_rate(&ends[0], &ends[1])
+                let angle = self.places.least_angle([from, to]);
+                self.places.certified.at_largest_rate(angle)
             },
             |leg| leg.lower_bound.unwrap_or(0.0),
         )

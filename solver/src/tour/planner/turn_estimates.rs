@@ -2,7 +2,6 @@
 
 use super::places::Places;
 use crate::model::scenario::RateCondition;
-use crate::model::waypoint::nearest_rolls;
 use crate::tour::order::Place;
 use nalgebra::Vector3;
 
@@ -61,8 +60,7 @@ impl<'a> TurnEstimates<'a> {
     }
 
     fn turn(&self, from: Place, to: Place) -> Vector3<f64> {
-        let [from, to] = [from, to].map(|place| self.places.waypoint(place));
-        let [from, to] = nearest_rolls(&from, &to).map(|end| end.attitude);
+        let [from, to] = self.places.nearest_attitudes([from, to]);
         self.places.arrival.turn_vector(&from, &to)
     }
 }

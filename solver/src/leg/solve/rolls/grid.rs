@@ -3,16 +3,15 @@
 use crate::math::bang_coast_bang::BangCoastBang;
 use crate::math::rounding::parts_of;
 use crate::model::attitude::Attitude;
-use crate::model::cone::ForbiddenCone;
 use crate::model::dynamics::Dynamics;
-use crate::model::roll::FreeRoll;
+use crate::model::roll::RollArcs;
 use crate::model::waypoint::Waypoint;
 use std::f64::consts::TAU;
 
 /// Rolls where every one is admissible.
 const ALL_AROUND: usize = 24;
 
-/// A waypoint, described from rolls all over its range; once where the roll is given.
+/// A waypoint, described from rolls all over its arcs; once where the roll is given.
 pub(super) struct Grid {
     pub(super) waypoints: Vec<Waypoint>,
     /// Whether the last roll is beside the first.
@@ -21,33 +20,25 @@ pub(super) struct Grid {
 
 impl Grid {
     pub(super) fn of(end: &Waypoint) -> Self {
-        let range = end.roll.map(|FreeRoll { range, .. }| range);
-        let (rolls, is_closed): (Vec<f64>, bool) = match range {
+        let all_around = |i: usize| TAU * i as f64 / ALL_AROUND as f64;
+        let (rolls, is_closed): (Vec<f64>, bool) = match &end.roll {
             None => (vec![0.0], false),
-            Some(None) => {
-                let roll = |i: usize| TAU * i as f64 / ALL_AROUND as f64;
-                ((0..ALL_AROUND).map(roll).collect(), true)
+            Some(RollArcs { arcs, .. }) if arcs.is_empty() => {
+                ((0..ALL_AROUND).map(all_around).collect(), true)
             }
-            Some(Some([least, greatest])) => {
-                let parts = parts_of(greatest - least, TAU / ALL_AROUND as f64, ALL_AROUND).max(1);
-                let roll = |i: usize| least + (greatest - least) * i as f64 / parts as f64;
-                ((0..=parts).map(roll).collect(), false)
+            Some(RollArcs { arcs, .. }) => {
+                let along = |[least, greatest]: &[f64; 2]| {
+                    let (least, width) = (*least, greatest - least);
+                    let parts = parts_of(width, all_around(1), ALL_AROUND).max(1);
+                    (0..=parts).map(move |i| least + width * i as f64 / parts as f64)
+                };
+                (arcs.iter().flat_map(along).collect(), false)
             }
         };
         Self {
             waypoints: rolls.into_iter().map(|roll| end.rolled(roll)).collect(),
             is_closed,
         }
-    }
-
-    /// Those that lie in no cone.
-    pub(super) fn clear_of(mut self, cones: &[ForbiddenCone]) -> Self {
-        let all = self.waypoints.len();
-        if all > 1 {
-            self.waypoints.retain(|waypoint| is_clear(cones, waypoint));
-        }
-        self.is_closed &= self.waypoints.len() == all;
-        self
     }
 
     /// Durations, s, of the slews about the eigenaxis from every roll to every roll of another waypoint.
@@ -68,12 +59,6 @@ impl Grid {
             (self.is_closed || inside).then_some(at % count)
         })
     }
-}
-
-pub(super) fn is_clear(cones: &[ForbiddenCone], waypoint: &Waypoint) -> bool {
-    cones
-        .iter()
-        .all(|cone| cone.depth(&waypoint.attitude) <= 0.0)
 }
 
 /// Duration, s, of the slew about the eigenaxis from rest to rest without stored momentum.

@@ -30,11 +30,7 @@ pub(crate) fn rolled_routes(
     if route.iter().all(|waypoint| waypoint.roll.is_none()) {
         return vec![route];
     }
-    let grid = |waypoint| Grid::of(waypoint).clear_of(&dynamics.cones);
-    let grids: Vec<Grid> = route.iter().map(grid).collect();
-    if grids.iter().any(|grid| grid.waypoints.is_empty()) {
-        return vec![route];
-    }
+    let grids: Vec<Grid> = route.iter().map(Grid::of).collect();
     let mut paths = Paths::new(&grids, dynamics).promising();
     if most > 1 {
         let comparison = Comparison {

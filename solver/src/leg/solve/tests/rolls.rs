@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 fn pointed(attitude: Attitude, axis: Vector3<f64>, range: Option<[f64; 2]>) -> Waypoint {
     let axis = axis.normalize();
     Waypoint {
-        roll: Some(FreeRoll { axis, range }),
+        roll: Some(FreeRoll { axis, range }.into()),
         ..at_rest(attitude)
     }
 }
@@ -37,10 +37,14 @@ fn a_free_roll_is_no_slower_than_any_given_one() {
     assert!(found > 0.99 * least, "{found} {least}");
 
     // Where the best roll is not admissible, the nearest limit is.
-    let best = free.roll.expect("free").between(&turned, &reached);
+    let about = FreeRoll {
+        axis: axis.normalize(),
+        range: None,
+    };
+    let best = about.between(&turned, &reached);
     let limited = pointed(turned, axis, Some([best + 0.2, best + 1.0]));
     let (slower, reached) = solve_between(&dynamics, &from, &limited, Arrival::Rotation);
-    let roll = free.roll.expect("free").between(&turned, &reached);
+    let roll = about.between(&turned, &reached);
     assert!(slower > found);
     assert!((roll - best - 0.2).abs() < 1e-4, "{roll} {best}");
 }
@@ -87,7 +91,8 @@ fn bounds_over_rolls_are_below_those_of_every_roll_and_below_the_leg() {
             .expect("rates are limited");
         for i in 0..60 {
             let roll = TAU * f64::from(i) / 60.0;
-            let nearest = |end: &Waypoint, roll| end.roll.map_or(0.0, |free| free.nearest(roll));
+            let nearest =
+                |end: &Waypoint, roll| end.roll.as_ref().map_or(0.0, |free| free.nearest(roll));
             let begin = from.rolled(nearest(&from, 2.0 * roll)).pinned();
             let arrival = to.rolled(nearest(&to, roll)).pinned();
             let given = bounds

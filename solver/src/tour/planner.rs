@@ -20,6 +20,7 @@ mod places;
 mod plan_builder;
 mod proved_legs;
 mod segment_key;
+mod segment_solve;
 mod solved_segments;
 mod tables;
 #[cfg(test)]

@@ -275,20 +275,40 @@ fn scenarios_without_a_pointing_have_no_rolls() {
 }
 
 #[test]
-fn the_end_of_a_single_slew_has_a_given_roll() {
+fn a_single_slew_chooses_the_rolls_at_both_ends() {
+    let solve = |slew: &Value| {
+        let told = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes()).expect_code(0);
+        told.json()["slews"][0].clone()
+    };
+    let number = |slew: &Value, name: &str| slew[name].as_f64();
     let mut slew = fixture_json("slews/quarter-turn.json");
-    let pointing = json!({"boresight": [1, 0, 0], "direction": [0, 1, 0]});
-    slew["end"] = json!({"pointing": pointing});
+    let pointing = |direction: Value| json!({"boresight": [1, 0, 0], "direction": direction});
+    slew["end"] = json!({"pointing": pointing(json!([0, 1, 0.5]))});
+    let free = solve(&slew);
+    let roll = number(&free, "end_roll_deg").expect("told");
+    assert_eq!(number(&free, "start_roll_deg"), None);
+    for beside in [roll - 8.0, roll + 8.0] {
+        let mut given = slew.clone();
+        for limit in ["roll_min_deg", "roll_max_deg"] {
+            given["end"]["pointing"][limit] = json!(beside);
+        }
+        let given = solve(&given);
+        assert!((number(&given, "end_roll_deg").expect("told") - beside).abs() < 1e-3);
+        assert!(number(&given, "time_s") > number(&free, "time_s"), "{beside}");
+    }
+    slew["start"] = json!({"pointing": pointing(json!([1, 0, 0]))});
+    let both = solve(&slew);
+    assert!(number(&both, "start_roll_deg").is_some());
+    assert!(number(&both, "time_s") < number(&free, "time_s"));
+
+    // The roll would turn the momentum of the wheels.
+    let wheels = slew["spacecraft"]["wheels"].as_array().expect("a list").len();
+    slew["start"]["wheel_speed_rad_s"] = json!(vec![5; wheels]);
     let told = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes()).expect_code(2);
     assert!(
-        told.stderr.contains("/end/pointing") && told.stderr.contains("roll_not_free"),
+        told.stderr.contains("/start/pointing") && told.stderr.contains("roll_not_free"),
         "{told:?}"
     );
-    for limit in ["roll_min_deg", "roll_max_deg"] {
-        slew["end"]["pointing"][limit] = json!(0);
-    }
-    let fixed = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes());
-    assert!(!fixed.stderr.contains("roll_not_free"), "{fixed:?}");
 }
 
 #[test]

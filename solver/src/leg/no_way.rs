@@ -1,7 +1,10 @@
 //! What is said where no way leads around the cones.
 
-use super::clear_path::{self, PathOutcome, PathProblem};
+use super::clear_path::{self, PathOutcome, PathProblem, PathSearch};
+use super::solve::arrival::Arrival;
+use crate::model::cone::ForbiddenCone;
 use crate::model::problem::{Code, Problem};
+use crate::model::waypoint::Waypoint;
 
 const HINT: &str =
     "narrow the cones, move the attitude, or put a target where the way leads around";
@@ -26,36 +29,70 @@ impl NoWay {
     }
 }
 
-/// Searches a way between two named attitudes, the second of which has a JSON pointer; `None` where
+/// Two waypoints between which cones may leave no way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WayProblem<'a> {
+    /// Forbidden cones.
+    pub(crate) cones: &'a [ForbiddenCone],
+    /// Where it begins and where it ends.
+    pub(crate) ends: [&'a Waypoint; 2],
+    /// Which quaternion signs count as arrived.
+    pub(crate) arrival: Arrival,
+}
+
+impl WayProblem<'_> {
+    /// The searches between the attitudes of both ends, one of each arc of their rolls: along an arc
+    /// nothing is in a cone, so that a way from one of its rolls is a way from all. They end with the
+    /// first way; `None` where there is one.
+    fn searches(&self) -> Option<Vec<PathSearch>> {
+        let [begins, arrivals] = self.ends.map(Waypoint::attitude_of_each_arc);
+        let mut without = Vec::new();
+        for (from, to) in begins.iter().flat_map(|from| arrivals.iter().map(move |to| (from, to))) {
+            let search = clear_path::find(&PathProblem {
+                cones: self.cones,
+                from: *from,
+                to: *to,
+                signed: self.arrival == Arrival::Quaternion,
+            });
+            if matches!(search.outcome, PathOutcome::Found(_)) {
+                return None;
+            }
+            without.push(search);
+        }
+        Some(without)
+    }
+}
+
+/// Searches a way between two named waypoints, the second of which has a JSON pointer; `None` where
 /// there is one.
 pub(crate) fn no_way(
-    between: &PathProblem<'_>,
+    between: &WayProblem<'_>,
     [from, to]: [&str; 2],
     pointer: impl Into<String>,
 ) -> Option<NoWay> {
     if between.cones.is_empty() {
         return None;
     }
-    let search = clear_path::find(between);
-    let message = match search.outcome {
-        PathOutcome::Found(_) => return None,
-        PathOutcome::Disconnected => {
-            format!("no way leads from {from} to {to} around the cones: this is proved")
-        }
+    let searches = between.searches()?;
+    let unknown = searches.iter().find_map(|search| match search.outcome {
         PathOutcome::Unknown {
             resolution,
             closest,
-        } => format!(
+        } => Some((search.cells, resolution, closest)),
+        PathOutcome::Found(_) | PathOutcome::Disconnected => None,
+    });
+    let message = match unknown {
+        None => format!("no way leads from {from} to {to} around the cones: this is proved"),
+        Some((cells, resolution, closest)) => format!(
             "no way from {from} to {to} around the cones was found; one with a clearance of {:.2} \
-             degrees would have been, among {} cells. The nearest point that was reached is {:.2} \
-             degrees away",
+             degrees would have been, among {cells} cells. The nearest point that was reached is \
+             {:.2} degrees away",
             resolution.to_degrees(),
-            search.cells,
             closest.to_degrees(),
         ),
     };
     Some(NoWay {
-        is_proved: matches!(search.outcome, PathOutcome::Disconnected),
+        is_proved: unknown.is_none(),
         problem: Problem::new(pointer, Code::NoClearPath, message, HINT),
     })
 }

@@ -128,7 +128,7 @@ impl LegProblem<'_> {
     }
 
     /// A leg of the same spacecraft between other waypoints.
-    fn between<'e>(&'e self, from: &'e Waypoint, to: &'e Waypoint) -> LegProblem<'e> {
+    pub(crate) fn between<'e>(&'e self, from: &'e Waypoint, to: &'e Waypoint) -> LegProblem<'e> {
         LegProblem { from, to, ..*self }
     }
 

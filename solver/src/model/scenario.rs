@@ -21,7 +21,7 @@ use crate::model::cone::Cone;
 use crate::model::findings::Findings;
 use crate::model::order_rules::OrderRules;
 use crate::model::problem::{Faults, Problem};
-use crate::model::roll::{FreeRoll, Pointing};
+use crate::model::roll::{FreeRoll, Pointing, RollArcs};
 use crate::model::spacecraft::Spacecraft;
 use crate::model::spec::{OptionsSpec, ReferenceFrame, ScenarioSpec, TimeSystem};
 pub(crate) use cone_conflicts::cone_problems;
@@ -30,6 +30,7 @@ use jiff::civil::DateTime;
 use limits::Limits;
 use nalgebra::Vector3;
 use pointing::Surroundings;
+use state::StartRoll;
 
 /// The condition on a rate component at a passage.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,8 +57,12 @@ impl RateCondition {
 /// The fully known state at time zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
-    /// Attitude, sign as given.
+    /// Attitude, sign as given; where the roll is free, that of roll 0.
     pub attitude: Attitude,
+    /// The admissible rolls, where a slew chooses among them.
+    pub roll: Option<FreeRoll>,
+    /// The boresight that is pointed, where no attitude is given.
+    pub pointing: Option<Pointing>,
     /// Body rate in body axes, rad/s.
     pub rate: Vector3<f64>,
     /// Wheel speeds relative to the body, rad/s, one per wheel.
@@ -139,8 +144,22 @@ impl Scenario {
     ///
     /// All problems and warnings at once, both in the order of the document.
     pub fn examine(spec: &ScenarioSpec) -> Result<Validated, Faults> {
+        Self::examine_from(spec, StartRoll::Known)
+    }
+
+    /// Validates the description of one slew, which may choose the roll at its start.
+    ///
+    /// # Errors
+    ///
+    /// All problems at once, in the order of the document.
+    pub(crate) fn of_one_slew(spec: &ScenarioSpec) -> Result<Validated, Vec<Problem>> {
+        let examined = Self::examine_from(spec, StartRoll::Chosen);
+        examined.map_err(|faults| faults.problems)
+    }
+
+    fn examine_from(spec: &ScenarioSpec, start_roll: StartRoll) -> Result<Validated, Faults> {
         let mut findings = Findings::default();
-        let scenario = Self::read(spec, &mut findings);
+        let scenario = Self::read(spec, start_roll, &mut findings);
         if let Some(scenario) = &scenario {
             cone_conflicts::warn_of_reported(scenario, &mut findings);
         }
@@ -148,7 +167,7 @@ impl Scenario {
         Ok(Validated { scenario, warnings })
     }
 
-    fn read(spec: &ScenarioSpec, findings: &mut Findings) -> Option<Self> {
+    fn read(spec: &ScenarioSpec, start_roll: StartRoll, findings: &mut Findings) -> Option<Self> {
         let context = AttitudeContext {
             equivalence: spec.options.attitude_equivalence,
             boresights: &spec.spacecraft.boresights,
@@ -162,10 +181,12 @@ impl Scenario {
         };
         let limits = Limits::of(spec);
         let spacecraft = Spacecraft::read(&spec.spacecraft, "/spacecraft", findings);
-        let start = state::read_start(&spec.start, context, &limits, findings).filter(|start| {
+        let start = state::read_start(&spec.start, surroundings, &limits, findings);
+        let start = start.filter(|start| {
             spacecraft.as_ref().is_none_or(|spacecraft| {
                 let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
                 state::momentum_is_finite(&momentum, "/start", findings)
+                    && start_roll.admits(start, spacecraft, findings)
             })
         });
         let end = spec.end.as_ref().map(|end| {
@@ -243,6 +264,33 @@ impl Scenario {
     #[must_use]
     pub fn end(&self) -> Option<&End> {
         self.end.as_ref()
+    }
+
+    /// The same with the start in an attitude.
+    pub(crate) fn starting_in(&self, attitude: Attitude) -> Self {
+        let start = Start {
+            attitude,
+            roll: None,
+            ..self.start.clone()
+        };
+        Self {
+            start,
+            ..self.clone()
+        }
+    }
+
+    /// The rolls that limits and enforced cones leave from an attitude that a target, or an end of the
+    /// tour, describes.
+    pub(crate) fn clear_rolls(
+        &self,
+        free: &FreeRoll,
+        attitude: &Attitude,
+        is_target: bool,
+    ) -> RollArcs {
+        let cones = self.cones.iter();
+        let enforced = cones.filter(|cone| cone.is_enforced_at(is_target));
+        let forbidden: Vec<_> = enforced.map(Cone::forbidden).collect();
+        RollArcs::clear_of(free, &forbidden, attitude)
     }
 
     /// The targets in the caller's order.

@@ -62,13 +62,14 @@ input_object! {
 }
 
 input_object! {
-    /// An attitude with rates and wheel speeds. At an end exactly one of `attitude` and `pointing` is given.
+    /// An attitude with rates and wheel speeds. Exactly one of `attitude` and `pointing` is given.
     #[derive(Default)]
     pub struct StateSpec as "BoundaryState" {
         /// The attitude; not read where `pointing` is given.
         pub attitude: AttitudeSpec = required_or(AttitudeSpec::default()).unless("pointing"),
-        /// Instead of the attitude where a boresight points, at an end: the roll about it is left to the
-        /// plan. What is known at a start is its attitude.
+        /// Instead of the attitude where a boresight points. At an end the roll about it is left to the
+        /// plan. What is known at a start is its attitude: only a single slew without stored momentum
+        /// chooses the roll there too.
         pub pointing: Option<PointingSpec> = optional(),
         /// Body rate in body axes; zero without it.
         pub body_rate_rad_s: Option<[f64; 3]> = optional(),

@@ -81,6 +81,17 @@ impl Waypoint {
         self.rolled(free.towards(&self.attitude, attitude))
     }
 
+    /// An admissible attitude of each arc of its rolls: the attitudes of an arc hang together.
+    pub(crate) fn attitude_of_each_arc(&self) -> Vec<Attitude> {
+        match &self.roll {
+            Some(rolls) if !rolls.arcs.is_empty() => {
+                let middles = rolls.arcs.iter().map(|arc| 0.5 * (arc[0] + arc[1]));
+                middles.map(|roll| self.rolled(roll).attitude).collect()
+            }
+            _ => vec![self.attitude],
+        }
+    }
+
     /// The waypoint whose attitude is given.
     pub(crate) fn pinned(&self) -> Self {
         Self {

@@ -2,9 +2,7 @@
 
 use super::outcome::SlewOutcome;
 use super::validated::Slew;
-use crate::leg::clear_path::PathProblem;
-use crate::leg::no_way::{NoWay, no_way};
-use crate::leg::solve::arrival::Arrival;
+use crate::leg::no_way::{NoWay, WayProblem, no_way};
 use crate::run::stop::StopSignal;
 
 /// Solves a slew, perhaps with cones, by a solver of slews whose cones are those of its programs.
@@ -37,12 +35,10 @@ pub(super) fn solve(
 
 /// What is said where the cones leave no way from start to end.
 fn parted(slew: &Slew) -> Option<NoWay> {
-    let [from, to] = slew.ends();
-    let between = PathProblem {
+    let between = WayProblem {
         cones: &slew.vehicle().dynamics.cones,
-        from: from.attitude,
-        to: to.attitude,
-        signed: slew.arrival() == Arrival::Quaternion,
+        ends: slew.ends().each_ref(),
+        arrival: slew.arrival(),
     };
     no_way(&between, ["the start", "the end"], "/end")
 }

@@ -7,9 +7,11 @@ use crate::checker::{
     ATTITUDE_TOLERANCE, END_SPEED_TOLERANCE, LIMIT_TOLERANCE, MOMENTUM_TOLERANCE, RATE_TOLERANCE,
     StepPart, TorqueRamp, propagate_ramps,
 };
+use crate::model::attitude::Attitude;
 use crate::model::drive::Drive;
 use crate::model::plan::{ConeClearance, Intrusion, State};
 use crate::model::problem::Problem;
+use crate::model::roll::Pointing;
 use crate::model::waypoint::WheelCondition;
 
 /// Bisections for the time at which the power of a wheel changes its sign.
@@ -66,7 +68,11 @@ pub struct PropagatedSlew {
     pub states: Vec<State>,
     /// The motors' energies.
     pub energies: MotorEnergies,
-    /// Angle between the attitude at the end and the prescribed one, rad.
+    /// Roll about the boresight that is pointed at the start, rad; `None` where an attitude is given.
+    pub start_roll_rad: Option<f64>,
+    /// The same at the end.
+    pub end_roll_rad: Option<f64>,
+    /// Angle between the attitude at the end and the nearest admissible one, rad.
     pub attitude_error_rad: f64,
     /// Norm of the error of the body rate at the end, rad/s.
     pub rate_error_rad_s: f64,
@@ -103,7 +109,9 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     let ramps = ramps(slew, motion);
     let drives = slew.all_drives();
     let mut energies = MotorEnergies::default();
-    let flight = propagate_ramps(scenario, drives, &ramps, |moment| {
+    let from = slew.ends_towards(motion)[0].attitude;
+    let rolled = scenario.start().roll.map(|_| scenario.starting_in(from));
+    let flight = propagate_ramps(rolled.as_ref().unwrap_or(scenario), drives, &ramps, |moment| {
         for actuator in &slew.vehicle().dynamics.actuators {
             let spent = spent(&drives[actuator.index], actuator.index, moment);
             energies.proxy_j += spent.proxy_j;
@@ -114,6 +122,8 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
         pieces: ramps.iter().map(piece).collect(),
         states: Vec::new(),
         energies,
+        start_roll_rad: None,
+        end_roll_rad: None,
         attitude_error_rad: f64::MAX,
         rate_error_rad_s: f64::MAX,
         torque_excess: f64::MAX,
@@ -133,6 +143,9 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
         }
     };
     if let (Some(end), Some(wanted)) = (flight.states.last(), scenario.end()) {
+        let roll = |of: &Option<Pointing>, at: &Attitude| Some(of.as_ref()?.roll_of(at));
+        propagated.start_roll_rad = roll(&scenario.start().pointing, &from);
+        propagated.end_roll_rad = roll(&wanted.pointing, &end.attitude);
         propagated.attitude_error_rad = slew.missed_by(&end.attitude);
         propagated.rate_error_rad_s = (end.body_rate_rad_s - wanted.rate).norm();
         propagated.wheel_speed_error_rad_s = speed_error(slew, end);

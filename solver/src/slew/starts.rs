@@ -42,6 +42,9 @@ pub(super) fn of(
         fastest.profile = problem.perturbed_eigenaxis(Perturbation::Far);
     }
     let fastest = SlewMotion::of_profile(&fastest.profile);
+    // Other guesses go between the same rolls.
+    let ends = slew.ends_towards(&fastest);
+    let problem = problem.between(&ends[0], &ends[1]);
     let mut guesses = vec![match &vehicle.pinned_null {
         Some(null) => fastest.with_null_space(null, dynamics),
         None => fastest,

@@ -13,9 +13,10 @@ use crate::model::drive::Drive;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
+use crate::model::roll::FreeRoll;
 use crate::model::scenario::{RateCondition, Scenario, cone_problems};
 use crate::model::spec::{AttitudeEquivalence, OptionsSpec, ScenarioSpec};
-use crate::model::waypoint::{Waypoint, WheelCondition};
+use crate::model::waypoint::{Waypoint, WheelCondition, nearest_rolls};
 use nalgebra::{DVector, Vector3};
 
 /// A valid slew.
@@ -50,7 +51,7 @@ impl Slew {
     /// All problems at once.
     pub fn try_new(spec: &SlewSpec) -> Result<ValidatedSlew, Vec<Problem>> {
         let mut problems = Vec::new();
-        let scenario = Scenario::try_new(&scenario_spec(spec));
+        let scenario = Scenario::of_one_slew(&scenario_spec(spec));
         let wheels = spec.spacecraft.wheels.len();
         let drives = Drive::read_all(&spec.drives, wheels, "/drives");
         let mut findings = Findings::default();
@@ -67,7 +68,6 @@ impl Slew {
         if !enclosed.is_empty() {
             return Err(enclosed);
         }
-        refuse_free_roll(&scenario.scenario)?;
         let mut warnings = scenario.warnings;
         // A slew never has any.
         warnings.retain(|warning| warning.code != Code::NoTargets);
@@ -90,9 +90,13 @@ impl Slew {
             }
         }
         let start_momenta = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
+        let rolls = |free: &Option<FreeRoll>, attitude: &Attitude| {
+            let free = free.as_ref()?;
+            Some(scenario.clear_rolls(free, attitude, false))
+        };
         let begin = Waypoint {
             attitude: start.attitude,
-            roll: None,
+            roll: rolls(&start.roll, &start.attitude),
             rate: fixed(&start.rate),
             wheels: WheelCondition::Fixed(start_momenta.clone()),
             costates: None,
@@ -102,6 +106,7 @@ impl Slew {
             AttitudeEquivalence::Quaternion => Arrival::Quaternion,
         };
         let target = scenario.end().map_or(start.attitude, |end| end.attitude);
+        let end_rolls = scenario.end().and_then(|end| rolls(&end.roll, &end.attitude));
         let rate = scenario.end().map_or(start.rate, |end| end.rate);
         let speeds = scenario.end().and_then(|end| end.wheel_speed.clone());
         let null = dynamics.null_component(&start_momenta);
@@ -116,7 +121,7 @@ impl Slew {
         };
         let end = Waypoint {
             attitude: arrival.signed(&target, &start.attitude),
-            roll: None,
+            roll: end_rolls,
             rate: fixed(&rate),
             wheels,
             costates: None,
@@ -129,7 +134,7 @@ impl Slew {
                 speed_law_wheels,
                 pinned_null,
             },
-            ends: [begin, end],
+            ends: nearest_rolls(&begin, &end),
             start_momenta,
             arrival,
             objective: spec.objective,
@@ -189,18 +194,22 @@ impl Slew {
         &self.ends
     }
 
-    /// Both ends; the quaternion of the second has the sign with which a motion arrives.
+    /// Both ends, described from the attitudes in which a motion passes them; the quaternion of the
+    /// second has the sign with which the motion arrives.
     pub(super) fn ends_towards(&self, motion: &SlewMotion) -> [Waypoint; 2] {
         let mut ends = self.ends.clone();
-        if let Some(last) = motion.attitudes.last() {
+        if let [first, .., last] = &motion.attitudes[..] {
+            ends[0] = ends[0].rolled_towards(first);
+            ends[1] = ends[1].rolled_towards(last);
             ends[1].attitude = self.arrival.signed(&ends[1].attitude, last);
         }
         ends
     }
 
-    /// Angle between an attitude and the prescribed final one, rad.
+    /// Angle between an attitude and the nearest one that is admissible at the end, rad.
     pub(super) fn missed_by(&self, attitude: &Attitude) -> f64 {
-        self.arrival.turn(attitude, &self.ends[1].attitude)
+        let end = self.ends[1].rolled_towards(attitude);
+        self.arrival.turn(attitude, &end.attitude)
     }
 
     /// The program's cost weights in continuous time.
@@ -255,19 +264,6 @@ impl Slew {
             ..self.clone()
         }
     }
-}
-
-/// Refuses an end whose roll is left to the slew.
-fn refuse_free_roll(scenario: &Scenario) -> Result<(), Vec<Problem>> {
-    if scenario.end().is_none_or(|end| end.roll.is_none()) {
-        return Ok(());
-    }
-    Err(vec![Problem::new(
-        "/end/pointing",
-        Code::RollNotFree,
-        "the roll at the end is free, but a slew ends at a given roll",
-        "give equal roll_min_deg and roll_max_deg, or plan the slew as a scenario with this end",
-    )])
 }
 
 fn fixed(rate: &Vector3<f64>) -> [RateCondition; 3] {

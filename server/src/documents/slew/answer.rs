@@ -52,6 +52,15 @@ struct SlewDocument<'a> {
     energy_bill_j: Option<Number>,
     /// Of a sampled slew the minimum in continuous time.
     continuous_time_s: Option<Number>,
+    /// Where a boresight is pointed at the start: the roll about it, degrees, in the convention of
+    /// `ra_dec_roll_deg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    start_roll_deg: Option<Number>,
+    /// The same at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    end_roll_deg: Option<Number>,
     flight: FlightDocument<'a>,
     trajectory: SlewTrajectoryDocument,
     evidence: Option<EvidenceDocument>,
@@ -178,6 +187,7 @@ impl<'a> SlewDocument<'a> {
         let motors = request.slew.all_drives().iter();
         let MotorEnergies { proxy_j, bill_j } = propagated.energies;
         let known = motors.clone().any(|drive| drive.motor.is_some());
+        let roll = |angle: Option<f64>| angle.map(|angle| Number(angle.to_degrees()));
         let energy = |value: f64| known.then_some(Number(value));
         Self {
             swept: swept.map(Number),
@@ -196,6 +206,8 @@ impl<'a> SlewDocument<'a> {
             energy_proxy_j: energy(proxy_j),
             energy_bill_j: energy(bill_j),
             continuous_time_s: outcome.continuous_time_s.map(Number),
+            start_roll_deg: roll(propagated.start_roll_rad),
+            end_roll_deg: roll(propagated.end_roll_rad),
             flight: propagated.into(),
             trajectory: SlewTrajectoryDocument {
                 controls: propagated.pieces.iter().map(RampDocument::from).collect(),

@@ -55,6 +55,12 @@ fn single(request: &SlewRequest, slew: &SlewOutcome, evidence: Option<&Evidence>
         "effort",
         format_args!("{} N\u{b2}m\u{b2}s", significant(slew.effort)),
     );
+    let rolls = [slew.propagated.start_roll_rad, slew.propagated.end_roll_rad];
+    for (roll, end) in rolls.into_iter().zip(["at the start", "at the end"]) {
+        if let Some(roll) = roll {
+            text += &line("roll", format_args!("{:.3} deg {end}", roll.to_degrees()));
+        }
+    }
     if has_motors(request) {
         let energies = &slew.propagated.energies;
         text += &line(

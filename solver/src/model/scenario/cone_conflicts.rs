@@ -1,7 +1,7 @@
 //! Attitudes of a scenario that themselves point a boresight to the wrong side of a cone: no plan
 //! through them keeps it. Where the roll is free, none of the admissible ones does.
 
-use super::{End, Scenario, Target};
+use super::{End, Scenario, Start, Target};
 use crate::model::attitude::Attitude;
 use crate::model::cone::{Applies, Cone, Side};
 use crate::model::findings::Findings;
@@ -19,7 +19,7 @@ const ROLL_HINT: &str = "widen the limits of the roll, move the direction, or ch
 /// An attitude that every plan passes through, or one of its rolls.
 #[derive(Clone, Copy)]
 enum Place<'a> {
-    Start(&'a Attitude),
+    Start(&'a Start),
     End(&'a End),
     Target(usize, &'a Target),
 }
@@ -116,7 +116,7 @@ fn no_roll_left(scenario: &Scenario, place: Place<'_>) -> Option<Problem> {
 
 /// The start, the end and the targets, in the order of the document.
 fn places(scenario: &Scenario) -> impl Iterator<Item = Place<'_>> {
-    let start = Place::Start(&scenario.start.attitude);
+    let start = Place::Start(&scenario.start);
     let end = scenario.end.iter().map(Place::End);
     let targets = scenario.targets.iter().enumerate();
     let targets = targets.map(|(index, target)| Place::Target(index, target));
@@ -126,7 +126,7 @@ fn places(scenario: &Scenario) -> impl Iterator<Item = Place<'_>> {
 impl<'a> Place<'a> {
     fn attitude(self) -> &'a Attitude {
         match self {
-            Self::Start(attitude) => attitude,
+            Self::Start(start) => &start.attitude,
             Self::End(end) => &end.attitude,
             Self::Target(_, target) => &target.attitude,
         }
@@ -134,7 +134,7 @@ impl<'a> Place<'a> {
 
     fn roll(self) -> Option<&'a FreeRoll> {
         match self {
-            Self::Start(_) => None,
+            Self::Start(start) => start.roll.as_ref(),
             Self::End(end) => end.roll.as_ref(),
             Self::Target(_, target) => target.roll.as_ref(),
         }

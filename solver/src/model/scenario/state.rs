@@ -3,7 +3,6 @@
 use super::limits::{Limits, exceeds};
 use super::pointing::Surroundings;
 use super::{End, Start};
-use crate::model::attitude::{Attitude, AttitudeContext};
 use crate::model::findings::Findings;
 use crate::model::problem::Code;
 use crate::model::spacecraft::Spacecraft;
@@ -15,30 +14,27 @@ use nalgebra::Vector3;
 const MOMENTUM_TOLERANCE: f64 = 1e-6;
 /// The same relative to the capacity of the wheels, for momenta that are zero up to rounding.
 const CAPACITY_TOLERANCE: f64 = 1e-9;
+/// Relative difference of momenta that is attributed to rounding.
+const SAME_MOMENTUM: f64 = 1e-12;
 
 pub(super) fn read_start(
     spec: &StateSpec,
-    context: AttitudeContext<'_>,
+    surroundings: Surroundings<'_>,
     limits: &Limits,
     findings: &mut Findings,
 ) -> Option<Start> {
-    if spec.pointing.is_some() {
-        findings.refuse(
-            "/start/pointing",
-            Code::ConflictingFields,
-            "a direction does not tell the attitude at the start, which is known",
-            "give the attitude at the start",
-        );
-        return None;
-    }
-    let attitude = Attitude::read(&spec.attitude, context, "/start/attitude", findings);
+    let pointing = spec.pointing.as_ref();
+    let orientation = surroundings.orientation(&spec.attitude, pointing, "/start", findings);
     let rate = read_rate(spec, "/start", limits, findings);
     let wheel_speed = match &spec.wheel_speed_rad_s {
         None => Some(vec![0.0; limits.wheels.len()]),
         Some(speeds) => read_speeds(speeds, "/start", limits, findings),
     };
+    let orientation = orientation?;
     Some(Start {
-        attitude: attitude?,
+        attitude: orientation.attitude,
+        roll: orientation.roll,
+        pointing: orientation.pointing,
         rate: rate?,
         wheel_speed: wheel_speed?,
     })
@@ -135,6 +131,49 @@ fn keeps_locked_wheels(
         }
     }
     kept
+}
+
+/// What may be left open of the attitude at a start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StartRoll {
+    /// Nothing: the state is one in which the spacecraft is.
+    Known,
+    /// The roll about a boresight, which the one slew from there chooses.
+    Chosen,
+}
+
+impl StartRoll {
+    /// Whether a start leaves no more open than that.
+    pub(super) fn admits(
+        self,
+        start: &Start,
+        spacecraft: &Spacecraft,
+        findings: &mut Findings,
+    ) -> bool {
+        let Some(free) = &start.roll else {
+            return true;
+        };
+        let momentum = spacecraft.body_momentum(start.rate, &start.wheel_speed);
+        let turns = free.axis.cross(&momentum).norm() > SAME_MOMENTUM * momentum.norm();
+        let (code, reason) = match self {
+            Self::Known => (
+                Code::ConflictingFields,
+                "a direction does not tell the attitude at the start, which is known",
+            ),
+            Self::Chosen if turns => (
+                Code::RollNotFree,
+                "a free roll at the start would turn the momentum that is stored there",
+            ),
+            Self::Chosen => return true,
+        };
+        findings.refuse(
+            "/start/pointing",
+            code,
+            reason,
+            "give the attitude at the start, or equal roll_min_deg and roll_max_deg",
+        );
+        false
+    }
 }
 
 /// Refuses rates and speeds whose momentum is outside the number range.

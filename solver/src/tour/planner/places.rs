@@ -9,7 +9,7 @@ use crate::leg::solve::zero_length::SAME_ATTITUDE;
 use crate::leg::solve::{LegProblem, Resolution};
 use crate::math::rounding::rounded;
 use crate::model::attitude::Attitude;
-use crate::model::cone::{Cone, forbidden_always};
+use crate::model::cone::forbidden_always;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::roll::{FreeRoll, RollArcs};
 use crate::model::scenario::{End, RateCondition, Scenario};
@@ -64,14 +64,12 @@ impl<'a> Places<'a> {
         let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
-        let rolls = |free: Option<&FreeRoll>, attitude: &Attitude, is_target: bool| {
-            let cones = scenario.cones().iter();
-            let cones = cones.filter(|cone| cone.is_enforced_at(is_target));
-            let cones: Vec<_> = cones.map(Cone::forbidden).collect();
-            free.map(|free| RollArcs::clear_of(free, &cones, attitude))
+        let rolls = |free: &Option<FreeRoll>, attitude: &Attitude, is_target: bool| {
+            let free = free.as_ref()?;
+            Some(scenario.clear_rolls(free, attitude, is_target))
         };
         let targets = scenario.targets().iter();
-        let targets = targets.map(|target| rolls(target.roll.as_ref(), &target.attitude, true));
+        let targets = targets.map(|target| rolls(&target.roll, &target.attitude, true));
         let end = scenario.end();
         Self {
             // Rounding errors of a null-space component that vanishes are set to zero.
@@ -79,7 +77,7 @@ impl<'a> Places<'a> {
             extremals: KinematicExtremals::of(&dynamics),
             certified: CertifiedBounds::of(&dynamics),
             rolls: targets.collect(),
-            end_rolls: end.and_then(|end| rolls(end.roll.as_ref(), &end.attitude, false)),
+            end_rolls: end.and_then(|end| rolls(&end.roll, &end.attitude, false)),
             resolution: Resolution::of(scenario.options().accuracy, &dynamics),
             arrival: match scenario.options().attitude_equivalence {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,

@@ -5,10 +5,8 @@
 
 use super::places::Places;
 use super::tours::Tours;
-use crate::leg::clear_path::PathProblem;
 use crate::leg::multiphase::LegSolution;
-use crate::leg::no_way::{NoWay, no_way};
-use crate::leg::solve::arrival::Arrival;
+use crate::leg::no_way::{NoWay, WayProblem, no_way};
 use crate::model::plan::Outcome;
 use crate::model::problem::{Code, Problem};
 use crate::tour::order::Place;
@@ -40,12 +38,11 @@ fn enclosed(places: &Places<'_>) -> Vec<Problem> {
 /// What is said where the cones leave no way between two places.
 fn way_between(places: &Places<'_>, [from, to]: [Place; 2], names: [&str; 2]) -> Option<NoWay> {
     let pointer = pointer_of(to);
-    let [from, to] = [from, to].map(|place| places.attitude(place));
-    let between = PathProblem {
+    let [from, to] = [from, to].map(|place| places.waypoint(place));
+    let between = WayProblem {
         cones: &places.with_cones.cones,
-        from,
-        to,
-        signed: places.arrival == Arrival::Quaternion,
+        ends: [&from, &to],
+        arrival: places.arrival,
     };
     no_way(&between, names, pointer)
 }
@@ -120,7 +117,7 @@ fn unsolved_slew(tours: &Tours<'_>, from: Place, to: Place) -> Option<Problem> {
 /// envelope of the wheels, if there is one.
 fn outside_on_turn(tours: &Tours<'_>, from: Place, to: Place) -> Option<OutsideEnvelope> {
     let places = &tours.places;
-    let [from, to] = [from, to].map(|place| places.attitude(place));
+    let [from, to] = places.nearest_attitudes([from, to]);
     let turn = places.arrival.turn_vector(&from, &to);
     outside_envelope(places.scenario, &from, turn)
 }

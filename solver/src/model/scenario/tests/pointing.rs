@@ -198,7 +198,7 @@ fn faults_of_pointings_are_found() {
             "/targets/0/pointing",
         ),
         (
-            |s| s.start.pointing = Some(PointingSpec::default()),
+            |s| s.start.pointing = Some(limited(10.0, 20.0)),
             Code::ConflictingFields,
             "/start/pointing",
         ),

@@ -294,7 +294,10 @@ fn a_single_slew_chooses_the_rolls_at_both_ends() {
         }
         let given = solve(&given);
         assert!((number(&given, "end_roll_deg").expect("told") - beside).abs() < 1e-3);
-        assert!(number(&given, "time_s") > number(&free, "time_s"), "{beside}");
+        assert!(
+            number(&given, "time_s") > number(&free, "time_s"),
+            "{beside}"
+        );
     }
     slew["start"] = json!({"pointing": pointing(json!([1, 0, 0]))});
     let both = solve(&slew);
@@ -302,7 +305,10 @@ fn a_single_slew_chooses_the_rolls_at_both_ends() {
     assert!(number(&both, "time_s") < number(&free, "time_s"));
 
     // The roll would turn the momentum of the wheels.
-    let wheels = slew["spacecraft"]["wheels"].as_array().expect("a list").len();
+    let wheels = slew["spacecraft"]["wheels"]
+        .as_array()
+        .expect("a list")
+        .len();
     slew["start"]["wheel_speed_rad_s"] = json!(vec![5; wheels]);
     let told = slewplan_fed(&["slew", "-"], slew.to_string().as_bytes()).expect_code(2);
     assert!(

@@ -6,10 +6,9 @@
 Three or four wheels, full inertia matrices, with and without stored momentum, random boresights. A third
 ends at a direction with every roll, a third with a limited one, a third leads from one direction to
 another, without stored momentum. IPOPT (pointing_peer.py: 40 intervals, the best of so many starts)
-minimises over the rolls too. slewplan's torques of the former two are integrated here (motion.py); the
+minimises over the rolls too. The torques of `slewplan slew` are integrated here (motion.py); the
 boresight has to arrive within 1e-5 rad and the roll in its range. Times are those of slewplan's process
-with all its starts, and of one IPOPT solve without the building of its program; between two directions
-the process solves a table of six legs.
+with all its starts, and of one IPOPT solve without the building of its program.
 
 SLEWPLAN names a built binary; CasADi is installed where it is not there (environment.py). Ends with code
 1 when a slew is not solved or misses its end, and with --judge also when durations or times do not meet
@@ -80,48 +79,53 @@ def direction_end(generator, limited):
 
 
 def slew(seed, number):
-    """A scenario, and what the peer is asked."""
+    """A slew, and its ends as the peer and the judge read them."""
     generator = np.random.default_rng([seed, number])
     between_directions = number % 3 == 2
     stored = number % 4 >= 2 and not between_directions
     craft, speeds = spacecraft(generator, 3 + number % 2, stored)
     first = unit(generator.normal(size=4))
-    start = {"attitude": {"quaternion": dict(zip("xyzw", rounded(first, 12)))}, "wheel_speed_rad_s": speeds}
+    given = {"attitude": {"quaternion": dict(zip("xyzw", rounded(first, 12)))}}
+    start = given | {"wheel_speed_rad_s": speeds}
     ends = [{"attitude": unit(rounded(first, 12)), "axis": [1.0, 0.0, 0.0], "range": None}]
-    targets = []
-    for name in ("a", "b") if between_directions else ("b",):
+    for _ in range(2 if between_directions else 1):
         pointing, end = direction_end(generator, number % 3 == 1 or (between_directions and number % 2))
-        targets.append({"id": name, "pointing": pointing})
-        ends.append(end)
-    scenario = {"spacecraft": craft, "start": start, "targets": targets}
-    return scenario, {"spacecraft": craft, "speeds": speeds, "ends": ends[-2:]}
+        ends.append({**end, "pointing": pointing})
+    if between_directions:
+        start = {"pointing": ends[1]["pointing"]}
+    document = {"spacecraft": craft, "start": start, "end": {"pointing": ends[-1]["pointing"]}}
+    return document, {"spacecraft": craft, "speeds": speeds, "ends": ends[-2:]}
 
 
-def flown(program, scenario, asked):
+def flown(program, document, asked):
     """Duration, s, process time, s, and what is wrong with the flight."""
-    if len(scenario["targets"]) == 2:
-        rows, taken = legs(program, scenario)
-        row = rows["a", "b"]
-        return row["duration_s"], taken, "" if row["duration_s"] else row["status"]
-    plan, taken = slewplan.solve(program, scenario, "--threads", "1")
-    _, states = fly(scenario, plan)
-    reached, end = states[-1, :4] / np.linalg.norm(states[-1, :4]), asked["ends"][1]
-    complaint, missed = "", pointing_peer.off(reached, end)
+    answer, taken = slewplan.run(program, "slew", document, [], (0, 1), progress=False)
+    found = answer["slews"][0]
+    if not found["solved"]:
+        return None, taken, found["status"]
+    trajectory = found["trajectory"]
+    begin = {**document["start"], "attitude": {"quaternion": trajectory["states"][0]["quaternion"]}}
+    torques = [
+        {**control, "wheel_torque_nm": control["wheel_torque_begin_nm"]} for control in trajectory["controls"]
+    ]
+    _, states = fly({**document, "start": begin}, {"trajectory": {"controls": torques}})
+    complaints = [complaint(state[:4], end) for state, end in zip(states[[0, -1]], asked["ends"])]
+    return found["time_s"], taken, "; ".join(filter(None, complaints))
+
+
+def complaint(attitude, end):
+    """What is wrong with an attitude at an end; nothing where it is that of the end."""
+    attitude = attitude / np.linalg.norm(attitude)
+    missed = pointing_peer.off(attitude, end)
     if missed > MOST_MISS:
-        complaint = f"the direction is missed by {missed:.1e} rad"
-    rolled = product(end["attitude"] * np.array([-1, -1, -1, 1.0]), reached)
+        return f"the direction is missed by {missed:.1e} rad"
+    rolled = product(end["attitude"] * np.array([-1, -1, -1, 1.0]), attitude)
     roll = 2 * np.arctan2(rolled[:3] @ unit(end["axis"]), rolled[3])
-    low, high = end["range"]
-    middle = (low + high) / 2 if low > -np.inf else roll
-    away = abs((roll - middle + np.pi) % (2 * np.pi) - np.pi)
-    if low > -np.inf and away > (high - low) / 2 + ROLL_FLOOR:
-        complaint = f"the roll is {np.degrees(away - (high - low) / 2):.6f} degrees outside"
-    return plan["total_time_s"], taken, complaint
-
-
-def legs(program, scenario):
-    table, taken = slewplan.run(program, "legs", scenario, ["--threads", "1"], (0, 1))
-    return {(row["from"], row["to"]): row for row in table["legs"]}, taken
+    low, high = end["range"] or (0.0, 0.0)
+    if low == -np.inf:
+        return ""
+    away = abs((roll - (low + high) / 2 + np.pi) % (2 * np.pi) - np.pi) - (high - low) / 2
+    return f"the roll is {np.degrees(away):.6f} degrees outside" if away > ROLL_FLOOR else ""
 
 
 def main():

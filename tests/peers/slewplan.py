@@ -52,11 +52,12 @@ def legs(program, scenario, kind):
     return {(row["from"], row["to"]): row for row in table["legs"]}
 
 
-def run(program, command, scenario, arguments, accepted):
+def run(program, command, scenario, arguments, accepted, progress=True):
     with tempfile.TemporaryDirectory() as folder:
         given, answer = Path(folder, "scenario.json"), Path(folder, "answer.json")
         given.write_text(json.dumps(scenario), encoding="utf-8")
-        line = [program, command, given, "-o", answer, "--progress", "none", *arguments]
+        quiet = ["--progress", "none"] if progress else []
+        line = [program, command, given, "-o", answer, *quiet, *arguments]
         ran, taken = timed(line)
         if ran.returncode not in accepted:
             sys.exit(f"slewplan {command} ended with code {ran.returncode}")

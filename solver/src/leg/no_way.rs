@@ -47,7 +47,10 @@ impl WayProblem<'_> {
     fn searches(&self) -> Option<Vec<PathSearch>> {
         let [begins, arrivals] = self.ends.map(Waypoint::attitude_of_each_arc);
         let mut without = Vec::new();
-        for (from, to) in begins.iter().flat_map(|from| arrivals.iter().map(move |to| (from, to))) {
+        for (from, to) in begins
+            .iter()
+            .flat_map(|from| arrivals.iter().map(move |to| (from, to)))
+        {
             let search = clear_path::find(&PathProblem {
                 cones: self.cones,
                 from: *from,
@@ -95,4 +98,67 @@ pub(crate) fn no_way(
         is_proved: unknown.is_none(),
         problem: Problem::new(pointer, Code::NoClearPath, message, HINT),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::attitude::Attitude;
+    use crate::model::roll::RollArcs;
+    use crate::model::scenario::RateCondition;
+    use crate::model::waypoint::WheelCondition;
+    use nalgebra::Vector3;
+    use std::f64::consts::{PI, TAU};
+
+    fn at(attitude: Attitude, roll: Option<RollArcs>) -> Waypoint {
+        Waypoint {
+            attitude,
+            roll,
+            rate: [RateCondition::Fixed(0.0); 3],
+            wheels: WheelCondition::Free,
+            costates: None,
+        }
+    }
+
+    /// Cones in a closed ring around body x as the identity attitude points it.
+    fn ring() -> Vec<ForbiddenCone> {
+        let around = (0..12).map(|i| TAU * f64::from(i) / 12.0);
+        let cone = |angle: f64| ForbiddenCone {
+            axis: Vector3::x(),
+            direction: Vector3::new(
+                0.7_f64.cos(),
+                0.7_f64.sin() * angle.cos(),
+                0.7_f64.sin() * angle.sin(),
+            ),
+            half_angle: 0.3,
+        };
+        around.map(cone).collect()
+    }
+
+    #[test]
+    fn a_way_from_any_arc_of_the_rolls_is_a_way() {
+        let cones = ring();
+        let away = at(Attitude::from_rotation_vector(Vector3::z() * PI), None);
+        let parted = |roll: Option<RollArcs>| {
+            let to = at(Attitude::identity(), roll);
+            let between = WayProblem {
+                cones: &cones,
+                ends: [&away, &to],
+                arrival: Arrival::Rotation,
+            };
+            no_way(&between, ["away", "there"], "/end")
+        };
+        // Body z stays where it is, and body x is within the ring or beyond it.
+        let (within, beyond) = ([-0.3, 0.3], [1.2, TAU - 1.2]);
+        let rolls = |arcs: &[[f64; 2]]| {
+            Some(RollArcs {
+                axis: Vector3::z(),
+                arcs: arcs.to_vec(),
+            })
+        };
+        let closed = parted(rolls(&[within])).expect("the ring is closed");
+        assert!(closed.is_proved && parted(None).is_some_and(|there| there.is_proved));
+        assert!(parted(rolls(&[within, beyond])).is_none());
+        assert!(parted(rolls(&[beyond])).is_none());
+    }
 }

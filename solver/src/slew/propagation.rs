@@ -111,13 +111,18 @@ pub(super) fn propagate(slew: &Slew, motion: &SlewMotion) -> PropagatedSlew {
     let mut energies = MotorEnergies::default();
     let from = slew.ends_towards(motion)[0].attitude;
     let rolled = scenario.start().roll.map(|_| scenario.starting_in(from));
-    let flight = propagate_ramps(rolled.as_ref().unwrap_or(scenario), drives, &ramps, |moment| {
-        for actuator in &slew.vehicle().dynamics.actuators {
-            let spent = spent(&drives[actuator.index], actuator.index, moment);
-            energies.proxy_j += spent.proxy_j;
-            energies.bill_j += spent.bill_j;
-        }
-    });
+    let flight = propagate_ramps(
+        rolled.as_ref().unwrap_or(scenario),
+        drives,
+        &ramps,
+        |moment| {
+            for actuator in &slew.vehicle().dynamics.actuators {
+                let spent = spent(&drives[actuator.index], actuator.index, moment);
+                energies.proxy_j += spent.proxy_j;
+                energies.bill_j += spent.bill_j;
+            }
+        },
+    );
     let mut propagated = PropagatedSlew {
         pieces: ramps.iter().map(piece).collect(),
         states: Vec::new(),

@@ -106,7 +106,9 @@ impl Slew {
             AttitudeEquivalence::Quaternion => Arrival::Quaternion,
         };
         let target = scenario.end().map_or(start.attitude, |end| end.attitude);
-        let end_rolls = scenario.end().and_then(|end| rolls(&end.roll, &end.attitude));
+        let end_rolls = scenario
+            .end()
+            .and_then(|end| rolls(&end.roll, &end.attitude));
         let rate = scenario.end().map_or(start.rate, |end| end.rate);
         let speeds = scenario.end().and_then(|end| end.wheel_speed.clone());
         let null = dynamics.null_component(&start_momenta);

@@ -99,6 +99,9 @@ def used(folder):
         for form in typing.get_args(slewplan.Format):
             assert client.export(job["id"], form)
         assert len(client.export(job["id"], "csv", step_s=1.0)) < len(client.export(job["id"], "csv"))
+        stars = fixture("stars-and-sun")
+        rolls = [stop.get("roll_deg") for stop in client.plan(client.wait(client.submit(stars)["id"])["id"])["passages"]]
+        assert len(rolls) == len(stars["targets"]) and None not in rolls, rolls
         client.delete(job["id"])
         for call in (client.job, client.stop, client.cancel, client.plan):
             try:
@@ -137,6 +140,11 @@ def tabulated(folder):
         csv = pandas.read_csv(io.BytesIO(client.export_legs(job["id"], "csv")))
         assert numpy.allclose(csv.duration_s, frame.duration_s, rtol=1e-12, atol=0) and (csv.key == frame.key).all()
         assert {row["source"] for row in client.query_legs(query).rows} == {"cached"}
+        pointing = [{"pointing": {"boresight": [0, 0, 1], "ra_dec_deg": [40 * n, 10 * n]}} for n in range(3)]
+        free = client.query_legs({**query, "attitudes": pointing}).array()
+        roll_0 = [{"ra_dec_roll_deg": [40 * n, 10 * n, 0], "boresight": [0, 0, 1]} for n in range(3)]
+        given = client.query_legs({**query, "attitudes": roll_0}).array()
+        assert (free[~numpy.eye(3, dtype=bool)] < given[~numpy.eye(3, dtype=bool)]).all(), (free, given)
         client.delete_legs(job["id"])
         for call in (client.leg_job, client.stop_legs, client.cancel_legs, client.leg_table):
             try:

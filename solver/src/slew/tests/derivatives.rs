@@ -4,7 +4,7 @@ use super::craft::{biros, camera, cone, lro_drives, wheel};
 use crate::leg::profile::Profile;
 use crate::leg::transcription::Scales;
 use crate::model::drive::{DriveSpec, SpeedLawSpec};
-use crate::model::spec::{SpacecraftSpec, StateSpec};
+use crate::model::spec::{PointingSpec, SpacecraftSpec, StateSpec};
 use crate::nlp::{Chain, Iterate, Layout, Link, LinkModel, LinkMultipliers, models_of};
 use crate::slew::cost_weights::CostWeights;
 use crate::slew::motion::SlewMotion;
@@ -14,7 +14,7 @@ use crate::slew::{EnergyMeasure, Slew, SlewSpec, WheelAllocation};
 use nalgebra::{DVector, Vector3};
 
 /// Four wheels with friction and motors, one under a speed law, stored momentum, rate limits, a cone.
-fn slew(allocation: WheelAllocation) -> Slew {
+fn slew(allocation: WheelAllocation, pointing: Option<PointingSpec>) -> Slew {
     let mut drives = lro_drives();
     for drive in &mut drives {
         drive.coulomb_friction_nm = Some(0.004);
@@ -46,6 +46,10 @@ fn slew(allocation: WheelAllocation) -> Slew {
         keep_out: vec![cone([1.0, 1.0, 0.3], 35.0)],
         start: StateSpec {
             wheel_speed_rad_s: Some(vec![1.0, -2.0, 0.5, 40.0, 50.0]),
+            ..StateSpec::default()
+        },
+        end: StateSpec {
+            pointing,
             ..StateSpec::default()
         },
         allocation,
@@ -270,8 +274,18 @@ impl Fixture {
 
 #[test]
 fn derivatives_of_programs_of_every_shape_match_finite_differences() {
-    for allocation in [WheelAllocation::Free, WheelAllocation::PseudoInverse] {
-        let slew = slew(allocation);
+    let limited = PointingSpec {
+        direction: Some([0.2, 0.9, 0.4].into()),
+        roll_min_deg: Some(20.0),
+        roll_max_deg: Some(50.0),
+        ..PointingSpec::default()
+    };
+    let slews = [
+        slew(WheelAllocation::Free, None),
+        slew(WheelAllocation::PseudoInverse, None),
+        slew(WheelAllocation::Free, Some(limited)),
+    ];
+    for slew in slews {
         for of in shapes(&slew) {
             for node in 0..3 {
                 let fixture = Fixture::new(&slew, of.clone(), node);

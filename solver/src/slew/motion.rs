@@ -70,6 +70,14 @@ impl SlewMotion {
     /// The same attitudes in another duration, s, with rates scaled accordingly. Torques of the result
     /// are constant between nodes.
     pub(super) fn stretched_to(&self, duration: f64, dynamics: &Dynamics) -> Self {
+        if self.duration() == 0.0 {
+            // One state all the time, at rest: another one would not last.
+            let lengths = vec![duration / self.lengths.len() as f64; self.lengths.len()];
+            return Self {
+                lengths,
+                ..self.clone()
+            };
+        }
         let factor = duration / self.duration();
         let slower = self.attitudes.iter().zip(&self.momenta).map(|(q, h)| {
             let rate = dynamics.rate(q, h) / factor;

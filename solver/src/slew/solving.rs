@@ -150,6 +150,9 @@ impl ProgramTask<'_> {
         guess: &SlewMotion,
         stop: &dyn Fn() -> Option<StopReason>,
     ) -> ProgramSolution {
+        if guess.duration() == 0.0 && self.cost_weights.duration.is_none() {
+            return self.standing_still(guess);
+        }
         let own = self.shape.lengths == IntervalLengths::Free;
         if !own {
             return self.solve_in(&WITHOUT_LENGTHS, guess, stop);
@@ -161,6 +164,19 @@ impl ProgramTask<'_> {
             }
         }
         self.solve_in(&WITH_LENGTHS, guess, stop)
+    }
+
+    /// The solution between two ends that one state meets: no time passes, at no cost.
+    fn standing_still(&self, motion: &SlewMotion) -> ProgramSolution {
+        let program = self.program(motion);
+        ProgramSolution {
+            status: NlpStatus::Converged,
+            motion: motion.clone(),
+            cost: 0.0,
+            iterations: 0,
+            iterate: program.iterate_at(motion),
+            program,
+        }
     }
 
     fn solve_in(

@@ -50,6 +50,34 @@ fn energies_under_all_commands_are_within_five_per_cent() {
 }
 
 #[test]
+fn a_slew_that_ends_as_it_begins_takes_no_time_and_no_energy() {
+    let sampled = TorqueCommand::Sampled {
+        period_s: 10.0,
+        hold: SampleHold::Constant,
+    };
+    let commands = [
+        TorqueCommand::default(),
+        TorqueCommand::Uniform { intervals: 10 },
+        TorqueCommand::Smooth { intervals: 10 },
+        sampled,
+    ];
+    for command in commands {
+        let mut spec = SlewSpec {
+            end: StateSpec::default(),
+            final_wheels: FinalWheels::Free,
+            objective: Objective::MinimumTime,
+            ..minimum_energy(command, EnergyMeasure::Proxy)
+        };
+        let still = solved(&spec);
+        let most = if command == sampled { 20.0 } else { 0.0 };
+        assert!(still.time_s <= most && still.effort < 1e-12, "{still:?}");
+        spec.objective = minimum_energy(command, EnergyMeasure::Proxy).objective;
+        let still = solved(&spec);
+        assert!((still.time_s - 900.0).abs() < 1e-6 && still.objective.abs() < 1e-9);
+    }
+}
+
+#[test]
 fn the_bill_includes_efficiency_and_quiescent_power() {
     let mut spec = minimum_energy(
         TorqueCommand::Uniform { intervals: 60 },

@@ -93,6 +93,14 @@ impl Transaction {
         }
     }
 
+    /// Rolls it back, and waits until that is done.
+    pub(super) async fn rollback(self) -> Result<(), sqlx::Error> {
+        match self {
+            Self::Sqlite(transaction) => transaction.rollback().await,
+            Self::Postgres(transaction) => transaction.rollback().await,
+        }
+    }
+
     /// Waits until no other transaction has this turn, and takes it until its end.
     pub(super) async fn take_turn(&mut self, turn: Turn) -> Result<(), StoreError> {
         if let Self::Postgres(_) = self {

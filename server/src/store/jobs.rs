@@ -87,6 +87,8 @@ impl Store {
         if let Some((key, fingerprint)) = &submission.key
             && let Some(known) = find_key(&mut transaction, key).await?
         {
+            // The next submission shall not wait for the turn of one that queues nothing.
+            transaction.rollback().await?;
             return Ok(if known.fingerprint == *fingerprint {
                 Submitted::Replayed(known.job)
             } else {
@@ -94,6 +96,7 @@ impl Store {
             });
         }
         if let Some(refusal) = refusal(&mut transaction, submission, limits).await? {
+            transaction.rollback().await?;
             return Ok(refusal);
         }
         let job: JobRow = sql(concat!(

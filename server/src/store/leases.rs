@@ -143,6 +143,8 @@ impl Store {
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(lease) = lease else {
+            // A job without room is locked, and nobody else finds it while it is.
+            transaction.rollback().await?;
             return Ok(None);
         };
         events::append(&mut transaction, "state", &lease.job, now_us).await?;

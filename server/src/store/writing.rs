@@ -56,6 +56,12 @@ impl WriteTransaction {
         }
         Ok(())
     }
+
+    /// Ends the transaction without its changes. One that is only dropped keeps its locks until the
+    /// pool has its connection back, some time after the drop.
+    pub(super) async fn rollback(self) -> Result<(), StoreError> {
+        Ok(self.transaction.rollback().await?)
+    }
 }
 
 impl Deref for WriteTransaction {

@@ -3,7 +3,7 @@
 
 import { disclosure, el, section, table } from "../dom.js";
 import { fixed, significant } from "../format.js";
-import { indexAt } from "../flight.js";
+import { valueAt } from "../flight.js";
 import { lanes } from "./lanes.js";
 import { beyond, decorate, reach } from "./limits.js";
 import { curve } from "./palette.js";
@@ -118,7 +118,7 @@ function chart(flight, group) {
       one.plot = plot(place, options(flight, group, cursor, one, charts, lane), [group.times, ...group.curves], signal);
     },
     show(time) {
-      group.names.forEach((_, which) => (values[which].textContent = group.text(valueAt(group, which, time))));
+      group.names.forEach((_, which) => (values[which].textContent = group.text(valueOf(group, which, time))));
       if (!one.plot || one.hovered) return;
       one.plot.setCursor({ left: one.plot.valToPos(time, "x"), top: 0 }, false, false);
     },
@@ -126,15 +126,7 @@ function chart(flight, group) {
   return one;
 }
 
-/** The value of a curve at a moment: that in force, or between two samples. */
-function valueAt({ times, curves, steps }, which, time) {
-  const index = indexAt(times, time);
-  const next = Math.min(index + 1, times.length - 1);
-  const span = times[next] - times[index];
-  const samples = curves[which];
-  if (steps || span <= 0) return samples[index];
-  return samples[index] + ((samples[next] - samples[index]) * (time - times[index])) / span;
-}
+const valueOf = ({ times, curves, steps }, which, time) => valueAt({ times, samples: curves[which], steps }, time);
 
 function options(flight, group, cursor, one, charts, lane) {
   const range = reach(group);
@@ -199,7 +191,7 @@ function samples(flight, own) {
     names.map((name) => ({ title: `${what} ${name}, ${unit}`, number: true })));
   const shown = flight.times.slice(0, MOST_ROWS);
   const rows = shown.map((time) => [fixed(time, 3), ...own.flatMap((group) =>
-    group.curves.map((_, which) => fixed(valueAt(group, which, time), group.digits)))]);
+    group.curves.map((_, which) => fixed(valueOf(group, which, time), group.digits)))]);
   const more = flight.times.length - shown.length;
   return el("div", {}, table("Samples of the trajectory", [{ title: "Time, s", number: true }, ...columns], rows),
     more > 0 ? el("p", { class: "quiet" }, `${more} more rows are in the CSV.`) : null);

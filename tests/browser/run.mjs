@@ -8,8 +8,9 @@ import { hostile } from "./hostile.mjs";
 import { journeys } from "./journeys.mjs";
 import { looks } from "./looks.mjs";
 import { modules } from "./modules.mjs";
+import { units } from "./units.mjs";
 
-const PARTS = { modules, hostile, journeys, answers, details, body, looks };
+const PARTS = { modules, hostile, journeys, answers, details, body, units, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

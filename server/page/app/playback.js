@@ -1,7 +1,8 @@
 // Plays the flight: moves the shared moment on, at a choice of speeds.
 
 import { el } from "./dom.js";
-import { seconds } from "./format.js";
+import { settings } from "./settings.js";
+import { clockOf, momentText } from "./units.js";
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 /** So long takes a flight at the speed that is chosen first, s. */
@@ -63,7 +64,10 @@ export function playback(flight, cursor, signal) {
     if (now() >= flight.total) pause();
     else again();
   }
-  cursor.listen((time) => (moment.textContent = seconds(time, 1)), signal);
+  const clock = clockOf(flight.scenario);
+  const show = () => (moment.textContent = momentText(now(), clock));
+  cursor.listen(show, signal);
+  settings.listen(show, signal);
   signal.addEventListener("abort", pause);
   node.dataset.playing = "no";
   return { node, toggle };

@@ -2,6 +2,8 @@
 
 import { el } from "../dom.js";
 import { fixed } from "../format.js";
+import { settings } from "../settings.js";
+import { rateUnit, speedUnit } from "../units.js";
 import { dot, longitudeLatitude, rotate } from "../rotation.js";
 
 const DEGREES = 180 / Math.PI;
@@ -23,6 +25,7 @@ export function readings(flight, parts, cursor, signal) {
       el("tr", {}, el("th", { scope: "row" }, name), el("td", { class: "number" }, value))));
   };
   node.addEventListener("toggle", renew);
+  settings.listen(renew, signal);
   cursor.listen(() => {
     if (waiting || !node.open) return;
     waiting = true;
@@ -37,10 +40,11 @@ export function rowsAt(flight, parts, time) {
   const rates = flight.ratesAt(time);
   const speeds = flight.speedsAt(time);
   const torques = flight.torquesAt?.(time);
+  const [rate, speed] = [rateUnit(), speedUnit()];
   return [
     ["time, s", fixed(time, 2)],
     ["quaternion x, y, z, w", attitude.map((part) => fixed(part, 5)).join(", ")],
-    ["body rate x, y, z, deg/s", rates.map((rate) => fixed(rate * DEGREES, 4)).join(", ")],
+    [`body rate x, y, z, ${rate.unit}`, rates.map((value) => fixed(value * rate.factor, rate.digits)).join(", ")],
     ...parts.boresights.flatMap(({ name, direction, cones }) => {
       const pointing = rotate(attitude, direction);
       return [
@@ -49,7 +53,7 @@ export function rowsAt(flight, parts, time) {
       ];
     }),
     ...parts.wheels.map(({ name, full, limited }, index) => [name, [
-      `${fixed(speeds[index], 1)} rad/s`, limited ? `${fixed((100 * speeds[index]) / full, 1)} % of its limit` : null,
+      `${fixed(speed.factor * speeds[index], speed.shown)} ${speed.unit}`, limited ? `${fixed((100 * speeds[index]) / full, 1)} % of its limit` : null,
       torques ? `${fixed(1000 * torques[index], 3)} mN m` : null,
     ].filter(Boolean).join(", ")]),
   ];

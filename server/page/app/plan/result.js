@@ -28,7 +28,7 @@ export function result(job, plan, scenario, beside, signal) {
     banner(plan, scenario),
     job.detail ? el("p", { class: "quiet so-far" }, `The search ended without a plan of its own: ${job.detail}. The best before that:`) : null,
     isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
-    order(plan, cursor),
+    order(plan, scenario, cursor, signal),
     flown(flight, cursor, signal),
     legs(plan, flight),
     el("div", { class: "cards" }, verification(plan), beside),

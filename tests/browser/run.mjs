@@ -1,14 +1,16 @@
 // Runs the parts and prints what held.
 
 import { answers } from "./answers.mjs";
+import { body } from "./body.mjs";
 import { details } from "./details.mjs";
 import { openBrowser, startService } from "./harness.mjs";
 import { hostile } from "./hostile.mjs";
 import { journeys } from "./journeys.mjs";
 import { looks } from "./looks.mjs";
 import { modules } from "./modules.mjs";
+import { units } from "./units.mjs";
 
-const PARTS = { modules, hostile, journeys, answers, details, looks };
+const PARTS = { modules, hostile, journeys, answers, details, body, units, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

@@ -16,8 +16,9 @@ export class Cursor {
     for (const listener of this.#listeners) listener(time);
   }
 
-  /** Calls back with every new moment. */
-  listen(listener) {
+  /** Calls back with every new moment, while the signal lasts. */
+  listen(listener, signal) {
     this.#listeners.push(listener);
+    signal?.addEventListener("abort", () => (this.#listeners = this.#listeners.filter((other) => other !== listener)));
   }
 }

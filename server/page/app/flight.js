@@ -14,6 +14,7 @@ export function flightOf(plan, scenario) {
     ...moved,
     total: plan.total_time_s,
     torques: { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true },
+    torquesAt: (time) => inForce[indexAt(moved.times, time)],
     phases: phases(plan, scenario),
     stops: stops(plan, scenario),
     alarms: alarmsOf(plan),
@@ -25,13 +26,16 @@ export function motion(states, asked, plan) {
   const times = states.map((state) => state.time_s);
   const attitudes = states.map((state) => quaternion(state.quaternion));
   const excluded = excludedBy(asked, plan);
+  const rates = [0, 1, 2].map((axis) => states.map((state) => state.body_rate_rad_s[axis]));
+  const speeds = asked.spacecraft.wheels.map((_, wheel) => states.map((state) => state.wheel_speed_rad_s[wheel]));
+  const all = (curves) => (time) => curves.map((samples) => valueAt({ times, samples }, time));
   return {
     scenario: asked,
     total: times.at(-1),
     times,
     attitudes,
-    rates: [0, 1, 2].map((axis) => states.map((state) => state.body_rate_rad_s[axis])),
-    speeds: asked.spacecraft.wheels.map((_, wheel) => states.map((state) => state.wheel_speed_rad_s[wheel])),
+    rates,
+    speeds,
     limits: limits(asked),
     phases: [],
     stops: [],
@@ -39,6 +43,8 @@ export function motion(states, asked, plan) {
     excluded,
     clearances: clearanceCurves(excluded, asked, attitudes),
     attitudeAt: (time) => attitudeAt(times, attitudes, time),
+    ratesAt: all(rates),
+    speedsAt: all(speeds),
   };
 }
 
@@ -116,6 +122,15 @@ export function indexAt(times, time) {
     else high = middle - 1;
   }
   return low;
+}
+
+/** The value of a curve at a moment: that in force (`steps`), or between two samples. */
+export function valueAt({ times, samples, steps }, time) {
+  const index = indexAt(times, time);
+  const next = Math.min(index + 1, times.length - 1);
+  const span = times[next] - times[index];
+  if (steps || span <= 0) return samples[index];
+  return samples[index] + ((samples[next] - samples[index]) * (time - times[index])) / span;
 }
 
 function attitudeAt(times, attitudes, time) {

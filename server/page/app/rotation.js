@@ -24,6 +24,9 @@ export function rotate(q, v) {
   return sum(v, sum(scaled(turn, 2 * q[3]), scaled(cross(q, turn), 2)));
 }
 
+/** The opposite rotation. */
+export const conjugate = ([x, y, z, w]) => [-x, -y, -z, w];
+
 /** The attitude at a fraction of the way, along the shorter great circle of quaternions. */
 export function slerp(from, to, fraction) {
   let cosine = from.reduce((total, value, index) => total + value * to[index], 0);

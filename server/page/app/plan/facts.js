@@ -2,7 +2,9 @@
 
 import { el } from "../dom.js";
 import { fixed, percent, seconds } from "../format.js";
+import { settings } from "../settings.js";
 import { strip } from "../strip.js";
+import { clockOf, shownClock } from "../units.js";
 
 const KINDS = {
   nlp_relaxation: "relaxed problems, each taken to be solved globally",
@@ -46,10 +48,15 @@ export function facts(plan) {
 }
 
 /** The visiting order; a target leads to the moment of its arrival. */
-export function order(plan, cursor) {
-  return el("ol", { class: "order", "aria-label": "Visiting order" }, plan.passages.map((passage) =>
+export function order(plan, scenario, cursor, signal) {
+  const clock = clockOf(scenario);
+  const text = ({ time_s: time, roll_deg: roll }) =>
+    [shownClock(clock)?.time(time) ?? seconds(time, 1), roll === undefined ? null : `roll ${fixed(roll, 1)}°`].filter(Boolean).join(", ");
+  const times = plan.passages.map(() => el("span", { class: "stop-time" }));
+  const renew = () => times.forEach((node, index) => (node.textContent = text(plan.passages[index])));
+  settings.listen(renew, signal);
+  renew();
+  return el("ol", { class: "order", "aria-label": "Visiting order" }, plan.passages.map((passage, index) =>
     el("li", {}, el("button", { type: "button", onclick: () => cursor.set(passage.time_s) },
-      el("span", { class: "stop-name" }, passage.target), " ",
-      el("span", { class: "stop-time" }, passage.roll_deg === undefined ? seconds(passage.time_s, 1)
-        : `${seconds(passage.time_s, 1)}, roll ${fixed(passage.roll_deg, 1)}°`)))));
+      el("span", { class: "stop-name" }, passage.target), " ", times[index]))));
 }

@@ -61,6 +61,7 @@ export function excludedBy(scenario, plan) {
       name: `${inward ? "keep-in" : "keep-out"} of ${cone.boresight}, ${cone.half_angle_deg}°`,
       boresight: cone.boresight,
       cone: `/${list}/${index}`,
+      body: cone.direction.body ?? null,
       direction: inward ? direction.map((part) => -part) : direction,
       halfAngle: inward ? Math.PI - half : half,
     }];

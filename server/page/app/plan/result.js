@@ -4,10 +4,9 @@ import { el, section } from "../dom.js";
 import { item } from "../failure.js";
 import { Cursor } from "../cursor.js";
 import { flightOf } from "../flight.js";
+import { flown } from "../flown.js";
 import { seconds } from "../format.js";
 import { isFinal } from "../state.js";
-import { sphere } from "../sphere/sphere.js";
-import { timelines } from "../plots/timelines.js";
 import { downloads } from "./downloads.js";
 import { facts, order } from "./facts.js";
 import { banner } from "./keep-out.js";
@@ -29,8 +28,8 @@ export function result(job, plan, scenario, beside, signal) {
     banner(plan, scenario),
     job.detail ? el("p", { class: "quiet so-far" }, `The search ended without a plan of its own: ${job.detail}. The best before that:`) : null,
     isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
-    order(plan, cursor),
-    el("div", { class: "flight" }, sphere(flight, cursor, signal), timelines(flight, cursor, signal)),
+    order(plan, scenario, cursor, signal),
+    flown(flight, cursor, signal),
     legs(plan, flight),
     el("div", { class: "cards" }, verification(plan), beside),
     matrix(plan, scenario, signal),

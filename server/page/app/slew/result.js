@@ -2,9 +2,8 @@
 
 import { Cursor } from "../cursor.js";
 import { el } from "../dom.js";
+import { flown } from "../flown.js";
 import { saved } from "../saved.js";
-import { sphere } from "../sphere/sphere.js";
-import { timelines } from "../plots/timelines.js";
 import { evidenceGroups, optimality } from "./evidence.js";
 import { slewFacts, slewVerification } from "./facts.js";
 import { slewFlight } from "./flight.js";
@@ -48,8 +47,7 @@ function one(slew, request, signal) {
   const cursor = new Cursor();
   return [
     slewFacts(slew, request),
-    el("div", { class: "flight" }, sphere(flight, cursor, signal),
-      timelines(flight, cursor, signal, evidenceGroups(slew.evidence))),
+    flown(flight, cursor, signal, evidenceGroups(slew.evidence)),
     cards,
   ];
 }

@@ -6,10 +6,8 @@ import { fixed } from "../format.js";
 import { dot, longitudeLatitude, rotate, sum, unit, upward } from "../rotation.js";
 import { viewOn } from "./projection.js";
 import { draw } from "./scene.js";
+import { turning } from "./turning.js";
 
-const KEY_STEP = 5;
-const ZOOM_STEP = 1.25;
-const MOST_ZOOM = 12;
 /** Below this length the mean direction of the targets says little about where they are. */
 const CLEAR = 0.3;
 const STEP = Math.PI / 90;
@@ -30,7 +28,7 @@ export function sphere(flight, cursor, signal) {
     axis = axes[choice.value];
     content = contentOf(flight, axis);
     data.replaceWith((data = directions(flight, axis)));
-    reset();
+    turned.reset();
   });
 
   let size = 0;
@@ -40,53 +38,32 @@ export function sphere(flight, cursor, signal) {
     asked = true;
     requestAnimationFrame(() => {
       asked = false;
-      if (size) draw(picture, size, { view: viewOn(pose.longitude, pose.latitude), zoom: pose.zoom }, content);
-      picture.dataset.pose = `${pose.longitude.toFixed(1)} ${pose.latitude.toFixed(1)} ${pose.zoom.toFixed(2)}`;
+      const { longitude, latitude, zoom } = turned.pose;
+      if (size) draw(picture, size, { view: viewOn(longitude, latitude), zoom }, content);
+      picture.dataset.pose = turned.told();
     });
   };
-  const turn = (longitude, latitude) => {
-    pose.longitude = (pose.longitude + longitude + 360) % 360;
-    pose.latitude = Math.max(-90, Math.min(90, pose.latitude + latitude));
-    renew();
+  const pressed = (node) => {
+    const stop = node.closest?.(".stop");
+    if (stop) cursor.set(Number(stop.dataset.time));
   };
-  const zoom = (factor) => {
-    pose.zoom = Math.max(1, Math.min(MOST_ZOOM, pose.zoom * factor));
-    renew();
-  };
-  function reset() {
-    [pose.longitude, pose.latitude] = middle(content);
-    pose.zoom = 1;
-    renew();
-  }
+  const turned = turning(picture, { renew, home: () => middle(content), width: () => size, pressed });
 
   cursor.listen((time) => {
     content.now = rotate(flight.attitudeAt(time), axis.direction);
     for (const stop of content.stops) stop.reached = stop.time <= time;
     renew();
   });
-  listenToKeys(picture, turn, zoom, reset);
-  const pressed = (node) => {
-    const stop = node.closest?.(".stop");
-    if (stop) cursor.set(Number(stop.dataset.time));
-  };
-  const dragged = (dx, dy) => {
-    const degrees = 360 / (Math.PI * size * pose.zoom);
-    turn(-dx * degrees, dy * degrees);
-  };
-  listenToPointer(picture, pressed, dragged);
   const watcher = new ResizeObserver(([entry]) => {
     size = Math.round(entry.contentRect.width);
     renew();
   });
   watcher.observe(picture);
   signal.addEventListener("abort", () => watcher.disconnect());
-  reset();
+  turned.reset();
 
   let data = directions(flight, axis);
-  const button = (text, label, act) => el("button", { type: "button", class: "small", "aria-label": label, onclick: act }, text);
-  const head = el("div", { class: "tools" }, el("label", { for: "body-axis" }, "Axis"), choice,
-    button("−", "Zoom out", () => zoom(1 / ZOOM_STEP)), button("+", "Zoom in", () => zoom(ZOOM_STEP)),
-    button("Reset", "Reset the view", reset));
+  const head = el("div", { class: "tools" }, el("label", { for: "body-axis" }, "Axis"), choice, turned.buttons);
   return section("Sky", { head, class: "sky" }, picture, legend(flight), data);
 }
 
@@ -151,46 +128,6 @@ function middle(content) {
   const mean = places.reduce((total, place) => sum(total, place.direction), [0, 0, 0]);
   const clear = Math.hypot(...mean) > CLEAR * places.length;
   return clear ? longitudeLatitude(mean) : [longitudeLatitude(content.ends[0].direction)[0], 30];
-}
-
-function listenToKeys(picture, turn, zoom, reset) {
-  const acts = {
-    ArrowLeft: () => turn(-KEY_STEP, 0), ArrowRight: () => turn(KEY_STEP, 0),
-    ArrowUp: () => turn(0, KEY_STEP), ArrowDown: () => turn(0, -KEY_STEP),
-    "+": () => zoom(ZOOM_STEP), "=": () => zoom(ZOOM_STEP), "-": () => zoom(1 / ZOOM_STEP), 0: reset,
-  };
-  picture.addEventListener("keydown", (event) => {
-    picture.classList.remove("pointed");
-    const act = !event.ctrlKey && !event.metaKey && !event.altKey && acts[event.key];
-    if (!act) return;
-    event.preventDefault();
-    act();
-  });
-}
-
-function listenToPointer(picture, pressed, dragged) {
-  let [from, begun] = [null, null];
-  picture.addEventListener("pointerdown", (event) => {
-    from = begun = event;
-    // Whoever points sees what is turned; the frame of the focus is for keys.
-    picture.classList.add("pointed");
-    pressed(event.target);
-    picture.setPointerCapture(event.pointerId);
-  });
-  picture.addEventListener("pointermove", (event) => {
-    if (!from || event.pointerId !== from.pointerId) return;
-    dragged(event.clientX - from.clientX, event.clientY - from.clientY);
-    from = event;
-  });
-  picture.addEventListener("focus", () => {
-    if (!from) picture.classList.remove("pointed");
-  });
-  picture.addEventListener("pointerup", () => (from = null));
-  // The browser takes the finger for a scroll: what it has turned until then is taken back.
-  picture.addEventListener("pointercancel", () => {
-    if (from) dragged(begun.clientX - from.clientX, begun.clientY - from.clientY);
-    from = null;
-  });
 }
 
 function legend(flight) {

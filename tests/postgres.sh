@@ -67,7 +67,7 @@ start() {
 start "$@"
 while read -r command; do
     case "$command" in
-        kill) kill -QUIT "$server"; wait "$server" || true; echo killed ;;
+        kill) kill -QUIT "$server" 2>/dev/null || true; wait "$server" || true; echo killed ;;
         start) start "$@" ;;
         *) exit 2 ;;
     esac

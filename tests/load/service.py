@@ -23,22 +23,23 @@ def fixture(name):
     return json.loads((FIXTURES / f"{name}.json").read_text())
 
 
-class Service:
-    """`slewplan serve` on a free port."""
+class Process:
+    """A child process that tells on its standard output when it is ready."""
 
-    def __init__(self, database, *arguments):
-        # Of a database on a server nothing is beside it.
-        shared = str(database).startswith("postgres")
-        self.log = open(os.devnull if shared else f"{database}.log", "a")
-        command = [binary(), "serve", "--listen", "127.0.0.1:0", "--database", str(database)]
+    def __init__(self, command, arguments, log, announced, environment=None):
+        self.log = open(log, "a")
+        environment = {**os.environ, **(environment or {})}
         self.process = subprocess.Popen(
-            [*command, *arguments], stdout=subprocess.PIPE, stderr=self.log, text=True
+            [environment.get("SLEWPLAN") or binary(), command, *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=self.log,
+            text=True,
+            env=environment,
         )
-        line = self.process.stdout.readline()
-        if "listening on http://" not in line:
-            raise RuntimeError(f"the service did not start; see {self.log.name}")
-        self.host, port = line.strip().removeprefix("listening on http://").rsplit(":", 1)
-        self.port = int(port)
+        self.told = self.process.stdout.readline().strip()
+        if not self.told.startswith(announced):
+            self.kill()
+            raise RuntimeError(f"{command} did not start; see {self.log.name}")
 
     def __enter__(self):
         return self
@@ -47,27 +48,20 @@ class Service:
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
             self.process.wait(30)
+        self.close()
+
+    def close(self):
+        """Lets go of what it was read and written by."""
         self.log.close()
+        self.process.stdout.close()
 
     def kill(self):
         self.process.kill()
         self.process.wait()
 
-    def request(self, method, path, body=None, headers=None):
-        """Status and document of an answer."""
-        connection = http.client.HTTPConnection(self.host, self.port, timeout=120)
-        try:
-            headers = dict(headers or {})
-            if body is not None:
-                headers.setdefault("Content-Type", "application/json")
-                body = body if isinstance(body, (str, bytes)) else json.dumps(body)
-            connection.request(method, path, body, headers)
-            answer = connection.getresponse()
-            text = answer.read()
-            is_json = "json" in (answer.getheader("Content-Type") or "")
-            return answer.status, json.loads(text) if is_json and text else text
-        finally:
-            connection.close()
+
+class Client:
+    """What is asked of a service; `request` gives status and document of an answer."""
 
     def submit(self, scenario, **headers):
         status, job = self.request("POST", "/v1/plans", scenario, headers)
@@ -93,6 +87,44 @@ class Service:
 
     def wait_end(self, identifier, patience=120.0):
         return self.wait(identifier, lambda job: job["state"] in FINAL, patience)
+
+
+class Endpoint:
+    """Something that answers at a host and a port."""
+
+    def exchange(self, method, path, body=None, headers=None):
+        """Status, headers and document of an answer."""
+        connection = http.client.HTTPConnection(self.host, self.port, timeout=120)
+        try:
+            headers = dict(headers or {})
+            if body is not None:
+                headers.setdefault("Content-Type", "application/json")
+                body = body if isinstance(body, (str, bytes)) else json.dumps(body)
+            connection.request(method, path, body, headers)
+            answer = connection.getresponse()
+            text = answer.read()
+            is_json = "json" in (answer.getheader("Content-Type") or "")
+            return answer.status, answer.headers, json.loads(text) if is_json and text else text
+        finally:
+            connection.close()
+
+    def request(self, method, path, body=None, headers=None):
+        """Status and document of an answer."""
+        status, _, document = self.exchange(method, path, body, headers)
+        return status, document
+
+
+class Service(Process, Endpoint, Client):
+    """`slewplan serve` on a free port."""
+
+    def __init__(self, database, *arguments, log=None, environment=None):
+        # Of a database on a server nothing is beside it.
+        shared = str(database).startswith("postgres")
+        log = log or (os.devnull if shared else f"{database}.log")
+        arguments = ["--listen", "127.0.0.1:0", "--database", database, *arguments]
+        super().__init__("serve", arguments, log, "listening on http://", environment)
+        self.host, port = self.told.removeprefix("listening on http://").rsplit(":", 1)
+        self.port = int(port)
 
 
 class Table:

@@ -7,9 +7,9 @@ import re
 import subprocess
 import time
 
-from harness import FIXTURES, ROOT, Row, binary, elsewhere, example, gate, service
+from harness import HTTP_ALIKE, FIXTURES, ROOT, Row, binary, elsewhere, example, gate, service
 
-elsewhere("N5", "inertias and attitudes that cannot be are refused", "100 %", "cargo test -p slewplan-solver")
+elsewhere("N5", "inertias and attitudes that cannot be are refused", "100 %", "cargo test -p slewplan-solver", HTTP_ALIKE)
 
 
 def random_legs(count):
@@ -33,7 +33,7 @@ def is_true(plan):
     )
 
 
-@gate("N1")
+@gate("N1", of_a_file=HTTP_ALIKE)
 def no_success_is_false(scale):
     """Every plan that is called optimal or feasible passes; random and curated problems."""
     scenarios = [json.loads(path.read_text()) for path in sorted(FIXTURES.glob("*.json"))]
@@ -71,7 +71,7 @@ def texts_of_tests():
     return "\n".join(texts)
 
 
-@gate("N2")
+@gate("N2", of_a_file=HTTP_ALIKE)
 def every_failure_is_named(scale):
     """Every status and code is named by a test, and no number of an answer is not one."""
     tests, rows = texts_of_tests(), []
@@ -109,7 +109,7 @@ def holes(node, key=None):
         yield from holes(value, name)
 
 
-@gate("N8")
+@gate("N8", of_a_file=HTTP_ALIKE)
 def deadlines_hold(scale):
     """Random time limits over the fixtures: the command ends in time."""
     random_state, late, failed = random.Random(8), [], 0

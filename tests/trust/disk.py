@@ -1,103 +1,74 @@
 """Promises about the database: full disks, failing disks, locks, copies."""
 
 import errno
-import os
+import json
+import random
 import shutil
+import sqlite3
 import subprocess
 import threading
 import time
 
+from disks import failing, small_disk
 from harness import (
     ROOT,
     Background,
-    Faults,
     Row,
     binary,
     connect,
     elsewhere,
-    fixture,
     gate,
     percentile,
-    rows_of,
+    ready,
     service,
-    sound,
     timed,
+    until,
     variant,
 )
+from systems import FileDatabase
 
-elsewhere("D1", "SQLite is at least 3.51.3, or neither build nor start", "3.51.3", "const assertion and check at start in store.rs")
-
-
-def ready(running):
-    return running.request("GET", "/health/ready")[0]
-
-
-def until(condition, patience):
-    """Seconds until a condition holds; `None` when it does not in time."""
-    begin = time.monotonic()
-    while time.monotonic() - begin < patience:
-        if condition():
-            return time.monotonic() - begin
-        time.sleep(0.02)
-    return None
+elsewhere(
+    "D1",
+    "SQLite is at least 3.51.3, or neither build nor start",
+    "3.51.3",
+    "const assertion and check at start in store.rs",
+    of_a_file="the version of SQLite; of Postgres, 15 or newer, a check at start",
+)
 
 
 @gate("D2")
 def a_full_disk_is_survived(scale):
-    """A file system of 32 MB, filled and freed again and again under the running service."""
-    folder = scale.work / "small-disk"
-    folder.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=32m", "tmpfs", folder]
-    mounted = subprocess.run(mount, capture_output=True).returncode == 0
-    database = folder / "d2.db"
-    # Without the right to mount: every write is refused as if the disk were full.
-    faults = None if mounted else Faults(scale.work, database)
-
-    def fill():
-        if faults:
-            return faults.fail("write", 1, errno.ENOSPC, sticky=True)
-        with open(folder / "filler", "wb", buffering=0) as file:
-            try:
-                while True:
-                    file.write(bytes(4096))
-            except OSError:
-                pass
-
-    def free():
-        faults.clear() if faults else (folder / "filler").unlink()
-
-    rounds, statuses, slowest, reads, recoveries = scale.of(20, 3), {}, 0.0, set(), []
-    unnamed = 0
-    try:
-        with service(database, environment=faults.environment if faults else None) as running:
-            known = running.submit(variant(0))
-            running.wait_end(known)
-            process = running.process.pid
-            for number in range(rounds):
-                fill()
-                # What the write-ahead log has room for still passes.
-                big = variant(number + 1)
-                big["name"] = "x" * 200_000
-                for _ in range(40):
-                    took, (status, answer) = timed(lambda: running.request("POST", "/v1/plans", big))
-                    slowest = max(slowest, took)
-                    if status != 202:
-                        statuses[status] = statuses.get(status, 0) + 1
-                        unnamed += status == 507 and answer["code"] != "disk_full"
-                        break
-                reads.add(running.request("GET", f"/v1/plans/{known}/result")[0])
-                reads.add(running.request("GET", "/health/live")[0])
-                free()
-                recoveries.append(until(lambda: running.request("POST", "/v1/plans", variant(0))[0] == 202, 10.0))
-                for job in running.request("GET", "/v1/plans?limit=100")[1]["plans"]:
-                    if job["id"] != known:
-                        running.request("DELETE", f"/v1/plans/{job['id']}")
-            alive = running.process.poll() is None and running.process.pid == process
-            log = (folder / "d2.db.log").read_text()
-        intact = sound(database)
-    finally:
-        if mounted:
-            subprocess.run(["umount", folder], check=False)
+    """A small file system, filled and freed again and again under the running system. On a server it has the
+    tables; a server whose log has no room ends, which is a server that is away."""
+    rounds, statuses, slowest, reads, recoveries = scale.rounds(20, 3), {}, 0.0, set(), []
+    unnamed, state = 0, random.Random(2)
+    with small_disk(scale, "d2") as disk, service(disk.database, environment=disk.environment) as running:
+        known = running.submit(variant(0))
+        running.wait_end(known)
+        pids = [one.process.pid for one in running.processes]
+        for number in range(rounds):
+            disk.fill()
+            # What pages and logs have room for still passes; what cannot be packed soon does not.
+            big = variant(number + 1)
+            big["name"] = state.randbytes(100_000).hex()
+            for _ in range(40):
+                took, (status, answer) = timed(lambda: running.request("POST", "/v1/plans", big))
+                slowest = max(slowest, took)
+                if status != 202:
+                    statuses[status] = statuses.get(status, 0) + 1
+                    unnamed += status == 507 and answer["code"] != "disk_full"
+                    break
+            reads.add(running.request("GET", f"/v1/plans/{known}/result")[0])
+            reads.add(running.request("GET", "/health/live")[0])
+            disk.free()
+            recoveries.append(until(lambda: running.request("POST", "/v1/plans", variant(0))[0] == 202, 10.0))
+            for job in running.request("GET", "/v1/plans?limit=100")[1]["plans"]:
+                if job["id"] != known:
+                    running.request("DELETE", f"/v1/plans/{job['id']}")
+        alive = [one.process.pid for one in running.processes if one.process.poll() is None] == pids
+        log = running.told()
+        running.terminate()
+        intact = disk.database.sound()
     recovered = [wait for wait in recoveries if wait is not None]
     worst = max(recovered, default=float("inf"))
     return [
@@ -109,82 +80,94 @@ def a_full_disk_is_survived(scale):
     ]
 
 
+def submitted(running, scenario, acknowledged):
+    """The status of a submission, which is acknowledged or not."""
+    status, job = running.request("POST", "/v1/plans", scenario)
+    if status == 202:
+        acknowledged.append(job["id"])
+    return status
+
+
 @gate("D3")
 def errors_of_the_disk_stop_or_pass(scale):
-    """The n-th write or sync fails: writes are refused cleanly, a failed sync ends the process."""
-    database = scale.database("d3")
-    faults = Faults(scale.work, database)
-    acknowledged, wrong, late, unsound = [], [], [], 0
-    last = scale.of(300, 12)
-
-    def submit(running, number):
-        status, job = running.request("POST", "/v1/plans", variant(number % 20))
-        if status == 202:
-            acknowledged.append(job["id"])
-        return status
-
-    running = service(database, "--queue-limit", "100000", environment=faults.environment)
-    exits = 0
-    for number in range(1, last + 1):
-        what = "sync" if number % 2 else "write"
-        faults.fail(what, 1 + number // 2 % 30, errno.EIO)
-        begin = time.monotonic()
-        while faults.pending(what) and time.monotonic() - begin < 5.0:
-            try:
-                if submit(running, number) not in (202, 500, 503, 507):
-                    wrong.append(number)
-            except OSError:
-                break
-        faults.clear()
-        if what == "sync":
+    """The n-th write or sync fails: writes are refused cleanly. After a failed sync on a file the process
+    ends; Postgres ends its own, and begins again from its log, while the services stay."""
+    acknowledged, wrong, late, unsound, exits = [], [], [], 0, 0
+    last, many = scale.rounds(300, 12), ("--queue-limit", "100000")
+    # A server recovers meanwhile.
+    patience = 15.0 if scale.shared else 1.0
+    with failing(scale, "d3") as disk:
+        database, faults = disk.database, disk.faults
+        running = service(database, *many, environment=disk.environment)
+        for number in range(1, last + 1):
+            what, scenario = "sync" if number % 2 else "write", variant(number % 20)
+            faults.fail(what, 1 + number // 2 % 30, errno.EIO)
             begin = time.monotonic()
-            code = None
-            try:
-                code = running.process.wait(2.0)
-            except subprocess.TimeoutExpired:
-                pass
-            if code is not None:
-                exits += 1
-                late.append(time.monotonic() - begin)
-                wrong += [number] if code == 0 else []
-                running.__exit__()
-                unsound += not sound(database)
-                running = service(database, "--queue-limit", "100000", environment=faults.environment)
-        elif until(lambda: submit(running, number) == 202, 1.0) is None:
-            wrong.append(number)
-    running.__exit__()
-    stored = {identifier for (identifier,) in rows_of(database, "SELECT id FROM jobs")}
-    lost = sum(identifier not in stored for identifier in acknowledged)
-    syncs = (last + 1) // 2
+            while faults.pending(what) and time.monotonic() - begin < 5.0:
+                try:
+                    if submitted(running, scenario, acknowledged) not in (202, 500, 503, 507):
+                        wrong.append(number)
+                except OSError:
+                    break
+            faults.clear()
+            begin = time.monotonic()
+            if what == "sync" and not scale.shared:
+                code = until(lambda: running.process.poll() is not None, 2.0) and running.process.poll()
+                if code is not None:
+                    exits += 1
+                    late.append(time.monotonic() - begin)
+                    wrong += [number] if code == 0 else []
+                    running.__exit__()
+                    unsound += not database.sound()
+                    running = service(database, *many, environment=disk.environment)
+                continue
+            if not disk.serves():
+                disk.restart()
+            waited = until(lambda: submitted(running, scenario, acknowledged) == 202, patience)
+            wrong += [number] if waited is None else []
+            late += [waited] if scale.shared and waited else []
+        gone = sum(one.process.poll() is not None for one in running.processes)
+        running.__exit__()
+        unsound += not database.sound()
+        stored = {identifier for (identifier,) in database.rows("SELECT id FROM jobs")}
+    lost, syncs = sum(identifier not in stored for identifier in acknowledged), (last + 1) // 2
+    longest = max(late, default=9.0)
+    if scale.shared:
+        rows = [
+            Row("D3", "processes that ended while the disk of the server failed", str(gone), "0", gone == 0),
+            Row("D3", "submissions are taken again after", f"{longest:.2f} s", f"{patience:.0f} s", longest <= patience, timed=True),
+        ]
+    else:
+        rows = [
+            Row("D3", f"exits after a failed sync, of {syncs} (the rest: the service survived)", str(exits), str(syncs), exits == syncs),
+            Row("D3", "slowest exit", f"{longest:.2f} s", "2 s", longest <= 2.0, timed=True),
+        ]
     return [
-        Row("D3", f"exits after a failed sync, of {syncs} (the rest: the service survived)", str(exits), str(syncs), exits == syncs),
-        Row("D3", "slowest exit", f"{max(late, default=0.0):.2f} s", "2 s", max(late, default=9.0) <= 2.0, timed=True),
-        Row("D3", "failed writes after which the next was not taken within 1 s, wrong codes", str(len(wrong)), "0", not wrong),
+        *rows,
+        Row("D3", f"failures after which a write was not taken within {patience:.0f} s, wrong codes", str(len(wrong)), "0", not wrong),
         Row("D3", f"acknowledged jobs lost, of {len(acknowledged)}", str(lost), "0", lost == 0 and bool(acknowledged)),
-        Row("D3", "restarts with a damaged database", str(unsound), "0", unsound == 0),
+        Row("D3", "times that the database was found damaged", str(unsound), "0", unsound == 0),
     ]
 
 
 @gate("D7")
 def the_writer_heals(scale):
-    """Single failures of writes: the next write succeeds."""
-    database = scale.database("d7")
-    faults = Faults(scale.work, database)
-    rounds, healed = scale.of(100, 10), 0
-    with service(database, "--queue-limit", "100000", environment=faults.environment) as running:
+    """Single failures of writes: the next write succeeds. On a server a connection is ended each time."""
+    rounds, healed, many = scale.rounds(100, 10), 0, ("--queue-limit", "100000")
+    with failing(scale, "d7") as disk, service(disk.database, *many, environment=disk.environment) as running:
         for number in range(rounds):
-            faults.fail("write", 1, errno.ENOSPC if number % 2 else errno.EIO)
+            disk.fail_once(errno.ENOSPC if number % 2 else errno.EIO)
             running.request("POST", "/v1/plans", variant(0))
-            faults.clear()
+            disk.faults.clear()
             wait = until(lambda: running.request("POST", "/v1/plans", variant(0))[0] == 202, 1.0)
             healed += wait is not None and ready(running) == 200
     return [Row("D7", f"writes and readiness within 1 s of a failure, of {rounds}", str(healed), str(rounds), healed == rounds)]
 
 
-@gate("D5")
+@gate("D5", of_a_file="locks, log and copies of a file; of a server they are those of Postgres")
 def nobody_sees_a_locked_database(scale):
     """Writes, reads, copies and checkpoints together; D6 and D9 are measured on the way."""
-    database, seconds = scale.database("d5"), scale.of(300.0, 6.0)
+    database, seconds = scale.file("d5"), scale.of(300.0, 6.0)
     statuses, wal, plain, copying = {}, [], [], []
     guard = threading.Lock()
     copies, sound_copies, restores = 0, 0, []
@@ -221,17 +204,17 @@ def nobody_sees_a_locked_database(scale):
             end = time.monotonic() + seconds
             while time.monotonic() < end:
                 time.sleep(seconds / 6)
-                copy = scale.work / f"d9-{copies}.db"
+                copy = scale.file(f"d9-{copies}")
                 in_copy.set()
                 done = subprocess.run([binary(), "backup", copy, "--database", database], capture_output=True)
                 in_copy.clear()
                 copies += 1
-                sound_copies += done.returncode == 0 and sound(copy)
+                sound_copies += done.returncode == 0 and FileDatabase(copy).sound()
         slow.close()
         locked = (scale.work / "d5.db.log").read_text().lower().count("locked")
     for number in range(copies):
         begin = time.monotonic()
-        with service(scale.work / f"d9-{number}.db") as restored:
+        with service(scale.file(f"d9-{number}")) as restored:
             good = restored.request("GET", f"/v1/plans/{job}/result")[0] == 200
             restores.append((time.monotonic() - begin) if good else float("inf"))
     good = {status: count for status, count in statuses.items() if status in (200, 202)}
@@ -250,8 +233,6 @@ def nobody_sees_a_locked_database(scale):
 def hang_ups_are_harmless(scale):
     """Clients that leave in the middle of their request."""
     database, count = scale.database("d8"), scale.of(10_000, 300)
-    import json
-
     body = json.dumps(variant(0)).encode()
     request = b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n" % len(body) + body
     with service(database, "--queue-limit", "1000000") as running:
@@ -279,28 +260,25 @@ def hang_ups_are_harmless(scale):
                 time.sleep(0.05)
         fine = sum(running.request("POST", "/v1/plans", variant(0))[0] == 202 for _ in range(100))
         good = ready(running)
-    log = (scale.work / "d8.db.log").read_text()
+        log = running.told()
     return [Row("D8", f"requests that succeed after {count} hang-ups, of 100; readiness {good}", str(fine), "100", fine == 100 and good == 200 and "panic" not in log)]
 
 
-@gate("D11")
+@gate("D11", of_a_file="migrations of Postgres are transactions of the server: store tests of the schema")
 def upgrades_survive_kills(scale):
     """Killed while the schema is brought up to date: old or new, never between."""
-    old, rounds, unsound = scale.database("d11-old"), scale.of(50, 5), 0
-    import random
-    import sqlite3
-
+    old, rounds, unsound = scale.file("d11-old"), scale.of(50, 5), 0
     random_state = random.Random(11)
     first = sorted((ROOT / "migrations").glob("*.sql"))[0]
     versions = len(list((ROOT / "migrations").glob("*.sql")))
-    with service(scale.database("d11-new")) as running:
+    template = FileDatabase(scale.file("d11-new"))
+    with service(template) as running:
         job = running.submit(variant(0))
         running.wait_end(job)
-    template = scale.database("d11-new")
-    checksums = rows_of(template, "SELECT * FROM _sqlx_migrations ORDER BY version LIMIT 1")
+    checksums = template.rows("SELECT * FROM _sqlx_migrations ORDER BY version LIMIT 1")
     connection = sqlite3.connect(old)
     connection.executescript(first.read_text())
-    create = rows_of(template, "SELECT sql FROM sqlite_master WHERE name = '_sqlx_migrations'")[0][0]
+    create = template.rows("SELECT sql FROM sqlite_master WHERE name = '_sqlx_migrations'")[0][0]
     connection.execute(create)
     connection.execute(f"INSERT INTO _sqlx_migrations VALUES ({','.join('?' * len(checksums[0]))})", checksums[0])
     connection.executemany(
@@ -327,19 +305,17 @@ def upgrades_survive_kills(scale):
                 fine = running.request("GET", "/v1/plans/old-7")[0] == 200
         except RuntimeError:
             fine = False
-        unsound += not (fine and sound(database))
+        unsound += not (fine and FileDatabase(database).sound())
         for part in scale.work.glob(f"d11-{number}.db*"):
             part.unlink()
     return [Row("D11", f"databases that did not open after a kill while upgrading, of {rounds} (schemas seen: {sorted(seen)} of {versions})", str(unsound), "0", unsound == 0)]
 
 
-@gate("D10")
+@gate("D10", of_a_file="checksums of pages are those of Postgres (initdb --data-checksums)")
 def damage_is_noticed(scale):
     """A byte of the file flipped: the plan is as it was, or not served; nothing panics."""
-    import random
-
     random_state = random.Random(10)
-    original = scale.database("d10")
+    original = scale.file("d10")
     with service(original) as running:
         jobs = [running.submit(variant(number)) for number in range(5)]
         for job in jobs:

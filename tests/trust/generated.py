@@ -8,7 +8,7 @@ import random
 import re
 import threading
 
-from harness import FIXTURES, ROOT, Row, fixture, gate, service
+from harness import HTTP_ALIKE, FIXTURES, ROOT, Row, fixture, gate, service
 
 # Documented answers of an overloaded or full service; any other from 500 on is a defect.
 EXCUSED = {503, 507}
@@ -175,7 +175,7 @@ def merged(parts):
     return total
 
 
-@gate("H8")
+@gate("H8", of_a_file=HTTP_ALIKE)
 def no_generated_request_breaks_anything(scale):
     """Besides these, tests/schemathesis.sh generates requests from the schemas alone."""
     total, workers = scale.of(100_000, 2_000), 4

@@ -1,22 +1,20 @@
 """What the gates share: rows of the table, clients that misbehave, faults of the disk."""
 
-import mmap
 import os
 import random
 import socket
-import sqlite3
-import struct
 import subprocess
-import sys
 import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "load"))
+from systems import FileDatabase, ServerDatabase, System
 
-from service import FIXTURES, ROOT, Service, binary, fixture, percentile  # noqa: E402, F401
+from postgres import Postgres  # isort: skip
+from service import FIXTURES, ROOT, Service, binary, fixture, percentile  # noqa: F401  # isort: skip
+
+HERE = Path(__file__).resolve().parent
 
 
 @dataclass
@@ -31,36 +29,79 @@ class Row:
     timed: bool = False
 
 
+class Server:
+    """The Postgres that gates share which do not harm it, started for the first of them."""
+
+    def __init__(self):
+        self.started = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.started:
+            self.started.__exit__()
+
+    def __call__(self):
+        self.started = self.started or Postgres()
+        return self.started
+
+
 @dataclass
 class Scale:
-    """How much is done: the full number of repetitions, or a taste of it."""
+    """How much is done, and on which database: the full number of repetitions, a taste of it, or so
+    many rounds as are asked for."""
 
     short: bool
     work: Path
+    asked_rounds: int | None = None
+    server: Server | None = None
 
     def of(self, full, short):
         return short if self.short else full
 
+    def rounds(self, full, short):
+        """The same of repetitions that take long each."""
+        return self.asked_rounds or self.of(full, short)
+
+    @property
+    def shared(self):
+        """Whether several processes on a Postgres are measured, not one on a file."""
+        return self.server is not None
+
     def database(self, name):
+        """A new database."""
+        if self.shared:
+            return ServerDatabase(self.server(), self.work / name)
+        return FileDatabase(self.file(name))
+
+    def file(self, name):
+        """The path of a new file of SQLite."""
         return self.work / f"{name}.db"
 
 
 GATES = {}
+# Why gates are not measured on several processes and a Postgres.
+OF_A_FILE = {}
+HTTP_ALIKE = "the same program, whatever the database: measured on a file"
 
 
-def gate(name):
-    """Registers a function that measures a gate and gives its rows."""
+def gate(name, of_a_file=None):
+    """Registers a function that measures a gate and gives its rows; for one that has no meaning on a
+    Postgres, or no other one than on a file, the reason."""
 
     def register(measure):
         GATES[name] = measure
+        if of_a_file:
+            OF_A_FILE[name] = of_a_file
         return measure
 
     return register
 
 
-def elsewhere(name, promise, goal, where):
+def elsewhere(name, promise, goal, where, of_a_file=None):
     """A gate that another command measures."""
-    GATES[name] = lambda _: [Row(name, promise, f"see {where}", goal, None)]
+    gate(name, of_a_file)(lambda _: [Row(name, promise, f"see {where}", goal, None)])
 
 
 def example(name):
@@ -73,12 +114,17 @@ def example(name):
     return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug" / "examples" / name
 
 
-def unit_test(name, **settings):
-    """What a test of the server's own says while it passes; of one that fails, nothing."""
-    command = ["cargo", "test", "--quiet", "--locked", "--package", "slewplan-server", "--lib", name, "--", "--nocapture"]
+def cargo_test(*which, **settings):
+    """What tests of the server say while they pass; of some that fail, nothing."""
+    command = ["cargo", "test", "--quiet", "--locked", "--package", "slewplan-server", *which, "--", "--nocapture"]
     environment = {**os.environ, **{key: str(value) for key, value in settings.items()}}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else ""
+
+
+def unit_test(name, **settings):
+    """The same of a test beside the code."""
+    return cargo_test("--lib", name, **settings)
 
 
 def variant(number):
@@ -123,17 +169,18 @@ def strip(targets, shift=0.0):
     return scenario
 
 
-def rows_of(database, query, *parameters):
-    """The rows of a query, from outside of the service."""
-    connection = sqlite3.connect(f"file:{database}?mode=ro", uri=True, timeout=10)
-    try:
-        return connection.execute(query, parameters).fetchall()
-    finally:
-        connection.close()
+def until(condition, patience):
+    """Seconds until a condition holds; `None` when it does not in time."""
+    begin = time.monotonic()
+    while time.monotonic() - begin < patience:
+        if condition():
+            return time.monotonic() - begin
+        time.sleep(0.02)
+    return None
 
 
-def sound(database):
-    return rows_of(database, "PRAGMA integrity_check") == [("ok",)]
+def ready(running):
+    return running.request("GET", "/health/ready")[0]
 
 
 def timed(action):
@@ -151,7 +198,7 @@ def resident_kib(pid, field="VmRSS"):
 
 
 def connect(service, timeout=60.0):
-    connection = socket.create_connection((service.host, service.port), timeout=timeout)
+    connection = socket.create_connection(service.address, timeout=timeout)
     connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     return connection
 
@@ -219,45 +266,7 @@ def interposed(work, name):
     return library
 
 
-class Faults:
-    """Makes the writes and syncs of a service's database fail."""
-
-    FAULT = struct.Struct("iiii")
-
-    def __init__(self, work, database):
-        library = interposed(work, "shim")
-        self.requests = work / f"{database.name}.faults"
-        self.requests.write_bytes(bytes(2 * self.FAULT.size))
-        self.file = open(self.requests, "r+b")
-        self.map = mmap.mmap(self.file.fileno(), 0)
-        self.environment = {
-            "LD_PRELOAD": str(library),
-            "TRUST_SHIM": str(self.requests),
-            "TRUST_MATCH": database.name,
-        }
-
-    def fail(self, what, after, error, sticky=False):
-        place = 0 if what == "write" else self.FAULT.size
-        _, _, _, calls = self.FAULT.unpack_from(self.map, place)
-        # The countdown last: the fault is complete when it begins to count.
-        self.FAULT.pack_into(self.map, place, 0, error, int(sticky), calls)
-        struct.pack_into("i", self.map, place, after)
-
-    def clear(self):
-        for place in (0, self.FAULT.size):
-            struct.pack_into("i", self.map, place, 0)
-
-    def pending(self, what):
-        place = 0 if what == "write" else self.FAULT.size
-        return struct.unpack_from("i", self.map, place)[0] > 0
-
-
-def service(database, *arguments, environment=None):
-    """The service with a quiet log, and with further variables in its environment."""
-    before = dict(os.environ)
-    os.environ.update(environment or {})
-    try:
-        return Service(database, "--log", "warn", *arguments)
-    finally:
-        os.environ.clear()
-        os.environ.update(before)
+def service(database, *arguments, **settings):
+    """The running system on a database, with a quiet log."""
+    database = FileDatabase(database) if isinstance(database, Path) else database
+    return System(database, *arguments, **settings)

@@ -1,16 +1,17 @@
 """Promises about throughput, start-up and overload."""
 
 import json
-import sqlite3
+import random
 import statistics
 import subprocess
 import time
 
-from harness import Row, Service, example, fixture, gate, long_running, rows_of, service, timed, variant
+from harness import Row, example, fixture, gate, long_running, service
 
 
 def load(running, mode, amount, seconds, path, body=None, scale=None):
-    command = [example("load"), f"{running.host}:{running.port}", mode, str(amount), str(seconds), path]
+    host, port = running.address
+    command = [example("load"), f"{host}:{port}", mode, str(amount), str(seconds), path]
     if body is not None:
         file = scale.work / "body.json"
         file.write_text(json.dumps(body))
@@ -64,49 +65,45 @@ def submissions_are_fast(scale):
     ]
 
 
+def filled(database, jobs, legs):
+    """Copies a job and a leg as often as it is said."""
+    job_columns = "state, name, scenario, targets, submitted_us, started_us, finished_us"
+    leg_columns = ", ".join(name for name in database.columns("legs") if name not in ("sequence", "key"))
+    with database.alone() as execute:
+        for count, table, key, columns in ((jobs, "jobs", "id", job_columns), (legs, "legs", "key", leg_columns)):
+            execute(
+                f"WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < {count}) "
+                f"INSERT INTO {table} ({key}, {columns}) "
+                f"SELECT 'copy-' || i, {columns} FROM n, (SELECT * FROM {table} LIMIT 1) AS one"
+            )
+
+
 @gate("L3")
 def starts_at_once(scale):
-    """With many jobs and legs, and after a kill with a long write-ahead log."""
+    """With many jobs and legs, and after a kill with a long write-ahead log: of a server too."""
     database, jobs, legs = scale.database("l3"), scale.of(100_000, 5_000), scale.of(1_000_000, 20_000)
     with service(database) as running:
         stored_plan(running)
-    connection = sqlite3.connect(database)
-    job_columns = "state, name, scenario, targets, submitted_us, started_us, finished_us"
-    leg_columns = ", ".join(
-        name for (_, name, *_) in connection.execute("PRAGMA table_info(legs)") if name not in ("sequence", "key")
-    )
-    connection.execute(
-        f"WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < {jobs}) "
-        f"INSERT INTO jobs (id, {job_columns}) SELECT 'copy-' || i, {job_columns} FROM n, (SELECT * FROM jobs LIMIT 1)"
-    )
-    connection.executemany(
-        f"INSERT INTO legs (key, {leg_columns}) SELECT ?, {leg_columns} FROM legs WHERE sequence = 1",
-        ((f"copy-{number}",) for number in range(legs)),
-    )
-    connection.commit()
-    connection.close()
+    filled(database, jobs, legs)
 
     def start():
         begin = time.monotonic()
-        running = service(database)
-        while running.request("GET", "/health/ready")[0] != 200:
+        database.recover()
+        running = service(database, "--queue-limit", "1000000")
+        while any(one.request("GET", "/health/ready")[0] != 200 for one in running.services):
             time.sleep(0.005)
         return time.monotonic() - begin, running
 
     cold, running = start()
+    big, state = fixture("two-targets"), random.Random(3)
+    with database.long_log():
+        while database.log_bytes() < scale.of(64, 8) << 20:
+            big["name"] = state.randbytes(500_000).hex()
+            running.submit(big)
+        running.kill()
+        size = database.log_bytes() / 2**20
+        database.crash()
     running.__exit__()
-    running = service(database, "--queue-limit", "1000000")
-    reader = sqlite3.connect(database)
-    reader.execute("BEGIN")
-    reader.execute("SELECT count(*) FROM readiness").fetchall()
-    big = fixture("two-targets")
-    big["name"] = "x" * 1_000_000
-    log = database.with_name(database.name + "-wal")
-    while log.stat().st_size < scale.of(64, 8) << 20:
-        running.submit(big)
-    running.kill()
-    size = log.stat().st_size / 2**20
-    reader.close()
     after, running = start()
     running.kill()
     running.__exit__()
@@ -120,13 +117,14 @@ def starts_at_once(scale):
 def overload_is_refused_politely(scale):
     """Five times what the service can take, with a short queue."""
     seconds, body = scale.of(20, 3), fixture("two-targets")
-    with service(scale.database("h3"), "--queue-limit", "50") as running:
+    database = scale.database("h3")
+    with service(database, "--queue-limit", "50") as running:
         calm = load(running, "open", 20, seconds / 2, "/v1/plans", body, scale)
         first = running.submit(long_running())
         running.wait(first, lambda job: job["state"] == "running")
-        for number in range(60):
+        for number in range(80):
             running.request("POST", "/v1/plans", long_running(number + 1))
-        waiting = rows_of(scale.database("h3"), "SELECT count(*) FROM jobs WHERE state = 'queued'")[0][0]
+        [(waiting,)] = database.rows("SELECT count(*) FROM jobs WHERE state = 'queued'")
         flood = load(running, "open", 1500, seconds, "/v1/plans", body, scale)
         live = load(running, "open", 50, 2, "/health/live")
         cancelled = running.request("GET", "/v1/plans?state=queued&limit=100")[1]["plans"]

@@ -7,7 +7,8 @@ import struct
 import threading
 from dataclasses import dataclass
 
-from harness import Row, gate, interposed, service, variant
+from disks import interposed
+from harness import Row, gate, service, variant
 
 RECORD = struct.Struct("=IIQQ")
 WRITE, TRUNCATE, SYNC = 1, 2, 3
@@ -147,7 +148,7 @@ def serves(path, job):
 def recorded(scale):
     """A service under submissions from its start to its kill: the database before, the record, and where
     the record ended when each job had been acknowledged."""
-    database = scale.database("d4")
+    database = scale.file("d4")
     with service(database):
         pass
     before, recorder = database.read_bytes(), Recorder(scale.work, database)
@@ -173,7 +174,7 @@ def recorded(scale):
     return before, recorder.log.read_bytes(), sorted(acknowledged)
 
 
-@gate("D4")
+@gate("D4", of_a_file="the log of a server is that of Postgres, with synchronous_commit on")
 def acknowledged_jobs_survive_a_loss_of_power(scale):
     """The disk as it may be found, of losses at any time and of losses right after an answer."""
     before, record, acknowledged = recorded(scale)

@@ -1,24 +1,17 @@
 """What a second attempt at a job does again of what the first one had done when its process was killed."""
 
-import os
-import shutil
 import statistics
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
-from harness import Row, gate, long_running, rows_of, service, strip
-
-
-def processor_s(pid):
-    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+from harness import Row, gate, long_running, service, strip
 
 
 def kept(database):
     """Intervals of the segments of tours that a search has solved and left for another attempt: how much
     of its work is done, for programs take as long as they have intervals."""
-    return rows_of(database, "SELECT coalesce(sum(intervals), 0) FROM segments")[0][0]
+    [(done,)] = database.rows("SELECT coalesce(sum(intervals), 0) AS done FROM segments")
+    return done
 
 
 @dataclass
@@ -37,9 +30,9 @@ def finish(running, job, database):
     while running.job(job)["finished_at"] is None:
         if time.monotonic() > end:
             raise RuntimeError(f"job {job} goes on")
-        course.append((processor_s(running.process.pid), kept(database)))
+        course.append((running.processor_s(), kept(database)))
         time.sleep(0.04)
-    spent = processor_s(running.process.pid)
+    spent = running.processor_s()
     plan = running.request("GET", f"/v1/plans/{job}/result")[1]
     programs = plan.pop("statistics")["nlp_solves"]
     return Solved(spent, programs, plan, max(done for at, done in course if at <= 0.5 * spent))
@@ -53,17 +46,9 @@ def killed(database, scenario, half):
             if running.job(job)["finished_at"] is not None:
                 raise RuntimeError(f"job {job} ended before half of it was kept")
             time.sleep(0.01)
-        spent = processor_s(running.process.pid)
+        spent = running.processor_s()
         running.kill()
     return job, spent
-
-
-def copied(database, name):
-    """What a kill has left, once more."""
-    copy = database.with_name(name)
-    for part in ("", "-wal"):
-        shutil.copy(f"{database}{part}", f"{copy}{part}")
-    return copy
 
 
 def legs_solved_again(scale):
@@ -75,7 +60,7 @@ def legs_solved_again(scale):
         running.kill()
     with service(database) as running:
         running.wait(job, lambda job: job["attempt"] == 2 and job["stage"] == "search")
-        figures = running.request("GET", "/metrics")[1].decode()
+        figures = running.solver_of(job).request("GET", "/metrics")[1].decode()
         return int(next(line.split()[-1] for line in figures.splitlines() if 'outcome="miss"' in line))
 
 
@@ -86,18 +71,22 @@ def rescued_work_is_reused(scale):
     Where that is, is told by what has been solved, not by a clock: the work is the same every time. The
     processor time is not: while others use the machine equal work takes more of it, never less. So the
     least of three runs is judged, of cold ones and of second attempts at what one kill has left."""
-    rounds, same, plans = scale.of(20, 1), 0, 0
+    rounds, same, plans = scale.rounds(20, 1), 0, 0
     firsts, every, least, programs = [], [], [], []
     for number in range(rounds):
         scenario = strip(scale.of(18, 14), 0.01 * number)
 
+        used = []
+
         def cold(name):
             database = scale.database(f"j5-{name}")
+            used.append(database)
             with service(database) as running:
                 return finish(running, running.submit(scenario), database)
 
         def second(name):
-            database = copied(left, f"j5-{name}.db")
+            database = left.copied(f"j5-{name}")
+            used.append(database)
             with service(database) as running:
                 return finish(running, job, database)
 
@@ -115,8 +104,8 @@ def rescued_work_is_reused(scale):
         same += sum(run.plan == other.plan for run, other in zip(seconds, colds))
         times = [" ".join(f"{run.processor_s:.2f}" for run in runs) for runs in (colds, seconds)]
         print(f"    round {number}: cold {times[0]} s, until the kill {spent:.2f} s, second {times[1]} s", flush=True)
-        for part in scale.work.glob("j5-*"):
-            part.unlink()
+        for database in [*used, left]:
+            database.removed()
 
     def row(promise, shares, judged=False):
         worst, median = 100 * max(shares), 100 * statistics.median(shares)

@@ -6,9 +6,7 @@ import re
 import subprocess
 from pathlib import Path
 
-from harness import ROOT, Row, binary, elsewhere, exchange, gate, service, variant
-
-elsewhere("S2", "clients are isolated on every route", "0 reads", "cargo test --test service keys")
+from harness import HTTP_ALIKE, ROOT, Row, binary, cargo_test, exchange, gate, service, variant
 
 
 # Licences under which everybody may use, change and pass on; MPL-2.0 asks for changes to its own files
@@ -23,7 +21,7 @@ def is_free(expression):
     return any(terms(alternative) <= LICENCES for alternative in alternatives)
 
 
-@gate("S5")
+@gate("S5", of_a_file="the sources")
 def dependencies_are_clean(_):
     """Licences and sources of what is linked, and the advisories where cargo-deny is there."""
     told = subprocess.run(["cargo", "metadata", "--locked", "--format-version", "1"], cwd=ROOT, capture_output=True, text=True, check=True)
@@ -48,8 +46,16 @@ def dependencies_are_clean(_):
 
 
 def make_key(database, *arguments):
-    made = subprocess.run([binary(), "keys", "create", *arguments, "--database", database], capture_output=True, text=True, check=True)
+    made = subprocess.run([binary(), "keys", "create", *arguments, "--database", str(database)], capture_output=True, text=True, check=True)
     return made.stdout.strip()
+
+
+@gate("S2")
+def clients_are_isolated(scale):
+    """The tests of keys: what every route answers without a key, with a wrong, a revoked and a foreign one."""
+    database = {"SLEWPLAN_TEST_DATABASE": "postgres" if scale.shared else "sqlite"}
+    passed = re.search(r"test result: ok\. (\d+) passed", cargo_test("--test", "service", "keys::", **database))
+    return [Row("S2", "clients are isolated on every route: tests that pass", passed[1] if passed else "not all", "all", bool(passed))]
 
 
 @gate("S1")
@@ -63,7 +69,7 @@ def keys_cannot_be_read(scale):
         for path in ("/v1/plans", f"/v1/plans/{job}", "/v1/plans/none", "/metrics", "/v1/nothing"):
             answers.append(running.request("GET", path, headers=bearer)[1])
             answers.append(running.request("GET", path, headers={"Authorization": f"Basic {key}"})[1])
-    artefacts = [path for path in scale.work.glob("s1*") if path.is_file()]
+    artefacts = database.files()
     found = sum(key.encode() in path.read_bytes() for path in artefacts) + (key in str(answers))
     bits = 4 * len(key.removeprefix("slewplan_"))
     return [
@@ -92,7 +98,7 @@ TRAVERSALS = [
 ]
 
 
-@gate("S3")
+@gate("S3", of_a_file=HTTP_ALIKE)
 def no_path_escapes(scale):
     """Every traversal is refused, and nothing but the database is opened."""
     database, wrong = scale.database("s3"), []
@@ -121,11 +127,11 @@ def no_path_escapes(scale):
     return rows
 
 
-@gate("S6")
+@gate("S6", of_a_file=HTTP_ALIKE)
 def defaults_are_safe(scale):
     database, bare, leaks, taken = scale.database("s6"), [], [], []
     help_text = subprocess.run([binary(), "serve", "--help"], capture_output=True, text=True, check=True).stdout
-    refused = subprocess.run([binary(), "serve", "--listen", "0.0.0.0:0", "--database", database], capture_output=True, text=True, timeout=20)
+    refused = subprocess.run([binary(), "serve", "--listen", "0.0.0.0:0", "--database", str(database)], capture_output=True, text=True, timeout=20)
     with service(database) as running:
         requests = [("GET", path) for path in ("/", "/docs/", "/docs/errors", "/openapi.yaml", "/v1/plans", "/v1/plans/x", "/v1/legs", "/v1/limits", "/health/ready", "/metrics", "/none", "/v1/plans/%ff")]
         requests += [("POST", "/v1/plans"), ("PATCH", "/v1/plans"), ("OPTIONS", "/v1/plans"), ("DELETE", "/v1/plans/x")]

@@ -8,8 +8,8 @@ import zlib
 from pathlib import Path
 
 from harness import (
+    HTTP_ALIKE,
     Row,
-    Background,
     connect,
     exchange,
     fixture,
@@ -57,7 +57,7 @@ def seconds(took):
     return "never" if took is None else f"{took:.1f} s"
 
 
-@gate("H1")
+@gate("H1", of_a_file=HTTP_ALIKE)
 def slow_clients_are_cut_off(scale):
     """Silence, half heads, drip-fed bodies; then a thousand of them and one good client."""
     head = b"POST /v1/plans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n"
@@ -124,7 +124,7 @@ def slow_clients_are_cut_off(scale):
     return rows
 
 
-@gate("H4")
+@gate("H4", of_a_file=HTTP_ALIKE)
 def solves_do_not_starve_requests(scale):
     duration, live, cached = scale.of(600.0, 5.0), [], []
     with service(scale.database("h4")) as running:
@@ -228,7 +228,7 @@ def hostile_bodies():
     return cases
 
 
-@gate("H7")
+@gate("H7", of_a_file=HTTP_ALIKE)
 def hostile_bodies_are_cheap_to_refuse(scale):
     cases = hostile_bodies()
     if scale.short:

@@ -22,6 +22,7 @@ export async function looks({ browser, service, must }) {
     "keep-out": `#/plans/${ids["two-targets"]}`, pyramid: `#/plans/${ids["pyramid-momentum-bias"]}`,
     slew: "#/slew?example=quarter-turn", trade: "#/slew?example=olrac-four-wheels",
     study: "#/studies?example=study-authority",
+    compare: `#/compare/${ids["olivares-a"]}/${ids["two-targets"]}`,
   };
   for (const [size, context] of Object.entries(SIZES)) {
     for (const theme of ["light", "dark"]) {
@@ -49,13 +50,14 @@ async function ready(page, view) {
   if (view === "list") return page.locator("tbody tr").first().waitFor();
   if (view === "new") return page.waitForFunction(() => document.querySelector("#scenario").value.length > 0);
   if (view in SENT) await send(page, SENT[view]);
+  else if (view === "compare") await page.locator(".sphere .stop").nth(7).waitFor();
   else await Promise.all([".sphere .stop", ".search .uplot", ".matrix"].map((part) => page.locator(part).first().waitFor()));
   if (view === "study") return page.locator(".curves .uplot").nth(2).waitFor();
   await page.getByLabel("Moment").evaluate((slider) => {
     slider.value = String(0.4 * Number(slider.max));
     slider.dispatchEvent(new Event("input"));
   });
-  return page.waitForFunction(() => !document.querySelector(".moment").textContent.startsWith("0.0 s"));
+  return page.waitForFunction(() => !document.querySelector(".playback-moment").textContent.startsWith("0.0 s"));
 }
 
 async function send(page, verb) {

@@ -2,6 +2,7 @@
 
 import { answers } from "./answers.mjs";
 import { body } from "./body.mjs";
+import { compare } from "./compare.mjs";
 import { details } from "./details.mjs";
 import { openBrowser, startService } from "./harness.mjs";
 import { hostile } from "./hostile.mjs";
@@ -10,7 +11,7 @@ import { looks } from "./looks.mjs";
 import { modules } from "./modules.mjs";
 import { units } from "./units.mjs";
 
-const PARTS = { modules, hostile, journeys, answers, details, body, units, looks };
+const PARTS = { modules, hostile, journeys, answers, details, body, units, compare, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # Uses the page in a browser: Chromium without a window, on a service of its own.
 #
-#   tests/browser/run.sh [PART...]        parts: modules, hostile, journeys, answers, details, body, units, looks;
-#   tests/browser/run.sh [PART...]        parts: modules, hostile, journeys, answers, details, body, units,
-#                                         looks; all without it
+#   tests/browser/run.sh [PART...]        the parts are those of run.mjs; all without it
+#
 # SLEWPLAN names a built binary; without it the binary is built. SCREENSHOTS names a folder for
 # pictures of every view. Chromium and Node.js come from the system or by apt, the rest from npm.
 set -euo pipefail

@@ -12,6 +12,11 @@ export function fixed(value, digits = 2) {
   return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
 }
 
+/** A difference as it was written, with the sign that it lacks when it is positive. */
+export function signed(text) {
+  return /^[^−–-]*[1-9]/.test(text) ? `+${text}` : text;
+}
+
 /** Seconds with their unit. */
 export function seconds(value, digits = 2) {
   return known(value) ? `${fixed(value, digits)} s` : DASH;

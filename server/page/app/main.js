@@ -3,6 +3,7 @@
 import { onKeyNeeded, read } from "./api.js";
 import { el } from "./dom.js";
 import { askForKey } from "./key.js";
+import { compare } from "./views/compare.js";
 import { list } from "./views/list.js";
 import { plan } from "./views/plan.js";
 import { slew } from "./views/slew.js";
@@ -13,6 +14,7 @@ const ROUTES = [
   [/^$/, list],
   [/^new$/, submit],
   [/^plans\/([0-9a-f-]+)$/, plan],
+  [/^compare(?:\/([0-9a-f-]+))?(?:\/([0-9a-f-]+))?$/, compare],
   [/^slew$/, slew],
   [/^studies(?:\/([a-z_-]+))?$/, studies],
 ];
@@ -34,7 +36,7 @@ function show() {
   }
   const [match, view] = ROUTES.map(([pattern, view]) => [pattern.exec(path), view]).find(([match]) => match)
     ?? [[], missing];
-  const node = view({ signal, id: match[1], query: new URLSearchParams(query) });
+  const node = view({ signal, id: match[1], other: match[2], query: new URLSearchParams(query) });
   main.replaceChildren(node);
   document.title = `${node.querySelector("h1")?.textContent ?? "slewplan"} – slewplan`;
   if (!first) main.focus({ preventScroll: true });

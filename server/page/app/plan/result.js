@@ -7,6 +7,7 @@ import { flightOf } from "../flight.js";
 import { flown } from "../flown.js";
 import { seconds } from "../format.js";
 import { isFinal } from "../state.js";
+import { alternatives } from "./alternatives.js";
 import { downloads } from "./downloads.js";
 import { facts, order } from "./facts.js";
 import { banner } from "./keep-out.js";
@@ -31,6 +32,7 @@ export function result(job, plan, scenario, beside, signal) {
     order(plan, scenario, cursor, signal),
     flown(flight, cursor, signal),
     legs(plan, flight),
+    alternatives(job, plan, scenario, signal),
     el("div", { class: "cards" }, verification(plan), beside),
     matrix(plan, scenario, signal),
     downloads(job.id, job.name, { plan: "the whole plan", exports: true }),

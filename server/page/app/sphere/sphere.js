@@ -12,8 +12,8 @@ import { turning } from "./turning.js";
 const CLEAR = 0.3;
 const STEP = Math.PI / 90;
 
-/** The section with the sphere of a flight. */
-export function sphere(flight, cursor, signal) {
+/** The section with the sphere of a flight; `title` and `id` tell it from others on the page. */
+export function sphere(flight, cursor, signal, { title = "Sky", id = "body-axis" } = {}) {
   const axes = bodyAxes(flight.scenario);
   let axis = axes[first(flight, axes)];
   let content = contentOf(flight, axis);
@@ -22,7 +22,7 @@ export function sphere(flight, cursor, signal) {
     class: "sphere", tabindex: "0", role: "application",
     "aria-label": "Sphere with the trace of the body axis. Arrow keys turn it, plus and minus zoom, 0 resets.",
   });
-  const choice = el("select", { id: "body-axis" }, axes.map(({ name }, index) => el("option", { value: String(index) }, name)));
+  const choice = el("select", { id }, axes.map(({ name }, index) => el("option", { value: String(index) }, name)));
   choice.value = String(axes.indexOf(axis));
   choice.addEventListener("change", () => {
     axis = axes[choice.value];
@@ -63,8 +63,8 @@ export function sphere(flight, cursor, signal) {
   turned.reset();
 
   let data = directions(flight, axis);
-  const head = el("div", { class: "tools" }, el("label", { for: "body-axis" }, "Axis"), choice, turned.buttons);
-  return section("Sky", { head, class: "sky" }, picture, legend(flight), data);
+  const head = el("div", { class: "tools" }, el("label", { for: id }, "Axis"), choice, turned.buttons);
+  return section(title, { head, class: "sky" }, picture, legend(flight), data);
 }
 
 /** Named boresights first, then the axes of the body. */

@@ -37,6 +37,7 @@ class PlanPage {
   #about = el("p", { class: "quiet" });
   #stop = el("button", { type: "button", onclick: () => this.#ask("stop") }, "Stop with best so far");
   #cancel = el("button", { type: "button", onclick: () => this.#ask("cancel") }, "Cancel");
+  #compare = el("a", { class: "button" }, "Compare");
   #again = el("a", { class: "button" }, "Edit and plan again");
   #delete = el("button", { type: "button", onclick: () => this.#remove() }, "Delete");
   #standing = el("div", {});
@@ -50,12 +51,13 @@ class PlanPage {
     this.#signal = signal;
     this.#progress = convergence(signal);
     this.#search = section("Search", { class: "card search" }, this.#progress.node);
+    this.#compare.href = `#/compare/${id}`;
     this.#again.href = `#/new?from=${id}`;
     signal.addEventListener("abort", () => this.#drawing.abort());
     this.node = el("div", { class: "view" },
       el("div", { class: "title" },
         el("div", {}, el("div", { class: "named" }, this.#title, this.#state), this.#about),
-        el("div", { class: "actions" }, this.#stop, this.#cancel, this.#again, this.#delete)),
+        el("div", { class: "actions" }, this.#stop, this.#cancel, this.#compare, this.#again, this.#delete)),
       this.#standing, this.#news, this.#search, this.#result);
   }
 
@@ -114,7 +116,7 @@ class PlanPage {
     this.#state.dataset.shown = key;
     this.#stop.hidden = state !== "running";
     this.#cancel.hidden = ended;
-    this.#again.hidden = this.#delete.hidden = !ended;
+    this.#compare.hidden = this.#again.hidden = this.#delete.hidden = !ended;
     const elapsed = state === "running" ? (Date.now() - this.#begun) / 1000 : null;
     this.#standing.replaceChildren(ended && this.#shown.final ? "" : standing(this.#job, elapsed ?? this.#job.solved_s));
   }

@@ -1,0 +1,29 @@
+// Where targets stand in two plans, and when they are reached.
+
+import { el, section, table } from "../dom.js";
+import { fixed, signed } from "../format.js";
+
+/** The section with a row for every target of either plan. */
+export function visits(flights, names) {
+  const [first, second] = flights.map(({ stops }) => new Map(stops.map((stop) => [stop.name, stop])));
+  const targets = [...first.keys(), ...[...second.keys()].filter((name) => !first.has(name))];
+  const columns = [
+    { title: "Target", head: true },
+    ...names.flatMap((name) => [{ title: `Place, ${name}`, number: true }, { title: "Arrival, s", number: true }]),
+    { title: "Later by, s", number: true },
+  ];
+  const moved = targets.filter((name) => first.get(name)?.number !== second.get(name)?.number).length;
+  const rows = targets.map((name) => {
+    const [one, other] = [first.get(name), second.get(name)];
+    const place = (stop) => (stop ? String(stop.number) : "–");
+    const differs = one?.number !== other?.number;
+    return [
+      name, place(one), fixed(one?.time), differs ? el("strong", {}, place(other)) : place(other), fixed(other?.time),
+      one && other ? signed(fixed(other.time - one.time)) : "–",
+    ];
+  });
+  return section("Order and times", { class: "wide" },
+    table("Places and arrivals of the targets in both plans", columns, rows),
+    el("p", { class: "quiet" }, moved ? `${moved} of ${targets.length} targets have another place in the second plan; those places are bold.`
+      : "Both plans have the same order."));
+}

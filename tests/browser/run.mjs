@@ -8,10 +8,11 @@ import { openBrowser, startService } from "./harness.mjs";
 import { hostile } from "./hostile.mjs";
 import { journeys } from "./journeys.mjs";
 import { looks } from "./looks.mjs";
+import { matrix } from "./matrix.mjs";
 import { modules } from "./modules.mjs";
 import { units } from "./units.mjs";
 
-const PARTS = { modules, hostile, journeys, answers, details, body, units, compare, looks };
+const PARTS = { modules, hostile, journeys, answers, details, body, units, compare, matrix, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

@@ -32,9 +32,11 @@ export function compared(sides, signal) {
       el("div", { class: "flight" }, flights.map((flight, index) =>
         el("div", { class: "pictures" }, sphere(flight, cursor, signal, { title: `Sky, ${SIDES[index]} plan`, id: `body-axis-${index}` })))),
       tracks(flights, names, total, cursor, signal)),
-    visits(flights, names),
+    visits(flights),
   ];
 }
+
+const capital = (word) => word[0].toUpperCase() + word.slice(1);
 
 /** Names that tell the plans apart. */
 function namesOf(sides) {
@@ -56,13 +58,13 @@ const FIGURES = [
 ];
 
 function figures(sides, names) {
-  const columns = [{ title: "Figure", head: true }, ...names.map((title) => ({ title, number: true })), { title: "Difference", number: true }];
+  const columns = [{ title: "Figure", head: true }, ...SIDES.map((side) => ({ title: capital(side), number: true })), { title: "Difference", number: true }];
   const rows = FIGURES.map(([name, of, text]) => {
     const values = sides.map(({ plan }) => of(plan) ?? null);
     const known = values.every((value) => value !== null);
     return [name, ...values.map((value) => text(value)), known ? signed(text(values[1] - values[0])) : "–"];
   });
   const links = sides.map(({ job }, index) => el("a", { href: `#/plans/${job.id}` }, names[index]));
-  return section("Figures", { class: "wide", head: el("div", { class: "tools" }, "Open ", links[0], " or ", links[1]) },
+  return section("Figures", { class: "wide", head: el("div", { class: "tools" }, "First: ", links[0], ", second: ", links[1]) },
     table("Figures of both plans", columns, rows));
 }

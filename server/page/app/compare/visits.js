@@ -4,13 +4,13 @@ import { el, section, table } from "../dom.js";
 import { fixed, signed } from "../format.js";
 
 /** The section with a row for every target of either plan. */
-export function visits(flights, names) {
+export function visits(flights) {
   const [first, second] = flights.map(({ stops }) => new Map(stops.map((stop) => [stop.name, stop])));
   const targets = [...first.keys(), ...[...second.keys()].filter((name) => !first.has(name))];
   const columns = [
     { title: "Target", head: true },
-    ...names.flatMap((name) => [{ title: `Place, ${name}`, number: true }, { title: "Arrival, s", number: true }]),
-    { title: "Later by, s", number: true },
+    { title: "First", number: true }, { title: "Arrival, s", number: true },
+    { title: "Second", number: true }, { title: "Arrival, s", number: true }, { title: "Later by, s", number: true },
   ];
   const moved = targets.filter((name) => first.get(name)?.number !== second.get(name)?.number).length;
   const rows = targets.map((name) => {

@@ -4,8 +4,9 @@ import { post } from "../api.js";
 import { el, scroller, section } from "../dom.js";
 import { failure } from "../failure.js";
 import { count, fixed } from "../format.js";
+import { largeMatrix } from "./large-matrix.js";
 
-/** So many places have all of their legs in one query. */
+/** So many places have all of their legs solved in one query, and room in a table. */
 const MOST_PLACES = 32;
 /** More columns have no room for decimals. */
 const FEW = 8;
@@ -15,14 +16,16 @@ export function matrix(plan, scenario, signal) {
   const places = placesOf(plan, scenario);
   const body = el("div", {}, el("p", { class: "quiet" }, "Looking up …"));
   const compute = el("button", { type: "button", class: "small", hidden: true, onclick: () => load("compute") }, "Compute missing");
-  const node = section("Leg times, rest to rest", { head: compute, class: "wide" }, body);
-  if (places.length > MOST_PLACES) {
-    body.replaceChildren(el("p", { class: "quiet" }, `${places.length} places; a matrix is shown for at most ${MOST_PLACES}.`));
-    return node;
-  }
-  const { spacecraft, start, options } = scenario;
+  const tools = el("div", { class: "tools" }, compute);
+  const node = section("Leg times, rest to rest", { head: tools, class: "wide" }, body);
+  // The limit of time is one of the search; queries have their own.
+  const { spacecraft, start, options: { time_limit_s: _, ...options } = {} } = scenario;
   const query = { spacecraft, start, options, attitudes: places.map((place) => place.attitude), kind: "rest_to_rest" };
 
+  if (places.length > MOST_PLACES) {
+    largeMatrix({ places, query, isFlown: flownIn(places), body, tools }, signal);
+    return node;
+  }
   async function load(mode) {
     compute.disabled = true;
     try {
@@ -56,6 +59,9 @@ function placesOf(plan, scenario) {
 /** What a query has for a target or the end: its attitude, or where it points a boresight. */
 const asked = ({ attitude, pointing }) => (pointing ? { pointing } : attitude);
 
+/** Whether a plan flies a leg between two of its places, which stand in its order. */
+const flownIn = (places) => (from, to) => to === (from + 1) % places.length && (to !== 0 || places[0].name !== "start");
+
 function grid(places, legs) {
   const size = places.length;
   const times = Array.from({ length: size }, () => Array(size).fill(null));
@@ -63,10 +69,10 @@ function grid(places, legs) {
   const known = times.flat().filter((time) => time !== null);
   const [low, high] = [Math.min(...known), Math.max(...known)];
   const digits = size <= FEW ? 2 : 1;
+  const isFlown = flownIn(places);
   const cell = (time, from, to) => {
     if (from === to) return el("td", { class: "self" });
-    const flown = to === (from + 1) % size && (to !== 0 || places[0].name !== "start");
-    const node = el("td", { class: `number ${time === null ? "missing" : ""} ${flown ? "flown" : ""}` }, fixed(time, digits));
+    const node = el("td", { class: `number ${time === null ? "missing" : ""} ${isFlown(from, to) ? "flown" : ""}` }, fixed(time, digits));
     if (time !== null) node.style.setProperty("--heat", String(high > low ? (time - low) / (high - low) : 0));
     return node;
   };

@@ -54,7 +54,10 @@ async function kept({ browser, service, must }) {
     const shown = await page.locator(".order .stop-time").first().textContent();
     check(shown === arrival, `${shown}, not ${arrival}`);
     await page.locator("summary", { hasText: "Samples as a table" }).click();
-    const cells = await page.getByRole("region", { name: "Samples of the trajectory" }).locator("tbody tr").first().locator("td").allTextContents();
+    // The table is made when it is opened; reading texts does not wait for it.
+    const row = page.getByRole("region", { name: "Samples of the trajectory" }).locator("tbody tr").first();
+    await row.waitFor();
+    const cells = await row.locator("td").allTextContents();
     check(cells[1] === "23:58:30.000", cells.join());
     return `${shown} at ${plan.passages[0].target}`;
   });

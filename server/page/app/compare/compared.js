@@ -50,7 +50,7 @@ const FIGURES = [
   ["Lower bound, s", (plan) => plan.lower_bound_s, fixed],
   ["Proved bound, s", (plan) => plan.certified_lower_bound_s, fixed],
   ["Gap", (plan) => plan.relative_gap, percent],
-  ["Saved against eigenaxis slews, s", saving, fixed],
+  ["Saved, s", saving, fixed],
   ["Targets", (plan) => plan.sequence.length, (value) => fixed(value, 0)],
   ["Torque left", (plan) => plan.margins?.torque, percent],
   ["Wheel speed left", (plan) => plan.margins?.wheel_speed, percent],
@@ -65,6 +65,6 @@ function figures(sides, names) {
     return [name, ...values.map((value) => text(value)), known ? signed(text(values[1] - values[0])) : "–"];
   });
   const links = sides.map(({ job }, index) => el("a", { href: `#/plans/${job.id}` }, names[index]));
-  return section("Figures", { class: "wide", head: el("div", { class: "tools" }, "First: ", links[0], ", second: ", links[1]) },
+  return section("Figures", { class: "card", head: el("div", { class: "tools" }, "First", links[0], "Second", links[1]) },
     table("Figures of both plans", columns, rows));
 }

@@ -32,8 +32,11 @@ function measure(font) {
   return ink.measureText("0").width;
 }
 
-/** A field for a JSON document, with buttons and what comes of them below it. */
-export function editor({ id, label, rows = 24, actions, signal }) {
+/**
+ * A field for a JSON document, with buttons and what comes of them below it. `changed` is called with
+ * what has been written, pasted or loaded here; `taken` may take another file than a document.
+ */
+export function editor({ id, label, rows = 24, actions, signal, changed = () => {}, taken = () => false }) {
   const text = el("textarea", {
     id, spellcheck: "false", autocomplete: "off", autocapitalize: "off", wrap: "off", rows: String(rows),
     "aria-describedby": `${id}-note`,
@@ -53,14 +56,21 @@ export function editor({ id, label, rows = 24, actions, signal }) {
     }
     lines.scrollTop = text.scrollTop;
   };
-  text.addEventListener("input", renumber);
+  text.addEventListener("input", () => {
+    renumber();
+    changed(text.value);
+  });
   text.addEventListener("scroll", () => (lines.scrollTop = text.scrollTop));
 
-  const write = (document) => {
+  const put = (document) => {
     text.value = document;
-    text.scrollTop = 0;
     renumber();
+  };
+  const write = (document) => {
+    put(document);
+    text.scrollTop = 0;
     outcome.replaceChildren();
+    changed(document);
   };
   const show = (problem) => {
     const at = placeInText(problem);
@@ -69,7 +79,7 @@ export function editor({ id, label, rows = 24, actions, signal }) {
   };
 
   async function take(dropped) {
-    if (dropped) write(await dropped.text());
+    if (dropped && !taken(dropped)) write(await dropped.text());
   }
 
   async function load(path) {
@@ -105,6 +115,8 @@ export function editor({ id, label, rows = 24, actions, signal }) {
     outcome,
     show,
     load,
+    put,
+    write,
     loadExample: (name) => load(new URL(`../examples/${name}.json`, import.meta.url).pathname),
     get text() {
       return text.value;

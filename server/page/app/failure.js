@@ -6,11 +6,11 @@ import { nameAt, placeInText } from "./pointer.js";
 
 /**
  * A message for a failed request, with all problems of an input; `locate` shows the place of one, and
- * `document`, where it is known, gives the names of targets.
+ * `document`, where it is known, gives the names of targets, `further` another way to the place of one.
  */
-export function failure(error, locate, document) {
-  const items = (error.errors ?? []).map((problem) => item(problem, locate, document));
-  const doubts = (error.warnings ?? []).map((problem) => item(problem, locate, document));
+export function failure(error, locate, document, further) {
+  const items = (error.errors ?? []).map((problem) => item(problem, locate, document, further));
+  const doubts = (error.warnings ?? []).map((problem) => item(problem, locate, document, further));
   return el(
     "div",
     { class: "failure", role: "alert" },
@@ -23,17 +23,17 @@ export function failure(error, locate, document) {
 }
 
 /** A message for a request that succeeded, with the warnings about its input. */
-export function success(title, warnings, locate, document) {
+export function success(title, warnings, locate, document, further) {
   return el(
     "div",
     { class: warnings.length ? "success doubtful" : "success", role: "status" },
     el("p", { class: "success-title" }, warnings.length ? `${title}, with ${count(warnings.length, "warning")}` : title),
-    warnings.length ? el("ul", {}, warnings.map((warning) => item(warning, locate, document))) : null,
+    warnings.length ? el("ul", {}, warnings.map((warning) => item(warning, locate, document, further))) : null,
   );
 }
 
 /** Problems or warnings of an input: target, pointer, message and hint each. */
-export function item(problem, locate, document) {
+export function item(problem, locate, document, further) {
   const at = placeInText(problem);
   const place = at ? `line ${at.line}, column ${at.column}` : problem.pointer || "/";
   const pointer = locate
@@ -43,7 +43,7 @@ export function item(problem, locate, document) {
   return el(
     "li",
     {},
-    el("span", {}, name ? [el("strong", { class: "named-place" }, name), " "] : null, pointer),
+    el("span", {}, name ? [el("strong", { class: "named-place" }, name), " "] : null, pointer, further ? [" ", further(problem)] : null),
     el("span", {}, problem.message),
     problem.hint ? el("span", { class: "hint" }, problem.hint) : null,
   );

@@ -8,13 +8,15 @@ export function pretty(text) {
   return `${write(JSON.parse(text), "")}\n`;
 }
 
-function flat(value) {
+/** A document on one line. */
+export function flat(value) {
   if (value === null || typeof value !== "object") return JSON.stringify(value);
   if (Array.isArray(value)) return `[${value.map(flat).join(", ")}]`;
   return `{${Object.entries(value).map(([name, item]) => `${JSON.stringify(name)}: ${flat(item)}`).join(", ")}}`;
 }
 
-function write(value, indent) {
+/** A document over several lines where it is too long for one, all but the first of them indented. */
+export function write(value, indent) {
   const isPlain = value === null || typeof value !== "object";
   const one = flat(value);
   if (isPlain || one.length + indent.length <= WIDTH) return one;

@@ -1,12 +1,22 @@
-// A new plan: a scenario pasted, dropped, chosen or taken from the examples.
+// A new plan: its targets, spacecraft and conditions as tables and forms, the sky, and the JSON of it all.
 
 import { post } from "../api.js";
-import { el } from "../dom.js";
+import { boresightNames } from "../desk/control.js";
+import { conesForm } from "../desk/cones-form.js";
+import { optionsForm, statesForm } from "../desk/conditions-form.js";
+import { Desk } from "../desk/desk.js";
+import { historyButtons, listenToHistory } from "../desk/history.js";
+import { spacecraftForm } from "../desk/spacecraft-form.js";
+import { skyView } from "../desk/sky-view.js";
+import { standing } from "../desk/standing.js";
+import { takeFile, targetsPart } from "../desk/targets-part.js";
+import { el, section } from "../dom.js";
 import { editor, examples } from "../editor.js";
 import { failure, success } from "../failure.js";
 
 const EXAMPLES = [
   ["two-targets", "Two targets", "settle, dwell and a keep-out cone"],
+  ["stars-and-sun", "Stars with the Sun", "pointings with free roll, cones around the Sun"],
   ["olivares-a", "Experiment A", "six targets, the published case"],
   ["olivares-b", "Experiment B", "twelve targets"],
   ["olivares-c", "Experiment C", "eighteen targets"],
@@ -15,34 +25,71 @@ const EXAMPLES = [
 
 /** The view at "#/new", which may name an example or a plan to start from. */
 export function submit({ signal, query }) {
-  const check = el("button", { type: "button", onclick: () => send(true) }, "Check");
-  const go = el("button", { type: "button", class: "primary", onclick: () => send(false) }, "Plan");
-  const field = editor({ id: "scenario", label: "Scenario", actions: [go, check], signal });
+  const desk = new Desk(signal);
+  const { draft, checking } = desk;
+  const check = el("button", { type: "button", onclick: () => ask() }, "Check");
+  const go = el("button", { type: "button", class: "primary", onclick: () => send() }, "Plan");
+  /** Leads to the cell of a problem, or to its place in the text. */
+  const lead = (problem) => desk.lead(problem.pointer ?? "") || field.show(problem);
 
-  async function send(only) {
+  const field = editor({
+    id: "scenario", label: "Scenario", rows: 18, signal,
+    changed: (text) => draft.edit(text, "JSON", "JSON"),
+    taken: (file) => /\.(csv|tsv|txt)$/i.test(file.name) && (takeFile(desk, file, field.write), true),
+  });
+  const { outcome } = field;
+  draft.listen(() => field.text !== draft.text && field.put(draft.text), signal);
+  field.put(draft.text);
+
+  desk.showInText = (pointer) => field.show({ pointer });
+  const cellOf = ({ pointer }) => desk.has(pointer ?? "")
+    && el("button", { type: "button", class: "small", onclick: () => desk.lead(pointer) }, "Show the cell");
+  let shown = null;
+  const tell = (isAsked) => {
+    const { answer } = checking;
+    if (!answer || (answer === shown && !isAsked)) return;
+    shown = answer;
+    const node = answer.error
+      ? failure(answer.error, field.show, field.document, cellOf)
+      : success("Valid", answer.warnings, field.show, field.document, cellOf);
+    // What nobody asked for does not interrupt.
+    if (!isAsked) node.removeAttribute("role");
+    outcome.replaceChildren(node);
+  };
+  outcome.setAttribute("aria-live", "off");
+  checking.listen(() => (checking.answer ? tell(false) : draft.isBlank && outcome.replaceChildren()));
+
+  async function ask() {
+    check.disabled = go.disabled = true;
+    await checking.ask();
+    tell(true);
+    check.disabled = go.disabled = false;
+  }
+
+  async function send() {
     check.disabled = go.disabled = true;
     try {
-      const answer = await post(only ? "/v1/plans?validate_only=true" : "/v1/plans", field.text, signal);
-      if (only) field.outcome.replaceChildren(success("Valid", answer.warnings ?? [], field.show, field.document));
-      else location.hash = `#/plans/${answer.id}`;
+      const answer = await post("/v1/plans", draft.text, signal);
+      location.hash = `#/plans/${answer.id}`;
     } catch (error) {
-      if (!signal.aborted) field.outcome.replaceChildren(failure(error, field.show, field.document));
+      if (!signal.aborted) {
+        outcome.replaceChildren(failure(error, field.show, field.document, cellOf));
+        outcome.scrollIntoView({ block: "nearest" });
+      }
     }
     check.disabled = go.disabled = false;
   }
 
+  const node = el("div", { class: "view desk" },
+    el("div", { class: "title desk-title" },
+      el("h1", {}, "New plan"), el("div", { class: "actions" }, standing(desk, lead), historyButtons(desk), check, go)),
+    boresightNames(desk),
+    el("div", { class: "desk-parts" },
+      el("div", { class: "desk-main" }, targetsPart(desk, field.write), conesForm(desk), spacecraftForm(desk), statesForm(desk), optionsForm(desk)),
+      el("div", { class: "desk-side" }, skyView(desk), section("JSON", { class: "desk-part desk-json" }, field.node),
+        el("aside", { class: "desk-part", "aria-labelledby": "examples-title" }, examples(EXAMPLES, field.loadExample, "plans/create_plan")))));
+  listenToHistory(node, draft);
   if (query.get("example")) field.loadExample(query.get("example"));
   if (query.get("from")) field.load(`/v1/plans/${encodeURIComponent(query.get("from"))}/scenario`);
-
-  return el(
-    "div",
-    { class: "view" },
-    el("div", { class: "title" }, el("h1", {}, "New plan")),
-    el(
-      "div",
-      { class: "split" },
-      field.node,
-      el("aside", { "aria-labelledby": "examples-title" }, examples(EXAMPLES, field.loadExample, "plans/create_plan")),
-    ),
-  );
+  return node;
 }

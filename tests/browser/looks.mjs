@@ -18,7 +18,7 @@ export async function looks({ browser, service, must }) {
     ids[name] = await planned(service, fixture(name));
   }
   const views = {
-    list: "#/", new: "#/new?example=olivares-a", plan: `#/plans/${ids["olivares-a"]}`,
+    list: "#/", new: "#/new?example=olivares-a", blank: "#/new", stars: "#/new?example=stars-and-sun", plan: `#/plans/${ids["olivares-a"]}`,
     "keep-out": `#/plans/${ids["two-targets"]}`, pyramid: `#/plans/${ids["pyramid-momentum-bias"]}`,
     slew: "#/slew?example=quarter-turn", trade: "#/slew?example=olrac-four-wheels",
     study: "#/studies?example=study-authority",
@@ -48,7 +48,11 @@ export async function looks({ browser, service, must }) {
 /** The view with everything in it, at a moment in the middle of the flight. */
 async function ready(page, view) {
   if (view === "list") return page.locator("tbody tr").first().waitFor();
-  if (view === "new") return page.waitForFunction(() => document.querySelector("#scenario").value.length > 0);
+  if (view === "blank") return page.getByText("No targets yet").waitFor();
+  if (view === "new" || view === "stars") {
+    await page.getByText("No problems").waitFor();
+    return page.locator(".desk-sphere .place-name").first().waitFor();
+  }
   if (view in SENT) await send(page, SENT[view]);
   else if (view === "compare") await page.locator(".sphere .stop").nth(7).waitFor();
   else await Promise.all([".sphere .stop", ".search .uplot", ".matrix"].map((part) => page.locator(part).first().waitFor()));

@@ -3,6 +3,8 @@
 import { answers } from "./answers.mjs";
 import { body } from "./body.mjs";
 import { compare } from "./compare.mjs";
+import { desk } from "./desk.mjs";
+import { deskModules } from "./desk-modules.mjs";
 import { details } from "./details.mjs";
 import { openBrowser, startService } from "./harness.mjs";
 import { hostile } from "./hostile.mjs";
@@ -12,7 +14,7 @@ import { matrix } from "./matrix.mjs";
 import { modules } from "./modules.mjs";
 import { units } from "./units.mjs";
 
-const PARTS = { modules, hostile, journeys, answers, details, body, units, compare, matrix, looks };
+const PARTS = { modules, hostile, journeys, desk, "desk-modules": deskModules, answers, details, body, units, compare, matrix, looks };
 
 const asked = process.argv.slice(2);
 const unknown = asked.filter((name) => !(name in PARTS));

@@ -57,6 +57,6 @@ export function group(name, ...nodes) {
 export function choice(label, options, chosen) {
   const id = `field-${(number += 1)}`;
   const input = el("select", { id, onchange: () => chosen(input.value) }, options.map(([value, title]) => el("option", { value }, title)));
-  const node = el("div", { class: "field" }, el("label", { for: id }, label), input, el("span", { class: "field-note" }));
+  const node = el("div", { class: "field wide" }, el("label", { for: id }, label), input);
   return { node, show: (value) => (input.value = value) };
 }

@@ -48,11 +48,11 @@ function ofMatrix(m) {
   const trace = m[0][0] + m[1][1] + m[2][2];
   const squares = [m[0][0], m[1][1], m[2][2]].map((own) => 1 + 2 * own - trace).concat(1 + trace);
   const largest = squares.indexOf(Math.max(...squares));
-  const size = 2 * Math.sqrt(squares[largest]);
   const [x, y, z] = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
   const [xy, xz, yz] = [m[0][1] + m[1][0], m[0][2] + m[2][0], m[1][2] + m[2][1]];
-  const parts = [[size * size / 4, xy, xz, x], [xy, size * size / 4, yz, y], [xz, yz, size * size / 4, z], [x, y, z, size * size / 4]];
-  return parts[largest].map((part) => part / size);
+  const parts = [[squares[0], xy, xz, x], [xy, squares[1], yz, y], [xz, yz, squares[2], z], [x, y, z, squares[3]]];
+  // Entries that are rounded are not quite those of a rotation.
+  return scaled(parts[largest], 1 / Math.hypot(...parts[largest]));
 }
 
 /** The columns are the body axes in the reference frame. */

@@ -23,6 +23,9 @@ const EXAMPLES = [
   ["pyramid-momentum-bias", "Pyramid with bias", "four wheels, stored momentum"],
 ];
 
+/** Letters that one key changes at most: a line break with its indentation is more, and a step. */
+const MAX_TYPED = 2;
+
 /** The view at "#/new", which may name an example or a plan to start from. */
 export function submit({ signal, query }) {
   const desk = new Desk(signal);
@@ -34,7 +37,8 @@ export function submit({ signal, query }) {
 
   const field = editor({
     id: "scenario", label: "Scenario", rows: 18, signal,
-    changed: (text) => draft.edit(text, "JSON", "JSON"),
+    // Letters that are typed are one step of the history, what is pasted or loaded is one of its own.
+    changed: (text) => draft.edit(text, "JSON", Math.abs(text.length - draft.text.length) <= MAX_TYPED ? "JSON" : null),
     taken: (file) => /\.(csv|tsv|txt)$/i.test(file.name) && (takeFile(desk, file, field.write), true),
   });
   const { outcome } = field;

@@ -35,7 +35,7 @@ export function optionsForm(desk) {
       number("Momentum authority", "momentum_authority", { placeholder: "1" }),
       number("Alternatives", "alternatives", { placeholder: "1" }),
       field(desk, {
-        title: "q and −q", type: "choice", unset: "as usual",
+        title: "q and −q", type: "choice", wide: true, unset: "as usual",
         options: [['"rotation"', "the same attitude"], ['"quaternion"', "two attitudes"]],
       }, () => ["options", "attitude_equivalence"])));
 }

@@ -31,10 +31,14 @@ const FOLDER_MARK: &str = "{{files}}";
 struct Files;
 
 /// The examples of the page, under `examples/`: scenarios, slews and studies.
-const EXAMPLES: [(&str, &str); 13] = [
+const EXAMPLES: [(&str, &str); 14] = [
     (
         "examples/two-targets.json",
         include_str!("../../../tests/fixtures/two-targets.json"),
+    ),
+    (
+        "examples/stars-and-sun.json",
+        include_str!("../../../tests/fixtures/stars-and-sun.json"),
     ),
     (
         "examples/olivares-a.json",

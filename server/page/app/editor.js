@@ -50,10 +50,9 @@ export function editor({ id, label, rows = 24, actions, signal, changed = () => 
   const lines = el("pre", { class: "lines", "aria-hidden": "true" });
   const renumber = () => {
     const number = text.value.split("\n").length;
-    if (Number(lines.dataset.number) !== number) {
-      lines.textContent = Array.from({ length: number }, (_, index) => index + 1).join("\n");
-      lines.dataset.number = String(number);
-    }
+    if (Number(lines.dataset.number) === number) return;
+    lines.textContent = Array.from({ length: number }, (_, index) => index + 1).join("\n");
+    lines.dataset.number = String(number);
     lines.scrollTop = text.scrollTop;
   };
   text.addEventListener("input", () => {

@@ -49,7 +49,7 @@ export class Grid {
     });
     listenToGrid(this.#body, this);
     desk.draft.listen(() => this.render(), desk.signal);
-    desk.checking.listen(() => this.#mark());
+    desk.checking.listen(() => desk.checking.isPending || this.#mark());
     selection.listen(() => this.#choose(), desk.signal);
     this.render();
   }

@@ -22,7 +22,7 @@ export function find(node, path) {
   let at = node ?? undefined;
   for (const key of path) {
     // The last one counts where a name is there twice, as in `JSON.parse`.
-    at = at?.entries?.findLast((entry) => entry.key === String(key))?.node;
+    at = (at?.kind === "array" ? at.entries[key] : at?.entries?.findLast((entry) => entry.key === key))?.node;
   }
   return at;
 }

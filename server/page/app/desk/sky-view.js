@@ -34,6 +34,8 @@ export function skyView(desk) {
   let wanted = null;
   const data = el("div", {});
   const legend = el("p", { class: "quiet" });
+  const details = disclosure("Directions as a table", () => data);
+  details.addEventListener("toggle", () => details.open && data.replaceChildren(directions(content)));
 
   const turning = new SkyPose(() => {
     if (!size || !content) return;
@@ -53,7 +55,7 @@ export function skyView(desk) {
     const isNew = !former || (!former.targets.length && content.targets.length);
     if (isNew) reset();
     turning.renew();
-    data.replaceChildren(directions(content));
+    if (details.open) data.replaceChildren(directions(content));
     legend.textContent = legendOf(desk, content);
     say();
   };
@@ -126,7 +128,6 @@ export function skyView(desk) {
     say();
   }, desk.signal);
 
-  const details = disclosure("Directions as a table", () => data);
   const button = (text, label, act) => el("button", { type: "button", class: "small", "aria-label": label, onclick: act }, text);
   const head = el("div", { class: "tools" }, el("label", { for: "sky-axis" }, "Boresight"), axisChoice,
     button("−", "Zoom out", () => turning.enlarge(1 / ZOOM_STEP)), button("+", "Zoom in", () => turning.enlarge(ZOOM_STEP)),

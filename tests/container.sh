@@ -5,7 +5,8 @@
 #
 # Compose file, Kubernetes manifests and image are held against their schemas and against what
 # server/deploy promises; then `solve`, `legs` and `serve` run from the image's files: an
-# unprivileged user, a read-only root, one volume. No container engine is needed, but root is.
+# unprivileged user, a read-only root, one volume; and the commands of the Compose file with Postgres,
+# in its order and by its health checks. No container engine is needed, but root is.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 profile=${1:-release}
@@ -18,6 +19,10 @@ missing=()
 for program in buildah readelf:binutils unshare:util-linux; do
     command -v "${program%%:*}" >/dev/null || missing+=("${program##*:}")
 done
+# Several processes are run on a Postgres of this system.
+if ! ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 && ! command -v initdb >/dev/null; then
+    missing+=(postgresql)
+fi
 if [ ${#missing[@]} -gt 0 ]; then
     "${as_root[@]}" apt-get update
     "${as_root[@]}" apt-get install --yes --no-install-recommends "${missing[@]}"

@@ -1,34 +1,29 @@
 #!/usr/bin/env python3
-"""Runs the image: jobs as the Kubernetes manifests state them, then the service.
+"""Runs the image: jobs as the Kubernetes manifests state them, the service, and several on a Postgres.
 
     tests/container.sh
 
 calls this with what `buildah inspect --type image` prints and the folder where the image is mounted.
 """
 
-import http.client
 import json
-import os
 import re
-import signal
-import socket
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 sys.path.append(str(Path(__file__).resolve().parent))
+from client import Client, end, free_port  # noqa: E402
 from manifests import DEPLOY, SCHEMAS  # noqa: E402
 from room import Room, files, inside, status  # noqa: E402
+from shared import shared  # noqa: E402
 
 from common import FIXTURES, Judge  # noqa: E402
 
 LARGEST_MB = 30
 REFERENCE = re.compile(r"\$\((\w+)\)")
 SCENARIO = FIXTURES / "two-targets.json"
-# The service promises to end in this time, s.
-GRACE_S = 20
 
 
 def size(judge, room):
@@ -93,29 +88,6 @@ def legs(table):
     return [(leg["from"], leg["to"], round(leg["duration_s"], 6)) for leg in json.loads(table)["legs"]]
 
 
-class Client:
-    """Requests to the service on this machine."""
-
-    def __init__(self, port, secret=None):
-        self.port = port
-        self.headers = {"Authorization": f"Bearer {secret}"} if secret else {}
-
-    def ask(self, method, path, body=None, **headers):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
-        try:
-            connection.request(method, path, body, {**self.headers, **headers})
-            answer = connection.getresponse()
-            return answer.status, json.loads(answer.read() or "null")
-        finally:
-            connection.close()
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 def last(text):
     """The last line: the message of a program that also logs."""
     return text.strip().rpartition("\n")[2]
@@ -175,15 +147,6 @@ def confinement(judge, room, process):
     judge.demand("the first process of its namespace", facts["NSpid"].split()[-1] == "1")
 
 
-def end(judge, started):
-    """Ends the service as an engine does."""
-    begin = time.monotonic()
-    os.kill(inside(started), signal.SIGTERM)
-    code = started.wait(2 * GRACE_S)
-    took = time.monotonic() - begin
-    judge.demand(f"SIGTERM ends it with code {code} after {took:.1f} s", code == 0 and took <= GRACE_S)
-
-
 def main():
     image = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))["Docker"]["config"]
     room = Room(sys.argv[2], image)
@@ -193,7 +156,7 @@ def main():
         # Others than root have to find their way through it.
         work.chmod(0o755)
         size(judge, room)
-        for part in (confined, jobs, service):
+        for part in (confined, jobs, service, shared):
             part(judge, room, work)
     judge.end()
 

@@ -153,15 +153,19 @@ def errors_of_the_disk_stop_or_pass(scale):
 @gate("D7")
 def the_writer_heals(scale):
     """Single failures of writes: the next write succeeds. On a server a connection is ended each time."""
-    rounds, healed, many = scale.rounds(100, 10), 0, ("--queue-limit", "100000")
+    rounds, waits, many = scale.rounds(100, 10), [], ("--queue-limit", "100000")
     with failing(scale, "d7") as disk, service(disk.database, *many, environment=disk.environment) as running:
         for number in range(rounds):
             disk.fail_once(errno.ENOSPC if number % 2 else errno.EIO)
             running.request("POST", "/v1/plans", variant(0))
             disk.faults.clear()
-            wait = until(lambda: running.request("POST", "/v1/plans", variant(0))[0] == 202, 1.0)
-            healed += wait is not None and ready(running) == 200
-    return [Row("D7", f"writes and readiness within 1 s of a failure, of {rounds}", str(healed), str(rounds), healed == rounds)]
+            wait = until(lambda: running.request("POST", "/v1/plans", variant(0))[0] == 202, 10.0)
+            waits += [wait] if wait is not None and ready(running) == 200 else []
+    worst = max(waits, default=float("inf"))
+    return [
+        Row("D7", f"failures after which a write and readiness succeed, of {rounds}", str(len(waits)), str(rounds), len(waits) == rounds),
+        Row("D7", "slowest write after a failure", f"{worst:.2f} s", "1 s", worst <= 1.0, timed=True),
+    ]
 
 
 @gate("D5", of_a_file="locks, log and copies of a file; of a server they are those of Postgres")

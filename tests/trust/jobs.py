@@ -163,7 +163,7 @@ def worker_that_slept(scale):
     with service(database, "--jobs", "1", workers=1) as running:
         for number in range(rounds):
             job = running.submit(long_running(number))
-            running.wait(job, lambda job: job["stage"] == "search")
+            running.wait(job, lambda job: job["stage"] == "search", 600.0)
             time.sleep(random_state.uniform(0.0, 1.0))
             after = running.submit(variant(number))
             worker = running.solver_of(job)

@@ -152,7 +152,7 @@ def outages_are_told(scale):
         database = ServerDatabase(server, scale.work / "p2")
         with service(database) as running:
             job = running.submit(long_running())
-            running.wait(job, lambda job: job["stage"] == "search")
+            running.wait(job, lambda job: job["state"] == "running")
             for outage in outages(server, database)[: scale.of(None, 1)]:
                 rows += survived(running, job, outage)
             rows += newer_schema(running, database)

@@ -56,10 +56,10 @@ def legs_solved_again(scale):
     database = scale.database("j5-legs")
     with service(database) as running:
         job = running.submit(long_running())
-        running.wait(job, lambda job: job["stage"] == "search")
+        running.wait(job, lambda job: job["stage"] == "search", 600.0)
         running.kill()
     with service(database) as running:
-        running.wait(job, lambda job: job["attempt"] == 2 and job["stage"] == "search")
+        running.wait(job, lambda job: job["attempt"] == 2 and job["stage"] == "search", 600.0)
         figures = running.solver_of(job).request("GET", "/metrics")[1].decode()
         return int(next(line.split()[-1] for line in figures.splitlines() if 'outcome="miss"' in line))
 

@@ -2,6 +2,7 @@
 
 use super::Jobs;
 use super::worker::LEASE;
+use crate::base::clock::now_us;
 use crate::store::{Notice, OtherProcesses};
 use slewplan_solver::run::stop::StopSignal;
 use std::time::Duration;
@@ -68,7 +69,7 @@ impl Jobs {
 }
 
 /// Takes jobs from processes that no longer prolong their leases, without end. When the database was
-/// away, nobody could prolong them: the others get the time of a lease to do so.
+/// away or could only be read, nobody could prolong them: the others get the time of a lease to do so.
 async fn take_over(jobs: Jobs, boot_id: String) {
     let (mut last, mut patient_until) = (Instant::now(), Instant::now());
     loop {
@@ -85,13 +86,14 @@ async fn take_over(jobs: Jobs, boot_id: String) {
         }
         last = Instant::now();
         if last < patient_until {
+            if store.check_writable(now_us()).await.is_err() {
+                patient_until = Instant::now() + LEASE;
+            }
             continue;
         }
-        let now_us = store.lease_clock_us();
-        match store
-            .recover(&boot_id, OtherProcesses::MayLive, now_us)
-            .await
-        {
+        let lease_now_us = store.lease_clock_us();
+        let recovered = store.recover(&boot_id, OtherProcesses::MayLive, lease_now_us);
+        match recovered.await {
             Ok(recovered) if recovered.is_empty() => {}
             Ok(recovered) => {
                 tracing::warn!(?recovered, "leases of other processes have expired");
@@ -99,7 +101,10 @@ async fn take_over(jobs: Jobs, boot_id: String) {
                 store.tell(Notice::Queued);
                 jobs.changed();
             }
-            Err(error) => tracing::warn!(%error, "expired leases cannot be looked for"),
+            Err(error) => {
+                tracing::warn!(%error, "expired leases cannot be looked for");
+                patient_until = Instant::now() + LEASE;
+            }
         }
     }
 }

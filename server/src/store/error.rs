@@ -102,10 +102,12 @@ const IOERR_DIR_FSYNC: u32 = 1290;
 const DISK_FULL: &str = "53100";
 /// The server, or the user of it, may only read at present.
 const READ_ONLY: &str = "25006";
-/// The server has no connection left, ends or begins.
-const AWAY: [&str; 4] = ["53300", "57P01", "57P02", "57P03"];
-/// Class of errors of the connection.
-const CONNECTION: &str = "08";
+/// The server has no connection left, ends or begins; nobody may connect to the database, or it is not
+/// there any more.
+const AWAY: [&str; 6] = ["53300", "55000", "57P01", "57P02", "57P03", "3D000"];
+/// Classes of errors of the connection, of who connects (all was well when the process started), and of
+/// the machine of the server, whose files cannot be read or written.
+const AWAY_CLASSES: [&str; 3] = ["08", "28", "58"];
 /// Other transactions were in the way: serialization, deadlock, a lock or a statement took too long.
 const IN_THE_WAY: [&str; 4] = ["40001", "40P01", "55P03", "57014"];
 
@@ -141,11 +143,12 @@ impl StoreError {
         matches!(self.code(), Some(ErrorCode::Postgres(code)) if code == READ_ONLY)
     }
 
-    /// Whether the server of the database cannot be reached.
+    /// Whether the server of the database cannot be reached, or cannot work.
     pub(crate) fn is_away(&self) -> bool {
         match self.code() {
             Some(ErrorCode::Postgres(code)) => {
-                code.starts_with(CONNECTION) || AWAY.contains(&code.as_str())
+                AWAY.contains(&code.as_str())
+                    || AWAY_CLASSES.iter().any(|class| code.starts_with(class))
             }
             Some(ErrorCode::Sqlite(_)) => false,
             None => matches!(

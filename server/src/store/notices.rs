@@ -14,12 +14,15 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::sync::oneshot;
 
 const CHANNEL: &str = "slewplan";
 /// Pause before another try to listen.
 const RETRY: Duration = Duration::from_secs(1);
 /// Maximum number of notices sent at once.
 const BATCH: usize = 256;
+/// Longest wait for the last notices before the connections are closed.
+const FLUSH: Duration = Duration::from_secs(2);
 
 /// Something that has been committed.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,11 +56,20 @@ impl Notice {
     }
 }
 
+/// An entry of the queue of notices.
+#[derive(Debug)]
+enum Entry {
+    /// A notice.
+    Notice(Notice),
+    /// Somebody waits until the entries before have been sent.
+    Flush(oneshot::Sender<()>),
+}
+
 /// Sends notices to other processes, in the order in which they were given, those that came while
 /// others were sent all at once.
 #[derive(Debug, Clone)]
 pub(super) struct Notices {
-    queue: UnboundedSender<Notice>,
+    queue: UnboundedSender<Entry>,
     pool: PgPool,
     /// Tells the notices of this process from those of others.
     own: Arc<str>,
@@ -72,9 +84,21 @@ impl Notices {
         Self { queue, pool, own }
     }
 
-    /// The connections that it uses.
-    pub(super) fn pool(&self) -> &PgPool {
-        &self.pool
+    /// Sends a notice soon.
+    fn push(&self, notice: Notice) {
+        // Fails only when the runtime ends.
+        let _ = self.queue.send(Entry::Notice(notice));
+    }
+
+    /// Waits until all notices have been sent, and closes the connections. The last ones of a process
+    /// are those of the jobs that it gives back: without them others would find these seconds later.
+    pub(super) async fn close(&self) {
+        let (sent, all_sent) = oneshot::channel();
+        if self.queue.send(Entry::Flush(sent)).is_ok() {
+            // A server that is away is not waited for.
+            let _ = tokio::time::timeout(FLUSH, all_sent).await;
+        }
+        self.pool.close().await;
     }
 
     /// The notice of another process; `None` of an own one.
@@ -84,19 +108,35 @@ impl Notices {
     }
 }
 
-async fn send(pool: PgPool, own: Arc<str>, mut notices: UnboundedReceiver<Notice>) {
+async fn send(pool: PgPool, own: Arc<str>, mut entries: UnboundedReceiver<Entry>) {
     let mut waiting = Vec::new();
-    while notices.recv_many(&mut waiting, BATCH).await > 0 {
-        let different: BTreeSet<Notice> = waiting.drain(..).collect();
-        let texts = different.iter().map(|one| format!("{own} {}", one.text()));
-        let sent = sqlx::query("SELECT pg_notify($1, text) FROM unnest($2) AS text")
-            .bind(CHANNEL)
-            .bind(texts.collect::<Vec<_>>())
-            .execute(&pool)
-            .await;
-        if let Err(error) = sent {
-            tracing::warn!(%error, "other processes are not told of changes; they look for them");
+    while entries.recv_many(&mut waiting, BATCH).await > 0 {
+        let (mut different, mut flushes) = (BTreeSet::new(), Vec::new());
+        for entry in waiting.drain(..) {
+            match entry {
+                Entry::Notice(notice) => drop(different.insert(notice)),
+                Entry::Flush(sent) => flushes.push(sent),
+            }
         }
+        if !different.is_empty() {
+            notify(&pool, &own, &different).await;
+        }
+        for sent in flushes {
+            // Who waited may have given up.
+            let _ = sent.send(());
+        }
+    }
+}
+
+async fn notify(pool: &PgPool, own: &str, notices: &BTreeSet<Notice>) {
+    let texts = notices.iter().map(|one| format!("{own} {}", one.text()));
+    let sent = sqlx::query("SELECT pg_notify($1, text) FROM unnest($2) AS text")
+        .bind(CHANNEL)
+        .bind(texts.collect::<Vec<_>>())
+        .execute(pool)
+        .await;
+    if let Err(error) = sent {
+        tracing::warn!(%error, "other processes are not told of changes; they look for them");
     }
 }
 
@@ -109,8 +149,7 @@ impl Store {
     /// Tells other processes, soon and without a promise.
     pub(crate) fn tell(&self, notice: Notice) {
         if let Database::Postgres(PostgresDatabase { notices, .. }) = &self.database {
-            // Fails only when the runtime ends.
-            let _ = notices.queue.send(notice);
+            notices.push(notice);
         }
     }
 

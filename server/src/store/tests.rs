@@ -4,6 +4,7 @@ mod bounds;
 mod copy;
 mod ends;
 mod fence;
+mod notices;
 mod outage;
 #[path = "../../../tests/postgres.rs"]
 mod postgres;

@@ -67,7 +67,7 @@ impl PostgresDatabase {
 
     /// Closes all connections.
     pub(super) async fn close(&self) {
-        self.notices.pool().close().await;
+        self.notices.close().await;
         self.pool.close().await;
     }
 

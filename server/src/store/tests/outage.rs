@@ -2,6 +2,7 @@
 
 use super::{ID, change, on_a_store, on_an_address, open, postgres, runtime, sql, submitted};
 use crate::store::{DatabaseAddress, Store, StoreError};
+use sqlx::AssertSqlSafe;
 use std::ffi::OsString;
 
 #[test]
@@ -49,6 +50,43 @@ fn a_database_that_only_reads_is_told_from_a_failure() {
             .await
             .expect_err("it only reads");
         assert!(error.is_read_only() && !error.is_away(), "{error}");
+    });
+}
+
+#[test]
+fn errors_of_a_server_are_told_apart() {
+    on_a_store(|store| async move {
+        if !store.is_shared() {
+            return;
+        }
+        for (code, kind) in [
+            ("08006", "away"),
+            ("28P01", "away"),
+            ("3D000", "away"),
+            ("53300", "away"),
+            ("55000", "away"),
+            ("57P02", "away"),
+            ("58030", "away"),
+            ("53100", "full"),
+            ("25006", "read-only"),
+            ("40001", "busy"),
+            ("57014", "busy"),
+            ("23505", "none"),
+        ] {
+            let raise = format!("DO $$ BEGIN RAISE EXCEPTION USING ERRCODE = '{code}'; END $$");
+            let mut transaction = store.begin().await.expect("begun");
+            let raised = sql(AssertSqlSafe(raise)).execute(&mut *transaction).await;
+            let error = raised.expect_err("it is raised");
+            let found = [
+                ("away", error.is_away()),
+                ("full", error.is_disk_full()),
+                ("read-only", error.is_read_only()),
+                ("busy", error.is_busy()),
+            ];
+            for (name, is) in found {
+                assert_eq!(is, name == kind, "{code}: {name}");
+            }
+        }
     });
 }
 

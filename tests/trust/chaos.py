@@ -10,7 +10,7 @@ from collections import Counter
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 
-from harness import Postgres, Row, fixture, gate, service, until, variant
+from harness import Postgres, Row, UntilLeft, fixture, gate, service, until, variant
 from proxy import Proxy
 from service import FINAL
 from systems import SERVICES, WORKERS, ServerDatabase
@@ -34,24 +34,13 @@ class Told:
     statuses: Counter = field(default_factory=Counter)
 
 
-class Clients:
+class Clients(UntilLeft):
     """Threads that submit through any service, stop, cancel and follow jobs, whatever happens."""
 
     def __init__(self, running, seed):
-        self.running, self.seed, self.told = running, seed, Told()
-        self.ending, self.guard = threading.Event(), threading.Lock()
-        self.threads = [threading.Thread(target=self.submit, args=(number,)) for number in range(CLIENTS)]
-        self.threads += [threading.Thread(target=self.follow)]
-
-    def __enter__(self):
-        for thread in self.threads:
-            thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self.ending.set()
-        for thread in self.threads:
-            thread.join()
+        self.running, self.seed, self.told, self.guard = running, seed, Told(), threading.Lock()
+        submitting = [threading.Thread(target=self.submit, args=(number,)) for number in range(CLIENTS)]
+        super().__init__([*submitting, threading.Thread(target=self.follow)])
 
     def asked(self, *request):
         """Status and document of an answer; a status of 0 where there was none."""

@@ -234,18 +234,11 @@ def post(body, path="/v1/plans", *headers):
     return "\r\n".join([*lines, "", ""]).encode() + body
 
 
-class Background:
-    """Calls an action over and over on threads of its own until it is left."""
+class UntilLeft:
+    """Threads that run until they are left, which `ending` tells them."""
 
-    def __init__(self, threads, action):
-        self.ending = threading.Event()
-        self.threads = [threading.Thread(target=self.run, args=(action, index)) for index in range(threads)]
-
-    def run(self, action, index):
-        count = 0
-        while not self.ending.is_set():
-            action(index, count)
-            count += 1
+    def __init__(self, threads):
+        self.ending, self.threads = threading.Event(), threads
 
     def __enter__(self):
         for thread in self.threads:
@@ -256,6 +249,19 @@ class Background:
         self.ending.set()
         for thread in self.threads:
             thread.join()
+
+
+class Background(UntilLeft):
+    """Calls an action over and over on threads of its own until it is left."""
+
+    def __init__(self, threads, action):
+        super().__init__([threading.Thread(target=self.run, args=(action, index)) for index in range(threads)])
+
+    def run(self, action, index):
+        count = 0
+        while not self.ending.is_set():
+            action(index, count)
+            count += 1
 
 
 def interposed(work, name):

@@ -280,17 +280,17 @@ impl Scenario {
     }
 
     /// The rolls that limits and enforced cones leave from an attitude that a target, or an end of the
-    /// tour, describes.
+    /// tour, describes; `None` where the roll is given.
     pub(crate) fn clear_rolls(
         &self,
-        free: &FreeRoll,
+        free: Option<&FreeRoll>,
         attitude: &Attitude,
         is_target: bool,
-    ) -> RollArcs {
+    ) -> Option<RollArcs> {
         let cones = self.cones.iter();
         let enforced = cones.filter(|cone| cone.is_enforced_at(is_target));
         let forbidden: Vec<_> = enforced.map(Cone::forbidden).collect();
-        RollArcs::clear_of(free, &forbidden, attitude)
+        free.map(|free| RollArcs::clear_of(free, &forbidden, attitude))
     }
 
     /// The targets in the caller's order.

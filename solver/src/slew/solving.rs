@@ -168,13 +168,21 @@ impl ProgramTask<'_> {
 
     /// The solution between two ends that one state meets: no time passes, at no cost.
     fn standing_still(&self, motion: &SlewMotion) -> ProgramSolution {
-        let program = self.program(motion);
         ProgramSolution {
             status: NlpStatus::Converged,
-            motion: motion.clone(),
             cost: 0.0,
+            ..self.unsolved(motion)
+        }
+    }
+
+    fn unsolved(&self, guess: &SlewMotion) -> ProgramSolution {
+        let program = self.program(guess);
+        ProgramSolution {
+            status: NlpStatus::IterationLimit,
+            motion: guess.clone(),
+            cost: f64::INFINITY,
             iterations: 0,
-            iterate: program.iterate_at(motion),
+            iterate: program.iterate_at(guess),
             program,
         }
     }
@@ -185,17 +193,10 @@ impl ProgramTask<'_> {
         guess: &SlewMotion,
         stop: &dyn Fn() -> Option<StopReason>,
     ) -> ProgramSolution {
-        let program = self.program(guess);
+        let solved = self.unsolved(guess);
         let mut run = SolveLoop {
-            engine: InteriorPoint::new(&program, Settings::COLD),
-            solved: ProgramSolution {
-                status: NlpStatus::IterationLimit,
-                motion: guess.clone(),
-                cost: f64::INFINITY,
-                iterations: 0,
-                iterate: program.iterate_at(guess),
-                program,
-            },
+            engine: InteriorPoint::new(&solved.program, Settings::COLD),
+            solved,
             vehicle: self.vehicle,
         };
         run.pass(phases, stop);

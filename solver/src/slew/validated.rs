@@ -13,7 +13,6 @@ use crate::model::drive::Drive;
 use crate::model::dynamics::{Authority, Dynamics};
 use crate::model::findings::Findings;
 use crate::model::problem::{Code, Problem};
-use crate::model::roll::FreeRoll;
 use crate::model::scenario::{RateCondition, Scenario, cone_problems};
 use crate::model::spec::{AttitudeEquivalence, OptionsSpec, ScenarioSpec};
 use crate::model::waypoint::{Waypoint, WheelCondition, nearest_rolls};
@@ -90,13 +89,9 @@ impl Slew {
             }
         }
         let start_momenta = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
-        let rolls = |free: &Option<FreeRoll>, attitude: &Attitude| {
-            let free = free.as_ref()?;
-            Some(scenario.clear_rolls(free, attitude, false))
-        };
         let begin = Waypoint {
             attitude: start.attitude,
-            roll: rolls(&start.roll, &start.attitude),
+            roll: scenario.clear_rolls(start.roll.as_ref(), &start.attitude, false),
             rate: fixed(&start.rate),
             wheels: WheelCondition::Fixed(start_momenta.clone()),
             costates: None,
@@ -108,7 +103,7 @@ impl Slew {
         let target = scenario.end().map_or(start.attitude, |end| end.attitude);
         let end_rolls = scenario
             .end()
-            .and_then(|end| rolls(&end.roll, &end.attitude));
+            .and_then(|end| scenario.clear_rolls(end.roll.as_ref(), &end.attitude, false));
         let rate = scenario.end().map_or(start.rate, |end| end.rate);
         let speeds = scenario.end().and_then(|end| end.wheel_speed.clone());
         let null = dynamics.null_component(&start_momenta);

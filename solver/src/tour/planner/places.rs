@@ -11,7 +11,7 @@ use crate::math::rounding::rounded;
 use crate::model::attitude::Attitude;
 use crate::model::cone::forbidden_always;
 use crate::model::dynamics::{Authority, Dynamics};
-use crate::model::roll::{FreeRoll, RollArcs};
+use crate::model::roll::RollArcs;
 use crate::model::scenario::{End, RateCondition, Scenario};
 use crate::model::spec::AttitudeEquivalence;
 use crate::model::waypoint::{Waypoint, WheelCondition, least_angle, nearest_rolls};
@@ -64,20 +64,18 @@ impl<'a> Places<'a> {
         let dynamics = Dynamics::of(scenario.spacecraft(), start, authority);
         let wheels = dynamics.wheels_of_speeds(&start.rate, &start.wheel_speed);
         let scale = wheels.amax();
-        let rolls = |free: &Option<FreeRoll>, attitude: &Attitude, is_target: bool| {
-            let free = free.as_ref()?;
-            Some(scenario.clear_rolls(free, attitude, is_target))
-        };
         let targets = scenario.targets().iter();
-        let targets = targets.map(|target| rolls(&target.roll, &target.attitude, true));
+        let rolls = targets
+            .map(|target| scenario.clear_rolls(target.roll.as_ref(), &target.attitude, true));
         let end = scenario.end();
         Self {
             // Rounding errors of a null-space component that vanishes are set to zero.
             null: dynamics.null_component(&wheels).map(|h| rounded(h, scale)),
             extremals: KinematicExtremals::of(&dynamics),
             certified: CertifiedBounds::of(&dynamics),
-            rolls: targets.collect(),
-            end_rolls: end.and_then(|end| rolls(&end.roll, &end.attitude, false)),
+            rolls: rolls.collect(),
+            end_rolls: end
+                .and_then(|end| scenario.clear_rolls(end.roll.as_ref(), &end.attitude, false)),
             resolution: Resolution::of(scenario.options().accuracy, &dynamics),
             arrival: match scenario.options().attitude_equivalence {
                 AttitudeEquivalence::Rotation => Arrival::Rotation,

@@ -200,13 +200,26 @@ fn a_worker_tells_its_metrics_and_whether_it_can_store_what_it_solves() {
     let ask = |path: &str| Request::new("GET", path).send(&metrics);
     let id = service.submit(&small());
     service.wait_end(&id);
-    let told = ask("/metrics").expect(200).body;
-    for line in [
+    // The worker counts a job after it has handed in its end.
+    let expected = [
         "slewplan_running_jobs_here 0",
         "slewplan_solve_seconds_count 1",
-    ] {
-        assert!(told.lines().any(|told| told == line), "{line} in {told}");
-    }
+    ];
+    let begin = Instant::now();
+    let told = loop {
+        let told = ask("/metrics").expect(200).body;
+        if expected
+            .iter()
+            .all(|line| told.lines().any(|told| told == *line))
+        {
+            break told;
+        }
+        assert!(
+            begin.elapsed() < Duration::from_mins(1),
+            "{expected:?} in {told}"
+        );
+        pause();
+    };
     assert!(
         told.contains("slewplan_database_connections{state=\"idle\"}"),
         "{told}"

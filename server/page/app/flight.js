@@ -1,6 +1,7 @@
 // What the plots draw: a motion together with the limits that were asked for.
 
 import { alarmsOf, clearanceCurves, excludedBy } from "./plan/keep-out.js";
+import { excessAlarms } from "./plan/violations.js";
 import { quaternion, slerp } from "./rotation.js";
 
 /** The flight of a plan; null when the plan has no trajectory. */
@@ -10,14 +11,16 @@ export function flightOf(plan, scenario) {
   const moved = motion(states, scenario, plan);
   const wheels = scenario.spacecraft.wheels;
   const inForce = torques(moved.times, controls, wheels.length);
+  const commanded = { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true };
+  const isPassed = plan.verification?.passed !== false;
   return {
     ...moved,
     total: plan.total_time_s,
-    torques: { times: moved.times, curves: wheels.map((_, wheel) => inForce.map((torque) => torque[wheel])), steps: true },
+    torques: commanded,
     torquesAt: (time) => inForce[indexAt(moved.times, time)],
     phases: phases(plan, scenario),
     stops: stops(plan, scenario),
-    alarms: alarmsOf(plan),
+    alarms: [...alarmsOf(plan), ...isPassed ? [] : excessAlarms({ ...moved, torques: commanded })],
   };
 }
 

@@ -17,9 +17,10 @@ use std::sync::LazyLock;
 /// The route of the files.
 pub(super) const FILES: &str = "/page/{digest}/{*path}";
 
-/// Content from this service only, no embedding in frames, nothing inline.
+/// Content from this service only, no embedding in frames, nothing inline. Images may also be those
+/// that the page itself has made: it turns drawings into PNG files so.
 const CONTENT_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
-    img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; \
+    img-src 'self' blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
     frame-ancestors 'none'";
 
 const FIRST: &str = "index.html";

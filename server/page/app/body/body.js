@@ -2,6 +2,8 @@
 // the axes of the reference frame and the Sun. It is turned by dragging and with the arrow keys.
 
 import { el, section } from "../dom.js";
+import { paintAgain } from "../picture/painters.js";
+import { pictureButtons } from "../picture/save.js";
 import { letters, onTheme } from "../plots/palette.js";
 import { conjugate, dot, rotate } from "../rotation.js";
 import { seen, viewOn } from "../sphere/projection.js";
@@ -35,10 +37,14 @@ export function body(flight, cursor, toggle, signal) {
     if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
     const ctx = canvas.getContext("2d");
     ctx.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
-    ctx.font = `${12 * letters()}px system-ui, sans-serif`;
-    paint(ctx, [width, height], turned.pose.zoom, sceneAt(cursor.time ?? 0));
+    show(ctx);
     canvas.dataset.pose = turned.told();
   };
+  const show = (ctx) => {
+    ctx.font = `${12 * letters()}px system-ui, sans-serif`;
+    paint(ctx, [width, height], turned.pose.zoom, sceneAt(cursor.time ?? 0));
+  };
+  paintAgain(canvas, show);
   const renew = () => {
     if (!asked) requestAnimationFrame(draw);
     asked = true;
@@ -76,7 +82,8 @@ export function body(flight, cursor, toggle, signal) {
   signal.addEventListener("abort", () => watcher.disconnect());
   turned.reset();
 
-  const head = el("div", { class: "tools" }, el("label", { for: "body-frame" }, "Seen from"), choice, turned.buttons);
+  const head = el("div", { class: "tools" }, el("label", { for: "body-frame" }, "Seen from"), choice, turned.buttons,
+    pictureButtons("body", flight.scenario.name));
   return section("Body", { head, class: "spacecraft" }, canvas, legend(flight, parts), data);
 }
 

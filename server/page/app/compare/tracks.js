@@ -2,6 +2,7 @@
 
 import { el, section } from "../dom.js";
 import { fixed } from "../format.js";
+import { pictureButtons } from "../picture/save.js";
 
 /** Shares of the width from which on a bar has its text. */
 const ROOM = 0.025;
@@ -26,7 +27,7 @@ export function tracks(flights, names, total, cursor, signal) {
     slider.value = String(time);
     slider.setAttribute("aria-valuetext", `${fixed(time, 1)} s`);
   }, signal);
-  return section("Phases of both", { class: "wide tracks" },
+  return section("Phases of both", { class: "wide tracks", head: el("div", { class: "tools" }, pictureButtons("phases of both")) },
     flights.map((flight, index) => [
       el("p", { class: "track-name" }, `${names[index]}, ${fixed(flight.total)} s`),
       el("div", { class: "track", "aria-hidden": "true" }, flight.phases.map(bar), markers[index]),

@@ -3,6 +3,7 @@
 import { disclosure, el, section, svg, table } from "../dom.js";
 import { fixed } from "../format.js";
 import { dot, longitudeLatitude, sum, unit } from "../rotation.js";
+import { pictureButtons } from "../picture/save.js";
 import { draw } from "../sphere/scene.js";
 import { moved, shifted, skyDirection } from "./orientation.js";
 import { withMembers } from "./rows.js";
@@ -131,7 +132,8 @@ export function skyView(desk) {
   const button = (text, label, act) => el("button", { type: "button", class: "small", "aria-label": label, onclick: act }, text);
   const head = el("div", { class: "tools" }, el("label", { for: "sky-axis" }, "Boresight"), axisChoice,
     button("−", "Zoom out", () => turning.enlarge(1 / ZOOM_STEP)), button("+", "Zoom in", () => turning.enlarge(ZOOM_STEP)),
-    button("Reset", "Reset the view", reset));
+    button("Reset", "Reset the view", reset),
+    pictureButtons("sky"));
   renew();
   return section("Sky", { head, class: "desk-part desk-sky" }, picture, status, legend, details);
 }

@@ -2,6 +2,7 @@
 
 import { el } from "../dom.js";
 import { fixed } from "../format.js";
+import { paintAgain } from "../picture/painters.js";
 import { colour, letters, onTheme } from "../plots/palette.js";
 
 const ZOOM_STEP = 2;
@@ -79,6 +80,15 @@ export function heatMap({ label, times, isFlown, chosen }, signal) {
     marks(ctx, view, size, { times, isFlown });
     canvas.dataset.view = `${view.row} ${view.column} ${view.zoom.toFixed(2)}`;
   }
+  paintAgain(canvas, (ink) => {
+    const seen = el("canvas", {});
+    seen.width = seen.height = Math.round(2 * size);
+    const pixels = seen.getContext("2d");
+    pixels.imageSmoothingEnabled = false;
+    pixels.drawImage(ground, view.left, view.top, view.span, view.span, 0, 0, seen.width, seen.height);
+    ink.drawImage(seen, 0, 0, size, size);
+    marks(ink, view, size, { times, isFlown });
+  });
   const choose = (row, column) => {
     const before = [view.row, view.column].join();
     view.choose(row, column);

@@ -1,7 +1,5 @@
 // Cones that a plan violates, and attitudes that violate one from the beginning.
 
-import { el, section } from "../dom.js";
-import { item } from "../failure.js";
 import { fixed } from "../format.js";
 import { dot, rotate, unit } from "../rotation.js";
 
@@ -32,20 +30,12 @@ export function clearanceItems(plan) {
     [`${one.boresight} from ${one.cone}`, `${fixed(one.clearance_deg, 1)}° at ${fixed(one.time_s, 1)} s`]);
 }
 
-/** The warnings about cones with what to do about them, before anything else; null without any. */
-export function banner(plan, scenario) {
-  const list = (plan.warnings ?? []).filter(isKeepOut);
-  if (!list.length) return null;
-  return section("Keep-out violated", { class: "alarm" },
-    el("ul", { class: "problems" }, list.map((warning) => item(warning, null, scenario))));
-}
-
 /** The spans of time on the wrong side of cones, for the timelines. */
 export function alarmsOf(plan) {
   return intrusionsOf(plan).map((one) => {
     const cone = one.cone ?? `/keep_out/${one.keep_out}`;
     const side = cone.startsWith("/keep_in") ? "outside" : "inside";
-    return { begin: one.from_s, end: one.to_s, depth: one.depth_deg, name: `${one.boresight ?? "boresight"} ${side} ${cone}` };
+    return { kind: "cone", begin: one.from_s, end: one.to_s, depth: one.depth_deg, name: `${one.boresight ?? "boresight"} ${side} ${cone}` };
   });
 }
 

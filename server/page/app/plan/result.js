@@ -10,10 +10,10 @@ import { isFinal } from "../state.js";
 import { alternatives } from "./alternatives.js";
 import { downloads } from "./downloads.js";
 import { facts, order } from "./facts.js";
-import { banner } from "./keep-out.js";
 import { legs } from "./legs.js";
 import { matrix } from "./matrix.js";
 import { verification } from "./verification.js";
+import { banners, checkedPlan } from "./violations.js";
 
 /** The views of a plan; `beside` stands next to its verification. */
 export function result(job, plan, scenario, beside, signal) {
@@ -26,7 +26,7 @@ export function result(job, plan, scenario, beside, signal) {
   return el(
     "div",
     { class: "result" },
-    banner(plan, scenario),
+    banners(checkedPlan(plan), scenario, cursor),
     job.detail ? el("p", { class: "quiet so-far" }, `The search ended without a plan of its own: ${job.detail}. The best before that:`) : null,
     isFinal(job.state) ? facts(plan) : el("p", { class: "quiet so-far" }, `A plan of ${seconds(plan.total_time_s)}, the best when it was read:`),
     order(plan, scenario, cursor, signal),

@@ -3,7 +3,8 @@
 import { ALLOWED, checks, messages, pairs, verdict } from "../checks.js";
 import { el, section } from "../dom.js";
 import { percent } from "../format.js";
-import { VIOLATED, clearanceItems, intrusionsOf, isKeepOut } from "./keep-out.js";
+import { clearanceItems, isKeepOut } from "./keep-out.js";
+import { checkedPlan, doubtOf } from "./violations.js";
 
 /** The section with the verification, the margins and the warnings of a plan. */
 export function verification(plan) {
@@ -16,10 +17,9 @@ export function verification(plan) {
     ["torque excess", found.max_torque_excess, ALLOWED.excess],
     ["body rate excess", found.max_rate_excess, ALLOWED.excess],
   ];
-  return section("Verification", { head: verdict(found.passed, intrusionsOf(plan).length ? VIOLATED : null), class: "card" },
+  return section("Verification", { head: verdict(found.passed, doubtOf(checkedPlan(plan))), class: "card" },
     checks(rows),
     margins(plan),
-    messages("Failures", found.failures),
     messages("Warnings", plan.warnings?.filter((warning) => !isKeepOut(warning))),
     el("p", { class: "quiet" }, `Flown again from the start by code that shares nothing with the optimiser. ${found.integrator}.`));
 }

@@ -52,6 +52,7 @@ function options(flight, group, one, { cursor, charts, lane, clock }) {
     width: 1.5,
     stroke: () => curve(index),
     points: { show: false },
+    isStepped: group.steps,
     paths: group.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
   }));
   return {

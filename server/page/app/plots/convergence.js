@@ -56,8 +56,8 @@ function options() {
     scales: { x: { time: false, range: (_, min, max) => [0, Math.max(max, min + 1e-3)] }, y: { range: padded } },
     series: [
       {},
-      { stroke: () => colour("incumbent"), width: 2, paths: steps(), points: points("incumbent") },
-      { stroke: () => colour("bound"), width: 2, paths: steps(), points: points("bound") },
+      { stroke: () => colour("incumbent"), width: 2, isStepped: true, paths: steps(), points: points("incumbent") },
+      { stroke: () => colour("bound"), width: 2, isStepped: true, paths: steps(), points: points("bound") },
     ],
     axes: [{ values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, {}],
   };

@@ -13,7 +13,7 @@ const inUnit = (lists, factor) => lists.map((values) => values && values.map((va
 
 /**
  * Groups of curves: {title, unit, names, times, curves, limits, text, steps}, of which `text` writes a
- * value; `column` and `digits` are those of the table of samples.
+ * value; violations belong to the group by its `of`; `column` and `digits` are those of the table of samples.
  */
 export function groupsOf({ times, rates, speeds, torques, limits, clearances }) {
   const wheels = speeds.map((_, wheel) => `wheel ${wheel}`);
@@ -21,11 +21,11 @@ export function groupsOf({ times, rates, speeds, torques, limits, clearances }) 
   const [rate, speed] = [rateUnit(), speedUnit()];
   const group = (more, shown) => ({ times, text: (value) => fixed(value, shown), ...more });
   return [
-    group({ title: "Body rates", unit: rate.unit, names: ["x", "y", "z"], curves: inUnit(rates, rate.factor),
+    group({ of: "rates", title: "Body rates", unit: rate.unit, names: ["x", "y", "z"], curves: inUnit(rates, rate.factor),
       limits: inUnit(limits.rates, rate.factor), column: ["Rate", ["x", "y", "z"]], digits: rate.digits }, rate.shown),
-    group({ title: "Wheel speeds", unit: speed.unit, names: wheels, curves: inUnit(speeds, speed.factor),
+    group({ of: "speeds", title: "Wheel speeds", unit: speed.unit, names: wheels, curves: inUnit(speeds, speed.factor),
       limits: inUnit(limits.speeds, speed.factor), column: ["Speed", numbers], digits: speed.digits }, speed.shown),
-    group({ title: "Wheel torques", unit: "mN m", names: wheels, ...torques, curves: inUnit(torques.curves, MILLI),
+    group({ of: "torques", title: "Wheel torques", unit: "mN m", names: wheels, ...torques, curves: inUnit(torques.curves, MILLI),
       limits: inUnit(limits.torques, MILLI), column: ["Torque", numbers], digits: 3 }, 2),
     ...(clearances.length ? [group({ title: "Clearance of cones", unit: "deg", names: clearances.map(({ name }) => name),
       curves: clearances.map(({ values }) => values), limits: clearances.map(() => null),

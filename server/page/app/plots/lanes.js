@@ -4,15 +4,16 @@ import { disclosure, el, table } from "../dom.js";
 import { fixed } from "../format.js";
 import { letters } from "./palette.js";
 
-const KINDS = ["slew", "settle", "dwell", "cone"];
+const KINDS = ["slew", "settle", "dwell", "cone", "limit"];
+/** What stands in the bars of violations. */
+const ALARMS = { cone: "in", limit: "over" };
 /** What a character takes in a bar, px; a bar without room for its text has none. */
 const CHARACTER = 8;
 
 /** The lanes of a flight, which can be zoomed and show a moment; `look` is asked for a phase. */
 export function lanes(flight, look) {
   const { total } = flight;
-  const cones = flight.alarms.map((alarm) => ({ kind: "cone", ...alarm }));
-  const phases = [...flight.phases, ...cones];
+  const phases = [...flight.phases, ...flight.alarms];
   const used = KINDS.filter((kind) => kind === "slew" || phases.some((phase) => phase.kind === kind));
   const bars = phases.map((phase) => ({ phase, node: bar(phase, look) }));
   const marker = el("div", { class: "lane-marker" });
@@ -50,7 +51,7 @@ export function lanes(flight, look) {
 }
 
 function bar(phase, look) {
-  const text = phase.kind === "cone" ? "in" : phase.number ? String(phase.number) : "end";
+  const text = ALARMS[phase.kind] ?? (phase.number ? String(phase.number) : "end");
   const title = `${phase.name}: ${fixed(phase.begin, 1)} to ${fixed(phase.end, 1)} s`;
   const room = 0.15 * (phase.end - phase.begin);
   return el("div", {

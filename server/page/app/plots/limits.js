@@ -40,7 +40,8 @@ export function decorate(flight, group) {
   return {
     drawClear: [(drawn) => within(drawn, () => {
       shade(drawn, flight.phases);
-      alarm(drawn, flight.alarms);
+      // The excess of a limit is marked where its curves are, a stay in a cone everywhere.
+      alarm(drawn, flight.alarms.filter(({ of }) => !of || of === group.of));
       arrivals(drawn, flight.stops);
     })],
     draw: [(drawn) => within(drawn, () => values.forEach((value) => across(drawn, value)))],

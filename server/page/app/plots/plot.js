@@ -1,5 +1,7 @@
 // A plot over time by uPlot, with the manners that all plots share.
 
+import { paintAgain } from "../picture/painters.js";
+import { paintPlot } from "../picture/plot-again.js";
 import { colour, letters, onTheme } from "./palette.js";
 
 /** Width of the vertical axis and of the space at the right, and size of letters, px. The phases are
@@ -45,6 +47,7 @@ export function plot(place, options, data, signal) {
     if (width > 0 && width !== made.width) made.setSize({ width, height: made.height });
   });
   watcher.observe(place);
+  paintAgain(made.ctx.canvas, (ink) => paintPlot(ink, made, options));
   onTheme(() => made.redraw(false), signal);
   signal.addEventListener("abort", () => {
     watcher.disconnect();

@@ -3,6 +3,7 @@
 
 import { disclosure, el, section } from "../dom.js";
 import { settings } from "../settings.js";
+import { pictureButtons } from "../picture/save.js";
 import { clockOf, momentText, shownClock, unitChoices } from "../units.js";
 import { chart } from "./chart.js";
 import { groupsOf, samples } from "./groups.js";
@@ -39,7 +40,8 @@ export function timelines(flight, cursor, signal, more = []) {
   const button = (text, label, act) => el("button", { type: "button", class: "small", "aria-label": label, onclick: act }, text);
   const tools = el("div", { class: "tools" }, moment,
     button("−", "Show a longer time", () => zoom(ZOOM_STEP)), button("+", "Show a shorter time", () => zoom(1 / ZOOM_STEP)),
-    button("All", "All of the flight", () => look(0, flight.total)));
+    button("All", "All of the flight", () => look(0, flight.total)),
+    pictureButtons("timelines", flight.scenario.name));
   const lane = flight.phases.length ? lanes(flight, look) : null;
 
   const show = (time) => {
@@ -83,7 +85,7 @@ export function timelines(flight, cursor, signal, more = []) {
     place,
     lane?.node,
     slider,
-    el("p", { class: "quiet" }, "Drag across a plot to look closer, double-click to see all; the buttons look at the moment shown."),
+    el("p", { class: "quiet not-drawn" }, "Drag across a plot to look closer, double-click to see all; the buttons look at the moment shown."),
     lane?.data,
     data,
     more.map((group) => disclosure(`${group.title} as a table`, group.data)),

@@ -3,9 +3,10 @@
 import { ALLOWED, checks, messages, pairs, verdict } from "../checks.js";
 import { el, section } from "../dom.js";
 import { count, fixed, seconds, significant } from "../format.js";
-import { VIOLATED, clearanceItems, intrusionsOf } from "../plan/keep-out.js";
+import { clearanceItems, isKeepOut } from "../plan/keep-out.js";
+import { doubtOf } from "../plan/violations.js";
 import { strip } from "../strip.js";
-import { conesOf } from "./cones.js";
+import { checkedSlew } from "./checked.js";
 
 /** What is minimised where it is not the duration. */
 const OBJECTIVES = {
@@ -32,9 +33,8 @@ export function slewFacts(slew, request) {
 /** The section with the errors of the flight. */
 export function slewVerification(slew) {
   const { flight } = slew;
-  const cones = conesOf(slew);
-  const doubt = intrusionsOf(cones).length ? VIOLATED : null;
-  return section("Verification", { head: verdict(flight.failures.length === 0, doubt), class: "card" },
+  const checked = checkedSlew(slew);
+  return section("Verification", { head: verdict(flight.failures.length === 0, doubtOf(checked)), class: "card" },
     checks([
       ["attitude error, rad", flight.attitude_error_rad, ALLOWED.attitude],
       ["rate error, rad/s", flight.rate_error_rad_s, ALLOWED.rate],
@@ -43,8 +43,7 @@ export function slewVerification(slew) {
       ["body rate excess", flight.rate_excess, ALLOWED.excess],
       ["final wheel speed error, rad/s", flight.wheel_speed_error_rad_s, "10⁻⁶ of limit"],
     ]),
-    pairs(clearanceItems(cones)),
-    messages("Failures", flight.failures),
-    messages("Warnings", flight.warnings),
+    pairs(clearanceItems(checked)),
+    messages("Warnings", flight.warnings.filter((warning) => !isKeepOut(warning))),
     el("p", { class: "quiet" }, "Flown from the start by code that shares nothing with the optimiser."));
 }

@@ -3,7 +3,9 @@
 import { Cursor } from "../cursor.js";
 import { el } from "../dom.js";
 import { flown } from "../flown.js";
+import { banners } from "../plan/violations.js";
 import { saved } from "../saved.js";
+import { checkedSlew } from "./checked.js";
 import { evidenceGroups, optimality } from "./evidence.js";
 import { slewFacts, slewVerification } from "./facts.js";
 import { slewFlight } from "./flight.js";
@@ -43,9 +45,10 @@ function one(slew, request, signal) {
   const flight = slewFlight(slew, request);
   const cards = el("div", { class: "cards" }, slewVerification(slew), optimality(slew, request));
   // Then the verification says why.
-  if (!flight) return [slewFacts(slew, request), cards];
   const cursor = new Cursor();
+  if (!flight) return [...banners(checkedSlew(slew), request), slewFacts(slew, request), cards];
   return [
+    ...banners(checkedSlew(slew), request, cursor),
     slewFacts(slew, request),
     flown(flight, cursor, signal, evidenceGroups(slew.evidence)),
     cards,

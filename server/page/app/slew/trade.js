@@ -2,6 +2,7 @@
 
 import { disclosure, el, section, table } from "../dom.js";
 import { significant } from "../format.js";
+import { pictureButtons } from "../picture/save.js";
 import { curveChart } from "../plots/curves.js";
 
 /** Curves of a sweep: figure, title, unit, colour, and the sweep that gives it already. */
@@ -40,7 +41,7 @@ export function trade(sweep, slews, look, signal) {
   const data = asTable(sweep, slews);
   const rows = [...data.querySelectorAll("tbody tr")];
   choose(0);
-  return section("Trade curve", { class: "wide", head: el("div", { class: "tools" }, said) },
+  return section("Trade curve", { class: "wide", head: el("div", { class: "tools" }, said, pictureButtons("trade curve")) },
     el("div", { class: "curves" }, charts.map((chart) => chart.node)),
     el("p", { class: "quiet" }, "Choose a point to see its slew; the arrow keys go from point to point."),
     disclosure("Points as a table", () => data));

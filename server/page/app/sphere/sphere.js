@@ -4,6 +4,7 @@
 import { disclosure, el, section, svg, table } from "../dom.js";
 import { fixed } from "../format.js";
 import { dot, longitudeLatitude, rotate, sum, unit, upward } from "../rotation.js";
+import { pictureButtons } from "../picture/save.js";
 import { viewOn } from "./projection.js";
 import { draw } from "./scene.js";
 import { turning } from "./turning.js";
@@ -63,7 +64,8 @@ export function sphere(flight, cursor, signal, { title = "Sky", id = "body-axis"
   turned.reset();
 
   let data = directions(flight, axis);
-  const head = el("div", { class: "tools" }, el("label", { for: id }, "Axis"), choice, turned.buttons);
+  const head = el("div", { class: "tools" }, el("label", { for: id }, "Axis"), choice, turned.buttons,
+    pictureButtons(title.toLowerCase(), flight.scenario.name));
   return section(title, { head, class: "sky" }, picture, legend(flight), data);
 }
 

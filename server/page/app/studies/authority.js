@@ -3,6 +3,7 @@
 import { messages } from "../checks.js";
 import { disclosure, el, section, table } from "../dom.js";
 import { fixed, percent, significant } from "../format.js";
+import { pictureButtons } from "../picture/save.js";
 import { curveChart } from "../plots/curves.js";
 
 const DEGREES = 180 / Math.PI;
@@ -77,7 +78,7 @@ function charts(rows, signal) {
       curves: [{ name: "duration", values: rows.map((row) => row.total_time_s), colour: 1 }],
     }, signal),
   ];
-  return section("Curves", { class: "wide" }, el("div", { class: "curves" }, list.map((chart) => chart.node)),
+  return section("Curves", { class: "wide", head: el("div", { class: "tools" }, pictureButtons("authority curves")) }, el("div", { class: "curves" }, list.map((chart) => chart.node)),
     el("p", { class: "quiet" }, `Within ${significant(tolerance)}°. Errors are those that so many flights do not exceed.`));
 }
 

@@ -6,8 +6,9 @@ import { failure } from "../failure.js";
 import { count, moment } from "../format.js";
 import { downloads } from "../plan/downloads.js";
 import { standing } from "../plan/facts.js";
-import { VIOLATED, intrusionsOf } from "../plan/keep-out.js";
 import { result } from "../plan/result.js";
+import { checkedPlan, doubtOf } from "../plan/violations.js";
+import { pictureButtons } from "../picture/save.js";
 import { convergence } from "../plots/convergence.js";
 import { chip, isFinal } from "../state.js";
 import { follow } from "../stream.js";
@@ -29,7 +30,7 @@ class PlanPage {
   #job = null;
   #scenario = null;
   #begun = 0;
-  #shown = { incumbent: null, final: false, violated: false };
+  #shown = { incumbent: null, final: false, doubt: null };
   #drawing = new AbortController();
 
   #title = el("h1", {}, "Plan");
@@ -50,7 +51,8 @@ class PlanPage {
     this.#id = id;
     this.#signal = signal;
     this.#progress = convergence(signal);
-    this.#search = section("Search", { class: "card search" }, this.#progress.node);
+    const saves = el("div", { class: "tools" }, pictureButtons("search"));
+    this.#search = section("Search", { class: "card search", head: saves }, this.#progress.node);
     this.#compare.href = `#/compare/${id}`;
     this.#again.href = `#/new?from=${id}`;
     signal.addEventListener("abort", () => this.#drawing.abort());
@@ -110,7 +112,7 @@ class PlanPage {
   #renew() {
     const { state } = this.#job;
     const ended = isFinal(state);
-    const doubt = this.#shown.violated ? VIOLATED : null;
+    const { doubt } = this.#shown;
     const key = [state, doubt].join();
     if (this.#state.dataset.shown !== key) this.#state.replaceChildren(chip(state, doubt));
     this.#state.dataset.shown = key;
@@ -139,7 +141,7 @@ class PlanPage {
     }
     // An earlier plan that arrives late does not replace the last one.
     if (this.#shown.final) return;
-    this.#shown = { incumbent: found.total_time_s ?? null, final, violated: intrusionsOf(found).length > 0 };
+    this.#shown = { incumbent: found.total_time_s ?? null, final, doubt: doubtOf(checkedPlan(found)) };
     this.#news.replaceChildren();
     this.#drawing.abort();
     this.#drawing = new AbortController();

@@ -6,15 +6,16 @@ import { el } from "./dom.js";
 import { editor, examples } from "./editor.js";
 import { failure, success } from "./failure.js";
 import { seconds } from "./format.js";
+import { write as pretty } from "./pretty.js";
 
 const ROWS = 16;
 
 /**
  * The view of a request. `done` says in a word what an answer is; `draw` makes the nodes of the result
  * of {request, document, text}, with a signal for its drawings, and may be asynchronous. `head` stands
- * above the field, `aside` above the examples.
+ * above the field, `aside` above the examples; `begin` makes a request that is sent at once.
  */
-export function workbench({ title, id, label, verb, done, path, operation, list, head, aside, draw, signal, query }) {
+export function workbench({ title, id, label, verb, done, path, operation, list, head, aside, draw, begin = null, signal, query }) {
   const result = el("div", { class: "result", role: "region", "aria-label": "Result", tabindex: "-1", hidden: true });
   let drawing = new AbortController();
   signal.addEventListener("abort", () => drawing.abort());
@@ -41,9 +42,15 @@ export function workbench({ title, id, label, verb, done, path, operation, list,
       if (!waiting.aborted) field.outcome.replaceChildren(failure(error, field.show, field.document));
     }
   };
-  const { nodes } = computation({ title: verb, signal, work });
+  const { nodes, run } = computation({ title: verb, signal, work });
   const field = editor({ id, label, rows: ROWS, actions: nodes, signal });
   if (query.get("example")) field.loadExample(query.get("example"));
+  if (begin) {
+    begin().then((document) => {
+      field.write(pretty(document, ""));
+      return run();
+    }, (error) => signal.aborted || field.outcome.replaceChildren(failure(error)));
+  }
 
   return el(
     "div",

@@ -29,16 +29,18 @@ export function paintPlot(ink, plot, options) {
 function inPixels(ink, ratio) {
   if (ratio === 1) return ink;
   const scaled = ["moveTo", "lineTo", "rect", "fillRect", "strokeRect"];
+  const font = (text) => text.replace(/[\d.]+(?=px)/, (size) => String(Number(size) / ratio));
   return new Proxy(ink, {
     get: (target, name) => {
       const value = target[name];
       if (typeof value !== "function") return value;
       if (scaled.includes(name)) return (...places) => value.apply(target, places.map((place) => place / ratio));
+      if (name === "fillText") return (text, x, y) => target.fillText(text, x / ratio, y / ratio);
       if (name === "setLineDash") return (dash) => target.setLineDash(dash.map((part) => part / ratio));
       return value.bind(target);
     },
     set: (target, name, value) => {
-      target[name] = name === "lineWidth" ? value / ratio : value;
+      target[name] = name === "lineWidth" ? value / ratio : name === "font" ? font(value) : value;
       return true;
     },
   });
@@ -77,7 +79,7 @@ function axes(ink, plot, bbox, places) {
 const isKnown = (value) => value !== null && value !== undefined;
 
 /** A curve with gaps where it has no value, as steps where the plot has them so. */
-function curve(ink, { stroke, width, isStepped }, [times, values], [x, y]) {
+function curve(ink, { stroke, width, isStepped, spanGaps }, [times, values], [x, y]) {
   ink.strokeStyle = stroke();
   ink.lineWidth = width;
   ink.lineJoin = "round";
@@ -88,7 +90,7 @@ function curve(ink, { stroke, width, isStepped }, [times, values], [x, y]) {
     if (point && former && isStepped) ink.lineTo(point[0], former[1]);
     if (point && former) ink.lineTo(...point);
     else if (point) ink.moveTo(...point);
-    former = point;
+    if (point || !spanGaps) former = point;
   });
   if (width) ink.stroke();
 }

@@ -2,7 +2,7 @@
 
 import { el } from "../dom.js";
 import { significant } from "../format.js";
-import { limitLine } from "./limits.js";
+import { limitLine, markLine } from "./limits.js";
 import { curve, letters } from "./palette.js";
 import { plot } from "./plot.js";
 
@@ -17,13 +17,14 @@ const ROOM = 0.08;
 let groups = 0;
 
 /**
- * A chart of {title, unit, against, curves, limit, points, from}. `against` is {title, unit, values}; a
- * curve is {name, values, colour} with `null` where there is no value; a limit is {name, value}; `from` is
- * a value that the vertical axis has in any case. `points` are those of the first curve: `label` names
+ * A chart of {title, unit, against, curves, limit, marks, points, from}. `against` is {title, unit, values};
+ * a curve is {name, values, colour, shown} with `null` where there is no value, `shown` as a "line" or as
+ * "dots" instead of both; a limit is {name, value}; `marks` are values of the axis that are named there;
+ * `from` is a value that the vertical axis has in any case. `points` are those of the first curve: `label` names
  * one for those who listen, `failed` tells which are marked, and `choose` is called with the index of the
  * chosen one.
  */
-export function curveChart({ title, unit, against, curves, limit, points, from }, signal) {
+export function curveChart({ title, unit, against, curves, limit, marks: marked = [], points, from, linear = false }, signal) {
   // The library wants ascending values; the caller's order may be another.
   const order = against.values.map((_, index) => index).sort((a, b) => against.values[a] - against.values[b]);
   const sorted = (values) => order.map((index) => values[index]);
@@ -32,11 +33,12 @@ export function curveChart({ title, unit, against, curves, limit, points, from }
     ? { class: "plot pointed", role: "radiogroup", "aria-label": `${title}, ${unit} against ${against.title}` }
     : { class: "plot", role: "img", "aria-label": `${title} against ${against.title}. The values are in the table.` });
   const named = curves.length > 1 || limit;
-  const key = named ? el("ul", { class: "key" }, curves.map((one) => entry(`curve-${one.colour}`, one.name)),
+  const key = named ? el("ul", { class: "key" }, curves.filter(({ name }) => name).map((one) => entry(`curve-${one.colour}`, one.name)),
     limit ? entry("limit-line", limit.name) : null) : null;
 
   const all = [...curves.flatMap((one) => one.values), ...(limit ? [limit.value] : [])];
-  const scales = { x: { time: false, ...scaleOf(against.values) }, y: scaleOf(all, from) };
+  const scale = linear ? linearScale : scaleOf;
+  const scales = { x: { time: false, ...scale(against.values) }, y: scale(all, from) };
   const put = (drawn) => radios.forEach((radio, index) => {
     const value = curves[0].values[index];
     radio.hidden = value === null;
@@ -47,8 +49,8 @@ export function curveChart({ title, unit, against, curves, limit, points, from }
     height: HEIGHT,
     scales,
     series: [{}, ...curves.map((one) => ({
-      label: one.name, width: 1.75, stroke: () => curve(one.colour - 1),
-      points: points ? { show: false } : { show: true, size: 6, fill: () => curve(one.colour - 1) },
+      label: one.name ?? "", width: one.shown === "dots" ? 0 : 1.75, stroke: () => curve(one.colour - 1), spanGaps: Boolean(one.shown),
+      points: points || one.shown === "line" ? { show: false } : { show: true, size: 6, fill: () => curve(one.colour - 1) },
     }))],
     axes: [
       { ...marks(scales.x), label: [against.title, against.unit].filter(Boolean).join(", "), labelSize: 20 * letters(),
@@ -57,7 +59,7 @@ export function curveChart({ title, unit, against, curves, limit, points, from }
     ],
     cursor: { show: false, drag: { x: false, y: false } },
     hooks: {
-      draw: [(drawn) => limit && limitLine(drawn, limit.value), put],
+      draw: [(drawn) => limit && limitLine(drawn, limit.value), (drawn) => marked.forEach((value) => markLine(drawn, value, significant(value))), put],
       ready: [(drawn) => drawn.over.append(...radios)],
     },
   };
@@ -93,6 +95,12 @@ function scaleOf(values, from = null) {
     const room = (high / low) ** ROOM;
     return { distr: LOGARITHMIC, log: 10, range: [low / room, high * room] };
   }
+  return linearScale(values, from);
+}
+
+function linearScale(values, from = null) {
+  const known = values.filter((value) => value !== null);
+  const [low, high] = [Math.min(...known), Math.max(...known)];
   const [begin, end] = from === null ? [low, high] : [Math.min(from, low), high];
   const room = ROOM * (end - begin || Math.abs(end) || 1);
   return { range: [begin - room, end + room] };

@@ -1,6 +1,6 @@
 // What stands behind the curves of a timeline: limits, arrivals, and times at rest.
 
-import { colour } from "./palette.js";
+import { colour, letters } from "./palette.js";
 
 const ROOM = 0.08;
 /** Height of the mark of a violation at the upper edge, px. */
@@ -51,6 +51,18 @@ export function decorate(flight, group) {
 /** Draws the line of a limit across a plot. */
 export function limitLine(drawn, value) {
   within(drawn, () => across(drawn, value));
+}
+
+/** Draws a line at a value of the horizontal axis, with its name at the top. */
+export function markLine(drawn, value, name) {
+  const { ctx, bbox } = drawn;
+  const x = Math.round(drawn.valToPos(value, "x", true)) + 0.5;
+  line(drawn, [x, bbox.top], [x, bbox.top + bbox.height], colour("muted"), [2, 3]);
+  ctx.setLineDash([]);
+  ctx.fillStyle = colour("muted");
+  ctx.font = `${12 * letters() * devicePixelRatio}px system-ui, sans-serif`;
+  [ctx.textAlign, ctx.textBaseline] = ["left", "top"];
+  ctx.fillText(name, x + 4 * devicePixelRatio, bbox.top + 2 * devicePixelRatio);
 }
 
 function within(drawn, paint) {

@@ -4,6 +4,7 @@ import { messages } from "../checks.js";
 import { disclosure, el, section, table } from "../dom.js";
 import { fixed, percent, significant } from "../format.js";
 import { pictureButtons } from "../picture/save.js";
+import { assumptions } from "./assumptions.js";
 import { curveChart } from "../plots/curves.js";
 
 const DEGREES = 180 / Math.PI;
@@ -14,10 +15,11 @@ const LEAST = [["p50", "half of the flights"], ["p10", "90 %"], ["p1", "99 %"], 
 const APPLIES = { always: "always", at_targets: "at targets", report: "reported only" };
 
 /** The nodes of an answer. */
-export function authority({ document }, signal) {
+export function authority({ document, request }, signal) {
   const { rows, complete } = document;
   const flown = rows.filter((row) => row.flights);
   return [
+    assumptions(request),
     complete ? null : el("p", { class: "cut-short" }, "Time ran out: not every plan was flown as often as asked for."),
     flown.length > 1 ? charts(flown, signal) : null,
     section("Plans and flights", { class: "wide" }, summary(rows), rows.map(reasons)),

@@ -14,6 +14,8 @@ import { chip, isFinal } from "../state.js";
 import { follow } from "../stream.js";
 
 const TICK_MS = 200;
+/** What is done with a plan at one click: a flight in closed loop, and plans that hold back a share of torque and speed. */
+const STUDIES = [["flight", "Fly in closed loop"], ["authority", "What share of torque?"]];
 /** What is not sooner by this is the same plan. */
 const LEAST_GAIN_S = 1e-4;
 
@@ -30,7 +32,7 @@ class PlanPage {
   #job = null;
   #scenario = null;
   #begun = 0;
-  #shown = { incumbent: null, final: false, doubt: null };
+  #shown = { incumbent: null, final: false, doubt: null, isFlown: false };
   #drawing = new AbortController();
 
   #title = el("h1", {}, "Plan");
@@ -40,6 +42,7 @@ class PlanPage {
   #cancel = el("button", { type: "button", onclick: () => this.#ask("cancel") }, "Cancel");
   #compare = el("a", { class: "button" }, "Compare");
   #again = el("a", { class: "button" }, "Edit and plan again");
+  #studies = STUDIES.map(([, title]) => el("a", { class: "button", hidden: true }, title));
   #delete = el("button", { type: "button", onclick: () => this.#remove() }, "Delete");
   #standing = el("div", {});
   #news = el("div", { class: "news", "aria-live": "polite" });
@@ -55,11 +58,12 @@ class PlanPage {
     this.#search = section("Search", { class: "card search", head: saves }, this.#progress.node);
     this.#compare.href = `#/compare/${id}`;
     this.#again.href = `#/new?from=${id}`;
+    this.#studies.forEach((link, index) => (link.href = `#/studies/${STUDIES[index][0]}?plan=${id}`));
     signal.addEventListener("abort", () => this.#drawing.abort());
     this.node = el("div", { class: "view" },
       el("div", { class: "title" },
         el("div", {}, el("div", { class: "named" }, this.#title, this.#state), this.#about),
-        el("div", { class: "actions" }, this.#stop, this.#cancel, this.#compare, this.#again, this.#delete)),
+        el("div", { class: "actions" }, this.#stop, this.#cancel, this.#studies, this.#compare, this.#again, this.#delete)),
       this.#standing, this.#news, this.#search, this.#result);
   }
 
@@ -119,6 +123,7 @@ class PlanPage {
     this.#stop.hidden = state !== "running";
     this.#cancel.hidden = ended;
     this.#compare.hidden = this.#again.hidden = this.#delete.hidden = !ended;
+    for (const link of this.#studies) link.hidden = !ended || !this.#shown.isFlown;
     const elapsed = state === "running" ? (Date.now() - this.#begun) / 1000 : null;
     this.#standing.replaceChildren(ended && this.#shown.final ? "" : standing(this.#job, elapsed ?? this.#job.solved_s));
   }
@@ -141,7 +146,7 @@ class PlanPage {
     }
     // An earlier plan that arrives late does not replace the last one.
     if (this.#shown.final) return;
-    this.#shown = { incumbent: found.total_time_s ?? null, final, doubt: doubtOf(checkedPlan(found)) };
+    this.#shown = { incumbent: found.total_time_s ?? null, final, doubt: doubtOf(checkedPlan(found)), isFlown: Boolean(found.trajectory?.states?.length) };
     this.#news.replaceChildren();
     this.#drawing.abort();
     this.#drawing = new AbortController();

@@ -16,6 +16,9 @@ const STATES = {
 /** The states that a list can be narrowed to, as [value, text]. */
 export const states = Object.entries(STATES).map(([state, [, text]]) => [state, text]);
 
+/** A state as a word. */
+export const stateText = (state) => STATES[state]?.[1] ?? state;
+
 /** Whether a job in this state has ended. */
 export function isFinal(state) {
   return state !== "queued" && state !== "running";

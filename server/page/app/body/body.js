@@ -6,7 +6,7 @@ import { paintAgain } from "../picture/painters.js";
 import { pictureButtons } from "../picture/save.js";
 import { letters, onTheme } from "../plots/palette.js";
 import { conjugate, dot, rotate } from "../rotation.js";
-import { seen, viewOn } from "../sphere/projection.js";
+import { seen } from "../sphere/projection.js";
 import { turning } from "../sphere/turning.js";
 import { paint } from "./paint.js";
 import { isViolated, partsOf } from "./parts.js";
@@ -26,34 +26,29 @@ export function body(flight, cursor, toggle, signal) {
     "aria-label": "The spacecraft in three dimensions. Arrow keys turn the view, plus and minus zoom, 0 resets, space plays and pauses.",
   });
   const choice = el("select", { id: "body-frame" }, FRAMES.map(([value, text]) => el("option", { value }, text)));
-  choice.addEventListener("change", () => renew());
+  choice.addEventListener("change", () => turned.renew());
 
   let [width, height] = [0, 0];
-  let asked = false;
   const draw = () => {
-    asked = false;
     if (!width || signal.aborted) return;
     const pixels = [width, height].map((length) => Math.round(length * devicePixelRatio));
     if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
     const ctx = canvas.getContext("2d");
     ctx.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     show(ctx);
-    canvas.dataset.pose = turned.told();
+    canvas.dataset.pose = turned.pose.told();
   };
   const show = (ctx) => {
     ctx.font = `${12 * letters()}px system-ui, sans-serif`;
     paint(ctx, [width, height], turned.pose.zoom, sceneAt(cursor.time ?? 0));
   };
   paintAgain(canvas, show);
-  const renew = () => {
-    if (!asked) requestAnimationFrame(draw);
-    asked = true;
-  };
-  const turned = turning(canvas, { renew, home: () => HOME, width: () => Math.min(width, height), more: { " ": toggle } });
+  const turned = turning(canvas, { draw, home: () => HOME, width: () => Math.min(width, height), more: { " ": toggle } });
+  const { renew } = turned;
 
   function sceneAt(time) {
     const attitude = flight.attitudeAt(time);
-    const view = viewOn(turned.pose.longitude, turned.pose.latitude);
+    const { view } = turned.pose;
     const fixed = choice.value === "body";
     const inFrame = parts.boresights.map(({ direction }) => rotate(attitude, direction));
     const coneViolated = parts.boresights.map(({ cones }, which) => cones.map((cone) => isViolated(cone, inFrame[which])));

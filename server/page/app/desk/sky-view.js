@@ -5,15 +5,13 @@ import { fixed } from "../format.js";
 import { dot, longitudeLatitude, sum, unit } from "../rotation.js";
 import { pictureButtons } from "../picture/save.js";
 import { draw } from "../sphere/scene.js";
+import { turning } from "../sphere/turning.js";
 import { moved, shifted, skyDirection } from "./orientation.js";
 import { withMembers } from "./rows.js";
 import { axesOf, capsOf, placesOf } from "./sky-content.js";
-import { listenToSkyKeys, listenToSkyPointer } from "./sky-input.js";
 import { PlacesLayer } from "./sky-places.js";
-import { SkyPose } from "./sky-pose.js";
 import { TARGETS } from "./tables.js";
 
-const ZOOM_STEP = 1.25;
 /** Below this length the mean direction of the targets says little about where they are. */
 const CLEAR = 0.3;
 /** Digits of what is moved, degrees. */
@@ -38,11 +36,6 @@ export function skyView(desk) {
   const details = disclosure("Directions as a table", () => data);
   details.addEventListener("toggle", () => details.open && data.replaceChildren(directions(content)));
 
-  const turning = new SkyPose(() => {
-    if (!size || !content) return;
-    draw(picture, size, turning, { caps: content.caps, trace: [], ends: [], stops: [], now: null });
-    layer.draw({ size, turning, content, selection: desk.targets });
-  });
   const chosenAxis = () => axes[axisChoice.value] ?? axes[0];
 
   const renew = () => {
@@ -54,15 +47,11 @@ export function skyView(desk) {
     axisChoice.value = String(Math.max(0, index));
     content = { ...placesOf(desk.document, desk, chosenAxis()), caps: capsOf(desk.document, desk.sun, chosenAxis()), sun: desk.sun };
     const isNew = !former || (!former.targets.length && content.targets.length);
-    if (isNew) reset();
-    turning.renew();
+    if (isNew) turned.reset();
+    turned.renew();
     if (details.open) data.replaceChildren(directions(content));
     legend.textContent = legendOf(desk, content);
     say();
-  };
-  const reset = () => {
-    turning.zoom = 1;
-    turning.look(...middle(content));
   };
   const chosen = () => content?.targets.find(({ index }) => index === desk.targets.last) ?? null;
   function say() {
@@ -91,30 +80,49 @@ export function skyView(desk) {
     const at = targets.findIndex(({ index }) => index === desk.targets.last);
     const next = targets[(at + by + targets.length) % targets.length] ?? targets[0];
     choose(next.index);
-    turning.look(...longitudeLatitude(next.direction));
+    turned.pose.look(...longitudeLatitude(next.direction));
+  };
+  /**
+   * A drag of a target moves it. A finger chooses a target with a first touch and moves it with the next, so
+   * that a page can be scrolled over the sky.
+   */
+  const grab = (event) => {
+    const hit = event.target.closest?.(".place.target:not(.behind)");
+    if (!hit) return null;
+    const index = Number(hit.dataset.index);
+    const mayMove = event.pointerType === "mouse" || desk.targets.last === index;
+    choose(index);
+    if (!mayMove) return null;
+    return {
+      move: ([x, y]) => {
+        const place = content.targets.find((one) => one.index === index);
+        if (place) move(place, layer.directionAt(x, y), `drag ${place.name}`);
+      },
+      end: () => desk.draft.settle(),
+    };
   };
   const shift = (east, north) => {
     const place = chosen();
     if (place) move(place, shifted(place.direction, east, north), `shift ${place.name}`);
   };
 
-  listenToSkyKeys(picture, { turning, reset, step, shift, zoomStep: ZOOM_STEP });
-  listenToSkyPointer(picture, {
-    choose,
-    isChosen: (index) => desk.targets.last === index,
-    drag: ([x, y], index) => {
-      const place = content.targets.find((one) => one.index === index);
-      if (place) move(place, layer.directionAt(x, y), `drag ${place.name}`);
+  const turned = turning(picture, {
+    home: () => (content ? middle(content) : [0, 0]), width: () => size, grab,
+    draw: () => {
+      if (!size || !content) return;
+      const { pose } = turned;
+      draw(picture, size, pose, { caps: content.caps, trace: [], ends: [], stops: [], now: null });
+      layer.draw({ size, pose, content, selection: desk.targets });
     },
-    turnBy: (dx, dy) => {
-      const degrees = 360 / (Math.PI * size * turning.zoom);
-      turning.turn(-dx * degrees, dy * degrees);
+    more: {
+      n: () => step(1), p: () => step(-1),
+      "Shift+ArrowLeft": () => shift(-1, 0), "Shift+ArrowRight": () => shift(1, 0),
+      "Shift+ArrowUp": () => shift(0, 1), "Shift+ArrowDown": () => shift(0, -1),
     },
-    settle: () => desk.draft.settle(),
   });
   const watcher = new ResizeObserver(([entry]) => {
     size = Math.round(entry.contentRect.width);
-    turning.renew();
+    turned.renew();
   });
   watcher.observe(picture);
   desk.signal.addEventListener("abort", () => watcher.disconnect());
@@ -125,14 +133,12 @@ export function skyView(desk) {
   desk.draft.listen(renew, desk.signal);
   desk.listen(renew);
   desk.targets.listen(() => {
-    turning.renew();
+    turned.renew();
     say();
   }, desk.signal);
 
-  const button = (text, label, act) => el("button", { type: "button", class: "small", "aria-label": label, onclick: act }, text);
   const head = el("div", { class: "tools" }, el("label", { for: "sky-axis" }, "Boresight"), axisChoice,
-    button("−", "Zoom out", () => turning.enlarge(1 / ZOOM_STEP)), button("+", "Zoom in", () => turning.enlarge(ZOOM_STEP)),
-    button("Reset", "Reset the view", reset),
+    turned.buttons,
     pictureButtons("sky"));
   renew();
   return section("Sky", { head, class: "desk-part desk-sky" }, picture, status, legend, details);

@@ -32,11 +32,16 @@ export function alternatives(job, plan, scenario, signal) {
 }
 
 /** A scenario whose targets have the places that they have in an order. */
-export function inOrder(scenario, sequence, name) {
-  const place = new Map(sequence.map((id, index) => [id, index + 1]));
+const inOrder = (scenario, sequence, name) => withPlaces(scenario, new Map(sequence.map((id, index) => [id, index + 1])), name);
+
+/** A scenario whose targets have other places, by their names; those without one are free. */
+export function withPlaces(scenario, places, name) {
   return {
     ...scenario,
     name: [scenario.name, name].filter(Boolean).join(", "),
-    targets: scenario.targets.map((target) => ({ ...target, position: place.get(target.id) })),
+    targets: scenario.targets.map(({ position: _, ...target }) => {
+      const place = places.get(target.id) ?? null;
+      return place === null ? target : { ...target, position: place };
+    }),
   };
 }

@@ -1,7 +1,7 @@
 // The figures of a job or plan that are read first.
 
 import { el } from "../dom.js";
-import { fixed, percent, seconds } from "../format.js";
+import { fixed, percent, seconds, significant } from "../format.js";
 import { settings } from "../settings.js";
 import { strip } from "../strip.js";
 import { clockOf, shownClock } from "../units.js";
@@ -12,8 +12,19 @@ const KINDS = {
   certified: "proved",
 };
 
-/** How a job stands. */
-export function standing(job, elapsed) {
+/** The limit of a search that its scenario says nothing of, s. */
+const USUAL_LIMIT_S = 60;
+
+/** The limit of time of a scenario, s; null for none. */
+function limitOf({ options }) {
+  const limit = options?.time_limit_s;
+  return limit === undefined ? USUAL_LIMIT_S : limit;
+}
+
+/** How a job stands, with the time that is left of the limit while it runs. */
+export function standing(job, scenario, elapsed) {
+  const limit = limitOf(scenario);
+  const left = job.state === "running" && limit !== null && elapsed !== null ? Math.max(0, limit - elapsed) : null;
   const steps = job.total ? `${job.done ?? 0} of ${job.total}` : null;
   return strip([
     ["Best plan", seconds(job.incumbent_s)],
@@ -21,6 +32,7 @@ export function standing(job, elapsed) {
     ["Gap", percent(job.relative_gap)],
     ["Stage", job.stage ?? "waiting", steps],
     ["Elapsed", seconds(elapsed, 1)],
+    left === null ? null : ["Time left", left > 0 ? seconds(left, 0) : "finishing", `of the limit of ${significant(limit)} s`],
   ]);
 }
 

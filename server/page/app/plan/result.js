@@ -10,6 +10,7 @@ import { isFinal } from "../state.js";
 import { alternatives } from "./alternatives.js";
 import { downloads } from "./downloads.js";
 import { facts, order } from "./facts.js";
+import { orderEdit } from "./order-edit.js";
 import { legs } from "./legs.js";
 import { matrix } from "./matrix.js";
 import { verification } from "./verification.js";
@@ -32,6 +33,7 @@ export function result(job, plan, scenario, beside, signal) {
     order(plan, scenario, cursor, signal),
     flown(flight, cursor, signal),
     legs(plan, flight),
+    isFinal(job.state) ? orderEdit(job, plan, scenario, signal) : null,
     alternatives(job, plan, scenario, signal),
     el("div", { class: "cards" }, verification(plan), beside),
     matrix(plan, scenario, signal),

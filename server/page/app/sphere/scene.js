@@ -11,7 +11,7 @@ const AXES = [["X", [1, 0, 0]], ["Y", [0, 1, 0]], ["Z", [0, 0, 1]]];
 /** More targets than this have smaller marks. */
 const MANY = 24;
 
-/** The picture of a size; `pose` is {view, zoom}, `content` what `contentOf` makes. */
+/** The picture of a size; a pose is {view, zoom}, `content` what `contentOf` makes, with `names` where they are shown. */
 export function draw(picture, size, { view, zoom }, content) {
   const centre = size / 2;
   const larger = letters();
@@ -21,6 +21,7 @@ export function draw(picture, size, { view, zoom }, content) {
     const [x, y, ahead] = seen(view, direction);
     return { x: centre + radius * x, y: centre - radius * y, hidden: ahead < -1e-9 };
   };
+  const { leaders, labels } = named(content, { at, larger, size });
   picture.setAttribute("viewBox", `0 0 ${size} ${size}`);
   picture.replaceChildren(
     svg("circle", { class: "globe", cx: centre, cy: centre, r: radius }),
@@ -29,9 +30,19 @@ export function draw(picture, size, { view, zoom }, content) {
     ...AXES.map(([name, direction]) => axis(name, at(direction), larger)),
     ...curves("trace", [paths(view, content.trace, place)]),
     ...content.ends.map((end) => ring(end, at(end.direction))),
+    ...leaders,
     ...marks(content.stops, { at, view, larger }),
     dot(content.now, at),
+    ...labels,
   );
+}
+
+/** The names of the targets in front, those that come first in the order nearest to their marks. */
+function named({ stops, names }, { at, larger, size }) {
+  if (!names) return { leaders: [], labels: [] };
+  const radius = radiusOf(stops, larger);
+  const places = stops.map(({ name, number, direction }) => ({ name, rank: -number, radius, ...at(direction) }));
+  return names.nodes(places.filter(({ hidden }) => !hidden), size);
 }
 
 function curves(name, parts) {
@@ -64,9 +75,11 @@ function ring({ name }, { x, y, hidden }) {
   return node;
 }
 
+const radiusOf = (stops, larger) => larger * (stops.length > MANY ? 7 : 9.5);
+
 /** Numbered targets, those behind first, so that those in front cover them. */
 function marks(stops, { at, view, larger }) {
-  const radius = larger * (stops.length > MANY ? 7 : 9.5);
+  const radius = radiusOf(stops, larger);
   return stops
     .map((stop) => ({ stop, ...at(stop.direction) }))
     .sort((a, b) => b.hidden - a.hidden || b.stop.number - a.stop.number)

@@ -5,20 +5,21 @@ import { disclosure, el, section, svg, table } from "../dom.js";
 import { fixed } from "../format.js";
 import { dot, longitudeLatitude, rotate, sum, unit, upward } from "../rotation.js";
 import { pictureButtons } from "../picture/save.js";
-import { viewOn } from "./projection.js";
+import { Names } from "./names.js";
 import { draw } from "./scene.js";
 import { turning } from "./turning.js";
 
 /** Below this length the mean direction of the targets says little about where they are. */
 const CLEAR = 0.3;
 const STEP = Math.PI / 90;
+/** More targets than these have their names only when somebody wants them. */
+const MAX_NAMED = 60;
 
 /** The section with the sphere of a flight; `title` and `id` tell it from others on the page. */
 export function sphere(flight, cursor, signal, { title = "Sky", id = "body-axis" } = {}) {
   const axes = bodyAxes(flight.scenario);
   let axis = axes[first(flight, axes)];
   let content = contentOf(flight, axis);
-  const pose = { longitude: 0, latitude: 0, zoom: 1 };
   const picture = svg("svg", {
     class: "sphere", tabindex: "0", role: "application",
     "aria-label": "Sphere with the trace of the body axis. Arrow keys turn it, plus and minus zoom, 0 resets.",
@@ -33,38 +34,38 @@ export function sphere(flight, cursor, signal, { title = "Sky", id = "body-axis"
   });
 
   let size = 0;
-  let asked = false;
-  const renew = () => {
-    if (asked) return;
-    asked = true;
-    requestAnimationFrame(() => {
-      asked = false;
-      const { longitude, latitude, zoom } = turned.pose;
-      if (size) draw(picture, size, { view: viewOn(longitude, latitude), zoom }, content);
-      picture.dataset.pose = turned.told();
-    });
-  };
-  const pressed = (node) => {
-    const stop = node.closest?.(".stop");
-    if (stop) cursor.set(Number(stop.dataset.time));
-  };
-  const turned = turning(picture, { renew, home: () => middle(content), width: () => size, pressed });
+  const names = new Names(picture);
+  const isNamed = el("input", { type: "checkbox", checked: flight.stops.length <= MAX_NAMED });
+  isNamed.addEventListener("change", () => turned.renew());
+  const turned = turning(picture, {
+    home: () => middle(content), width: () => size,
+    draw: () => {
+      if (size) draw(picture, size, turned.pose, { ...content, names: isNamed.checked ? names : null });
+      picture.dataset.pose = turned.pose.told();
+    },
+    grab: (event) => {
+      const stop = event.target.closest?.(".stop");
+      if (stop) cursor.set(Number(stop.dataset.time));
+      return null;
+    },
+  });
 
   cursor.listen((time) => {
     content.now = rotate(flight.attitudeAt(time), axis.direction);
     for (const stop of content.stops) stop.reached = stop.time <= time;
-    renew();
+    turned.renew();
   });
   const watcher = new ResizeObserver(([entry]) => {
     size = Math.round(entry.contentRect.width);
-    renew();
+    turned.renew();
   });
   watcher.observe(picture);
   signal.addEventListener("abort", () => watcher.disconnect());
   turned.reset();
 
   let data = directions(flight, axis);
-  const head = el("div", { class: "tools" }, el("label", { for: id }, "Axis"), choice, turned.buttons,
+  const head = el("div", { class: "tools" }, el("label", { for: id }, "Axis"), choice,
+    flight.stops.length ? el("label", { class: "named-stops" }, isNamed, "Names") : null, turned.buttons,
     pictureButtons(title.toLowerCase(), flight.scenario.name));
   return section(title, { head, class: "sky" }, picture, legend(flight), data);
 }

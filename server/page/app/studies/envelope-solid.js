@@ -4,7 +4,7 @@ import { el } from "../dom.js";
 import { paintAgain } from "../picture/painters.js";
 import { colour, curve, letters, onTheme } from "../plots/palette.js";
 import { dot, scaled } from "../rotation.js";
-import { seen, viewOn } from "../sphere/projection.js";
+import { seen } from "../sphere/projection.js";
 import { turning } from "../sphere/turning.js";
 
 /** Longitude and latitude of the viewer, degrees, as in the pictures of the command line. */
@@ -25,28 +25,22 @@ export function envelopeSolid({ name, full, inner, ways }, signal) {
     "aria-label": `${name} in three dimensions. Arrow keys turn it, plus and minus zoom, 0 resets.`,
   });
   let size = 0;
-  let asked = false;
   const show = (ctx) => paint(ctx, size, turned.pose, { full, inner, ways });
   const draw = () => {
-    asked = false;
     if (!size || signal.aborted) return;
     const pixels = Math.round(size * devicePixelRatio);
     if (canvas.width !== pixels) canvas.width = canvas.height = pixels;
     const ctx = canvas.getContext("2d");
     ctx.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     show(ctx);
-    canvas.dataset.pose = turned.told();
+    canvas.dataset.pose = turned.pose.told();
   };
-  const renew = () => {
-    if (!asked) requestAnimationFrame(draw);
-    asked = true;
-  };
-  const turned = turning(canvas, { renew, home: () => HOME, width: () => size });
+  const turned = turning(canvas, { draw, home: () => HOME, width: () => size });
   paintAgain(canvas, show);
-  onTheme(renew, signal);
+  onTheme(turned.renew, signal);
   const watcher = new ResizeObserver(([entry]) => {
     size = Math.round(entry.contentRect.width);
-    renew();
+    turned.renew();
   });
   watcher.observe(canvas);
   signal.addEventListener("abort", () => watcher.disconnect());
@@ -55,7 +49,7 @@ export function envelopeSolid({ name, full, inner, ways }, signal) {
 }
 
 function paint(ctx, size, pose, { full, inner, ways }) {
-  const view = viewOn(pose.longitude, pose.latitude);
+  const { view } = pose;
   const scale = (pose.zoom * FILLED * size) / full.greatest_radius;
   const at = (vector) => {
     const [x, y] = seen(view, vector);

@@ -3,14 +3,15 @@
 import { post, read, remove } from "../api.js";
 import { el, section } from "../dom.js";
 import { failure } from "../failure.js";
-import { count, moment } from "../format.js";
+import { count, moment, seconds } from "../format.js";
+import { notice } from "../notice.js";
 import { downloads } from "../plan/downloads.js";
 import { standing } from "../plan/facts.js";
 import { result } from "../plan/result.js";
 import { checkedPlan, doubtOf } from "../plan/violations.js";
 import { pictureButtons } from "../picture/save.js";
 import { convergence } from "../plots/convergence.js";
-import { chip, isFinal } from "../state.js";
+import { chip, isFinal, stateText } from "../state.js";
 import { follow } from "../stream.js";
 
 const TICK_MS = 200;
@@ -45,6 +46,7 @@ class PlanPage {
   #studies = STUDIES.map(([, title]) => el("a", { class: "button", hidden: true }, title));
   #delete = el("button", { type: "button", onclick: () => this.#remove() }, "Delete");
   #standing = el("div", {});
+  #notice = notice();
   #news = el("div", { class: "news", "aria-live": "polite" });
   #search;
   #progress;
@@ -64,7 +66,7 @@ class PlanPage {
       el("div", { class: "title" },
         el("div", {}, el("div", { class: "named" }, this.#title, this.#state), this.#about),
         el("div", { class: "actions" }, this.#stop, this.#cancel, this.#studies, this.#compare, this.#again, this.#delete)),
-      this.#standing, this.#news, this.#search, this.#result);
+      this.#standing, this.#notice.node, this.#news, this.#search, this.#result);
   }
 
   async run() {
@@ -79,12 +81,19 @@ class PlanPage {
     this.#renew();
     const clock = setInterval(() => this.#tick(), TICK_MS);
     this.#signal.addEventListener("abort", () => clearInterval(clock));
-    if (isFinal(this.#job.state)) await this.#draw();
+    const wasOver = isFinal(this.#job.state);
+    if (wasOver) await this.#draw();
     await follow(this.#id, (event) => this.#take(event), this.#signal);
     clearInterval(clock);
     if (!this.#signal.aborted) this.#job = await read(`/v1/plans/${this.#id}`, this.#signal);
     this.#renew();
+    if (!wasOver && !this.#signal.aborted) this.#tellEnd();
     await this.#draw();
+  }
+
+  #tellEnd() {
+    const { name, state, incumbent_s: total } = this.#job;
+    this.#notice.tell(`${name ?? "Plan"}: ${stateText(state)}`, total === null ? "There is no plan." : `A plan of ${seconds(total)}.`);
   }
 
   fail(error) {
@@ -120,12 +129,13 @@ class PlanPage {
     const key = [state, doubt].join();
     if (this.#state.dataset.shown !== key) this.#state.replaceChildren(chip(state, doubt));
     this.#state.dataset.shown = key;
+    this.#notice.node.hidden = ended || !this.#notice.isPossible;
     this.#stop.hidden = state !== "running";
     this.#cancel.hidden = ended;
     this.#compare.hidden = this.#again.hidden = this.#delete.hidden = !ended;
     for (const link of this.#studies) link.hidden = !ended || !this.#shown.isFlown;
     const elapsed = state === "running" ? (Date.now() - this.#begun) / 1000 : null;
-    this.#standing.replaceChildren(ended && this.#shown.final ? "" : standing(this.#job, elapsed ?? this.#job.solved_s));
+    this.#standing.replaceChildren(ended && this.#shown.final ? "" : standing(this.#job, this.#scenario, elapsed ?? this.#job.solved_s));
   }
 
   /** Fetches the plan and draws it; each drawing replaces the one before. */
